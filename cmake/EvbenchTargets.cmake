@@ -1,0 +1,61 @@
+# What every target of evbench shares: flags, include root, tests, installation.
+
+add_library(evbench_flags INTERFACE)
+target_compile_features(evbench_flags INTERFACE cxx_std_20)
+target_compile_options(evbench_flags INTERFACE
+  -Wall -Wextra -Wconversion -Wshadow
+  # GCC 12 sees ghosts in inlined Eigen and std::variant code.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
+  $<$<BOOL:${EVBENCH_WERROR}>:-Werror>
+  $<$<BOOL:${EVBENCH_NATIVE}>:-march=native>)
+if(EVBENCH_SANITIZE)
+  target_compile_options(evbench_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
+                                                 -fno-omit-frame-pointer)
+  target_link_options(evbench_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# evbench_library(NAME [STATIC|OBJECT] SOURCES ... LINKS ...): a folder's target. Headers are included by their path from
+# the repository's root ("core/geometry/se3.hpp").
+function(evbench_library name kind)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  add_library(${name} ${kind} ${ARG_SOURCES})
+  target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>
+                                            $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/evbench>)
+  target_link_libraries(${name} PUBLIC ${ARG_LINKS} PRIVATE $<BUILD_INTERFACE:evbench_flags>)
+endfunction()
+
+# evbench_tests(NAME SOURCES ... LINKS ...): the *.test.cpp of a folder as one test program, each test case a ctest of its
+# own. Tests of real data read EVBENCH_DATA and EVBENCH_PROBLEMS.
+function(evbench_tests name)
+  if(NOT EVBENCH_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  if(NOT TARGET evbench_test_support)
+    evbench_library(evbench_test_support STATIC SOURCES ${CMAKE_SOURCE_DIR}/core/testing/main.cpp
+                    ${CMAKE_SOURCE_DIR}/core/testing/data.cpp LINKS Catch2::Catch2 fmt::fmt)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LINKS} evbench_test_support evbench_flags)
+  catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:")
+endfunction()
+
+# Headers, libraries and the package files that find_package(evbench) reads.
+function(evbench_install_package)
+  include(CMakePackageConfigHelpers)
+  install(TARGETS evbench_core evbench_eval EXPORT evbench_targets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS evbench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  foreach(folder core eval)
+    install(DIRECTORY ${CMAKE_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/evbench
+            FILES_MATCHING PATTERN "*.hpp" PATTERN "testing" EXCLUDE)
+  endforeach()
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/configs DESTINATION ${CMAKE_INSTALL_DATADIR}/evbench)
+  install(EXPORT evbench_targets NAMESPACE evbench:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/evbench)
+  configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/evbenchConfig.cmake.in
+                                ${CMAKE_BINARY_DIR}/evbenchConfig.cmake
+                                INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/evbench)
+  write_basic_package_version_file(${CMAKE_BINARY_DIR}/evbenchConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+  install(FILES ${CMAKE_BINARY_DIR}/evbenchConfig.cmake ${CMAKE_BINARY_DIR}/evbenchConfigVersion.cmake
+          DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/evbench)
+endfunction()

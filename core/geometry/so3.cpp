@@ -1,0 +1,72 @@
+#include "core/geometry/so3.hpp"
+
+#include <cmath>
+
+#include "core/geometry/lie_coefficients.hpp"
+
+namespace evbench::so3 {
+namespace {
+
+/// ∂(v + odd φ×v + even φ×(φ×v))/∂φ for coefficients that are functions of φ².
+Matrix3 d_polynomial(const Vector3& phi, const Vector3& v, double odd, double d_odd, double even, double d_even) {
+  const Vector3 u1 = phi.cross(v);
+  const Vector3 u2 = phi.cross(u1);
+  const Matrix3 d1 = -hat(v);
+  const Matrix3 d2 = -hat(u1) + hat(phi) * d1;
+  return odd * d1 + even * d2 + 2.0 * (d_odd * u1 + d_even * u2) * phi.transpose();
+}
+
+}  // namespace
+
+Matrix3 hat(const Vector3& phi) {
+  Matrix3 m;
+  m << 0.0, -phi.z(), phi.y(), phi.z(), 0.0, -phi.x(), -phi.y(), phi.x(), 0.0;
+  return m;
+}
+
+Eigen::Quaterniond exp(const Vector3& phi) {
+  const double theta_squared = phi.squaredNorm();
+  const double theta = std::sqrt(theta_squared);
+  // sin(θ/2)/θ; its series is exact to rounding where the quotient is not defined.
+  const double k = theta < 1e-4 ? 0.5 - theta_squared / 48.0 : std::sin(0.5 * theta) / theta;
+  return {std::cos(0.5 * theta), k * phi.x(), k * phi.y(), k * phi.z()};
+}
+
+Vector3 log(const Eigen::Quaterniond& q) {
+  const double sign = q.w() < 0.0 ? -1.0 : 1.0;
+  const Vector3 v = sign * q.vec();
+  const double w = sign * q.w();
+  const double s = v.norm();
+  // 2 atan2(s, w)/s; below the bound its series in s/w.
+  const double k = s < 1e-6 ? 2.0 / w - 2.0 * s * s / (3.0 * w * w * w) : 2.0 * std::atan2(s, w) / s;
+  return k * v;
+}
+
+Matrix3 left_jacobian(const Vector3& phi) {
+  const double z = phi.squaredNorm();
+  const Matrix3 k = hat(phi);
+  return Matrix3::Identity() + coefficient_b(z).f * k + coefficient_c(z).f * k * k;
+}
+
+Matrix3 right_jacobian(const Vector3& phi) { return left_jacobian(-phi); }
+
+Matrix3 left_jacobian_inverse(const Vector3& phi) {
+  const Matrix3 k = hat(phi);
+  return Matrix3::Identity() - 0.5 * k + inverse_jacobian_coefficient(phi.squaredNorm()).f * k * k;
+}
+
+Matrix3 right_jacobian_inverse(const Vector3& phi) { return left_jacobian_inverse(-phi); }
+
+Matrix3 d_right_jacobian(const Vector3& phi, const Vector3& v) {
+  const double z = phi.squaredNorm();
+  const CoefficientJet b = coefficient_b(z);
+  const CoefficientJet c = coefficient_c(z);
+  return d_polynomial(phi, v, -b.f, -b.d, c.f, c.d);
+}
+
+Matrix3 d_right_jacobian_inverse(const Vector3& phi, const Vector3& v) {
+  const CoefficientJet h = inverse_jacobian_coefficient(phi.squaredNorm());
+  return d_polynomial(phi, v, 0.5, 0.0, h.f, h.d);
+}
+
+}  // namespace evbench::so3

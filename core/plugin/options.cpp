@@ -1,0 +1,252 @@
+#include "core/plugin/options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/support/error.hpp"
+#include "core/support/nearest.hpp"
+
+namespace evbench {
+namespace {
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
+
+std::string shown(const Json& value) {
+  std::string text = value.dump();
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+}  // namespace
+
+OptionSet::Option& OptionSet::Option::range(double minimum, double maximum) {
+  minimum_ = minimum;
+  maximum_ = maximum;
+  return *this;
+}
+
+OptionSet::Option& OptionSet::Option::above(double minimum) {
+  minimum_ = minimum;
+  open_below_ = true;
+  return *this;
+}
+
+OptionSet::Option& OptionSet::Option::choices(std::vector<std::string> values) {
+  choices_ = std::move(values);
+  return *this;
+}
+
+OptionSet::Option& OptionSet::Option::size(std::size_t count) {
+  size_ = count;
+  return *this;
+}
+
+OptionSet::Option& OptionSet::Option::required() {
+  required_ = true;
+  return *this;
+}
+
+std::string OptionSet::Option::allowed() const {
+  if (!choices_.empty()) return fmt::format("{}", fmt::join(choices_, " | "));
+  const bool bounded_below = std::isfinite(minimum_);
+  const bool bounded_above = std::isfinite(maximum_);
+  if (bounded_below && bounded_above) return fmt::format("{} to {}", minimum_, maximum_);
+  if (bounded_below) return fmt::format("{} {}", open_below_ ? ">" : ">=", minimum_);
+  if (bounded_above) return fmt::format("<= {}", maximum_);
+  return "";
+}
+
+std::string OptionSet::Option::type_name() const {
+  return std::visit(Overloaded{[](bool*) { return "true or false"; }, [](int*) { return "integer"; },
+                               [](std::int64_t*) { return "integer"; }, [](double*) { return "number"; },
+                               [](std::string*) { return "text"; }, [](List*) { return "list of numbers"; },
+                               [](Json*) { return "any"; }},
+                    target_);
+}
+
+void OptionSet::Option::check_number(double number, const std::string& place) const {
+  const bool too_low = open_below_ ? !(number > minimum_) : number < minimum_;
+  if (!std::isfinite(number) || too_low || number > maximum_) {
+    throw InputError(fmt::format("{}: {} is out of range; expected {}", place, number, allowed()));
+  }
+}
+
+void OptionSet::Option::read(const Json& value, const std::string& place) {
+  const auto wrong_type = [&]() -> InputError {
+    return InputError(fmt::format("{}: expected {}, found {}", place, type_name(), shown(value)));
+  };
+  const auto integer = [&]() {
+    const double number = value.is_number() ? value.get<double>() : std::nan("");
+    if (!(std::abs(number) < 9.0e15) || number != std::floor(number)) throw wrong_type();
+    check_number(number, place);
+    return static_cast<std::int64_t>(number);
+  };
+  std::visit(Overloaded{[&](bool* target) {
+                          if (!value.is_boolean()) throw wrong_type();
+                          *target = value.get<bool>();
+                        },
+                        [&](int* target) {
+                          const std::int64_t number = integer();
+                          if (number < std::numeric_limits<int>::min() || number > std::numeric_limits<int>::max()) {
+                            throw wrong_type();
+                          }
+                          *target = static_cast<int>(number);
+                        },
+                        [&](std::int64_t* target) { *target = integer(); },
+                        [&](double* target) {
+                          if (!value.is_number()) throw wrong_type();
+                          check_number(value.get<double>(), place);
+                          *target = value.get<double>();
+                        },
+                        [&](std::string* target) {
+                          if (!value.is_string()) throw wrong_type();
+                          *target = value.get<std::string>();
+                          if (!choices_.empty() && std::ranges::find(choices_, *target) == choices_.end()) {
+                            throw InputError(fmt::format("{}: \"{}\" is not one of {}{}", place, *target, allowed(),
+                                                         suggestion(*target, choices_)));
+                          }
+                        },
+                        [&](List* target) {
+                          if (!value.is_array()) throw wrong_type();
+                          List list;
+                          for (const Json& item : value) {
+                            if (!item.is_number()) throw wrong_type();
+                            check_number(item.get<double>(), place);
+                            list.push_back(item.get<double>());
+                          }
+                          if (size_ && list.size() != *size_ && !list.empty()) {
+                            throw InputError(
+                                fmt::format("{}: expected {} numbers, found {}", place, *size_, list.size()));
+                          }
+                          *target = std::move(list);
+                        },
+                        [&](Json* target) { *target = value; }},
+             target_);
+}
+
+Json OptionSet::Option::value() const {
+  return std::visit([](auto* target) { return Json(*target); }, target_);
+}
+
+Json OptionSet::Option::schema() const {
+  Json result;
+  Json number = {{"type", "number"}};
+  if (std::holds_alternative<int*>(target_) || std::holds_alternative<std::int64_t*>(target_)) {
+    number["type"] = "integer";
+  }
+  if (std::isfinite(minimum_)) number[open_below_ ? "exclusiveMinimum" : "minimum"] = minimum_;
+  if (std::isfinite(maximum_)) number["maximum"] = maximum_;
+  std::visit(Overloaded{[&](bool*) { result["type"] = "boolean"; }, [&](int*) { result = number; },
+                        [&](std::int64_t*) { result = number; }, [&](double*) { result = number; },
+                        [&](std::string*) {
+                          result["type"] = "string";
+                          if (!choices_.empty()) result["enum"] = choices_;
+                        },
+                        [&](List*) {
+                          result["type"] = "array";
+                          result["items"] = number;
+                        },
+                        [&](Json*) {}},
+             target_);
+  result["description"] = text_;
+  if (!required_) result["default"] = value();
+  return result;
+}
+
+OptionSet::Option& OptionSet::add(const std::string& name, Target target, const std::string& text) {
+  Option option;
+  option.name_ = name;
+  option.text_ = text;
+  option.target_ = target;
+  options_.push_back(std::move(option));
+  return options_.back();
+}
+
+void OptionSet::add_group(const std::string& name, const std::string& text, OptionSet set) {
+  groups_.push_back({name, text, std::move(set)});
+}
+
+void OptionSet::read(const Json& object, const std::string& place) {
+  if (!object.is_object()) {
+    throw InputError(fmt::format("{}: expected an object {{...}}, found {}", place, shown(object)));
+  }
+  std::vector<std::string> known;
+  for (const Option& option : options_) known.push_back(option.name_);
+  for (const Group& group : groups_) known.push_back(group.name);
+  for (const auto& [key, value] : object.items()) {
+    if (std::ranges::find(known, key) == known.end()) {
+      throw InputError(fmt::format("{}: unknown key \"{}\"{}", place, key, suggestion(key, known)));
+    }
+  }
+  for (Option& option : options_) {
+    const auto found = object.find(option.name_);
+    if (found != object.end()) {
+      option.read(*found, place + "." + option.name_);
+    } else if (option.required_) {
+      throw InputError(fmt::format("{}: \"{}\" is missing ({})", place, option.name_, option.text_));
+    }
+  }
+  for (Group& group : groups_) {
+    const auto found = object.find(group.name);
+    if (found != object.end()) group.set.read(*found, place + "." + group.name);
+  }
+}
+
+Json OptionSet::write() const {
+  Json result = Json::object();
+  for (const Option& option : options_) result[option.name_] = option.value();
+  for (const Group& group : groups_) result[group.name] = group.set.write();
+  return result;
+}
+
+Json OptionSet::schema() const {
+  Json properties = Json::object();
+  Json required = Json::array();
+  for (const Option& option : options_) {
+    properties[option.name_] = option.schema();
+    if (option.required_) required.push_back(option.name_);
+  }
+  for (const Group& group : groups_) {
+    properties[group.name] = group.set.schema();
+    properties[group.name]["description"] = group.text;
+  }
+  Json result = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
+  if (!required.empty()) result["required"] = required;
+  return result;
+}
+
+void OptionSet::describe_rows(const std::string& prefix, std::vector<std::array<std::string, 4>>& rows) const {
+  for (const Option& option : options_) {
+    const std::string allowed = option.allowed();
+    rows.push_back({prefix + option.name_, option.required_ ? "required" : shown(option.value()),
+                    allowed.empty() ? option.type_name() : allowed, option.text_});
+  }
+  for (const Group& group : groups_) group.set.describe_rows(prefix + group.name + ".", rows);
+}
+
+std::string OptionSet::describe() const {
+  std::vector<std::array<std::string, 4>> rows = {{"option", "default", "allowed", "what it does"}};
+  describe_rows("", rows);
+  std::array<std::size_t, 3> width{};
+  for (const auto& row : rows) {
+    for (std::size_t column = 0; column < width.size(); ++column) {
+      width[column] = std::max(width[column], row[column].size());
+    }
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    text += fmt::format("{:<{}}  {:<{}}  {:<{}}  {}\n", row[0], width[0], row[1], width[1], row[2], width[2], row[3]);
+  }
+  return text;
+}
+
+}  // namespace evbench

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace evbench {
+
+/// Keys keep the order in which they were declared.
+using Json = nlohmann::ordered_json;
+
+/// The options of a plain struct, declared once:
+///
+///   struct MyOptions {
+///     double rate = 20.0;
+///     std::string loss = "none";
+///     void declare(OptionSet& set) {
+///       set.add("rate", rate, "control states per second [Hz]").range(0.1, 1000.0);
+///       set.add("loss", loss, "robust loss").choices({"none", "huber"});
+///     }
+///   };
+///
+/// From this come reading a JSON object (defaults, types, ranges, unknown keys), writing it back complete, the text of
+/// `evbench describe`, and a JSON Schema. The set refers to the struct's members: it must not outlive the struct.
+class OptionSet {
+ public:
+  using List = std::vector<double>;
+  using Target = std::variant<bool*, int*, std::int64_t*, double*, std::string*, List*, Json*>;
+
+  class Option {
+   public:
+    Option& range(double minimum, double maximum = std::numeric_limits<double>::infinity());  ///< closed; numbers, items
+    Option& above(double minimum);  ///< open below: > minimum
+    Option& choices(std::vector<std::string> values);
+    Option& size(std::size_t count);  ///< number of items of a list
+    Option& required();               ///< no default: must be given
+
+   private:
+    friend class OptionSet;
+    std::string name_, text_;
+    Target target_;
+    double minimum_ = -std::numeric_limits<double>::infinity();
+    double maximum_ = std::numeric_limits<double>::infinity();
+    bool open_below_ = false, required_ = false;
+    std::vector<std::string> choices_;
+    std::optional<std::size_t> size_;
+
+    void read(const Json& value, const std::string& place);
+    void check_number(double value, const std::string& place) const;
+    std::string allowed() const;
+    std::string type_name() const;
+    Json value() const;
+    Json schema() const;
+  };
+
+  /// `text` is one sentence part with the unit in brackets. A Json target takes any value.
+  Option& add(const std::string& name, Target target, const std::string& text);
+  template <class T>
+  Option& add(const std::string& name, T& member, const std::string& text) {
+    return add(name, Target(&member), text);
+  }
+
+  /// A nested object with options of its own.
+  template <class Struct>
+  void group(const std::string& name, Struct& member, const std::string& text) {
+    OptionSet set;
+    member.declare(set);
+    add_group(name, text, std::move(set));
+  }
+
+  /// Sets the members from a JSON object; keys that are missing keep their defaults. `place` is where the object
+  /// stands ("config.json: backend"), for messages. Throws InputError for a value of a wrong type or out of range, an
+  /// unknown key (with the nearest known one), a required key that is missing.
+  void read(const Json& object, const std::string& place);
+
+  Json write() const;            ///< every option with its present value
+  Json schema() const;           ///< JSON Schema (2020-12) of the object
+  std::string describe() const;  ///< a table for people: name, type, default, range, text
+
+ private:
+  struct Group;
+  void add_group(const std::string& name, const std::string& text, OptionSet set);
+  void describe_rows(const std::string& prefix, std::vector<std::array<std::string, 4>>& rows) const;
+
+  std::vector<Option> options_;
+  std::vector<Group> groups_;
+};
+
+struct OptionSet::Group {
+  std::string name, text;
+  OptionSet set;
+};
+
+/// A struct's options, read from JSON.
+template <class Struct>
+Struct read_options(const Json& object, const std::string& place) {
+  Struct result;
+  OptionSet set;
+  result.declare(set);
+  set.read(object, place);
+  return result;
+}
+
+/// All options of a struct as JSON.
+template <class Struct>
+Json write_options(Struct options) {
+  OptionSet set;
+  options.declare(set);
+  return set.write();
+}
+
+}  // namespace evbench

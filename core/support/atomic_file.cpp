@@ -1,0 +1,109 @@
+#include "core/support/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void fail(const std::string& path, const char* what, int error) {
+  throw InputError(fmt::format("{}: {}: {}", path, what, std::strerror(error)));
+}
+
+/// Writes and flushes to the disk, so that "disk full" is noticed here and not lost.
+void write_durably(const std::string& path, std::string_view content) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) fail(path, "can't be written", errno);
+  int error = 0;
+  while (!content.empty() && error == 0) {
+    const ssize_t written = ::write(file, content.data(), content.size());
+    if (written < 0) {
+      error = errno == EINTR ? 0 : errno;
+    } else {
+      content.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+  if (error == 0 && ::fsync(file) != 0 && errno != EINVAL && errno != EROFS) error = errno;
+  if (::close(file) != 0 && error == 0) error = errno;
+  if (error != 0) {
+    std::error_code ignored;
+    if (fs::is_regular_file(path, ignored)) ::unlink(path.c_str());
+    fail(path, "can't be written", error);
+  }
+}
+
+}  // namespace
+
+void write_file(const std::string& path, std::string_view content) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) throw InputError(fmt::format("{}: is a folder; expected a file name", path));
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
+    write_durably(path, content);  // a device or a pipe is written to, not replaced
+    return;
+  }
+  const std::string part = fmt::format("{}.part{}", path, ::getpid());
+  write_durably(part, content);
+  if (::rename(part.c_str(), path.c_str()) != 0) {
+    const int error = errno;
+    ::unlink(part.c_str());
+    fail(path, "can't be written", error);
+  }
+}
+
+AtomicFolder::AtomicFolder(const std::string& path) : path_(path), part_(path + ".part"), lock_path_(path + ".lock") {
+  std::error_code error;
+  const fs::path parent = fs::path(path).parent_path();
+  if (!parent.empty()) fs::create_directories(parent, error);
+  if (error) throw InputError(fmt::format("{}: can't be made: {}", parent.string(), error.message()));
+  lock_ = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (lock_ < 0) fail(lock_path_, "can't be written", errno);
+  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    ::close(lock_);
+    lock_ = -1;
+    throw InputError(fmt::format("{}: another run is writing to this folder; give one of them another --out", path));
+  }
+  fs::remove_all(part_, error);  // what a killed run left
+  if (!fs::create_directory(part_, error)) {
+    const std::string message = fmt::format("{}: can't be made: {}", part_, error.message());
+    ::unlink(lock_path_.c_str());
+    ::close(lock_);
+    throw InputError(message);
+  }
+}
+
+AtomicFolder::~AtomicFolder() {
+  std::error_code ignored;
+  fs::remove_all(part_, ignored);
+  ::unlink(lock_path_.c_str());
+  ::close(lock_);
+}
+
+void AtomicFolder::write(const std::string& name, std::string_view content) const {
+  write_durably(part_ + "/" + name, content);
+}
+
+void AtomicFolder::commit() {
+  std::error_code error;
+  const std::string old = path_ + ".old";
+  fs::remove_all(old, error);
+  if (fs::exists(path_)) fs::rename(path_, old, error);
+  if (error) throw InputError(fmt::format("{}: can't be replaced: {}", path_, error.message()));
+  fs::rename(part_, path_, error);
+  if (error) {
+    std::error_code ignored;
+    fs::rename(old, path_, ignored);  // what was there before stays
+    throw InputError(fmt::format("{}: can't be written: {}", path_, error.message()));
+  }
+  fs::remove_all(old, error);
+}
+
+}  // namespace evbench

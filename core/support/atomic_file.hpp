@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace evbench {
+
+/// Writes a whole file under a temporary name beside it and renames it: readers see the old content or the new, never a
+/// half. Throws InputError (folder missing, no permission, disk full) and leaves no temporary file behind.
+void write_file(const std::string& path, std::string_view content);
+
+/// A folder that appears under its name only when it is complete: files are written into a temporary folder beside it
+/// (name + ".part"), commit() renames it, replacing an older folder of that name. Locked while it exists: a second
+/// writer of the same folder gets an InputError. Not committed, it disappears with the object.
+class AtomicFolder {
+ public:
+  explicit AtomicFolder(const std::string& path);
+  ~AtomicFolder();
+  AtomicFolder(const AtomicFolder&) = delete;
+  AtomicFolder& operator=(const AtomicFolder&) = delete;
+
+  /// Writes a file of this name into the folder; throws InputError when it can't.
+  void write(const std::string& name, std::string_view content) const;
+
+  void commit();
+
+ private:
+  std::string path_, part_, lock_path_;
+  int lock_ = -1;
+};
+
+}  // namespace evbench

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <stdexcept>
+
+namespace evbench {
+
+/// Bad input from outside: a file, a config, a command line. The message is one sentence that a user can act on:
+/// where (file and line, or place in the JSON), what was found, what was expected. Caught once, in `main`.
+/// Numerical failure is not an error but a `Status` in the results.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace evbench
