@@ -53,10 +53,10 @@ GpInterval::Query GpInterval::query(double t, const Derivatives& d) const {
   Query q;
   q.T = T0_ * step;
   q.velocity = jr * rate;
-  q.J0 << se3::adjoint(step.inverse()) + jr * xi_T0, h.a * jr,
-      bend * xi_T0 + jr * (h.db * d.xi1_T0 + h.dc * d.w1_T0), h.a * bend + h.da * jr;
-  q.J1 << jr * xi_T1, h.c * jr * d.w1_v1,
-      bend * xi_T1 + jr * (h.db * d.xi1_T1 + h.dc * d.w1_T1), (h.c * bend + h.dc * jr) * d.w1_v1;
+  q.J0 << se3::adjoint(step.inverse()) + jr * xi_T0, h.a * jr, bend * xi_T0 + jr * (h.db * d.xi1_T0 + h.dc * d.w1_T0),
+      h.a * bend + h.da * jr;
+  q.J1 << jr * xi_T1, h.c * jr * d.w1_v1, bend * xi_T1 + jr * (h.db * d.xi1_T1 + h.dc * d.w1_T1),
+      (h.c * bend + h.dc * jr) * d.w1_v1;
   return q;
 }
 
@@ -87,6 +87,13 @@ Matrix12 GpInterval::conditional_covariance(double t, const Vector6& qc) const {
   map.bottomLeftCorner<6, 6>() = se3::d_right_jacobian(xi, local_rate(h));
   map.bottomRightCorner<6, 6>() = map.topLeftCorner<6, 6>();
   return map * local_covariance * map.transpose();
+}
+
+Matrix12 GpInterval::covariance(double t, const Eigen::Matrix<double, 24, 24>& states, const Vector6& qc) const {
+  const Query q = query(t, derivatives());
+  Eigen::Matrix<double, 12, 24> J;
+  J << q.J0, q.J1;
+  return J * states * J.transpose() + conditional_covariance(t, qc);
 }
 
 }  // namespace evbench

@@ -6,8 +6,8 @@ namespace evbench {
 
 /// Pose and body velocity at a time: the variable of a continuous-time trajectory.
 struct ControlState {
-  double t = 0.0;                     ///< [s]
-  SE3 T;                              ///< T_world_camera
+  double t = 0.0;                      ///< [s]
+  SE3 T;                               ///< T_world_camera
   Vector6 velocity = Vector6::Zero();  ///< ϖ = (ω, ν), body frame [rad/s, m/s]: Ṫ = T ϖ^
 
   /// T ← T Exp(δ_pose), ϖ ← ϖ + δ_velocity for δ = (pose, velocity).
@@ -76,6 +76,9 @@ class GpInterval {
 
   /// Covariance of (δT(t), δϖ(t)) that remains when both states are known (Barfoot 2014, eq. 24).
   Matrix12 conditional_covariance(double t, const Vector6& qc) const;
+
+  /// Covariance of (δT(t), δϖ(t)) from the joint one of both states' increments (24 × 24) and what the prior adds.
+  Matrix12 covariance(double t, const Eigen::Matrix<double, 24, 24>& states, const Vector6& qc) const;
 
  private:
   double t0_, dt_;

@@ -11,9 +11,10 @@ namespace evbench {
 PoseTrajectory::PoseTrajectory(std::vector<StampedPose> poses, const std::string& name) : poses_(std::move(poses)) {
   for (std::size_t i = 1; i < poses_.size(); ++i) {
     if (!(poses_[i - 1].t < poses_[i].t)) {
-      throw InputError(fmt::format("{}: pose {} has time {:.9f} s, not after the one before it ({:.9f} s); "
-                                   "expected strictly increasing times",
-                                   name, i + 1, poses_[i].t, poses_[i - 1].t));
+      throw InputError(
+          fmt::format("{}: pose {} has time {:.9f} s, not after the one before it ({:.9f} s); "
+                      "expected strictly increasing times",
+                      name, i + 1, poses_[i].t, poses_[i - 1].t));
     }
   }
 }

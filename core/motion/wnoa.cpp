@@ -13,9 +13,7 @@ Matrix12 blocks(double pose, double cross, double velocity, const Vector6& diago
 
 }  // namespace
 
-Matrix12 process_covariance(double dt, const Vector6& qc) {
-  return blocks(dt * dt * dt / 3.0, 0.5 * dt * dt, dt, qc);
-}
+Matrix12 process_covariance(double dt, const Vector6& qc) { return blocks(dt * dt * dt / 3.0, 0.5 * dt * dt, dt, qc); }
 
 Matrix12 process_information(double dt, const Vector6& qc) {
   return blocks(12.0 / (dt * dt * dt), -6.0 / (dt * dt), 4.0 / dt, qc.cwiseInverse());

@@ -17,8 +17,8 @@ namespace evbench {
 
 /// What a back-end is given besides its options.
 struct BackEndContext {
-  PinholeCamera camera;     ///< of the undistorted pixels that it will observe
-  std::uint64_t seed = 0;   ///< for whatever it draws
+  PinholeCamera camera;    ///< of the undistorted pixels that it will observe
+  std::uint64_t seed = 0;  ///< for whatever it draws
   std::function<void(const std::string&)> log = [](const std::string&) {};  ///< a line for the run's log.txt
 };
 
@@ -35,7 +35,7 @@ struct UpdateRecord {
   int landmarks = 0;
   int observations = 0;  ///< in the problem
   int iterations = 0;
-  double cost = 0.0;     ///< ½ Σ ρ(‖whitened residual‖²) after the update
+  double cost = 0.0;  ///< ½ Σ ρ(‖whitened residual‖²) after the update
 };
 
 /// What a back-end tells the front-end, which may use it or not.

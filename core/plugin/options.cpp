@@ -90,47 +90,47 @@ void OptionSet::Option::read(const Json& value, const std::string& place) {
     check_number(number, place);
     return static_cast<std::int64_t>(number);
   };
-  std::visit(Overloaded{[&](bool* target) {
-                          if (!value.is_boolean()) throw wrong_type();
-                          *target = value.get<bool>();
-                        },
-                        [&](int* target) {
-                          const std::int64_t number = integer();
-                          if (number < std::numeric_limits<int>::min() || number > std::numeric_limits<int>::max()) {
-                            throw wrong_type();
-                          }
-                          *target = static_cast<int>(number);
-                        },
-                        [&](std::int64_t* target) { *target = integer(); },
-                        [&](double* target) {
-                          if (!value.is_number()) throw wrong_type();
-                          check_number(value.get<double>(), place);
-                          *target = value.get<double>();
-                        },
-                        [&](std::string* target) {
-                          if (!value.is_string()) throw wrong_type();
-                          *target = value.get<std::string>();
-                          if (!choices_.empty() && std::ranges::find(choices_, *target) == choices_.end()) {
-                            throw InputError(fmt::format("{}: \"{}\" is not one of {}{}", place, *target, allowed(),
-                                                         suggestion(*target, choices_)));
-                          }
-                        },
-                        [&](List* target) {
-                          if (!value.is_array()) throw wrong_type();
-                          List list;
-                          for (const Json& item : value) {
-                            if (!item.is_number()) throw wrong_type();
-                            check_number(item.get<double>(), place);
-                            list.push_back(item.get<double>());
-                          }
-                          if (size_ && list.size() != *size_ && !list.empty()) {
-                            throw InputError(
-                                fmt::format("{}: expected {} numbers, found {}", place, *size_, list.size()));
-                          }
-                          *target = std::move(list);
-                        },
-                        [&](Json* target) { *target = value; }},
-             target_);
+  std::visit(
+      Overloaded{[&](bool* target) {
+                   if (!value.is_boolean()) throw wrong_type();
+                   *target = value.get<bool>();
+                 },
+                 [&](int* target) {
+                   const std::int64_t number = integer();
+                   if (number < std::numeric_limits<int>::min() || number > std::numeric_limits<int>::max()) {
+                     throw wrong_type();
+                   }
+                   *target = static_cast<int>(number);
+                 },
+                 [&](std::int64_t* target) { *target = integer(); },
+                 [&](double* target) {
+                   if (!value.is_number()) throw wrong_type();
+                   check_number(value.get<double>(), place);
+                   *target = value.get<double>();
+                 },
+                 [&](std::string* target) {
+                   if (!value.is_string()) throw wrong_type();
+                   *target = value.get<std::string>();
+                   if (!choices_.empty() && std::ranges::find(choices_, *target) == choices_.end()) {
+                     throw InputError(fmt::format("{}: \"{}\" is not one of {}{}", place, *target, allowed(),
+                                                  suggestion(*target, choices_)));
+                   }
+                 },
+                 [&](List* target) {
+                   if (!value.is_array()) throw wrong_type();
+                   List list;
+                   for (const Json& item : value) {
+                     if (!item.is_number()) throw wrong_type();
+                     check_number(item.get<double>(), place);
+                     list.push_back(item.get<double>());
+                   }
+                   if (size_ && list.size() != *size_ && !list.empty()) {
+                     throw InputError(fmt::format("{}: expected {} numbers, found {}", place, *size_, list.size()));
+                   }
+                   *target = std::move(list);
+                 },
+                 [&](Json* target) { *target = value; }},
+      target_);
 }
 
 Json OptionSet::Option::value() const {

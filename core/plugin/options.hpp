@@ -34,8 +34,9 @@ class OptionSet {
 
   class Option {
    public:
-    Option& range(double minimum, double maximum = std::numeric_limits<double>::infinity());  ///< closed; numbers, items
-    Option& above(double minimum);  ///< open below: > minimum
+    Option& range(double minimum,
+                  double maximum = std::numeric_limits<double>::infinity());  ///< closed; numbers, items
+    Option& above(double minimum);                                            ///< open below: > minimum
     Option& choices(std::vector<std::string> values);
     Option& size(std::size_t count);  ///< number of items of a list
     Option& required();               ///< no default: must be given

@@ -111,9 +111,7 @@ std::int64_t TextReader::integer(std::size_t column, const char* what) const {
   return value;
 }
 
-void TextReader::fail(const std::string& message) const {
-  throw InputError(fmt::format("{}: {}", place(), message));
-}
+void TextReader::fail(const std::string& message) const { throw InputError(fmt::format("{}: {}", place(), message)); }
 
 std::string TextReader::place() const { return fmt::format("{}:{}", path_, line_); }
 

@@ -1,0 +1,263 @@
+#include "backends/gp_map/batch_solver.hpp"
+
+#include <Eigen/CholmodSupport>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace evbench::gp_map {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+using Triplet = Eigen::Triplet<double>;
+
+constexpr int kStateSize = 12;
+constexpr int kLandmarkSize = 3;
+
+/// Which variables a solve moves and where they stand in the vector; −1: fixed.
+struct Layout {
+  int first_interval = 1;  ///< the first interval whose factors touch a free variable
+  int size = 0;
+  std::vector<int> state_offset, landmark_offset;
+
+  Layout(const FactorGraph& graph, int first_state);
+};
+
+Layout::Layout(const FactorGraph& graph, int first_state)
+    : state_offset(graph.states.size(), -1), landmark_offset(graph.landmarks.size(), -1) {
+  // Landmarks come first: they are eliminated first.
+  int earliest = std::max(1, first_state);
+  for (std::size_t j = 0; j < graph.landmarks.size(); ++j) {
+    const auto& seen = graph.landmarks[j].intervals;
+    const bool free = !seen.empty() && (first_state == 0 || seen.back() >= first_state);
+    if (!free) continue;
+    landmark_offset[j] = size;
+    size += kLandmarkSize;
+    earliest = std::min(earliest, seen.front());
+  }
+  first_interval = earliest;
+  for (std::size_t i = static_cast<std::size_t>(first_state); i < graph.states.size(); ++i) {
+    state_offset[i] = size;
+    size += kStateSize;
+  }
+}
+
+/// The normal equations H δ = −g (lower triangle) of all factors that touch a free variable.
+class NormalEquations {
+ public:
+  NormalEquations(const FactorGraph& graph, const Layout& layout) : layout_(layout), gradient(layout.size) {
+    gradient.setZero();
+    IntervalLinearisation linear;
+    for (int k = layout.first_interval; k < static_cast<int>(graph.states.size()); ++k) {
+      linearise_interval(graph, k, linear);
+      cost += linear.cost;
+      add_interval(k, linear);
+    }
+    add_priors(graph);
+    matrix.resize(layout.size, layout.size);
+    matrix.setFromTriplets(triplets_.begin(), triplets_.end());
+  }
+
+ private:
+  const Layout& layout_;
+  std::vector<Triplet> triplets_;
+
+ public:
+  Sparse matrix;
+  Eigen::VectorXd gradient;
+  double cost = 0.0;
+
+ private:
+  template <class Block>
+  void add_block(int row, int column, const Block& block) {
+    if (row < 0 || column < 0) return;
+    if (row < column) {
+      add_block(column, row, block.transpose().eval());
+      return;
+    }
+    for (int c = 0; c < block.cols(); ++c) {
+      for (int r = 0; r < block.rows(); ++r) {
+        if (row + r >= column + c) triplets_.emplace_back(row + r, column + c, block(r, c));
+      }
+    }
+  }
+
+  template <class Segment>
+  void add_gradient(int row, const Segment& segment) {
+    if (row >= 0) gradient.segment(row, segment.size()) += segment;
+  }
+
+  void add_interval(int k, const IntervalLinearisation& linear) {
+    const auto index = static_cast<std::size_t>(k);
+    const int x0 = layout_.state_offset[index - 1], x1 = layout_.state_offset[index];
+    add_block(x0, x0, Matrix12(linear.states.topLeftCorner<12, 12>()));
+    add_block(x1, x0, Matrix12(linear.states.bottomLeftCorner<12, 12>()));
+    add_block(x1, x1, Matrix12(linear.states.bottomRightCorner<12, 12>()));
+    add_gradient(x0, linear.gradient.head<12>());
+    add_gradient(x1, linear.gradient.tail<12>());
+    for (const auto& coupling : linear.couplings) {
+      const int l = layout_.landmark_offset[static_cast<std::size_t>(coupling.landmark)];
+      using Matrix3x12 = Eigen::Matrix<double, 3, 12>;
+      add_block(l, l, coupling.landmark_landmark);
+      add_block(l, x0, Matrix3x12(coupling.landmark_states.leftCols<12>()));
+      add_block(l, x1, Matrix3x12(coupling.landmark_states.rightCols<12>()));
+      add_gradient(l, coupling.gradient);
+    }
+  }
+
+  void add_priors(const FactorGraph& graph) {
+    for (std::size_t i = 0; i < graph.states.size(); ++i) {
+      if (layout_.state_offset[i] < 0) continue;
+      Matrix12 H = Matrix12::Zero();
+      Vector12 g = Vector12::Zero();
+      add_state_priors(graph, static_cast<int>(i), H, g);
+      add_block(layout_.state_offset[i], layout_.state_offset[i], H);
+      add_gradient(layout_.state_offset[i], g);
+    }
+    for (std::size_t j = 0; j < graph.landmarks.size(); ++j) {
+      const LandmarkPrior& prior = graph.landmarks[j].prior;
+      const int l = layout_.landmark_offset[j];
+      if (l < 0 || !std::isfinite(prior.sigma)) continue;
+      const double information = 1.0 / (prior.sigma * prior.sigma);
+      add_block(l, l, Matrix3(information * Matrix3::Identity()));
+      add_gradient(l, Vector3(information * (graph.landmarks[j].position - prior.position)));
+    }
+  }
+};
+
+/// The cost of what the layout's solve can change, with everything that is constant in it.
+double cost_of(const FactorGraph& graph, const Layout& layout) {
+  return evaluate(graph, layout.first_interval).total();
+}
+
+void apply(FactorGraph& graph, const Layout& layout, const Eigen::VectorXd& step) {
+  for (std::size_t i = 0; i < graph.states.size(); ++i) {
+    if (layout.state_offset[i] >= 0) {
+      graph.states[i] = graph.states[i].retract(step.segment<kStateSize>(layout.state_offset[i]));
+    }
+  }
+  for (std::size_t j = 0; j < graph.landmarks.size(); ++j) {
+    if (layout.landmark_offset[j] >= 0) {
+      graph.landmarks[j].position += step.segment<kLandmarkSize>(layout.landmark_offset[j]);
+    }
+  }
+}
+
+class Estimate {  // what a step changes, to undo it
+ public:
+  explicit Estimate(const FactorGraph& graph) : states_(graph.states) {
+    positions_.reserve(graph.landmarks.size());
+    for (const auto& landmark : graph.landmarks) positions_.push_back(landmark.position);
+  }
+  void restore(FactorGraph& graph) const {
+    graph.states = states_;
+    for (std::size_t j = 0; j < positions_.size(); ++j) graph.landmarks[j].position = positions_[j];
+  }
+
+ private:
+  std::vector<ControlState> states_;
+  std::vector<Vector3> positions_;
+};
+
+}  // namespace
+
+BatchSummary solve_batch(FactorGraph& graph, const BatchOptions& options) {
+  BatchSummary summary;
+  const Layout layout(graph, options.first_state);
+  if (layout.size == 0) {
+    summary.converged = true;
+    return summary;
+  }
+  summary.initial_cost = summary.final_cost = cost_of(graph, layout);
+  Eigen::CholmodSupernodalLLT<Sparse, Eigen::Lower> cholesky;
+  bool analysed = false;
+  double damping = 1e-6;  // relative to the diagonal
+  constexpr double kMaxDamping = 1e8;
+  while (summary.iterations < options.max_iterations && !summary.converged) {
+    NormalEquations equations(graph, layout);
+    if (!analysed) cholesky.analyzePattern(equations.matrix);
+    analysed = true;
+    const Eigen::VectorXd diagonal = equations.matrix.diagonal();
+    const Estimate before(graph);
+    bool accepted = false;
+    while (!accepted && damping < kMaxDamping) {
+      Sparse damped = equations.matrix;
+      damped.diagonal() += damping * diagonal;
+      cholesky.factorize(damped);
+      bool usable = cholesky.info() == Eigen::Success;
+      if (usable) {
+        const Eigen::VectorXd step = cholesky.solve(-equations.gradient);
+        usable = step.allFinite();
+        if (usable) apply(graph, layout, step);
+      }
+      const double cost = usable ? cost_of(graph, layout) : 0.0;
+      accepted = usable && cost <= summary.final_cost;  // false for NaN
+      if (accepted) {
+        summary.converged = summary.final_cost - cost <= options.relative_tolerance * summary.final_cost;
+        summary.final_cost = cost;
+        damping = std::max(1e-12, damping * 0.1);
+      } else {
+        before.restore(graph);
+        damping *= 10.0;
+      }
+    }
+    ++summary.iterations;
+    if (!accepted) {
+      // No step lowers the cost: at a minimum to rounding, unless the system could not even be solved.
+      summary.converged = cholesky.info() == Eigen::Success;
+      if (!summary.converged) summary.failure = "the normal equations are singular";
+      break;
+    }
+  }
+  if (!std::isfinite(summary.final_cost)) summary.failure = "the cost is not finite";
+  return summary;
+}
+
+struct BatchCovariance::Factor {
+  Layout layout;
+  Eigen::CholmodSupernodalLLT<Sparse, Eigen::Lower> cholesky;
+  bool usable = false;
+
+  explicit Factor(const FactorGraph& graph) : layout(graph, 0) {
+    const NormalEquations equations(graph, layout);
+    cholesky.compute(equations.matrix);
+    usable = cholesky.info() == Eigen::Success;
+  }
+
+  /// Marginal covariance of `size` variables from `offset` on.
+  Eigen::MatrixXd marginal(int offset, int size) const {
+    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(layout.size, size);
+    unit.block(offset, 0, size, size).setIdentity();
+    const Eigen::MatrixXd columns = cholesky.solve(unit);
+    return columns.middleRows(offset, size);
+  }
+};
+
+BatchCovariance::BatchCovariance(const FactorGraph& graph) : graph_(graph), factor_(std::make_unique<Factor>(graph)) {}
+BatchCovariance::~BatchCovariance() = default;
+
+std::optional<Matrix24> BatchCovariance::neighbours(int k) const {
+  const auto index = static_cast<std::size_t>(k);
+  if (!factor_->usable || k < 0 || index + 1 >= graph_.states.size()) return std::nullopt;
+  const Matrix24 joint = factor_->marginal(factor_->layout.state_offset[index], 24);  // neighbours stand side by side
+  if (!joint.allFinite()) return std::nullopt;
+  return joint;
+}
+
+std::optional<Matrix12> BatchCovariance::at(double t) const {
+  const int k = graph_.interval_of(t);
+  if (k < 1) return std::nullopt;
+  const std::optional<Matrix24> joint = neighbours(k - 1);
+  if (!joint) return std::nullopt;
+  const auto index = static_cast<std::size_t>(k);
+  const GpInterval interval(graph_.states[index - 1], graph_.states[index]);
+  return interval.covariance(t, *joint, graph_.qc);
+}
+
+std::optional<Matrix3> BatchCovariance::landmark(int landmark) const {
+  const auto index = static_cast<std::size_t>(landmark);
+  if (!factor_->usable || factor_->layout.landmark_offset[index] < 0) return std::nullopt;
+  return Matrix3(factor_->marginal(factor_->layout.landmark_offset[index], 3));
+}
+
+}  // namespace evbench::gp_map

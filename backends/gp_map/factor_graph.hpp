@@ -1,0 +1,110 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "backends/gp_map/robust_loss.hpp"
+#include "core/geometry/camera.hpp"
+#include "core/motion/gp_interval.hpp"
+
+namespace evbench::gp_map {
+
+/// An observation of a landmark at its own time, on undistorted pixels.
+struct Observation {
+  double t = 0.0;  ///< [s]
+  Vector2 pixel = Vector2::Zero();
+  double inverse_sigma = 1.0;  ///< [1/px]
+};
+
+/// The observations in one interval (t_{k−1}, t_k], those of one landmark together and in time order: what one
+/// landmark's observations in one interval share is computed once.
+class IntervalObservations {
+ public:
+  struct Group {
+    int landmark = 0;
+    int begin = 0, end = 0;  ///< range in all()
+  };
+
+  void add(int landmark, const Observation& observation);
+  void remove(int landmark);
+
+  const std::vector<Observation>& all() const { return observations_; }
+  const std::vector<Group>& groups() const { return groups_; }  ///< ordered by landmark
+
+ private:
+  std::vector<Observation> observations_;
+  std::vector<Group> groups_;
+};
+
+/// Gaussian priors; sigmas are standard deviations, increments on the right.
+struct PosePrior {
+  int state = 0;
+  SE3 T;
+  Vector6 sigma = Vector6::Ones();  ///< residual Log(T⁻¹ T_state)/sigma
+};
+struct VelocityPrior {
+  int state = 0;
+  Vector6 velocity = Vector6::Zero();
+  Vector6 sigma = Vector6::Ones();
+};
+/// Holds a state's distance from a fixed point: the anchor of the scale.
+struct DistancePrior {
+  int state = 0;
+  Vector3 origin = Vector3::Zero();
+  double distance = 1.0;
+  double sigma = 1.0;
+};
+struct LandmarkPrior {
+  Vector3 position = Vector3::Zero();
+  double sigma = std::numeric_limits<double>::infinity();  ///< infinite: no prior
+};
+
+/// The continuous-time structure-from-motion problem: control states in time order joined by the WNOA prior, landmarks,
+/// every observation in the interval that holds its time, priors. Solvers read factors from here and write estimates
+/// back; they differ in how they solve, not in what.
+struct FactorGraph {
+  struct Landmark {
+    Vector3 position = Vector3::Zero();  ///< world frame
+    LandmarkPrior prior;
+    std::vector<int> intervals;  ///< in which it is observed, ascending
+    bool alive = true;           ///< false once removed; its index is not used again
+  };
+
+  PinholeCamera camera;
+  Vector6 qc = Vector6::Ones();
+  RobustLoss loss;
+
+  std::vector<ControlState> states;
+  std::vector<Landmark> landmarks;
+  std::vector<IntervalObservations> intervals;  ///< intervals[k] ends in state k; intervals[0] is empty
+  std::vector<PosePrior> pose_priors;
+  std::vector<VelocityPrior> velocity_priors;
+  std::vector<DistancePrior> distance_priors;
+
+  /// Appends a state after the newest one, and the motion prior between them.
+  void add_state(const ControlState& state);
+
+  int add_landmark(const Vector3& position, const LandmarkPrior& prior = {});
+  void remove_landmark(int landmark);
+
+  /// The interval k with t in (t_{k−1}, t_k]; t = t_0 belongs to the first. −1 outside.
+  int interval_of(double t) const;
+
+  /// False, and nothing added, when t lies outside the states' span.
+  bool add_observation(int landmark, const Observation& observation);
+
+  int observation_count() const;
+};
+
+/// The problem's cost, ½ Σ ρ(‖whitened residual‖²), by parts.
+struct Cost {
+  double measurements = 0.0, motion_prior = 0.0, priors = 0.0;
+  double total() const { return measurements + motion_prior + priors; }
+};
+/// Without the intervals before `first_interval`.
+Cost evaluate(const FactorGraph& graph, int first_interval = 1);
+
+/// Root mean square reprojection error of a landmark over all its observations [px]; infinite when behind the camera.
+double reprojection_rms(const FactorGraph& graph, int landmark);
+
+}  // namespace evbench::gp_map

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "backends/gp_map/factor_graph.hpp"
+
+namespace evbench::gp_map {
+
+/// Whitened residuals of the problem's factors (problems' README, section "Cost").
+/// Behind the camera both components are 2 fx/σ, constant.
+Vector2 reprojection_residual(const GpInterval& interval, const Vector3& landmark, const Observation& z,
+                              const PinholeCamera& camera);
+double motion_prior_cost(const GpInterval& interval, const Vector6& qc);  ///< ½ ‖residual‖²
+Vector6 residual(const PosePrior& prior, const ControlState& state);
+Vector6 residual(const VelocityPrior& prior, const ControlState& state);
+double residual(const DistancePrior& prior, const ControlState& state);
+Vector3 residual(const LandmarkPrior& prior, const Vector3& position);  ///< zero without a prior
+
+using Matrix24 = Eigen::Matrix<double, 24, 24>;
+using Vector24 = Eigen::Matrix<double, 24, 1>;
+using Matrix3x24 = Eigen::Matrix<double, 3, 24>;
+
+/// What one interval contributes to the normal equations H δ = −g, H = Σ JᵀJ, g = Σ Jᵀe: state columns are the
+/// increments (pose, velocity) of state k−1, then of state k.
+struct IntervalLinearisation {
+  struct Coupling {
+    int landmark = 0;
+    Matrix3x24 landmark_states;  ///< H(landmark, states)
+    Matrix3 landmark_landmark;   ///< H(landmark, landmark)
+    Vector3 gradient;            ///< g(landmark)
+  };
+  Matrix24 states;                  ///< H(states, states), symmetric, complete; with the motion prior
+  Vector24 gradient;                ///< g(states)
+  std::vector<Coupling> couplings;  ///< one for each landmark observed in the interval, by landmark
+  double cost = 0.0;                ///< ½ Σ ρ
+};
+
+/// Linearises all observations in interval k (1 ≤ k) and its motion prior.
+void linearise_interval(const FactorGraph& graph, int k, IntervalLinearisation& result);
+
+/// Adds H and g of the priors on one state, 12 × 12 and 12.
+void add_state_priors(const FactorGraph& graph, int state, Matrix12& H, Vector12& g);
+
+}  // namespace evbench::gp_map

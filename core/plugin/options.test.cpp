@@ -1,0 +1,81 @@
+#include "core/plugin/options.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+struct Inner {
+  double width = 1.5;
+  void declare(OptionSet& set) { set.add("width", width, "width [px]").above(0.0); }
+};
+
+struct Options {
+  double rate = 20.0;
+  int count = 3;
+  bool on = true;
+  std::string loss = "none";
+  std::vector<double> range;
+  std::string path;
+  Inner inner;
+  void declare(OptionSet& set) {
+    set.add("rate", rate, "rate [Hz]").range(0.1, 100.0);
+    set.add("count", count, "how many").range(0);
+    set.add("on", on, "whether");
+    set.add("loss", loss, "robust loss").choices({"none", "huber"});
+    set.add("range", range, "from, to [s]").size(2);
+    set.add("path", path, "a file").required();
+    set.group("inner", inner, "more");
+  }
+};
+
+Options read(const char* text) { return read_options<Options>(Json::parse(text), "c.json: x"); }
+
+}  // namespace
+
+TEST_CASE("Options are read over their defaults, nested ones too") {
+  const Options o = read(R"({"path": "a", "rate": 50, "range": [1, 2], "inner": {"width": 2}})");
+  CHECK(o.rate == 50.0);
+  CHECK(o.count == 3);
+  CHECK(o.range == std::vector<double>{1.0, 2.0});
+  CHECK(o.inner.width == 2.0);
+}
+
+TEST_CASE("Writing options and reading them again changes nothing") {
+  const Json json = write_options(read(R"({"path": "a", "loss": "huber", "on": false})"));
+  CHECK(write_options(read_options<Options>(json, "")) == json);
+  CHECK(json["loss"] == "huber");
+  CHECK(json["inner"]["width"] == 1.5);
+}
+
+TEST_CASE("Bad options are refused with the place and what was expected") {
+  using Catch::Matchers::Contains;
+  CHECK_THROWS_WITH(read(R"({"path": "a", "rte": 5})"),
+                    Contains("c.json: x") && Contains("\"rte\"") && Contains("\"rate\""));
+  CHECK_THROWS_WITH(read(R"({"path": "a", "rate": 500})"), Contains("x.rate") && Contains("0.1 to 100"));
+  CHECK_THROWS_WITH(read(R"({"path": "a", "rate": "5"})"), Contains("expected number") && Contains("\"5\""));
+  CHECK_THROWS_WITH(read(R"({"path": "a", "count": 1.5})"), Contains("expected integer"));
+  CHECK_THROWS_WITH(read(R"({"path": "a", "loss": "hubert"})"), Contains("did you mean \"huber\""));
+  CHECK_THROWS_WITH(read(R"({"path": "a", "range": [1]})"), Contains("expected 2 numbers"));
+  CHECK_THROWS_WITH(read(R"({"path": "a", "inner": {"width": 0}})"), Contains("inner.width") && Contains("> 0"));
+  CHECK_THROWS_WITH(read(R"({"path": "a", "inner": 3})"), Contains("expected an object"));
+  CHECK_THROWS_WITH(read("{}"), Contains("\"path\" is missing"));
+}
+
+TEST_CASE("Description and schema name every option with its default and bounds") {
+  Options o;
+  OptionSet set;
+  o.declare(set);
+  using Catch::Matchers::Contains;
+  CHECK_THAT(set.describe(), Contains("inner.width") && Contains("robust loss") && Contains("0.1 to 100"));
+  const Json schema = set.schema();
+  CHECK(schema["properties"]["rate"]["maximum"] == 100.0);
+  CHECK(schema["properties"]["inner"]["properties"]["width"]["exclusiveMinimum"] == 0.0);
+  CHECK(schema["properties"]["loss"]["enum"].size() == 2);
+  CHECK(schema["required"] == Json::array({"path"}));
+  CHECK(schema["additionalProperties"] == false);
+}
+
+}  // namespace evbench
