@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/plugin/backend.hpp"
+#include "core/structure/track_buffer.hpp"
+#include "core/structure/two_view.hpp"
+
+namespace evbench {
+
+struct InitialiserOptions {
+  int min_tracks = 15;   ///< seen at both times
+  double window = 0.05;  ///< [s], of the line through a track's observations that gives its place at a time
+  TwoViewOptions two_view;
+
+  void declare(OptionSet& set);
+};
+
+/// A first map and motion, up to scale.
+struct InitialGuess {
+  double t0 = 0.0, t1 = 0.0;        ///< [s]
+  SE3 T1;                           ///< T_world_camera at t1; the world is the camera at t0
+  std::vector<Landmark> landmarks;  ///< by track, world frame; their median depth from t0 is 1
+  double median_parallax_deg = 0.0;
+  std::vector<TrackId> outliers;  ///< tracks seen at both times that the guess doesn't explain
+};
+
+/// Initialisation of monocular odometry from two views (Liu et al. 2022, Algorithm 1, lines 7-9).
+///
+/// The first view is at a reference time: the first with enough tracks; it moves on when too few of its tracks are
+/// left. Each attempt matches the tracks' places then and now. A planar scene leaves two candidates: refine each over
+/// all observations between t0 and t1 and keep the cheaper one, or wait when they cost about the same.
+class Initialiser {
+ public:
+  Initialiser(const InitialiserOptions& options, const PinholeCamera& camera) : options_(options), camera_(camera) {}
+
+  struct Attempt {
+    std::string reason;                    ///< why there is no candidate yet
+    std::vector<InitialGuess> candidates;  ///< best first
+  };
+
+  /// Tries with the tracks at time t; call it with times that increase.
+  Attempt attempt(const TrackBuffer& tracks, double t);
+
+  /// Time of the first view, once there is one.
+  std::optional<double> reference_time() const { return reference_; }
+
+ private:
+  InitialiserOptions options_;
+  PinholeCamera camera_;
+  std::optional<double> reference_;
+};
+
+}  // namespace evbench
