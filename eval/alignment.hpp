@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "eval/association.hpp"
+
+namespace evbench {
+
+/// A similarity transformation that carries the estimate's world to the ground truth's: p' = R (scale p) + t, R' = R
+/// R_p.
+struct Similarity {
+  double scale = 1.0;
+  SE3 T;
+  SE3 operator*(const SE3& pose) const { return T * SE3{pose.q, scale * pose.p}; }
+};
+
+/// How the estimate is carried to the ground truth before absolute errors are taken. All but `origin` are least squares
+/// on positions.
+enum class AlignmentMethod {
+  none,    ///< as it is
+  se3,     ///< rotation and translation (Umeyama 1991, scale 1)
+  sim3,    ///< rotation, translation, scale (Umeyama 1991)
+  scale,   ///< the scale of `sim3` about the estimate's origin, without its rotation and translation (evo's -s alone)
+  yaw,     ///< translation and a rotation about the ground truth's z axis, which must be the direction of gravity
+  origin,  ///< rotation and translation that make the first poses equal
+};
+inline constexpr NameList<6> alignment_names = {"none", "se3", "sim3", "scale", "yaw", "origin"};
+
+struct Alignment {
+  Similarity transform;  ///< ground truth ≈ transform * estimate
+  std::string note;      ///< a sentence when the positions do not determine the transformation; else empty
+};
+
+/// Aligns on these pairs; throws InputError for fewer than three (fewer than one for `origin`; `none` takes any).
+///
+/// Degenerate motion has a defined result and a note:
+/// - one of the trajectories stands still: scale 1; the rotation is the mean of the relative orientations;
+/// - all positions on a line (se3, sim3): the rotation about the line, which positions leave open, is the one that fits
+///   the orientations best; scale and translation as usual;
+/// - no horizontal motion (yaw): the yaw that fits the orientations best.
+Alignment align(std::span<const PosePair> pairs, AlignmentMethod method);
+
+}  // namespace evbench

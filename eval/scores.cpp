@@ -1,0 +1,111 @@
+#include "eval/scores.hpp"
+
+#include <cmath>
+
+namespace evbench {
+namespace {
+
+TimeRange parse_range(const OptionSet::List& list, const char* name) {
+  if (list.empty()) return {};
+  if (list.size() != 2 || !(list[0] < list[1])) {
+    throw InputError(fmt::format("{}: expected two rising times in seconds", name));
+  }
+  return {list[0], list[1]};
+}
+
+AssociationOptions association_options(const ScoreOptions& options) {
+  return {.mode = parse_name<AssociationMode>(association_names, options.association, "association"),
+          .tolerance = options.tolerance,
+          .time_offset = options.time_offset,
+          .range = parse_range(options.time_range, "time_range"),
+          .min_pairs = static_cast<std::size_t>(options.min_pairs)};
+}
+
+RelativeOptions relative_options(const ScoreOptions& options) {
+  return {.delta = options.rpe_delta,
+          .unit = parse_name<DeltaUnit>(delta_unit_names, options.rpe_unit, "unit of the RPE delta"),
+          .pairing = parse_name<Pairing>(pairing_names, options.rpe_pairing, "RPE pairing"),
+          .tolerance = options.rpe_tolerance,
+          .source = parse_name<PairSource>(pair_source_names, options.rpe_pairs_from, "source of RPE pairs")};
+}
+
+/// The pairs that the alignment is computed on.
+std::vector<PosePair> pairs_to_align(const std::vector<PosePair>& pairs, const ScoreOptions& options) {
+  const TimeRange range = parse_range(options.align_range, "align_range");
+  if (options.align_first > 0 && !options.align_range.empty()) {
+    throw InputError("align_first and align_range are both given; expected one of them");
+  }
+  std::vector<PosePair> result;
+  std::ranges::copy_if(pairs, std::back_inserter(result), [&](const PosePair& pair) { return range.contains(pair.t); });
+  const auto first = static_cast<std::size_t>(options.align_first);
+  if (first > 0 && first < result.size()) result.resize(first);
+  return result;
+}
+
+double path_length(const std::vector<PosePair>& pairs) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    length += (pairs[i].ground_truth.p - pairs[i - 1].ground_truth.p).norm();
+  }
+  return length;
+}
+
+}  // namespace
+
+Scores score(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, const ScoreOptions& options) {
+  const auto method = parse_name<AlignmentMethod>(alignment_names, options.alignment, "alignment");
+  const RelativeOptions relative = relative_options(options);
+  Association association = associate(ground_truth, estimate, association_options(options));
+  std::vector<PosePair>& pairs = association.pairs;
+
+  Scores scores;
+  scores.options = options;
+  scores.pairs = pairs.size();
+  scores.coverage = association.coverage;
+  scores.path_m = path_length(pairs);
+
+  const std::vector<PosePair> aligned = pairs_to_align(pairs, options);
+  scores.alignment = align(aligned, method);
+  scores.aligned_pairs = method == AlignmentMethod::none ? 0 : aligned.size();
+  for (PosePair& pair : pairs) pair.estimate = scores.alignment.transform * pair.estimate;
+
+  const PoseErrors absolute = absolute_errors(pairs);
+  scores.ate.trans_m = statistics(absolute.trans_m);
+  scores.ate.rot_deg = statistics(absolute.rot_deg);
+  if (scores.path_m > 0.0) scores.ate.trans_percent = 100.0 * scores.ate.trans_m.rmse / scores.path_m;
+
+  const PoseErrors steps = relative_errors(pairs, delta_pairs(pairs, relative));
+  scores.rpe.trans_m = statistics(steps.trans_m);
+  scores.rpe.rot_deg = statistics(steps.rot_deg);
+  return scores;
+}
+
+Json to_json(const Scores& scores) {
+  const ScoreOptions& options = scores.options;
+  const auto range = [](const OptionSet::List& list) { return list.empty() ? Json(nullptr) : Json(list); };
+  const double percent = scores.ate.trans_percent;
+  Json json;
+  json["ate"] = {{"trans_m", to_json(scores.ate.trans_m)},
+                 {"rot_deg", to_json(scores.ate.rot_deg)},
+                 {"trans_percent", std::isfinite(percent) ? Json(percent) : Json(nullptr)}};
+  json["rpe"] = {{"trans_m", to_json(scores.rpe.trans_m)}, {"rot_deg", to_json(scores.rpe.rot_deg)},
+                 {"pairs", scores.rpe.trans_m.n},          {"delta", options.rpe_delta},
+                 {"delta_unit", options.rpe_unit},         {"pairing", options.rpe_pairing},
+                 {"tolerance", options.rpe_tolerance},     {"pairs_from", options.rpe_pairs_from}};
+  json["pairs"] = scores.pairs;
+  json["coverage"] = scores.coverage;
+  json["scale"] = scores.alignment.transform.scale;
+  json["path_m"] = scores.path_m;
+  json["alignment"] = {{"method", options.alignment},
+                       {"poses", scores.aligned_pairs},
+                       {"first", options.align_first > 0 ? Json(options.align_first) : Json(nullptr)},
+                       {"range_s", range(options.align_range)},
+                       {"note", scores.alignment.note}};
+  json["association"] = {{"mode", options.association},
+                         {"tolerance_s", options.tolerance},
+                         {"time_offset_s", options.time_offset},
+                         {"time_range_s", range(options.time_range)}};
+  return json;
+}
+
+}  // namespace evbench

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include "core/plugin/options.hpp"
+
+namespace evbench {
+
+/// What is reported of a set of errors, in the errors' own unit. Of an empty set all but n and sse are NaN (null in
+/// JSON).
+struct Statistics {
+  static constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
+  double rmse = undefined;    ///< root of the mean square
+  double mean = undefined;    ///<
+  double median = undefined;  ///< of an even number: the mean of the two in the middle
+  double std = undefined;     ///< of the population: divided by n, not n − 1
+  double min = undefined;     ///<
+  double max = undefined;     ///<
+  double sse = 0.0;           ///< sum of squares
+  std::size_t n = 0;          ///< number of errors
+};
+
+Statistics statistics(std::span<const double> errors);
+
+/// {"rmse", "mean", "median", "std", "min", "max", "sse", "n"}
+Json to_json(const Statistics& statistics);
+
+}  // namespace evbench
