@@ -1,0 +1,110 @@
+#include "core/structure/track_buffer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evbench {
+namespace {
+
+constexpr auto by_time = [](const TrackObservation& a, const TrackObservation& b) { return a.t < b.t; };
+
+/// Weighted straight line through the observations; its value at t, or the weighted mean when the times don't span one.
+Vector2 line_at(std::span<const TrackObservation> observations, std::span<const double> weights, double t) {
+  double sum = 0.0, time = 0.0;
+  Vector2 mean = Vector2::Zero();
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    sum += weights[i];
+    time += weights[i] * (observations[i].t - t);
+    mean += weights[i] * observations[i].pixel;
+  }
+  time /= sum;
+  mean /= sum;
+  double spread = 0.0;
+  Vector2 slope = Vector2::Zero();
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const double dt = observations[i].t - t - time;
+    spread += weights[i] * dt * dt;
+    slope += weights[i] * dt * (observations[i].pixel - mean);
+  }
+  return spread > 0.0 ? Vector2(mean - slope / spread * time) : mean;
+}
+
+/// Robust line: reweighted by the distance from the coordinate-wise trend, so that single jumps of a tracker do no
+/// harm.
+Vector2 robust_line_at(std::span<const TrackObservation> observations, double t) {
+  std::vector<double> weights(observations.size(), 1.0);
+  Vector2 result = line_at(observations, weights, t);
+  if (observations.size() < 4) return result;
+  std::vector<double> distances(observations.size()), sorted;
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    for (std::size_t i = 0; i < observations.size(); ++i) {
+      distances[i] = (observations[i].pixel - line_at(observations, weights, observations[i].t)).norm();
+    }
+    sorted = distances;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    const double width = std::max(2.0 * *middle, 1e-3);
+    for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = distances[i] <= width ? 1.0 : width / distances[i];
+    result = line_at(observations, weights, t);
+  }
+  return result;
+}
+
+}  // namespace
+
+void TrackBuffer::add(std::span<const TrackObservation> observations) {
+  for (const TrackObservation& z : observations) {
+    if (removed(z.track) || !std::isfinite(z.t) || !z.pixel.allFinite()) continue;
+    std::vector<TrackObservation>& track = tracks_[z.track];
+    if (track.empty() || track.back().t <= z.t) {
+      track.push_back(z);
+    } else {
+      track.insert(std::upper_bound(track.begin(), track.end(), z, by_time), z);
+    }
+  }
+}
+
+std::span<const TrackObservation> TrackBuffer::observations(TrackId track) const {
+  const auto found = tracks_.find(track);
+  if (found == tracks_.end()) return {};
+  return found->second;
+}
+
+std::vector<TrackId> TrackBuffer::ids() const {
+  std::vector<TrackId> result;
+  result.reserve(tracks_.size());
+  for (const auto& [id, track] : tracks_) result.push_back(id);
+  return result;
+}
+
+std::vector<TrackId> TrackBuffer::alive(double t, double margin) const {
+  std::vector<TrackId> result;
+  for (const auto& [id, track] : tracks_) {
+    if (track.front().t - margin <= t && t <= track.back().t + margin) result.push_back(id);
+  }
+  return result;
+}
+
+std::optional<Vector2> TrackBuffer::position(TrackId track, double t, double window) const {
+  const std::span<const TrackObservation> all = observations(track);
+  TrackObservation bound;
+  bound.t = t - 0.5 * window;
+  const auto begin = std::lower_bound(all.begin(), all.end(), bound, by_time);
+  bound.t = t + 0.5 * window;
+  const auto end = std::upper_bound(begin, all.end(), bound, by_time);
+  if (begin == end) return std::nullopt;
+  const std::span<const TrackObservation> near(begin, end);
+  if (near.front().t == near.back().t) {
+    if (near.front().t != t) return std::nullopt;
+  } else if (near.front().t > t + 0.25 * window || near.back().t < t - 0.25 * window) {
+    return std::nullopt;
+  }
+  return robust_line_at(near, t);
+}
+
+void TrackBuffer::remove(TrackId track) {
+  tracks_.erase(track);
+  removed_.insert(track);
+}
+
+}  // namespace evbench

@@ -1,0 +1,239 @@
+#include "core/structure/two_view.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+
+#include "core/geometry/so3.hpp"
+#include "core/structure/epipolar_refinement.hpp"
+#include "core/structure/triangulation.hpp"
+
+namespace evbench {
+namespace {
+
+constexpr double degrees = 180.0 / M_PI;
+constexpr std::size_t fewest_matches = 8;
+
+struct Matches {
+  std::span<const Vector2> first, second;
+  const PinholeCamera& camera;
+  const TwoViewOptions& options;
+
+  std::size_t size() const { return first.size(); }
+};
+
+std::vector<cv::Point2d> to_cv(std::span<const Vector2> pixels) {
+  std::vector<cv::Point2d> result;
+  for (const Vector2& pixel : pixels) result.emplace_back(pixel.x(), pixel.y());
+  return result;
+}
+
+/// OpenCV's (R, t) takes points of the first camera into the second.
+SE3 from_cv(const cv::Mat& R, const cv::Mat& t) {
+  Matrix3 rotation;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) rotation(r, c) = R.at<double>(r, c);
+  }
+  SE3 T_second_first{Eigen::Quaterniond(rotation).normalized(), {t.at<double>(0), t.at<double>(1), t.at<double>(2)}};
+  SE3 result = T_second_first.inverse();
+  const double length = result.p.norm();
+  if (length > 0.0) result.p /= length;
+  return result;
+}
+
+struct Hypothesis {
+  TwoViewCandidate::Model model;
+  SE3 T_first_second;
+};
+
+/// All relative poses that the two models give, good and bad.
+std::vector<Hypothesis> hypotheses(const Matches& matches) {
+  const PinholeCamera& camera = matches.camera;
+  const cv::Matx33d K(camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0);
+  const std::vector<cv::Point2d> first = to_cv(matches.first), second = to_cv(matches.second);
+  std::vector<Hypothesis> result;
+
+  const cv::Mat essentials =
+      cv::findEssentialMat(first, second, K, cv::RANSAC, matches.options.confidence, matches.options.threshold_px);
+  for (int row = 0; row + 3 <= essentials.rows; row += 3) {
+    cv::Mat R1, R2, t;
+    cv::decomposeEssentialMat(essentials.rowRange(row, row + 3), R1, R2, t);
+    for (const cv::Mat& R : {R1, R2}) {
+      result.push_back({TwoViewCandidate::Model::five_point, from_cv(R, t)});
+      result.push_back({TwoViewCandidate::Model::five_point, from_cv(R, -t)});
+    }
+  }
+  const cv::Mat homography = cv::findHomography(first, second, cv::RANSAC, 2.0 * matches.options.threshold_px,
+                                                cv::noArray(), 2000, matches.options.confidence);
+  if (!homography.empty()) {
+    std::vector<cv::Mat> rotations, translations, normals;
+    cv::decomposeHomographyMat(homography, K, rotations, translations, normals);
+    for (std::size_t i = 0; i < rotations.size(); ++i) {
+      if (cv::norm(translations[i]) < 1e-9) continue;
+      result.push_back({TwoViewCandidate::Model::homography, from_cv(rotations[i], translations[i])});
+    }
+  }
+  return result;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Triangulates every match and judges it.
+TwoViewCandidate judge(const Hypothesis& hypothesis, const Matches& matches) {
+  TwoViewCandidate result;
+  result.model = hypothesis.model;
+  result.T_first_second = hypothesis.T_first_second;
+  result.inlier.assign(matches.size(), false);
+  result.points.assign(matches.size(), Vector3::Zero());
+  const std::array<SE3, 2> poses{SE3{}, hypothesis.T_first_second};
+  TriangulationOptions options;
+  options.min_parallax_deg = 0.0;
+  options.max_rms_px = matches.options.threshold_px;
+  std::vector<double> parallaxes;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const std::array<Vector2, 2> pixels{matches.first[i], matches.second[i]};
+    const Triangulation point = triangulate(poses, pixels, matches.camera, options);
+    if (!point.ok()) continue;
+    result.inlier[i] = true;
+    result.points[i] = point.point;
+    ++result.inliers;
+    squares += point.rms_px * point.rms_px;
+    parallaxes.push_back(point.parallax_deg);
+  }
+  result.median_parallax_deg = median(parallaxes);
+  result.rms_px = result.inliers > 0 ? std::sqrt(squares / result.inliers) : 0.0;
+  return result;
+}
+
+/// Refined on its inliers, twice because they change; the better of before and after.
+TwoViewCandidate refined(TwoViewCandidate candidate, const Matches& matches) {
+  for (int round = 0; round < 2; ++round) {
+    const SE3 T = refine_relative_pose(candidate.T_first_second, matches.first, matches.second, candidate.inlier,
+                                       matches.camera, 0.5 * matches.options.threshold_px);
+    TwoViewCandidate next = judge({candidate.model, T}, matches);
+    if (next.inliers < candidate.inliers) break;
+    candidate = std::move(next);
+  }
+  return candidate;
+}
+
+bool better(const TwoViewCandidate& a, const TwoViewCandidate& b) {
+  return a.inliers != b.inliers ? a.inliers > b.inliers : a.rms_px < b.rms_px;
+}
+
+bool same_pose(const SE3& a, const SE3& b) {
+  const double rotation = a.q.angularDistance(b.q) * degrees;
+  const double direction = std::atan2(a.p.cross(b.p).norm(), a.p.dot(b.p)) * degrees;
+  return rotation < 1.0 && direction < 5.0;
+}
+
+/// How many matches a rotation alone explains: Wahba's problem, reweighted.
+int explained_by_rotation(const Matches& matches) {
+  std::vector<double> weights(matches.size(), 1.0);
+  const double limit = 2.0 * matches.options.threshold_px;
+  int count = 0;
+  for (int iteration = 0; iteration < 10; ++iteration) {
+    Matrix3 B = Matrix3::Zero();
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      const Vector3 ray1 = matches.camera.ray(matches.first[i]), ray2 = matches.camera.ray(matches.second[i]);
+      B += weights[i] * ray1.normalized() * ray2.normalized().transpose();
+    }
+    const Eigen::JacobiSVD<Matrix3> svd(B, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+    const Matrix3 R = svd.matrixU() * Vector3(1.0, 1.0, sign).asDiagonal() * svd.matrixV().transpose();
+    count = 0;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      const Vector3 ray = R * matches.camera.ray(matches.second[i]);
+      const double distance = ray.z() > 0.0 ? (matches.camera.project(ray) - matches.first[i]).norm() : HUGE_VAL;
+      weights[i] = 1.0 / std::max(distance, 0.1);
+      if (distance < limit) ++count;
+    }
+  }
+  return count;
+}
+
+/// The distinct candidates that explain about as much as the best one, best first.
+std::vector<TwoViewCandidate> distinct(std::vector<TwoViewCandidate> all, double ambiguity) {
+  std::stable_sort(all.begin(), all.end(), better);
+  std::vector<TwoViewCandidate> result;
+  for (TwoViewCandidate& candidate : all) {
+    if (candidate.inliers < ambiguity * all.front().inliers) break;
+    const bool known = std::any_of(result.begin(), result.end(), [&](const TwoViewCandidate& other) {
+      return same_pose(other.T_first_second, candidate.T_first_second);
+    });
+    if (!known) result.push_back(candidate);
+  }
+  return result;
+}
+
+}  // namespace
+
+void TwoViewOptions::declare(OptionSet& set) {
+  set.add("threshold_px", threshold_px, "distance of an inlier from the model [px]").above(0.0);
+  set.add("confidence", confidence, "of RANSAC").range(0.5, 0.999999);
+  set.add("min_inliers", min_inliers, "matches that the relative pose must explain").range(8);
+  set.add("min_inlier_share", min_inlier_share, "the same as a share of all matches").range(0.0, 1.0);
+  set.add("min_parallax_deg", min_parallax_deg, "median angle between the rays to a landmark, at least [deg]")
+      .range(0.0, 90.0);
+  set.add("ambiguity", ambiguity, "a second solution stays when it explains this share of what the best one explains")
+      .range(0.0, 1.0);
+}
+
+TwoViewResult relative_pose(std::span<const Vector2> first, std::span<const Vector2> second,
+                            const PinholeCamera& camera, const TwoViewOptions& options) {
+  const Matches matches{first, second, camera, options};
+  const auto finite = [](const Vector2& pixel) { return pixel.allFinite(); };
+  if (!std::all_of(first.begin(), first.end(), finite) || !std::all_of(second.begin(), second.end(), finite)) {
+    return {{}, "a matched pixel is not finite"};
+  }
+  if (first.size() < fewest_matches || static_cast<int>(first.size()) < options.min_inliers) {
+    return {{}, fmt::format("{} matches, {} needed", first.size(), std::max<int>(fewest_matches, options.min_inliers))};
+  }
+
+  const int rotated = explained_by_rotation(matches);
+  if (rotated >= 0.9 * static_cast<double>(first.size())) {
+    return {{}, fmt::format("a rotation alone explains {} of {} matches", rotated, first.size())};
+  }
+  std::vector<TwoViewCandidate> all;
+  try {
+    for (const Hypothesis& hypothesis : hypotheses(matches)) {
+      TwoViewCandidate candidate = judge(hypothesis, matches);
+      if (candidate.inliers >= static_cast<int>(fewest_matches)) all.push_back(refined(std::move(candidate), matches));
+    }
+  } catch (const cv::Exception& e) {
+    return {{}, fmt::format("the two-view solver failed: {}", e.err)};
+  }
+  all = distinct(std::move(all), options.ambiguity);
+
+  const int needed = std::max(
+      options.min_inliers, static_cast<int>(std::ceil(options.min_inlier_share * static_cast<double>(first.size()))));
+  if (all.empty() || all.front().inliers < needed) {
+    return {{},
+            fmt::format("{} of {} matches explained, {} needed", all.empty() ? 0 : all.front().inliers, first.size(),
+                        needed)};
+  }
+  if (rotated >= 0.9 * all.front().inliers) {
+    return {
+        {},
+        fmt::format("a rotation alone explains {} matches, the best relative pose {}", rotated, all.front().inliers)};
+  }
+  const double parallax = all.front().median_parallax_deg;
+  std::erase_if(all, [&](const TwoViewCandidate& c) {
+    return c.inliers < needed || c.median_parallax_deg < options.min_parallax_deg;
+  });
+  if (all.empty()) {
+    return {{}, fmt::format("median parallax {:.2f} deg, {:.2f} needed", parallax, options.min_parallax_deg)};
+  }
+  return {std::move(all), ""};
+}
+
+}  // namespace evbench
