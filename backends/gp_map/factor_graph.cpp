@@ -41,6 +41,19 @@ void FactorGraph::add_state(const ControlState& state) {
   intervals.emplace_back();
 }
 
+void FactorGraph::remove_newest_state() {
+  const int newest = static_cast<int>(states.size()) - 1;
+  for (const auto& group : intervals.back().groups()) {
+    std::erase(landmarks[static_cast<std::size_t>(group.landmark)].intervals, newest);
+  }
+  intervals.pop_back();
+  states.pop_back();
+  const auto on_newest = [&](const auto& prior) { return prior.state == newest; };
+  std::erase_if(pose_priors, on_newest);
+  std::erase_if(velocity_priors, on_newest);
+  std::erase_if(distance_priors, on_newest);
+}
+
 int FactorGraph::add_landmark(const Vector3& position, const LandmarkPrior& prior) {
   landmarks.push_back({position, prior, {}, true});
   return static_cast<int>(landmarks.size()) - 1;
@@ -107,7 +120,7 @@ Cost evaluate(const FactorGraph& graph, int first_interval) {
   return cost;
 }
 
-double reprojection_rms(const FactorGraph& graph, int landmark) {
+double reprojection_mean(const FactorGraph& graph, int landmark) {
   const FactorGraph::Landmark& l = graph.landmarks[static_cast<std::size_t>(landmark)];
   double sum = 0.0;
   int count = 0;
@@ -121,12 +134,12 @@ double reprojection_rms(const FactorGraph& graph, int landmark) {
         const Observation& z = observations.all()[static_cast<std::size_t>(i)];
         const Vector3 q = interval.pose(z.t).inverse() * l.position;
         if (!(q.z() > 0.0)) return std::numeric_limits<double>::infinity();
-        sum += (graph.camera.project(q) - z.pixel).squaredNorm();
+        sum += (graph.camera.project(q) - z.pixel).norm();
         ++count;
       }
     }
   }
-  return count == 0 ? 0.0 : std::sqrt(sum / count);
+  return count == 0 ? 0.0 : sum / count;
 }
 
 }  // namespace evbench::gp_map

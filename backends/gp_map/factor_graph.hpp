@@ -84,6 +84,9 @@ struct FactorGraph {
   /// Appends a state after the newest one, and the motion prior between them.
   void add_state(const ControlState& state);
 
+  /// Takes the newest state back, with the observations in its interval and the priors on it.
+  void remove_newest_state();
+
   int add_landmark(const Vector3& position, const LandmarkPrior& prior = {});
   void remove_landmark(int landmark);
 
@@ -104,7 +107,7 @@ struct Cost {
 /// Without the intervals before `first_interval`.
 Cost evaluate(const FactorGraph& graph, int first_interval = 1);
 
-/// Root mean square reprojection error of a landmark over all its observations [px]; infinite when behind the camera.
-double reprojection_rms(const FactorGraph& graph, int landmark);
+/// Mean reprojection error of a landmark over all its observations [px]; infinite when behind the camera.
+double reprojection_mean(const FactorGraph& graph, int landmark);
 
 }  // namespace evbench::gp_map

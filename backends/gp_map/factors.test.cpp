@@ -1,0 +1,140 @@
+#include "backends/gp_map/factors.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/motion/wnoa.hpp"
+#include "core/testing/differences.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+using testing::central_differences;
+using testing::RandomTangents;
+using testing::relative_error;
+
+/// Two states a moderate motion apart and landmarks in front of them, observed at random times with errors.
+FactorGraph random_interval(RandomTangents& random, int i, int landmarks) {
+  FactorGraph graph;
+  graph.camera = {200.0, 210.0, 120.0, 90.0};
+  graph.qc << 0.1, 0.2, 0.3, 1.0, 2.0, 3.0;
+  ControlState a;
+  a.t = random.uniform(0.0, 10.0);
+  a.T = random.pose();
+  a.velocity << random.uniform(0, 2) * random.direction(), random.uniform(0, 2) * random.direction();
+  Vector6 step;
+  step << (i % 4 == 0 ? 0.0 : random.uniform(0.0, 0.4)) * random.direction(),
+      random.uniform(0, 0.3) * random.direction();
+  ControlState b;
+  b.t = a.t + random.uniform(0.02, 0.2);
+  b.T = a.T * se3::exp(step);
+  b.velocity << random.uniform(0, 2) * random.direction(), random.uniform(0, 2) * random.direction();
+  graph.add_state(a);
+  graph.add_state(b);
+  for (int j = 0; j < landmarks; ++j) {
+    const Vector3 point = a.T * Vector3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(2, 5));
+    const int landmark = graph.add_landmark(point);
+    for (int n = 0; n < 3; ++n) {
+      const double t = n == 2 ? b.t : a.t + random.uniform(0.0, 1.0) * (b.t - a.t);
+      graph.add_observation(landmark, {t, {random.uniform(0, 240), random.uniform(0, 180)}, 1.0 / 0.7});
+    }
+  }
+  return graph;
+}
+
+/// All whitened residuals of the interval, and their derivative: H = JᵀJ, g = Jᵀe by the definition.
+template <class Vector>
+Eigen::VectorXd residuals(const FactorGraph& graph, const Vector& states, const Eigen::VectorXd& landmarks) {
+  const GpInterval interval(graph.states[0].retract(states.template head<12>()),
+                            graph.states[1].retract(states.template tail<12>()));
+  std::vector<double> values;
+  for (const auto& group : graph.intervals[1].groups()) {
+    const Vector3 point =
+        graph.landmarks[static_cast<std::size_t>(group.landmark)].position + landmarks.segment<3>(3 * group.landmark);
+    for (int i = group.begin; i < group.end; ++i) {
+      const Vector2 e =
+          reprojection_residual(interval, point, graph.intervals[1].all()[static_cast<std::size_t>(i)], graph.camera);
+      values.push_back(e.x());
+      values.push_back(e.y());
+    }
+  }
+  return Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+}  // namespace
+
+TEST_CASE("An interval's normal equations are those of central differences of its residuals") {
+  RandomTangents random;
+  constexpr int kLandmarks = 2;
+  constexpr int kRows = 2 * 3 * kLandmarks;
+  for (int i = 0; i < 500; ++i) {
+    const FactorGraph graph = random_interval(random, i, kLandmarks);
+    const auto J_states = central_differences<kRows, 24>([&](const Vector24& d) -> Eigen::Matrix<double, kRows, 1> {
+      return residuals(graph, d, Eigen::VectorXd::Zero(3 * kLandmarks));
+    });
+    const auto J_landmarks =
+        central_differences<kRows, 3 * kLandmarks>([&](const Vector6& d) -> Eigen::Matrix<double, kRows, 1> {
+          return residuals(graph, Vector24(Vector24::Zero()), d);
+        });
+    const Eigen::VectorXd e = residuals(graph, Vector24(Vector24::Zero()), Eigen::VectorXd::Zero(3 * kLandmarks));
+    const GpInterval interval(graph.states[0], graph.states[1]);
+    const auto prior = interval.prior_jacobians(interval.derivatives());
+    Eigen::Matrix<double, 12, 24> J_prior;
+    J_prior << prior.J0, prior.J1;
+    const Matrix12 W = wnoa::process_information(interval.dt(), graph.qc);
+
+    IntervalLinearisation linear;
+    linearise_interval(graph, 1, linear);
+    const Matrix24 H = J_states.transpose() * J_states + J_prior.transpose() * W * J_prior;
+    const Vector24 g = J_states.transpose() * e + J_prior.transpose() * W * interval.prior_residual();
+    CHECK(relative_error(linear.states, H) < 1e-6);
+    CHECK(relative_error(linear.gradient, g) < 1e-6);
+    CHECK(linear.cost == Approx(evaluate(graph).total()));
+    REQUIRE(linear.couplings.size() == kLandmarks);
+    for (const auto& coupling : linear.couplings) {
+      const Eigen::Matrix<double, kRows, 3> J = J_landmarks.middleCols<3>(3 * coupling.landmark);
+      CHECK(relative_error(coupling.landmark_landmark, J.transpose() * J) < 1e-6);
+      CHECK(relative_error(coupling.landmark_states, J.transpose() * J_states) < 1e-6);
+      CHECK(relative_error(coupling.gradient, J.transpose() * e) < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("Gradients of robust losses and of state priors are those of the cost") {
+  RandomTangents random;
+  for (int i = 0; i < 100; ++i) {
+    FactorGraph graph = random_interval(random, i, 3);
+    graph.loss = RobustLoss(i % 2 == 0 ? "huber" : "cauchy", 1.5);
+    const SE3 near = graph.states[1].T * se3::exp(Vector6::Constant(0.1));
+    graph.pose_priors.push_back({1, near, Vector6::LinSpaced(0.1, 0.6)});
+    graph.velocity_priors.push_back({1, Vector6::Constant(0.3), Vector6::LinSpaced(0.1, 0.6)});
+    graph.distance_priors.push_back({1, Vector3(1, 2, 3), 0.7, 0.05});
+    IntervalLinearisation linear;
+    linearise_interval(graph, 1, linear);
+    Matrix12 H = Matrix12::Zero();
+    Vector12 g = Vector12::Zero();
+    add_state_priors(graph, 1, H, g);
+    Vector24 gradient = linear.gradient;
+    gradient.tail<12>() += g;
+    const auto slope = central_differences<1, 24>(
+        [&](const Vector24& d) -> Eigen::Matrix<double, 1, 1> {
+          FactorGraph moved = graph;
+          moved.states[0] = graph.states[0].retract(d.head<12>());
+          moved.states[1] = graph.states[1].retract(d.tail<12>());
+          return Eigen::Matrix<double, 1, 1>(evaluate(moved).total());
+        },
+        1e-4);
+    CHECK(relative_error(gradient, slope.transpose().eval()) < 1e-6);
+  }
+}
+
+TEST_CASE("An observation behind the camera costs a constant and moves nothing") {
+  RandomTangents random;
+  FactorGraph graph = random_interval(random, 1, 1);
+  graph.landmarks[0].position = graph.states[0].T * Vector3(0, 0, -3);
+  IntervalLinearisation linear;
+  linearise_interval(graph, 1, linear);
+  CHECK(linear.couplings[0].landmark_landmark.norm() == 0.0);
+  CHECK(evaluate(graph).measurements == Approx(3 * 4.0 * 200.0 * 200.0 / (0.7 * 0.7)));
+}
+
+}  // namespace evbench::gp_map

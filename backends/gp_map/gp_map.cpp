@@ -1,0 +1,330 @@
+#include "backends/gp_map/gp_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/plugin/registry.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+const Registration<BackEnd, GpMap> registration("gp_map",
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)");
+
+constexpr double kAnchorSigma = 1e-4;  ///< [rad, units] of the gauge: far below what data tell, well conditioned
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+GpMap::GpMap(const Options& options, const BackEndContext& context)
+    : options_(options),
+      context_(context),
+      placement_(options.placement),
+      initialiser_(options.initialiser, context.camera),
+      health_(options.health) {
+  graph_.camera = context.camera;
+  graph_.qc = options.qc_scale * Eigen::Map<const Vector6>(options.qc.data());
+  graph_.loss = RobustLoss(options.loss, options.loss_width);
+}
+
+void GpMap::observe(std::span<const TrackObservation> observations) {
+  tracks_.add(observations);
+  for (const TrackObservation& z : observations) {
+    placement_.observe(z.t);
+    pending_.push_back(z);
+  }
+}
+
+void GpMap::advance(double t) {
+  while (const std::optional<double> next = placement_.next(t)) step(*next);
+}
+
+void GpMap::step(double t) {
+  if (health_.lost()) return;
+  const auto start = std::chrono::steady_clock::now();
+  if (graph_.states.empty()) {
+    initialise(t);
+  } else {
+    extrapolate_state(t);
+    add_observations();
+    add_landmarks();
+    optimise();
+    remove_outliers();
+    check_health();
+  }
+  record(t, seconds_since(start));
+}
+
+// --- initialisation -----------------------------------------------------------------------------------------------
+
+void GpMap::initialise(double t) {
+  state_times_.push_back(t);
+  const Initialiser::Attempt attempt = initialiser_.attempt(tracks_, t);
+  no_map_reason_ = attempt.reason;
+  struct Refined {
+    FactorGraph graph;
+    const InitialGuess* guess;
+    double cost;
+  };
+  std::vector<Refined> refined;
+  for (const InitialGuess& guess : attempt.candidates) {
+    if (auto graph = refine(guess, t)) {
+      const double cost = evaluate(*graph).total() / graph->observation_count();
+      refined.push_back({std::move(*graph), &guess, cost});
+    }
+  }
+  if (refined.empty()) {
+    if (!attempt.candidates.empty()) no_map_reason_ = "the first map does not explain the observations";
+    return;
+  }
+  std::ranges::sort(refined, {}, &Refined::cost);
+  if (refined.size() > 1 && refined[1].cost < options_.ambiguity_ratio * refined[0].cost) {
+    no_map_reason_ = "two first maps explain the observations equally well";
+    return;
+  }
+  start_from(std::move(refined[0].graph), *refined[0].guess);
+}
+
+/// The whole continuous-time problem over the time of the initialisation, solved from a two-view guess. None when it
+/// doesn't explain the data.
+std::optional<FactorGraph> GpMap::refine(const InitialGuess& guess, double t) const {
+  FactorGraph graph = graph_;
+  // States from the one at or before the first view on; constant velocity between the two views.
+  const Vector6 velocity = se3::log(guess.T1) / (guess.t1 - guess.t0);
+  auto first = std::upper_bound(state_times_.begin(), state_times_.end(), guess.t0 + 1e-9);
+  if (first != state_times_.begin()) --first;
+  const ControlState view0{guess.t0, SE3{}, velocity};
+  for (auto time = first; time != state_times_.end(); ++time) {
+    graph.add_state(extrapolate(view0, *time - guess.t0));
+  }
+  if (graph.states.size() < 2 || graph.states.back().t != t) return std::nullopt;
+  graph.pose_priors.push_back({0, graph.states.front().T, Vector6::Constant(kAnchorSigma)});
+  const SE3 origin = graph.states.front().T;
+  const double baseline = (graph.states.back().T.p - origin.p).norm();
+  graph.distance_priors.push_back(
+      {static_cast<int>(graph.states.size()) - 1, origin.p, baseline, kAnchorSigma * baseline});
+  for (const Landmark& landmark : guess.landmarks) {
+    add_all_observations(graph, graph.add_landmark(landmark.position), landmark.track);
+  }
+  if (graph.observation_count() == 0) return std::nullopt;
+  const BatchSummary summary = solve_batch(graph, {options_.final_iterations, 1e-6, 0});
+  if (!summary.failure.empty()) return std::nullopt;
+  std::vector<double> errors;
+  for (std::size_t j = 0; j < graph.landmarks.size(); ++j) {
+    errors.push_back(reprojection_mean(graph, static_cast<int>(j)));
+  }
+  if (!(median(errors) <= options_.max_initial_error)) return std::nullopt;
+  return graph;
+}
+
+void GpMap::start_from(FactorGraph graph, const InitialGuess& guess) {
+  graph_ = std::move(graph);
+  for (std::size_t j = 0; j < guess.landmarks.size(); ++j) {
+    landmark_of_[guess.landmarks[j].track] = static_cast<int>(j);
+    track_of_.push_back(guess.landmarks[j].track);
+  }
+  const double newest = graph_.states.back().t;
+  std::erase_if(pending_, [&](const TrackObservation& z) { return z.t <= newest; });
+  context_.log(fmt::format(
+      "{:.3f} s: first map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s", newest,
+      graph_.landmarks.size(), graph_.observation_count(), guess.median_parallax_deg, graph_.states.front().t));
+  remove_outliers();
+  add_landmarks();
+  optimise();
+}
+
+// --- each control state -------------------------------------------------------------------------------------------
+
+void GpMap::extrapolate_state(double t) {
+  const ControlState& newest = graph_.states.back();
+  graph_.add_state(extrapolate(newest, t - newest.t));
+}
+
+Observation GpMap::observation(const TrackObservation& z) const {
+  return {z.t, z.pixel, 1.0 / (z.sigma * options_.sigma_scale)};
+}
+
+/// Those of tracks that are landmarks; the others wait in the track buffer until theirs are located.
+void GpMap::add_observations() {
+  const double newest = graph_.states.back().t;
+  const auto later = std::find_if(pending_.begin(), pending_.end(), [&](const auto& z) { return z.t > newest; });
+  for (auto z = pending_.begin(); z != later; ++z) {
+    const auto landmark = landmark_of_.find(z->track);
+    if (landmark != landmark_of_.end()) graph_.add_observation(landmark->second, observation(*z));
+  }
+  pending_.erase(pending_.begin(), later);
+}
+
+void GpMap::add_all_observations(FactorGraph& graph, int landmark, TrackId track) const {
+  for (const TrackObservation& z : tracks_.observations(track)) graph.add_observation(landmark, observation(z));
+}
+
+int GpMap::landmarks_in_view() const { return static_cast<int>(graph_.intervals.back().groups().size()); }
+
+void GpMap::add_landmarks() {
+  const double newest = graph_.states.back().t;
+  const bool scarce = landmarks_in_view() < 2 * options_.health.min_landmarks;
+  for (const TrackId track : tracks_.alive(newest, 0.1)) {
+    const auto count = static_cast<int>(tracks_.observations(track).size());
+    if (landmark_of_.contains(track) || count < options_.map.min_observations) continue;
+    int& tried_with = tried_with_[track];
+    if (!scarce && count < tried_with + options_.map.min_observations / 2) continue;
+    tried_with = count;
+    const auto place = locate(track, scarce);
+    if (!place) continue;
+    const int landmark = graph_.add_landmark(place->first, place->second);
+    add_all_observations(graph_, landmark, track);
+    landmark_of_[track] = landmark;
+    track_of_.push_back(track);
+    tried_with_.erase(track);
+  }
+}
+
+/// Where a track's landmark is, by triangulation over its observations; in need (`scarce`), at the scene's depth.
+std::optional<std::pair<Vector3, LandmarkPrior>> GpMap::locate(TrackId track, bool scarce) const {
+  constexpr std::size_t kViews = 16;  // evenly from all observations: enough for a start
+  std::vector<const TrackObservation*> usable;
+  for (const TrackObservation& z : tracks_.observations(track)) {
+    if (graph_.interval_of(z.t) >= 0) usable.push_back(&z);
+  }
+  if (usable.size() < 2) return std::nullopt;
+  std::vector<SE3> poses;
+  std::vector<Vector2> pixels;
+  const std::size_t views = std::min(kViews, usable.size());
+  for (std::size_t i = 0; i < views; ++i) {
+    const TrackObservation& z = *usable[i * (usable.size() - 1) / (views - 1)];
+    poses.push_back(*pose(z.t));
+    pixels.push_back(z.pixel);
+  }
+  const Triangulation result = triangulate(poses, pixels, context_.camera, options_.map.triangulation);
+  if (result.ok()) return std::pair{result.point, LandmarkPrior{}};
+  const bool waited = usable.back()->t - usable.front()->t >= options_.map.patience;
+  if (!scarce || !waited) return std::nullopt;
+  const double depth = median_depth();
+  const Vector3 point = poses.back() * (depth * graph_.camera.ray(pixels.back()));
+  return std::pair{point, LandmarkPrior{point, options_.map.depth_sigma * depth}};
+}
+
+/// Of the landmarks seen last, from the newest pose.
+double GpMap::median_depth() const {
+  const SE3 T_camera_world = graph_.states.back().T.inverse();
+  std::vector<double> depths;
+  for (std::size_t k = graph_.intervals.size(); k-- > 0 && depths.size() < 10;) {
+    for (const auto& group : graph_.intervals[k].groups()) {
+      const double z = (T_camera_world * graph_.landmarks[static_cast<std::size_t>(group.landmark)].position).z();
+      if (z > 0.0) depths.push_back(z);
+    }
+  }
+  return depths.empty() ? 1.0 : median(depths);
+}
+
+void GpMap::optimise() {
+  const double from = graph_.states.back().t - options_.window;
+  const auto first = std::upper_bound(graph_.states.begin(), graph_.states.end(), from,
+                                      [](double t, const ControlState& state) { return t < state.t; });
+  last_solve_ = solve_batch(graph_, {options_.iterations, 1e-4, static_cast<int>(first - graph_.states.begin())});
+}
+
+void GpMap::remove_outliers() {
+  std::vector<int> seen;
+  for (const auto& group : graph_.intervals.back().groups()) seen.push_back(group.landmark);
+  for (const int landmark : seen) {
+    if (reprojection_mean(graph_, landmark) <= options_.map.outlier_threshold) continue;
+    const TrackId track = track_of_[static_cast<std::size_t>(landmark)];
+    graph_.remove_landmark(landmark);
+    landmark_of_.erase(track);
+    tracks_.remove(track);
+    new_outliers_.push_back(track);
+  }
+}
+
+void GpMap::check_health() {
+  const std::size_t n = graph_.states.size();
+  if (!last_solve_.failure.empty()) {
+    health_.lose(graph_.states[n - 1].t, last_solve_.failure);
+  } else {
+    health_.observe(graph_.states[n - 2].t, graph_.states[n - 1].t, landmarks_in_view());
+  }
+  if (!health_.lost()) return;
+  context_.log(fmt::format("{:.3f} s: lost: {}", health_.status().time, health_.status().reason));
+  // What the data never saw is not kept.
+  while (graph_.states.size() > 2 && graph_.states.back().t > health_.status().time) graph_.remove_newest_state();
+}
+
+void GpMap::record(double t, double seconds) {
+  if (!graph_.states.empty() && graph_.states.back().t == t) online_.push_back({t, graph_.states.back().T});
+  const auto alive = std::ranges::count_if(graph_.landmarks, &FactorGraph::Landmark::alive);
+  updates_.push_back({t, seconds, static_cast<int>(graph_.states.size()), static_cast<int>(alive),
+                      graph_.observation_count(), last_solve_.iterations, last_solve_.final_cost});
+}
+
+// --- the end ------------------------------------------------------------------------------------------------------
+
+void GpMap::finish() {
+  if (const std::optional<double> last = placement_.last()) step(*last);
+  if (graph_.states.empty()) {
+    health_.fail(state_times_.empty() ? 0.0 : state_times_.back(),
+                 no_map_reason_.empty() ? "no observations" : "no first map: " + no_map_reason_);
+    return;
+  }
+  if (options_.final_iterations == 0) return;
+  const auto start = std::chrono::steady_clock::now();
+  last_solve_ = solve_batch(graph_, {options_.final_iterations, 1e-7, 0});
+  updates_.push_back({graph_.states.back().t, seconds_since(start), static_cast<int>(graph_.states.size()),
+                      static_cast<int>(landmark_of_.size()), graph_.observation_count(), last_solve_.iterations,
+                      last_solve_.final_cost});
+}
+
+Feedback GpMap::feedback() {
+  Feedback feedback;
+  if (!graph_.states.empty()) feedback.newest = graph_.states.back();
+  feedback.outliers.swap(new_outliers_);
+  return feedback;
+}
+
+PoseTrajectory GpMap::trajectory() const {
+  std::vector<StampedPose> poses;
+  for (const ControlState& state : graph_.states) poses.push_back({state.t, state.T});
+  return PoseTrajectory(std::move(poses));
+}
+
+std::optional<SE3> GpMap::pose(double t) const {
+  const int k = graph_.interval_of(t);
+  if (k < 0) return std::nullopt;
+  const auto index = static_cast<std::size_t>(k);
+  return GpInterval(graph_.states[index - 1], graph_.states[index]).pose(t);
+}
+
+std::optional<Vector6> GpMap::velocity(double t) const {
+  const int k = graph_.interval_of(t);
+  if (k < 0) return std::nullopt;
+  const auto index = static_cast<std::size_t>(k);
+  return GpInterval(graph_.states[index - 1], graph_.states[index]).velocity(t);
+}
+
+std::optional<Matrix12> GpMap::covariance(double t) const {
+  if (graph_.states.empty()) return std::nullopt;
+  return BatchCovariance(graph_).at(t);
+}
+
+std::vector<Landmark> GpMap::map() const {
+  std::vector<Landmark> result;
+  for (const auto& [track, landmark] : landmark_of_) {
+    result.push_back({track, graph_.landmarks[static_cast<std::size_t>(landmark)].position});
+  }
+  return result;
+}
+
+}  // namespace evbench::gp_map

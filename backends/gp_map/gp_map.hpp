@@ -1,0 +1,85 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "backends/gp_map/batch_solver.hpp"
+#include "backends/gp_map/health.hpp"
+#include "backends/gp_map/options.hpp"
+#include "backends/gp_map/state_placement.hpp"
+#include "core/plugin/backend.hpp"
+#include "core/structure/track_buffer.hpp"
+
+namespace evbench::gp_map {
+
+/// Asynchronous continuous-time structure from motion by MAP inference under a Gaussian-process prior: Algorithm 1 of
+/// Liu et al., ICRA 2022. Every observation counts at its own time.
+///
+/// World frame: the camera at the first control state. Unit of length: the median depth of the first map. Gauge and
+/// scale are anchored there, the first pose by a tight prior, the scale by the distance between the two cameras of the
+/// initialisation: the WNOA prior alone would shrink the world to a point.
+class GpMap : public BackEnd {
+ public:
+  using Options = gp_map::Options;
+
+  GpMap(const Options& options, const BackEndContext& context);
+
+  void observe(std::span<const TrackObservation> observations) override;
+  void advance(double t) override;
+  void finish() override;
+
+  Status status() const override { return health_.status(); }
+  Feedback feedback() override;
+  PoseTrajectory trajectory() const override;
+  PoseTrajectory online() const override { return PoseTrajectory(online_); }
+  std::optional<SE3> pose(double t) const override;
+  std::optional<Vector6> velocity(double t) const override;
+  std::optional<Matrix12> covariance(double t) const override;
+  std::vector<Landmark> map() const override;
+  std::span<const UpdateRecord> updates() const override { return updates_; }
+
+  const FactorGraph& graph() const { return graph_; }
+
+ private:
+  // Algorithm 1, a line each.
+  void step(double t);
+  void initialise(double t);
+  void extrapolate_state(double t);
+  void add_observations();
+  void add_landmarks();
+  void optimise();
+  void remove_outliers();
+  void check_health();
+  void record(double t, double seconds);
+
+  std::optional<FactorGraph> refine(const InitialGuess& guess, double t) const;
+  void start_from(FactorGraph graph, const InitialGuess& guess);
+  void add_all_observations(FactorGraph& graph, int landmark, TrackId track) const;
+  Observation observation(const TrackObservation& z) const;
+  std::optional<std::pair<Vector3, LandmarkPrior>> locate(TrackId track, bool scarce) const;
+  double median_depth() const;
+  int landmarks_in_view() const;
+
+  Options options_;
+  BackEndContext context_;
+  StatePlacement placement_;
+  Initialiser initialiser_;
+  TrackBuffer tracks_;
+  std::vector<double> state_times_;  ///< placed before the first map: the states of the initialisation
+  std::string no_map_reason_;        ///< of the last vain attempt
+  FactorGraph graph_;
+  std::map<TrackId, int> landmark_of_;     ///< tracks that are landmarks
+  std::map<TrackId, int> tried_with_;      ///< observations at the last vain attempt to locate a track
+  std::vector<TrackId> track_of_;          ///< by landmark
+  std::vector<TrackObservation> pending_;  ///< later than the newest state
+  std::vector<TrackId> new_outliers_;
+  BatchSummary last_solve_;
+  Health health_;
+  std::vector<StampedPose> online_;
+  std::vector<UpdateRecord> updates_;
+};
+
+}  // namespace evbench::gp_map

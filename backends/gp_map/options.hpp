@@ -1,0 +1,104 @@
+#pragma once
+
+#include <string>
+
+#include "core/plugin/options.hpp"
+#include "core/structure/initialiser.hpp"
+#include "core/structure/triangulation.hpp"
+
+namespace evbench::gp_map {
+
+/// When a control state is placed.
+struct PlacementOptions {
+  std::string rule = "rate";
+  double rate = 20.0;
+  int observations = 100;
+  double min_spacing = 0.01, max_spacing = 0.1;
+
+  void declare(OptionSet& set) {
+    set.add("rule", rule, "rate: evenly in time; observations: after a number of observations")
+        .choices({"rate", "observations"});
+    set.add("rate", rate, "rule \"rate\": control states per second [Hz]").range(0.5, 1000.0);
+    set.add("observations", observations, "rule \"observations\": observations between two control states").range(1);
+    set.add("min_spacing", min_spacing, "rule \"observations\": least time between two [s]").range(1e-3, 10.0);
+    set.add("max_spacing", max_spacing, "rule \"observations\": greatest time between two [s]").range(1e-3, 10.0);
+  }
+};
+
+/// When tracks become landmarks, and when they are dropped.
+struct MapOptions {
+  TriangulationOptions triangulation;
+  int min_observations = 10;
+  double patience = 0.3;
+  double depth_sigma = 0.5;
+  double outlier_threshold = 3.0;
+
+  void declare(OptionSet& set) {
+    set.group("triangulation", triangulation, "when a track becomes a landmark");
+    set.add("min_observations", min_observations, "observations that a track needs to become a landmark").range(2);
+    set.add(
+           "patience", patience,
+           "a track that shows no parallax for this long becomes a landmark at the scene's median depth when landmarks "
+           "are scarce: it still tells rotation [s]")
+        .range(0.0);
+    set.add("depth_sigma", depth_sigma, "standard deviation of that guess, as a share of the depth").above(0.0);
+    set.add("outlier_threshold", outlier_threshold,
+            "tracks whose average reprojection error over all their observations is larger are dropped [px]")
+        .above(0.0);
+  }
+};
+
+/// When too little is seen.
+struct HealthOptions {
+  int min_landmarks = 6;
+  double max_degraded = 1.0;
+
+  void declare(OptionSet& set) {
+    set.add("min_landmarks", min_landmarks, "fewer landmarks seen in an interval: the prior carries, degraded")
+        .range(3);
+    set.add("max_degraded", max_degraded, "degraded for longer than this: lost [s]").above(0.0);
+  }
+};
+
+struct Options {
+  PlacementOptions placement;
+  std::vector<double> qc = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+  double qc_scale = 1.0;
+  std::string loss = "cauchy";
+  double loss_width = 2.0;
+  double sigma_scale = 1.0;
+  InitialiserOptions initialiser;
+  double max_initial_error = 2.0;
+  double ambiguity_ratio = 1.1;
+  MapOptions map;
+  HealthOptions health;
+  double window = 2.5;
+  int iterations = 2;
+  int final_iterations = 30;
+
+  void declare(OptionSet& set) {
+    set.group("placement", placement, "control states");
+    set.add("qc", qc,
+            "diagonal of the WNOA prior's power spectral density: rotation x y z [rad^2/s^3], translation x y z "
+            "[units^2/s^3]; a unit is the median depth of the first map")
+        .size(6)
+        .above(0.0);
+    set.add("qc_scale", qc_scale, "multiplies qc: above 1 is a weaker prior").above(0.0);
+    set.add("loss", loss, "robust loss of reprojection errors").choices({"none", "huber", "cauchy"});
+    set.add("loss_width", loss_width, "residual where the loss turns from quadratic [sigmas]").above(0.0);
+    set.add("sigma_scale", sigma_scale, "multiplies the observations' sigmas").above(0.0);
+    set.group("initialiser", initialiser, "two-view initialisation");
+    set.add("max_initial_error", max_initial_error, "a first map with a larger reprojection error is tried again [px]")
+        .above(0.0);
+    set.add("ambiguity_ratio", ambiguity_ratio,
+            "when the second-best first map costs less than this times the best one's, wait for more data")
+        .range(1.0);
+    set.group("map", map, "landmarks");
+    set.group("health", health, "degraded and lost");
+    set.add("window", window, "states of this much time are optimised at each step, older ones held [s]").above(0.0);
+    set.add("iterations", iterations, "of Levenberg-Marquardt at each step, at most").range(1);
+    set.add("final_iterations", final_iterations, "over the whole history, at the end; 0: none").range(0);
+  }
+};
+
+}  // namespace evbench::gp_map

@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "bench/commands/commands.hpp"
+#include "bench/experiment.hpp"
+#include "core/plugin/registry.hpp"
+
+namespace evbench {
+namespace {
+
+template <class Interface>
+void list() {
+  fmt::print("{}:\n", PluginKind<Interface>::name);
+  for (const auto& [name, entry] : Registry<Interface>::instance().entries()) {
+    fmt::print("  {:<20} {}\n", name, entry.text);
+  }
+}
+
+template <class Interface>
+bool describe(const std::string& kind, const std::string& name, bool schema) {
+  if (kind != PluginKind<Interface>::name) return false;
+  const auto& entry = Registry<Interface>::instance().find(name, "describe " + kind);
+  if (schema) {
+    fmt::print("{}\n", entry.schema().dump(2));
+  } else {
+    fmt::print("{} {}: {}\n\n{}", kind, name, entry.text, entry.describe());
+  }
+  return true;
+}
+
+}  // namespace
+
+void add_list(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("list", "List sources, front-ends and back-ends");
+  command->callback([] {
+    list<Source>();
+    list<FrontEnd>();
+    list<BackEnd>();
+  });
+}
+
+void add_describe(CLI::App& app) {
+  struct Arguments {
+    std::string kind, name;
+    bool schema = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("describe", "Describe a plugin's options, or a config file");
+  command->add_option("kind", arguments->kind, "source, frontend, backend or config")
+      ->required()
+      ->check(CLI::IsMember({"source", "frontend", "backend", "config"}));
+  command->add_option("name", arguments->name, "Name of the plugin (evbench list)");
+  command->add_flag("--schema", arguments->schema, "Print a JSON Schema, for editors");
+  command->callback([arguments] {
+    const auto& [kind, name, schema] = *arguments;
+    if (kind == "config") {
+      fmt::print("{}\n", schema ? experiment_schema().dump(2) : describe_experiment());
+      return;
+    }
+    if (name.empty())
+      throw InputError(fmt::format("describe {}: expected the name of a {}; see evbench list", kind, kind));
+    describe<Source>(kind, name, schema) || describe<FrontEnd>(kind, name, schema) ||
+        describe<BackEnd>(kind, name, schema);
+  });
+}
+
+}  // namespace evbench

@@ -1,0 +1,236 @@
+#include "bench/experiment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "core/plugin/registry.hpp"
+#include "core/support/sha256.hpp"
+
+namespace evbench {
+namespace {
+
+/// The top level of a config file.
+struct ExperimentOptions {
+  std::string name;
+  std::string description;
+  std::int64_t seed = 1;
+  double trajectory_rate = 100.0;
+  Json source, frontend, backend, backends;
+  ScoreOptions evaluation;
+
+  void declare(OptionSet& set) {
+    set.add("name", name, "name of the experiment: its folder below --out; by default the config's file name");
+    set.add("description", description, "what it is for");
+    set.add("seed", seed, "seed of everything that is drawn").range(0);
+    set.add("trajectory_rate", trajectory_rate,
+            "rate at which final trajectories are sampled for scoring and writing [Hz]; 0: the back-end's own poses")
+        .range(0.0, 1e5);
+    set.add("source", source, "the sequence: {\"type\": NAME, options}; see evbench list").required();
+    set.add("frontend", frontend, "what makes the tracks: {\"type\": NAME, options}").required();
+    set.add("backend", backend, "one run: {\"type\": NAME, \"label\": TEXT, options}");
+    set.add("backends", backends, "a comparison on identical observations: a list of back-ends");
+    set.group("evaluation", evaluation, "how trajectories are scored");
+  }
+};
+
+Json parse_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path)) {
+    throw InputError(fmt::format("{}: can't be read; expected a JSON config", path));
+  }
+  std::ostringstream text;
+  text << file.rdbuf();
+  try {
+    return Json::parse(text.str(), nullptr, true, true);  // comments allowed
+  } catch (const Json::parse_error& error) {
+    throw InputError(fmt::format("{}: is not JSON: {}", path, error.what()));
+  }
+}
+
+void set_value(Json& config, const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw InputError(fmt::format("--set {}: expected KEY=VALUE", assignment));
+  }
+  Json* target = &config;
+  std::istringstream path(assignment.substr(0, equals));
+  for (std::string part; std::getline(path, part, '.');) {
+    if (target->is_array()) {
+      const bool number = !part.empty() && part.size() < 7 &&
+                          std::ranges::all_of(part, [](unsigned char c) { return std::isdigit(c) != 0; });
+      const std::size_t index = number ? std::stoul(part) : target->size();
+      if (index >= target->size()) {
+        throw InputError(
+            fmt::format("--set {}: \"{}\" is not a position in a list of {}", assignment, part, target->size()));
+      }
+      target = &(*target)[index];
+    } else if (target->is_object() || target->is_null()) {
+      target = &(*target)[part];
+    } else {
+      throw InputError(fmt::format("--set {}: what stands before \"{}\" is a value, not an object", assignment, part));
+    }
+  }
+  const std::string text = assignment.substr(equals + 1);
+  const Json value = Json::parse(text, nullptr, false);
+  *target = value.is_discarded() ? Json(text) : value;
+}
+
+/// Takes "type" out of a plugin's object and checks the rest with the plugin's own options.
+template <class Interface>
+PluginConfig plugin(Json json, const std::string& place) {
+  if (!json.is_object() || !json.contains("type") || !json["type"].is_string()) {
+    throw InputError(
+        fmt::format("{}: expected an object with \"type\": the name of a {}", place, PluginKind<Interface>::name));
+  }
+  PluginConfig result;
+  result.type = json["type"].get<std::string>();
+  result.place = place;
+  json.erase("type");
+  result.options = Registry<Interface>::instance().find(result.type, place + ".type").resolve(json, place);
+  return result;
+}
+
+/// The back-ends with their labels taken out.
+std::vector<std::pair<std::string, PluginConfig>> backends(const ExperimentOptions& options, const std::string& path) {
+  if (options.backend.is_null() == options.backends.is_null()) {
+    throw InputError(fmt::format("{}: expected either \"backend\" (one run) or \"backends\" (a comparison)", path));
+  }
+  const bool single = !options.backend.is_null();
+  const Json list = single ? Json::array({options.backend}) : options.backends;
+  if (!list.is_array() || list.empty()) {
+    throw InputError(fmt::format("{}: backends: expected a list of at least one back-end", path));
+  }
+  std::vector<std::pair<std::string, PluginConfig>> result;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string place = single ? path + ": backend" : fmt::format("{}: backends.{}", path, i);
+    Json json = list[i];
+    std::string label;
+    if (json.is_object() && json.contains("label")) {
+      if (!json["label"].is_string() || json["label"].get<std::string>().empty()) {
+        throw InputError(fmt::format("{}.label: expected text", place));
+      }
+      label = json["label"].get<std::string>();
+      json.erase("label");
+    }
+    PluginConfig config = plugin<BackEnd>(std::move(json), place);
+    result.emplace_back(label.empty() ? config.type : label, std::move(config));
+  }
+  return result;
+}
+
+void check_name(const std::string& name, const std::string& path) {
+  const bool fine = !name.empty() && name.front() != '.' && std::ranges::all_of(name, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.' || c == '+';
+  });
+  if (!fine) {
+    throw InputError(
+        fmt::format("{}: name: \"{}\" can't name a folder; expected letters, digits, _ - . +", path, name));
+  }
+}
+
+Json with_type(const PluginConfig& plugin) {
+  Json json = {{"type", plugin.type}};
+  json.update(plugin.options);
+  return json;
+}
+
+}  // namespace
+
+Json RunConfig::resolved() const {
+  return {{"name", experiment},
+          {"seed", seed},
+          {"trajectory_rate", trajectory_rate},
+          {"source", with_type(source)},
+          {"frontend", with_type(frontend)},
+          {"backend", with_type(backend)},
+          {"evaluation", write_options(evaluation)}};
+}
+
+std::string RunConfig::key() const {
+  std::string readable;
+  for (const char c : label) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
+      readable += c;
+    } else if (!readable.empty() && readable.back() != '-') {
+      readable += '-';
+    }
+  }
+  return fmt::format("{}-{}", readable.empty() ? backend.type : readable, sha256(resolved().dump()).substr(0, 10));
+}
+
+Experiment read_experiment(const std::string& path, const std::vector<std::string>& overrides) {
+  Json json = parse_file(path);
+  for (const std::string& assignment : overrides) set_value(json, assignment);
+  const auto options = read_options<ExperimentOptions>(json, path);
+  Experiment experiment;
+  experiment.name = options.name.empty() ? std::filesystem::path(path).stem().string() : options.name;
+  experiment.description = options.description;
+  check_name(experiment.name, path);
+
+  RunConfig run;
+  run.experiment = experiment.name;
+  run.seed = static_cast<std::uint64_t>(options.seed);
+  run.folder = std::filesystem::absolute(path).parent_path().string();
+  run.trajectory_rate = options.trajectory_rate;
+  run.evaluation = options.evaluation;
+  run.source = plugin<Source>(options.source, path + ": source");
+  run.frontend = plugin<FrontEnd>(options.frontend, path + ": frontend");
+  for (auto& [label, backend] : backends(options, path)) {
+    run.label = label;
+    run.backend = std::move(backend);
+    for (const RunConfig& other : experiment.runs) {
+      if (other.label == run.label) {
+        throw InputError(
+            fmt::format("{}: two back-ends are labelled \"{}\"; give each a \"label\" of its own", path, label));
+      }
+      if (other.key() == run.key()) {
+        throw InputError(fmt::format("{}: \"{}\" and \"{}\" are the same run and would write to the same folder", path,
+                                     other.label, run.label));
+      }
+    }
+    experiment.runs.push_back(run);
+  }
+  return experiment;
+}
+
+std::string describe_experiment() {
+  ExperimentOptions options;
+  OptionSet set;
+  options.declare(set);
+  return set.describe();
+}
+
+Json experiment_schema() {
+  const auto choices = []<class Interface>(const Registry<Interface>& registry, bool labelled) {
+    Json any = Json::array();
+    for (const auto& [name, entry] : registry.entries()) {
+      Json schema = entry.schema();
+      Json properties = {{"type", {{"const", name}}}};
+      if (labelled) properties["label"] = {{"type", "string"}, {"description", "its name in tables"}};
+      properties.update(schema["properties"]);
+      schema["properties"] = properties;
+      schema["required"].push_back("type");
+      schema["description"] = entry.text;
+      any.push_back(schema);
+    }
+    return Json{{"anyOf", any}};
+  };
+  ExperimentOptions options;
+  OptionSet set;
+  options.declare(set);
+  Json schema = set.schema();
+  schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
+  schema["title"] = "evbench config";
+  schema["properties"]["source"] = choices(Registry<Source>::instance(), false);
+  schema["properties"]["frontend"] = choices(Registry<FrontEnd>::instance(), false);
+  schema["properties"]["backend"] = choices(Registry<BackEnd>::instance(), true);
+  schema["properties"]["backends"] = {{"type", "array"}, {"items", choices(Registry<BackEnd>::instance(), true)}};
+  return schema;
+}
+
+}  // namespace evbench

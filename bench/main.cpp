@@ -1,0 +1,31 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "bench/commands/commands.hpp"
+#include "bench/version.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app{"evbench: a benchmark harness for back-ends of event-camera visual odometry"};
+  app.name("evbench");
+  app.set_version_flag("--version", evbench::version_text());
+  app.require_subcommand(1);
+  app.set_help_all_flag("--help-all", "Print this help and that of every command");
+  int exit_code = 0;
+  evbench::add_run(app, exit_code);
+  evbench::add_eval(app);
+  evbench::add_table(app);
+  evbench::add_list(app);
+  evbench::add_describe(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "evbench: {}\n", error.what());
+    return 2;
+  }
+  return exit_code;
+}
