@@ -80,9 +80,20 @@ Scores score(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate,
   return scores;
 }
 
+namespace {
+
+/// [from, to], with null for an end that is open; null for all times.
+Json range_json(const OptionSet::List& list) {
+  if (list.empty()) return nullptr;
+  Json range = Json::array();
+  for (const double t : list) range.push_back(std::isfinite(t) ? Json(t) : Json(nullptr));
+  return range;
+}
+
+}  // namespace
+
 Json to_json(const Scores& scores) {
   const ScoreOptions& options = scores.options;
-  const auto range = [](const OptionSet::List& list) { return list.empty() ? Json(nullptr) : Json(list); };
   const double percent = scores.ate.trans_percent;
   Json json;
   json["ate"] = {{"trans_m", to_json(scores.ate.trans_m)},
@@ -99,12 +110,12 @@ Json to_json(const Scores& scores) {
   json["alignment"] = {{"method", options.alignment},
                        {"poses", scores.aligned_pairs},
                        {"first", options.align_first > 0 ? Json(options.align_first) : Json(nullptr)},
-                       {"range_s", range(options.align_range)},
+                       {"range_s", range_json(options.align_range)},
                        {"note", scores.alignment.note}};
   json["association"] = {{"mode", options.association},
                          {"tolerance_s", options.tolerance},
                          {"time_offset_s", options.time_offset},
-                         {"time_range_s", range(options.time_range)}};
+                         {"time_range_s", range_json(options.time_range)}};
   return json;
 }
 

@@ -14,11 +14,11 @@ namespace evbench {
 struct ScoreOptions {
   std::string alignment = "sim3";
   int align_first = 0;
-  OptionSet::List align_range;
+  OptionSet::List align_range = {};
   std::string association = "nearest";
   double tolerance = 0.01;
   double time_offset = 0.0;
-  OptionSet::List time_range;
+  OptionSet::List time_range = {};
   int min_pairs = 3;
   double rpe_delta = 0.1;
   std::string rpe_unit = "seconds";

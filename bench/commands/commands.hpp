@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace evbench {
+
+/// Each adds a subcommand of `evbench`; its callback throws InputError, which `main` catches.
+void add_eval(CLI::App& app);
+void add_table(CLI::App& app);
+void add_list(CLI::App& app);
+void add_describe(CLI::App& app);
+
+/// `exit_code` is set to what the program returns: 0, or 3 when a run failed.
+void add_run(CLI::App& app, int& exit_code);
+
+}  // namespace evbench

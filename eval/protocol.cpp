@@ -1,0 +1,100 @@
+#include "eval/protocol.hpp"
+
+#include <cmath>
+
+namespace evbench {
+namespace {
+
+std::string range_text(const Json& range) {
+  const Json& from = range.at(0);
+  const Json& to = range.at(1);
+  if (from.is_null()) return fmt::format("up to {} s", to.get<double>());
+  if (to.is_null()) return fmt::format("from {} s", from.get<double>());
+  return fmt::format("{} to {} s", from.get<double>(), to.get<double>());
+}
+
+std::string alignment_text(const Json& alignment) {
+  const auto method = alignment.at("method").get<std::string>();
+  if (method == "none") return "no alignment";
+  std::string text = method + " alignment";
+  if (method == "se3") text = "SE(3) alignment";
+  if (method == "sim3") text = "Sim(3) alignment";
+  if (method == "scale") text = "scale alignment only";
+  if (method == "yaw") text = "yaw and translation alignment";
+  if (method == "origin") return "first poses made equal";
+  if (const Json& first = alignment.at("first"); !first.is_null())
+    return text + fmt::format(" on the first {} poses", first.dump());
+  if (const Json& range = alignment.at("range_s"); !range.is_null()) {
+    return text + " on the poses " + range_text(range);
+  }
+  return text + " on all poses";
+}
+
+std::string association_text(const Json& association) {
+  const bool nearest = association.at("mode") == "nearest";
+  std::string text = fmt::format("{} ground truth within {} s", nearest ? "nearest" : "interpolated",
+                                 association.at("tolerance_s").get<double>());
+  if (const double offset = association.at("time_offset_s").get<double>(); offset != 0.0) {
+    text += fmt::format(", estimate's times {:+} s", offset);
+  }
+  if (const Json& range = association.at("time_range_s"); !range.is_null()) {
+    text += ", only " + range_text(range);
+  }
+  return text;
+}
+
+std::string relative_text(const Json& rpe) {
+  const auto unit = rpe.at("delta_unit").get<std::string>();
+  const bool all = rpe.at("pairing") == "all";
+  std::string text =
+      fmt::format("RPE over {} {}, {} pairs", rpe.at("delta").get<double>(), unit, all ? "all" : "consecutive");
+  if (unit == "seconds" || (all && unit != "frames")) {
+    text += fmt::format(" (delta within {:g} %)", 100.0 * rpe.at("tolerance").get<double>());
+  }
+  if (unit == "metres" || unit == "degrees") {
+    text += rpe.at("pairs_from") == "estimate" ? ", measured on the estimate" : ", measured on the ground truth";
+  }
+  return text;
+}
+
+std::string row(const std::string& name, const Statistics& s) {
+  if (s.n == 0) return fmt::format("{:<12} no pairs: no two poses are delta apart\n", name);
+  return fmt::format("{:<12} {:>11.6f} {:>11.6f} {:>11.6f} {:>11.6f} {:>11.6f} {:>11.6f} {:>13.6f} {:>7}\n", name,
+                     s.rmse, s.mean, s.median, s.std, s.min, s.max, s.sse, s.n);
+}
+
+}  // namespace
+
+std::string protocol(const Json& scores, const std::string& place) {
+  try {
+    return fmt::format("{}; {}; {}", alignment_text(scores.at("alignment")), association_text(scores.at("association")),
+                       relative_text(scores.at("rpe")));
+  } catch (const Json::exception& error) {
+    throw InputError(fmt::format("{}: the protocol of the scores is incomplete: {}", place, error.what()));
+  }
+}
+
+std::string describe(const Scores& scores) {
+  const Json json = to_json(scores);
+  std::string text;
+  text += fmt::format("alignment    {}\n", alignment_text(json.at("alignment")));
+  if (!scores.alignment.note.empty()) text += fmt::format("             {}\n", scores.alignment.note);
+  text += fmt::format("association  {}\n", association_text(json.at("association")));
+  text += fmt::format("relative     {}\n", relative_text(json.at("rpe")));
+  text += fmt::format("pairs        {} poses compared, {:.1f} % of the ground truth's time covered\n", scores.pairs,
+                      100.0 * scores.coverage);
+  text += fmt::format("scale        {:.6f}\n", scores.alignment.transform.scale);
+  text += fmt::format("path         {:.6f} m\n\n", scores.path_m);
+  text += fmt::format("{:<12} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11} {:>13} {:>7}\n", "", "rmse", "mean", "median",
+                      "std", "min", "max", "sse", "n");
+  text += row("ATE [m]", scores.ate.trans_m);
+  text += row("ATE [deg]", scores.ate.rot_deg);
+  text += row("RPE [m]", scores.rpe.trans_m);
+  text += row("RPE [deg]", scores.rpe.rot_deg);
+  if (std::isfinite(scores.ate.trans_percent)) {
+    text += fmt::format("\nATE {:.4f} % of the path\n", scores.ate.trans_percent);
+  }
+  return text;
+}
+
+}  // namespace evbench

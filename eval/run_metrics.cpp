@@ -1,0 +1,110 @@
+#include "eval/run_metrics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace fs = std::filesystem;
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// The digits at `at` without leading zeros; `at` moves behind them.
+std::string take_number(const std::string& text, std::size_t& at) {
+  while (at < text.size() && text[at] == '0') ++at;
+  const std::size_t begin = at;
+  while (at < text.size() && is_digit(text[at])) ++at;
+  return text.substr(begin, at - begin);
+}
+
+/// A string member that must be there.
+std::string text_of(const Json& object, const char* key, const std::string& path) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_string()) {
+    throw InputError(fmt::format("{}: \"{}\" is missing or not text; expected the metrics of a run", path, key));
+  }
+  return found->get<std::string>();
+}
+
+RunMetrics read_run(const fs::path& path) {
+  const std::string name = path.string();
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(fmt::format("{}: can't be opened", name));
+  Json metrics;
+  try {
+    metrics = Json::parse(file);
+  } catch (const Json::exception& error) {
+    throw InputError(fmt::format("{}: is not JSON: {}", name, error.what()));
+  }
+  if (!metrics.is_object()) throw InputError(fmt::format("{}: expected a JSON object, the metrics of a run", name));
+  for (const char* part : {"final", "online"}) {
+    const auto found = metrics.find(part);
+    if (found == metrics.end() || !(found->is_object() || found->is_null())) {
+      throw InputError(fmt::format("{}: \"{}\" is missing; expected scores or null", name, part));
+    }
+  }
+  return {path.parent_path().string(), text_of(metrics, "experiment", name), text_of(metrics, "label", name), metrics};
+}
+
+/// Every metrics.json in and below a folder.
+std::vector<fs::path> find_files(const std::string& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) throw InputError(fmt::format("{}: is not a folder", folder));
+  std::vector<fs::path> files;
+  const auto options = fs::directory_options::skip_permission_denied;
+  // Sweeps write while tables are made: what vanishes in between is passed over.
+  for (auto entry = fs::recursive_directory_iterator(folder, options, error); entry != fs::end(entry);
+       entry.increment(error)) {
+    const fs::path extension = entry->path().extension();
+    if (extension == ".part" || extension == ".old") entry.disable_recursion_pending();
+    if (entry->path().filename() == "metrics.json" && entry->is_regular_file(error)) files.push_back(entry->path());
+  }
+  if (files.empty()) {
+    throw InputError(
+        fmt::format("{}: no metrics.json in it or below; expected the folder of a run or of several", folder));
+  }
+  return files;
+}
+
+}  // namespace
+
+bool natural_less(const std::string& a, const std::string& b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const std::string x = take_number(a, i), y = take_number(b, j);
+      if (x.size() != y.size()) return x.size() < y.size();
+      if (x != y) return x < y;
+    } else {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i;
+      ++j;
+    }
+  }
+  if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+  return a < b;  // equal but for leading zeros
+}
+
+std::vector<RunMetrics> find_runs(std::span<const std::string> folders) {
+  std::vector<RunMetrics> runs;
+  std::set<fs::path> seen;
+  for (const std::string& folder : folders) {
+    for (const fs::path& file : find_files(folder)) {
+      if (seen.insert(fs::canonical(file)).second) runs.push_back(read_run(file));
+    }
+  }
+  std::ranges::sort(runs, [](const RunMetrics& a, const RunMetrics& b) {
+    if (a.experiment != b.experiment) return natural_less(a.experiment, b.experiment);
+    if (a.label != b.label) return natural_less(a.label, b.label);
+    return a.folder < b.folder;
+  });
+  return runs;
+}
+
+}  // namespace evbench

@@ -1,0 +1,157 @@
+#include "eval/table_text.hpp"
+
+#include <fmt/ranges.h>
+
+#include <functional>
+
+namespace evbench {
+namespace {
+
+using Cell = TextTable::Cell;
+
+std::string escape_markdown(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '|' || c == '*' || c == '_' || c == '`' || c == '<' || c == '\\' || c == '[') result += '\\';
+    result += c == '\n' ? ' ' : c;
+  }
+  return result;
+}
+
+std::string escape_csv(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"') result += '"';
+    result += c;
+  }
+  return result + '"';
+}
+
+/// Characters of UTF-8 text, not bytes.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+std::string pad(const std::string& text, std::size_t width, bool right) {
+  const std::string blanks(width - std::min(width, width_of(text)), ' ');
+  return right ? blanks + text : text + blanks;
+}
+
+/// The header and all rows as texts, each cell written by `write`, padded to columns of equal width.
+std::vector<std::vector<std::string>> padded_rows(const TextTable& table,
+                                                  const std::function<std::string(const Cell&)>& write) {
+  std::vector<std::vector<std::string>> rows(1);
+  for (const TextTable::Column& column : table.columns) rows[0].push_back(write({column.header, false}));
+  for (const auto& cells : table.rows) {
+    rows.emplace_back();
+    for (const Cell& cell : cells) rows.back().push_back(write(cell));
+  }
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    std::size_t width = 0;
+    for (const auto& row : rows) width = std::max(width, width_of(row[c]));
+    for (auto& row : rows) row[c] = pad(row[c], width, table.columns[c].number);
+  }
+  return rows;
+}
+
+std::string format_text(const TextTable& table) {
+  const auto rows = padded_rows(table, [](const Cell& cell) { return cell.text + (cell.best ? "*" : " "); });
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line = fmt::format("{}", fmt::join(row, " "));
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  for (const std::string& note : table.notes) text += note + "\n";
+  return text;
+}
+
+std::string format_markdown(const TextTable& table) {
+  const auto rows = padded_rows(table, [](const Cell& cell) {
+    return cell.best ? fmt::format("**{}**", escape_markdown(cell.text)) : escape_markdown(cell.text);
+  });
+  std::string text;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    text += fmt::format("| {} |\n", fmt::join(rows[r], " | "));
+    if (r > 0) continue;
+    text += "|";
+    for (const TextTable::Column& column : table.columns) text += column.number ? " ---: |" : " --- |";
+    text += "\n";
+  }
+  for (const std::string& note : table.notes) text += "\n" + escape_markdown(note) + "\n";
+  return text;
+}
+
+std::string format_csv(const TextTable& table) {
+  std::string text;
+  const auto add_line = [&](const std::vector<std::string>& cells) {
+    text += fmt::format("{}\n", fmt::join(cells, ","));
+  };
+  std::vector<std::string> line;
+  for (const TextTable::Column& column : table.columns) line.push_back(escape_csv(column.header));
+  add_line(line);
+  for (const auto& row : table.rows) {
+    line.clear();
+    for (const Cell& cell : row) line.push_back(escape_csv(cell.text));
+    add_line(line);
+  }
+  return text;
+}
+
+std::string format_latex(const TextTable& table) {
+  const auto rows = padded_rows(table, [](const Cell& cell) {
+    return cell.best ? fmt::format("\\textbf{{{}}}", escape_latex(cell.text)) : escape_latex(cell.text);
+  });
+  std::string alignment;
+  for (const TextTable::Column& column : table.columns) alignment += column.number ? 'r' : 'l';
+  std::string text = "\\begin{table}\n  \\centering\n";
+  text += fmt::format("  \\begin{{tabular}}{{{}}}\n    \\hline\n", alignment);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    text += fmt::format("    {} \\\\\n", fmt::join(rows[r], " & "));
+    if (r == 0) text += "    \\hline\n";
+  }
+  text += "    \\hline\n  \\end{tabular}\n";
+  text +=
+      fmt::format("  \\caption{{{}}}\n\\end{{table}}\n", escape_latex(fmt::format("{}", fmt::join(table.notes, " "))));
+  return text;
+}
+
+}  // namespace
+
+std::string escape_latex(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+      case '%':
+      case '$':
+      case '#':
+      case '_':
+      case '{':
+      case '}': (result += '\\') += c; break;
+      case '~': result += "\\textasciitilde{}"; break;
+      case '^': result += "\\textasciicircum{}"; break;
+      case '\\': result += "\\textbackslash{}"; break;
+      case '<': result += "\\textless{}"; break;
+      case '>': result += "\\textgreater{}"; break;
+      case '|': result += "\\textbar{}"; break;
+      case '[': result += "{[}"; break;  // after a line's end it would begin an optional argument
+      case '\n': result += ' '; break;
+      default: result += c;
+    }
+  }
+  return result;
+}
+
+std::string format_table(const TextTable& table, TableFormat format) {
+  switch (format) {
+    case TableFormat::text: return format_text(table);
+    case TableFormat::markdown: return format_markdown(table);
+    case TableFormat::csv: return format_csv(table);
+    case TableFormat::latex: break;
+  }
+  return format_latex(table);
+}
+
+}  // namespace evbench
