@@ -4,7 +4,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <opencv2/calib3d.hpp>
 
 #include "core/geometry/so3.hpp"
@@ -162,15 +164,18 @@ int explained_by_rotation(const Matches& matches) {
 }
 
 /// The distinct candidates that explain about as much as the best one, best first.
-std::vector<TwoViewCandidate> distinct(std::vector<TwoViewCandidate> all, double ambiguity) {
-  std::stable_sort(all.begin(), all.end(), better);
+std::vector<TwoViewCandidate> distinct(const std::vector<TwoViewCandidate>& all, double ambiguity) {
+  // Indices, not candidates, are sorted: libstdc++'s stable_sort misaligns the poses in its temporary buffer.
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return better(all[a], all[b]); });
   std::vector<TwoViewCandidate> result;
-  for (TwoViewCandidate& candidate : all) {
-    if (candidate.inliers < ambiguity * all.front().inliers) break;
+  for (const std::size_t i : order) {
+    if (all[i].inliers < ambiguity * all[order.front()].inliers) break;
     const bool known = std::any_of(result.begin(), result.end(), [&](const TwoViewCandidate& other) {
-      return same_pose(other.T_first_second, candidate.T_first_second);
+      return same_pose(other.T_first_second, all[i].T_first_second);
     });
-    if (!known) result.push_back(candidate);
+    if (!known) result.push_back(all[i]);
   }
   return result;
 }
@@ -212,19 +217,16 @@ TwoViewResult relative_pose(std::span<const Vector2> first, std::span<const Vect
   } catch (const cv::Exception& e) {
     return {{}, fmt::format("the two-view solver failed: {}", e.err)};
   }
-  all = distinct(std::move(all), options.ambiguity);
+  all = distinct(all, options.ambiguity);
 
-  const int needed = std::max(
-      options.min_inliers, static_cast<int>(std::ceil(options.min_inlier_share * static_cast<double>(first.size()))));
-  if (all.empty() || all.front().inliers < needed) {
-    return {{},
-            fmt::format("{} of {} matches explained, {} needed", all.empty() ? 0 : all.front().inliers, first.size(),
-                        needed)};
+  const auto share = [&](double of) { return static_cast<int>(std::ceil(of * static_cast<double>(first.size()))); };
+  const int needed = std::max(options.min_inliers, share(options.min_inlier_share));
+  const int explained = all.empty() ? 0 : all.front().inliers;
+  if (rotated >= needed && rotated >= 0.9 * explained) {
+    return {{}, fmt::format("a rotation alone explains {} matches, the best relative pose {}", rotated, explained)};
   }
-  if (rotated >= 0.9 * all.front().inliers) {
-    return {
-        {},
-        fmt::format("a rotation alone explains {} matches, the best relative pose {}", rotated, all.front().inliers)};
+  if (explained < needed) {
+    return {{}, fmt::format("{} of {} matches explained, {} needed", explained, first.size(), needed)};
   }
   const double parallax = all.front().median_parallax_deg;
   std::erase_if(all, [&](const TwoViewCandidate& c) {

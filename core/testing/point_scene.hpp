@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/data/track.hpp"
+#include "core/geometry/camera.hpp"
+#include "core/geometry/se3.hpp"
+
+namespace evbench::testing {
+
+/// A generator that gives the same numbers with every standard library.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+
+  double uniform(double from, double to) {  // splitmix64 (Steele 2014)
+    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15u);
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    return from + (to - from) * static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
+  }
+  double normal() {  // Irwin-Hall
+    double sum = -6.0;
+    for (int i = 0; i < 12; ++i) sum += uniform(0.0, 1.0);
+    return sum;
+  }
+  Vector2 noise(double sigma) {
+    const double x = normal();
+    return sigma * Vector2(x, normal());
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// The DAVIS240C of the Event-Camera Dataset, undistorted.
+inline PinholeCamera davis() { return {199.0, 199.0, 120.0, 90.0}; }
+
+inline bool in_davis_image(const Vector2& pixel) {
+  return pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() <= 239.0 && pixel.y() <= 179.0;
+}
+
+enum class Scene { volume, plane };
+
+/// Points about 2 m before a camera at the origin that looks along z: in a volume, or on a slightly tilted plane.
+inline std::vector<Vector3> scene_points(Scene scene, int count, Random& random, double width = 2.6) {
+  std::vector<Vector3> points;
+  for (int i = 0; i < count; ++i) {
+    const double x = random.uniform(-0.5 * width, 0.5 * width), y = random.uniform(-0.4 * width, 0.4 * width);
+    const double z = scene == Scene::plane ? 2.0 + 0.2 * x - 0.1 * y : random.uniform(1.4, 3.2);
+    points.emplace_back(x, y, z);
+  }
+  return points;
+}
+
+}  // namespace evbench::testing
