@@ -122,6 +122,20 @@ class NormalEquations {
       add_block(l, l, Matrix3(information * Matrix3::Identity()));
       add_gradient(l, Vector3(information * (graph.landmarks[j].position - prior.position)));
     }
+    add_anchor(graph);
+  }
+
+  void add_anchor(const FactorGraph& graph) {
+    const std::vector<int>& anchors = graph.anchor.landmarks;
+    const AnchorLinearisation linear = linearise_anchor(graph);
+    for (std::size_t a = 0; a < anchors.size(); ++a) {
+      const int row = layout_.landmark_offset[static_cast<std::size_t>(anchors[a])];
+      add_gradient(row, Vector3(linear.e * linear.jacobian[a]));
+      for (std::size_t b = 0; b <= a; ++b) {
+        const int column = layout_.landmark_offset[static_cast<std::size_t>(anchors[b])];
+        add_block(row, column, Matrix3(linear.jacobian[a] * linear.jacobian[b].transpose()));
+      }
+    }
   }
 };
 

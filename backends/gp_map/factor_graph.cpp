@@ -51,7 +51,6 @@ void FactorGraph::remove_newest_state() {
   const auto on_newest = [&](const auto& prior) { return prior.state == newest; };
   std::erase_if(pose_priors, on_newest);
   std::erase_if(velocity_priors, on_newest);
-  std::erase_if(distance_priors, on_newest);
 }
 
 int FactorGraph::add_landmark(const Vector3& position, const LandmarkPrior& prior) {
@@ -64,6 +63,13 @@ void FactorGraph::remove_landmark(int landmark) {
   for (const int k : removed.intervals) intervals[static_cast<std::size_t>(k)].remove(landmark);
   removed.intervals.clear();
   removed.alive = false;
+  if (std::erase(anchor.landmarks, landmark) > 0) anchor_scale(anchor.origin, anchor.landmarks);
+}
+
+void FactorGraph::anchor_scale(const Vector3& origin, std::vector<int> anchors) {
+  anchor.origin = origin;
+  anchor.landmarks = std::move(anchors);
+  anchor.mean_log_distance = mean_log_distance(*this);
 }
 
 int FactorGraph::interval_of(double t) const {
@@ -110,12 +116,12 @@ Cost evaluate(const FactorGraph& graph, int first_interval) {
   for (const VelocityPrior& prior : graph.velocity_priors) {
     cost.priors += 0.5 * residual(prior, graph.states[static_cast<std::size_t>(prior.state)]).squaredNorm();
   }
-  for (const DistancePrior& prior : graph.distance_priors) {
-    const double e = residual(prior, graph.states[static_cast<std::size_t>(prior.state)]);
-    cost.priors += 0.5 * e * e;
-  }
   for (const FactorGraph::Landmark& landmark : graph.landmarks) {
     if (landmark.alive) cost.priors += 0.5 * residual(landmark.prior, landmark.position).squaredNorm();
+  }
+  if (!graph.anchor.landmarks.empty()) {
+    const double e = (mean_log_distance(graph) - graph.anchor.mean_log_distance) / graph.anchor.sigma;
+    cost.priors += 0.5 * e * e;
   }
   return cost;
 }

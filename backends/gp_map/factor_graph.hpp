@@ -47,16 +47,19 @@ struct VelocityPrior {
   Vector6 velocity = Vector6::Zero();
   Vector6 sigma = Vector6::Ones();
 };
-/// Holds a state's distance from a fixed point: the anchor of the scale.
-struct DistancePrior {
-  int state = 0;
-  Vector3 origin = Vector3::Zero();
-  double distance = 1.0;
-  double sigma = 1.0;
-};
 struct LandmarkPrior {
   Vector3 position = Vector3::Zero();
   double sigma = std::numeric_limits<double>::infinity();  ///< infinite: no prior
+};
+
+/// Holds the scale: the mean log distance of some landmarks from a fixed point keeps its value,
+/// residual (1/N Σ log ‖l_j − origin‖ − mean_log_distance)/sigma. Every observation ties the map's depth to the motion,
+/// so this holds the whole trajectory's scale; the length of one baseline would hold no more than that baseline.
+struct ScaleAnchor {
+  Vector3 origin = Vector3::Zero();
+  std::vector<int> landmarks;  ///< empty: no anchor
+  double mean_log_distance = 0.0;
+  double sigma = 1e-4;
 };
 
 /// The continuous-time structure-from-motion problem: control states in time order joined by the WNOA prior, landmarks,
@@ -79,7 +82,7 @@ struct FactorGraph {
   std::vector<IntervalObservations> intervals;  ///< intervals[k] ends in state k; intervals[0] is empty
   std::vector<PosePrior> pose_priors;
   std::vector<VelocityPrior> velocity_priors;
-  std::vector<DistancePrior> distance_priors;
+  ScaleAnchor anchor;
 
   /// Appends a state after the newest one, and the motion prior between them.
   void add_state(const ControlState& state);
@@ -88,6 +91,11 @@ struct FactorGraph {
   void remove_newest_state();
 
   int add_landmark(const Vector3& position, const LandmarkPrior& prior = {});
+
+  /// Makes these landmarks hold the scale that they have now.
+  void anchor_scale(const Vector3& origin, std::vector<int> anchors);
+
+  /// Removes a landmark with its observations. The scale anchor goes on without it, at the scale of now.
   void remove_landmark(int landmark);
 
   /// The interval k with t in (t_{k−1}, t_k]; t = t_0 belongs to the first. −1 outside.

@@ -162,10 +162,6 @@ Vector6 residual(const VelocityPrior& prior, const ControlState& state) {
   return (state.velocity - prior.velocity).cwiseQuotient(prior.sigma);
 }
 
-double residual(const DistancePrior& prior, const ControlState& state) {
-  return ((state.T.p - prior.origin).norm() - prior.distance) / prior.sigma;
-}
-
 Vector3 residual(const LandmarkPrior& prior, const Vector3& position) {
   if (!std::isfinite(prior.sigma)) return Vector3::Zero();
   return (position - prior.position) / prior.sigma;
@@ -220,14 +216,27 @@ void add_state_priors(const FactorGraph& graph, int state, Matrix12& H, Vector12
     H.bottomRightCorner<6, 6>().diagonal() += whiten.cwiseAbs2();
     g.tail<6>() += whiten.cwiseProduct(residual(prior, x));
   }
-  for (const DistancePrior& prior : graph.distance_priors) {
-    if (prior.state != state) continue;
-    const Vector3 from_origin = x.T.p - prior.origin;
-    // p ← p + R δρ
-    const Vector3 J = x.T.q.conjugate() * from_origin.normalized() / prior.sigma;
-    H.block<3, 3>(3, 3) += J * J.transpose();
-    g.segment<3>(3) += J * residual(prior, x);
+}
+
+double mean_log_distance(const FactorGraph& graph) {
+  if (graph.anchor.landmarks.empty()) return 0.0;
+  double sum = 0.0;
+  for (const int j : graph.anchor.landmarks) {
+    sum += std::log((graph.landmarks[static_cast<std::size_t>(j)].position - graph.anchor.origin).norm());
   }
+  return sum / static_cast<double>(graph.anchor.landmarks.size());
+}
+
+AnchorLinearisation linearise_anchor(const FactorGraph& graph) {
+  AnchorLinearisation result;
+  const ScaleAnchor& anchor = graph.anchor;
+  result.e = (mean_log_distance(graph) - anchor.mean_log_distance) / anchor.sigma;
+  const double share = 1.0 / (anchor.sigma * static_cast<double>(anchor.landmarks.size()));
+  for (const int j : anchor.landmarks) {
+    const Vector3 from_origin = graph.landmarks[static_cast<std::size_t>(j)].position - anchor.origin;
+    result.jacobian.push_back(share * from_origin / from_origin.squaredNorm());
+  }
+  return result;
 }
 
 }  // namespace evbench::gp_map

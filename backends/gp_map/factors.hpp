@@ -13,8 +13,9 @@ Vector2 reprojection_residual(const GpInterval& interval, const Vector3& landmar
 double motion_prior_cost(const GpInterval& interval, const Vector6& qc);  ///< ½ ‖residual‖²
 Vector6 residual(const PosePrior& prior, const ControlState& state);
 Vector6 residual(const VelocityPrior& prior, const ControlState& state);
-double residual(const DistancePrior& prior, const ControlState& state);
 Vector3 residual(const LandmarkPrior& prior, const Vector3& position);  ///< zero without a prior
+
+double mean_log_distance(const FactorGraph& graph);  ///< of the scale anchor's landmarks; 0 without any
 
 using Matrix24 = Eigen::Matrix<double, 24, 24>;
 using Vector24 = Eigen::Matrix<double, 24, 1>;
@@ -40,5 +41,12 @@ void linearise_interval(const FactorGraph& graph, int k, IntervalLinearisation& 
 
 /// Adds H and g of the priors on one state, 12 × 12 and 12.
 void add_state_priors(const FactorGraph& graph, int state, Matrix12& H, Vector12& g);
+
+/// The scale anchor's whitened residual and its derivative with respect to each of its landmarks, in their order.
+struct AnchorLinearisation {
+  double e = 0.0;
+  std::vector<Vector3> jacobian;
+};
+AnchorLinearisation linearise_anchor(const FactorGraph& graph);
 
 }  // namespace evbench::gp_map

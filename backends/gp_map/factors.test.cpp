@@ -107,7 +107,6 @@ TEST_CASE("Gradients of robust losses and of state priors are those of the cost"
     const SE3 near = graph.states[1].T * se3::exp(Vector6::Constant(0.1));
     graph.pose_priors.push_back({1, near, Vector6::LinSpaced(0.1, 0.6)});
     graph.velocity_priors.push_back({1, Vector6::Constant(0.3), Vector6::LinSpaced(0.1, 0.6)});
-    graph.distance_priors.push_back({1, Vector3(1, 2, 3), 0.7, 0.05});
     IntervalLinearisation linear;
     linearise_interval(graph, 1, linear);
     Matrix12 H = Matrix12::Zero();
@@ -125,6 +124,34 @@ TEST_CASE("Gradients of robust losses and of state priors are those of the cost"
         1e-4);
     CHECK(relative_error(gradient, slope.transpose().eval()) < 1e-6);
   }
+}
+
+TEST_CASE("The scale anchor's derivative equals central differences") {
+  RandomTangents random;
+  for (int i = 0; i < 100; ++i) {
+    FactorGraph graph = random_interval(random, i, 2);
+    graph.anchor_scale(Vector3(0.1, 0.2, 0.3), {0, 1});
+    graph.anchor.sigma = 0.1;
+    graph.landmarks[0].position *= 1.1;
+    const auto slope = central_differences<1, 6>([&](const Vector6& d) -> Eigen::Matrix<double, 1, 1> {
+      FactorGraph moved = graph;
+      moved.landmarks[0].position += d.head<3>();
+      moved.landmarks[1].position += d.tail<3>();
+      return Eigen::Matrix<double, 1, 1>(linearise_anchor(moved).e);
+    });
+    Vector6 jacobian;
+    jacobian << linearise_anchor(graph).jacobian[0], linearise_anchor(graph).jacobian[1];
+    CHECK(relative_error(jacobian, slope.transpose().eval()) < 1e-6);
+  }
+}
+
+TEST_CASE("Removing an anchor's landmark leaves the scale as it is") {
+  RandomTangents random;
+  FactorGraph graph = random_interval(random, 1, 3);
+  graph.anchor_scale(Vector3::Zero(), {0, 1, 2});
+  graph.remove_landmark(1);
+  CHECK(graph.anchor.landmarks == std::vector<int>{0, 2});
+  CHECK(linearise_anchor(graph).e == Approx(0.0).margin(1e-9));
 }
 
 TEST_CASE("An observation behind the camera costs a constant and moves nothing") {

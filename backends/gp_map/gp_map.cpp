@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/motion/gp_trajectory.hpp"
 #include "core/plugin/registry.hpp"
 
 namespace evbench::gp_map {
@@ -101,23 +102,22 @@ void GpMap::initialise(double t) {
 /// doesn't explain the data.
 std::optional<FactorGraph> GpMap::refine(const InitialGuess& guess, double t) const {
   FactorGraph graph = graph_;
-  // States from the one at or before the first view on; constant velocity between the two views.
+  // Constant velocity between the two views, and before the first where its tracks were seen already.
   const Vector6 velocity = se3::log(guess.T1) / (guess.t1 - guess.t0);
-  auto first = std::upper_bound(state_times_.begin(), state_times_.end(), guess.t0 + 1e-9);
-  if (first != state_times_.begin()) --first;
   const ControlState view0{guess.t0, SE3{}, velocity};
+  auto first = std::upper_bound(state_times_.begin(), state_times_.end(), start_time(guess) + 1e-9);
+  if (first != state_times_.begin()) --first;
   for (auto time = first; time != state_times_.end(); ++time) {
     graph.add_state(extrapolate(view0, *time - guess.t0));
   }
   if (graph.states.size() < 2 || graph.states.back().t != t) return std::nullopt;
   graph.pose_priors.push_back({0, graph.states.front().T, Vector6::Constant(kAnchorSigma)});
-  const SE3 origin = graph.states.front().T;
-  const double baseline = (graph.states.back().T.p - origin.p).norm();
-  graph.distance_priors.push_back(
-      {static_cast<int>(graph.states.size()) - 1, origin.p, baseline, kAnchorSigma * baseline});
+  std::vector<int> anchors;
   for (const Landmark& landmark : guess.landmarks) {
-    add_all_observations(graph, graph.add_landmark(landmark.position), landmark.track);
+    anchors.push_back(graph.add_landmark(landmark.position));
+    add_all_observations(graph, anchors.back(), landmark.track);
   }
+  graph.anchor_scale(graph.states.front().T.p, anchors);
   if (graph.observation_count() == 0) return std::nullopt;
   const BatchSummary summary = solve_batch(graph, {options_.final_iterations, 1e-6, 0});
   if (!summary.failure.empty()) return std::nullopt;
@@ -127,6 +127,20 @@ std::optional<FactorGraph> GpMap::refine(const InitialGuess& guess, double t) co
   }
   if (!(median(errors) <= options_.max_initial_error)) return std::nullopt;
   return graph;
+}
+
+/// The time from which on the guess's landmarks suffice for states, at most as long before its first view as the second
+/// one is after it.
+double GpMap::start_time(const InitialGuess& guess) const {
+  std::vector<double> seen_from;
+  for (const Landmark& landmark : guess.landmarks) {
+    const auto observations = tracks_.observations(landmark.track);
+    if (!observations.empty()) seen_from.push_back(observations.front().t);
+  }
+  const auto enough = static_cast<std::size_t>(options_.health.min_landmarks);
+  if (seen_from.size() < enough) return guess.t0;
+  std::ranges::sort(seen_from);
+  return std::clamp(seen_from[enough - 1], 2.0 * guess.t0 - guess.t1, guess.t0);
 }
 
 void GpMap::start_from(FactorGraph graph, const InitialGuess& guess) {

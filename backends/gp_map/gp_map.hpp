@@ -19,8 +19,8 @@ namespace evbench::gp_map {
 /// Liu et al., ICRA 2022. Every observation counts at its own time.
 ///
 /// World frame: the camera at the first control state. Unit of length: the median depth of the first map. Gauge and
-/// scale are anchored there, the first pose by a tight prior, the scale by the distance between the two cameras of the
-/// initialisation: the WNOA prior alone would shrink the world to a point.
+/// scale are anchored there, the first pose by a tight prior, the scale by the mean log distance of the first
+/// landmarks: the WNOA prior alone would shrink the world to a point.
 class GpMap : public BackEnd {
  public:
   using Options = gp_map::Options;
@@ -56,6 +56,7 @@ class GpMap : public BackEnd {
   void record(double t, double seconds);
 
   std::optional<FactorGraph> refine(const InitialGuess& guess, double t) const;
+  double start_time(const InitialGuess& guess) const;
   void start_from(FactorGraph graph, const InitialGuess& guess);
   void add_all_observations(FactorGraph& graph, int landmark, TrackId track) const;
   Observation observation(const TrackObservation& z) const;

@@ -6,6 +6,19 @@ namespace evbench::gp_map {
 
 void Health::observe(double from, double to, int landmarks) {
   if (lost()) return;
+  watch_degraded(from, to, landmarks);
+  if (landmarks >= options_.lost_landmarks) {
+    alone_since_.reset();
+    return;
+  }
+  if (!alone_since_) alone_since_ = from;
+  if (to - *alone_since_ > options_.patience) {
+    lose(*alone_since_,
+         fmt::format("fewer than {} landmarks in view for more than {} s", options_.lost_landmarks, options_.patience));
+  }
+}
+
+void Health::watch_degraded(double from, double to, int landmarks) {
   if (landmarks >= options_.min_landmarks) {
     in_degraded_ = false;
     return;
@@ -15,16 +28,11 @@ void Health::observe(double from, double to, int landmarks) {
         {from, to, fmt::format("fewer than {} landmarks in view: the motion prior carries", options_.min_landmarks)});
     in_degraded_ = true;
   }
-  DegradedSpan& span = status_.degraded.back();
-  span.to = to;
+  status_.degraded.back().to = to;
   if (status_.state == RunState::ok) {
     status_.state = RunState::degraded;
-    status_.reason = span.reason;
-    status_.time = span.from;
-  }
-  if (span.to - span.from > options_.max_degraded) {
-    lose(span.from, fmt::format("fewer than {} landmarks in view for more than {} s", options_.min_landmarks,
-                                options_.max_degraded));
+    status_.reason = status_.degraded.back().reason;
+    status_.time = from;
   }
 }
 

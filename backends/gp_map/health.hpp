@@ -8,7 +8,8 @@
 
 namespace evbench::gp_map {
 
-/// Watches whether the data suffice: spans with too little are `degraded`, a span that lasts too long is `lost`.
+/// Watches whether the data suffice: spans with too little are `degraded`, with next to nothing for too long it is
+/// `lost`.
 class Health {
  public:
   explicit Health(const HealthOptions& options) : options_(options) {}
@@ -26,9 +27,12 @@ class Health {
   const Status& status() const { return status_; }
 
  private:
+  void watch_degraded(double from, double to, int landmarks);
+
   HealthOptions options_;
   Status status_;
   bool in_degraded_ = false;
+  std::optional<double> alone_since_;  ///< the prior carries alone from here on
 };
 
 }  // namespace evbench::gp_map

@@ -51,12 +51,14 @@ struct MapOptions {
 /// When too little is seen.
 struct HealthOptions {
   int min_landmarks = 6;
-  double max_degraded = 1.0;
+  int lost_landmarks = 3;
+  double patience = 1.0;
 
   void declare(OptionSet& set) {
     set.add("min_landmarks", min_landmarks, "fewer landmarks seen in an interval: the prior carries, degraded")
         .range(3);
-    set.add("max_degraded", max_degraded, "degraded for longer than this: lost [s]").above(0.0);
+    set.add("lost_landmarks", lost_landmarks, "fewer than these for longer than patience: lost").range(1);
+    set.add("patience", patience, "how long the prior may carry alone [s]").above(0.0);
   }
 };
 
