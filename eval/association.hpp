@@ -26,7 +26,7 @@ struct AssociationOptions {
   AssociationMode mode = AssociationMode::nearest;
   double tolerance = 0.01;    ///< [s] no ground-truth pose this near to the estimate's time: no pair. In both modes.
   double time_offset = 0.0;   ///< [s] added to the estimate's times
-  TimeRange range;            ///< ground truth outside is not used
+  TimeRange range = {};       ///< ground truth outside is not used
   std::size_t min_pairs = 3;  ///< fewer are an error
 };
 

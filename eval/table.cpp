@@ -27,7 +27,7 @@ const std::vector<Metric>& known_metrics() {
       {"ate.trans_m.rmse", "ATE [m]", Better::lower},          {"ate.trans_percent", "ATE [% of path]", Better::lower},
       {"ate.rot_deg.rmse", "ATE [deg]", Better::lower},        {"rpe.trans_m.rmse", "RPE [m]", Better::lower},
       {"rpe.rot_deg.rmse", "RPE [deg]", Better::lower},        {"pairs", "pairs", Better::neither, 0},
-      {"coverage", "covered [%]", Better::higher, 1, 100.0},   {"scale", "scale", Better::neither, 4},
+      {"coverage", "covered [%]", Better::neither, 1, 100.0},  {"scale", "scale", Better::neither, 4},
       {"realtime_factor", "real-time factor", Better::higher},
   };
   return metrics;
@@ -132,23 +132,31 @@ int decimals_of(const std::vector<std::optional<double>>& values) {
   return std::clamp(2 - static_cast<int>(std::floor(std::log10(smallest))), 1, 6);
 }
 
-/// Marks the best cells of a column among the runs [from, to), of one experiment.
-void mark_best(std::span<const RunMetrics> runs, const std::vector<std::optional<double>>& values, Better better,
-               std::size_t from, std::size_t to, std::vector<Cell>& cells) {
-  std::optional<std::size_t> best;
-  std::size_t competitors = 0;
-  for (std::size_t i = from; i < to; ++i) {
-    if (!values[i] || !competes(runs[i])) continue;
-    ++competitors;
-    if (!best || (better == Better::lower ? *values[i] < *values[*best] : *values[i] > *values[*best])) best = i;
-  }
-  if (better == Better::neither || competitors < 2) return;
-  for (std::size_t i = from; i < to; ++i) {
-    cells[i].best = values[i] && competes(runs[i]) && cells[i].text == cells[*best].text;
+/// Runs that can be compared with one another: of one experiment, scored by one protocol.
+struct Group {
+  std::string experiment;
+  int protocol = 0;
+  bool operator==(const Group&) const = default;
+};
+
+/// Marks the best cells of a column within each group, unless all say the same.
+void mark_best(std::span<const RunMetrics> runs, const std::vector<Group>& groups,
+               const std::vector<std::optional<double>>& values, Better better, std::vector<Cell>& cells) {
+  if (better == Better::neither) return;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    bool best = values[i] && competes(runs[i]);
+    bool differs = false;
+    for (std::size_t k = 0; k < runs.size() && best; ++k) {
+      if (groups[k] != groups[i] || !values[k] || !competes(runs[k]) || cells[k].text == cells[i].text) continue;
+      differs = true;
+      best = better == Better::lower ? *values[i] < *values[k] : *values[i] > *values[k];
+    }
+    cells[i].best = best && differs;
   }
 }
 
-std::vector<Cell> metric_cells(std::span<const RunMetrics> runs, const Metric& metric, const TableOptions& options) {
+std::vector<Cell> metric_cells(std::span<const RunMetrics> runs, const std::vector<Group>& groups, const Metric& metric,
+                               const TableOptions& options) {
   const bool csv = options.format == TableFormat::csv;
   std::vector<std::optional<double>> values;
   for (const RunMetrics& run : runs) {
@@ -164,10 +172,7 @@ std::vector<Cell> metric_cells(std::span<const RunMetrics> runs, const Metric& m
       cells.push_back({csv ? fmt::format("{}", *value) : fmt::format("{:.{}f}", *value, decimals)});
     }
   }
-  for (std::size_t from = 0, to = 0; from < runs.size(); from = to) {
-    while (to < runs.size() && runs[to].experiment == runs[from].experiment) ++to;
-    mark_best(runs, values, metric.better, from, to, cells);
-  }
+  mark_best(runs, groups, values, metric.better, cells);
   return cells;
 }
 
@@ -190,9 +195,8 @@ Protocols collect_protocols(std::span<const RunMetrics> runs, bool online) {
     result.of_run.push_back(static_cast<int>(found - result.texts.begin()));
     if (found == result.texts.end()) result.texts.push_back(text);
   }
-  if (result.texts.empty()) {
-    throw InputError(fmt::format("none of the {} runs has {} scores", runs.size(), online ? "online" : "final"));
-  }
+  if (result.texts.empty() && online)
+    throw InputError(fmt::format("none of the {} runs has online scores", runs.size()));
   return result;
 }
 
@@ -218,6 +222,7 @@ std::string ranges_note(std::span<const RunMetrics> runs, const std::vector<Metr
 
 std::vector<std::string> notes_of(std::span<const RunMetrics> runs, const std::vector<Metric>& metrics,
                                   const Protocols& protocols, const TableOptions& options) {
+  if (protocols.texts.empty()) return {"No run has scores: see final_unscored in each metrics.json."};
   std::vector<std::string> notes;
   notes.push_back(options.online ? "Online: each pose as estimated at the time it was made."
                                  : "Final: the trajectory as estimated after the whole sequence.");
@@ -255,6 +260,9 @@ std::string make_table(std::span<const RunMetrics> runs, const TableOptions& opt
   const std::vector<Metric> metrics = choose_metrics(runs, options);
   const bool several = std::ranges::any_of(runs, [&](const auto& run) { return run.experiment != runs[0].experiment; });
 
+  std::vector<Group> groups;
+  for (std::size_t i = 0; i < runs.size(); ++i) groups.push_back({runs[i].experiment, protocols.of_run[i]});
+
   TextTable table;
   table.rows.resize(runs.size());
   if (several || csv) {
@@ -262,7 +270,7 @@ std::string make_table(std::span<const RunMetrics> runs, const TableOptions& opt
   }
   add_column(table, csv ? "label" : "", false, text_cells(runs.size(), [&](std::size_t i) { return runs[i].label; }));
   for (const Metric& metric : metrics) {
-    add_column(table, csv ? metric.key : metric.header, true, metric_cells(runs, metric, options));
+    add_column(table, csv ? metric.key : metric.header, true, metric_cells(runs, groups, metric, options));
   }
   add_column(table, "status", false,
              text_cells(runs.size(), [&](std::size_t i) { return status_text(runs[i], options.format); }));

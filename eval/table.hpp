@@ -17,16 +17,17 @@ struct TableOptions {
   bool online = false;  ///< the scores of the estimates at the moment they were made, instead of the final ones
   /// Columns: paths into metrics.json ("realtime_factor") or into its scores ("rpe.trans_m.median"); empty: the default
   /// columns.
-  std::vector<std::string> metrics;
+  std::vector<std::string> metrics = {};
 };
 
 /// A table of runs, a row each, in the order given; the experiment is a column when there are several.
 ///
 /// The protocol stands below (LaTeX: in the caption; CSV: in columns); runs of different protocols are marked with its
 /// number. Pairs, coverage and scale are columns, or, where `metrics` leaves them out, ranges below.
-/// The best value of each experiment and column is bold in Markdown and LaTeX and marked with * in text; runs that were
-/// lost or failed do not compete. A value that a run does not have is "-" (CSV: empty).
-/// Throws InputError when no run has a column's value at all, with the nearest known name.
+/// The best value of a column, among runs of the same experiment and protocol, is bold in Markdown and LaTeX and marked
+/// with * in text; runs that were lost or failed do not compete. A value that a run does not have is "-" (CSV: empty).
+/// Throws InputError when no run has a column's value at all, with the nearest known name, and when no run has online
+/// scores but they are asked for.
 std::string make_table(std::span<const RunMetrics> runs, const TableOptions& options);
 
 }  // namespace evbench

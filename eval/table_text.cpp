@@ -12,7 +12,7 @@ using Cell = TextTable::Cell;
 std::string escape_markdown(const std::string& text) {
   std::string result;
   for (const char c : text) {
-    if (c == '|' || c == '*' || c == '_' || c == '`' || c == '<' || c == '\\' || c == '[') result += '\\';
+    if (c == '|' || c == '*' || c == '_' || c == '`' || c == '<' || c == '\\') result += '\\';
     result += c == '\n' ? ' ' : c;
   }
   return result;
@@ -136,7 +136,9 @@ std::string escape_latex(const std::string& text) {
       case '<': result += "\\textless{}"; break;
       case '>': result += "\\textgreater{}"; break;
       case '|': result += "\\textbar{}"; break;
-      case '[': result += "{[}"; break;  // after a line's end it would begin an optional argument
+      case '[':
+        result += result.empty() ? "{[}" : "[";
+        break;  // first in a row it would be an argument of the line break
       case '\n': result += ' '; break;
       default: result += c;
     }

@@ -1,0 +1,123 @@
+#include "eval/scores.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "eval/protocol.hpp"
+#include "eval/testing/trajectories.hpp"
+
+namespace evbench {
+namespace {
+
+using namespace testing;
+using Catch::Matchers::Contains;
+
+const Similarity kSimilarity = {0.4, {so3::exp({0.4, -1.2, 2.0}), {3.0, -1.0, 0.5}}};
+
+ScoreOptions with(const Json& json) { return read_options<ScoreOptions>(json, "evaluation"); }
+
+}  // namespace
+
+TEST_CASE("Scores do not change when the estimate is given in another world and scale") {
+  const PoseTrajectory truth = sample(wavy_pose, 300, 0.01);
+  const PoseTrajectory estimate = disturbed(truth);
+  const Scores here = score(truth, estimate);
+  const Scores there = score(truth, seen_from(estimate, kSimilarity));
+  CHECK(here.ate.trans_m.rmse > 0.001);
+  CHECK(there.ate.trans_m.rmse == Approx(here.ate.trans_m.rmse).epsilon(1e-9));
+  CHECK(there.ate.rot_deg.rmse == Approx(here.ate.rot_deg.rmse).epsilon(1e-9));
+  CHECK(there.rpe.trans_m.rmse == Approx(here.rpe.trans_m.rmse).epsilon(1e-9));
+  CHECK(there.rpe.rot_deg.rmse == Approx(here.rpe.rot_deg.rmse).epsilon(1e-9));
+  CHECK(there.alignment.transform.scale == Approx(0.4 * here.alignment.transform.scale).epsilon(1e-9));
+}
+
+TEST_CASE("Each further freedom of the alignment makes the absolute error smaller") {
+  const PoseTrajectory truth = sample(wavy_pose, 300, 0.01);
+  const PoseTrajectory estimate = disturbed(seen_from(truth, {0.9, {so3::exp({0.1, 0.2, 0.3}), {0.1, 0.2, 0.3}}}));
+  const auto rmse = [&](const char* alignment) {
+    return score(truth, estimate, with({{"alignment", alignment}})).ate.trans_m.rmse;
+  };
+  CHECK(rmse("yaw") < rmse("none"));
+  CHECK(rmse("se3") < rmse("yaw"));
+  CHECK(rmse("sim3") < rmse("se3"));
+}
+
+TEST_CASE("An alignment on a part is applied to all") {
+  const PoseTrajectory truth = sample(wavy_pose, 300, 0.01);
+  std::vector<StampedPose> poses = seen_from(truth, kSimilarity).poses();
+  for (StampedPose& pose : poses) {
+    if (pose.t > 0.995) pose.T.p.x() += 1.0;  // the later part is off
+  }
+  const PoseTrajectory estimate(poses);
+  for (const Json& part : {Json{{"align_first", 100}}, Json{{"align_range", {0.0, 0.995}}}}) {
+    const Scores scores = score(truth, estimate, with(part));
+    CHECK(scores.aligned_pairs == 100);
+    CHECK(scores.pairs == 300);
+    CHECK(scores.alignment.transform.scale == Approx(0.4).epsilon(1e-9));
+    CHECK(scores.ate.trans_m.min < 1e-9);
+    CHECK(scores.ate.trans_m.max == Approx(0.4).epsilon(1e-9));  // the metre, scaled
+  }
+}
+
+TEST_CASE("The error in percent is of the ground truth's path through the compared poses") {
+  const auto straight = [](double t) { return SE3{{}, {t, 0.0, 0.0}}; };
+  const auto beside = [](double t) { return SE3{{}, {t, 0.05, 0.0}}; };
+  const Scores scores = score(sample(straight, 501), sample(beside, 201), with({{"alignment", "none"}}));
+  CHECK(scores.path_m == Approx(2.0));
+  CHECK(scores.ate.trans_percent == Approx(2.5));
+  CHECK(scores.coverage == Approx(0.4));
+}
+
+TEST_CASE("Scores of the same input have the same digits") {
+  const PoseTrajectory truth = sample(wavy_pose, 300, 0.01);
+  const PoseTrajectory estimate = disturbed(truth);
+  CHECK(to_json(score(truth, estimate)).dump() == to_json(score(truth, estimate)).dump());
+}
+
+TEST_CASE("Relative errors without any pair are null, not an error") {
+  const PoseTrajectory truth = sample(wavy_pose, 20, 0.4);
+  const Scores scores = score(truth, truth, with({{"rpe_delta", 0.1}}));
+  const Json json = to_json(scores);
+  CHECK(json.at("rpe").at("pairs") == 0);
+  CHECK(json.at("rpe").at("trans_m").at("rmse").is_null());
+  CHECK_THAT(describe(scores), Contains("no pairs: no two poses are delta apart"));
+}
+
+TEST_CASE("A camera that stands still is scored, with a note instead of a percentage") {
+  const auto standing = [](double) { return SE3{}; };
+  const Scores scores = score(sample(standing, 50), sample(standing, 50));
+  CHECK(scores.ate.trans_m.rmse == 0.0);
+  const Json json = to_json(scores);
+  CHECK(json.at("ate").at("trans_percent").is_null());
+  CHECK(json.at("alignment").at("note").get<std::string>().find("stands still") != std::string::npos);
+}
+
+TEST_CASE("Scores are never shown without their protocol") {
+  const PoseTrajectory truth = sample(wavy_pose, 300, 0.01);
+  const Scores scores = score(truth, disturbed(truth), with({{"align_first", 50}, {"time_range", {0.5, 2.0}}}));
+  CHECK(protocol(to_json(scores), "here") ==
+        "Sim(3) alignment on the first 50 poses; nearest ground truth within 0.01 s, only 0.5 to 2 s; RPE over 0.1 "
+        "seconds, all pairs (delta within 10 %)");
+  const std::string text = describe(scores);
+  for (const char* part :
+       {"Sim(3) alignment", "within 0.01 s", "all pairs", "151 poses compared", "100.0 %", "scale "}) {
+    CHECK_THAT(text, Contains(part));
+  }
+  CHECK_THROWS_WITH(protocol(Json::object(), "x/metrics.json"), Contains("x/metrics.json: the protocol"));
+}
+
+TEST_CASE("Options of an evaluation that are out of range or contradict one another are errors") {
+  const PoseTrajectory truth = sample(wavy_pose, 30);
+  CHECK_THROWS_WITH(with({{"alignment", "sim4"}}), Contains("evaluation.alignment") && Contains("sim3"));
+  CHECK_THROWS_WITH(with({{"tolerance", -1.0}}), Contains("evaluation.tolerance"));
+  CHECK_THROWS_WITH(with({{"rpe_detla", 1.0}}), Contains("did you mean \"rpe_delta\""));
+  CHECK_THROWS_WITH(score(truth, truth, with({{"time_range", {2.0, 1.0}}})),
+                    Contains("time_range: expected two rising"));
+  CHECK_THROWS_WITH(score(truth, truth, with({{"align_first", 5}, {"align_range", {0.0, 1.0}}})),
+                    Contains("align_first and align_range are both given"));
+  CHECK_THROWS_WITH(score(truth, truth, with({{"align_range", {5.0, 6.0}}})), Contains("0 pairs of poses to align on"));
+  ScoreOptions unknown;
+  unknown.alignment = "sim4";
+  CHECK_THROWS_WITH(score(truth, truth, unknown), Contains("unknown alignment \"sim4\""));
+}
+
+}  // namespace evbench
