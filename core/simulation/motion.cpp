@@ -1,0 +1,162 @@
+#include "core/simulation/motion.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/data/tum.hpp"
+#include "core/geometry/so3.hpp"
+#include "core/motion/gp_trajectory.hpp"
+#include "core/simulation/random.hpp"
+#include "core/simulation/time_spans.hpp"
+#include "core/support/error.hpp"
+#include "core/support/path.hpp"
+
+namespace evbench {
+namespace {
+
+constexpr double kTurn = 2.0 * M_PI;
+
+/// One coordinate as a sum of sinusoids, |value| ≤ amplitude.
+struct Wave {
+  std::array<double, 3> amplitude, frequency, phase;
+
+  Wave(double total, double max_frequency, Random& random) : amplitude{}, frequency{}, phase{} {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < amplitude.size(); ++i) {
+      frequency[i] = max_frequency * random.uniform(0.1, 1.0);
+      amplitude[i] = random.uniform(0.5, 1.0) / (1.0 + frequency[i] / max_frequency);  // slow waves are the large ones
+      phase[i] = random.uniform(0.0, kTurn);
+      sum += amplitude[i];
+    }
+    for (double& a : amplitude) a *= total / sum;
+  }
+
+  double operator()(double t) const {
+    double value = 0.0;
+    for (std::size_t i = 0; i < amplitude.size(); ++i) {
+      value += amplitude[i] * std::sin(kTurn * frequency[i] * t + phase[i]);
+    }
+    return value;
+  }
+};
+
+Motion smooth_random(const MotionOptions& options, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Wave> waves;
+  for (int axis = 0; axis < 3; ++axis) waves.emplace_back(options.amplitude, options.max_frequency, random);
+  for (int axis = 0; axis < 3; ++axis) waves.emplace_back(options.rotation_amplitude, options.max_frequency, random);
+  return [waves](double t) {
+    const Vector3 p(waves[0](t), waves[1](t), waves[2](t));
+    return SE3{so3::exp({waves[3](t), waves[4](t), waves[5](t)}), p};
+  };
+}
+
+Motion robot_arm(const MotionOptions& options, std::uint64_t seed) {
+  const double phase = Random(seed).uniform(0.0, kTurn);
+  return [options, phase](double t) {
+    const double a = kTurn * t / options.period + phase;
+    const Vector3 p = options.amplitude * Vector3(std::cos(a), 0.7 * std::sin(a), 0.3 * std::sin(2.0 * a + 0.5));
+    const Vector3 view = Vector3(0.0, 0.0, options.distance) - p;
+    const Eigen::Quaterniond look = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), view);
+    const Vector3 roll(0.0, 0.0, options.rotation_amplitude * std::sin(a + 1.0));
+    return SE3{look * so3::exp(roll), p};
+  };
+}
+
+/// The body velocity at knot i from its neighbours: the slope at i of the parabola through the three in i's tangent
+/// space, at either end that of the line.
+Vector6 velocity_at(const std::vector<StampedPose>& knots, std::size_t i) {
+  const SE3 inverse = knots[i].T.inverse();
+  const auto slope_to = [&](const StampedPose& other) -> Vector6 {
+    return se3::log(inverse * other.T) / (other.t - knots[i].t);
+  };
+  if (knots.size() < 2) return Vector6::Zero();
+  if (i == 0) return slope_to(knots[1]);
+  if (i + 1 == knots.size()) return slope_to(knots[i - 1]);
+  const double back = knots[i].t - knots[i - 1].t, ahead = knots[i + 1].t - knots[i].t;
+  return (back * slope_to(knots[i + 1]) + ahead * slope_to(knots[i - 1])) / (back + ahead);
+}
+
+/// The trajectory's poses, or interpolated ones at about `rate` [Hz] when rate > 0.
+std::vector<StampedPose> knots_of(const PoseTrajectory& file, double rate) {
+  const double length = file.end() - file.start();
+  if (!(rate > 0.0) || !(length > 0.0)) return file.poses();
+  std::vector<StampedPose> knots;
+  const int intervals = std::max(1, static_cast<int>(std::ceil(length * rate)));
+  for (int i = 0; i <= intervals; ++i) {
+    const double t = std::min(file.start() + length * i / intervals, file.end());
+    knots.push_back({t, *file.pose(t)});
+  }
+  return knots;
+}
+
+Motion from_trajectory(const MotionOptions& options, double duration, const std::string& folder,
+                       const std::string& place) {
+  if (options.trajectory.empty()) {
+    throw InputError(fmt::format("{}.trajectory: is empty; expected the path of a TUM trajectory", place));
+  }
+  const PoseTrajectory file = read_tum(resolve_path(options.trajectory, folder));
+  const double begin = file.start() + options.start;
+  if (begin + duration > file.end()) {
+    throw InputError(fmt::format("{}.trajectory: {} lasts {:.3f} s; expected at least start + duration = {:.3f} s",
+                                 place, options.trajectory, file.end() - file.start(), options.start + duration));
+  }
+  std::vector<StampedPose> knots = knots_of(file, options.knot_rate);
+  for (StampedPose& knot : knots) knot.T.p *= options.scale;
+  std::vector<ControlState> states;
+  for (std::size_t i = 0; i < knots.size(); ++i) states.push_back({knots[i].t, knots[i].T, velocity_at(knots, i)});
+  return [trajectory = GpTrajectory(std::move(states)), begin](double t) { return trajectory.at(begin + t).T; };
+}
+
+Motion base_motion(const MotionOptions& options, double duration, std::uint64_t seed, const std::string& folder,
+                   const std::string& place) {
+  if (options.kind == "smooth_random") return smooth_random(options, seed);
+  if (options.kind == "robot_arm") return robot_arm(options, seed);
+  return from_trajectory(options, duration, folder, place);
+}
+
+}  // namespace
+
+void MotionOptions::declare(OptionSet& set) {
+  set.add("kind", kind, "how the camera moves").choices({"smooth_random", "robot_arm", "trajectory"});
+  set.add("amplitude", amplitude, "largest excursion of the position an axis [m] (not trajectory)").range(0.0);
+  set.add("rotation_amplitude", rotation_amplitude,
+          "largest rotation an axis (smooth_random), largest roll (robot_arm) [rad]")
+      .range(0.0, 1.5);
+  set.add("max_frequency", max_frequency, "fastest sinusoid of smooth_random [Hz]").above(0.0);
+  set.add("period", period, "time after which robot_arm repeats [s]").above(0.0);
+  set.add("distance", distance, "distance of the point that robot_arm looks at [m]").above(0.0);
+  set.add("trajectory", trajectory, "path of a TUM trajectory to follow");
+  set.add("start", start, "where in the trajectory to begin, after its first pose [s]").range(0.0);
+  set.add("knot_rate", knot_rate, "poses of the trajectory that are used [Hz]; fewer smooth its noise; 0: all")
+      .range(0.0, 1e4);
+  set.add("scale", scale, "factor on the trajectory's positions").above(0.0);
+  set.add("hold", hold, "spans without any motion [from, to, from, to, ...] [s]");
+  set.add("rotation_only", rotation_only, "spans in which the camera only rotates [from, to, ...] [s]");
+}
+
+Motion make_motion(const MotionOptions& options, double duration, std::uint64_t seed, const std::string& folder,
+                   const std::string& place) {
+  constexpr double gap = 2.0 * StoppingClock::ramp;
+  const StoppingClock moving(parse_time_spans(options.hold, place + ".hold", gap));
+  const StoppingClock translating(parse_time_spans(options.rotation_only, place + ".rotation_only", gap));
+  const Motion base = base_motion(options, duration, seed, folder, place);
+  return [base, moving, translating](double t) {
+    const double now = moving(t);
+    return SE3{base(now).q, base(translating(now)).p};
+  };
+}
+
+PoseTrajectory sample_motion(const Motion& motion, double duration, double rate) {
+  const auto count = static_cast<int>(std::floor(duration * rate + 1e-9));
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= count; ++i) {
+    const double t = i / rate;
+    poses.push_back({t, motion(t)});
+  }
+  return PoseTrajectory(std::move(poses), "simulated ground truth");
+}
+
+}  // namespace evbench

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace evbench {
+
+struct TimeSpan {
+  double from = 0.0, to = 0.0;  ///< [s]
+};
+
+/// Spans from an option's flat list [from, to, from, to, ...]. Throws InputError, naming `place`, for an odd count, an
+/// empty span, and spans that are not in order or nearer than `gap` [s] to each other.
+std::vector<TimeSpan> parse_time_spans(const std::vector<double>& list, const std::string& place, double gap = 0.0);
+
+/// A clock that stops: it runs with the time, stands still inside the given spans, and slows down and speeds up
+/// smoothly (once continuously differentiable rate) over `ramp` [s] on either side. A motion that is read by it comes
+/// to rest.
+class StoppingClock {
+ public:
+  static constexpr double ramp = 0.2;
+
+  StoppingClock() = default;
+  /// Spans in order and at least two ramps apart.
+  explicit StoppingClock(std::vector<TimeSpan> stops) : stops_(std::move(stops)) {}
+
+  double operator()(double t) const;
+
+ private:
+  std::vector<TimeSpan> stops_;
+};
+
+}  // namespace evbench

@@ -1,0 +1,39 @@
+#include "core/support/path.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+std::string environment(const std::string& name, const std::string& path) {
+  const char* const value = std::getenv(name.c_str());
+  if (value != nullptr && *value != '\0') return value;
+  const char* const what = name == "EVBENCH_DATA" ? "the folder that holds the recordings" : "what the path means";
+  throw InputError(fmt::format("{}: the environment variable {} is not set; set it to {}", path, name, what));
+}
+
+}  // namespace
+
+std::string resolve_path(const std::string& path, const std::string& folder) {
+  std::string expanded;
+  std::size_t at = 0;
+  while (true) {
+    const std::size_t open = path.find("${", at);
+    expanded += path.substr(at, open - at);
+    if (open == std::string::npos) break;
+    const std::size_t close = path.find('}', open);
+    if (close == std::string::npos) throw InputError(fmt::format("{}: ${{ without a closing brace", path));
+    expanded += environment(path.substr(open + 2, close - open - 2), path);
+    at = close + 1;
+  }
+  const std::filesystem::path result(expanded);
+  if (result.is_absolute() || folder.empty()) return result.string();
+  return (std::filesystem::path(folder) / result).lexically_normal().string();
+}
+
+}  // namespace evbench

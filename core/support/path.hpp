@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace evbench {
+
+/// A path as written in a config: ${NAME} is replaced by the environment variable, then a relative path is taken from
+/// `folder`. Throws InputError for a variable that is not set and for an unclosed ${.
+std::string resolve_path(const std::string& path, const std::string& folder);
+
+}  // namespace evbench
