@@ -46,8 +46,9 @@ std::string association_text(const Json& association) {
 std::string relative_text(const Json& rpe) {
   const auto unit = rpe.at("delta_unit").get<std::string>();
   const bool all = rpe.at("pairing") == "all";
-  std::string text =
-      fmt::format("RPE over {} {}, {} pairs", rpe.at("delta").get<double>(), unit, all ? "all" : "consecutive");
+  const double delta = rpe.at("delta").get<double>();
+  const std::string shown_unit = delta == 1.0 ? unit.substr(0, unit.size() - 1) : unit;
+  std::string text = fmt::format("RPE over {} {}, {} pairs", delta, shown_unit, all ? "all" : "consecutive");
   if (unit == "seconds" || (all && unit != "frames")) {
     text += fmt::format(" (delta within {:g} %)", 100.0 * rpe.at("tolerance").get<double>());
   }

@@ -1,0 +1,118 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "bench/commands/commands.hpp"
+#include "core/data/robotevt.hpp"
+#include "core/data/tum.hpp"
+#include "core/support/error.hpp"
+#include "core/testing/data.hpp"
+#include "eval/scores.hpp"
+#include "eval/testing/trajectories.hpp"
+
+namespace evbench {
+namespace {
+
+using namespace testing;
+using Catch::Matchers::Contains;
+
+/// Files of a ground truth and of an estimate that is off by a known similarity and small errors.
+struct Trajectories {
+  TemporaryFolder folder;
+  std::string ground_truth = folder.file("truth.txt");
+  std::string estimate = folder.file("estimate.txt");
+  std::string json = folder.file("scores.json");
+
+  Trajectories() {
+    const PoseTrajectory truth = sample(wavy_pose, 200, 0.01);
+    write_tum(ground_truth, truth);
+    write_tum(estimate, disturbed(seen_from(truth, {2.0, {so3::exp({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0}}})));
+  }
+
+  /// Runs `evbench eval` with these options and gives what it wrote with --json.
+  Json eval(const std::string& options) const {
+    CLI::App app;
+    add_eval(app);
+    app.parse("eval " + ground_truth + " " + estimate + " --json " + json + " " + options);
+    return Json::parse(read_file(json));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("eval aligns as evo's options say") {
+  const Trajectories files;
+  const auto method = [&](const std::string& options) {
+    return files.eval(options).at("final").at("alignment").at("method").get<std::string>();
+  };
+  CHECK(method("") == "none");
+  CHECK(method("-a") == "se3");
+  CHECK(method("--align --correct_scale") == "sim3");
+  CHECK(method("-s") == "scale");
+  CHECK(method("--align_origin") == "origin");
+  CHECK(method("--alignment yaw") == "yaw");
+  CHECK(files.eval("-as").at("final").at("scale").get<double>() == Approx(2.0).epsilon(0.05));
+  CHECK(files.eval("-as --n_to_align 20").at("final").at("alignment").at("poses") == 20);
+  CHECK_THROWS_AS(method("-a --align_origin"), CLI::ParseError);
+  CHECK_THROWS_AS(method("--alignment sim4"), CLI::ParseError);
+}
+
+TEST_CASE("eval takes relative errors over one frame, consecutively, unless told otherwise") {
+  const Trajectories files;
+  const Json usual = files.eval("").at("final").at("rpe");
+  CHECK(usual.at("delta") == 1.0);
+  CHECK(usual.at("delta_unit") == "frames");
+  CHECK(usual.at("pairing") == "consecutive");
+  CHECK(usual.at("pairs") == 199);
+  const Json seconds = files.eval("-d 0.1 -u s --all_pairs -t 0.05").at("final").at("rpe");
+  CHECK(seconds.at("delta_unit") == "seconds");
+  CHECK(seconds.at("pairs") == 190);
+  CHECK(files.eval("-d 0.5 -u m --pairs_from_reference").at("final").at("rpe").at("pairs_from") == "ground_truth");
+  CHECK(files.eval("-d 5 -u d").at("final").at("rpe").at("delta_unit") == "degrees");
+}
+
+TEST_CASE("eval evaluates in a time range that may be open") {
+  const Trajectories files;
+  const Json json = files.eval("--t_start 1 --t_max_diff 0.001").at("final");
+  CHECK(json.at("pairs") == 100);
+  CHECK(json.at("association").at("time_range_s") == Json({1.0, nullptr}));
+}
+
+TEST_CASE("eval writes the structure of a run's metrics, which table reads") {
+  const Trajectories files;
+  const Json json = files.eval("-as");
+  for (const char* key :
+       {"experiment", "label", "final", "online", "runtime_s", "realtime_factor", "peak_rss_mib", "status"}) {
+    CHECK(json.contains(key));
+  }
+  for (const char* pointer : {"/ate/trans_m/rmse", "/ate/rot_deg/rmse", "/rpe/trans_m/rmse", "/rpe/rot_deg/sse",
+                              "/coverage", "/pairs", "/scale", "/path_m", "/ate/trans_percent"}) {
+    CHECK(json.at("final").at(Json::json_pointer(pointer)).is_number());
+  }
+  write_tum(files.estimate, read_tum(files.ground_truth));
+  files.folder.write("metrics.json", json.dump());
+  CLI::App app;
+  add_table(app);
+  app.parse("table " + files.folder.path() + " --format csv --out " + files.folder.file("table.csv"));
+  CHECK_THAT(read_file(files.folder.file("table.csv")), Contains("experiment,label,ate.trans_m.rmse"));
+  CHECK_THROWS_AS(app.parse("table " + files.folder.path() + " --metrics no.such"), InputError);
+  CHECK_THROWS_AS(app.parse("table " + files.folder.path() + " --format html"), CLI::ParseError);
+}
+
+TEST_CASE("eval recognises RobotEvt ground truth by its columns") {
+  const Trajectories files;
+  const double before = files.eval("-as").at("final").at("ate").at("trans_m").at("rmse");
+  write_robotevt(files.ground_truth, read_tum(files.ground_truth));
+  CHECK(files.eval("-as").at("final").at("ate").at("trans_m").at("rmse").get<double>() == Approx(before).epsilon(1e-6));
+  CHECK_THROWS_AS(files.eval("--format tum"), InputError);
+}
+
+TEST_CASE("eval refuses what it can't score and then writes nothing") {
+  const Trajectories files;
+  CHECK_THROWS_AS(files.eval("--t_offset 100"), InputError);
+  files.folder.write("estimate.txt", "1 0 0 0 0 0 0 1\n0.5 0 0 0 0 0 0 1\n");
+  CHECK_THROWS_WITH(files.eval(""), Contains("estimate.txt"));
+  CHECK_THROWS_AS(files.eval("-d 0"), CLI::ParseError);
+  CHECK_FALSE(std::filesystem::exists(files.json));
+}
+
+}  // namespace evbench
