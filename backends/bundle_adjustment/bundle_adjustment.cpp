@@ -1,0 +1,371 @@
+#include "backends/bundle_adjustment/bundle_adjustment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "backends/bundle_adjustment/pose_refinement.hpp"
+#include "core/plugin/registry.hpp"
+
+namespace evbench::bundle_adjustment {
+namespace {
+
+const Registration<BackEnd, BundleAdjustment> registration(
+    "bundle_adjustment", "bundle adjustment of frames of observations (the baseline of Liu et al. 2022)");
+
+constexpr double longest_prediction = 0.5;  // [s]; farther, constant velocity says nothing
+constexpr double clearly_cheaper = 1.1;     // ratio of two initial guesses' errors that decides between them
+constexpr double parallax_to_decide = 3.0;  // times the least parallax: then the cheaper guess is taken anyway
+constexpr int held_windows = 3;             // windows before the optimised one whose sightings hold landmarks in place
+constexpr int global_rounds = 3;            // of solving and removing outliers
+constexpr double smallest_step = 1e-6;      // [s] between frames of observations with one and the same time
+
+std::size_t at(int view) { return static_cast<std::size_t>(view); }
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+/// A map as an initial guess and bundle adjustment over all frames between its two views make it.
+struct BundleAdjustment::Trial {
+  Reconstruction map;
+  Segment segment;
+  SolveReport report;
+  double error = 0.0;  ///< mean over the matched tracks of their mean reprojection error, at most outlier_px each
+  int good = 0;        ///< landmarks below outlier_px
+  double parallax_deg = 0.0;
+};
+
+BundleAdjustment::BundleAdjustment(const Options& options, const BackEndContext& context)
+    : options_(options),
+      context_(context),
+      frames_({options.frame_duration, options.frame_observations, options.common_noise_px}),
+      initialiser_(initialiser_options(), context.camera),
+      waiting_for_("no observations") {}
+
+/// Frame means have the frame's time exactly: a window of no width finds them and nothing else.
+InitialiserOptions BundleAdjustment::initialiser_options() const {
+  InitialiserOptions result = options_.initialiser;
+  result.window = 0.0;
+  return result;
+}
+
+TriangulationOptions BundleAdjustment::triangulation_options() const {
+  TriangulationOptions result;
+  result.min_parallax_deg = options_.min_parallax_deg;
+  result.max_rms_px = options_.outlier_px;
+  return result;
+}
+
+SolverOptions BundleAdjustment::solver_options(int iterations) const {
+  return {options_.loss, options_.loss_px, iterations};
+}
+
+void BundleAdjustment::observe(std::span<const TrackObservation> observations) {
+  for (Frame& frame : frames_.add(observations)) process(std::move(frame));
+}
+
+void BundleAdjustment::advance(double t) {
+  for (Frame& frame : frames_.advance(t)) process(std::move(frame));
+}
+
+void BundleAdjustment::process(Frame frame) {
+  if (lost_) return;
+  const auto start = std::chrono::steady_clock::now();
+  std::erase_if(frame.keypoints, [&](const Keypoint& keypoint) { return removed_.contains(keypoint.track); });
+  if (!map_.views.empty()) frame.t = std::max(frame.t, map_.views.back().t + smallest_step);
+  const int view = map_.add(frame);
+  if (segments_.empty()) remember(view);
+  const SolveReport report = segments_.empty() ? initialise(view) : track(view);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  updates_.push_back(
+      {frame.t, elapsed.count(), report.poses, report.landmarks, report.observations, report.iterations, report.cost});
+}
+
+int BundleAdjustment::view_at(double t) const {
+  const auto found = std::lower_bound(map_.views.begin(), map_.views.end(), t,
+                                      [](const View& view, double time) { return view.t < time; });
+  return static_cast<int>(found - map_.views.begin());
+}
+
+BundleAdjustment::Trial BundleAdjustment::try_guess(const InitialGuess& guess, int view) const {
+  Trial trial;
+  trial.map = map_;
+  trial.parallax_deg = guess.median_parallax_deg;
+  const int first = view_at(guess.t0);
+  trial.segment = {first, view};
+  trial.map.cut_tracks(first);
+  const SE3 origin = map_.views[at(first)].T;  // identity at the start, a predicted pose later
+  const SE3 motion{guess.T1.q, median_depth_ * guess.T1.p};
+  for (int i = first; i <= view; ++i) {
+    View& v = trial.map.views[at(i)];
+    v.T = origin * se3::exp((v.t - guess.t0) / (guess.t1 - guess.t0) * se3::log(motion));
+    v.state = View::State::estimated;
+  }
+  for (const Landmark& landmark : guess.landmarks) {
+    trial.map.tracks.at(landmark.track).position = origin * Vector3(median_depth_ * landmark.position);
+  }
+  trial.report =
+      solve(trial.map, context_.camera, {first, first, view, first, view}, solver_options(options_.global_iterations));
+  for (const Landmark& landmark : guess.landmarks) {
+    const double error = trial.map.mean_error(trial.map.tracks.at(landmark.track), context_.camera);
+    trial.error += std::min(error, options_.outlier_px);
+    if (error < options_.outlier_px) ++trial.good;
+  }
+  trial.error += static_cast<double>(guess.outliers.size()) * options_.outlier_px;
+  trial.error /= static_cast<double>(guess.landmarks.size() + guess.outliers.size());
+  return trial;
+}
+
+SolveReport BundleAdjustment::initialise(int view) {
+  const double t = map_.views[at(view)].t;
+  const Initialiser::Attempt attempt = initialiser_.attempt(means_, t);
+  waiting_for_ = attempt.reason;
+  std::vector<Trial> trials;
+  for (const InitialGuess& guess : attempt.candidates) {
+    Trial trial = try_guess(guess, view);
+    if (!trial.report.usable || trial.good < options_.initialiser.two_view.min_inliers) continue;
+    const auto place =
+        std::find_if(trials.begin(), trials.end(), [&](const Trial& t2) { return trial.error < t2.error; });
+    trials.insert(place, std::move(trial));
+  }
+  if (trials.empty()) {
+    if (!attempt.candidates.empty()) waiting_for_ = "bundle adjustment does not confirm the two-view pose";
+    return {};
+  }
+  const bool clear = trials.size() == 1 || trials[1].error > clearly_cheaper * trials[0].error ||
+                     trials[0].parallax_deg > parallax_to_decide * options_.initialiser.two_view.min_parallax_deg;
+  const SolveReport report = trials.front().report;
+  if (clear) {
+    accept(std::move(trials.front()), view);
+  } else {
+    waiting_for_ = fmt::format("two solutions explain the views about as well ({:.3f} px, {:.3f} px)", trials[0].error,
+                               trials[1].error);
+  }
+  return report;
+}
+
+void BundleAdjustment::accept(Trial trial, int view) {
+  const bool first_map = segments_.empty();
+  map_ = std::move(trial.map);
+  segments_.push_back(trial.segment);
+  context_.log(
+      fmt::format("{:.3f} s: map from views at {:.3f} s and {:.3f} s, parallax {:.2f} deg, {} landmarks, "
+                  "mean error {:.3f} px",
+                  map_.views[at(view)].t, map_.views[at(trial.segment.first)].t, map_.views[at(view)].t,
+                  trial.parallax_deg, trial.good, trial.error));
+  recovered(map_.views[at(trial.segment.first)].t);
+  remove_outliers(trial.segment.first);
+  map_.triangulate_new(context_.camera, triangulation_options(), options_.min_track_frames);
+  update_motion(view);
+  if (!first_map) return;
+  for (int i = trial.segment.first; i <= view; ++i) online_.push_back({map_.views[at(i)].t, map_.views[at(i)].T});
+}
+
+SE3 BundleAdjustment::predict(double t, int from) const {
+  const View& view = map_.views[at(from)];
+  return view.T * se3::exp(std::min(t - view.t, longest_prediction) * velocity_);
+}
+
+SolveReport BundleAdjustment::track(int view) {
+  View& now = map_.views[at(view)];
+  now.T = predict(now.t, view - 1);
+  const std::string failure = locate(view);
+  SolveReport report;
+  if (failure.empty()) {
+    recovered(now.t);
+    map_.triangulate_new(context_.camera, triangulation_options(), options_.min_track_frames);
+    report = solve_window(view);
+    remove_outliers(view - options_.window);
+    update_motion(view);
+  } else {
+    now.state = View::State::predicted;
+    failing(view, failure);
+    report = initialise(view);
+    if (failing_since_ && now.t - *failing_since_ > options_.lost_after) lost_ = failing_since_;
+  }
+  online_.push_back({map_.views[at(view)].t, map_.views[at(view)].T});
+  return report;
+}
+
+/// The view's pose from the landmarks that it sees; why not, otherwise.
+std::string BundleAdjustment::locate(int view) {
+  View& now = map_.views[at(view)];
+  const std::vector<Keypoint> keypoints = map_.landmarks_in(view);
+  if (static_cast<int>(keypoints.size()) < options_.min_landmarks) {
+    return fmt::format("{} landmarks in sight, {} needed", keypoints.size(), options_.min_landmarks);
+  }
+  const auto loss = make_loss(options_.loss, options_.loss_px);
+  const PoseEstimate estimate = estimate_pose(now.T, map_, keypoints, context_.camera, loss.get(), options_.outlier_px);
+  if (!(estimate.median_px <= 2.0 * options_.outlier_px)) {
+    return fmt::format("no pose explains the landmarks (median reprojection error {:.1f} px)", estimate.median_px);
+  }
+  now.T = estimate.T;
+  now.state = View::State::estimated;
+  return "";
+}
+
+void BundleAdjustment::remember(int view) {
+  const View& now = map_.views[at(view)];
+  for (const Keypoint& z : now.keypoints) {
+    const TrackObservation mean{z.track, now.t, z.pixel, z.sigma};
+    means_.add(std::span(&mean, 1));
+  }
+}
+
+void BundleAdjustment::failing(int view, const std::string& reason) {
+  const double t = map_.views[at(view)].t;
+  if (!failing_since_) {
+    failing_since_ = t;
+    degraded_.push_back({t, t, reason});
+    means_ = TrackBuffer();
+    initialiser_ = Initialiser(initialiser_options(), context_.camera);
+  }
+  degraded_.back().to = t;
+  remember(view);
+}
+
+void BundleAdjustment::recovered(double t) {
+  if (!failing_since_) return;
+  degraded_.back().to = std::max(degraded_.back().from, t);
+  failing_since_.reset();
+}
+
+SolveReport BundleAdjustment::solve_window(int view) {
+  const Segment& segment = segments_.back();
+  const int first_variable = std::max(segment.first, view - options_.window + 1);
+  const int first_used = std::max(segment.first, first_variable - held_windows * options_.window);
+  return solve(map_, context_.camera, {first_used, first_variable, view, segment.first, segment.scale},
+               solver_options(options_.iterations));
+}
+
+bool BundleAdjustment::remove_outliers(int first) {
+  const std::vector<TrackId> outliers = map_.outliers(context_.camera, options_.outlier_px, first);
+  for (const TrackId id : outliers) {
+    map_.remove(id);
+    removed_.insert(id);
+    new_outliers_.push_back(id);
+  }
+  return !outliers.empty();
+}
+
+/// Velocity and median depth after the view has been estimated: what predictions and a new map's scale rest on.
+void BundleAdjustment::update_motion(int view) {
+  const View& now = map_.views[at(view)];
+  if (view > 0 && map_.views[at(view - 1)].estimated()) {
+    const View& before = map_.views[at(view - 1)];
+    velocity_ = se3::log(before.T.inverse() * now.T) / (now.t - before.t);
+  }
+  std::vector<double> depths;
+  for (const Keypoint& z : map_.landmarks_in(view)) {
+    depths.push_back((now.T.inverse() * *map_.tracks.at(z.track).position).z());
+  }
+  if (depths.empty()) return;
+  const double depth = median(depths);
+  if (depth > 0.0) median_depth_ = depth;
+}
+
+void BundleAdjustment::finish() {
+  if (std::optional<Frame> frame = frames_.rest()) process(std::move(*frame));
+  if (options_.global_solve) {
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      const bool newest = i + 1 == segments_.size();
+      solve_segment(segments_[i], newest ? static_cast<int>(map_.views.size()) - 1 : segments_[i + 1].first - 1);
+    }
+  }
+  fill_predicted();
+}
+
+void BundleAdjustment::solve_segment(const Segment& segment, int last) {
+  const auto start = std::chrono::steady_clock::now();
+  SolveReport report;
+  for (int round = 0; round < global_rounds; ++round) {
+    report = solve(map_, context_.camera, {segment.first, segment.first, last, segment.first, segment.scale},
+                   solver_options(options_.global_iterations));
+    if (!remove_outliers(segment.first)) break;
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  updates_.push_back({map_.views[at(last)].t, elapsed.count(), report.poses, report.landmarks, report.observations,
+                      report.iterations, report.cost});
+}
+
+/// Predicted poses between estimated ones move with these; those at the end continue with constant velocity.
+void BundleAdjustment::fill_predicted() {
+  int before = -1;
+  for (int i = 0; i < static_cast<int>(map_.views.size()); ++i) {
+    if (map_.views[at(i)].estimated()) {
+      before = i;
+      continue;
+    }
+    if (map_.views[at(i)].state != View::State::predicted) continue;
+    int after = i;
+    while (after < static_cast<int>(map_.views.size()) && !map_.views[at(after)].estimated()) ++after;
+    View& view = map_.views[at(i)];
+    const View& left = map_.views[at(before)];
+    if (after == static_cast<int>(map_.views.size())) {
+      view.T = predict(view.t, before);
+    } else {
+      const View& right = map_.views[at(after)];
+      const double s = (view.t - left.t) / (right.t - left.t);
+      view.T = left.T * se3::exp(s * se3::log(left.T.inverse() * right.T));
+    }
+  }
+}
+
+Status BundleAdjustment::status() const {
+  Status status;
+  status.degraded = degraded_;
+  if (segments_.empty()) {
+    status.state = RunState::failed;
+    status.reason = "never initialised: " + waiting_for_;
+    status.time = map_.views.empty() ? 0.0 : map_.views.back().t;
+  } else if (lost_) {
+    status.state = RunState::lost;
+    status.reason = degraded_.back().reason;
+    status.time = *lost_;
+  } else if (!degraded_.empty()) {
+    status.state = RunState::degraded;
+    status.reason = degraded_.front().reason;
+    status.time = degraded_.front().from;
+  }
+  return status;
+}
+
+Feedback BundleAdjustment::feedback() {
+  Feedback result;
+  if (!segments_.empty()) result.newest = ControlState{map_.views.back().t, map_.views.back().T, velocity_};
+  result.outliers = std::move(new_outliers_);
+  new_outliers_.clear();
+  return result;
+}
+
+PoseTrajectory BundleAdjustment::trajectory() const {
+  std::vector<StampedPose> poses;
+  for (const View& view : map_.views) {
+    if (view.state == View::State::unknown || (lost_ && view.t >= *lost_)) continue;
+    poses.push_back({view.t, view.T});
+  }
+  return PoseTrajectory(std::move(poses), "estimated trajectory");
+}
+
+PoseTrajectory BundleAdjustment::online() const {
+  std::vector<StampedPose> poses = online_;
+  if (lost_) std::erase_if(poses, [&](const StampedPose& pose) { return pose.t >= *lost_; });
+  return PoseTrajectory(std::move(poses), "online trajectory");
+}
+
+std::vector<Landmark> BundleAdjustment::map() const {
+  std::vector<Landmark> result;
+  for (const auto& [id, track] : map_.tracks) {
+    if (track.position) result.push_back({id, *track.position});
+  }
+  return result;
+}
+
+}  // namespace evbench::bundle_adjustment

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "backends/bundle_adjustment/bundle_solver.hpp"
+#include "backends/bundle_adjustment/frames.hpp"
+#include "backends/bundle_adjustment/options.hpp"
+#include "backends/bundle_adjustment/reconstruction.hpp"
+#include "core/plugin/backend.hpp"
+
+namespace evbench::bundle_adjustment {
+
+/// The baseline that the paper compares with: asynchronous observations are grouped into frames, a feature's place in a
+/// frame is the mean of its observations there, and incremental structure from motion estimates a pose for each frame.
+///
+/// A new frame's pose: constant-velocity prediction, refined on the landmarks that it sees (PnP with RANSAC when that
+/// fails). Then new landmarks, bundle adjustment of a window of frames (older ones held), removal of outlier tracks.
+/// At the end: bundle adjustment of everything. World: the camera at the first frame used; unit: the median depth
+/// of the first landmarks.
+///
+/// With too few landmarks in sight a pose is predicted (`degraded`), and the map starts afresh from two new views,
+/// placed at the predicted pose and scaled so that the median depth stays what it was. Without success for
+/// `lost_after` seconds the run is `lost`, and nothing follows the last estimated pose.
+class BundleAdjustment : public BackEnd {
+ public:
+  using Options = bundle_adjustment::Options;
+
+  BundleAdjustment(const Options& options, const BackEndContext& context);
+
+  void observe(std::span<const TrackObservation> observations) override;
+  void advance(double t) override;
+  void finish() override;
+
+  Status status() const override;
+  Feedback feedback() override;
+  PoseTrajectory trajectory() const override;
+  PoseTrajectory online() const override;
+  std::vector<Landmark> map() const override;
+  std::span<const UpdateRecord> updates() const override { return updates_; }
+
+ private:
+  /// Views that share one map, from `first` to the next segment's.
+  struct Segment {
+    int first = 0, scale = 0;  ///< views that hold origin and scale
+  };
+
+  Options options_;
+  BackEndContext context_;
+  FrameBuilder frames_;
+  Reconstruction map_;
+  std::vector<Segment> segments_;
+  std::vector<StampedPose> online_;
+  std::vector<UpdateRecord> updates_;
+
+  TrackBuffer means_;  ///< frame means since the last initialisation was needed
+  Initialiser initialiser_;
+  std::string waiting_for_;  ///< why there is no map yet
+
+  Vector6 velocity_ = Vector6::Zero();
+  double median_depth_ = 1.0;  ///< of the landmarks in the last estimated view
+  std::optional<double> failing_since_;
+  std::vector<DegradedSpan> degraded_;
+  std::optional<double> lost_;
+  std::set<TrackId> removed_;
+  std::vector<TrackId> new_outliers_;
+
+  struct Trial;
+  InitialiserOptions initialiser_options() const;
+  TriangulationOptions triangulation_options() const;
+  SolverOptions solver_options(int iterations) const;
+  int view_at(double t) const;
+  SE3 predict(double t, int from) const;
+
+  void process(Frame frame);
+  SolveReport initialise(int view);
+  Trial try_guess(const InitialGuess& guess, int view) const;
+  void accept(Trial trial, int view);
+  SolveReport track(int view);
+  std::string locate(int view);
+  void remember(int view);
+  void failing(int view, const std::string& reason);
+  void recovered(double t);
+  SolveReport solve_window(int view);
+  bool remove_outliers(int first);
+  void update_motion(int view);
+  void solve_segment(const Segment& segment, int last);
+  void fill_predicted();
+};
+
+}  // namespace evbench::bundle_adjustment

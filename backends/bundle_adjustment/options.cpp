@@ -1,0 +1,27 @@
+#include "backends/bundle_adjustment/options.hpp"
+
+namespace evbench::bundle_adjustment {
+
+void Options::declare(OptionSet& set) {
+  set.add("frame_duration", frame_duration, "time that a frame gathers observations [s]").above(0.0);
+  set.add("frame_observations", frame_observations, "observations that a frame gathers; 0: frames by duration")
+      .range(0);
+  set.add("common_noise_px", common_noise_px,
+          "part of an observation's noise that all of a track's observations in a frame share, so that their mean "
+          "keeps it [px]")
+      .range(0.0);
+  set.group("initialiser", initialiser, "initialisation from two frames");
+  set.add("min_parallax_deg", min_parallax_deg, "parallax of a new landmark, at least [deg]").range(0.0, 90.0);
+  set.add("min_track_frames", min_track_frames, "frames that a new landmark must be seen in").range(2);
+  set.add("outlier_px", outlier_px, "a track with a larger mean reprojection error is removed [px]").above(0.0);
+  set.add("window", window, "newest frames that an update optimises; older ones are held").range(2);
+  set.add("loss", loss, "robust loss").choices({"none", "huber", "cauchy"});
+  set.add("loss_px", loss_px, "reprojection error where the loss turns from quadratic [px]").above(0.0);
+  set.add("iterations", iterations, "iterations of an update, at most").range(1);
+  set.add("global_solve", global_solve, "optimise all frames and landmarks at the end");
+  set.add("global_iterations", global_iterations, "iterations of the solve at the end, at most").range(1);
+  set.add("min_landmarks", min_landmarks, "landmarks in a frame; with fewer, its pose is predicted").range(4);
+  set.add("lost_after", lost_after, "time with too few landmarks after which the run is lost [s]").above(0.0);
+}
+
+}  // namespace evbench::bundle_adjustment

@@ -1,0 +1,96 @@
+#include "backends/bundle_adjustment/reconstruction.hpp"
+
+#include <algorithm>
+
+#include "backends/bundle_adjustment/reprojection.hpp"
+
+namespace evbench::bundle_adjustment {
+
+int Reconstruction::add(const Frame& frame) {
+  const int index = static_cast<int>(views.size());
+  views.push_back({frame.t, SE3{}, View::State::unknown, frame.keypoints});
+  for (const Keypoint& keypoint : frame.keypoints) {
+    tracks[keypoint.track].sightings.push_back({index, keypoint.pixel, keypoint.sigma});
+  }
+  return index;
+}
+
+void Reconstruction::remove(TrackId track) {
+  const auto found = tracks.find(track);
+  if (found == tracks.end()) return;
+  for (const TrackSighting& sighting : found->second.sightings) {
+    std::erase_if(views[static_cast<std::size_t>(sighting.view)].keypoints,
+                  [&](const Keypoint& keypoint) { return keypoint.track == track; });
+  }
+  tracks.erase(found);
+}
+
+void Reconstruction::cut_tracks(int view) {
+  for (auto& [id, track] : tracks) {
+    if (track.sightings.back().view < view) continue;
+    std::erase_if(track.sightings, [&](const TrackSighting& z) { return z.view < view; });
+    track.position.reset();
+  }
+}
+
+std::vector<Keypoint> Reconstruction::landmarks_in(int view) const {
+  std::vector<Keypoint> result;
+  for (const Keypoint& keypoint : views[static_cast<std::size_t>(view)].keypoints) {
+    if (tracks.at(keypoint.track).position) result.push_back(keypoint);
+  }
+  return result;
+}
+
+Triangulation Reconstruction::triangulate_track(const Track& track, const PinholeCamera& camera,
+                                                const TriangulationOptions& options) const {
+  std::vector<SE3> poses;
+  std::vector<Vector2> pixels;
+  for (const TrackSighting& sighting : track.sightings) {
+    const View& view = views[static_cast<std::size_t>(sighting.view)];
+    if (!view.estimated()) continue;
+    poses.push_back(view.T);
+    pixels.push_back(sighting.pixel);
+  }
+  return triangulate(poses, pixels, camera, options);
+}
+
+int Reconstruction::triangulate_new(const PinholeCamera& camera, const TriangulationOptions& options, int min_views) {
+  int made = 0;
+  for (const Keypoint& keypoint : views.back().keypoints) {
+    Track& track = tracks.at(keypoint.track);
+    if (track.position || static_cast<int>(track.sightings.size()) < min_views) continue;
+    const Triangulation result = triangulate_track(track, camera, options);
+    if (!result.ok()) continue;
+    track.position = result.point;
+    ++made;
+  }
+  return made;
+}
+
+double Reconstruction::mean_error(const Track& track, const PinholeCamera& camera) const {
+  double sum = 0.0, count = 0.0;
+  for (const TrackSighting& sighting : track.sightings) {
+    const View& view = views[static_cast<std::size_t>(sighting.view)];
+    if (!view.estimated()) continue;
+    sum += reprojection_error(view.T, *track.position, sighting.pixel, camera).norm();
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+std::vector<TrackId> Reconstruction::outliers(const PinholeCamera& camera, double limit_px, int first) {
+  std::vector<TrackId> result;
+  TriangulationOptions options;
+  options.max_rms_px = 2.0 * limit_px;
+  options.min_parallax_deg = 0.1;
+  for (auto& [id, track] : tracks) {
+    if (!track.position || track.sightings.back().view < first) continue;
+    if (mean_error(track, camera) <= limit_px) continue;
+    const Triangulation again = triangulate_track(track, camera, options);
+    if (again.ok()) track.position = again.point;
+    if (!again.ok() || mean_error(track, camera) > limit_px) result.push_back(id);
+  }
+  return result;
+}
+
+}  // namespace evbench::bundle_adjustment
