@@ -1,0 +1,84 @@
+#include "core/sources/recording.hpp"
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+
+#include "core/testing/data.hpp"
+
+using namespace evbench;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const char* const kCalibration = "200 200 120 90 0 0 0 0 0\n";
+const char* const kGroundTruth = "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n3 2 0 0 0 0 0 1\n";
+
+Recording open(const std::string& json, const std::string& folder) {
+  return Recording(read_options<Recording::Options>(Json::parse(json), "config"), {0, folder});
+}
+
+}  // namespace
+
+TEST_CASE("A recording reads calibration and ground truth from a folder relative to the config") {
+  const testing::TemporaryFolder folder;
+  folder.write("calib.txt", kCalibration);
+  folder.write("groundtruth.txt", kGroundTruth);
+  const Recording source = open(R"({"folder": "."})", folder.path());
+  CHECK(source.camera().pinhole.fx == 200.0);
+  CHECK(source.camera().width == 240);
+  CHECK(source.ground_truth().size() == 3);
+  CHECK(source.time_range().from == 1.0);
+  CHECK(source.time_range().to == 3.0);
+  CHECK(source.files().size() == 2);
+  CHECK_FALSE(source.true_tracks());
+}
+
+TEST_CASE("A recording's time offset moves the ground truth, its time range does not cut it") {
+  const testing::TemporaryFolder folder;
+  folder.write("calib.txt", kCalibration);
+  folder.write("groundtruth.txt", kGroundTruth);
+  const Recording source = open(R"({"folder": ".", "time_offset": 0.5, "time_range": [2, 5]})", folder.path());
+  CHECK(source.ground_truth().start() == 1.5);
+  CHECK(source.ground_truth().size() == 3);
+  CHECK(source.time_range().to == 5.0);
+  REQUIRE(source.remarks().size() == 1);
+  CHECK_THAT(source.remarks()[0], Contains("covers 1.500 to 3.500"));
+}
+
+TEST_CASE("A recording without ground truth needs a time range and says that it can't be scored") {
+  const testing::TemporaryFolder folder;
+  folder.write("calib.txt", kCalibration);
+  CHECK_THROWS_WITH(open(R"({"folder": "."})", folder.path()), Contains("time_range must be given"));
+  const Recording source = open(R"({"folder": ".", "time_range": [0, 1]})", folder.path());
+  CHECK(source.ground_truth().empty());
+  CHECK_THAT(source.remarks().at(0), Contains("can't be scored"));
+}
+
+TEST_CASE("A recording reads RobotEvt ground truth") {
+  const testing::TemporaryFolder folder;
+  folder.write("cam.txt", kCalibration);
+  folder.write("gt.txt", "0 1 0 0 0 1 0 0 0 1 1 2 3\n1 1 0 0 0 1 0 0 0 1 1 2 4\n");
+  const Recording source =
+      open(R"({"calibration": "cam.txt", "ground_truth": "gt.txt", "ground_truth_format": "robotevt"})", folder.path());
+  CHECK(source.ground_truth().poses()[1].T.p.z() == 4.0);
+}
+
+TEST_CASE("A recording refuses what is missing or makes no sense, and says what") {
+  const testing::TemporaryFolder folder;
+  folder.write("calib.txt", kCalibration);
+  folder.write("groundtruth.txt", kGroundTruth);
+  CHECK_THROWS_WITH(open("{}", folder.path()), Contains("neither folder nor calibration"));
+  CHECK_THROWS_WITH(open(R"({"folder": "nowhere"})", folder.path()), Contains("calib.txt: no such file"));
+  CHECK_THROWS_WITH(open(R"({"folder": ".", "ground_truth": "no.txt"})", folder.path()), Contains("no such file"));
+  CHECK_THROWS_WITH(open(R"({"folder": ".", "time_range": [3, 2]})", folder.path()), Contains("from < to"));
+  CHECK_THROWS_WITH(open(R"({"folder": ".", "time_range": [10, 12]})", folder.path()), Contains("does not meet"));
+  CHECK_THROWS_WITH(open(R"({"folder": "${EVBENCH_NOT_SET}/x"})", folder.path()), Contains("EVBENCH_NOT_SET"));
+  CHECK_THROWS_AS(open(R"({"folder": ".", "distortion": "fisheye"})", folder.path()), InputError);
+}
+
+TEST_CASE("The real poster_translation opens with its ground truth") {
+  if (!testing::data_file("poster_translation/groundtruth.txt")) return;
+  const Recording source = open(R"({"folder": "${EVBENCH_DATA}/poster_translation", "time_range": [0, 3.05]})", "");
+  CHECK(source.ground_truth().size() == 11768);
+  CHECK(source.camera().pinhole.fx == Approx(199.092366542));
+}

@@ -1,0 +1,74 @@
+#include "frontends/recorded/recorded.hpp"
+
+#include <algorithm>
+
+#include "core/data/tracks.hpp"
+#include "core/support/path.hpp"
+
+namespace evbench {
+namespace {
+
+const Registration<FrontEnd, Recorded> registration("recorded", "tracks from a file (id t x y)");
+
+}  // namespace
+
+void Recorded::Options::declare(OptionSet& set) {
+  set.add("tracks", tracks, "path of the track file").required();
+  set.add("sigma", sigma, "standard deviation of an observation [px]").above(0.0);
+  set.add("outside", outside, "what to do with observations outside the image").choices({"keep", "drop"});
+  set.add("min_track_length", min_track_length, "tracks with fewer observations are left out").range(1);
+}
+
+Recorded::Recorded(const Options& options, const FrontEndContext& context)
+    : path_(resolve_path(options.tracks, context.folder)) {
+  const Camera& camera = context.source.camera();
+  TrackFile file = read_tracks(path_, camera.width, camera.height, options.sigma);
+  const TrackFileReport& report = file.report;
+  remarks_.push_back(fmt::format("{}: {} observations of {} tracks", path_, report.records, report.tracks));
+  const auto remark = [&](std::int64_t count, const char* what) {
+    if (count > 0) remarks_.push_back(fmt::format("{}: {} {}", path_, count, what));
+  };
+  const bool drop_outside = options.outside == "drop";
+  remark(report.unordered, "observations out of order in their track (sorted)");
+  remark(report.duplicates, "observations with the track and time of another (dropped)");
+  remark(report.outside,
+         drop_outside ? "observations outside the image (dropped)" : "observations outside the image (kept)");
+  remark(report.single_observation, "tracks with a single observation");
+
+  observations_ = std::move(file.observations);
+  const Source::TimeRange range = context.source.time_range();
+  const auto beyond = [&](const TrackObservation& o) { return o.t < range.from || o.t > range.to; };
+  remark(static_cast<std::int64_t>(std::erase_if(observations_, beyond)),
+         fmt::format("observations outside {} to {} s (left out)", range.from, range.to).c_str());
+  if (drop_outside) {
+    std::erase_if(observations_, [&](const TrackObservation& o) { return !camera.contains(o.pixel); });
+  }
+  drop_short_tracks(options.min_track_length);
+  if (observations_.empty()) {
+    throw InputError(
+        fmt::format("{}: no observation is left between {} and {} s; expected tracks in the source's time "
+                    "range",
+                    path_, range.from, range.to));
+  }
+}
+
+void Recorded::drop_short_tracks(int min_length) {
+  std::map<TrackId, int> lengths;
+  for (const TrackObservation& o : observations_) ++lengths[o.track];
+  const auto tracks = std::ranges::count_if(lengths, [&](const auto& track) { return track.second < min_length; });
+  if (tracks == 0) return;
+  std::erase_if(observations_, [&](const TrackObservation& o) { return lengths[o.track] < min_length; });
+  remarks_.push_back(
+      fmt::format("{}: {} tracks with fewer than {} observations (left out)", path_, tracks, min_length));
+}
+
+bool Recorded::advance(double until, std::vector<TrackObservation>& observations) {
+  const auto begin = observations_.begin() + static_cast<std::ptrdiff_t>(next_);
+  const auto end = std::upper_bound(begin, observations_.end(), until,
+                                    [](double time, const TrackObservation& o) { return time < o.t; });
+  observations.insert(observations.end(), begin, end);
+  next_ = static_cast<std::size_t>(end - observations_.begin());
+  return next_ < observations_.size();
+}
+
+}  // namespace evbench

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "core/plugin/registry.hpp"
+
+namespace evbench {
+
+/// Tracks from a file, `id t x y` (see core/data/tracks.hpp), in the source's time range. Lines out of order and
+/// duplicates are put right and reported by remarks(), as are observations outside the image and tracks of one
+/// observation. Throws InputError for a file that is missing or damaged and when no observation is left.
+class Recorded : public FrontEnd {
+ public:
+  struct Options {
+    std::string tracks;
+    double sigma = 1.0;
+    std::string outside = "drop";
+    int min_track_length = 1;
+
+    void declare(OptionSet& set);
+  };
+
+  Recorded(const Options& options, const FrontEndContext& context);
+
+  bool advance(double until, std::vector<TrackObservation>& observations) override;
+  std::vector<std::string> files() const override { return {path_}; }
+  std::vector<std::string> remarks() const override { return remarks_; }
+
+ private:
+  std::string path_;
+  std::vector<TrackObservation> observations_;
+  std::size_t next_ = 0;
+  std::vector<std::string> remarks_;
+
+  void drop_short_tracks(int min_length);
+};
+
+}  // namespace evbench

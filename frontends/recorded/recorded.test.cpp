@@ -1,0 +1,103 @@
+#include "frontends/recorded/recorded.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/testing/data.hpp"
+
+using namespace evbench;
+using Catch::Matchers::Contains;
+
+namespace {
+
+class FakeSource : public Source {
+ public:
+  explicit FakeSource(TimeRange range) : range_(range) {
+    camera_.width = 240;
+    camera_.height = 180;
+  }
+  const Camera& camera() const override { return camera_; }
+  TimeRange time_range() const override { return range_; }
+  const PoseTrajectory& ground_truth() const override { return trajectory_; }
+
+ private:
+  Camera camera_;
+  TimeRange range_;
+  PoseTrajectory trajectory_;
+};
+
+std::vector<TrackObservation> all(FrontEnd& frontend) {
+  std::vector<TrackObservation> observations;
+  frontend.advance(1e9, observations);
+  return observations;
+}
+
+// Track 1: unordered and with a duplicate; track 2: a single observation; track 3: leaves the image, and goes on after
+// 1 s.
+const char* const kTracks =
+    "1 0.3 10 10\n1 0.1 10 10\n1 0.3 99 99\n2 0.2 20 20\n3 0.4 30 30\n3 0.5 -1 30\n3 0.6 31 30\n3 1.5 32 30\n";
+
+Recorded open(const std::string& options, const testing::TemporaryFolder& folder, const Source& source) {
+  return Recorded(read_options<Recorded::Options>(Json::parse(options), "config"), {source, 0, folder.path()});
+}
+
+}  // namespace
+
+TEST_CASE("Recorded tracks come in time order within the source's time range, and oddities are reported") {
+  const testing::TemporaryFolder folder;
+  folder.write("tracks.txt", kTracks);
+  const FakeSource source({0.0, 1.0});
+  Recorded frontend = open(R"({"tracks": "tracks.txt", "sigma": 0.7})", folder, source);
+  const std::vector<TrackObservation> observations = all(frontend);
+  REQUIRE(observations.size() == 5);
+  CHECK(observations[0].t == 0.1);
+  CHECK(observations[2].pixel == Vector2(10, 10));
+  CHECK(observations[4].t == 0.6);
+  CHECK(observations[0].sigma == 0.7);
+  std::string remarks;
+  for (const std::string& remark : frontend.remarks()) remarks += remark + "\n";
+  CHECK_THAT(remarks, Contains("8 observations of 3 tracks") && Contains("1 observations out of order") &&
+                          Contains("1 observations with the track and time of another") &&
+                          Contains("1 observations outside the image (dropped)") &&
+                          Contains("1 tracks with a single observation") &&
+                          Contains("1 observations outside 0 to 1 s"));
+  CHECK(frontend.files() == std::vector<std::string>{folder.file("tracks.txt")});
+}
+
+TEST_CASE("Recorded tracks are given up to the time asked for, each once") {
+  const testing::TemporaryFolder folder;
+  folder.write("tracks.txt", kTracks);
+  const FakeSource source({0.0, 2.0});
+  Recorded frontend = open(R"({"tracks": "tracks.txt"})", folder, source);
+  std::vector<TrackObservation> observations;
+  CHECK(frontend.advance(0.3, observations));
+  CHECK(observations.size() == 3);
+  CHECK_FALSE(frontend.advance(2.0, observations));
+  CHECK(observations.size() == 6);
+}
+
+TEST_CASE("Observations outside the image are kept on request, short tracks are left out") {
+  const testing::TemporaryFolder folder;
+  folder.write("tracks.txt", kTracks);
+  const FakeSource source({0.0, 1.0});
+  Recorded frontend = open(R"({"tracks": "tracks.txt", "outside": "keep", "min_track_length": 3})", folder, source);
+  const std::vector<TrackObservation> observations = all(frontend);
+  REQUIRE(observations.size() == 3);
+  CHECK(observations[1].pixel == Vector2(-1, 30));
+}
+
+TEST_CASE("Recorded tracks that are missing, or of another time, are refused") {
+  const testing::TemporaryFolder folder;
+  folder.write("tracks.txt", kTracks);
+  const FakeSource source({5.0, 6.0});
+  CHECK_THROWS_WITH(open(R"({"tracks": "no.txt"})", folder, source), Contains("no such file"));
+  CHECK_THROWS_WITH(open(R"({"tracks": "tracks.txt"})", folder, source), Contains("no observation is left"));
+  CHECK_THROWS_WITH(open("{}", folder, source), Contains("\"tracks\" is missing"));
+}
+
+TEST_CASE("The real tracks of poster_translation are read whole") {
+  const auto path = testing::data_file("poster_translation/tracks_eklt.txt");
+  if (!path) return;
+  const FakeSource source({0.0, 10.0});
+  Recorded frontend({*path, 1.0, "keep", 1}, {source, 0, ""});
+  CHECK(all(frontend).size() == 66331);
+}
