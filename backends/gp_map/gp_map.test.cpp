@@ -1,0 +1,137 @@
+#include "backends/gp_map/gp_map.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "backends/gp_map/testing/tracked_scene.hpp"
+#include "core/plugin/registry.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+using testing::run;
+using testing::RunOptions;
+using testing::TrackedScene;
+
+}  // namespace
+
+TEST_CASE("gp_map is registered and follows a simulated camera") {
+  CHECK(Registry<BackEnd>::instance().entries().contains("gp_map"));
+  const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
+  const auto result = run(scene);
+  CHECK(result.backend->status().state == RunState::ok);
+  CHECK(result.scores.ate.trans_percent < 1.0);
+  CHECK(result.scores.coverage > 0.97);
+  CHECK(result.backend->map().size() > 40);
+  CHECK(result.backend->online().size() > 80);
+}
+
+TEST_CASE("gp_map drops outlier tracks") {
+  const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [1.0, 3.0], "outlier_share": 0.1, "drift_share": 0.05}})");
+  const auto result = run(scene);
+  CHECK(result.backend->status().state == RunState::ok);
+  CHECK(result.scores.ate.trans_percent < 1.0);
+}
+
+TEST_CASE("gp_map's estimate does not depend on how its observations are cut into pieces") {
+  const TrackedScene scene(3.0);
+  const auto fine = run(scene, {.chunk = 0.003});
+  const auto coarse = run(scene, {.chunk = 0.25});
+  const auto& a = fine.backend->trajectory().poses();
+  const auto& b = coarse.backend->trajectory().poses();
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    CHECK(a[i].T.p == b[i].T.p);
+    CHECK(a[i].T.q.coeffs() == b[i].T.q.coeffs());
+  }
+}
+
+TEST_CASE("A prior a hundred times stronger or weaker does not change the scale") {
+  const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
+  const double scale = run(scene).scores.alignment.transform.scale;
+  CHECK(run(scene, {.backend = R"({"qc_scale": 100})"}).scores.alignment.transform.scale ==
+        Approx(scale).epsilon(0.05));
+  CHECK(run(scene, {.backend = R"({"qc_scale": 0.01})"}).scores.alignment.transform.scale ==
+        Approx(scale).epsilon(0.05));
+}
+
+TEST_CASE("The first landmarks keep the mean log distance that they were given") {
+  const TrackedScene scene(5.0);
+  const auto result = run(scene);
+  CHECK(std::abs(linearise_anchor(result.backend->graph()).e) < 5.0);  // in sigmas of 1e-4
+}
+
+TEST_CASE("A short blackout is carried by the prior and said") {
+  const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [1.0, 3.0], "blackouts": [3.0, 3.3]}})");
+  const auto result = run(scene);
+  const Status status = result.backend->status();
+  CHECK(status.state == RunState::degraded);
+  REQUIRE_FALSE(status.degraded.empty());
+  CHECK(status.degraded.front().from == Approx(3.0).margin(0.1));
+  CHECK(status.degraded.front().to < 4.0);
+  CHECK(result.scores.ate.trans_percent < 5.0);
+  CHECK(result.backend->trajectory().end() > 5.9);
+}
+
+TEST_CASE("A long blackout ends the run as lost, with what there was before") {
+  const TrackedScene scene(7.0, R"({"tracks": {"lifetime": [1.0, 3.0], "blackouts": [3.0, 6.0]}})");
+  const auto result = run(scene);
+  const Status status = result.backend->status();
+  CHECK(status.state == RunState::lost);
+  CHECK(status.time == Approx(3.0).margin(0.1));
+  CHECK(result.backend->trajectory().end() == Approx(3.0).margin(0.15));
+  CHECK(result.scores.ate.trans_percent < 1.5);
+}
+
+TEST_CASE("A stretch of pure rotation does not destroy the trajectory") {
+  const TrackedScene scene(7.0, R"({"motion": {"rotation_only": [3.0, 4.5]}, "tracks": {"lifetime": [1.0, 3.0]}})");
+  const auto result = run(scene);
+  CHECK(result.backend->status().state != RunState::lost);
+  CHECK(result.scores.ate.trans_percent < 3.0);
+}
+
+TEST_CASE("A camera at rest gives no map and says so") {
+  const TrackedScene scene(2.0,
+                           R"({"motion": {"kind": "smooth_random", "amplitude": 1e-9, "rotation_amplitude": 1e-9}})");
+  const auto result = run(scene);
+  CHECK(result.backend->status().state == RunState::failed);
+  CHECK_THAT(result.backend->status().reason, Catch::Contains("no first map"));
+  CHECK(result.backend->trajectory().empty());
+}
+
+TEST_CASE("Nothing, one track, and two observations are no reason to crash") {
+  GpMap empty({}, {});
+  empty.advance(1.0);
+  empty.finish();
+  CHECK(empty.status().state == RunState::failed);
+  CHECK_FALSE(empty.pose(0.5));
+
+  GpMap one({}, {});
+  std::vector<TrackObservation> track;
+  for (int i = 0; i < 100; ++i) track.push_back({0, 0.01 * i, {100.0 + i, 90.0}, 1.0});
+  one.observe(track);
+  one.advance(1.0);
+  one.finish();
+  CHECK(one.status().state == RunState::failed);
+}
+
+TEST_CASE("Covariance is positive and smallest at the anchor") {
+  const TrackedScene scene(2.0);
+  const auto result = run(scene);
+  const auto start = result.backend->covariance(result.backend->trajectory().start());
+  const auto middle = result.backend->covariance(1.03);
+  REQUIRE(start);
+  REQUIRE(middle);
+  CHECK(start->diagonal().head<6>().maxCoeff() < 1e-6);
+  CHECK(middle->diagonal().minCoeff() > 0.0);
+  CHECK(middle->topLeftCorner<6, 6>().trace() > start->topLeftCorner<6, 6>().trace());
+}
+
+TEST_CASE("Control states by number of observations follow the camera as well as those by rate") {
+  const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
+  const double by_rate = run(scene).scores.ate.trans_m.rmse;
+  const auto by_count = run(scene, {.backend = R"({"placement": {"rule": "observations", "observations": 200}})"});
+  CHECK(by_count.scores.ate.trans_m.rmse == Approx(by_rate).epsilon(0.1));
+}
+
+}  // namespace evbench::gp_map

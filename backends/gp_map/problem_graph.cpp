@@ -1,0 +1,60 @@
+#include "backends/gp_map/problem_graph.hpp"
+
+#include <cmath>
+
+namespace evbench::gp_map {
+
+FactorGraph to_graph(const Problem& problem) {
+  const Problem usable = prepare(problem);
+  FactorGraph graph;
+  graph.camera = usable.camera;
+  graph.qc = usable.qc;
+  for (const ControlState& state : usable.states) graph.add_state(state);
+  for (const Vector3& position : usable.landmarks) graph.add_landmark(position);
+  for (auto& landmark : graph.landmarks) landmark.alive = false;
+  for (const auto& z : usable.observations) {
+    graph.landmarks[static_cast<std::size_t>(z.landmark)].alive = true;
+    graph.add_observation(z.landmark, {z.t, z.pixel, 1.0 / z.sigma});
+  }
+  for (const auto& prior : usable.pose_priors) graph.pose_priors.push_back({prior.state, prior.T, prior.sigma});
+  for (const auto& prior : usable.velocity_priors) {
+    graph.velocity_priors.push_back({prior.state, prior.velocity, prior.sigma});
+  }
+  for (const auto& prior : usable.landmark_priors) {
+    graph.landmarks[static_cast<std::size_t>(prior.landmark)].prior = {prior.position, prior.sigma};
+  }
+  return graph;
+}
+
+Problem to_problem(const FactorGraph& graph) {
+  Problem problem;
+  problem.camera = graph.camera;
+  problem.qc = graph.qc;
+  problem.states = graph.states;
+  std::vector<int> number(graph.landmarks.size(), -1);
+  for (std::size_t j = 0; j < graph.landmarks.size(); ++j) {
+    const FactorGraph::Landmark& landmark = graph.landmarks[j];
+    if (!landmark.alive) continue;
+    number[j] = static_cast<int>(problem.landmarks.size());
+    problem.landmarks.push_back(landmark.position);
+    if (std::isfinite(landmark.prior.sigma)) {
+      problem.landmark_priors.push_back({number[j], landmark.prior.position, landmark.prior.sigma});
+    }
+  }
+  for (const IntervalObservations& interval : graph.intervals) {
+    for (const auto& group : interval.groups()) {
+      for (int i = group.begin; i < group.end; ++i) {
+        const Observation& z = interval.all()[static_cast<std::size_t>(i)];
+        problem.observations.push_back(
+            {z.t, number[static_cast<std::size_t>(group.landmark)], z.pixel, 1.0 / z.inverse_sigma});
+      }
+    }
+  }
+  for (const auto& prior : graph.pose_priors) problem.pose_priors.push_back({prior.state, prior.T, prior.sigma});
+  for (const auto& prior : graph.velocity_priors) {
+    problem.velocity_priors.push_back({prior.state, prior.velocity, prior.sigma});
+  }
+  return problem;
+}
+
+}  // namespace evbench::gp_map

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "backends/gp_map/gp_map.hpp"
+#include "core/simulation/track_simulator.hpp"
+#include "eval/scores.hpp"
+
+namespace evbench::gp_map::testing {
+
+/// A camera of 240 × 180 pixels that moves in front of a volume of points, with the tracks that it would see.
+class TrackedScene {
+ public:
+  /// `options`: {"motion": {...}, "scene": {...}, "tracks": {...}} over the defaults here.
+  explicit TrackedScene(double duration, const char* options = "{}", std::uint64_t seed = 1);
+
+  PinholeCamera camera() const { return camera_.pinhole; }
+  double duration() const { return duration_; }
+  const PoseTrajectory& ground_truth() const { return ground_truth_; }
+  const std::vector<TrackObservation>& observations() const { return tracks_.observations; }
+
+ private:
+  double duration_;
+  Camera camera_;
+  PoseTrajectory ground_truth_;
+  SimulatedTracks tracks_;
+};
+
+struct RunOptions {
+  const char* backend = "{}";
+  double chunk = 0.01;  ///< [s]
+};
+
+struct Run {
+  std::unique_ptr<GpMap> backend;
+  Scores scores;  ///< of the final trajectory at 100 Hz; empty when there is none
+};
+
+Run run(const TrackedScene& scene, const RunOptions& options = {});
+
+}  // namespace evbench::gp_map::testing
