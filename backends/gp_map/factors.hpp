@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "backends/gp_map/factor_graph.hpp"
@@ -36,7 +37,22 @@ struct IntervalLinearisation {
   double cost = 0.0;                ///< ½ Σ ρ
 };
 
-/// Linearises all observations in interval k (1 ≤ k) and its motion prior.
+/// What an interval's factors depend on.
+struct IntervalInput {
+  const PinholeCamera& camera;
+  const RobustLoss& loss;
+  const Vector6& qc;
+  const ControlState& state0;
+  const ControlState& state1;
+  const IntervalObservations& observations;
+  std::span<const Vector3> positions;  ///< of the landmark of each group in observations
+};
+
+/// Linearises all observations in the interval and its motion prior; nothing is allocated once `result` has grown to
+/// the number of landmarks.
+void linearise_interval(const IntervalInput& in, IntervalLinearisation& result);
+
+/// The same for interval k (1 ≤ k) of a graph at its estimate.
 void linearise_interval(const FactorGraph& graph, int k, IntervalLinearisation& result);
 
 /// Adds H and g of the priors on one state, 12 × 12 and 12.

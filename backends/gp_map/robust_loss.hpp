@@ -20,6 +20,8 @@ class RobustLoss {
                                       : Kind::none,
                    width) {}
 
+  bool is_quadratic() const { return kind_ == Kind::none; }
+
   double value(double s) const {
     const double w2 = width_ * width_;
     switch (kind_) {

@@ -1,0 +1,472 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "backends/gp_map/engine/lanes.hpp"
+#include "backends/gp_map/factors.hpp"
+#include "core/geometry/lie_coefficients.hpp"
+#include "core/motion/wnoa.hpp"
+
+// Lanes run over landmarks: kLanes of them, with similar numbers of observations in the interval, are worked on
+// together, the i-th observation of each at once (weight 0 where one has fewer). What a landmark's observations share
+// then stays in registers' lanes until it is complete, and nothing is transposed but the result.
+//
+// With m = T_0⁻¹ l and ξ = a ϖ_0 + b ξ_1 + c w_1 a residual is a function of (m, ξ) alone, e = whitened π(Exp(−ξ) m) −
+// z. With G = ∂e/∂ξ the block of each pair of (ϖ_0, ξ_1, w_1) is a multiple of GᵀG, and the first pose acts through m
+// alone: δm = R_0ᵀ δl + [m^, −I] δT_0. Only once an interval these local coordinates (δT_0, δϖ_0, δξ_1, δw_1) are
+// mapped to the increments of both states.
+namespace evbench::gp_map {
+namespace {
+
+using Matrix12x24 = Eigen::Matrix<double, 12, 24>;
+
+constexpr int kPairs = 21;  ///< of a symmetric 6 × 6
+
+/// b, c, and their derivatives with respect to z = θ².
+struct Coefficients {
+  Lane b, c, db, dc;
+};
+
+/// 1/(2n + 2)! and 1/(2n + 3)!, alternating: b and c as power series in z.
+constexpr int kMaxTerms = 16;
+struct Series {
+  std::array<double, kMaxTerms> b{}, c{};
+  constexpr Series() {
+    double sign = 1.0, factorial = 1.0;  // (2n + 1)!
+    for (std::size_t n = 0; n < kMaxTerms; ++n) {
+      const double even = factorial * static_cast<double>(2 * n + 2);
+      const double odd = even * static_cast<double>(2 * n + 3);
+      b[n] = sign / even;
+      c[n] = sign / odd;
+      factorial = odd;
+      sign = -sign;
+    }
+  }
+};
+constexpr Series kSeries;
+
+template <int Terms>
+Coefficients series(Lane z) {
+  Coefficients r{};
+  for (std::size_t n = Terms; n-- > 0;) {  // Horner, with derivatives
+    r.db = r.db * z + r.b;
+    r.dc = r.dc * z + r.c;
+    r.b = r.b * z + kSeries.b[n];
+    r.c = r.c * z + kSeries.c[n];
+  }
+  return r;
+}
+
+/// How the coefficients are computed for all observations of an interval: by the largest rotation angle in it.
+enum class Range { small, medium, any };
+
+template <Range range>
+Coefficients coefficients(Lane z) {
+  if constexpr (range == Range::small) return series<8>(z);    // θ < 1: 2e-16
+  if constexpr (range == Range::medium) return series<16>(z);  // θ < 3.5
+  Coefficients r{};
+  for (int i = 0; i < kLanes; ++i) {
+    const CoefficientJet b = coefficient_b(z[i]);
+    const CoefficientJet c = coefficient_c(z[i]);
+    r.b[i] = b.f;
+    r.c[i] = c.f;
+    r.db[i] = b.d;
+    r.dc[i] = c.d;
+  }
+  return r;
+}
+
+Lane3 lane3(const Vector3& v) { return {broadcast(v.x()), broadcast(v.y()), broadcast(v.z())}; }
+
+/// What all observations of the interval share.
+struct Shared {
+  const RobustLoss& loss;
+  const PinholeCamera& camera;
+  double t0, dt;
+  Lane3 velocity_phi, velocity_rho, xi1_phi, xi1_rho, w1_phi, w1_rho;
+};
+
+/// The measured values of one observation of each lane's landmark.
+struct Measured {
+  Lane t{}, u{}, v{}, inverse_sigma{}, present{};
+};
+
+/// Sums over the interval, kept by lane and added up at the end.
+struct IntervalSums {
+  std::array<std::array<Lane, kPairs>, 6> yy{};  ///< (ϖ_0 ϖ_0), (ξ_1 ϖ_0), (ξ_1 ξ_1), (w_1 ϖ_0), (w_1 ξ_1), (w_1 w_1)
+  std::array<Lane, 18> gradient_y{};
+  std::array<Lane, kPairs> TT{};             ///< (δT_0, δT_0)
+  std::array<std::array<Lane, 6>, 18> yT{};  ///< (y, δT_0)
+  std::array<Lane, 6> gradient_T{};
+  Lane cost{};
+};
+
+/// Sums over one landmark's observations in each lane.
+struct LandmarkSums {
+  std::array<std::array<Lane, 3>, 3> mm{};  ///< lower triangle
+  std::array<Lane, 3> gradient{};
+  std::array<std::array<Lane, 18>, 3> my{};
+};
+
+/// A row of the Jacobians of (m, ξ) for one component of the residual.
+struct Row {
+  std::array<Lane, 3> m;
+  std::array<Lane, 6> xi;
+};
+
+struct Geometry {
+  Lane3 phi, rho, u1, u2, q;
+  Coefficients k;
+  Lane s1;  // sin θ/θ
+};
+
+/// D: the row of the whitened projection's Jacobian with respect to q.
+Row row(const Geometry& g, const Lane3& D) {
+  const Coefficients& k = g.k;
+  const Lane3 c1 = cross(g.phi, D);
+  const Lane3 c2 = cross(g.phi, c1);
+  const Lane3 d_m = D + g.s1 * c1 + k.b * c2;  // R D
+  const Lane3 h = D + k.b * c1 + k.c * c2;     // J_l D = J_rᵀ D
+  const Lane3 w = cross(D, g.q);
+  const Lane3 w1 = cross(g.phi, w);
+  const Lane3 w2 = cross(g.phi, w1);
+  // d_mᵀ ∂(J_l(φ) ρ)/∂φ
+  const Lane3 bend = k.b * cross(d_m, g.rho) + k.c * (cross(d_m, g.u1) + cross(cross(d_m, g.phi), g.rho));
+  const Lane along = 2.0 * (k.db * dot(d_m, g.u1) + k.dc * dot(d_m, g.u2));
+  const Lane3 left = w + k.b * w1 + k.c * w2 + bend - along * g.phi;
+  return {{d_m.x, d_m.y, d_m.z}, {left.x, left.y, left.z, -h.x, -h.y, -h.z}};
+}
+
+template <Range range>
+void add_observation(const Shared& shared, const Lane3& m, const Measured& z, LandmarkSums& landmark,
+                     IntervalSums& sums) {
+  const Lane s = (z.t - shared.t0) / shared.dt;
+  const Lane rest = 1.0 - s;
+  const std::array<Lane, 3> basis = {shared.dt * s * rest * rest, s * s * (3.0 - 2.0 * s), -shared.dt * s * s * rest};
+  Geometry g;
+  g.phi = basis[0] * shared.velocity_phi + basis[1] * shared.xi1_phi + basis[2] * shared.w1_phi;
+  g.rho = basis[0] * shared.velocity_rho + basis[1] * shared.xi1_rho + basis[2] * shared.w1_rho;
+  const Lane theta2 = dot(g.phi, g.phi);
+  g.k = coefficients<range>(theta2);
+  g.s1 = 1.0 - theta2 * g.k.c;
+  g.u1 = cross(g.phi, g.rho);
+  g.u2 = cross(g.phi, g.u1);
+  const Lane3 d = m - (g.rho + g.k.b * g.u1 + g.k.c * g.u2);
+  const Lane3 d1 = cross(g.phi, d);
+  g.q = d - g.s1 * d1 + g.k.b * cross(g.phi, d1);
+
+  const auto in_front = g.q.z > 0.0;
+  const Lane iz = 1.0 / (in_front ? g.q.z : Lane{} + 1.0);
+  const Lane x = g.q.x * iz;
+  const Lane y = g.q.y * iz;
+  const Lane behind = 2.0 * shared.camera.fx * z.inverse_sigma;
+  const Lane e0 = in_front ? z.inverse_sigma * (shared.camera.fx * x + shared.camera.cx - z.u) : behind;
+  const Lane e1 = in_front ? z.inverse_sigma * (shared.camera.fy * y + shared.camera.cy - z.v) : behind;
+  const Lane square = e0 * e0 + e1 * e1;
+  Lane weight = z.present;
+  if (shared.loss.is_quadratic()) {
+    sums.cost += 0.5 * z.present * square;
+  } else {
+    for (int i = 0; i < kLanes; ++i) {
+      sums.cost[i] += 0.5 * z.present[i] * shared.loss.value(square[i]);
+      weight[i] *= shared.loss.weight(square[i]);
+    }
+  }
+  weight = in_front ? weight : Lane{};
+  const Lane ax = shared.camera.fx * z.inverse_sigma * iz;
+  const Lane ay = shared.camera.fy * z.inverse_sigma * iz;
+  const std::array<Row, 2> rows = {row(g, {ax, Lane{}, -ax * x}), row(g, {Lane{}, ay, -ay * y})};
+
+  std::array<Lane, 6> Ge;
+  std::array<std::array<Lane, 6>, 2> wG;
+  for (std::size_t i = 0; i < 6; ++i) {
+    wG[0][i] = weight * rows[0].xi[i];
+    wG[1][i] = weight * rows[1].xi[i];
+    Ge[i] = wG[0][i] * e0 + wG[1][i] * e1;
+  }
+  const std::array<Lane, 6> products = {basis[0] * basis[0], basis[1] * basis[0], basis[1] * basis[1],
+                                        basis[2] * basis[0], basis[2] * basis[1], basis[2] * basis[2]};
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t j = 0; j <= i; ++j, ++n) {
+      const Lane GG = wG[0][i] * rows[0].xi[j] + wG[1][i] * rows[1].xi[j];
+      for (std::size_t p = 0; p < 6; ++p) sums.yy[p][n] += products[p] * GG;
+    }
+    for (std::size_t p = 0; p < 3; ++p) sums.gradient_y[6 * p + i] += basis[p] * Ge[i];
+  }
+  for (std::size_t r = 0; r < 3; ++r) {
+    const Lane m0 = weight * rows[0].m[r];
+    const Lane m1 = weight * rows[1].m[r];
+    landmark.gradient[r] += m0 * e0 + m1 * e1;
+    for (std::size_t c = 0; c <= r; ++c) landmark.mm[r][c] += m0 * rows[0].m[c] + m1 * rows[1].m[c];
+    for (std::size_t i = 0; i < 6; ++i) {
+      const Lane BG = rows[0].m[r] * wG[0][i] + rows[1].m[r] * wG[1][i];
+      for (std::size_t p = 0; p < 3; ++p) landmark.my[r][6 * p + i] += basis[p] * BG;
+    }
+  }
+}
+
+/// rows × [m^, −I]: what a derivative with respect to m is with respect to δT_0.
+template <std::size_t N>
+std::array<std::array<Lane, 6>, N> through_first_pose(const std::array<std::array<Lane, 3>, N>& rows, const Lane3& m) {
+  std::array<std::array<Lane, 6>, N> result;
+  for (std::size_t r = 0; r < N; ++r) {
+    const Lane3 turned = cross({rows[r][0], rows[r][1], rows[r][2]}, m);  // vᵀ m^ = (v × m)ᵀ
+    result[r] = {turned.x, turned.y, turned.z, -rows[r][0], -rows[r][1], -rows[r][2]};
+  }
+  return result;
+}
+
+/// ∂(ξ_1, w_1)/∂(increments of both states), by its blocks that are not zero.
+struct EndMap {
+  Matrix6 xi1_T0, xi1_T1, w1_T0, w1_T1, w1_v1;
+};
+
+/// The coupling of each lane's landmark in world coordinates and to the increments of both states.
+void write_couplings(const LandmarkSums& landmark, const std::array<std::array<Lane, 6>, 3>& mT, const Matrix3& R0,
+                     const EndMap& map, const std::array<IntervalLinearisation::Coupling*, kLanes>& couplings) {
+  const auto rotate = [&](const std::array<Lane, 3>& v, std::size_t r) {
+    const auto i = static_cast<Eigen::Index>(r);
+    return R0(i, 0) * v[0] + R0(i, 1) * v[1] + R0(i, 2) * v[2];
+  };
+  const auto scatter = [&](Lane value, auto member) {
+    for (int i = 0; i < kLanes; ++i) {
+      if (couplings[static_cast<std::size_t>(i)] != nullptr) member(*couplings[static_cast<std::size_t>(i)]) = value[i];
+    }
+  };
+  const auto& h = landmark.mm;
+  const std::array<std::array<Lane, 3>, 3> mm = {{{h[0][0], h[1][0], h[2][0]},  //
+                                                  {h[1][0], h[1][1], h[2][1]},
+                                                  {h[2][0], h[2][1], h[2][2]}}};
+  std::array<std::array<Lane, 3>, 3> Rmm;  // R mm
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 3; ++c) Rmm[r][c] = rotate(mm[c], r);
+  }
+  for (std::size_t r = 0; r < 3; ++r) {
+    const auto row = static_cast<Eigen::Index>(r);
+    scatter(rotate(landmark.gradient, r), [&](auto& c) -> double& { return c.gradient(row); });
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto column = static_cast<Eigen::Index>(c);
+      scatter(rotate(Rmm[r], c), [&](auto& to) -> double& { return to.landmark_landmark(row, column); });
+    }
+    std::array<Lane, 12> end;
+    for (std::size_t i = 0; i < 6; ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      scatter(rotate({landmark.my[0][i], landmark.my[1][i], landmark.my[2][i]}, r),
+              [&](auto& c) -> double& { return c.landmark_states(row, 6 + column); });
+    }
+    for (std::size_t i = 0; i < 12; ++i) {
+      end[i] = rotate({landmark.my[0][6 + i], landmark.my[1][6 + i], landmark.my[2][6 + i]}, r);
+    }
+    for (std::size_t i = 0; i < 6; ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      Lane T0 = rotate({mT[0][i], mT[1][i], mT[2][i]}, r);
+      Lane T1{}, v1{};
+      for (std::size_t k = 0; k < 6; ++k) {
+        const auto at = static_cast<Eigen::Index>(k);
+        T0 += end[k] * map.xi1_T0(at, column) + end[6 + k] * map.w1_T0(at, column);
+        T1 += end[k] * map.xi1_T1(at, column) + end[6 + k] * map.w1_T1(at, column);
+        v1 += end[6 + k] * map.w1_v1(at, column);
+      }
+      scatter(T0, [&](auto& c) -> double& { return c.landmark_states(row, column); });
+      scatter(T1, [&](auto& c) -> double& { return c.landmark_states(row, 12 + column); });
+      scatter(v1, [&](auto& c) -> double& { return c.landmark_states(row, 18 + column); });
+    }
+  }
+}
+
+/// The first pose's part of the interval's sums, from the landmark's.
+void add_first_pose(const LandmarkSums& landmark, const std::array<std::array<Lane, 6>, 3>& mT, const Lane3& m,
+                    IntervalSums& sums) {
+  std::array<std::array<Lane, 3>, 6> Tm;
+  for (std::size_t i = 0; i < 6; ++i) Tm[i] = {mT[0][i], mT[1][i], mT[2][i]};
+  const auto TT = through_first_pose(Tm, m);
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t j = 0; j <= i; ++j, ++n) sums.TT[n] += TT[i][j];
+  }
+  std::array<std::array<Lane, 3>, 18> ym;
+  for (std::size_t i = 0; i < 18; ++i) ym[i] = {landmark.my[0][i], landmark.my[1][i], landmark.my[2][i]};
+  const auto yT = through_first_pose(ym, m);
+  for (std::size_t i = 0; i < 18; ++i) {
+    for (std::size_t j = 0; j < 6; ++j) sums.yT[i][j] += yT[i][j];
+  }
+  const auto g = through_first_pose(std::array<std::array<Lane, 3>, 1>{landmark.gradient}, m);
+  for (std::size_t j = 0; j < 6; ++j) sums.gradient_T[j] += g[0][j];
+}
+
+template <Range range>
+void add_landmarks(const Shared& shared, const IntervalInput& in, const Matrix3& R0, const EndMap& map,
+                   std::span<const int> order, IntervalSums& sums, IntervalLinearisation& result) {
+  const auto& groups = in.observations.groups();
+  const Observation* all = in.observations.all().data();
+  for (std::size_t first = 0; first < order.size(); first += kLanes) {
+    std::array<IntervalLinearisation::Coupling*, kLanes> couplings{};
+    std::array<const Observation*, kLanes> next{};
+    std::array<int, kLanes> count{};
+    Lane3 m;
+    m.z += 1.0;
+    for (std::size_t i = 0; i < kLanes && first + i < order.size(); ++i) {
+      const auto index = static_cast<std::size_t>(order[first + i]);
+      const auto& group = groups[index];
+      couplings[i] = &result.couplings[index];
+      couplings[i]->landmark = group.landmark;
+      next[i] = all + group.begin;
+      count[i] = group.end - group.begin;
+      const Vector3 local = R0.transpose() * (in.positions[index] - in.state0.T.p);
+      m.x[i] = local.x();
+      m.y[i] = local.y();
+      m.z[i] = local.z();
+    }
+    LandmarkSums landmark;
+    for (int n = 0; n < count[0]; ++n) {  // lane 0 has the most
+      Measured z;
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        z.t[i] = shared.t0;
+        if (n >= count[i]) continue;
+        const Observation& o = *next[i]++;
+        z.t[i] = o.t;
+        z.u[i] = o.pixel.x();
+        z.v[i] = o.pixel.y();
+        z.inverse_sigma[i] = o.inverse_sigma;
+        z.present[i] = 1.0;
+      }
+      add_observation<range>(shared, m, z, landmark, sums);
+    }
+    const auto& h = landmark.mm;
+    const auto mT = through_first_pose(
+        std::array<std::array<Lane, 3>, 3>{
+            {{h[0][0], h[1][0], h[2][0]}, {h[1][0], h[1][1], h[2][1]}, {h[2][0], h[2][1], h[2][2]}}},
+        m);
+    add_first_pose(landmark, mT, m, sums);
+    write_couplings(landmark, mT, R0, map, couplings);
+  }
+}
+
+/// Normal equations in the local coordinates (δT_0, δϖ_0, δξ_1, δw_1).
+struct LocalSystem {
+  Matrix24 H;
+  Vector24 g;
+
+  explicit LocalSystem(const IntervalSums& sums) {
+    std::size_t n = 0;
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      g(i) = sum(sums.gradient_T[static_cast<std::size_t>(i)]);
+      for (Eigen::Index j = 0; j <= i; ++j, ++n) {
+        H(i, j) = H(j, i) = sum(sums.TT[n]);
+        std::size_t pair = 0;
+        for (Eigen::Index p = 0; p < 3; ++p) {
+          for (Eigen::Index q = 0; q <= p; ++q, ++pair) {
+            const double value = sum(sums.yy[pair][n]);
+            const Eigen::Index r = 6 + 6 * p, c = 6 + 6 * q;
+            H(r + i, c + j) = H(r + j, c + i) = H(c + j, r + i) = H(c + i, r + j) = value;
+          }
+        }
+      }
+    }
+    for (Eigen::Index i = 0; i < 18; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      g(6 + i) = sum(sums.gradient_y[at]);
+      for (Eigen::Index j = 0; j < 6; ++j) H(6 + i, j) = H(j, 6 + i) = sum(sums.yT[at][static_cast<std::size_t>(j)]);
+    }
+  }
+
+  /// The residual (ξ_1 − Δt ϖ_0 ; w_1 − ϖ_0) is linear in the local coordinates. Returns its cost.
+  double add_motion_prior(const GpInterval& interval, const Vector6& qc) {
+    const Matrix12 W = wnoa::process_information(interval.dt(), qc);
+    const Vector12 e = interval.prior_residual();
+    const Vector12 We = W * e;
+    // J = [0, −(Δt; 1), I]
+    Eigen::Matrix<double, 12, 6> WF = -interval.dt() * W.leftCols<6>() - W.rightCols<6>();
+    const Matrix6 FWF = -interval.dt() * WF.topRows<6>() - WF.bottomRows<6>();
+    H.block<6, 6>(6, 6) += FWF;
+    H.block<12, 6>(12, 6) += WF;
+    H.block<6, 12>(6, 12) += WF.transpose();
+    H.block<12, 12>(12, 12) += W;
+    g.segment<6>(6) -= interval.dt() * We.head<6>() + We.tail<6>();
+    g.tail<12>() += We;
+    return 0.5 * e.dot(We);
+  }
+};
+
+/// From the local coordinates to the increments of both states: the first 12 stay, (ξ_1, w_1) are mapped.
+void map_to_states(const LocalSystem& local, const EndMap& blocks, IntervalLinearisation& result) {
+  Matrix12x24 map = Matrix12x24::Zero();
+  map.block<6, 6>(0, 0) = blocks.xi1_T0;
+  map.block<6, 6>(0, 12) = blocks.xi1_T1;
+  map.block<6, 6>(6, 0) = blocks.w1_T0;
+  map.block<6, 6>(6, 12) = blocks.w1_T1;
+  map.block<6, 6>(6, 18) = blocks.w1_v1;
+  Matrix12x24 half;
+  half.noalias() = 0.5 * local.H.bottomRightCorner<12, 12>() * map;
+  half.leftCols<12>() += local.H.bottomLeftCorner<12, 12>();
+  Matrix24 mixed;
+  mixed.noalias() = map.transpose() * half;
+  result.states = mixed + mixed.transpose();
+  result.states.topLeftCorner<12, 12>() += local.H.topLeftCorner<12, 12>();
+  result.gradient.noalias() = map.transpose() * local.g.tail<12>();
+  result.gradient.head<12>() += local.g.head<12>();
+}
+
+/// An upper bound of |φ(τ)| in the interval.
+Range range_of(const GpInterval& interval) {
+  const double bound =
+      4.0 / 27.0 * interval.dt() * (interval.velocity0().head<3>().norm() + interval.w1().head<3>().norm()) +
+      interval.xi1().head<3>().norm();
+  if (bound < 1.0) return Range::small;
+  return bound < 3.5 ? Range::medium : Range::any;
+}
+
+}  // namespace
+
+void linearise_interval(const IntervalInput& in, IntervalLinearisation& result) {
+  const GpInterval interval(in.state0, in.state1);
+  const Matrix3 R0 = interval.T0().R();
+  const GpInterval::Derivatives d = interval.derivatives();
+  const EndMap map{d.xi1_T0, d.xi1_T1, d.w1_T0, d.w1_T1, d.w1_v1};
+  const auto& groups = in.observations.groups();
+  result.couplings.resize(groups.size());
+  thread_local std::vector<int> order;  // landmarks with the most observations first
+  order.resize(groups.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, [&](int a, int b) {
+    const auto& ga = groups[static_cast<std::size_t>(a)];
+    const auto& gb = groups[static_cast<std::size_t>(b)];
+    return ga.end - ga.begin > gb.end - gb.begin;
+  });
+  const Shared shared{in.loss,
+                      in.camera,
+                      interval.t0(),
+                      interval.dt(),
+                      lane3(interval.velocity0().head<3>()),
+                      lane3(interval.velocity0().tail<3>()),
+                      lane3(interval.xi1().head<3>()),
+                      lane3(interval.xi1().tail<3>()),
+                      lane3(interval.w1().head<3>()),
+                      lane3(interval.w1().tail<3>())};
+  IntervalSums sums;
+  switch (range_of(interval)) {
+    case Range::small: add_landmarks<Range::small>(shared, in, R0, map, order, sums, result); break;
+    case Range::medium: add_landmarks<Range::medium>(shared, in, R0, map, order, sums, result); break;
+    case Range::any: add_landmarks<Range::any>(shared, in, R0, map, order, sums, result); break;
+  }
+  LocalSystem local(sums);
+  result.cost = sum(sums.cost) + local.add_motion_prior(interval, in.qc);
+  map_to_states(local, map, result);
+}
+
+void linearise_interval(const FactorGraph& graph, int k, IntervalLinearisation& result) {
+  const auto index = static_cast<std::size_t>(k);
+  const IntervalObservations& observations = graph.intervals[index];
+  thread_local std::vector<Vector3> positions;
+  positions.clear();
+  for (const auto& group : observations.groups()) {
+    positions.push_back(graph.landmarks[static_cast<std::size_t>(group.landmark)].position);
+  }
+  linearise_interval(
+      {graph.camera, graph.loss, graph.qc, graph.states[index - 1], graph.states[index], observations, positions},
+      result);
+}
+
+}  // namespace evbench::gp_map
