@@ -64,7 +64,7 @@ TriangulationOptions BundleAdjustment::triangulation_options() const {
 }
 
 SolverOptions BundleAdjustment::solver_options(int iterations) const {
-  return {options_.loss, options_.loss_px, iterations};
+  return {options_.loss, options_.loss_width, iterations};
 }
 
 void BundleAdjustment::observe(std::span<const TrackObservation> observations) {
@@ -201,7 +201,7 @@ std::string BundleAdjustment::locate(int view) {
   if (static_cast<int>(keypoints.size()) < options_.min_landmarks) {
     return fmt::format("{} landmarks in sight, {} needed", keypoints.size(), options_.min_landmarks);
   }
-  const auto loss = make_loss(options_.loss, options_.loss_px);
+  const auto loss = make_loss(options_.loss, options_.loss_width);
   const PoseEstimate estimate = estimate_pose(now.T, map_, keypoints, context_.camera, loss.get(), options_.outlier_px);
   if (!(estimate.median_px <= 2.0 * options_.outlier_px)) {
     return fmt::format("no pose explains the landmarks (median reprojection error {:.1f} px)", estimate.median_px);

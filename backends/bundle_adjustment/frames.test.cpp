@@ -1,0 +1,70 @@
+#include "backends/bundle_adjustment/frames.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace evbench;
+using namespace evbench::bundle_adjustment;
+
+namespace {
+
+TrackObservation observation(TrackId id, double t, double x, double sigma = 1.0) {
+  return {id, t, {x, 2.0 * x}, sigma};
+}
+
+}  // namespace
+
+TEST_CASE("a feature in a frame is the mean of its observations, at their mean time") {
+  FrameBuilder builder({0.1, 0, 0.0});
+  CHECK(builder.add(std::vector{observation(2, 0.00, 10), observation(1, 0.02, 50), observation(2, 0.06, 14)}).empty());
+  const std::vector<Frame> frames = builder.advance(0.1);
+  REQUIRE(frames.size() == 1);
+  CHECK(frames[0].t == Approx(0.08 / 3));
+  REQUIRE(frames[0].keypoints.size() == 2);
+  CHECK(frames[0].keypoints[0].track == 1);
+  CHECK(frames[0].keypoints[0].sigma == Approx(1.0));
+  CHECK(frames[0].keypoints[1].pixel.isApprox(Vector2(12, 24)));
+  CHECK(frames[0].keypoints[1].sigma == Approx(std::sqrt(0.5)));
+}
+
+TEST_CASE("noise that a track's observations share stays in their mean") {
+  FrameBuilder builder({0.1, 0, 0.6});
+  std::vector<TrackObservation> observations;
+  for (int i = 0; i < 50; ++i) observations.push_back(observation(1, 0.001 * i, 10));
+  builder.add(observations);
+  CHECK(builder.advance(0.1).at(0).keypoints.at(0).sigma == Approx(std::sqrt(0.36 + 0.64 / 50)));
+}
+
+TEST_CASE("frames by duration follow one another, and a gap makes none") {
+  FrameBuilder builder({0.1, 0, 0.0});
+  std::vector<Frame> frames = builder.add(std::vector{observation(1, 1.0, 1), observation(1, 1.05, 1),
+                                                      observation(1, 1.12, 2), observation(1, 1e6 + 0.05, 3)});
+  REQUIRE(frames.size() == 2);
+  CHECK(frames[0].t == Approx(1.025));
+  CHECK(frames[1].t == Approx(1.12));
+  frames = builder.advance(1e6 + 1.0);
+  REQUIRE(frames.size() == 1);
+  CHECK(frames[0].t == Approx(1e6 + 0.05));
+  CHECK(builder.advance(2e6).empty());
+}
+
+TEST_CASE("frames by count hold that many observations") {
+  FrameBuilder builder({0.1, 3, 0.0});
+  std::vector<TrackObservation> observations;
+  for (int i = 0; i < 8; ++i) observations.push_back(observation(1, 0.5 * i, i));
+  const std::vector<Frame> frames = builder.add(observations);
+  REQUIRE(frames.size() == 2);
+  CHECK(frames[0].keypoints.at(0).pixel.x() == Approx(1.0));
+  CHECK(frames[1].keypoints.at(0).pixel.x() == Approx(4.0));
+  CHECK(builder.advance(100.0).empty());
+  const std::optional<Frame> rest = builder.rest();
+  REQUIRE(rest);
+  CHECK(rest->keypoints.at(0).pixel.x() == Approx(6.5));
+}
+
+TEST_CASE("no observations make no frames") {
+  FrameBuilder builder({0.1, 0, 0.0});
+  CHECK(builder.add({}).empty());
+  CHECK(builder.advance(10.0).empty());
+  CHECK_FALSE(builder.rest());
+}

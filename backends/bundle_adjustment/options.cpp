@@ -16,7 +16,8 @@ void Options::declare(OptionSet& set) {
   set.add("outlier_px", outlier_px, "a track with a larger mean reprojection error is removed [px]").above(0.0);
   set.add("window", window, "newest frames that an update optimises; older ones are held").range(2);
   set.add("loss", loss, "robust loss").choices({"none", "huber", "cauchy"});
-  set.add("loss_px", loss_px, "reprojection error where the loss turns from quadratic [px]").above(0.0);
+  set.add("loss_width", loss_width, "reprojection error where the loss turns from quadratic [sigmas of the keypoint]")
+      .above(0.0);
   set.add("iterations", iterations, "iterations of an update, at most").range(1);
   set.add("global_solve", global_solve, "optimise all frames and landmarks at the end");
   set.add("global_iterations", global_iterations, "iterations of the solve at the end, at most").range(1);

@@ -10,7 +10,7 @@ struct Options {
   // Frames.
   double frame_duration = 0.05;  ///< [s]
   int frame_observations = 0;    ///< observations in a frame; 0: frames by duration
-  double common_noise_px = 0.5;  ///< part of an observation's noise that all observations in a frame share
+  double common_noise_px = 0.3;  ///< part of an observation's noise that all observations in a frame share
   // Map.
   InitialiserOptions initialiser;  ///< its window is as long as a frame: it sees frame means
   double min_parallax_deg = 1.5;   ///< of a new landmark
@@ -18,8 +18,8 @@ struct Options {
   double outlier_px = 4.0;         ///< a track with a larger mean reprojection error is removed
   // Solver.
   int window = 10;  ///< frames that each update optimises
-  std::string loss = "huber";
-  double loss_px = 1.0;      ///< reprojection error where the loss turns from quadratic
+  std::string loss = "cauchy";
+  double loss_width = 1.0;   ///< reprojection error where the loss turns from quadratic [sigmas of the keypoint]
   int iterations = 10;       ///< of an update, at most
   bool global_solve = true;  ///< of everything, at the end
   int global_iterations = 50;
