@@ -140,12 +140,15 @@ void MotionOptions::declare(OptionSet& set) {
 Motion make_motion(const MotionOptions& options, double duration, std::uint64_t seed, const std::string& folder,
                    const std::string& place) {
   constexpr double gap = 2.0 * StoppingClock::ramp;
-  const StoppingClock moving(parse_time_spans(options.hold, place + ".hold", gap));
-  const StoppingClock translating(parse_time_spans(options.rotation_only, place + ".rotation_only", gap));
+  const std::vector<TimeSpan> hold = parse_time_spans(options.hold, place + ".hold", gap);
+  const std::vector<TimeSpan> no_translation =
+      merge_time_spans(hold, parse_time_spans(options.rotation_only, place + ".rotation_only", gap),
+                       place + ".hold and .rotation_only", gap);
+  // The position rests in both kinds of spans, the rotation in the first only.
+  const StoppingClock rotation_clock(hold), position_clock(no_translation);
   const Motion base = base_motion(options, duration, seed, folder, place);
-  return [base, moving, translating](double t) {
-    const double now = moving(t);
-    return SE3{base(now).q, base(translating(now)).p};
+  return [base, rotation_clock, position_clock](double t) {
+    return SE3{base(rotation_clock(t)).q, base(position_clock(t)).p};
   };
 }
 

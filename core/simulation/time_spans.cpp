@@ -15,6 +15,16 @@ double step_integral(double x) {
   return c * c * c * (1.0 - 0.5 * c);
 }
 
+void expect_apart(const std::vector<TimeSpan>& spans, const std::string& place, double gap) {
+  for (std::size_t i = 1; i < spans.size(); ++i) {
+    if (spans[i].from >= spans[i - 1].to + gap) continue;
+    throw InputError(
+        fmt::format("{}: the span from {} s begins less than {} s after the one before it, which ends at "
+                    "{} s; expected spans in order and apart",
+                    place, spans[i].from, gap, spans[i - 1].to));
+  }
+}
+
 }  // namespace
 
 std::vector<TimeSpan> parse_time_spans(const std::vector<double>& list, const std::string& place, double gap) {
@@ -27,15 +37,18 @@ std::vector<TimeSpan> parse_time_spans(const std::vector<double>& list, const st
     if (!(span.from < span.to)) {
       throw InputError(fmt::format("{}: the span {} to {} s is empty; expected from < to", place, span.from, span.to));
     }
-    if (!spans.empty() && span.from < spans.back().to + gap) {
-      throw InputError(
-          fmt::format("{}: the span from {} s begins less than {} s after the one before it, which ends at "
-                      "{} s; expected spans in order and apart",
-                      place, span.from, gap, spans.back().to));
-    }
     spans.push_back(span);
   }
+  expect_apart(spans, place, gap);
   return spans;
+}
+
+std::vector<TimeSpan> merge_time_spans(std::vector<TimeSpan> a, const std::vector<TimeSpan>& b,
+                                       const std::string& place, double gap) {
+  a.insert(a.end(), b.begin(), b.end());
+  std::ranges::sort(a, {}, &TimeSpan::from);
+  expect_apart(a, place, gap);
+  return a;
 }
 
 double StoppingClock::operator()(double t) const {

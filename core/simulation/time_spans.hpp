@@ -13,6 +13,10 @@ struct TimeSpan {
 /// empty span, and spans that are not in order or nearer than `gap` [s] to each other.
 std::vector<TimeSpan> parse_time_spans(const std::vector<double>& list, const std::string& place, double gap = 0.0);
 
+/// Both lists as one, in order. Throws InputError, naming `place`, where they overlap or are nearer than `gap` [s].
+std::vector<TimeSpan> merge_time_spans(std::vector<TimeSpan> a, const std::vector<TimeSpan>& b,
+                                       const std::string& place, double gap);
+
 /// A clock that stops: it runs with the time, stands still inside the given spans, and slows down and speeds up
 /// smoothly (once continuously differentiable rate) over `ramp` [s] on either side. A motion that is read by it comes
 /// to rest.

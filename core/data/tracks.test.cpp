@@ -1,0 +1,71 @@
+#include "core/data/tracks.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/support/error.hpp"
+#include "core/testing/data.hpp"
+
+using namespace evbench;
+using Catch::Matchers::Contains;
+
+namespace {
+
+TrackFile tracks(const std::string& content) {
+  const testing::TemporaryFolder folder;
+  return read_tracks(folder.write("tracks.txt", content), 240, 180, 0.5);
+}
+
+}  // namespace
+
+TEST_CASE("Tracks are sorted by time, then by id, and oddities are counted") {
+  const TrackFile file = tracks("7 0.2 1 1\n3 0.2 2 2\n7 0.1 3 3\n7 0.2 9 9\n3 0.3 240 10\n5 0.1 4 4\n");
+  REQUIRE(file.observations.size() == 5);
+  CHECK(file.observations[0].track == 5);
+  CHECK(file.observations[1].track == 7);
+  CHECK(file.observations[2].track == 3);
+  CHECK(file.observations[3].pixel == Vector2(1, 1));
+  CHECK(file.observations[3].sigma == 0.5);
+  CHECK(file.report.records == 6);
+  CHECK(file.report.tracks == 3);
+  CHECK(file.report.unordered == 1);
+  CHECK(file.report.duplicates == 1);
+  CHECK(file.report.outside == 1);
+  CHECK(file.report.single_observation == 1);
+}
+
+TEST_CASE("A file that holds one track after the other is not out of order") {
+  CHECK(tracks("1 0.1 1 1\n1 0.2 1 1\n2 0.1 1 1\n2 0.2 1 1\n").report.unordered == 0);
+}
+
+TEST_CASE("A track file reads back exactly as written") {
+  const testing::TemporaryFolder folder;
+  const std::vector<TrackObservation> written = {{4, 0.1 + 0.2, {1.0 / 3.0, 100.123456789}, 1.0},
+                                                 {-2, 7.0, {0, 1}, 1.0}};
+  write_tracks(folder.file("tracks.txt"), written);
+  const auto read = read_tracks(folder.file("tracks.txt"), 240, 180).observations;
+  REQUIRE(read.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(read[i].track == written[i].track);
+    CHECK(read[i].t == written[i].t);
+    CHECK(read[i].pixel == written[i].pixel);
+  }
+}
+
+TEST_CASE("A damaged track file is refused with the line and what is wrong") {
+  CHECK_THROWS_AS(tracks(""), InputError);
+  CHECK_THROWS_WITH(tracks(""), Contains("holds no observation"));
+  CHECK_THROWS_WITH(tracks("1 0.1 1 1\n1 0.2 1\n"), Contains("tracks.txt:2: has 3 columns; expected 4"));
+  CHECK_THROWS_WITH(tracks("1.5 0.1 1 1\n"), Contains("tracks.txt:1: the id is \"1.5\""));
+  CHECK_THROWS_WITH(tracks("1 nan 1 1\n"), Contains("the time is \"nan\""));
+  CHECK_THROWS_WITH(tracks("1 0.1 inf 1\n"), Contains("x is \"inf\""));
+  CHECK_THROWS_WITH(read_tracks("/no/such/file", 240, 180), Contains("no such file"));
+}
+
+TEST_CASE("The real tracks of poster_translation read whole") {
+  const auto path = testing::data_file("poster_translation/tracks_eklt.txt");
+  if (!path) return;
+  const TrackFile file = read_tracks(*path, 240, 180);
+  CHECK(file.report.records == 66331);
+  CHECK(file.report.tracks == 80);
+  CHECK(file.report.outside == 123);
+}

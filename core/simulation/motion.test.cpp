@@ -1,0 +1,100 @@
+#include "core/simulation/motion.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/data/tum.hpp"
+#include "core/simulation/random.hpp"
+#include "core/simulation/time_spans.hpp"
+#include "core/support/error.hpp"
+#include "core/testing/data.hpp"
+
+using namespace evbench;
+
+namespace {
+
+Vector6 velocity(const Motion& motion, double t) {
+  const double h = 1e-4;
+  return se3::log(motion(t - h).inverse() * motion(t + h)) / (2.0 * h);
+}
+
+Motion motion_of(MotionOptions options, const std::string& folder = "", double duration = 10.0) {
+  return make_motion(options, duration, 3, folder, "motion");
+}
+
+void check_smooth(const Motion& motion, double duration, double largest_jump) {
+  for (double t = 0.01; t < duration - 0.01; t += 0.0037) {
+    REQUIRE((velocity(motion, t + 0.001) - velocity(motion, t)).norm() < largest_jump);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Uniform and normal numbers have the moments that they should have, streams differ, seeds repeat") {
+  Random random(1);
+  double sum = 0.0, squares = 0.0, uniform = 0.0;
+  constexpr int n = 200000;
+  for (int i = 0; i < n; ++i) {
+    const double x = random.normal();
+    sum += x;
+    squares += x * x;
+    uniform += random.uniform();
+  }
+  CHECK(sum / n == Approx(0.0).margin(0.01));
+  CHECK(squares / n == Approx(1.0).margin(0.015));
+  CHECK(uniform / n == Approx(0.5).margin(0.005));
+  CHECK(Random(1).next() == Random(1).next());
+  CHECK(Random(1).next() != Random(2).next());
+  CHECK(Random(1, 0).next() != Random(1, 1).next());
+}
+
+TEST_CASE("Built-in motions are smooth and stay within their amplitude") {
+  MotionOptions options;
+  options.kind = GENERATE("robot_arm", "smooth_random");
+  const Motion motion = motion_of(options);
+  check_smooth(motion, 10.0, 0.05);
+  for (double t = 0.0; t < 10.0; t += 0.1) REQUIRE(motion(t).p.cwiseAbs().maxCoeff() <= options.amplitude);
+  CHECK(sample_motion(motion, 10.0, 200.0).path_length() > 1.0);
+}
+
+TEST_CASE("The robot arm's motion repeats after its period") {
+  const Motion motion = motion_of({});
+  CHECK(se3::log(motion(1.3).inverse() * motion(7.3)).norm() < 1e-9);
+}
+
+TEST_CASE("A trajectory file is followed, with continuous velocity") {
+  const testing::TemporaryFolder folder;
+  const Motion truth = motion_of({});
+  write_tum(folder.file("path.txt"), sample_motion(truth, 10.0, 50.0));
+  MotionOptions options;
+  options.kind = "trajectory";
+  options.trajectory = "path.txt";
+  options.start = 1.0;
+  options.knot_rate = 0.0;
+  const Motion motion = motion_of(options, folder.path(), 8.0);
+  check_smooth(motion, 8.0, 0.05);
+  for (double t = 0.0; t <= 8.0; t += 0.013) {
+    REQUIRE(se3::log(truth(t + 1.0).inverse() * motion(t)).norm() < 1e-4);
+  }
+}
+
+TEST_CASE("A camera on hold rests, one that only rotates keeps its place, and neither jumps") {
+  MotionOptions options;
+  options.hold = {2.0, 3.0};
+  options.rotation_only = {5.0, 6.0};
+  const Motion motion = motion_of(options);
+  CHECK(velocity(motion, 2.5).norm() < 1e-9);
+  CHECK(velocity(motion, 5.5).tail<3>().norm() < 1e-9);
+  CHECK(velocity(motion, 5.5).head<3>().norm() > 0.01);
+  CHECK(velocity(motion, 8.0).tail<3>().norm() > 0.01);
+  check_smooth(motion, 10.0, 0.05);
+  options.rotation_only = {2.5, 4.0};
+  CHECK_THROWS_AS(motion_of(options), InputError);
+}
+
+TEST_CASE("Time spans that are no pairs, empty, out of order or too near are refused") {
+  CHECK(parse_time_spans({1, 2, 3, 4}, "x").size() == 2);
+  CHECK_THROWS_AS(parse_time_spans({1}, "x"), InputError);
+  CHECK_THROWS_AS(parse_time_spans({2, 1}, "x"), InputError);
+  CHECK_THROWS_AS(parse_time_spans({3, 4, 1, 2}, "x"), InputError);
+  CHECK_THROWS_AS(parse_time_spans({1, 2, 2.1, 3}, "x", 0.4), InputError);
+}

@@ -1,0 +1,26 @@
+#include "core/support/path.hpp"
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+
+#include "core/support/error.hpp"
+
+using namespace evbench;
+using Catch::Matchers::Contains;
+
+TEST_CASE("Relative paths are taken from the folder, absolute ones are left alone") {
+  CHECK(resolve_path("a/b.txt", "/folder") == "/folder/a/b.txt");
+  CHECK(resolve_path("../b.txt", "/folder/c") == "/folder/b.txt");
+  CHECK(resolve_path("/a/b.txt", "/folder") == "/a/b.txt");
+  CHECK(resolve_path("a", "") == "a");
+}
+
+TEST_CASE("Environment variables in paths are expanded, unset ones are refused with what to set") {
+  REQUIRE(::setenv("EVBENCH_TEST_VARIABLE", "/data", 1) == 0);
+  CHECK(resolve_path("${EVBENCH_TEST_VARIABLE}/x", "/folder") == "/data/x");
+  CHECK(resolve_path("/a/${EVBENCH_TEST_VARIABLE}/${EVBENCH_TEST_VARIABLE}", "") == "/a//data//data");
+  REQUIRE(::unsetenv("EVBENCH_TEST_VARIABLE") == 0);
+  CHECK_THROWS_AS(resolve_path("${EVBENCH_TEST_VARIABLE}/x", ""), InputError);
+  CHECK_THROWS_WITH(resolve_path("${EVBENCH_TEST_VARIABLE}/x", ""), Contains("EVBENCH_TEST_VARIABLE is not set"));
+  CHECK_THROWS_WITH(resolve_path("${EVBENCH_TEST_VARIABLE", ""), Contains("closing brace"));
+}
