@@ -162,7 +162,7 @@ void BundleAdjustment::accept(Trial trial, int view) {
                   trial.parallax_deg, trial.good, trial.error));
   recovered(map_.views[at(trial.segment.first)].t);
   remove_outliers(trial.segment.first);
-  map_.triangulate_new(context_.camera, triangulation_options(), options_.min_track_frames);
+  map_.triangulate_new(context_.camera, triangulation_options(), {options_.min_track_frames, options_.min_track_time});
   update_motion(view);
   if (!first_map) return;
   for (int i = trial.segment.first; i <= view; ++i) online_.push_back({map_.views[at(i)].t, map_.views[at(i)].T});
@@ -180,7 +180,8 @@ SolveReport BundleAdjustment::track(int view) {
   SolveReport report;
   if (failure.empty()) {
     recovered(now.t);
-    map_.triangulate_new(context_.camera, triangulation_options(), options_.min_track_frames);
+    map_.triangulate_new(context_.camera, triangulation_options(),
+                         {options_.min_track_frames, options_.min_track_time});
     report = solve_window(view);
     remove_outliers(view - options_.window);
     update_motion(view);

@@ -13,6 +13,9 @@ void Options::declare(OptionSet& set) {
   set.group("initialiser", initialiser, "initialisation from two frames");
   set.add("min_parallax_deg", min_parallax_deg, "parallax of a new landmark, at least [deg]").range(0.0, 90.0);
   set.add("min_track_frames", min_track_frames, "frames that a new landmark must be seen in").range(2);
+  set.add("min_track_time", min_track_time,
+          "time that these frames must span: over a short time, an outlier fits any motion [s]")
+      .range(0.0);
   set.add("outlier_px", outlier_px, "a track with a larger mean reprojection error is removed [px]").above(0.0);
   set.add("window", window, "newest frames that an update optimises; older ones are held").range(2);
   set.add("loss", loss, "robust loss").choices({"none", "huber", "cauchy"});

@@ -13,20 +13,22 @@ struct Options {
   double common_noise_px = 0.3;  ///< part of an observation's noise that all observations in a frame share
   // Map.
   InitialiserOptions initialiser;  ///< its window is as long as a frame: it sees frame means
-  double min_parallax_deg = 1.5;   ///< of a new landmark
+  double min_parallax_deg = 1.0;   ///< of a new landmark
   int min_track_frames = 3;        ///< frames that a new landmark must be seen in
-  double outlier_px = 4.0;         ///< a track with a larger mean reprojection error is removed
+  double min_track_time = 0.3;     ///< [s] that these must span: over a short time, an outlier fits any motion
+  double outlier_px = 2.0;         ///< a track with a larger mean reprojection error is removed
   // Solver.
   int window = 10;  ///< frames that each update optimises
   std::string loss = "cauchy";
   double loss_width = 1.0;   ///< reprojection error where the loss turns from quadratic [sigmas of the keypoint]
   int iterations = 10;       ///< of an update, at most
   bool global_solve = true;  ///< of everything, at the end
-  int global_iterations = 50;
+  int global_iterations = 25;
   // Degenerate stretches.
   int min_landmarks = 6;    ///< in a frame; with fewer, the pose is predicted and the frame degraded
   double lost_after = 1.0;  ///< [s] without min_landmarks
 
+  Options() { initialiser.two_view.min_parallax_deg = 4.0; }
   void declare(OptionSet& set);
 };
 

@@ -54,17 +54,15 @@ Triangulation Reconstruction::triangulate_track(const Track& track, const Pinhol
   return triangulate(poses, pixels, camera, options);
 }
 
-int Reconstruction::triangulate_new(const PinholeCamera& camera, const TriangulationOptions& options, int min_views) {
-  int made = 0;
+void Reconstruction::triangulate_new(const PinholeCamera& camera, const TriangulationOptions& options,
+                                     const Maturity& needed) {
   for (const Keypoint& keypoint : views.back().keypoints) {
     Track& track = tracks.at(keypoint.track);
-    if (track.position || static_cast<int>(track.sightings.size()) < min_views) continue;
+    if (track.position || static_cast<int>(track.sightings.size()) < needed.views) continue;
+    if (views.back().t - views[static_cast<std::size_t>(track.sightings.front().view)].t < needed.time) continue;
     const Triangulation result = triangulate_track(track, camera, options);
-    if (!result.ok()) continue;
-    track.position = result.point;
-    ++made;
+    if (result.ok()) track.position = result.point;
   }
-  return made;
 }
 
 double Reconstruction::mean_error(const Track& track, const PinholeCamera& camera) const {

@@ -46,8 +46,14 @@ struct Reconstruction {
 
   std::vector<Keypoint> landmarks_in(int view) const;  ///< the view's keypoints of landmarks
 
-  /// Triangulates tracks that are no landmarks yet from the estimated views that see them; returns how many it made.
-  int triangulate_new(const PinholeCamera& camera, const TriangulationOptions& options, int min_views);
+  /// What a track must have before it can become a landmark.
+  struct Maturity {
+    int views = 3;
+    double time = 0.0;  ///< [s], from its first to its last view
+  };
+
+  /// Triangulates the newest view's tracks that are no landmarks yet from the estimated views that see them.
+  void triangulate_new(const PinholeCamera& camera, const TriangulationOptions& options, const Maturity& needed);
 
   /// Tracks that are landmarks seen since view `first`, whose mean reprojection error over all estimated views
   /// exceeds `limit_px` even after they have been triangulated anew.
