@@ -12,9 +12,9 @@ using TrackId = std::int64_t;
 /// order. A track is the set of observations with one id; it starts, is updated at irregular times, and ends.
 struct TrackObservation {
   TrackId track = 0;
-  double t = 0.0;                    ///< [s], sequence time
-  Vector2 pixel = Vector2::Zero();   ///< [px]; raw from a front-end, undistorted when a back-end gets it
-  double sigma = 1.0;                ///< isotropic standard deviation [px]
+  double t = 0.0;                   ///< [s], sequence time
+  Vector2 pixel = Vector2::Zero();  ///< [px]; raw from a front-end, undistorted when a back-end gets it
+  double sigma = 1.0;               ///< isotropic standard deviation [px]
 };
 
 }  // namespace evbench
