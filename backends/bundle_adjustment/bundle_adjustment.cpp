@@ -19,7 +19,8 @@ constexpr double longest_prediction = 0.5;  // [s]; farther, constant velocity s
 constexpr double clearly_cheaper = 1.1;     // ratio of two initial guesses' errors that decides between them
 constexpr double parallax_to_decide = 3.0;  // times the least parallax: then the cheaper guess is taken anyway
 constexpr int held_windows = 3;             // windows before the optimised one whose sightings hold landmarks in place
-constexpr int global_rounds = 3;            // of solving and removing outliers
+constexpr double shortest_silence = 0.2;    // [s] without observations that is told as degraded
+constexpr int global_rounds = 2;            // of solving and removing outliers
 constexpr double smallest_step = 1e-6;      // [s] between frames of observations with one and the same time
 
 std::size_t at(int view) { return static_cast<std::size_t>(view); }
@@ -179,6 +180,9 @@ SolveReport BundleAdjustment::track(int view) {
   const std::string failure = locate(view);
   SolveReport report;
   if (failure.empty()) {
+    if (!failing_since_ && silent_before(view)) {
+      degraded_.push_back({map_.views[at(view - 1)].t, now.t, "no observations"});
+    }
     recovered(now.t);
     map_.triangulate_new(context_.camera, triangulation_options(),
                          {options_.min_track_frames, options_.min_track_time});
@@ -212,6 +216,14 @@ std::string BundleAdjustment::locate(int view) {
   return "";
 }
 
+/// Is the time since the view before much longer than between frames before?
+bool BundleAdjustment::silent_before(int view) const {
+  if (view < 2) return false;
+  const double gap = map_.views[at(view)].t - map_.views[at(view - 1)].t;
+  const double usual = map_.views[at(view - 1)].t - map_.views[at(view - 2)].t;
+  return gap > shortest_silence && gap > 3.0 * usual;
+}
+
 void BundleAdjustment::remember(int view) {
   const View& now = map_.views[at(view)];
   for (const Keypoint& z : now.keypoints) {
@@ -224,7 +236,7 @@ void BundleAdjustment::failing(int view, const std::string& reason) {
   const double t = map_.views[at(view)].t;
   if (!failing_since_) {
     failing_since_ = t;
-    degraded_.push_back({t, t, reason});
+    degraded_.push_back({map_.views[at(view - 1)].t, t, reason});
     means_ = TrackBuffer();
     initialiser_ = Initialiser(initialiser_options(), context_.camera);
   }

@@ -80,6 +80,7 @@ class BundleAdjustment : public BackEnd {
   void accept(Trial trial, int view);
   SolveReport track(int view);
   std::string locate(int view);
+  bool silent_before(int view) const;
   void remember(int view);
   void failing(int view, const std::string& reason);
   void recovered(double t);

@@ -176,7 +176,7 @@ TEST_CASE("a camera at rest and a pure rotation never initialise and say why") {
   }
 }
 
-TEST_CASE("a blackout that the tracks survive costs nothing but its time") {
+TEST_CASE("a blackout that the tracks survive is told as degraded and costs nothing else") {
   Simulation simulation;
   simulation.blackout_from = 2.0;
   simulation.blackout_to = 2.4;
@@ -185,6 +185,10 @@ TEST_CASE("a blackout that the tracks survive costs nothing but its time") {
   CHECK(backend.trajectory().end() > 3.9);
   CHECK(ate(backend.trajectory(), simulation.motion) < 0.01);
   CHECK(backend.pose(2.2));
+  CHECK(backend.status().state == RunState::degraded);
+  REQUIRE(backend.status().degraded.size() == 1);
+  CHECK(backend.status().degraded.front().from == Approx(2.0).margin(0.06));
+  CHECK(backend.status().degraded.front().to == Approx(2.4).margin(0.06));
 }
 
 TEST_CASE("after a blackout that ends all tracks the map starts afresh at the predicted pose") {
@@ -196,7 +200,8 @@ TEST_CASE("after a blackout that ends all tracks the map starts afresh at the pr
   feed(backend, simulate(simulation));
   CHECK(backend.status().state == RunState::degraded);
   REQUIRE_FALSE(backend.status().degraded.empty());
-  CHECK(backend.status().degraded.front().from == Approx(2.2).margin(0.1));
+  CHECK(backend.status().degraded.front().from == Approx(2.0).margin(0.06));
+  CHECK(backend.status().degraded.front().to == Approx(2.2).margin(0.06));
   CHECK(backend.trajectory().end() > 3.9);
   CHECK(finite(backend.trajectory()));
   CHECK(ate(backend.trajectory(), simulation.motion) < 0.15);
