@@ -37,8 +37,8 @@ TEST_CASE("gp_map's estimate does not depend on how its observations are cut int
   const TrackedScene scene(3.0);
   const auto fine = run(scene, {.chunk = 0.003});
   const auto coarse = run(scene, {.chunk = 0.25});
-  const auto& a = fine.backend->trajectory().poses();
-  const auto& b = coarse.backend->trajectory().poses();
+  const auto a = fine.backend->trajectory().poses();
+  const auto b = coarse.backend->trajectory().poses();
   REQUIRE(a.size() == b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     CHECK(a[i].T.p == b[i].T.p);

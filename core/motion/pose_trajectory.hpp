@@ -21,7 +21,8 @@ class PoseTrajectory {
   /// Throws InputError when the stamps are not strictly increasing; `name` says whose they are.
   explicit PoseTrajectory(std::vector<StampedPose> poses, const std::string& name = "trajectory");
 
-  const std::vector<StampedPose>& poses() const { return poses_; }
+  const std::vector<StampedPose>& poses() const& { return poses_; }
+  std::vector<StampedPose> poses() && { return std::move(poses_); }
   bool empty() const { return poses_.empty(); }
   std::size_t size() const { return poses_.size(); }
   double start() const { return poses_.front().t; }  ///< [s]; not of an empty trajectory
