@@ -14,6 +14,11 @@ using Triplet = Eigen::Triplet<double>;
 constexpr int kStateSize = 12;
 constexpr int kLandmarkSize = 3;
 
+/// A matrix that is not positive definite is a result here, not a warning on the console.
+struct Cholesky : Eigen::CholmodSupernodalLLT<Sparse, Eigen::Lower> {
+  Cholesky() { cholmod().print = 0; }
+};
+
 /// Which variables a solve moves and where they stand in the vector; −1: fixed.
 struct Layout {
   int first_interval = 1;  ///< the first interval whose factors touch a free variable
@@ -183,7 +188,7 @@ BatchSummary solve_batch(FactorGraph& graph, const BatchOptions& options) {
     return summary;
   }
   summary.initial_cost = summary.final_cost = cost_of(graph, layout);
-  Eigen::CholmodSupernodalLLT<Sparse, Eigen::Lower> cholesky;
+  Cholesky cholesky;
   bool analysed = false;
   double damping = 1e-6;  // relative to the diagonal
   constexpr double kMaxDamping = 1e8;
@@ -229,7 +234,7 @@ BatchSummary solve_batch(FactorGraph& graph, const BatchOptions& options) {
 
 struct BatchCovariance::Factor {
   Layout layout;
-  Eigen::CholmodSupernodalLLT<Sparse, Eigen::Lower> cholesky;
+  Cholesky cholesky;
   bool usable = false;
 
   explicit Factor(const FactorGraph& graph) : layout(graph, 0) {

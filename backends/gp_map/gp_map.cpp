@@ -41,11 +41,8 @@ GpMap::GpMap(const Options& options, const BackEndContext& context)
 }
 
 void GpMap::observe(std::span<const TrackObservation> observations) {
-  tracks_.add(observations);
-  for (const TrackObservation& z : observations) {
-    placement_.observe(z.t);
-    pending_.push_back(z);
-  }
+  for (const TrackObservation& z : observations) placement_.observe(z.t);
+  pending_.insert(pending_.end(), observations.begin(), observations.end());
 }
 
 void GpMap::advance(double t) {
@@ -55,6 +52,7 @@ void GpMap::advance(double t) {
 void GpMap::step(double t) {
   if (health_.lost()) return;
   const auto start = std::chrono::steady_clock::now();
+  take_observations(t);
   if (graph_.states.empty()) {
     initialise(t);
   } else {
@@ -149,11 +147,10 @@ void GpMap::start_from(FactorGraph graph, const InitialGuess& guess) {
     landmark_of_[guess.landmarks[j].track] = static_cast<int>(j);
     track_of_.push_back(guess.landmarks[j].track);
   }
-  const double newest = graph_.states.back().t;
-  std::erase_if(pending_, [&](const TrackObservation& z) { return z.t <= newest; });
-  context_.log(fmt::format(
-      "{:.3f} s: first map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s", newest,
-      graph_.landmarks.size(), graph_.observation_count(), guess.median_parallax_deg, graph_.states.front().t));
+  context_.log(
+      fmt::format("{:.3f} s: first map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s",
+                  graph_.states.back().t, graph_.landmarks.size(), graph_.observation_count(),
+                  guess.median_parallax_deg, graph_.states.front().t));
   remove_outliers();
   add_landmarks();
   optimise();
@@ -170,15 +167,20 @@ Observation GpMap::observation(const TrackObservation& z) const {
   return {z.t, z.pixel, 1.0 / (z.sigma * options_.sigma_scale)};
 }
 
+/// Observations up to the new control state, no later ones: the estimate at a time depends on what was seen until then.
+void GpMap::take_observations(double t) {
+  const auto later = std::ranges::upper_bound(pending_, t, {}, &TrackObservation::t);
+  recent_.assign(pending_.begin(), later);
+  pending_.erase(pending_.begin(), later);
+  tracks_.add(recent_);
+}
+
 /// Those of tracks that are landmarks; the others wait in the track buffer until theirs are located.
 void GpMap::add_observations() {
-  const double newest = graph_.states.back().t;
-  const auto later = std::find_if(pending_.begin(), pending_.end(), [&](const auto& z) { return z.t > newest; });
-  for (auto z = pending_.begin(); z != later; ++z) {
-    const auto landmark = landmark_of_.find(z->track);
-    if (landmark != landmark_of_.end()) graph_.add_observation(landmark->second, observation(*z));
+  for (const TrackObservation& z : recent_) {
+    const auto landmark = landmark_of_.find(z.track);
+    if (landmark != landmark_of_.end()) graph_.add_observation(landmark->second, observation(z));
   }
-  pending_.erase(pending_.begin(), later);
 }
 
 void GpMap::add_all_observations(FactorGraph& graph, int landmark, TrackId track) const {

