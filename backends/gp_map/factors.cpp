@@ -5,6 +5,7 @@
 #include "core/motion/wnoa.hpp"
 
 namespace evbench::gp_map {
+
 Vector2 reprojection_residual(const GpInterval& interval, const Vector3& landmark, const Observation& z,
                               const PinholeCamera& camera) {
   const Vector3 q = interval.pose(z.t).inverse() * landmark;
@@ -31,7 +32,10 @@ Vector3 residual(const LandmarkPrior& prior, const Vector3& position) {
 }
 
 void add_state_priors(const FactorGraph& graph, int state, Matrix12& H, Vector12& g) {
-  const ControlState& x = graph.states[static_cast<std::size_t>(state)];
+  add_state_priors(graph, state, graph.states[static_cast<std::size_t>(state)], H, g);
+}
+
+void add_state_priors(const FactorGraph& graph, int state, const ControlState& x, Matrix12& H, Vector12& g) {
   for (const PosePrior& prior : graph.pose_priors) {
     if (prior.state != state) continue;
     const Vector6 whiten = prior.sigma.cwiseInverse();
@@ -45,6 +49,33 @@ void add_state_priors(const FactorGraph& graph, int state, Matrix12& H, Vector12
     H.bottomRightCorner<6, 6>().diagonal() += whiten.cwiseAbs2();
     g.tail<6>() += whiten.cwiseProduct(residual(prior, x));
   }
+}
+
+double interval_cost(const FactorGraph& graph, int k) {
+  const auto index = static_cast<std::size_t>(k);
+  const GpInterval interval(graph.states[index - 1], graph.states[index]);
+  double cost = motion_prior_cost(interval, graph.qc);
+  const IntervalObservations& observations = graph.intervals[index];
+  for (const auto& group : observations.groups()) {
+    const Vector3 landmark = graph.landmarks[static_cast<std::size_t>(group.landmark)].position;
+    for (int i = group.begin; i < group.end; ++i) {
+      const Observation& z = observations.all()[static_cast<std::size_t>(i)];
+      cost += 0.5 * graph.loss.value(reprojection_residual(interval, landmark, z, graph.camera).squaredNorm());
+    }
+  }
+  return cost;
+}
+
+double state_prior_cost(const FactorGraph& graph, int state) {
+  const ControlState& x = graph.states[static_cast<std::size_t>(state)];
+  double cost = 0.0;
+  for (const PosePrior& prior : graph.pose_priors) {
+    if (prior.state == state) cost += 0.5 * residual(prior, x).squaredNorm();
+  }
+  for (const VelocityPrior& prior : graph.velocity_priors) {
+    if (prior.state == state) cost += 0.5 * residual(prior, x).squaredNorm();
+  }
+  return cost;
 }
 
 double mean_log_distance(const FactorGraph& graph) {

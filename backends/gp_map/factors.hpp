@@ -16,6 +16,9 @@ Vector6 residual(const PosePrior& prior, const ControlState& state);
 Vector6 residual(const VelocityPrior& prior, const ControlState& state);
 Vector3 residual(const LandmarkPrior& prior, const Vector3& position);  ///< zero without a prior
 
+/// ½ Σ ρ of an interval's observations and motion prior, and ½ Σ of the priors on a state.
+double interval_cost(const FactorGraph& graph, int k);
+double state_prior_cost(const FactorGraph& graph, int state);
 double mean_log_distance(const FactorGraph& graph);  ///< of the scale anchor's landmarks; 0 without any
 
 using Matrix24 = Eigen::Matrix<double, 24, 24>;
@@ -55,8 +58,9 @@ void linearise_interval(const IntervalInput& in, IntervalLinearisation& result);
 /// The same for interval k (1 ≤ k) of a graph at its estimate.
 void linearise_interval(const FactorGraph& graph, int k, IntervalLinearisation& result);
 
-/// Adds H and g of the priors on one state, 12 × 12 and 12.
+/// Adds H and g of the priors on one state, 12 × 12 and 12, linearised at the graph's estimate or at x.
 void add_state_priors(const FactorGraph& graph, int state, Matrix12& H, Vector12& g);
+void add_state_priors(const FactorGraph& graph, int state, const ControlState& x, Matrix12& H, Vector12& g);
 
 /// The scale anchor's whitened residual and its derivative with respect to each of its landmarks, in their order.
 struct AnchorLinearisation {

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <cmath>
+
+#include "backends/gp_map/engine/engine.hpp"
+
+// The part of the engine that turns a factorisation into increments and decides whether to accept them.
+namespace evbench::gp_map {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+void Engine::set_state(int i, const double* delta) {
+  const Vector12 now = Eigen::Map<const Vector12>(delta);
+  const Vector12 before = points_.state_delta(i);
+  state_change_ = size_of_state(i, now - before);
+  changes_.push_back({{Variable::Kind::state, i}, before, state_change_});
+  points_.set_state_delta(graph_, i, now);
+}
+
+void Engine::set_landmark(int j, const double* delta, int slot) {
+  const Vector3 now = Eigen::Map<const Vector3>(delta);
+  const Vector3 before = points_.landmark_delta(j);
+  const double size = size_of_landmark(j, now - before);
+  slot_change_[at(slot)] = size;
+  Vector12 kept = Vector12::Zero();
+  kept.head<3>() = before;
+  changes_.push_back({{Variable::Kind::landmark, j}, kept, size});
+  points_.set_landmark_delta(graph_, j, now);
+}
+
+/// Solves back from the root through the stages. All stages that were redone are solved; older ones as long as the
+/// change of the separator, added up over the updates since the stage was last solved, is above the tolerance: so what
+/// is skipped stays bounded however long it goes on.
+void Engine::solve_back(int first_redone, UpdateSummary& summary) {
+  const Root& root = factorisation_.root();
+  const int newest = factorisation_.done();
+  slot_change_.assign(at((root.stride() - Root::kStates) / 3 + 1), 0.0);
+  set_state(newest, delta_.data() + Root::row_of_state(newest));
+  for (int slot = 0; slot < root.slots(); ++slot) {
+    if (root.occupant(slot) >= 0) set_landmark(root.occupant(slot), delta_.data() + Root::row_of_slot(slot), slot);
+  }
+  for (int k = newest; k >= 1; --k) {
+    Factorisation::Stage& stage = factorisation_.stage(k);
+    if (k < first_redone) {
+      const double change = stage.skipped + separator_change(k);
+      stage.skipped = change;
+      if (change < options_.solve_tolerance) break;
+    }
+    stage.skipped = 0.0;
+    ++summary.solved_back;
+    for (auto conditional = stage.conditionals.rbegin(); conditional != stage.conditionals.rend(); ++conditional) {
+      conditional->back_substitute(delta_.data());
+      for (std::size_t i = 0; i < conditional->landmarks.size(); ++i) {
+        const int row = conditional->rows[i];
+        set_landmark(conditional->landmarks[i], delta_.data() + row, (row - Root::kStates) / 3);
+      }
+      if (conditional->state >= 0) set_state(conditional->state, delta_.data() + conditional->rows.back());
+    }
+    for (const int slot : stage.entered_slots) slot_change_[at(slot)] = 0.0;
+  }
+}
+
+/// The largest change among what stage k is solved from: state k and the landmarks alive after it.
+double Engine::separator_change(int k) const {
+  const int slots = (factorisation_.stage(k).conditionals.back().extent - Root::kStates) / 3;
+  double change = state_change_;
+  for (int slot = 0; slot < slots; ++slot) change = std::max(change, slot_change_[at(slot)]);
+  return change;
+}
+
+/// Whether the last solve raised the cost of the intervals in which something changed a lot (elsewhere the linear model
+/// is trusted, which is what the thresholds of relinearisation are for).
+bool Engine::raises_cost() {
+  concerned_.clear();
+  const int newest = static_cast<int>(graph_.states.size()) - 1;
+  for (const Change& change : changes_) {
+    if (change.size <= options_.check_step) {
+      if (!std::isfinite(change.size)) return true;
+      continue;
+    }
+    if (change.variable.kind == Variable::Kind::state) {
+      concerned_.push_back(std::max(1, change.variable.index));
+      concerned_.push_back(std::min(newest, change.variable.index + 1));
+    } else {
+      const auto& seen = graph_.landmarks[at(change.variable.index)].intervals;
+      concerned_.insert(concerned_.end(), seen.begin(), seen.end());
+    }
+  }
+  if (concerned_.empty() || newest == 0) return false;
+  std::ranges::sort(concerned_);
+  concerned_.erase(std::unique(concerned_.begin(), concerned_.end()), concerned_.end());
+  const double after = concerned_cost(concerned_);
+  swap_changes();
+  const double before = concerned_cost(concerned_);
+  swap_changes();
+  constexpr double kRounding = 1e-9;
+  return !(after <= before * (1.0 + kRounding));
+}
+
+/// Of some intervals, and the priors of landmarks that changed.
+double Engine::concerned_cost(const std::vector<int>& intervals) const {
+  double cost = 0.0;
+  for (const int k : intervals) cost += interval_cost(graph_, k);
+  for (const Change& change : changes_) {
+    if (change.variable.kind == Variable::Kind::landmark) {
+      const FactorGraph::Landmark& landmark = graph_.landmarks[at(change.variable.index)];
+      cost += 0.5 * residual(landmark.prior, landmark.position).squaredNorm();
+    } else {
+      cost += state_prior_cost(graph_, change.variable.index);
+    }
+  }
+  return cost;
+}
+
+/// Exchanges the increments with those of before the last solve, of which each variable was part once.
+void Engine::swap_changes() {
+  for (Change& change : changes_) {
+    const int i = change.variable.index;
+    if (change.variable.kind == Variable::Kind::state) {
+      const Vector12 now = points_.state_delta(i);
+      points_.set_state_delta(graph_, i, change.before);
+      change.before = now;
+    } else {
+      const Vector3 now = points_.landmark_delta(i);
+      points_.set_landmark_delta(graph_, i, change.before.head<3>());
+      change.before.head<3>() = now;
+    }
+  }
+}
+
+}  // namespace evbench::gp_map

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "backends/gp_map/engine/root.hpp"
+
+namespace evbench::gp_map {
+
+/// Some variables given those that are left in the root: L Lᵀ δ_p + ... in the form
+///   Lᵀ δ_p = y − Aᵀ δ_r,
+/// with L (p × p, lower) and A (rows of the root × p); rows of A that belong to pivots or to nobody are zero.
+struct Conditional {
+  std::vector<int> landmarks;  ///< pivots, in order; after them the state
+  std::vector<int> rows;       ///< of the root, 3 or 12 following ones per pivot variable: the first of each
+  int state = -1;              ///< −1: landmarks only
+  int pivots = 0;              ///< p
+  int extent = 0;              ///< rows of A
+  Buffer A, L, y;
+
+  /// δ_p from the increments in the root's layout, into their places there.
+  void back_substitute(double* delta) const;
+};
+
+/// Pivot columns of one conditional at most, so that a panel stays in the first-level cache.
+inline constexpr int kMaxPivotLandmarks = 8;
+
+/// Takes landmarks and (unless −1) a state out of the root. Returns −1, or which pivot (0, 1, ... in the order of the
+/// conditional's variables) made the system singular; the root is then unusable.
+int eliminate(Root& root, std::span<const int> landmarks, int state, Conditional& result);
+
+/// Pivots must stand above this share of their diagonal element: what is left of it in double precision.
+inline constexpr double kPivotTolerance = 1e-13;
+
+}  // namespace evbench::gp_map

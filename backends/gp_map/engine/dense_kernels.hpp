@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+namespace evbench::gp_map {
+
+/// Allocates on cache lines.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t kAlignment{64};
+  CacheLineAllocator() = default;
+  template <class U>
+  explicit CacheLineAllocator(const CacheLineAllocator<U>&) {}
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kAlignment)); }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, kAlignment); }
+  bool operator==(const CacheLineAllocator&) const { return true; }
+};
+using Buffer = std::vector<double, CacheLineAllocator<double>>;
+
+/// Extents of the dense kernels' operands are multiples of this.
+inline constexpr int kPadding = 8;
+inline int padded(int n) { return (n + kPadding - 1) / kPadding * kPadding; }
+
+// All matrices are stored by columns with a leading dimension; of symmetric ones the lower triangle is valid, and the
+// 8 × 8 blocks on the diagonal may hold anything above it.
+
+/// C −= A Aᵀ: C n × n symmetric, A n × p, n padded.
+void subtract_outer_product(double* C, int ldc, const double* A, int lda, int n, int p);
+
+/// A ← A L⁻ᵀ: A n × p, n padded, L p × p lower.
+void solve_right_transposed(double* A, int lda, int n, const double* L, int ldl, int p);
+
+/// L ← the Cholesky factor of the p × p matrix in its place. Returns −1, or the first column whose pivot is not above
+/// `tolerance` times that column's original diagonal element (then L is unusable).
+int cholesky(double* L, int ldl, int p, double tolerance);
+
+/// The same, blocked, for n × n with n padded.
+int cholesky_blocked(double* L, int ldl, int n, double tolerance);
+
+/// x ← L⁻¹ x and x ← L⁻ᵀ x.
+void solve_lower(const double* L, int ldl, int n, double* x);
+void solve_lower_transposed(const double* L, int ldl, int n, double* x);
+
+/// y −= A x and x −= Aᵀ y: A n × p, n padded.
+void subtract_product(double* y, const double* A, int lda, int n, int p, const double* x);
+void subtract_transposed_product(double* x, const double* A, int lda, int n, int p, const double* y);
+
+}  // namespace evbench::gp_map

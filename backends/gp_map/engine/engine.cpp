@@ -1,0 +1,247 @@
+#include "backends/gp_map/engine/engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evbench::gp_map {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+Engine::Engine(const PinholeCamera& camera, const Vector6& qc, const RobustLoss& loss, const EngineOptions& options)
+    : options_(options), points_(options.kept_intervals), factorisation_(options.grace) {
+  graph_.camera = camera;
+  graph_.qc = qc;
+  graph_.loss = loss;
+}
+
+Engine::Engine(FactorGraph graph, const EngineOptions& options)
+    : graph_(std::move(graph)), options_(options), points_(options.kept_intervals), factorisation_(options.grace) {
+  for (const ControlState& state : graph_.states) points_.add_state(state);
+  for (const auto& landmark : graph_.landmarks) {
+    points_.add_landmark(landmark.position);
+    factorisation_.add_landmark();
+  }
+}
+
+void Engine::add_state(const ControlState& guess) {
+  graph_.add_state(guess);
+  points_.add_state(guess);
+  touch(static_cast<int>(graph_.states.size()) - 1);
+}
+
+void Engine::add_pose_prior(const PosePrior& prior) {
+  graph_.pose_priors.push_back(prior);
+  touch(prior.state);
+}
+
+void Engine::add_velocity_prior(const VelocityPrior& prior) {
+  graph_.velocity_priors.push_back(prior);
+  touch(prior.state);
+}
+
+void Engine::anchor_scale(const Vector3& origin, std::vector<int> landmarks) {
+  for (const int j : graph_.anchor.landmarks) {
+    if (!graph_.landmarks[at(j)].intervals.empty()) touch(graph_.landmarks[at(j)].intervals.front());
+  }
+  graph_.anchor_scale(origin, std::move(landmarks));
+  for (const int j : graph_.anchor.landmarks) {
+    if (!graph_.landmarks[at(j)].intervals.empty()) touch(graph_.landmarks[at(j)].intervals.front());
+  }
+}
+
+int Engine::add_landmark(const Vector3& guess, const LandmarkPrior& prior) {
+  points_.add_landmark(guess);
+  factorisation_.add_landmark();
+  return graph_.add_landmark(guess, prior);
+}
+
+bool Engine::add_observation(int landmark, const Observation& observation) {
+  const bool sound = std::isfinite(observation.t) && observation.pixel.allFinite() &&
+                     std::isfinite(observation.inverse_sigma) && graph_.landmarks[at(landmark)].alive;
+  if (!sound || !graph_.add_observation(landmark, observation)) return false;
+  const int k = graph_.interval_of(observation.t);
+  points_.invalidate(k);
+  touch(k);
+  if (const auto eliminated = factorisation_.eliminated_at(landmark)) touch(*eliminated);
+  factorisation_.resume_landmark(landmark);
+  return true;
+}
+
+void Engine::remove_landmark(int landmark) {
+  const auto& seen = graph_.landmarks[at(landmark)].intervals;
+  if (!seen.empty()) touch(seen.front());
+  for (const int k : seen) points_.invalidate(k);
+  const auto& anchors = graph_.anchor.landmarks;
+  if (std::ranges::find(anchors, landmark) != anchors.end()) {
+    const std::vector<int> before = anchors;
+    graph_.remove_landmark(landmark);
+    for (const int j : before) {
+      if (!graph_.landmarks[at(j)].intervals.empty()) touch(graph_.landmarks[at(j)].intervals.front());
+    }
+  } else {
+    graph_.remove_landmark(landmark);
+  }
+}
+
+void Engine::end_landmark(int landmark) { factorisation_.end_landmark(landmark); }
+
+double Engine::size_of_state(int i, const Vector12& delta) const {
+  const double dt = i > 0 ? graph_.states[at(i)].t - graph_.states[at(i - 1)].t : 0.0;
+  constexpr double kHermiteMaximum = 4.0 / 27.0;  // of s (1 − s)²
+  const double rotation = delta.head<3>().norm() + kHermiteMaximum * dt * delta.segment<3>(6).norm();
+  const double translation = delta.segment<3>(3).norm() + kHermiteMaximum * dt * delta.tail<3>().norm();
+  return std::max(rotation, translation / depth_);
+}
+
+double Engine::size_of_landmark(int j, const Vector3& delta) const {
+  const auto& seen = graph_.landmarks[at(j)].intervals;
+  if (seen.empty()) return 0.0;
+  const double distance = (points_.landmark(j) - points_.state(seen.back()).T.p).norm();
+  return delta.norm() / std::max(distance, 1e-9);
+}
+
+void Engine::measure_depth() {
+  const Root& root = factorisation_.root();
+  const Vector3 camera = graph_.states.back().T.p;
+  double sum = 0.0;
+  int count = 0;
+  for (int slot = 0; slot < root.slots(); ++slot) {
+    if (root.occupant(slot) < 0) continue;
+    sum += (graph_.landmarks[at(root.occupant(slot))].position - camera).norm();
+    ++count;
+  }
+  if (count > 0 && std::isfinite(sum) && sum > 0.0) depth_ = sum / count;
+}
+
+void Engine::move(const Variable& variable) {
+  if (variable.kind == Variable::Kind::state) {
+    points_.move_state(graph_, variable.index);
+    touch(variable.index);
+  } else {
+    const auto& seen = graph_.landmarks[at(variable.index)].intervals;
+    points_.move_landmark(graph_, variable.index);
+    if (!seen.empty()) touch(seen.front());
+  }
+}
+
+/// Moves the linearisation points that are too far from the estimate, and in the stages that are then redone those that
+/// are somewhat far.
+void Engine::choose_points() {
+  const auto size = [&](const Variable& v) {
+    return v.kind == Variable::Kind::state ? size_of_state(v.index, points_.state_delta(v.index))
+                                           : size_of_landmark(v.index, points_.landmark_delta(v.index));
+  };
+  for (const Variable& variable : candidates_) {
+    if (size(variable) > options_.relinearise) move(variable);
+  }
+  candidates_.clear();
+  const auto move_if_far = [&](const Variable& variable) {
+    if (size(variable) > options_.relinearise_redone) move(variable);
+  };
+  // Nothing moved here can touch an older stage: a state comes in with its own stage, a landmark with its first one.
+  for (int k = std::max(restart_, 0); k <= factorisation_.done(); ++k) {
+    move_if_far({Variable::Kind::state, k});
+    for (const int j : factorisation_.stage(k).entered) move_if_far({Variable::Kind::landmark, j});
+  }
+}
+
+UpdateSummary Engine::update() {
+  UpdateSummary summary;
+  if (graph_.states.empty()) return summary;
+  const std::int64_t stages = factorisation_.stages_done();
+  const std::int64_t linearised = points_.linearised_observations();
+  choose_points();
+  const int first = summary.first_stage = restart_;
+  constexpr double kFirstDamping = 1e-4, kMaxDamping = 1e8;
+  double damping = 0.0;
+  while (true) {
+    const bool solved = solve(first, damping, summary);
+    if (solved && !raises_cost()) break;
+    if (solved) swap_changes();
+    damping = damping == 0.0 ? kFirstDamping : 10.0 * damping;
+    if (damping > kMaxDamping || (!solved && !summary.reason.empty() && damping > 1.0)) {
+      summary.rejected = true;
+      break;
+    }
+    restart_ = first;
+  }
+  summary.damping = damping;
+  // Damped stages are not those of the problem: the next update redoes them.
+  restart_ = damping == 0.0 ? static_cast<int>(graph_.states.size()) : first;
+  measure_depth();
+  for (const Change& change : changes_) {
+    const Variable& v = change.variable;
+    const double size = v.kind == Variable::Kind::state ? size_of_state(v.index, points_.state_delta(v.index))
+                                                        : size_of_landmark(v.index, points_.landmark_delta(v.index));
+    if (size > options_.relinearise) candidates_.push_back(v);
+  }
+  summary.stages = static_cast<int>(factorisation_.stages_done() - stages);
+  summary.linearised = static_cast<int>(points_.linearised_observations() - linearised);
+  return summary;
+}
+
+/// Factorises and solves back; what could not be determined is held. False when that doesn't help.
+bool Engine::solve(int first_redone, double damping, UpdateSummary& summary) {
+  changes_.clear();
+  int attempts = static_cast<int>(graph_.landmarks.size() + graph_.states.size());
+  while (attempts-- > 0) {
+    std::optional<Variable> singular = factorisation_.redo(restart_, graph_, points_, damping);
+    if (!singular) {
+      restart_ = static_cast<int>(graph_.states.size());
+      singular = factorisation_.solve_root(points_, damping, delta_);
+      if (singular) restart_ = factorisation_.done();
+    }
+    if (!singular) {
+      solve_back(first_redone, summary);
+      return true;
+    }
+    if (factorisation_.is_held(*singular)) {
+      summary.reason = "the normal equations are singular or indefinite at " + singular->name();
+      return false;
+    }
+    summary.reason = singular->name() + " is not determined by its observations and priors";
+    factorisation_.hold(*singular);
+    restart_ = factorisation_.done() + 1;
+  }
+  return false;
+}
+
+Engine::OptimiseSummary Engine::optimise(int max_iterations, double relative_tolerance) {
+  OptimiseSummary summary;
+  summary.initial_cost = summary.final_cost = evaluate(graph_).total();
+  UpdateSummary update;
+  double damping = 0.0;
+  while (summary.iterations < max_iterations && !summary.converged) {
+    for (int i = 0; i < static_cast<int>(graph_.states.size()); ++i) points_.move_state(graph_, i);
+    for (int j = 0; j < static_cast<int>(graph_.landmarks.size()); ++j) points_.move_landmark(graph_, j);
+    ++summary.iterations;
+    bool accepted = false;
+    while (!accepted && damping < 1e8) {
+      restart_ = 0;
+      const bool solved = solve(0, damping, update);
+      const double cost = solved ? evaluate(graph_).total() : 0.0;
+      accepted = solved && cost <= summary.final_cost;
+      if (accepted) {
+        summary.converged = summary.final_cost - cost <= relative_tolerance * summary.final_cost;
+        summary.final_cost = cost;
+        damping = damping < 1e-6 ? 0.0 : 0.1 * damping;
+      } else {
+        if (solved) swap_changes();
+        damping = damping == 0.0 ? 1e-6 : 10.0 * damping;
+      }
+    }
+    if (!accepted) {  // at a minimum to rounding, unless the system could not even be solved
+      summary.converged = update.reason.empty();
+      break;
+    }
+  }
+  summary.reason = update.reason;
+  restart_ = damping == 0.0 ? static_cast<int>(graph_.states.size()) : 0;
+  candidates_.clear();
+  return summary;
+}
+
+}  // namespace evbench::gp_map

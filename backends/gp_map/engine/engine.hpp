@@ -1,0 +1,126 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "backends/gp_map/engine/factorisation.hpp"
+
+namespace evbench::gp_map {
+
+struct EngineOptions {
+  /// A variable's linearisation point moves to the estimate, and the stages from there on are redone, when its
+  /// increment changes a viewing direction by more than this [rad]: rotations as they are, translations and landmarks
+  /// by depth, velocities by what they move the trajectory between two states.
+  double relinearise = 0.03;
+  /// The same for variables in stages that are redone anyway: only their intervals have to be linearised anew.
+  double relinearise_redone = 0.005;
+  /// Back-substitution ends where the change of what a stage is solved from is below this [rad, as above].
+  double solve_tolerance = 1e-4;
+  /// An update that changes a variable by more than this [rad] must not raise the cost of the intervals concerned.
+  double check_step = 0.05;
+  /// States for which a landmark may go unobserved before it is eliminated [≥ 1].
+  int grace = 1;
+  /// Of the newest intervals, how many keep their linearisation.
+  int kept_intervals = 64;
+};
+
+/// What an update did.
+struct UpdateSummary {
+  int first_stage = 0;    ///< oldest stage that was redone
+  int stages = 0;         ///< redone, repetitions counted
+  int solved_back = 0;    ///< stages whose variables were solved for
+  int linearised = 0;     ///< observations
+  double damping = 0.0;   ///< λ of the accepted step; 0: undamped
+  bool rejected = false;  ///< no step lowered the cost: the estimate is that of before
+  /// Empty unless something was not determined by its factors (it is held by a weak damping then) or the system could
+  /// not be solved at all (rejected).
+  std::string reason;
+};
+
+/// Incremental maximum-a-posteriori inference over a chain of control states with landmarks that live for a while:
+/// an incremental block Cholesky factorisation in the order of time (factorisation.hpp; engine.md has the design).
+/// The cost of an update depends on the landmarks alive and on how far back it reaches, not on the length of history.
+///
+///   engine.add_state(x0); engine.add_pose_prior(...); engine.update();
+///   loop: engine.add_state(...); engine.add_observation(...); engine.update(); engine.graph().states.back()
+class Engine {
+ public:
+  Engine(const PinholeCamera& camera, const Vector6& qc, const RobustLoss& loss, const EngineOptions& options = {});
+
+  /// From a graph with estimates, solved or not; the first update reaches back to its beginning.
+  Engine(FactorGraph graph, const EngineOptions& options);
+
+  /// The problem with the present estimate of every variable. Observations added since the last update are in it.
+  const FactorGraph& graph() const { return graph_; }
+
+  /// A state later than the newest one, with the motion prior between them.
+  void add_state(const ControlState& guess);
+  void add_pose_prior(const PosePrior& prior);
+  void add_velocity_prior(const VelocityPrior& prior);
+  void anchor_scale(const Vector3& origin, std::vector<int> landmarks);
+
+  /// Becomes part of the solution with its first observation.
+  int add_landmark(const Vector3& guess, const LandmarkPrior& prior = {});
+
+  /// At any time within the states' span, late or not. False, and nothing added, outside it, for a value that is not
+  /// finite or a landmark that was removed.
+  bool add_observation(int landmark, const Observation& observation);
+
+  /// Removes a landmark with all its observations.
+  void remove_landmark(int landmark);
+
+  /// The track has ended: the landmark leaves the root with the next update. Observations of it may still come.
+  void end_landmark(int landmark);
+
+  /// One Gauss-Newton step over what the changes since the last update concern, damped if it would raise the cost.
+  UpdateSummary update();
+
+  /// Gauss-Newton steps over everything, damped where needed, until a step lowers the cost by less than the tolerance.
+  struct OptimiseSummary {
+    double initial_cost = 0.0, final_cost = 0.0;
+    int iterations = 0;
+    bool converged = false;
+    std::string reason;
+  };
+  OptimiseSummary optimise(int max_iterations, double relative_tolerance);
+
+ private:
+  /// A variable's increment before a solve, to undo it.
+  struct Change {
+    Variable variable;
+    Vector12 before;  ///< a landmark's: the first 3
+    double size;      ///< [rad]
+  };
+
+  void touch(int stage) { restart_ = std::min(restart_, stage); }
+  double size_of_state(int i, const Vector12& delta) const;
+  double size_of_landmark(int j, const Vector3& delta) const;
+  void measure_depth();
+  void choose_points();
+  void move(const Variable& variable);
+  bool solve(int first_redone, double damping, UpdateSummary& summary);
+  bool factorise(double damping, UpdateSummary& summary);
+  void solve_back(int first_redone, UpdateSummary& summary);
+  double separator_change(int k) const;
+  void set_state(int i, const double* delta);
+  void set_landmark(int j, const double* delta, int slot);
+  double concerned_cost(const std::vector<int>& intervals) const;
+  bool raises_cost();
+  void swap_changes();
+
+  FactorGraph graph_;
+  EngineOptions options_;
+  LinearisationPoints points_;
+  Factorisation factorisation_;
+  int restart_ = 0;                   ///< the oldest stage that has changed
+  double depth_ = 1.0;                ///< mean distance of the live landmarks from the newest state
+  Buffer delta_;                      ///< increments in the root's layout, while solving back
+  std::vector<double> slot_change_;   ///< of the landmark in each slot, in the solve at hand
+  double state_change_ = 0.0;         ///< of the newest state solved for
+  std::vector<Change> changes_;       ///< of the last solve
+  std::vector<Variable> candidates_;  ///< whose increments have grown beyond the threshold
+  std::vector<int> concerned_;
+};
+
+}  // namespace evbench::gp_map

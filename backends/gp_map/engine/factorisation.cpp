@@ -1,0 +1,264 @@
+#include "backends/gp_map/engine/factorisation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kHold = 1e-6;  ///< damping of variables that are held
+
+/// How far apart the snapshots of the root are that are kept, by age in stages: restarts go back a few stages most of
+/// the time, and memory must grow slowly with the length of history.
+int snapshot_spacing(int age) {
+  if (age < 8) return 2;
+  if (age < 32) return 4;
+  return age < 128 ? 8 : 64;
+}
+constexpr int kThinnedUpTo = 136;  ///< age beyond which spacing doesn't change any more
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+std::string Variable::name() const { return fmt::format("{} {}", kind == Kind::state ? "state" : "landmark", index); }
+
+void Factorisation::add_landmark() { landmarks_.emplace_back(); }
+
+std::optional<int> Factorisation::eliminated_at(int j) const {
+  const int stage = landmarks_[at(j)].eliminated_at;
+  if (stage < 0 || stage > done_) return std::nullopt;
+  return stage;
+}
+
+void Factorisation::hold(const Variable& variable) {
+  if (variable.kind == Variable::Kind::landmark) {
+    landmarks_[at(variable.index)].held = true;
+  } else {
+    if (held_states_.size() <= at(variable.index)) held_states_.resize(at(variable.index) + 1, false);
+    held_states_[at(variable.index)] = true;
+  }
+}
+
+bool Factorisation::is_held(const Variable& variable) const {
+  const auto index = at(variable.index);
+  if (variable.kind == Variable::Kind::landmark) return landmarks_[index].held;
+  return index < held_states_.size() && held_states_[index];
+}
+
+std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph, LinearisationPoints& points,
+                                            double damping) {
+  const int newest = static_cast<int>(graph.states.size()) - 1;
+  stages_.resize(graph.states.size());
+  anchors_ = graph.anchor.landmarks;
+  std::ranges::sort(anchors_);
+  anchor_stage_ = -1;
+  for (const int j : anchors_) {
+    const auto& seen = graph.landmarks[at(j)].intervals;
+    if (!seen.empty()) anchor_stage_ = std::max(anchor_stage_, seen.front());
+  }
+  for (int k = go_back_to(first); k <= newest; ++k) {
+    if (const auto singular = do_stage(k, graph, points, damping)) {
+      done_ = k;  // nothing after it is usable, and it itself must be redone
+      go_back_to(k);
+      return singular;
+    }
+    done_ = k;
+    keep_snapshot(k, newest);
+  }
+  thin_snapshots(newest);
+  return std::nullopt;
+}
+
+/// Makes the root what it was before stage `first` or an earlier one; returns the stage that is to be done next.
+int Factorisation::go_back_to(int first) {
+  if (first > done_) return done_ + 1;
+  const auto after = snapshots_.lower_bound(first);
+  for (auto i = after; i != snapshots_.end(); ++i) spare_.push_back(std::move(i->second));
+  snapshots_.erase(after, snapshots_.end());
+  if (snapshots_.empty()) {
+    root_.clear();
+    done_ = -1;
+  } else {
+    root_.restore(snapshots_.rbegin()->second);
+    done_ = snapshots_.rbegin()->first;
+  }
+  return done_ + 1;
+}
+
+std::optional<Variable> Factorisation::do_stage(int k, const FactorGraph& graph, LinearisationPoints& points,
+                                                double damping) {
+  ++stages_done_;
+  stage(k).entered.clear();
+  stage(k).entered_slots.clear();
+  add_factors(k, graph, points);
+  stage(k).conditionals.clear();
+  if (k == 0) return std::nullopt;
+  find_finished(k, graph);
+  return eliminate_finished(k, points, damping);
+}
+
+void Factorisation::add_factors(int k, const FactorGraph& graph, LinearisationPoints& points) {
+  Matrix12 H = Matrix12::Zero();
+  Vector12 g = Vector12::Zero();
+  add_state_priors(graph, k, points.state(k), H, g);
+  root_.add_state(k, H, -g);
+  if (k == 0) return;
+  const IntervalLinearisation& linear = points.interval(graph, k);
+  for (const auto& coupling : linear.couplings) {
+    if (root_.slot_of(coupling.landmark) < 0) enter(coupling.landmark, graph, points, stage(k));
+  }
+  root_.add_interval(k, linear);
+  if (k == anchor_stage_) add_anchor(graph, points);
+}
+
+void Factorisation::enter(int j, const FactorGraph& graph, const LinearisationPoints& points, Stage& stage) {
+  stage.entered_slots.push_back(root_.enter(j));
+  stage.entered.push_back(j);
+  landmarks_[at(j)].eliminated_at = -1;
+  const LandmarkPrior& prior = graph.landmarks[at(j)].prior;
+  if (!std::isfinite(prior.sigma)) return;
+  const double information = 1.0 / (prior.sigma * prior.sigma);
+  root_.add_landmark(j, information * Matrix3::Identity(), information * (prior.position - points.landmark(j)));
+}
+
+void Factorisation::add_anchor(const FactorGraph& graph, const LinearisationPoints& points) {
+  AnchorLinearisation linear = linearise_anchor(graph);  // at the estimate: e(δ) = e + J (δ − δ_now)
+  std::vector<int> present;
+  std::vector<Vector3> jacobian;
+  for (std::size_t i = 0; i < graph.anchor.landmarks.size(); ++i) {
+    const int j = graph.anchor.landmarks[i];
+    if (root_.slot_of(j) < 0) continue;  // never observed: constant
+    linear.e -= linear.jacobian[i].dot(points.landmark_delta(j));
+    present.push_back(j);
+    jacobian.push_back(linear.jacobian[i]);
+  }
+  linear.jacobian = std::move(jacobian);
+  root_.add_landmark_factor(present, linear);
+}
+
+bool Factorisation::is_anchor(int j) const { return std::ranges::binary_search(anchors_, j); }
+
+void Factorisation::find_finished(int k, const FactorGraph& graph) {
+  const int newest = static_cast<int>(graph.states.size()) - 1;
+  finished_.clear();
+  for (int slot = 0; slot < root_.slots(); ++slot) {
+    const int j = root_.occupant(slot);
+    if (j < 0) continue;
+    const int last = graph.landmarks[at(j)].intervals.back();
+    if (last > k || (newest - last < grace_ && !landmarks_[at(j)].ended)) continue;
+    if (k < anchor_stage_ && is_anchor(j)) continue;
+    finished_.push_back(j);
+  }
+}
+
+std::optional<Variable> Factorisation::eliminate_finished(int k, const LinearisationPoints& points, double damping) {
+  for (const int j : finished_) {
+    damp_landmark(j, points, damping);
+    landmarks_[at(j)].eliminated_at = k;
+  }
+  damp_state(k - 1, points, damping);
+  Stage& stage = stages_[at(k)];
+  std::span<const int> rest = finished_;
+  bool last = false;
+  while (!last) {
+    last = rest.size() <= kMaxPivotLandmarks;
+    const auto chunk = rest.first(last ? rest.size() : kMaxPivotLandmarks);
+    rest = rest.subspan(chunk.size());
+    stage.conditionals.emplace_back();
+    const int failed = eliminate(root_, chunk, last ? k - 1 : -1, stage.conditionals.back());
+    if (failed == static_cast<int>(chunk.size())) return Variable{Variable::Kind::state, k - 1};
+    if (failed >= 0) return Variable{Variable::Kind::landmark, chunk[at(failed)]};
+  }
+  return std::nullopt;
+}
+
+void Factorisation::damp_state(int k, const LinearisationPoints& points, double damping) {
+  const double lambda = is_held({Variable::Kind::state, k}) ? std::max(damping, kHold) : damping;
+  if (lambda > 0.0) root_.damp(Root::row_of_state(k), 12, lambda, points.state_delta(k).data());
+}
+
+void Factorisation::damp_landmark(int j, const LinearisationPoints& points, double damping) {
+  const double lambda = landmarks_[at(j)].held ? std::max(damping, kHold) : damping;
+  if (lambda > 0.0) root_.damp(Root::row_of_slot(root_.slot_of(j)), 3, lambda, points.landmark_delta(j).data());
+}
+
+void Factorisation::keep_snapshot(int k, int newest) {
+  if (k % snapshot_spacing(newest - k) != 0) return;
+  Root::Snapshot snapshot;
+  if (!spare_.empty()) {
+    snapshot = std::move(spare_.back());
+    spare_.pop_back();
+  }
+  root_.save(snapshot);
+  snapshots_[k] = std::move(snapshot);
+}
+
+void Factorisation::thin_snapshots(int newest) {
+  for (auto i = snapshots_.lower_bound(newest - kThinnedUpTo); i != snapshots_.end();) {
+    if (i->first % snapshot_spacing(newest - i->first) == 0) {
+      ++i;
+    } else {
+      if (spare_.size() < 16) spare_.push_back(std::move(i->second));
+      i = snapshots_.erase(i);
+    }
+  }
+}
+
+std::optional<Variable> Factorisation::solve_root(const LinearisationPoints& points, double damping, Buffer& delta) {
+  // Landmarks first, the state last; places that nobody has get a unit diagonal.
+  const int state_row = Root::row_of_state(done_);
+  const int landmark_rows = 3 * root_.slots();
+  const int n = padded(landmark_rows + 12);
+  factor_.assign(at(n) * at(n + 1), 0.0);
+  double* F = factor_.data();
+  double* x = F + static_cast<std::ptrdiff_t>(n) * n;
+  const auto source = [&](int i) { return i < landmark_rows ? Root::kStates + i : state_row + i - landmark_rows; };
+  const std::ptrdiff_t stride = root_.stride();
+  for (int c = 0; c < landmark_rows; ++c) {
+    const double* from = root_.H() + (Root::kStates + c) * stride + Root::kStates;
+    std::copy(from + c, from + landmark_rows, F + static_cast<std::ptrdiff_t>(c) * n + c);
+    for (int r = 0; r < 12; ++r) {
+      F[static_cast<std::ptrdiff_t>(c) * n + landmark_rows + r] =
+          root_.H()[(state_row + r) * stride + Root::kStates + c];
+    }
+  }
+  for (int c = 0; c < 12; ++c) {
+    for (int r = c; r < 12; ++r) {
+      F[static_cast<std::ptrdiff_t>(landmark_rows + c) * n + landmark_rows + r] =
+          root_.H()[(state_row + c) * stride + state_row + r];
+    }
+  }
+  for (int i = 0; i < landmark_rows + 12; ++i) x[i] = root_.b()[source(i)];
+  const auto damp = [&](int row, int rows, double lambda, const double* now) {
+    for (int i = 0; i < rows && lambda > 0.0; ++i) {
+      double& diagonal = F[static_cast<std::ptrdiff_t>(row + i) * (n + 1)];
+      const double added = lambda * std::max(diagonal, 1e-6);
+      diagonal += added;
+      x[row + i] += added * now[i];
+    }
+  };
+  for (int slot = 0; slot < root_.slots(); ++slot) {
+    const int j = root_.occupant(slot);
+    if (j < 0) {
+      for (int i = 3 * slot; i < 3 * slot + 3; ++i) F[static_cast<std::ptrdiff_t>(i) * (n + 1)] = 1.0;
+    } else {
+      damp(3 * slot, 3, landmarks_[at(j)].held ? std::max(damping, kHold) : damping, points.landmark_delta(j).data());
+    }
+  }
+  damp(landmark_rows, 12, is_held({Variable::Kind::state, done_}) ? std::max(damping, kHold) : damping,
+       points.state_delta(done_).data());
+  for (int i = landmark_rows + 12; i < n; ++i) F[static_cast<std::ptrdiff_t>(i) * (n + 1)] = 1.0;
+  const int failed = cholesky_blocked(F, n, n, kPivotTolerance);
+  if (failed >= landmark_rows) return Variable{Variable::Kind::state, done_};
+  if (failed >= 0) return Variable{Variable::Kind::landmark, root_.occupant(failed / 3)};
+  solve_lower(F, n, n, x);
+  solve_lower_transposed(F, n, n, x);
+  if (static_cast<int>(delta.size()) < root_.stride()) delta.resize(at(root_.stride()), 0.0);
+  for (int i = 0; i < landmark_rows + 12; ++i) delta[at(source(i))] = x[i];
+  return std::nullopt;
+}
+
+}  // namespace evbench::gp_map

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "backends/gp_map/engine/conditional.hpp"
+#include "backends/gp_map/engine/linearisation_points.hpp"
+
+namespace evbench::gp_map {
+
+/// A state or a landmark.
+struct Variable {
+  enum class Kind { state, landmark };
+  Kind kind = Kind::state;
+  int index = 0;
+  std::string name() const;
+};
+
+/// The block Cholesky factorisation of the normal equations in the order of time. Stage k adds interval k (k−1 → k) and
+/// the priors on state k to the root, eliminates the landmarks that are seen for the last time in k or before, then
+/// state k−1. What remains after stage k is the root: state k and the landmarks alive there. Stages form a chain: the
+/// separator of stage k is the root after it, and a change in interval k leaves the stages before k as they are.
+class Factorisation {
+ public:
+  struct Stage {
+    std::vector<Conditional> conditionals;  ///< in the order of elimination
+    std::vector<int> entered;               ///< landmarks that came into the root in this stage
+    std::vector<int> entered_slots;         ///< and where
+    double skipped = 0.0;  ///< change of the separator since the stage was last solved back (see Engine)
+  };
+
+  /// A landmark that is not observed any more stays in the root for this many states [≥ 1].
+  explicit Factorisation(int grace) : grace_(grace) {}
+
+  /// The last stage that is done, −1: none.
+  int done() const { return done_; }
+  Stage& stage(int k) { return stages_[static_cast<std::size_t>(k)]; }
+  const Stage& stage(int k) const { return stages_[static_cast<std::size_t>(k)]; }
+  const Root& root() const { return root_; }
+
+  void add_landmark();
+  void end_landmark(int j) { landmarks_[static_cast<std::size_t>(j)].ended = true; }
+  /// A new observation: an ended landmark lives on.
+  void resume_landmark(int j) { landmarks_[static_cast<std::size_t>(j)].ended = false; }
+  /// The stage that eliminates it; none while it is in the root or before it has been seen.
+  std::optional<int> eliminated_at(int j) const;
+
+  /// Adds this share to the diagonal when the variable is eliminated: for what its factors leave undetermined.
+  void hold(const Variable& variable);
+  bool is_held(const Variable& variable) const;
+
+  /// Redoes the stages from `first` on, up to the newest state. Returns what made the system singular; then only stages
+  /// before that variable's elimination are done. `damping`: λ of Levenberg-Marquardt, relative to the diagonal.
+  std::optional<Variable> redo(int first, const FactorGraph& graph, LinearisationPoints& points, double damping);
+
+  /// The increments of the root's variables, in the root's layout; `delta` grows to the root's extent.
+  std::optional<Variable> solve_root(const LinearisationPoints& points, double damping, Buffer& delta);
+
+  std::int64_t stages_done() const { return stages_done_; }
+
+ private:
+  struct LandmarkStatus {
+    int eliminated_at = -1;
+    bool ended = false, held = false;
+  };
+  int go_back_to(int first);
+  std::optional<Variable> do_stage(int k, const FactorGraph& graph, LinearisationPoints& points, double damping);
+  void add_factors(int k, const FactorGraph& graph, LinearisationPoints& points);
+  void add_anchor(const FactorGraph& graph, const LinearisationPoints& points);
+  void enter(int j, const FactorGraph& graph, const LinearisationPoints& points, Stage& stage);
+  void find_finished(int k, const FactorGraph& graph);
+  std::optional<Variable> eliminate_finished(int k, const LinearisationPoints& points, double damping);
+  void damp_state(int k, const LinearisationPoints& points, double damping);
+  void damp_landmark(int j, const LinearisationPoints& points, double damping);
+  void keep_snapshot(int k, int newest);
+  void thin_snapshots(int newest);
+  bool is_anchor(int j) const;
+
+  int grace_;
+  int done_ = -1;
+  int anchor_stage_ = -1;     ///< where the scale anchor is added: its last landmark has come in
+  std::vector<int> anchors_;  ///< ascending
+  Root root_;
+  std::vector<Stage> stages_;
+  std::vector<LandmarkStatus> landmarks_;
+  std::vector<bool> held_states_;
+  std::map<int, Root::Snapshot> snapshots_;  ///< the root after a stage
+  std::vector<Root::Snapshot> spare_;        ///< their memory, to use again
+  std::vector<int> finished_;                ///< landmarks to eliminate in the stage at hand
+  Buffer factor_;                            ///< of the root
+  std::int64_t stages_done_ = 0;
+};
+
+}  // namespace evbench::gp_map

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <limits>
+#include <map>
+#include <vector>
+
+#include "backends/gp_map/factors.hpp"
+
+namespace evbench::gp_map {
+
+/// Where the factors are linearised, the increment that each variable has from there, and the linearised intervals of
+/// the recent past. The graph holds the estimate: estimate = point ⊕ increment for every variable, always.
+class LinearisationPoints {
+ public:
+  /// `kept`: how many of the newest intervals keep their linearisation.
+  explicit LinearisationPoints(int kept) : kept_(kept) {}
+
+  void add_state(const ControlState& state);
+  void add_landmark(const Vector3& position);
+
+  const ControlState& state(int i) const { return states_[index(i)]; }
+  const Vector3& landmark(int j) const { return landmarks_[index(j)]; }
+  const Vector12& state_delta(int i) const { return state_deltas_[index(i)]; }
+  const Vector3& landmark_delta(int j) const { return landmark_deltas_[index(j)]; }
+
+  /// Sets the increment and with it the graph's estimate.
+  void set_state_delta(FactorGraph& graph, int i, const Vector12& delta);
+  void set_landmark_delta(FactorGraph& graph, int j, const Vector3& delta);
+
+  /// Makes the estimate the linearisation point.
+  void move_state(const FactorGraph& graph, int i);
+  void move_landmark(const FactorGraph& graph, int j);
+
+  /// The factors of interval k changed.
+  void invalidate(int k);
+
+  /// Interval k, linearised at the points; valid until the next call.
+  const IntervalLinearisation& interval(const FactorGraph& graph, int k);
+
+  std::int64_t linearised_observations() const { return linearised_observations_; }
+
+ private:
+  struct Kept {
+    int interval = -1;
+    bool valid = false;
+    IntervalLinearisation linear;
+  };
+  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  Kept& place(int k) { return ring_[index(k) % ring_.size()]; }
+
+  int kept_;
+  std::vector<ControlState> states_;
+  std::vector<Vector3> landmarks_;
+  std::vector<Vector12> state_deltas_;
+  std::vector<Vector3> landmark_deltas_;
+  std::vector<Kept> ring_;  ///< interval k at k mod kept; a miss overwrites
+  std::vector<Vector3> positions_;
+  std::int64_t linearised_observations_ = 0;
+};
+
+}  // namespace evbench::gp_map

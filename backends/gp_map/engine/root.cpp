@@ -1,0 +1,165 @@
+#include "backends/gp_map/engine/root.hpp"
+
+#include <algorithm>
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kDampingFloor = 1e-6;  ///< of the diagonal: rows about which nothing is known are damped too
+
+}  // namespace
+
+int Root::enter(int landmark) {
+  const auto free = std::find(occupant_.begin(), occupant_.begin() + top_, -1);
+  const int slot = static_cast<int>(free - occupant_.begin());
+  if (slot == top_) {
+    ++top_;
+    if (static_cast<int>(occupant_.size()) < top_) occupant_.push_back(-1);
+    reserve(extent());
+  }
+  occupant_[static_cast<std::size_t>(slot)] = landmark;
+  if (slot_of_.size() <= static_cast<std::size_t>(landmark))
+    slot_of_.resize(static_cast<std::size_t>(landmark) + 1, -1);
+  slot_of_[static_cast<std::size_t>(landmark)] = slot;
+  return slot;
+}
+
+void Root::leave(int landmark) {
+  occupant_[static_cast<std::size_t>(slot_of(landmark))] = -1;
+  slot_of_[static_cast<std::size_t>(landmark)] = -1;
+  while (top_ > 0 && occupant_[static_cast<std::size_t>(top_ - 1)] < 0) --top_;
+}
+
+void Root::add_state(int state, const Matrix12& H, const Vector12& b) {
+  reserve(extent());
+  const int row = row_of_state(state);
+  for (int c = 0; c < 12; ++c) {
+    for (int r = c; r < 12; ++r) column(row + c)[row + r] += H(r, c);
+    b_[static_cast<std::size_t>(row + c)] += b(c);
+  }
+}
+
+void Root::add_landmark(int landmark, const Matrix3& H, const Vector3& b) {
+  const int row = row_of_slot(slot_of(landmark));
+  for (int c = 0; c < 3; ++c) {
+    for (int r = c; r < 3; ++r) column(row + c)[row + r] += H(r, c);
+    b_[static_cast<std::size_t>(row + c)] += b(c);
+  }
+}
+
+void Root::add_interval(int k, const IntervalLinearisation& linear) {
+  reserve(extent());
+  const int older = row_of_state(k - 1), newer = row_of_state(k);
+  const auto place = [&](int i) { return i < 12 ? older + i : newer + i - 12; };
+  for (int c = 0; c < 24; ++c) {
+    const int at = place(c);
+    b_[static_cast<std::size_t>(at)] -= linear.gradient(c);
+    for (int r = 0; r < 24; ++r) {
+      if (place(r) >= at) column(at)[place(r)] += linear.states(r, c);
+    }
+  }
+  for (const auto& coupling : linear.couplings) {
+    const int row = row_of_slot(slot_of(coupling.landmark));
+    add_landmark(coupling.landmark, coupling.landmark_landmark, -coupling.gradient);
+    const double* values = coupling.landmark_states.data();
+    for (int c = 0; c < 24; ++c, values += 3) {
+      double* to = column(place(c)) + row;
+      to[0] += values[0];
+      to[1] += values[1];
+      to[2] += values[2];
+    }
+  }
+}
+
+void Root::add_landmark_factor(std::span<const int> landmarks, const AnchorLinearisation& linear) {
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    const int row = row_of_slot(slot_of(landmarks[i]));
+    for (int r = 0; r < 3; ++r) b_[static_cast<std::size_t>(row + r)] -= linear.e * linear.jacobian[i](r);
+    for (std::size_t j = 0; j < landmarks.size(); ++j) {
+      const int at = row_of_slot(slot_of(landmarks[j]));
+      for (int c = 0; c < 3; ++c) {
+        for (int r = 0; r < 3; ++r) {
+          if (row + r >= at + c) column(at + c)[row + r] += linear.jacobian[i](r) * linear.jacobian[j](c);
+        }
+      }
+    }
+  }
+}
+
+void Root::damp(int row, int rows, double lambda, const double* delta) {
+  for (int i = 0; i < rows; ++i) {
+    double& diagonal = column(row + i)[row + i];
+    const double added = lambda * std::max(diagonal, kDampingFloor);
+    diagonal += added;
+    b_[static_cast<std::size_t>(row + i)] += added * delta[i];
+  }
+}
+
+void Root::clear() {
+  forget_occupants();
+  std::ranges::fill(H_, 0.0);
+  std::ranges::fill(b_, 0.0);
+  reserve(extent());
+}
+
+void Root::save(Snapshot& to) const {
+  const int n = extent();
+  to.top = top_;
+  to.occupant.assign(occupant_.begin(), occupant_.begin() + top_);
+  to.b.assign(b_.begin(), b_.begin() + n);
+  to.H.resize(static_cast<std::size_t>(n / kPadding * (n / kPadding + 1) / 2 * kPadding * kPadding));
+  double* at = to.H.data();
+  for (int c = 0; c < n; ++c) {
+    const int first = c / kPadding * kPadding;
+    const double* from = H() + static_cast<std::ptrdiff_t>(c) * stride_;
+    at = std::copy(from + first, from + n, at);
+  }
+}
+
+void Root::restore(const Snapshot& from) {
+  const int used = extent();
+  forget_occupants();
+  top_ = from.top;
+  const int n = extent();
+  reserve(n);
+  if (occupant_.size() < from.occupant.size()) occupant_.resize(from.occupant.size(), -1);
+  for (int slot = 0; slot < top_; ++slot) {
+    const int landmark = from.occupant[static_cast<std::size_t>(slot)];
+    occupant_[static_cast<std::size_t>(slot)] = landmark;
+    if (landmark >= 0) slot_of_[static_cast<std::size_t>(landmark)] = slot;
+  }
+  const double* at = from.H.data();
+  for (int c = 0; c < std::max(n, used); ++c) {
+    const int first = c / kPadding * kPadding;
+    double* to = column(c);
+    if (c < n) {
+      std::copy(at, at + (n - first), to + first);
+      at += n - first;
+    }
+    if (std::max(first, n) < used) std::fill(to + std::max(first, n), to + used, 0.0);
+  }
+  std::ranges::copy(from.b, b_.begin());
+  if (used > n) std::fill(b_.begin() + n, b_.begin() + used, 0.0);
+}
+
+void Root::reserve(int rows) {
+  if (rows <= stride_) return;
+  // An odd number of cache lines: columns then don't compete for the same cache sets.
+  const int stride = (std::max(rows, stride_ + stride_ / 2) / kPadding | 1) * kPadding;
+  Buffer H(static_cast<std::size_t>(stride) * static_cast<std::size_t>(stride), 0.0);
+  for (int c = 0; c < stride_; ++c) std::copy(column(c) + c, column(c) + stride_, H.begin() + c * (stride + 1L));
+  H_ = std::move(H);
+  b_.resize(static_cast<std::size_t>(stride), 0.0);
+  stride_ = stride;
+}
+
+void Root::forget_occupants() {
+  for (int slot = 0; slot < top_; ++slot) {
+    const int landmark = occupant_[static_cast<std::size_t>(slot)];
+    if (landmark >= 0) slot_of_[static_cast<std::size_t>(landmark)] = -1;
+    occupant_[static_cast<std::size_t>(slot)] = -1;
+  }
+  top_ = 0;
+}
+
+}  // namespace evbench::gp_map

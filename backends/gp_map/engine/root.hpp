@@ -1,0 +1,72 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "backends/gp_map/engine/dense_kernels.hpp"
+#include "backends/gp_map/factors.hpp"
+
+namespace evbench::gp_map {
+
+/// The trailing dense part of the factorisation: information matrix H and right-hand side b (H δ = b) of the newest two
+/// states and of the landmarks that are alive there, after everything older has been eliminated.
+///
+/// Layout: state k occupies 12 rows from 12 (k mod 2) on, a landmark 3 rows in a slot that is its own while it is
+/// alive. Slots are never moved, so neither eliminating nor going back through the stages needs permutations.
+/// Invariant: rows and columns of a place that nothing occupies are zero.
+class Root {
+ public:
+  static constexpr int kStates = 24;
+  static int row_of_state(int state) { return 12 * (state % 2); }
+  static int row_of_slot(int slot) { return kStates + 3 * slot; }
+
+  int extent() const { return padded(row_of_slot(top_)); }  ///< rows in use, padded
+  int slots() const { return top_; }                        ///< slots in use, with holes
+  int stride() const { return stride_; }
+  double* H() { return H_.data(); }
+  double* b() { return b_.data(); }
+  const double* H() const { return H_.data(); }
+  const double* b() const { return b_.data(); }
+
+  /// The landmark in a slot, −1: none. The slot of a landmark, −1: not in the root.
+  int occupant(int slot) const { return occupant_[static_cast<std::size_t>(slot)]; }
+  int slot_of(int landmark) const {
+    const auto index = static_cast<std::size_t>(landmark);
+    return index < slot_of_.size() ? slot_of_[index] : -1;
+  }
+
+  /// Gives a landmark the lowest free slot.
+  int enter(int landmark);
+  void leave(int landmark);  ///< its rows have been cleared by an elimination
+
+  void add_state(int state, const Matrix12& H, const Vector12& b);
+  void add_landmark(int landmark, const Matrix3& H, const Vector3& b);
+  /// An interval that ends in state k; all its landmarks are in the root.
+  void add_interval(int k, const IntervalLinearisation& linear);
+  /// A residual e of landmarks alone with one row J per landmark.
+  void add_landmark_factor(std::span<const int> landmarks, const AnchorLinearisation& linear);
+  /// Adds λ H_ii to the diagonal of some rows, pulling each towards the increment δ_i that it has now.
+  void damp(int row, int rows, double lambda, const double* delta);
+
+  void clear();
+
+  /// A copy of everything but the landmark → slot table.
+  struct Snapshot {
+    int top = 0;
+    std::vector<int> occupant;
+    Buffer H, b;
+  };
+  void save(Snapshot& to) const;
+  void restore(const Snapshot& from);
+
+ private:
+  double* column(int c) { return H_.data() + static_cast<std::ptrdiff_t>(c) * stride_; }
+  void reserve(int rows);
+  void forget_occupants();
+
+  int top_ = 0, stride_ = 0;
+  Buffer H_, b_;
+  std::vector<int> occupant_, slot_of_;
+};
+
+}  // namespace evbench::gp_map
