@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bench/commands/commands.hpp"
+#include "bench/peak_memory.hpp"
+#include "bench/problem_solver.hpp"
+#include "core/support/atomic_file.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::map<std::string, SolveMode> kModes = {
+    {"incremental", SolveMode::incremental}, {"batch", SolveMode::batch}, {"fixed-lag", SolveMode::fixed_lag}};
+
+struct SolveArguments {
+  std::string problem, json, states, steps;
+  bool check = false;
+  SolveOptions options;
+};
+
+/// The nearest-rank quantile.
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  std::ranges::sort(values);
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  return values[std::max<std::size_t>(rank, 1) - 1];
+}
+
+Json report(const SolveArguments& arguments, const SolveResult& result, double peak_mib) {
+  const gp_map::Cost cost = evaluate(result.graph);
+  if (!std::isfinite(cost.total())) throw InputError(arguments.problem + ": the solution's cost is not finite");
+  Json json = {{"problem", arguments.problem},
+               {"cost", cost.total()},
+               {"cost_measurements", cost.measurements},
+               {"cost_motion_prior", cost.motion_prior},
+               {"cost_priors", cost.priors},
+               {"steps", result.step_ms.size()},
+               {"step_ms",
+                {{"median", quantile(result.step_ms, 0.5)},
+                 {"p95", quantile(result.step_ms, 0.95)},
+                 {"p99", quantile(result.step_ms, 0.99)},
+                 {"max", quantile(result.step_ms, 1.0)}}},
+               {"total_s", result.total_s},
+               {"peak_rss_mib", peak_mib}};
+  if (!result.reason.empty()) json["reason"] = result.reason;
+  if (arguments.check) json["relative_excess"] = check_against_batch(result.graph).relative_excess;
+  return json;
+}
+
+/// STATE and LM records with the final estimate.
+std::string format_states(const gp_map::FactorGraph& graph) {
+  Problem problem;
+  problem.camera = graph.camera;
+  problem.qc = graph.qc;
+  problem.states = graph.states;
+  return format_problem(problem);
+}
+
+std::string format_steps(const SolveResult& result) {
+  std::string text = "step,ms,first_stage,stages,solved_back,linearised,damping,rejected\n";
+  for (std::size_t k = 0; k < result.updates.size(); ++k) {
+    const gp_map::UpdateSummary& u = result.updates[k];
+    text += fmt::format("{},{:.4f},{},{},{},{},{:g},{}\n", k, result.step_ms[k], u.first_stage, u.stages, u.solved_back,
+                        u.linearised, u.damping, u.rejected ? 1 : 0);
+  }
+  return text;
+}
+
+void execute(const SolveArguments& arguments) {
+  const SolveResult result = solve_problem(read_problem(arguments.problem), arguments.options);
+  const Json json = report(arguments, result, peak_memory_mib());
+  fmt::print("{}\n", json.dump(2));
+  if (!arguments.json.empty()) write_file(arguments.json, json.dump(2) + "\n");
+  if (!arguments.states.empty()) write_file(arguments.states, format_states(result.graph));
+  if (!arguments.steps.empty()) write_file(arguments.steps, format_steps(result));
+}
+
+}  // namespace
+
+void add_solve(CLI::App& app) {
+  auto arguments = std::make_shared<SolveArguments>();
+  CLI::App* command = app.add_subcommand("solve", "Solve a problem file (gzip or not), time every step");
+  command->add_option("problem", arguments->problem, "Problem file")->required()->type_name("FILE");
+  command
+      ->add_option("--mode", arguments->options.mode,
+                   "incremental: a control state at a time; batch: at once from the initial guess; fixed-lag: "
+                   "incremental, what is older than --lag is marginalised")
+      ->transform(CLI::CheckedTransformer(kModes))
+      ->type_name("NAME");
+  command->add_option("--json", arguments->json, "Write the figures to this file, too")->type_name("FILE");
+  command->add_option("--states", arguments->states, "Write the final states as a problem's STATE records")
+      ->type_name("FILE");
+  command->add_option("--steps", arguments->steps, "Write a CSV with a line for each step")->type_name("FILE");
+  command->add_flag("--check", arguments->check, "Compare the cost with that of a batch solve from the result");
+  command->add_option("--lag", arguments->options.lag, "Lag of fixed-lag mode [s]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--iterations", arguments->options.max_iterations, "Iterations of batch mode, at most")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  gp_map::EngineOptions& engine = arguments->options.engine;
+  command->add_option("--relinearise", engine.relinearise, "Relinearise and redo from increments of this size [rad]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--relinearise-redone", engine.relinearise_redone, "The same where stages are redone anyway [rad]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--solve-tolerance", engine.solve_tolerance, "Changes below this are not solved back further [rad]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--check-step", engine.check_step, "Steps above this must not raise the cost [rad]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->callback([arguments] { execute(*arguments); });
+}
+
+}  // namespace evbench

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <fstream>
+#include <string>
+
+namespace evbench {
+
+/// The peak resident memory of the process so far, as the kernel counts it [MiB]; 0 where it can't be told.
+inline double peak_memory_mib() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    double kib = 0.0;
+    if (word == "VmHWM:" && status >> kib) return kib / 1024.0;
+  }
+  return 0.0;
+}
+
+}  // namespace evbench
