@@ -192,11 +192,13 @@ BatchSummary solve_batch(FactorGraph& graph, const BatchOptions& options) {
   bool analysed = false;
   double damping = 1e-6;  // relative to the diagonal
   constexpr double kMaxDamping = 1e8;
+  constexpr double kLeastInformation = 1e-3;
   while (summary.iterations < options.max_iterations && !summary.converged) {
     NormalEquations equations(graph, layout);
     if (!analysed) cholesky.analyzePattern(equations.matrix);
     analysed = true;
-    const Eigen::VectorXd diagonal = equations.matrix.diagonal();
+    // The floor keeps a variable that nothing tells (a landmark behind every camera that saw it) from being singular.
+    const Eigen::VectorXd diagonal = equations.matrix.diagonal().cwiseMax(kLeastInformation);
     const Estimate before(graph);
     bool accepted = false;
     while (!accepted && damping < kMaxDamping) {
