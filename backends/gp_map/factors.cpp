@@ -1,5 +1,6 @@
 #include "backends/gp_map/factors.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/motion/wnoa.hpp"
@@ -74,6 +75,22 @@ double state_prior_cost(const FactorGraph& graph, int state) {
   }
   for (const VelocityPrior& prior : graph.velocity_priors) {
     if (prior.state == state) cost += 0.5 * residual(prior, x).squaredNorm();
+  }
+  return cost;
+}
+
+double landmark_cost(const FactorGraph& graph, int landmark, const Vector3& position) {
+  const FactorGraph::Landmark& l = graph.landmarks[static_cast<std::size_t>(landmark)];
+  double cost = 0.5 * residual(l.prior, position).squaredNorm();
+  for (const int k : l.intervals) {
+    const auto index = static_cast<std::size_t>(k);
+    const GpInterval interval(graph.states[index - 1], graph.states[index]);
+    const auto& groups = graph.intervals[index].groups();
+    const auto group = std::ranges::lower_bound(groups, landmark, {}, &IntervalObservations::Group::landmark);
+    for (int i = group->begin; i < group->end; ++i) {
+      const Observation& z = graph.intervals[index].all()[static_cast<std::size_t>(i)];
+      cost += 0.5 * graph.loss.value(reprojection_residual(interval, position, z, graph.camera).squaredNorm());
+    }
   }
   return cost;
 }

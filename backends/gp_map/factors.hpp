@@ -16,9 +16,11 @@ Vector6 residual(const PosePrior& prior, const ControlState& state);
 Vector6 residual(const VelocityPrior& prior, const ControlState& state);
 Vector3 residual(const LandmarkPrior& prior, const Vector3& position);  ///< zero without a prior
 
-/// ½ Σ ρ of an interval's observations and motion prior, and ½ Σ of the priors on a state.
+/// ½ Σ ρ of an interval's observations and motion prior, and of the priors on a state.
 double interval_cost(const FactorGraph& graph, int k);
 double state_prior_cost(const FactorGraph& graph, int state);
+/// ½ Σ ρ of a landmark's observations and prior if it were at this position.
+double landmark_cost(const FactorGraph& graph, int landmark, const Vector3& position);
 double mean_log_distance(const FactorGraph& graph);  ///< of the scale anchor's landmarks; 0 without any
 
 using Matrix24 = Eigen::Matrix<double, 24, 24>;

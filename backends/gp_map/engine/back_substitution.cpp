@@ -70,23 +70,37 @@ double Engine::separator_change(int k) const {
   return change;
 }
 
-/// Whether the last solve raised the cost of the intervals in which something changed a lot (elsewhere the linear model
+/// Landmarks that have moved a lot go back towards where they were as far as their own observations ask for it, given
+/// the poses as they are now. A landmark seen from little parallax easily overshoots, through the camera even, and this
+/// costs no new factorisation as damping would. It is linearised anew in the next update.
+void Engine::backtrack_landmarks() {
+  constexpr int kHalvings = 6;
+  constexpr double kLargestStep = 0.3;  // of the distance
+  for (Change& change : changes_) {
+    const int j = change.variable.index;
+    if (change.variable.kind != Variable::Kind::landmark || !(change.size > options_.check_step)) continue;
+    const Vector3 before = change.before.head<3>();
+    const Vector3 step = points_.landmark_delta(j) - before;
+    const Vector3 start = points_.landmark(j) + before;
+    const double cost = landmark_cost(graph_, j, start);
+    double share = std::min(1.0, kLargestStep / change.size);
+    for (int i = 0; i < kHalvings && !(landmark_cost(graph_, j, start + share * step) <= cost); ++i) share *= 0.5;
+    if (share == 1.0) continue;
+    points_.set_landmark_delta(graph_, j, before + share * step);
+    backtracked_.push_back(change.variable);
+  }
+}
+
+/// Whether the last solve raised the cost of the intervals around states that changed a lot (elsewhere the linear model
 /// is trusted, which is what the thresholds of relinearisation are for).
 bool Engine::raises_cost() {
   concerned_.clear();
   const int newest = static_cast<int>(graph_.states.size()) - 1;
   for (const Change& change : changes_) {
-    if (change.size <= options_.check_step) {
-      if (!std::isfinite(change.size)) return true;
-      continue;
-    }
-    if (change.variable.kind == Variable::Kind::state) {
-      concerned_.push_back(std::max(1, change.variable.index));
-      concerned_.push_back(std::min(newest, change.variable.index + 1));
-    } else {
-      const auto& seen = graph_.landmarks[at(change.variable.index)].intervals;
-      concerned_.insert(concerned_.end(), seen.begin(), seen.end());
-    }
+    if (!std::isfinite(change.size)) return true;
+    if (change.size <= options_.check_step || change.variable.kind != Variable::Kind::state) continue;
+    concerned_.push_back(std::max(1, change.variable.index));
+    concerned_.push_back(std::min(newest, change.variable.index + 1));
   }
   if (concerned_.empty() || newest == 0) return false;
   std::ranges::sort(concerned_);

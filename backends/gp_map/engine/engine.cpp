@@ -93,27 +93,15 @@ double Engine::size_of_state(int i, const Vector12& delta) const {
   constexpr double kHermiteMaximum = 4.0 / 27.0;  // of s (1 − s)²
   const double rotation = delta.head<3>().norm() + kHermiteMaximum * dt * delta.segment<3>(6).norm();
   const double translation = delta.segment<3>(3).norm() + kHermiteMaximum * dt * delta.tail<3>().norm();
-  return std::max(rotation, translation / depth_);
+  return std::max(rotation, translation / points_.nearest(i));
 }
 
 double Engine::size_of_landmark(int j, const Vector3& delta) const {
   const auto& seen = graph_.landmarks[at(j)].intervals;
   if (seen.empty()) return 0.0;
-  const double distance = (points_.landmark(j) - points_.state(seen.back()).T.p).norm();
+  const double distance = std::min((points_.landmark(j) - points_.state(seen.back()).T.p).norm(),
+                                   (points_.landmark(j) - points_.state(seen.front()).T.p).norm());
   return delta.norm() / std::max(distance, 1e-9);
-}
-
-void Engine::measure_depth() {
-  const Root& root = factorisation_.root();
-  const Vector3 camera = graph_.states.back().T.p;
-  double sum = 0.0;
-  int count = 0;
-  for (int slot = 0; slot < root.slots(); ++slot) {
-    if (root.occupant(slot) < 0) continue;
-    sum += (graph_.landmarks[at(root.occupant(slot))].position - camera).norm();
-    ++count;
-  }
-  if (count > 0 && std::isfinite(sum) && sum > 0.0) depth_ = sum / count;
 }
 
 void Engine::move(const Variable& variable) {
@@ -134,9 +122,7 @@ void Engine::choose_points() {
     return v.kind == Variable::Kind::state ? size_of_state(v.index, points_.state_delta(v.index))
                                            : size_of_landmark(v.index, points_.landmark_delta(v.index));
   };
-  for (const Variable& variable : candidates_) {
-    if (size(variable) > options_.relinearise) move(variable);
-  }
+  for (const Variable& variable : candidates_) move(variable);
   candidates_.clear();
   const auto move_if_far = [&](const Variable& variable) {
     if (size(variable) > options_.relinearise_redone) move(variable);
@@ -159,7 +145,10 @@ UpdateSummary Engine::update() {
   double damping = 0.0;
   while (true) {
     const bool solved = solve(first, damping, summary);
-    if (solved && !raises_cost()) break;
+    if (solved) {
+      backtrack_landmarks();
+      if (!raises_cost()) break;
+    }
     if (solved) swap_changes();
     damping = damping == 0.0 ? kFirstDamping : 10.0 * damping;
     if (damping > kMaxDamping || (!solved && !summary.reason.empty() && damping > 1.0)) {
@@ -171,13 +160,13 @@ UpdateSummary Engine::update() {
   summary.damping = damping;
   // Damped stages are not those of the problem: the next update redoes them.
   restart_ = damping == 0.0 ? static_cast<int>(graph_.states.size()) : first;
-  measure_depth();
   for (const Change& change : changes_) {
     const Variable& v = change.variable;
     const double size = v.kind == Variable::Kind::state ? size_of_state(v.index, points_.state_delta(v.index))
                                                         : size_of_landmark(v.index, points_.landmark_delta(v.index));
     if (size > options_.relinearise) candidates_.push_back(v);
   }
+  candidates_.insert(candidates_.end(), backtracked_.begin(), backtracked_.end());
   summary.stages = static_cast<int>(factorisation_.stages_done() - stages);
   summary.linearised = static_cast<int>(points_.linearised_observations() - linearised);
   return summary;
@@ -186,6 +175,7 @@ UpdateSummary Engine::update() {
 /// Factorises and solves back; what could not be determined is held. False when that doesn't help.
 bool Engine::solve(int first_redone, double damping, UpdateSummary& summary) {
   changes_.clear();
+  backtracked_.clear();
   int attempts = static_cast<int>(graph_.landmarks.size() + graph_.states.size());
   while (attempts-- > 0) {
     std::optional<Variable> singular = factorisation_.redo(restart_, graph_, points_, damping);

@@ -10,13 +10,13 @@ namespace evbench::gp_map {
 
 struct EngineOptions {
   /// A variable's linearisation point moves to the estimate, and the stages from there on are redone, when its
-  /// increment changes a viewing direction by more than this [rad]: rotations as they are, translations and landmarks
-  /// by depth, velocities by what they move the trajectory between two states.
+  /// increment changes a viewing direction by more than this [rad]: rotations as they are, translations by the
+  /// nearest landmark's distance, landmarks by theirs, velocities by what they move the trajectory between two states.
   double relinearise = 0.03;
   /// The same for variables in stages that are redone anyway: only their intervals have to be linearised anew.
   double relinearise_redone = 0.005;
   /// Back-substitution ends where the change of what a stage is solved from is below this [rad, as above].
-  double solve_tolerance = 1e-4;
+  double solve_tolerance = 3e-4;
   /// An update that changes a variable by more than this [rad] must not raise the cost of the intervals concerned.
   double check_step = 0.05;
   /// States for which a landmark may go unobserved before it is eliminated [≥ 1].
@@ -96,7 +96,6 @@ class Engine {
   void touch(int stage) { restart_ = std::min(restart_, stage); }
   double size_of_state(int i, const Vector12& delta) const;
   double size_of_landmark(int j, const Vector3& delta) const;
-  void measure_depth();
   void choose_points();
   void move(const Variable& variable);
   bool solve(int first_redone, double damping, UpdateSummary& summary);
@@ -105,6 +104,7 @@ class Engine {
   double separator_change(int k) const;
   void set_state(int i, const double* delta);
   void set_landmark(int j, const double* delta, int slot);
+  void backtrack_landmarks();
   double concerned_cost(const std::vector<int>& intervals) const;
   bool raises_cost();
   void swap_changes();
@@ -114,13 +114,13 @@ class Engine {
   LinearisationPoints points_;
   Factorisation factorisation_;
   int restart_ = 0;                   ///< the oldest stage that has changed
-  double depth_ = 1.0;                ///< mean distance of the live landmarks from the newest state
   Buffer delta_;                      ///< increments in the root's layout, while solving back
   std::vector<double> slot_change_;   ///< of the landmark in each slot, in the solve at hand
   double state_change_ = 0.0;         ///< of the newest state solved for
   std::vector<Change> changes_;       ///< of the last solve
   std::vector<Variable> candidates_;  ///< whose increments have grown beyond the threshold
-  std::vector<int> concerned_;
+  std::vector<Variable> backtracked_;
+  std::vector<int> concerned_;  ///< intervals
 };
 
 }  // namespace evbench::gp_map

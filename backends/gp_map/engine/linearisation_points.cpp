@@ -1,10 +1,13 @@
 #include "backends/gp_map/engine/linearisation_points.hpp"
 
+#include <cmath>
+
 namespace evbench::gp_map {
 
 void LinearisationPoints::add_state(const ControlState& state) {
   states_.push_back(state);
   state_deltas_.push_back(Vector12::Zero());
+  nearest_.resize(states_.size() + 1, std::numeric_limits<double>::infinity());
   if (ring_.empty()) ring_.resize(index(kept_));
 }
 
@@ -47,7 +50,12 @@ const IntervalLinearisation& LinearisationPoints::interval(const FactorGraph& gr
   if (kept.interval == k && kept.valid) return kept.linear;
   const IntervalObservations& observations = graph.intervals[index(k)];
   positions_.clear();
-  for (const auto& group : observations.groups()) positions_.push_back(landmarks_[index(group.landmark)]);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& group : observations.groups()) {
+    positions_.push_back(landmarks_[index(group.landmark)]);
+    nearest = std::min(nearest, (positions_.back() - states_[index(k)].T.p).squaredNorm());
+  }
+  nearest_[index(k)] = std::sqrt(nearest);
   linearise_interval(
       {graph.camera, graph.loss, graph.qc, states_[index(k - 1)], states_[index(k)], observations, positions_},
       kept.linear);

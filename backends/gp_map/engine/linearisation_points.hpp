@@ -1,7 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <limits>
-#include <map>
 #include <vector>
 
 #include "backends/gp_map/factors.hpp"
@@ -37,6 +38,10 @@ class LinearisationPoints {
   /// Interval k, linearised at the points; valid until the next call.
   const IntervalLinearisation& interval(const FactorGraph& graph, int k);
 
+  /// The distance from state i of the nearest landmark observed in an interval beside it, when that was linearised
+  /// last; infinite without any.
+  double nearest(int i) const { return std::min(nearest_[index(i)], nearest_[index(i) + 1]); }
+
   std::int64_t linearised_observations() const { return linearised_observations_; }
 
  private:
@@ -53,7 +58,8 @@ class LinearisationPoints {
   std::vector<Vector3> landmarks_;
   std::vector<Vector12> state_deltas_;
   std::vector<Vector3> landmark_deltas_;
-  std::vector<Kept> ring_;  ///< interval k at k mod kept; a miss overwrites
+  std::vector<Kept> ring_;       ///< interval k at k mod kept; a miss overwrites
+  std::vector<double> nearest_;  ///< by interval
   std::vector<Vector3> positions_;
   std::int64_t linearised_observations_ = 0;
 };
