@@ -79,20 +79,51 @@ double state_prior_cost(const FactorGraph& graph, int state) {
   return cost;
 }
 
-double landmark_cost(const FactorGraph& graph, int landmark, const Vector3& position) {
-  const FactorGraph::Landmark& l = graph.landmarks[static_cast<std::size_t>(landmark)];
-  double cost = 0.5 * residual(l.prior, position).squaredNorm();
-  for (const int k : l.intervals) {
+namespace {
+
+/// Calls visit(interval, observation) for each of a landmark's observations.
+template <class Visit>
+void for_each_observation(const FactorGraph& graph, int landmark, Visit visit) {
+  for (const int k : graph.landmarks[static_cast<std::size_t>(landmark)].intervals) {
     const auto index = static_cast<std::size_t>(k);
     const GpInterval interval(graph.states[index - 1], graph.states[index]);
     const auto& groups = graph.intervals[index].groups();
     const auto group = std::ranges::lower_bound(groups, landmark, {}, &IntervalObservations::Group::landmark);
     for (int i = group->begin; i < group->end; ++i) {
-      const Observation& z = graph.intervals[index].all()[static_cast<std::size_t>(i)];
-      cost += 0.5 * graph.loss.value(reprojection_residual(interval, position, z, graph.camera).squaredNorm());
+      visit(interval, graph.intervals[index].all()[static_cast<std::size_t>(i)]);
     }
   }
+}
+
+}  // namespace
+
+double landmark_cost(const FactorGraph& graph, int landmark, const Vector3& position) {
+  const LandmarkPrior& prior = graph.landmarks[static_cast<std::size_t>(landmark)].prior;
+  double cost = 0.5 * residual(prior, position).squaredNorm();
+  for_each_observation(graph, landmark, [&](const GpInterval& interval, const Observation& z) {
+    cost += 0.5 * graph.loss.value(reprojection_residual(interval, position, z, graph.camera).squaredNorm());
+  });
   return cost;
+}
+
+LandmarkSystem linearise_landmark(const FactorGraph& graph, int landmark, const Vector3& position) {
+  const LandmarkPrior& prior = graph.landmarks[static_cast<std::size_t>(landmark)].prior;
+  LandmarkSystem system;
+  if (std::isfinite(prior.sigma)) {
+    system.H.diagonal().setConstant(1.0 / (prior.sigma * prior.sigma));
+    system.g = (position - prior.position) / (prior.sigma * prior.sigma);
+  }
+  for_each_observation(graph, landmark, [&](const GpInterval& interval, const Observation& z) {
+    const SE3 T = interval.pose(z.t).inverse();
+    const Vector3 q = T * position;
+    if (!(q.z() > 0.0)) return;
+    const Vector2 e = z.inverse_sigma * (graph.camera.project(q) - z.pixel);
+    const Matrix23 J = z.inverse_sigma * graph.camera.project_jacobian(q) * T.R();
+    const double weight = graph.loss.weight(e.squaredNorm());
+    system.H += weight * J.transpose() * J;
+    system.g += weight * J.transpose() * e;
+  });
+  return system;
 }
 
 double mean_log_distance(const FactorGraph& graph) {

@@ -21,6 +21,12 @@ double interval_cost(const FactorGraph& graph, int k);
 double state_prior_cost(const FactorGraph& graph, int state);
 /// ½ Σ ρ of a landmark's observations and prior if it were at this position.
 double landmark_cost(const FactorGraph& graph, int landmark, const Vector3& position);
+/// H and g of the same with respect to the landmark alone.
+struct LandmarkSystem {
+  Matrix3 H = Matrix3::Zero();
+  Vector3 g = Vector3::Zero();
+};
+LandmarkSystem linearise_landmark(const FactorGraph& graph, int landmark, const Vector3& position);
 double mean_log_distance(const FactorGraph& graph);  ///< of the scale anchor's landmarks; 0 without any
 
 using Matrix24 = Eigen::Matrix<double, 24, 24>;

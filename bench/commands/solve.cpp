@@ -99,6 +99,9 @@ void add_solve(CLI::App& app) {
   command->add_option("--states", arguments->states, "Write the final states as a problem's STATE records")
       ->type_name("FILE");
   command->add_option("--steps", arguments->steps, "Write a CSV with a line for each step")->type_name("FILE");
+  command->add_option("--reach", arguments->options.engine.reach, "States that relinearisation may reach back, at most")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->add_flag("--check", arguments->check, "Compare the cost with that of a batch solve from the result");
   command->add_option("--lag", arguments->options.lag, "Lag of fixed-lag mode [s]")
       ->check(CLI::PositiveNumber)

@@ -1,3 +1,4 @@
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +9,34 @@ namespace evbench::gp_map {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// The share of `step` that lowers the landmark's own cost below `cost`, tried by halving; 0: none. Lowers `cost`.
+double descend(const FactorGraph& graph, int landmark, const Vector3& start, const Vector3& step, double share,
+               double& cost) {
+  constexpr int kHalvings = 6;
+  for (int i = 0; i < kHalvings; ++i, share *= 0.5) {
+    const double after = landmark_cost(graph, landmark, start + share * step);
+    if (after > cost || !std::isfinite(after)) continue;
+    cost = after;
+    return share;
+  }
+  return 0.0;
+}
+
+/// `size`: of the step, relative to the landmark's distance.
+Vector3 refine_landmark(const FactorGraph& graph, int landmark, Vector3 position, const Vector3& step, double size) {
+  constexpr double kLargestStep = 0.3;
+  constexpr int kIterations = 2;
+  double cost = landmark_cost(graph, landmark, position);
+  position += descend(graph, landmark, position, step, std::min(1.0, kLargestStep / size), cost) * step;
+  for (int i = 0; i < kIterations; ++i) {
+    const LandmarkSystem system = linearise_landmark(graph, landmark, position);
+    const Vector3 next = -system.H.ldlt().solve(system.g);
+    if (!next.allFinite() || next.norm() > kLargestStep / size * step.norm()) break;
+    position += descend(graph, landmark, position, next, 1.0, cost) * next;
+  }
+  return position;
+}
 
 }  // namespace
 
@@ -70,24 +99,19 @@ double Engine::separator_change(int k) const {
   return change;
 }
 
-/// Landmarks that have moved a lot go back towards where they were as far as their own observations ask for it, given
-/// the poses as they are now. A landmark seen from little parallax easily overshoots, through the camera even, and this
-/// costs no new factorisation as damping would. It is linearised anew in the next update.
-void Engine::backtrack_landmarks() {
-  constexpr int kHalvings = 6;
-  constexpr double kLargestStep = 0.3;  // of the distance
+/// Landmarks that have moved a lot are solved for by themselves, given the poses as they are now: back towards where
+/// they were as far as their own cost asks for it, then by Gauss-Newton steps of 3 unknowns. A landmark seen with
+/// little parallax easily overshoots, through the camera even, and this costs no new factorisation as damping would.
+/// The result becomes its linearisation point with the next update.
+void Engine::refine_landmarks() {
   for (Change& change : changes_) {
     const int j = change.variable.index;
     if (change.variable.kind != Variable::Kind::landmark || !(change.size > options_.check_step)) continue;
     const Vector3 before = change.before.head<3>();
-    const Vector3 step = points_.landmark_delta(j) - before;
     const Vector3 start = points_.landmark(j) + before;
-    const double cost = landmark_cost(graph_, j, start);
-    double share = std::min(1.0, kLargestStep / change.size);
-    for (int i = 0; i < kHalvings && !(landmark_cost(graph_, j, start + share * step) <= cost); ++i) share *= 0.5;
-    if (share == 1.0) continue;
-    points_.set_landmark_delta(graph_, j, before + share * step);
-    backtracked_.push_back(change.variable);
+    const Vector3 refined = refine_landmark(graph_, j, start, points_.landmark_delta(j) - before, change.size);
+    points_.set_landmark_delta(graph_, j, refined - points_.landmark(j));
+    refined_.push_back(change.variable);
   }
 }
 

@@ -104,6 +104,12 @@ double Engine::size_of_landmark(int j, const Vector3& delta) const {
   return delta.norm() / std::max(distance, 1e-9);
 }
 
+int Engine::first_stage(const Variable& variable) const {
+  if (variable.kind == Variable::Kind::state) return variable.index;
+  const auto& seen = graph_.landmarks[at(variable.index)].intervals;
+  return seen.empty() ? restart_ : seen.front();
+}
+
 void Engine::move(const Variable& variable) {
   if (variable.kind == Variable::Kind::state) {
     points_.move_state(graph_, variable.index);
@@ -122,7 +128,10 @@ void Engine::choose_points() {
     return v.kind == Variable::Kind::state ? size_of_state(v.index, points_.state_delta(v.index))
                                            : size_of_landmark(v.index, points_.landmark_delta(v.index));
   };
-  for (const Variable& variable : candidates_) move(variable);
+  const int oldest = static_cast<int>(graph_.states.size()) - options_.reach;
+  for (const Variable& variable : candidates_) {
+    if (first_stage(variable) >= std::min(restart_, oldest)) move(variable);
+  }
   candidates_.clear();
   const auto move_if_far = [&](const Variable& variable) {
     if (size(variable) > options_.relinearise_redone) move(variable);
@@ -146,7 +155,7 @@ UpdateSummary Engine::update() {
   while (true) {
     const bool solved = solve(first, damping, summary);
     if (solved) {
-      backtrack_landmarks();
+      refine_landmarks();
       if (!raises_cost()) break;
     }
     if (solved) swap_changes();
@@ -166,7 +175,7 @@ UpdateSummary Engine::update() {
                                                         : size_of_landmark(v.index, points_.landmark_delta(v.index));
     if (size > options_.relinearise) candidates_.push_back(v);
   }
-  candidates_.insert(candidates_.end(), backtracked_.begin(), backtracked_.end());
+  candidates_.insert(candidates_.end(), refined_.begin(), refined_.end());
   summary.stages = static_cast<int>(factorisation_.stages_done() - stages);
   summary.linearised = static_cast<int>(points_.linearised_observations() - linearised);
   return summary;
@@ -175,7 +184,7 @@ UpdateSummary Engine::update() {
 /// Factorises and solves back; what could not be determined is held. False when that doesn't help.
 bool Engine::solve(int first_redone, double damping, UpdateSummary& summary) {
   changes_.clear();
-  backtracked_.clear();
+  refined_.clear();
   int attempts = static_cast<int>(graph_.landmarks.size() + graph_.states.size());
   while (attempts-- > 0) {
     std::optional<Variable> singular = factorisation_.redo(restart_, graph_, points_, damping);

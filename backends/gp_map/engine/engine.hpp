@@ -13,6 +13,9 @@ struct EngineOptions {
   /// increment changes a viewing direction by more than this [rad]: rotations as they are, translations by the
   /// nearest landmark's distance, landmarks by theirs, velocities by what they move the trajectory between two states.
   double relinearise = 0.03;
+  /// ... unless more than this many stages would have to be redone: what is older stays linear until observations make
+  /// its stages be redone, or until optimise(). Bounds the time of an update.
+  int reach = 128;
   /// The same for variables in stages that are redone anyway: only their intervals have to be linearised anew.
   double relinearise_redone = 0.005;
   /// Back-substitution ends where the change of what a stage is solved from is below this [rad, as above].
@@ -96,6 +99,7 @@ class Engine {
   void touch(int stage) { restart_ = std::min(restart_, stage); }
   double size_of_state(int i, const Vector12& delta) const;
   double size_of_landmark(int j, const Vector3& delta) const;
+  int first_stage(const Variable& variable) const;
   void choose_points();
   void move(const Variable& variable);
   bool solve(int first_redone, double damping, UpdateSummary& summary);
@@ -104,7 +108,7 @@ class Engine {
   double separator_change(int k) const;
   void set_state(int i, const double* delta);
   void set_landmark(int j, const double* delta, int slot);
-  void backtrack_landmarks();
+  void refine_landmarks();
   double concerned_cost(const std::vector<int>& intervals) const;
   bool raises_cost();
   void swap_changes();
@@ -119,8 +123,8 @@ class Engine {
   double state_change_ = 0.0;         ///< of the newest state solved for
   std::vector<Change> changes_;       ///< of the last solve
   std::vector<Variable> candidates_;  ///< whose increments have grown beyond the threshold
-  std::vector<Variable> backtracked_;
-  std::vector<int> concerned_;  ///< intervals
+  std::vector<Variable> refined_;     ///< landmarks whose estimate is not the linear solution
+  std::vector<int> concerned_;        ///< intervals
 };
 
 }  // namespace evbench::gp_map
