@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   evbench::add_table(app);
   evbench::add_list(app);
   evbench::add_describe(app);
+  evbench::add_solve(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

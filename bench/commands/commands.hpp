@@ -9,6 +9,7 @@ void add_eval(CLI::App& app);
 void add_table(CLI::App& app);
 void add_list(CLI::App& app);
 void add_describe(CLI::App& app);
+void add_solve(CLI::App& app);
 
 /// `exit_code` is set to what the program returns: 0, or 3 when a run failed.
 void add_run(CLI::App& app, int& exit_code);

@@ -185,15 +185,17 @@ UpdateSummary Engine::update() {
 bool Engine::solve(int first_redone, double damping, UpdateSummary& summary) {
   changes_.clear();
   refined_.clear();
+  damped_ = damping > 0.0;
   int attempts = static_cast<int>(graph_.landmarks.size() + graph_.states.size());
   while (attempts-- > 0) {
     std::optional<Variable> singular = factorisation_.redo(restart_, graph_, points_, damping);
     if (!singular) {
       restart_ = static_cast<int>(graph_.states.size());
-      singular = factorisation_.solve_root(points_, damping, delta_);
+      singular = factorisation_.factorise_root(points_, damping);
       if (singular) restart_ = factorisation_.done();
     }
     if (!singular) {
+      factorisation_.solve_root(delta_);
       solve_back(first_redone, summary);
       return true;
     }

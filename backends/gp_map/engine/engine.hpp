@@ -12,14 +12,14 @@ struct EngineOptions {
   /// A variable's linearisation point moves to the estimate, and the stages from there on are redone, when its
   /// increment changes a viewing direction by more than this [rad]: rotations as they are, translations by the
   /// nearest landmark's distance, landmarks by theirs, velocities by what they move the trajectory between two states.
-  double relinearise = 0.03;
+  double relinearise = 0.05;
   /// ... unless more than this many stages would have to be redone: what is older stays linear until observations make
   /// its stages be redone, or until optimise(). Bounds the time of an update.
   int reach = 128;
   /// The same for variables in stages that are redone anyway: only their intervals have to be linearised anew.
-  double relinearise_redone = 0.005;
+  double relinearise_redone = 0.0025;
   /// Back-substitution ends where the change of what a stage is solved from is below this [rad, as above].
-  double solve_tolerance = 3e-4;
+  double solve_tolerance = 5e-4;
   /// An update that changes a variable by more than this [rad] must not raise the cost of the intervals concerned.
   double check_step = 0.05;
   /// States for which a landmark may go unobserved before it is eliminated [≥ 1].
@@ -57,6 +57,9 @@ class Engine {
   /// The problem with the present estimate of every variable. Observations added since the last update are in it.
   const FactorGraph& graph() const { return graph_; }
 
+  /// The oldest state that is still being estimated.
+  int first_state() const { return 0; }
+
   /// A state later than the newest one, with the motion prior between them.
   void add_state(const ControlState& guess);
   void add_pose_prior(const PosePrior& prior);
@@ -88,6 +91,15 @@ class Engine {
   };
   OptimiseSummary optimise(int max_iterations, double relative_tolerance);
 
+  // Marginal covariances at the linearisation points (increments on the right), in the gauge of the priors; none when
+  // the system is singular. Time: proportional to how many states ago the variable was alive.
+
+  /// Of states k and k + 1 jointly, 24 × 24.
+  std::optional<Matrix24> neighbours(int k);
+  /// Of pose and velocity at any time within the states' span.
+  std::optional<Matrix12> covariance(double t);
+  std::optional<Matrix3> landmark_covariance(int landmark);
+
  private:
   /// A variable's increment before a solve, to undo it.
   struct Change {
@@ -103,7 +115,7 @@ class Engine {
   void choose_points();
   void move(const Variable& variable);
   bool solve(int first_redone, double damping, UpdateSummary& summary);
-  bool factorise(double damping, UpdateSummary& summary);
+  bool factorise_undamped();
   void solve_back(int first_redone, UpdateSummary& summary);
   double separator_change(int k) const;
   void set_state(int i, const double* delta);
@@ -117,6 +129,7 @@ class Engine {
   EngineOptions options_;
   LinearisationPoints points_;
   Factorisation factorisation_;
+  bool damped_ = false;               ///< the factorisation at hand is
   int restart_ = 0;                   ///< the oldest stage that has changed
   Buffer delta_;                      ///< increments in the root's layout, while solving back
   std::vector<double> slot_change_;   ///< of the landmark in each slot, in the solve at hand

@@ -23,4 +23,28 @@ TEST_CASE("Optimising with the engine ends where the batch solver ends") {
   }
 }
 
+TEST_CASE("Covariances of the engine are those of the batch solver") {
+  const auto path = testing::problem_file("small.txt.gz");
+  if (!path) return;
+  Engine engine(to_graph(read_problem(*path)), {});
+  engine.optimise(10, 1e-12);
+  const BatchCovariance oracle(engine.graph());
+  const int newest = static_cast<int>(engine.graph().states.size()) - 1;
+  for (const int k : {0, 1, 50, newest - 2, newest - 1}) {
+    const auto joint = engine.neighbours(k);
+    const auto expected = oracle.neighbours(k);
+    REQUIRE(joint);
+    REQUIRE(expected);
+    CHECK((*joint - *expected).norm() < 1e-6 * expected->norm());
+  }
+  for (const double t : {0.01, 2.513, engine.graph().states.back().t}) {
+    CHECK((*engine.covariance(t) - *oracle.at(t)).norm() < 1e-6 * oracle.at(t)->norm());
+  }
+  const int landmarks = static_cast<int>(engine.graph().landmarks.size());
+  for (const int j : {0, landmarks / 2, landmarks - 1}) {
+    if (!engine.graph().landmarks[static_cast<std::size_t>(j)].alive) continue;
+    CHECK((*engine.landmark_covariance(j) - *oracle.landmark(j)).norm() < 1e-6 * oracle.landmark(j)->norm());
+  }
+}
+
 }  // namespace evbench::gp_map

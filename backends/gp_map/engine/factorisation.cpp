@@ -8,8 +8,6 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kHold = 1e-6;  ///< damping of variables that are held
-
 /// How far apart the snapshots of the root are that are kept, by age in stages: restarts go back a few stages most of
 /// the time, and memory must grow slowly with the length of history.
 int snapshot_spacing(int age) {
@@ -176,12 +174,12 @@ std::optional<Variable> Factorisation::eliminate_finished(int k, const Linearisa
 }
 
 void Factorisation::damp_state(int k, const LinearisationPoints& points, double damping) {
-  const double lambda = is_held({Variable::Kind::state, k}) ? std::max(damping, kHold) : damping;
+  const double lambda = is_held({Variable::Kind::state, k}) ? std::max(damping, kHoldDamping) : damping;
   if (lambda > 0.0) root_.damp(Root::row_of_state(k), 12, lambda, points.state_delta(k).data());
 }
 
 void Factorisation::damp_landmark(int j, const LinearisationPoints& points, double damping) {
-  const double lambda = landmarks_[at(j)].held ? std::max(damping, kHold) : damping;
+  const double lambda = landmarks_[at(j)].held ? std::max(damping, kHoldDamping) : damping;
   if (lambda > 0.0) root_.damp(Root::row_of_slot(root_.slot_of(j)), 3, lambda, points.landmark_delta(j).data());
 }
 
@@ -205,60 +203,6 @@ void Factorisation::thin_snapshots(int newest) {
       i = snapshots_.erase(i);
     }
   }
-}
-
-std::optional<Variable> Factorisation::solve_root(const LinearisationPoints& points, double damping, Buffer& delta) {
-  // Landmarks first, the state last; places that nobody has get a unit diagonal.
-  const int state_row = Root::row_of_state(done_);
-  const int landmark_rows = 3 * root_.slots();
-  const int n = padded(landmark_rows + 12);
-  factor_.assign(at(n) * at(n + 1), 0.0);
-  double* F = factor_.data();
-  double* x = F + static_cast<std::ptrdiff_t>(n) * n;
-  const auto source = [&](int i) { return i < landmark_rows ? Root::kStates + i : state_row + i - landmark_rows; };
-  const std::ptrdiff_t stride = root_.stride();
-  for (int c = 0; c < landmark_rows; ++c) {
-    const double* from = root_.H() + (Root::kStates + c) * stride + Root::kStates;
-    std::copy(from + c, from + landmark_rows, F + static_cast<std::ptrdiff_t>(c) * n + c);
-    for (int r = 0; r < 12; ++r) {
-      F[static_cast<std::ptrdiff_t>(c) * n + landmark_rows + r] =
-          root_.H()[(state_row + r) * stride + Root::kStates + c];
-    }
-  }
-  for (int c = 0; c < 12; ++c) {
-    for (int r = c; r < 12; ++r) {
-      F[static_cast<std::ptrdiff_t>(landmark_rows + c) * n + landmark_rows + r] =
-          root_.H()[(state_row + c) * stride + state_row + r];
-    }
-  }
-  for (int i = 0; i < landmark_rows + 12; ++i) x[i] = root_.b()[source(i)];
-  const auto damp = [&](int row, int rows, double lambda, const double* now) {
-    for (int i = 0; i < rows && lambda > 0.0; ++i) {
-      double& diagonal = F[static_cast<std::ptrdiff_t>(row + i) * (n + 1)];
-      const double added = lambda * std::max(diagonal, 1e-6);
-      diagonal += added;
-      x[row + i] += added * now[i];
-    }
-  };
-  for (int slot = 0; slot < root_.slots(); ++slot) {
-    const int j = root_.occupant(slot);
-    if (j < 0) {
-      for (int i = 3 * slot; i < 3 * slot + 3; ++i) F[static_cast<std::ptrdiff_t>(i) * (n + 1)] = 1.0;
-    } else {
-      damp(3 * slot, 3, landmarks_[at(j)].held ? std::max(damping, kHold) : damping, points.landmark_delta(j).data());
-    }
-  }
-  damp(landmark_rows, 12, is_held({Variable::Kind::state, done_}) ? std::max(damping, kHold) : damping,
-       points.state_delta(done_).data());
-  for (int i = landmark_rows + 12; i < n; ++i) F[static_cast<std::ptrdiff_t>(i) * (n + 1)] = 1.0;
-  const int failed = cholesky_blocked(F, n, n, kPivotTolerance);
-  if (failed >= landmark_rows) return Variable{Variable::Kind::state, done_};
-  if (failed >= 0) return Variable{Variable::Kind::landmark, root_.occupant(failed / 3)};
-  solve_lower(F, n, n, x);
-  solve_lower_transposed(F, n, n, x);
-  if (static_cast<int>(delta.size()) < root_.stride()) delta.resize(at(root_.stride()), 0.0);
-  for (int i = 0; i < landmark_rows + 12; ++i) delta[at(source(i))] = x[i];
-  return std::nullopt;
 }
 
 }  // namespace evbench::gp_map

@@ -18,6 +18,9 @@ struct Variable {
   std::string name() const;
 };
 
+/// Damping of variables that are held.
+inline constexpr double kHoldDamping = 1e-6;
+
 /// The block Cholesky factorisation of the normal equations in the order of time. Stage k adds interval k (k−1 → k) and
 /// the priors on state k to the root, eliminates the landmarks that are seen for the last time in k or before, then
 /// state k−1. What remains after stage k is the root: state k and the landmarks alive there. Stages form a chain: the
@@ -55,8 +58,20 @@ class Factorisation {
   /// before that variable's elimination are done. `damping`: λ of Levenberg-Marquardt, relative to the diagonal.
   std::optional<Variable> redo(int first, const FactorGraph& graph, LinearisationPoints& points, double damping);
 
+  /// Factorises the root. Returns what made it singular.
+  std::optional<Variable> factorise_root(const LinearisationPoints& points, double damping);
+
   /// The increments of the root's variables, in the root's layout; `delta` grows to the root's extent.
-  std::optional<Variable> solve_root(const LinearisationPoints& points, double damping, Buffer& delta);
+  void solve_root(Buffer& delta) const;
+
+  /// x ← H⁻¹ x for the root, both in its layout, by its factor.
+  void solve_with_root_factor(double* x) const;
+
+  /// Covariance of rows in the layout that the root had before stage `stage` eliminated them (or later ones).
+  Eigen::MatrixXd marginal(int stage, std::span<const int> rows) const;
+
+  /// The stage that eliminates a landmark (the one after the last done while it is in the root) and its row there.
+  std::optional<std::pair<int, int>> find_landmark(int j) const;
 
   std::int64_t stages_done() const { return stages_done_; }
 
@@ -89,7 +104,8 @@ class Factorisation {
   std::map<int, Root::Snapshot> snapshots_;  ///< the root after a stage
   std::vector<Root::Snapshot> spare_;        ///< their memory, to use again
   std::vector<int> finished_;                ///< landmarks to eliminate in the stage at hand
-  Buffer factor_;                            ///< of the root
+  Buffer factor_, solution_;                 ///< of the root; landmarks first, the state last
+  int factor_size_ = 0, factor_slots_ = 0;
   std::int64_t stages_done_ = 0;
 };
 

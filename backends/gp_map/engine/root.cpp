@@ -3,12 +3,6 @@
 #include <algorithm>
 
 namespace evbench::gp_map {
-namespace {
-
-constexpr double kDampingFloor = 1e-6;  ///< of the diagonal: rows about which nothing is known are damped too
-
-}  // namespace
-
 int Root::enter(int landmark) {
   const auto free = std::find(occupant_.begin(), occupant_.begin() + top_, -1);
   const int slot = static_cast<int>(free - occupant_.begin());
@@ -89,7 +83,7 @@ void Root::add_landmark_factor(std::span<const int> landmarks, const AnchorLinea
 void Root::damp(int row, int rows, double lambda, const double* delta) {
   for (int i = 0; i < rows; ++i) {
     double& diagonal = column(row + i)[row + i];
-    const double added = lambda * std::max(diagonal, kDampingFloor);
+    const double added = damping_of(diagonal, lambda);
     diagonal += added;
     b_[static_cast<std::size_t>(row + i)] += added * delta[i];
   }

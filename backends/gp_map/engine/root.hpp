@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -7,6 +8,9 @@
 #include "backends/gp_map/factors.hpp"
 
 namespace evbench::gp_map {
+
+/// What damping λ adds to a diagonal element of H: relative, with a floor for rows about which nothing is known.
+inline double damping_of(double diagonal, double lambda) { return lambda * std::max(diagonal, 1e-6); }
 
 /// The trailing dense part of the factorisation: information matrix H and right-hand side b (H δ = b) of the newest two
 /// states and of the landmarks that are alive there, after everything older has been eliminated.
@@ -45,7 +49,7 @@ class Root {
   void add_interval(int k, const IntervalLinearisation& linear);
   /// A residual e of landmarks alone with one row J per landmark.
   void add_landmark_factor(std::span<const int> landmarks, const AnchorLinearisation& linear);
-  /// Adds λ H_ii to the diagonal of some rows, pulling each towards the increment δ_i that it has now.
+  /// Adds damping_of(H_ii, λ) to the diagonal of some rows, pulling each towards the increment δ_i that it has now.
   void damp(int row, int rows, double lambda, const double* delta);
 
   void clear();
