@@ -28,7 +28,6 @@ struct Options {
   int min_landmarks = 6;    ///< in a frame; with fewer, the pose is predicted and the frame degraded
   double lost_after = 1.0;  ///< [s] without min_landmarks
 
-  Options() { initialiser.two_view.min_parallax_deg = 4.0; }
   void declare(OptionSet& set);
 };
 

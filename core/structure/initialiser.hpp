@@ -12,7 +12,7 @@ namespace evbench {
 
 struct InitialiserOptions {
   int min_tracks = 15;   ///< seen at both times
-  double window = 0.05;  ///< [s], of the line through a track's observations that gives its place at a time
+  double window = 0.1;   ///< [s], of the line through a track's observations that gives its place at a time
   TwoViewOptions two_view;
 
   void declare(OptionSet& set);

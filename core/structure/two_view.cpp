@@ -228,13 +228,15 @@ TwoViewResult relative_pose(std::span<const Vector2> first, std::span<const Vect
   if (explained < needed) {
     return {{}, fmt::format("{} of {} matches explained, {} needed", explained, first.size(), needed)};
   }
-  const double parallax = all.front().median_parallax_deg;
+  // The best explanation must show the parallax: a worse one that does only fits noise.
+  if (all.front().median_parallax_deg < options.min_parallax_deg) {
+    return {{},
+            fmt::format("median parallax {:.2f} deg, {:.2f} needed", all.front().median_parallax_deg,
+                        options.min_parallax_deg)};
+  }
   std::erase_if(all, [&](const TwoViewCandidate& c) {
     return c.inliers < needed || c.median_parallax_deg < options.min_parallax_deg;
   });
-  if (all.empty()) {
-    return {{}, fmt::format("median parallax {:.2f} deg, {:.2f} needed", parallax, options.min_parallax_deg)};
-  }
   return {std::move(all), ""};
 }
 

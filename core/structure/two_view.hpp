@@ -15,7 +15,7 @@ struct TwoViewOptions {
   double confidence = 0.9999;     ///< RANSAC
   int min_inliers = 12;           ///< matches that a candidate must explain
   double min_inlier_share = 0.5;  ///< the same as a share of all matches
-  double min_parallax_deg = 2.0;  ///< median angle between the rays to a point
+  double min_parallax_deg = 4.0;  ///< median angle between the rays to a point
   double ambiguity = 0.75;        ///< a candidate stays when it explains this share of what the best one explains
 
   void declare(OptionSet& set);

@@ -20,6 +20,7 @@ class TrackedScene {
   double duration() const { return duration_; }
   const PoseTrajectory& ground_truth() const { return ground_truth_; }
   const std::vector<TrackObservation>& observations() const { return tracks_.observations; }
+  const Vector3& point(TrackId track) const { return tracks_.tracks[static_cast<std::size_t>(track)].point; }
 
  private:
   double duration_;
