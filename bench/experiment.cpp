@@ -82,7 +82,7 @@ void set_value(Json& config, const std::string& assignment) {
 
 /// Takes "type" out of a plugin's object and checks the rest with the plugin's own options.
 template <class Interface>
-PluginConfig plugin(Json json, const std::string& place) {
+PluginConfig plugin(Json json, const std::string& place, const std::string& folder) {
   if (!json.is_object() || !json.contains("type") || !json["type"].is_string()) {
     throw InputError(
         fmt::format("{}: expected an object with \"type\": the name of a {}", place, PluginKind<Interface>::name));
@@ -91,12 +91,13 @@ PluginConfig plugin(Json json, const std::string& place) {
   result.type = json["type"].get<std::string>();
   result.place = place;
   json.erase("type");
-  result.options = Registry<Interface>::instance().find(result.type, place + ".type").resolve(json, place);
+  result.options = Registry<Interface>::instance().find(result.type, place + ".type").resolve(json, place, folder);
   return result;
 }
 
 /// The back-ends with their labels taken out.
-std::vector<std::pair<std::string, PluginConfig>> backends(const ExperimentOptions& options, const std::string& path) {
+std::vector<std::pair<std::string, PluginConfig>> backends(const ExperimentOptions& options, const std::string& path,
+                                                           const std::string& folder) {
   if (options.backend.is_null() == options.backends.is_null()) {
     throw InputError(fmt::format("{}: expected either \"backend\" (one run) or \"backends\" (a comparison)", path));
   }
@@ -117,7 +118,7 @@ std::vector<std::pair<std::string, PluginConfig>> backends(const ExperimentOptio
       label = json["label"].get<std::string>();
       json.erase("label");
     }
-    PluginConfig config = plugin<BackEnd>(std::move(json), place);
+    PluginConfig config = plugin<BackEnd>(std::move(json), place, folder);
     result.emplace_back(label.empty() ? config.type : label, std::move(config));
   }
   return result;
@@ -142,12 +143,14 @@ Json with_type(const PluginConfig& plugin) {
 }  // namespace
 
 Json RunConfig::resolved() const {
+  Json labelled = with_type(backend);
+  labelled["label"] = label;
   return {{"name", experiment},
           {"seed", seed},
           {"trajectory_rate", trajectory_rate},
           {"source", with_type(source)},
           {"frontend", with_type(frontend)},
-          {"backend", with_type(backend)},
+          {"backend", labelled},
           {"evaluation", write_options(evaluation)}};
 }
 
@@ -178,19 +181,15 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
   run.folder = std::filesystem::absolute(path).parent_path().string();
   run.trajectory_rate = options.trajectory_rate;
   run.evaluation = options.evaluation;
-  run.source = plugin<Source>(options.source, path + ": source");
-  run.frontend = plugin<FrontEnd>(options.frontend, path + ": frontend");
-  for (auto& [label, backend] : backends(options, path)) {
+  run.source = plugin<Source>(options.source, path + ": source", run.folder);
+  run.frontend = plugin<FrontEnd>(options.frontend, path + ": frontend", run.folder);
+  for (auto& [label, backend] : backends(options, path, run.folder)) {
     run.label = label;
     run.backend = std::move(backend);
     for (const RunConfig& other : experiment.runs) {
       if (other.label == run.label) {
         throw InputError(
             fmt::format("{}: two back-ends are labelled \"{}\"; give each a \"label\" of its own", path, label));
-      }
-      if (other.key() == run.key()) {
-        throw InputError(fmt::format("{}: \"{}\" and \"{}\" are the same run and would write to the same folder", path,
-                                     other.label, run.label));
       }
     }
     experiment.runs.push_back(run);

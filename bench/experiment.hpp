@@ -26,7 +26,8 @@ struct RunConfig {
   double trajectory_rate = 100.0;
   ScoreOptions evaluation;
 
-  /// Everything that determines the result, complete with defaults: config.json of the run.
+  /// Everything that determines the result, complete with defaults: config.json of the run. It can be run again from
+  /// anywhere: relative paths are taken from the config's folder.
   Json resolved() const;
   /// The name of the run's folder: a readable part and a hash of resolved().
   std::string key() const;

@@ -3,11 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 
 #include "bench/commands/commands.hpp"
 #include "bench/version.hpp"
 
-int main(int argc, char** argv) {
+namespace {
+
+int run_program(int argc, char** argv) {
   CLI::App app{"evbench: a benchmark harness for back-ends of event-camera visual odometry"};
   app.name("evbench");
   app.set_version_flag("--version", evbench::version_text());
@@ -29,4 +32,14 @@ int main(int argc, char** argv) {
     return 2;
   }
   return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int exit_code = run_program(argc, argv);
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::cout) return exit_code;
+  fmt::print(stderr, "evbench: what was to be printed can't be written to the standard output (disk full?)\n");
+  return exit_code == 0 ? 2 : exit_code;
 }

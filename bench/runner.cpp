@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "bench/peak_memory.hpp"
 #include "core/plugin/registry.hpp"
 #include "core/support/sha256.hpp"
 
@@ -15,22 +16,11 @@ namespace {
 
 constexpr double kChunk = 0.01;  // [s] of data between two calls of the back-end
 
-/// The peak memory of the process since reset(), as the kernel counts it.
-class PeakMemory {
- public:
-  static void reset() {
-    ::malloc_trim(0);
-    std::ofstream("/proc/self/clear_refs") << "5";
-  }
-  static double mib() {
-    std::ifstream status("/proc/self/status");
-    for (std::string word; status >> word;) {
-      double kib = 0.0;
-      if (word == "VmHWM:" && status >> kib) return kib / 1024.0;
-    }
-    return 0.0;
-  }
-};
+/// peak_memory_mib() counts from here on.
+void reset_peak_memory() {
+  ::malloc_trim(0);
+  std::ofstream("/proc/self/clear_refs") << "5";
+}
 
 class Stopwatch {
  public:
@@ -115,7 +105,7 @@ bool is_finite(const PoseTrajectory& trajectory) {
 }  // namespace
 
 std::unique_ptr<Source> make_source(const RunConfig& config) {
-  const SourceContext context{config.seed, config.folder};
+  const SourceContext context{config.seed, config.folder, config.source.place};
   return Registry<Source>::instance()
       .find(config.source.type, config.source.place)
       .make(config.source.options, config.source.place, context);
@@ -123,8 +113,8 @@ std::unique_ptr<Source> make_source(const RunConfig& config) {
 
 RunResult run(const RunConfig& config, const Source& source, const Progress& progress) {
   RunResult result;
-  PeakMemory::reset();
-  const FrontEndContext frontend_context{source, config.seed, config.folder};
+  reset_peak_memory();
+  const FrontEndContext frontend_context{source, config.seed, config.folder, config.frontend.place};
   const auto frontend = Registry<FrontEnd>::instance()
                             .find(config.frontend.type, config.frontend.place)
                             .make(config.frontend.options, config.frontend.place, frontend_context);
@@ -169,7 +159,7 @@ RunResult run(const RunConfig& config, const Source& source, const Progress& pro
   result.updates.assign(backend->updates().begin(), backend->updates().end());
   result.runtime_s = stopwatch.seconds();
   result.data_s = range.to - range.from;
-  result.peak_rss_mib = PeakMemory::mib();
+  result.peak_rss_mib = peak_memory_mib();
   result.tracks_sha256 = hash.hex();
   score_into(source, result.final_trajectory, config, result.final_scores, result.final_unscored);
   score_into(source, result.online_trajectory, config, result.online_scores, result.online_unscored);

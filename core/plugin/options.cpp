@@ -9,6 +9,7 @@
 
 #include "core/support/error.hpp"
 #include "core/support/nearest.hpp"
+#include "core/support/path.hpp"
 
 namespace evbench {
 namespace {
@@ -24,6 +25,11 @@ std::string shown(const Json& value) {
   std::string text = value.dump();
   if (text.size() > 60) text = text.substr(0, 57) + "...";
   return text;
+}
+
+/// The place of a key: "config.json: seed" in a file, "config.json: source.duration" below a key.
+std::string below(const std::string& place, const std::string& key) {
+  return place + (place.find(": ") == std::string::npos ? ": " : ".") + key;
 }
 
 }  // namespace
@@ -55,11 +61,16 @@ OptionSet::Option& OptionSet::Option::required() {
   return *this;
 }
 
+OptionSet::Option& OptionSet::Option::path() {
+  path_ = true;
+  return *this;
+}
+
 std::string OptionSet::Option::allowed() const {
   if (!choices_.empty()) return fmt::format("{}", fmt::join(choices_, " | "));
   const bool bounded_below = std::isfinite(minimum_);
   const bool bounded_above = std::isfinite(maximum_);
-  if (bounded_below && bounded_above) return fmt::format("{} to {}", minimum_, maximum_);
+  if (bounded_below && bounded_above) return fmt::format("{}{} to {}", open_below_ ? "above " : "", minimum_, maximum_);
   if (bounded_below) return fmt::format("{} {}", open_below_ ? ">" : ">=", minimum_);
   if (bounded_above) return fmt::format("<= {}", maximum_);
   return "";
@@ -190,15 +201,23 @@ void OptionSet::read(const Json& object, const std::string& place) {
   for (Option& option : options_) {
     const auto found = object.find(option.name_);
     if (found != object.end()) {
-      option.read(*found, place + "." + option.name_);
+      option.read(*found, below(place, option.name_));
     } else if (option.required_) {
       throw InputError(fmt::format("{}: \"{}\" is missing ({})", place, option.name_, option.text_));
     }
   }
   for (Group& group : groups_) {
     const auto found = object.find(group.name);
-    if (found != object.end()) group.set.read(*found, place + "." + group.name);
+    if (found != object.end()) group.set.read(*found, below(place, group.name));
   }
+}
+
+void OptionSet::anchor_paths(const std::string& folder) {
+  for (Option& option : options_) {
+    auto* const* path = std::get_if<std::string*>(&option.target_);
+    if (option.path_ && path != nullptr && !(*path)->empty()) **path = anchored_path(**path, folder);
+  }
+  for (Group& group : groups_) group.set.anchor_paths(folder);
 }
 
 Json OptionSet::write() const {

@@ -40,6 +40,7 @@ class OptionSet {
     Option& choices(std::vector<std::string> values);
     Option& size(std::size_t count);  ///< number of items of a list
     Option& required();               ///< no default: must be given
+    Option& path();                   ///< text that names a file or folder, relative to the config's folder
 
    private:
     friend class OptionSet;
@@ -47,7 +48,7 @@ class OptionSet {
     Target target_;
     double minimum_ = -std::numeric_limits<double>::infinity();
     double maximum_ = std::numeric_limits<double>::infinity();
-    bool open_below_ = false, required_ = false;
+    bool open_below_ = false, required_ = false, path_ = false;
     std::vector<std::string> choices_;
     std::optional<std::size_t> size_;
 
@@ -78,6 +79,9 @@ class OptionSet {
   /// stands ("config.json: backend"), for messages. Throws InputError for a value of a wrong type or out of range, an
   /// unknown key (with the nearest known one), a required key that is missing.
   void read(const Json& object, const std::string& place);
+
+  /// Takes relative paths among the options from `folder`, so that they mean the same wherever they are written.
+  void anchor_paths(const std::string& folder);
 
   Json write() const;            ///< every option with its present value
   Json schema() const;           ///< JSON Schema (2020-12) of the object

@@ -20,12 +20,14 @@ namespace evbench {
 /// What makes a plugin of a kind, besides its options.
 struct SourceContext {
   std::uint64_t seed = 0;
-  std::string folder;  ///< what relative paths in options refer to
+  std::string folder;            ///< what relative paths in options refer to
+  std::string place = "source";  ///< where the options stand, for messages: "config.json: source"
 };
 struct FrontEndContext {
   const Source& source;
   std::uint64_t seed = 0;
-  std::string folder;  ///< what relative paths in options refer to
+  std::string folder;              ///< what relative paths in options refer to
+  std::string place = "frontend";  ///< where the options stand, for messages: "config.json: frontend"
 };
 
 template <class Interface>
@@ -58,10 +60,11 @@ class Registry {
   using Context = typename PluginKind<Interface>::Context;
 
   struct Entry {
-    std::string text;                                              ///< one line for `evbench list`
-    std::function<std::string()> describe;                         ///< table of its options
-    std::function<Json()> schema;                                  ///< JSON Schema of its options
-    std::function<Json(const Json&, const std::string&)> resolve;  ///< checked and completed with defaults
+    std::string text;                       ///< one line for `evbench list`
+    std::function<std::string()> describe;  ///< table of its options
+    std::function<Json()> schema;           ///< JSON Schema of its options
+    /// (options, place, folder): checked, completed with defaults, relative paths taken from the folder.
+    std::function<Json(const Json&, const std::string&, const std::string&)> resolve;
     std::function<std::unique_ptr<Interface>(const Json&, const std::string&, const Context&)> make;
   };
 
@@ -105,8 +108,13 @@ struct Registration {
       options.declare(set);
       return set.schema();
     };
-    entry.resolve = [](const Json& json, const std::string& place) {
-      return write_options(read_options<Options>(json, place));
+    entry.resolve = [](const Json& json, const std::string& place, const std::string& folder) {
+      Options options;
+      OptionSet set;
+      options.declare(set);
+      set.read(json, place);
+      set.anchor_paths(folder);
+      return set.write();
     };
     entry.make = [](const Json& json, const std::string& place,
                     const typename Registry<Interface>::Context& context) -> std::unique_ptr<Interface> {

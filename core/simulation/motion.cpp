@@ -121,14 +121,14 @@ Motion base_motion(const MotionOptions& options, double duration, std::uint64_t 
 
 void MotionOptions::declare(OptionSet& set) {
   set.add("kind", kind, "how the camera moves").choices({"smooth_random", "robot_arm", "trajectory"});
-  set.add("amplitude", amplitude, "largest excursion of the position an axis [m] (not trajectory)").range(0.0);
+  set.add("amplitude", amplitude, "largest excursion of the position an axis [m] (not trajectory)").range(0.0, 1e6);
   set.add("rotation_amplitude", rotation_amplitude,
           "largest rotation an axis (smooth_random), largest roll (robot_arm) [rad]")
       .range(0.0, 1.5);
-  set.add("max_frequency", max_frequency, "fastest sinusoid of smooth_random [Hz]").above(0.0);
+  set.add("max_frequency", max_frequency, "fastest sinusoid of smooth_random [Hz]").range(0.0, 1e3).above(0.0);
   set.add("period", period, "time after which robot_arm repeats [s]").above(0.0);
   set.add("distance", distance, "distance of the point that robot_arm looks at [m]").above(0.0);
-  set.add("trajectory", trajectory, "path of a TUM trajectory to follow");
+  set.add("trajectory", trajectory, "path of a TUM trajectory to follow").path();
   set.add("start", start, "where in the trajectory to begin, after its first pose [s]").range(0.0);
   set.add("knot_rate", knot_rate, "poses of the trajectory that are used [Hz]; fewer smooth its noise; 0: all")
       .range(0.0, 1e4);

@@ -181,7 +181,7 @@ void TrackOptions::declare(OptionSet& set) {
   set.add("outlier_speed", outlier_speed, "mean speed of those [px/s]").range(0.0);
   set.add("drift_share", drift_share, "share of the tracks that slide off their point").range(0.0, 1.0);
   set.add("drift_speed", drift_speed, "speed of those relative to the point [px/s]").range(0.0);
-  set.add("dropout_rate", dropout_rate, "gaps in a track per second [Hz]").range(0.0);
+  set.add("dropout_rate", dropout_rate, "gaps in a track per second [Hz]").range(0.0, 1e4);
   set.add("dropout_length", dropout_length, "smallest and largest length of such a gap [s]").range(0.0).size(2);
   set.add("border", border, "a track ends this far from the image's border [px]").range(0.0);
   set.add("blackouts", blackouts, "spans without observations, which end all tracks [from, to, from, to, ...] [s]");

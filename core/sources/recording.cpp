@@ -21,9 +21,9 @@ PoseTrajectory shifted(const PoseTrajectory& trajectory, double offset) {
 }  // namespace
 
 void Recording::Options::declare(OptionSet& set) {
-  set.add("folder", folder, "folder with calib.txt and groundtruth.txt");
-  set.add("calibration", calibration, "calibration file, instead of the folder's calib.txt");
-  set.add("ground_truth", ground_truth, "ground truth file, instead of the folder's groundtruth.txt");
+  set.add("folder", folder, "folder with calib.txt and groundtruth.txt").path();
+  set.add("calibration", calibration, "calibration file, instead of the folder's calib.txt").path();
+  set.add("ground_truth", ground_truth, "ground truth file, instead of the folder's groundtruth.txt").path();
   set.add("ground_truth_format", ground_truth_format, "its format").choices({"tum", "robotevt"});
   set.add("width", width, "sensor's width [px]").range(1, 1e5);
   set.add("height", height, "sensor's height [px]").range(1, 1e5);
@@ -34,7 +34,7 @@ void Recording::Options::declare(OptionSet& set) {
   set.add("time_offset", time_offset, "added to the ground truth's times to get the sequence's [s]");
 }
 
-Recording::Recording(const Options& options, const SourceContext& context) {
+Recording::Recording(const Options& options, const SourceContext& context) : place_(context.place) {
   const std::string folder = options.folder.empty() ? "" : resolve_path(options.folder, context.folder);
   Options resolved = options;
   if (!options.calibration.empty()) resolved.calibration = resolve_path(options.calibration, context.folder);
@@ -46,7 +46,7 @@ Recording::Recording(const Options& options, const SourceContext& context) {
 
 void Recording::read_camera(const Options& options, const std::string& folder) {
   if (options.calibration.empty() && folder.empty()) {
-    throw InputError("source recording: neither folder nor calibration is given; expected one of them");
+    throw InputError(fmt::format("{}: neither folder nor calibration is given; expected one of them", place_));
   }
   const std::string path = options.calibration.empty() ? folder + "/calib.txt" : options.calibration;
   camera_ = read_calib(path, options.width, options.height, parse_distortion_model(options.distortion));
@@ -70,20 +70,18 @@ void Recording::read_ground_truth(const Options& options, const std::string& fol
 
 void Recording::set_time_range(const std::vector<double>& range) {
   if (range.empty() && ground_truth_.empty()) {
-    throw InputError("source recording: without ground truth, time_range must be given: [from, to] in seconds");
+    throw InputError(fmt::format("{}: without ground truth, time_range must be given: [from, to] in seconds", place_));
   }
   range_ = range.empty() ? TimeRange{ground_truth_.start(), ground_truth_.end()} : TimeRange{range[0], range[1]};
   if (range_.from > range_.to || (!range.empty() && range_.from == range_.to)) {
-    throw InputError(
-        fmt::format("source recording: time_range is {} to {} s; expected from < to", range_.from, range_.to));
+    throw InputError(fmt::format("{}.time_range: is {} to {} s; expected from < to", place_, range_.from, range_.to));
   }
   if (ground_truth_.empty()) return;
   const double start = ground_truth_.start(), end = ground_truth_.end();
   if (range_.to < start || range_.from > end) {
     throw InputError(
-        fmt::format("source recording: time_range {} to {} s does not meet the ground truth, which goes "
-                    "from {:.3f} to {:.3f} s",
-                    range_.from, range_.to, start, end));
+        fmt::format("{}.time_range: {} to {} s does not meet the ground truth, which goes from {:.3f} to {:.3f} s",
+                    place_, range_.from, range_.to, start, end));
   }
   if (range_.from < start || range_.to > end) {
     remarks_.push_back(fmt::format("the ground truth covers {:.3f} to {:.3f} s of {:.3f} to {:.3f} s", start, end,

@@ -32,6 +32,7 @@ class Recording : public Source {
   std::vector<std::string> remarks() const override { return remarks_; }
 
  private:
+  std::string place_;
   Camera camera_;
   PoseTrajectory ground_truth_;
   TimeRange range_;

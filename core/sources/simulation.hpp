@@ -16,9 +16,10 @@ struct SimulatedCameraOptions {
   void declare(OptionSet& set);
 };
 
-/// The camera that the options describe, its principal point in the middle of the image. Throws InputError when the
-/// number of coefficients does not suit the lens model or the model cannot be inverted at a corner of the image.
-Camera make_camera(const SimulatedCameraOptions& options);
+/// The camera that the options describe, its principal point in the middle of the image. Throws InputError, naming
+/// `place`, when the number of coefficients does not suit the lens model or the model cannot be inverted at a corner of
+/// the image.
+Camera make_camera(const SimulatedCameraOptions& options, const std::string& place);
 
 /// A simulated sequence from 0 to `duration`: motion, scene and feature tracks with known association, ground truth.
 /// Equal options and seed give equal bytes.

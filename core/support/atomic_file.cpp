@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -19,10 +20,10 @@ namespace {
   throw InputError(fmt::format("{}: {}: {}", path, what, std::strerror(error)));
 }
 
-/// Writes and flushes to the disk, so that "disk full" is noticed here and not lost.
-void write_durably(const std::string& path, std::string_view content) {
+/// Writes and flushes to the disk, so that "disk full" is noticed here and not lost. Errors name the file `shown`.
+void write_durably(const std::string& path, std::string_view content, const std::string& shown) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) fail(path, "can't be written", errno);
+  if (file < 0) fail(shown, "can't be written", errno);
   int error = 0;
   while (!content.empty() && error == 0) {
     const ssize_t written = ::write(file, content.data(), content.size());
@@ -37,7 +38,24 @@ void write_durably(const std::string& path, std::string_view content) {
   if (error != 0) {
     std::error_code ignored;
     if (fs::is_regular_file(path, ignored)) ::unlink(path.c_str());
-    fail(path, "can't be written", error);
+    fail(shown, "can't be written", error);
+  }
+}
+
+/// Opens and locks a file; -1 when another process has it locked.
+int open_locked(const std::string& path) {
+  while (true) {
+    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (file < 0) fail(path, "can't be written", errno);
+    const bool locked = ::flock(file, LOCK_EX | LOCK_NB) == 0;
+    struct stat held {
+    }, named{};
+    const bool same = locked && ::fstat(file, &held) == 0 && ::stat(path.c_str(), &named) == 0 &&
+                      held.st_ino == named.st_ino && held.st_dev == named.st_dev;
+    if (same) return file;
+    ::close(file);
+    if (!locked) return -1;
+    // The holder removed the file after it was opened here: what is locked now has no name.
   }
 }
 
@@ -47,11 +65,11 @@ void write_file(const std::string& path, std::string_view content) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw InputError(fmt::format("{}: is a folder; expected a file name", path));
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
-    write_durably(path, content);  // a device or a pipe is written to, not replaced
+    write_durably(path, content, path);  // a device or a pipe is written to, not replaced
     return;
   }
   const std::string part = fmt::format("{}.part{}", path, ::getpid());
-  write_durably(part, content);
+  write_durably(part, content, path);
   if (::rename(part.c_str(), path.c_str()) != 0) {
     const int error = errno;
     ::unlink(part.c_str());
@@ -59,19 +77,18 @@ void write_file(const std::string& path, std::string_view content) {
   }
 }
 
-AtomicFolder::AtomicFolder(const std::string& path) : path_(path), part_(path + ".part"), lock_path_(path + ".lock") {
+AtomicFolder::AtomicFolder(const std::string& path)
+    : path_(path), part_(path + ".part"), old_(path + ".old"), lock_path_(path + ".lock") {
   std::error_code error;
   const fs::path parent = fs::path(path).parent_path();
   if (!parent.empty()) fs::create_directories(parent, error);
   if (error) throw InputError(fmt::format("{}: can't be made: {}", parent.string(), error.message()));
-  lock_ = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (lock_ < 0) fail(lock_path_, "can't be written", errno);
-  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-    ::close(lock_);
-    lock_ = -1;
+  lock_ = open_locked(lock_path_);
+  if (lock_ < 0) {
     throw InputError(fmt::format("{}: another run is writing to this folder; give one of them another --out", path));
   }
   fs::remove_all(part_, error);  // what a killed run left
+  if (!fs::exists(path_, error)) fs::rename(old_, path_, error);
   if (!fs::create_directory(part_, error)) {
     const std::string message = fmt::format("{}: can't be made: {}", part_, error.message());
     ::unlink(lock_path_.c_str());
@@ -88,22 +105,21 @@ AtomicFolder::~AtomicFolder() {
 }
 
 void AtomicFolder::write(const std::string& name, std::string_view content) const {
-  write_durably(part_ + "/" + name, content);
+  write_durably(part_ + "/" + name, content, path_ + "/" + name);
 }
 
 void AtomicFolder::commit() {
   std::error_code error;
-  const std::string old = path_ + ".old";
-  fs::remove_all(old, error);
-  if (fs::exists(path_)) fs::rename(path_, old, error);
+  fs::remove_all(old_, error);
+  if (fs::exists(path_, error)) fs::rename(path_, old_, error);
   if (error) throw InputError(fmt::format("{}: can't be replaced: {}", path_, error.message()));
   fs::rename(part_, path_, error);
   if (error) {
     std::error_code ignored;
-    fs::rename(old, path_, ignored);  // what was there before stays
+    fs::rename(old_, path_, ignored);  // what was there before stays
     throw InputError(fmt::format("{}: can't be written: {}", path_, error.message()));
   }
-  fs::remove_all(old, error);
+  fs::remove_all(old_, error);
 }
 
 }  // namespace evbench

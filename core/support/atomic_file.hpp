@@ -25,7 +25,7 @@ class AtomicFolder {
   void commit();
 
  private:
-  std::string path_, part_, lock_path_;
+  std::string path_, part_, old_, lock_path_;
   int lock_ = -1;
 };
 

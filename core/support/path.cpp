@@ -31,9 +31,12 @@ std::string resolve_path(const std::string& path, const std::string& folder) {
     expanded += environment(path.substr(open + 2, close - open - 2), path);
     at = close + 1;
   }
-  const std::filesystem::path result(expanded);
-  if (result.is_absolute() || folder.empty()) return result.string();
-  return (std::filesystem::path(folder) / result).lexically_normal().string();
+  return anchored_path(expanded, folder);
+}
+
+std::string anchored_path(const std::string& path, const std::string& folder) {
+  if (folder.empty() || path.starts_with("${") || std::filesystem::path(path).is_absolute()) return path;
+  return (std::filesystem::path(folder) / path).lexically_normal().string();
 }
 
 }  // namespace evbench

@@ -8,4 +8,7 @@ namespace evbench {
 /// `folder`. Throws InputError for a variable that is not set and for an unclosed ${.
 std::string resolve_path(const std::string& path, const std::string& folder);
 
+/// A relative path taken from `folder`; environment variables stay as they are written.
+std::string anchored_path(const std::string& path, const std::string& folder);
+
 }  // namespace evbench

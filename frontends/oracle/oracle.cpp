@@ -13,8 +13,9 @@ Oracle::Oracle(const Options&, const FrontEndContext& context) {
   const auto tracks = context.source.true_tracks();
   if (!tracks) {
     throw InputError(
-        "frontend oracle: the source knows no true tracks; expected a source that does (simulation), or another "
-        "front-end (recorded)");
+        fmt::format("{}: oracle needs a source that knows its true tracks (simulation); expected another front-end "
+                    "(recorded) for this one",
+                    context.place));
   }
   left_ = *tracks;
 }

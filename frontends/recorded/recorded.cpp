@@ -13,7 +13,7 @@ const Registration<FrontEnd, Recorded> registration("recorded", "tracks from a f
 }  // namespace
 
 void Recorded::Options::declare(OptionSet& set) {
-  set.add("tracks", tracks, "path of the track file").required();
+  set.add("tracks", tracks, "path of the track file").required().path();
   set.add("sigma", sigma, "standard deviation of an observation [px]").above(0.0);
   set.add("outside", outside, "what to do with observations outside the image").choices({"keep", "drop"});
   set.add("min_track_length", min_track_length, "tracks with fewer observations are left out").range(1);
