@@ -36,6 +36,23 @@ void IntervalObservations::remove(int landmark) {
   }
 }
 
+bool IntervalObservations::remove(int landmark, double t) {
+  const auto group =
+      std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) { return g.landmark == landmark; });
+  if (group == groups_.end()) return false;
+  const auto end = observations_.begin() + group->end;
+  const auto found = std::find_if(observations_.begin() + group->begin, end, [&](const auto& z) { return z.t == t; });
+  if (found == end) return false;
+  observations_.erase(found);
+  --group->end;
+  for (auto later = group + 1; later != groups_.end(); ++later) {
+    --later->begin;
+    --later->end;
+  }
+  if (group->begin == group->end) groups_.erase(group);
+  return true;
+}
+
 void FactorGraph::add_state(const ControlState& state) {
   states.push_back(state);
   intervals.emplace_back();
@@ -86,6 +103,16 @@ bool FactorGraph::add_observation(int landmark, const Observation& observation) 
   std::vector<int>& seen = landmarks[static_cast<std::size_t>(landmark)].intervals;
   const auto at = std::lower_bound(seen.begin(), seen.end(), k);
   if (at == seen.end() || *at != k) seen.insert(at, k);
+  return true;
+}
+
+bool FactorGraph::remove_observation(int landmark, double t) {
+  const int k = interval_of(t);
+  if (k < 0 || !intervals[static_cast<std::size_t>(k)].remove(landmark, t)) return false;
+  const auto& groups = intervals[static_cast<std::size_t>(k)].groups();
+  if (std::ranges::find(groups, landmark, &IntervalObservations::Group::landmark) == groups.end()) {
+    std::erase(landmarks[static_cast<std::size_t>(landmark)].intervals, k);
+  }
   return true;
 }
 

@@ -27,6 +27,8 @@ class IntervalObservations {
 
   void add(int landmark, const Observation& observation);
   void remove(int landmark);
+  /// One observation of that very time; false when there is none.
+  bool remove(int landmark, double t);
 
   const std::vector<Observation>& all() const { return observations_; }
   const std::vector<Group>& groups() const { return groups_; }  ///< ordered by landmark
@@ -103,6 +105,9 @@ struct FactorGraph {
 
   /// False, and nothing added, when t lies outside the states' span.
   bool add_observation(int landmark, const Observation& observation);
+
+  /// Removes the observation of a landmark at exactly this time. False when there is none.
+  bool remove_observation(int landmark, double t);
 
   int observation_count() const;
 };

@@ -70,6 +70,22 @@ bool Engine::add_observation(int landmark, const Observation& observation) {
   return true;
 }
 
+bool Engine::remove_observation(int landmark, double t) {
+  if (!graph_.remove_observation(landmark, t)) return false;
+  const int k = graph_.interval_of(t);
+  points_.invalidate(k);
+  touch(k);
+  return true;
+}
+
+void Engine::remove_newest_state() {
+  const int newest = static_cast<int>(graph_.states.size()) - 1;
+  graph_.remove_newest_state();
+  points_.remove_newest_state();
+  std::erase(candidates_, Variable{Variable::Kind::state, newest});
+  touch(newest);
+}
+
 void Engine::remove_landmark(int landmark) {
   const auto& seen = graph_.landmarks[at(landmark)].intervals;
   if (!seen.empty()) touch(seen.front());
@@ -145,7 +161,10 @@ void Engine::choose_points() {
 
 UpdateSummary Engine::update() {
   UpdateSummary summary;
-  if (graph_.states.empty()) return summary;
+  if (graph_.states.empty()) {
+    restart_ = 0;
+    return summary;
+  }
   const std::int64_t stages = factorisation_.stages_done();
   const std::int64_t linearised = points_.linearised_observations();
   choose_points();
@@ -213,20 +232,26 @@ bool Engine::solve(int first_redone, double damping, UpdateSummary& summary) {
 Engine::OptimiseSummary Engine::optimise(int max_iterations, double relative_tolerance) {
   OptimiseSummary summary;
   summary.initial_cost = summary.final_cost = evaluate(graph_).total();
-  UpdateSummary update;
+  constexpr double kDampingOfSteps = 1e-3;  ///< up to which a small decrease means a minimum, not a short step
+  constexpr double kMaxDamping = 1e8, kRounding = 1e-11;
   double damping = 0.0;
   while (summary.iterations < max_iterations && !summary.converged) {
     for (int i = 0; i < static_cast<int>(graph_.states.size()); ++i) points_.move_state(graph_, i);
     for (int j = 0; j < static_cast<int>(graph_.landmarks.size()); ++j) points_.move_landmark(graph_, j);
     ++summary.iterations;
+    const double first_damping = damping;
     bool accepted = false;
-    while (!accepted && damping < 1e8) {
+    while (!accepted && !summary.converged && damping < kMaxDamping) {
       restart_ = 0;
+      UpdateSummary update;
       const bool solved = solve(0, damping, update);
+      summary.reason = update.reason;
       const double cost = solved ? evaluate(graph_).total() : 0.0;
-      accepted = solved && cost <= summary.final_cost;
+      const double decrease = summary.final_cost - cost;
+      accepted = solved && decrease >= 0.0;
+      const bool little = std::abs(decrease) <= std::max(kRounding, relative_tolerance) * summary.final_cost;
+      summary.converged = solved && little && damping < kDampingOfSteps;
       if (accepted) {
-        summary.converged = summary.final_cost - cost <= relative_tolerance * summary.final_cost;
         summary.final_cost = cost;
         damping = damping < 1e-6 ? 0.0 : 0.1 * damping;
       } else {
@@ -234,12 +259,10 @@ Engine::OptimiseSummary Engine::optimise(int max_iterations, double relative_tol
         damping = damping == 0.0 ? 1e-6 : 10.0 * damping;
       }
     }
-    if (!accepted) {  // at a minimum to rounding, unless the system could not even be solved
-      summary.converged = update.reason.empty();
-      break;
-    }
+    if (accepted || summary.converged) continue;
+    if (first_damping == 0.0) break;  // no damping at all helps
+    damping = 0.0;
   }
-  summary.reason = update.reason;
   restart_ = damping == 0.0 ? static_cast<int>(graph_.states.size()) : 0;
   candidates_.clear();
   return summary;

@@ -73,6 +73,12 @@ class Engine {
   /// finite or a landmark that was removed.
   bool add_observation(int landmark, const Observation& observation);
 
+  /// Removes the observation of a landmark at exactly this time. False when there is none.
+  bool remove_observation(int landmark, double t);
+
+  /// Takes the newest state back, with the observations in its interval and the priors on it.
+  void remove_newest_state();
+
   /// Removes a landmark with all its observations.
   void remove_landmark(int landmark);
 

@@ -27,7 +27,7 @@ void Factorisation::add_landmark() { landmarks_.emplace_back(); }
 
 std::optional<int> Factorisation::eliminated_at(int j) const {
   const int stage = landmarks_[at(j)].eliminated_at;
-  if (stage < 0 || stage > done_) return std::nullopt;
+  if (stage < 0 || stage > done_ || root_.slot_of(j) >= 0) return std::nullopt;
   return stage;
 }
 
@@ -49,6 +49,7 @@ bool Factorisation::is_held(const Variable& variable) const {
 std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph, LinearisationPoints& points,
                                             double damping) {
   const int newest = static_cast<int>(graph.states.size()) - 1;
+  if (done_ > newest) first = std::min(first, newest + 1);  // states were taken back
   stages_.resize(graph.states.size());
   anchors_ = graph.anchor.landmarks;
   std::ranges::sort(anchors_);

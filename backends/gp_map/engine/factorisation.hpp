@@ -16,6 +16,7 @@ struct Variable {
   Kind kind = Kind::state;
   int index = 0;
   std::string name() const;
+  bool operator==(const Variable&) const = default;
 };
 
 /// Damping of variables that are held.

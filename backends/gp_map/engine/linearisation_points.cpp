@@ -7,8 +7,15 @@ namespace evbench::gp_map {
 void LinearisationPoints::add_state(const ControlState& state) {
   states_.push_back(state);
   state_deltas_.push_back(Vector12::Zero());
-  nearest_.resize(states_.size() + 1, std::numeric_limits<double>::infinity());
+  nearest_.push_back(std::numeric_limits<double>::infinity());
   if (ring_.empty()) ring_.resize(index(kept_));
+}
+
+void LinearisationPoints::remove_newest_state() {
+  invalidate(static_cast<int>(states_.size()) - 1);
+  states_.pop_back();
+  state_deltas_.pop_back();
+  nearest_.pop_back();
 }
 
 void LinearisationPoints::add_landmark(const Vector3& position) {

@@ -17,6 +17,7 @@ class LinearisationPoints {
   explicit LinearisationPoints(int kept) : kept_(kept) {}
 
   void add_state(const ControlState& state);
+  void remove_newest_state();
   void add_landmark(const Vector3& position);
 
   const ControlState& state(int i) const { return states_[index(i)]; }
@@ -40,7 +41,9 @@ class LinearisationPoints {
 
   /// The distance from state i of the nearest landmark observed in an interval beside it, when that was linearised
   /// last; infinite without any.
-  double nearest(int i) const { return std::min(nearest_[index(i)], nearest_[index(i) + 1]); }
+  double nearest(int i) const {
+    return index(i) + 1 < nearest_.size() ? std::min(nearest_[index(i)], nearest_[index(i) + 1]) : nearest_[index(i)];
+  }
 
   std::int64_t linearised_observations() const { return linearised_observations_; }
 
