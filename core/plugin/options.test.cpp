@@ -64,6 +64,29 @@ TEST_CASE("Bad options are refused with the place and what was expected") {
   CHECK_THROWS_WITH(read("{}"), Contains("\"path\" is missing"));
 }
 
+TEST_CASE("Places name the file, then the keys below") {
+  using Catch::Matchers::Contains;
+  CHECK_THROWS_WITH(read_options<Options>(Json::parse(R"({"rate": 0})"), "c.json"), Contains("c.json: rate: 0 is"));
+  CHECK_THROWS_WITH(read(R"({"path": "a", "inner": {"width": 0}})"), Contains("c.json: x.inner.width: 0 is"));
+}
+
+TEST_CASE("Paths among the options are anchored in a folder") {
+  struct Files {
+    std::string file, other, name;
+    void declare(OptionSet& set) {
+      set.add("file", file, "a file").path();
+      set.add("other", other, "a file").path();
+      set.add("name", name, "no file");
+    }
+  } files{"a/../b.txt", "", "c"};
+  OptionSet set;
+  files.declare(set);
+  set.anchor_paths("/folder");
+  CHECK(files.file == "/folder/b.txt");
+  CHECK(files.other.empty());
+  CHECK(files.name == "c");
+}
+
 TEST_CASE("Description and schema name every option with its default and bounds") {
   Options o;
   OptionSet set;

@@ -24,3 +24,9 @@ TEST_CASE("Environment variables in paths are expanded, unset ones are refused w
   CHECK_THROWS_WITH(resolve_path("${EVBENCH_TEST_VARIABLE}/x", ""), Contains("EVBENCH_TEST_VARIABLE is not set"));
   CHECK_THROWS_WITH(resolve_path("${EVBENCH_TEST_VARIABLE", ""), Contains("closing brace"));
 }
+
+TEST_CASE("An anchored path is the same for every folder and keeps its variables") {
+  CHECK(anchored_path("a/b.txt", "/folder") == "/folder/a/b.txt");
+  CHECK(anchored_path("/a", "/folder") == "/a");
+  CHECK(anchored_path("${EVBENCH_DATA}/a", "/folder") == "${EVBENCH_DATA}/a");
+}

@@ -1,0 +1,156 @@
+#include "bench/experiment.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "bench/testing/program.hpp"
+#include "core/support/error.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
+
+namespace {
+
+Experiment read(const Json& config, const std::vector<std::string>& overrides = {}) {
+  const TemporaryFolder folder;
+  return read_experiment(folder.write("c.json", config.dump()), overrides);
+}
+
+Experiment read_text(const std::string& text) {
+  const TemporaryFolder folder;
+  return read_experiment(folder.write("c.json", text), {});
+}
+
+}  // namespace
+
+TEST_CASE("A config holds one run or a comparison whose runs share source, front-end and seed") {
+  const Experiment one = read(short_config());
+  REQUIRE(one.runs.size() == 1);
+  CHECK(one.runs[0].label == "bundle_adjustment");
+  const Experiment two = read(short_comparison());
+  REQUIRE(two.runs.size() == 2);
+  CHECK(two.runs[0].label == "asynchronous");
+  CHECK(two.runs[0].source.options == two.runs[1].source.options);
+  CHECK(two.runs[0].key() != two.runs[1].key());
+}
+
+TEST_CASE("An experiment without a name is called as its file") {
+  Json config = short_config();
+  config.erase("name");
+  CHECK(read(config).name == "c");
+}
+
+TEST_CASE("A run's key depends on what determines the result and not on how it is written down") {
+  const std::string key = read(short_config()).runs[0].key();
+  CHECK_THAT(key, Catch::Matchers::StartsWith("bundle-adjustment-"));
+  Json same = short_config();
+  same["description"] = "in other words";
+  same["source"]["duration"] = 2.0;
+  CHECK(read(same).runs[0].key() == key);
+  CHECK(read(short_config(), {"seed=2"}).runs[0].key() != key);
+  CHECK(read(short_config(), {"backend.frame_duration=0.07"}).runs[0].key() != key);
+}
+
+TEST_CASE("A resolved config is complete, and read again it is the same run") {
+  const Experiment first = read(short_comparison());
+  for (const RunConfig& run : first.runs) {
+    const Experiment again = read(run.resolved());
+    REQUIRE(again.runs.size() == 1);
+    CHECK(again.runs[0].label == run.label);
+    CHECK(again.runs[0].key() == run.key());
+    CHECK(again.runs[0].resolved() == run.resolved());
+  }
+}
+
+TEST_CASE("Relative paths are taken from the config's folder, variables stay for other machines") {
+  const TemporaryFolder folder;
+  write_recording(folder);
+  const std::string path = folder.file("recording.json");
+  const Json config = read_experiment(path, {"source.ground_truth=${EVBENCH_DATA}/x.txt"}).runs[0].resolved();
+  CHECK(config["frontend"]["tracks"] == folder.file("tracks.txt"));
+  CHECK(config["source"]["ground_truth"] == "${EVBENCH_DATA}/x.txt");
+  CHECK(config["source"]["calibration"] == "");
+}
+
+TEST_CASE("Overrides reach values, list items and whole objects") {
+  const Experiment experiment =
+      read(short_comparison(), {"seed=7", "backends.1.frame_duration=0.2", "backends.1.label=200 ms",
+                                "evaluation.time_range=[0, 1]", "source.motion={\"kind\": \"robot_arm\"}"});
+  CHECK(experiment.runs[0].seed == 7);
+  CHECK(experiment.runs[1].label == "200 ms");
+  CHECK(experiment.runs[1].backend.options["frame_duration"] == 0.2);
+  CHECK(experiment.runs[0].evaluation.time_range == std::vector<double>{0.0, 1.0});
+  CHECK(experiment.runs[0].source.options["motion"]["kind"] == "robot_arm");
+}
+
+TEST_CASE("An override that can't be meant is refused") {
+  CHECK_THROWS_WITH(read(short_config(), {"seed"}), Contains("--set seed: expected KEY=VALUE"));
+  CHECK_THROWS_WITH(read(short_config(), {"=3"}), Contains("expected KEY=VALUE"));
+  CHECK_THROWS_WITH(read(short_comparison(), {"backends.2.label=x"}), Contains("not a position in a list of 2"));
+  CHECK_THROWS_WITH(read(short_comparison(), {"backends.first.label=x"}), Contains("\"first\" is not a position"));
+  CHECK_THROWS_WITH(read(short_config(), {"name.x=3"}), Contains("is a value, not an object"));
+  CHECK_THROWS_WITH(read(short_config(), {"sede=3"}), Contains("\"sede\"") && Contains("did you mean \"seed\""));
+  CHECK_THROWS_WITH(read(short_config(), {"seed=1e999"}), Contains("c.json: seed: expected integer"));
+  CHECK_THROWS_WITH(read(short_config(), {"trajectory_rate=NaN"}), Contains("expected number, found \"NaN\""));
+}
+
+TEST_CASE("A config that is not as expected is refused with the place and the nearest name") {
+  CHECK_THROWS_WITH(read_experiment("/no/such.json", {}), Contains("/no/such.json: can't be read"));
+  CHECK_THROWS_WITH(read_experiment("/", {}), Contains("can't be read"));
+  CHECK_THROWS_WITH(read_text(""), Contains("c.json: is not JSON"));
+  CHECK_THROWS_WITH(read_text("{\"name\": "), Contains("c.json: is not JSON") && Contains("line 1"));
+  CHECK_THROWS_WITH(read_text("[]"), Contains("expected an object"));
+  CHECK_THROWS_WITH(read_text("{}"), Contains("\"source\" is missing"));
+  const auto with = [](const char* pointer, const Json& value) {
+    Json config = short_config();
+    config[Json::json_pointer(pointer)] = value;
+    return config;
+  };
+  CHECK_THROWS_WITH(read(with("/backend/type", "gp_mop")),
+                    Contains("c.json: backend.type: no backend is called \"gp_mop\"; did you mean \"gp_map\"?"));
+  CHECK_THROWS_WITH(read(with("/frontend/type", "orakle")), Contains("did you mean \"oracle\""));
+  CHECK_THROWS_WITH(read(with("/source/type", "simulator")), Contains("did you mean \"simulation\""));
+  CHECK_THROWS_WITH(read(with("/source/type", 3)), Contains("c.json: source: expected an object with \"type\""));
+  CHECK_THROWS_WITH(read(with("/source/motion/knid", 3)),
+                    Contains("c.json: source.motion: unknown key \"knid\"; did you mean \"kind\""));
+  CHECK_THROWS_WITH(read(with("/source/duration", -1)), Contains("c.json: source.duration: -1 is out of range"));
+  CHECK_THROWS_WITH(read(with("/source/duration", 1e12)), Contains("expected above 0 to 36000"));
+  CHECK_THROWS_WITH(read(with("/evaluation/alignment", "sim4")), Contains("c.json: evaluation.alignment"));
+  CHECK_THROWS_WITH(read(with("/backend/label", "")), Contains("c.json: backend.label: expected text"));
+  CHECK_THROWS_WITH(read(with("/backends", Json::array())), Contains("either \"backend\""));
+  CHECK_THROWS_WITH(read(with("/seed", -1)), Contains("c.json: seed"));
+  for (const char* name : {"a/b", "..", ".hidden", "a b"}) {
+    CHECK_THROWS_WITH(read(with("/name", name)), Contains("can't name a folder"));
+  }
+}
+
+TEST_CASE("Runs of a comparison that would write to the same folder are refused") {
+  CHECK_THROWS_WITH(read(short_comparison(), {"backends.1.label=asynchronous"}),
+                    Contains("two back-ends are labelled \"asynchronous\""));
+  Json config = short_comparison();
+  config["backends"] = Json::array();
+  CHECK_THROWS_WITH(read(config), Contains("at least one back-end"));
+}
+
+TEST_CASE("Every config that comes with evbench can be read, and each of its runs run again") {
+  int count = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(EVBENCH_CONFIGS)) {
+    if (entry.path().extension() != ".json") continue;
+    INFO(entry.path());
+    ++count;
+    for (const RunConfig& run : read_experiment(entry.path().string(), {}).runs) {
+      CHECK(read(run.resolved()).runs.at(0).key() == run.key());
+    }
+  }
+  CHECK(count >= 2);
+}
+
+TEST_CASE("The schema of a config knows every plugin and its options") {
+  const Json schema = experiment_schema();
+  const Json& backends = schema.at("properties").at("backend").at("anyOf");
+  CHECK(backends.size() == 2);
+  for (const Json& backend : backends) CHECK(backend.at("properties").contains("type"));
+  CHECK_THAT(describe_experiment(), Contains("evaluation.alignment") && Contains("trajectory_rate"));
+}

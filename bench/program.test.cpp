@@ -1,0 +1,108 @@
+#include "bench/testing/program.hpp"
+
+#include <catch2/catch.hpp>
+#include <sstream>
+
+using namespace evbench;
+using namespace evbench::testing;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// Names of the plugins of a kind, as `evbench list` prints them.
+std::vector<std::string> listed(const std::string& text, const std::string& kind) {
+  std::vector<std::string> names;
+  std::istringstream lines(text);
+  bool within = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("  ")) {
+      within = line == kind + ":";
+    } else if (within) {
+      names.push_back(line.substr(2, line.find(' ', 2) - 2));
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("Every command has help, and the program a version") {
+  const TemporaryFolder folder;
+  for (const char* command : {"", "run", "eval", "table", "list", "describe", "solve"}) {
+    const Outcome help = testing::evbench(folder, std::string(command) + " --help");
+    INFO(command);
+    CHECK(help.exit_code == 0);
+    CHECK_THAT(help.out, Contains("Usage:"));
+    CHECK(help.err.empty());
+  }
+  CHECK_THAT(testing::evbench(folder, "--version").out, Contains("evbench 0."));
+  CHECK_THAT(testing::evbench(folder, "run --help").out, Contains("--set") && Contains("metrics.json"));
+}
+
+TEST_CASE("All plugins are listed, and each is described for people and as a JSON Schema") {
+  const TemporaryFolder folder;
+  const std::string list = testing::evbench(folder, "list").out;
+  for (const char* kind : {"source", "frontend", "backend"}) {
+    const auto names = listed(list, kind);
+    CHECK(names.size() >= 2);
+    for (const std::string& name : names) {
+      INFO(kind << " " << name);
+      const Outcome described = testing::evbench(folder, std::string("describe ") + kind + " " + name);
+      CHECK(described.exit_code == 0);
+      CHECK_THAT(described.out, Contains(name) && Contains("option") && Contains("default"));
+      const Outcome schema = testing::evbench(folder, std::string("describe ") + kind + " " + name + " --schema");
+      CHECK(Json::parse(schema.out).at("type") == "object");
+    }
+  }
+  CHECK_THAT(testing::evbench(folder, "describe config").out, Contains("trajectory_rate"));
+  CHECK(Json::parse(testing::evbench(folder, "describe config --schema").out).contains("$schema"));
+}
+
+TEST_CASE("A command line that is not understood ends with exit code 2 and says what is wrong") {
+  const TemporaryFolder folder;
+  folder.write("c.json", short_config().dump());
+  const auto refused = [&](const std::string& arguments, const std::string& message) {
+    const Outcome outcome = testing::evbench(folder, arguments);
+    INFO(arguments);
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.out.empty());
+    CHECK_THAT(outcome.err, Contains(message));
+  };
+  refused("", "subcommand");
+  refused("frobnicate", "subcommand");
+  refused("run", "config is required");
+  refused("run c.json --foo", "--foo");
+  refused("describe backnd gp_map", "backnd");
+  refused("describe backend", "expected the name of a backend");
+  refused("describe backend gp_mop", "did you mean \"gp_map\"?");
+  refused("table nowhere", "nowhere: is not a folder");
+  refused("table .", "no metrics.json");
+  refused("run c.json --set seed", "expected KEY=VALUE");
+}
+
+TEST_CASE("Nothing is printed by --quiet, the table and the folder without") {
+  const TemporaryFolder folder;
+  folder.write("c.json", short_config().dump());
+  const Outcome quiet = testing::evbench(folder, "run c.json --quiet");
+  CHECK(quiet.out.empty());
+  CHECK(quiet.err.empty());
+  const Outcome told = testing::evbench(folder, "run c.json");
+  CHECK(told.err.empty());  // progress is for terminals
+  CHECK_THAT(told.out, Contains("ATE [m]") && Contains("written: results/short"));
+  const std::string text = testing::evbench(folder, "table results").out;
+  CHECK_THAT(told.out, Contains(text));
+  for (const char* format : {"markdown", "csv", "latex"}) {
+    const Outcome table = testing::evbench(folder, std::string("table results --format ") + format);
+    CHECK(table.exit_code == 0);
+    CHECK_THAT(table.out, Contains("bundle"));
+  }
+}
+
+TEST_CASE("Checking a config runs and writes nothing") {
+  const TemporaryFolder folder;
+  folder.write("c.json", short_comparison().dump());
+  const Outcome check = testing::evbench(folder, "run c.json --check");
+  CHECK(check.exit_code == 0);
+  CHECK_THAT(check.out, Contains("c.json: fine, 2 runs"));
+  CHECK(names_in(folder.path()) == std::set<std::string>{"c.json"});
+}

@@ -1,0 +1,179 @@
+#include "bench/run_folder.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "bench/testing/program.hpp"
+#include "core/support/error.hpp"
+#include "core/support/sha256.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::set<std::string> kFiles = {"config.json",  "manifest.json", "final.tum", "online.tum", "map.ply",
+                                      "metrics.json", "timing.csv",    "log.txt",   "status.json"};
+
+/// The runs of a config by label.
+std::map<std::string, std::string> run_folders(const TemporaryFolder& folder, const std::string& out) {
+  std::map<std::string, std::string> folders;
+  for (const auto& experiment : std::filesystem::directory_iterator(folder.file(out))) {
+    for (const auto& run : std::filesystem::directory_iterator(experiment.path())) {
+      const Json metrics = Json::parse(read_file(run.path().string() + "/metrics.json"));
+      folders[metrics.at("label").get<std::string>()] = run.path().string();
+    }
+  }
+  return folders;
+}
+
+Json json_file(const std::string& folder, const std::string& name) {
+  return Json::parse(read_file(folder + "/" + name));
+}
+
+/// Every path to a value, "ate.trans_m.rmse".
+void collect_keys(const Json& json, const std::string& prefix, std::set<std::string>& keys) {
+  if (!json.is_object()) {
+    keys.insert(prefix);
+    return;
+  }
+  for (const auto& [key, value] : json.items()) collect_keys(value, prefix + "/" + key, keys);
+}
+
+std::set<std::string> keys_of(const Json& json) {
+  std::set<std::string> keys;
+  collect_keys(json, "", keys);
+  return keys;
+}
+
+}  // namespace
+
+TEST_CASE("A run's folder holds the documented files, and its config can be run again from anywhere") {
+  const TemporaryFolder folder;
+  folder.write("c.json", short_comparison().dump());
+  REQUIRE(testing::evbench(folder, "run c.json --out first --quiet").exit_code == 0);
+  REQUIRE(testing::evbench(folder, "run c.json --out second --quiet").exit_code == 0);
+  const auto first = run_folders(folder, "first"), second = run_folders(folder, "second");
+  REQUIRE(first.size() == 2);
+
+  SECTION("files") {
+    for (const auto& [label, path] : first) {
+      CHECK(names_in(path) == kFiles);
+      CHECK(json_file(path, "status.json").at("state").is_string());
+      const Json manifest = json_file(path, "manifest.json");
+      for (const char* key : {"program", "host", "seed", "config_sha256", "inputs_sha256", "observations"}) {
+        CHECK(manifest.contains(key));
+      }
+      CHECK_THAT(read_file(path + "/timing.csv"), Contains("t_s,update_ms,"));
+      CHECK_THAT(read_file(path + "/log.txt"), Contains(label) && Contains("tracks simulated"));
+    }
+    CHECK(names_in(folder.file("first/short")).size() == 2);
+  }
+  SECTION("the same config twice: the same bytes") {
+    for (const auto& [label, path] : first) {
+      INFO(label);
+      CHECK(std::filesystem::path(path).filename() == std::filesystem::path(second.at(label)).filename());
+      for (const char* name : {"config.json", "manifest.json", "final.tum", "online.tum", "map.ply", "status.json"}) {
+        CHECK(read_file(path + "/" + name) == read_file(second.at(label) + "/" + name));
+      }
+      const Json a = json_file(path, "metrics.json"), b = json_file(second.at(label), "metrics.json");
+      CHECK(a.at("final").at("ate").at("trans_m").at("rmse").is_number());
+      CHECK(a.at("final").dump() == b.at("final").dump());
+      CHECK(a.at("online").dump() == b.at("online").dump());
+    }
+  }
+  SECTION("all back-ends of a comparison get the identical observations") {
+    CHECK(json_file(first.at("asynchronous"), "manifest.json").at("tracks_sha256") ==
+          json_file(first.at("frames of 50 ms"), "manifest.json").at("tracks_sha256"));
+  }
+  SECTION("the config that was written makes the same run") {
+    const std::string& path = first.at("frames of 50 ms");
+    REQUIRE(testing::evbench(folder, "run '" + path + "/config.json' --out third --quiet").exit_code == 0);
+    const auto third = run_folders(folder, "third");
+    REQUIRE(third.count("frames of 50 ms") == 1);
+    const std::string& again = third.at("frames of 50 ms");
+    CHECK(std::filesystem::path(again).filename() == std::filesystem::path(path).filename());
+    CHECK(read_file(again + "/final.tum") == read_file(path + "/final.tum"));
+    CHECK(read_file(again + "/config.json") == read_file(path + "/config.json"));
+  }
+  SECTION("metrics have the documented keys, and those of evbench eval") {
+    const std::string& path = first.at("asynchronous");
+    const Json metrics = json_file(path, "metrics.json");
+    for (const char* key : {"experiment", "label", "runtime_s", "realtime_factor", "peak_rss_mib", "status"}) {
+      CHECK(metrics.contains(key));
+    }
+    for (const char* trajectory : {"final", "online"}) {
+      for (const char* key : {"/ate/trans_m/rmse", "/ate/rot_deg/rmse", "/ate/trans_percent", "/rpe/trans_m/rmse",
+                              "/rpe/rot_deg/median", "/rpe/pairs", "/coverage", "/pairs", "/scale", "/path_m"}) {
+        INFO(trajectory << key);
+        CHECK(metrics.at(trajectory).at(Json::json_pointer(key)).is_number());
+      }
+    }
+    REQUIRE(testing::evbench(folder, "eval '" + path + "/final.tum' '" + path + "/online.tum' --json e.json -as")
+                .exit_code == 0);
+    const Json eval = Json::parse(read_file(folder.file("e.json")));
+    CHECK(keys_of(eval.at("final")) == keys_of(metrics.at("final")));
+    for (const auto& [key, value] : metrics.items()) CHECK(eval.contains(key));
+  }
+}
+
+TEST_CASE("Relative paths of a config refer to its folder, and inputs are hashed into the manifest") {
+  const TemporaryFolder folder;
+  const TemporaryFolder elsewhere;
+  write_recording(folder);
+  const Outcome run = testing::evbench(elsewhere, "run '" + folder.file("recording.json") + "' --quiet");
+  CHECK(run.exit_code <= 3);  // points at rest make no map
+  CHECK(run.err.empty());
+  const auto folders = run_folders(elsewhere, "results");
+  REQUIRE(folders.size() == 1);
+  const Json inputs = json_file(folders.begin()->second, "manifest.json").at("inputs_sha256");
+  CHECK(inputs.size() == 3);
+  CHECK(inputs.at(folder.file("tracks.txt")) == sha256_file(folder.file("tracks.txt")));
+  CHECK(testing::evbench(elsewhere, "run '" + folders.begin()->second + "/config.json' --check").exit_code == 0);
+  CHECK(testing::evbench(elsewhere, "run '" + folders.begin()->second + "/config.json' --quiet").err.empty());
+}
+
+TEST_CASE("A run without an estimate fails with exit code 3, a status with the reason, and all files") {
+  const TemporaryFolder folder;
+  write_recording(folder);
+  REQUIRE(testing::evbench(folder, "run recording.json --quiet").exit_code == 3);
+  const auto folders = run_folders(folder, "results");
+  REQUIRE(folders.size() == 1);
+  CHECK(names_in(folders.begin()->second) == kFiles);
+  const Json status = json_file(folders.begin()->second, "status.json");
+  CHECK(status.at("state") == "failed");
+  CHECK_FALSE(status.at("reason").get<std::string>().empty());
+  CHECK(json_file(folders.begin()->second, "metrics.json").at("final").is_null());
+}
+
+TEST_CASE("Two runs do not write to the same folder at the same time") {
+  const TemporaryFolder folder;
+  const RunConfig config = read_experiment(folder.write("c.json", short_config().dump()), {}).runs[0];
+  {
+    const RunFolder taken(folder.file("results"), config);
+    CHECK_THROWS_WITH(RunFolder(folder.file("results"), config), Contains("another run is writing to this folder"));
+    const Outcome other = testing::evbench(folder, "run c.json");
+    CHECK(other.exit_code == 2);
+    CHECK_THAT(other.err, Contains(config.key()) && Contains("another run is writing to this folder"));
+    CHECK(testing::evbench(folder, "run c.json --out elsewhere --quiet").exit_code == 0);
+  }
+  CHECK(names_in(folder.file("results/short")).empty());
+  CHECK(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
+  CHECK(names_in(folder.file("results/short")) == std::set<std::string>{config.key()});
+}
+
+TEST_CASE("Of many processes that run the same config at once, each is done or refused, and one result is whole") {
+  const TemporaryFolder folder;
+  folder.write("c.json", short_config().dump());
+  const Outcome all = testing::shell(folder, R"(
+    for i in 1 2 3 4; do ("$evbench" run c.json --quiet; echo $?) & done; wait)");
+  int done = 0;
+  for (const char c : all.out) {
+    CHECK((c == '0' || c == '2' || c == '\n'));
+    done += c == '0' ? 1 : 0;
+  }
+  CHECK(done >= 1);
+  CHECK(names_in(folder.file("results/short")).size() == 1);
+  CHECK(names_in(run_folders(folder, "results").at("bundle_adjustment")) == kFiles);
+}

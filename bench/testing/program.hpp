@@ -1,0 +1,85 @@
+#pragma once
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "core/plugin/options.hpp"
+#include "core/testing/data.hpp"
+
+namespace evbench::testing {
+
+/// What a command left behind.
+struct Outcome {
+  int exit_code = 0;
+  std::string out, err;
+};
+
+/// Runs a shell command in `folder`; $evbench is the program.
+inline Outcome shell(const TemporaryFolder& folder, const std::string& command) {
+  const TemporaryFolder streams;
+  const std::string line = "cd '" + folder.path() + "' && export evbench='" EVBENCH_PROGRAM "' && { " + command +
+                           "; } > '" + streams.file("out") + "' 2> '" + streams.file("err") + "' < /dev/null";
+  const int status = std::system(line.c_str());  // NOLINT(cert-env33-c,concurrency-mt-unsafe)
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(streams.file("out")), read_file(streams.file("err"))};
+}
+
+/// `evbench ARGUMENTS` in `folder`.
+inline Outcome evbench(const TemporaryFolder& folder, const std::string& arguments) {
+  return shell(folder, "\"$evbench\" " + arguments);
+}
+
+/// Names in a folder, "" when there is none.
+inline std::set<std::string> names_in(const std::string& path) {
+  std::set<std::string> names;
+  if (!std::filesystem::is_directory(path)) return names;
+  for (const auto& entry : std::filesystem::directory_iterator(path)) names.insert(entry.path().filename().string());
+  return names;
+}
+
+/// A simulated sequence of 2 s with few tracks, seen by one back-end.
+inline Json short_config(const std::string& backend = "bundle_adjustment") {
+  return {{"name", "short"},
+          {"source",
+           {{"type", "simulation"},
+            {"duration", 2},
+            {"motion", {{"kind", "smooth_random"}}},
+            {"tracks", {{"alive", 30}, {"rate", {20, 40}}}}}},
+          {"frontend", {{"type", "oracle"}}},
+          {"backend", {{"type", backend}}},
+          {"evaluation", {{"association", "interpolated"}}}};
+}
+
+/// The short sequence seen by both back-ends.
+inline Json short_comparison() {
+  Json config = short_config();
+  config.erase("backend");
+  config["backends"] = {{{"type", "gp_map"}, {"label", "asynchronous"}},
+                        {{"type", "bundle_adjustment"}, {"label", "frames of 50 ms"}}};
+  return config;
+}
+
+/// A recording of 1 s: calibration, ground truth, tracks of still points, and the config "recording.json" that names
+/// them by relative paths.
+inline void write_recording(const TemporaryFolder& folder) {
+  std::string truth, tracks;
+  for (int i = 0; i <= 100; ++i) truth += std::to_string(0.01 * i) + " " + std::to_string(0.001 * i) + " 0 0 0 0 0 1\n";
+  for (int i = 0; i < 200; ++i) {
+    const int track = i % 20;
+    tracks += std::to_string(track) + " " + std::to_string(0.005 * i) + " " + std::to_string(10 * track) + " " +
+              std::to_string(20 + 7 * track) + "\n";
+  }
+  folder.write("calib.txt", "200 200 120 90 0 0 0 0 0\n");
+  folder.write("groundtruth.txt", truth);
+  folder.write("tracks.txt", tracks);
+  Json config = short_config();
+  config["name"] = "recording";
+  config["source"] = {{"type", "recording"}, {"folder", "."}};
+  config["frontend"] = {{"type", "recorded"}, {"tracks", "tracks.txt"}};
+  folder.write("recording.json", config.dump());
+}
+
+}  // namespace evbench::testing

@@ -1,0 +1,87 @@
+#include "core/support/atomic_file.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "core/support/error.hpp"
+#include "core/testing/data.hpp"
+
+using namespace evbench;
+using Catch::Matchers::Contains;
+using testing::read_file;
+
+namespace {
+
+std::size_t count_entries(const std::string& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+}  // namespace
+
+TEST_CASE("A file is written whole, replaces an older one, and leaves nothing else behind") {
+  const testing::TemporaryFolder folder;
+  write_file(folder.file("a"), "first");
+  write_file(folder.file("a"), "second");
+  CHECK(read_file(folder.file("a")) == "second");
+  CHECK(count_entries(folder.path()) == 1);
+}
+
+TEST_CASE("A file that can't be written is an error that names it, and leaves nothing behind") {
+  const testing::TemporaryFolder folder;
+  CHECK_THROWS_WITH(write_file(folder.file("no/a"), "x"), Contains("no/a: can't be written") && !Contains(".part"));
+  CHECK_THROWS_WITH(write_file(folder.path(), "x"), Contains("is a folder"));
+  CHECK_THROWS_WITH(write_file("/dev/full", "x"), Contains("/dev/full: can't be written: No space"));
+  CHECK(count_entries(folder.path()) == 0);
+}
+
+TEST_CASE("A folder appears complete when it is committed, and replaces an older one") {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.file("x/run");
+  for (const char* content : {"first", "second"}) {
+    AtomicFolder run(path);
+    run.write("a", content);
+    CHECK((!std::filesystem::exists(path) || read_file(path + "/a") == "first"));
+    run.commit();
+    CHECK(read_file(path + "/a") == content);
+  }
+  CHECK(count_entries(folder.file("x")) == 1);
+}
+
+TEST_CASE("A folder that is not committed leaves what was there before") {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.file("run");
+  {
+    AtomicFolder run(path);
+    run.write("a", "old");
+    run.commit();
+  }
+  {
+    const AtomicFolder run(path);
+    run.write("a", "new");
+    CHECK_THROWS_WITH(run.write("no/b", "x"), Contains("run/no/b: can't be written") && !Contains(".part"));
+  }
+  CHECK(read_file(path + "/a") == "old");
+  CHECK(count_entries(folder.path()) == 1);
+}
+
+TEST_CASE("A folder has one writer at a time") {
+  const testing::TemporaryFolder folder;
+  {
+    const AtomicFolder first(folder.file("run"));
+    CHECK_THROWS_AS(AtomicFolder(folder.file("run")), InputError);
+    CHECK_NOTHROW(AtomicFolder(folder.file("other")));
+  }
+  CHECK_NOTHROW(AtomicFolder(folder.file("run")));
+}
+
+TEST_CASE("What a killed writer left is cleared away, and what it was replacing comes back") {
+  const testing::TemporaryFolder folder;
+  std::filesystem::create_directory(folder.file("run.part"));
+  folder.write("run.part/half", "x");
+  std::filesystem::create_directory(folder.file("run.old"));
+  folder.write("run.old/a", "old");
+  folder.write("run.lock", "");
+  { const AtomicFolder run(folder.file("run")); }
+  CHECK(read_file(folder.file("run/a")) == "old");
+  CHECK(count_entries(folder.path()) == 1);
+}

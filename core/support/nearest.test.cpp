@@ -1,0 +1,21 @@
+#include "core/support/nearest.hpp"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+using namespace evbench;
+
+TEST_CASE("The nearest name is the one with the fewest edits, if it can be meant") {
+  const std::vector<std::string> names = {"duration", "seed", "camera"};
+  CHECK(nearest_name("duratoin", names) == "duration");
+  CHECK(nearest_name("sed", names) == "seed");
+  CHECK(nearest_name("camera", names) == "camera");
+  CHECK(nearest_name("quaternion_order", names).empty());
+  CHECK(nearest_name("x", {}).empty());
+}
+
+TEST_CASE("A suggestion offers the nearest name, or all of them") {
+  const std::vector<std::string> names = {"huber", "cauchy"};
+  CHECK(suggestion("hubert", names) == "; did you mean \"huber\"?");
+  CHECK(suggestion("geman_mcclure", names) == "; known: huber, cauchy");
+}

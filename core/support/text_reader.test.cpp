@@ -1,0 +1,68 @@
+#include "core/support/text_reader.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/support/error.hpp"
+#include "core/testing/data.hpp"
+
+using namespace evbench;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// The records of a text, columns joined by "|".
+std::vector<std::string> records(const std::string& text, std::string_view separators = " \t") {
+  const testing::TemporaryFolder folder;
+  TextReader reader(folder.write("a.txt", text), separators);
+  std::vector<std::string> result;
+  while (reader.next()) {
+    std::string joined;
+    for (const std::string_view column : reader.columns()) joined += std::string(column) + "|";
+    result.push_back(joined);
+  }
+  return result;
+}
+
+using Records = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("Records are split at runs of separators; comments and blank lines are none") {
+  CHECK(records("1 2\n\n# no\n  \t\n\t 3 \t 4 \n") == Records{"1|2|", "3|4|"});
+  CHECK(records("1,2\n3,,4\n", ",") == Records{"1|2|", "3|4|"});
+  CHECK(records("").empty());
+}
+
+TEST_CASE("Windows line ends and a last line without an end are no matter") {
+  CHECK(records("1 2\r\n3 4") == Records{"1|2|", "3|4|"});
+}
+
+TEST_CASE("Lines that cross the reader's buffer are whole") {
+  std::string text;
+  Records expected;
+  for (int i = 0; i < 200; ++i) {
+    const std::string line(4999 + static_cast<std::size_t>(i), static_cast<char>('a' + i % 26));
+    text += line + "\n";
+    expected.push_back(line + "|");
+  }
+  CHECK(records(text) == expected);
+}
+
+TEST_CASE("Errors name the file, the line, what was found and what is expected") {
+  const testing::TemporaryFolder folder;
+  TextReader reader(folder.write("a.txt", "# head\n1 2.5x 9223372036854775808\n"));
+  REQUIRE(reader.next());
+  CHECK(reader.place() == folder.file("a.txt") + ":2");
+  CHECK_THROWS_WITH(reader.expect_columns(2, "a b"), Contains("a.txt:2: has 3 columns; expected 2 (a b)"));
+  CHECK_THROWS_WITH(reader.number(1, "the time"), Contains("the time is \"2.5x\"; expected a finite number"));
+  CHECK_THROWS_WITH(reader.integer(2, "the id"), Contains("expected an integer"));
+  CHECK(reader.integer(0, "the id") == 1);
+}
+
+TEST_CASE("What is no text file is refused") {
+  const testing::TemporaryFolder folder;
+  CHECK_THROWS_WITH(TextReader(folder.file("none")), Contains("none: no such file"));
+  CHECK_THROWS_WITH(TextReader(folder.path()), Contains("is a folder"));
+  CHECK_THROWS_WITH(records(std::string("1 2\n3 \0 4\n", 10)), Contains("a.txt:2: has a NUL byte"));
+  CHECK_THROWS_WITH(records(std::string(70000, '1')), Contains("longer than 64 KiB"));
+}
