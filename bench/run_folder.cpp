@@ -61,8 +61,8 @@ std::string map_ply(const std::vector<Landmark>& map) {
 std::string timing_csv(const std::vector<UpdateRecord>& updates) {
   std::string text = "t_s,update_ms,states,landmarks,observations,iterations,cost\n";
   for (const UpdateRecord& u : updates) {
-    text += fmt::format("{:.6f},{:.4f},{},{},{},{},{:.9g}\n", u.t, 1e3 * u.seconds, u.states, u.landmarks,
-                        u.observations, u.iterations, u.cost);
+    text += fmt::format("{:.6f},{:.4f},{},{},{},{},{}\n", u.t, 1e3 * u.seconds, u.states, u.landmarks,
+                        u.observations, u.iterations, u.cost ? fmt::format("{:.9g}", *u.cost) : "");
   }
   return text;
 }

@@ -8,6 +8,7 @@
 
 #include "backends/bundle_adjustment/pose_refinement.hpp"
 #include "core/plugin/registry.hpp"
+#include "core/structure/depth_reversal.hpp"
 
 namespace evbench::bundle_adjustment {
 namespace {
@@ -132,6 +133,10 @@ SolveReport BundleAdjustment::initialise(int view) {
   for (const InitialGuess& guess : attempt.candidates) {
     Trial trial = try_guess(guess, view);
     if (!trial.report.usable || trial.good < options_.initialiser.two_view.min_inliers) continue;
+    const auto same = [&](const Trial& other) {  // two guesses that end in one solution are no ambiguity
+      return same_motion(other.map.views[at(view)].T, trial.map.views[at(view)].T);
+    };
+    if (std::any_of(trials.begin(), trials.end(), same)) continue;
     const auto place =
         std::find_if(trials.begin(), trials.end(), [&](const Trial& t2) { return trial.error < t2.error; });
     trials.insert(place, std::move(trial));

@@ -8,6 +8,7 @@
 
 #include "core/motion/gp_trajectory.hpp"
 #include "core/plugin/registry.hpp"
+#include "core/structure/depth_reversal.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -15,6 +16,9 @@ namespace {
 const Registration<BackEnd, GpMap> registration("gp_map",
                                                 "asynchronous MAP estimation under a GP prior (Liu et al. 2022)");
 
+/// With this many times the parallax that is needed, the cheaper of two first maps is taken, however little cheaper.
+constexpr double kDecisiveParallax = 2.0;
+constexpr int kInitialIterations = 30;
 constexpr double kAnchorSigma = 1e-4;  ///< [rad, units] of the gauge: far below what data tell, well conditioned
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -34,11 +38,7 @@ GpMap::GpMap(const Options& options, const BackEndContext& context)
       context_(context),
       placement_(options.placement),
       initialiser_(options.initialiser, context.camera),
-      health_(options.health) {
-  graph_.camera = context.camera;
-  graph_.qc = options.qc_scale * Eigen::Map<const Vector6>(options.qc.data());
-  graph_.loss = RobustLoss(options.loss, options.loss_width);
-}
+      health_(options.health) {}
 
 void GpMap::observe(std::span<const TrackObservation> observations) {
   for (const TrackObservation& z : observations) placement_.observe(z.t);
@@ -53,7 +53,7 @@ void GpMap::step(double t) {
   if (health_.lost()) return;
   const auto start = std::chrono::steady_clock::now();
   take_observations(t);
-  if (graph_.states.empty()) {
+  if (!engine_) {
     initialise(t);
   } else {
     extrapolate_state(t);
@@ -75,21 +75,27 @@ void GpMap::initialise(double t) {
   struct Refined {
     FactorGraph graph;
     const InitialGuess* guess;
-    double cost;
+    double cost;  // per observation
   };
   std::vector<Refined> refined;
   for (const InitialGuess& guess : attempt.candidates) {
-    if (auto graph = refine(guess, t)) {
-      const double cost = evaluate(*graph).total() / graph->observation_count();
-      refined.push_back({std::move(*graph), &guess, cost});
-    }
+    auto graph = refine(guess, t);
+    if (!graph) continue;
+    const auto same = [&](const Refined& other) {  // two guesses that end in one solution are no ambiguity
+      return same_motion(other.graph.states.back().T, graph->states.back().T);
+    };
+    if (std::ranges::any_of(refined, same)) continue;
+    const double cost = evaluate(*graph).total() / graph->observation_count();
+    refined.push_back({std::move(*graph), &guess, cost});
   }
   if (refined.empty()) {
     if (!attempt.candidates.empty()) no_map_reason_ = "the first map does not explain the observations";
     return;
   }
   std::ranges::sort(refined, {}, &Refined::cost);
-  if (refined.size() > 1 && refined[1].cost < options_.ambiguity_ratio * refined[0].cost) {
+  const bool large_parallax =
+      refined[0].guess->median_parallax_deg >= kDecisiveParallax * options_.initialiser.two_view.min_parallax_deg;
+  if (refined.size() > 1 && refined[1].cost < options_.ambiguity_ratio * refined[0].cost && !large_parallax) {
     no_map_reason_ = "two first maps explain the observations equally well";
     return;
   }
@@ -99,7 +105,10 @@ void GpMap::initialise(double t) {
 /// The whole continuous-time problem over the time of the initialisation, solved from a two-view guess. None when it
 /// doesn't explain the data.
 std::optional<FactorGraph> GpMap::refine(const InitialGuess& guess, double t) const {
-  FactorGraph graph = graph_;
+  FactorGraph graph;
+  graph.camera = context_.camera;
+  graph.qc = options_.qc_scale * Eigen::Map<const Vector6>(options_.qc.data());
+  graph.loss = RobustLoss(options_.loss, options_.loss_width);
   // Constant velocity between the two views, and before the first where its tracks were seen already.
   const Vector6 velocity = se3::log(guess.T1) / (guess.t1 - guess.t0);
   const ControlState view0{guess.t0, SE3{}, velocity};
@@ -113,12 +122,15 @@ std::optional<FactorGraph> GpMap::refine(const InitialGuess& guess, double t) co
   std::vector<int> anchors;
   for (const Landmark& landmark : guess.landmarks) {
     anchors.push_back(graph.add_landmark(landmark.position));
-    add_all_observations(graph, anchors.back(), landmark.track);
+    for (const TrackObservation& z : tracks_.observations(landmark.track)) {
+      graph.add_observation(anchors.back(), observation(z));
+    }
   }
   graph.anchor_scale(graph.states.front().T.p, anchors);
   if (graph.observation_count() == 0) return std::nullopt;
-  const BatchSummary summary = solve_batch(graph, {options_.final_iterations, 1e-6, 0});
-  if (!summary.failure.empty()) return std::nullopt;
+  Engine engine(std::move(graph), {});
+  engine.optimise(kInitialIterations, 1e-6);
+  graph = engine.graph();
   std::vector<double> errors;
   for (std::size_t j = 0; j < graph.landmarks.size(); ++j) {
     errors.push_back(reprojection_mean(graph, static_cast<int>(j)));
@@ -141,16 +153,16 @@ double GpMap::start_time(const InitialGuess& guess) const {
   return std::clamp(seen_from[enough - 1], 2.0 * guess.t0 - guess.t1, guess.t0);
 }
 
-void GpMap::start_from(FactorGraph graph, const InitialGuess& guess) {
-  graph_ = std::move(graph);
+void GpMap::start_from(FactorGraph first_map, const InitialGuess& guess) {
+  engine_.emplace(std::move(first_map), EngineOptions{});
   for (std::size_t j = 0; j < guess.landmarks.size(); ++j) {
     landmark_of_[guess.landmarks[j].track] = static_cast<int>(j);
     track_of_.push_back(guess.landmarks[j].track);
   }
   context_.log(
       fmt::format("{:.3f} s: first map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s",
-                  graph_.states.back().t, graph_.landmarks.size(), graph_.observation_count(),
-                  guess.median_parallax_deg, graph_.states.front().t));
+                  graph().states.back().t, graph().landmarks.size(), graph().observation_count(),
+                  guess.median_parallax_deg, graph().states.front().t));
   remove_outliers();
   add_landmarks();
   optimise();
@@ -159,8 +171,8 @@ void GpMap::start_from(FactorGraph graph, const InitialGuess& guess) {
 // --- each control state -------------------------------------------------------------------------------------------
 
 void GpMap::extrapolate_state(double t) {
-  const ControlState& newest = graph_.states.back();
-  graph_.add_state(extrapolate(newest, t - newest.t));
+  const ControlState& newest = graph().states.back();
+  engine_->add_state(extrapolate(newest, t - newest.t));
 }
 
 Observation GpMap::observation(const TrackObservation& z) const {
@@ -179,18 +191,14 @@ void GpMap::take_observations(double t) {
 void GpMap::add_observations() {
   for (const TrackObservation& z : recent_) {
     const auto landmark = landmark_of_.find(z.track);
-    if (landmark != landmark_of_.end()) graph_.add_observation(landmark->second, observation(z));
+    if (landmark != landmark_of_.end()) engine_->add_observation(landmark->second, observation(z));
   }
 }
 
-void GpMap::add_all_observations(FactorGraph& graph, int landmark, TrackId track) const {
-  for (const TrackObservation& z : tracks_.observations(track)) graph.add_observation(landmark, observation(z));
-}
-
-int GpMap::landmarks_in_view() const { return static_cast<int>(graph_.intervals.back().groups().size()); }
+int GpMap::landmarks_in_view() const { return static_cast<int>(graph().intervals.back().groups().size()); }
 
 void GpMap::add_landmarks() {
-  const double newest = graph_.states.back().t;
+  const double newest = graph().states.back().t;
   const bool scarce = landmarks_in_view() < 2 * options_.health.min_landmarks;
   for (const TrackId track : tracks_.alive(newest, 0.1)) {
     const auto count = static_cast<int>(tracks_.observations(track).size());
@@ -200,8 +208,10 @@ void GpMap::add_landmarks() {
     tried_with = count;
     const auto place = locate(track, scarce);
     if (!place) continue;
-    const int landmark = graph_.add_landmark(place->first, place->second);
-    add_all_observations(graph_, landmark, track);
+    const int landmark = engine_->add_landmark(place->first, place->second);
+    for (const TrackObservation& z : tracks_.observations(track)) {
+      engine_->add_observation(landmark, observation(z));
+    }
     landmark_of_[track] = landmark;
     track_of_.push_back(track);
     tried_with_.erase(track);
@@ -213,7 +223,7 @@ std::optional<std::pair<Vector3, LandmarkPrior>> GpMap::locate(TrackId track, bo
   constexpr std::size_t kViews = 16;  // evenly from all observations: enough for a start
   std::vector<const TrackObservation*> usable;
   for (const TrackObservation& z : tracks_.observations(track)) {
-    if (graph_.interval_of(z.t) >= 0) usable.push_back(&z);
+    if (graph().interval_of(z.t) >= 0) usable.push_back(&z);
   }
   if (usable.size() < 2) return std::nullopt;
   std::vector<SE3> poses;
@@ -229,37 +239,32 @@ std::optional<std::pair<Vector3, LandmarkPrior>> GpMap::locate(TrackId track, bo
   const bool waited = usable.back()->t - usable.front()->t >= options_.map.patience;
   if (!scarce || !waited) return std::nullopt;
   const double depth = median_depth();
-  const Vector3 point = poses.back() * (depth * graph_.camera.ray(pixels.back()));
+  const Vector3 point = poses.back() * (depth * graph().camera.ray(pixels.back()));
   return std::pair{point, LandmarkPrior{point, options_.map.depth_sigma * depth}};
 }
 
 /// Of the landmarks seen last, from the newest pose.
 double GpMap::median_depth() const {
-  const SE3 T_camera_world = graph_.states.back().T.inverse();
+  const SE3 T_camera_world = graph().states.back().T.inverse();
   std::vector<double> depths;
-  for (std::size_t k = graph_.intervals.size(); k-- > 0 && depths.size() < 10;) {
-    for (const auto& group : graph_.intervals[k].groups()) {
-      const double z = (T_camera_world * graph_.landmarks[static_cast<std::size_t>(group.landmark)].position).z();
+  for (std::size_t k = graph().intervals.size(); k-- > 0 && depths.size() < 10;) {
+    for (const auto& group : graph().intervals[k].groups()) {
+      const double z = (T_camera_world * graph().landmarks[static_cast<std::size_t>(group.landmark)].position).z();
       if (z > 0.0) depths.push_back(z);
     }
   }
   return depths.empty() ? 1.0 : median(depths);
 }
 
-void GpMap::optimise() {
-  const double from = graph_.states.back().t - options_.window;
-  const auto first = std::upper_bound(graph_.states.begin(), graph_.states.end(), from,
-                                      [](double t, const ControlState& state) { return t < state.t; });
-  last_solve_ = solve_batch(graph_, {options_.iterations, 1e-4, static_cast<int>(first - graph_.states.begin())});
-}
+void GpMap::optimise() { last_update_ = engine_->update(); }
 
 void GpMap::remove_outliers() {
   std::vector<int> seen;
-  for (const auto& group : graph_.intervals.back().groups()) seen.push_back(group.landmark);
+  for (const auto& group : graph().intervals.back().groups()) seen.push_back(group.landmark);
   for (const int landmark : seen) {
-    if (reprojection_mean(graph_, landmark) <= options_.map.outlier_threshold) continue;
+    if (reprojection_mean(graph(), landmark) <= options_.map.outlier_threshold) continue;
     const TrackId track = track_of_[static_cast<std::size_t>(landmark)];
-    graph_.remove_landmark(landmark);
+    engine_->remove_landmark(landmark);
     landmark_of_.erase(track);
     tracks_.remove(track);
     new_outliers_.push_back(track);
@@ -267,78 +272,84 @@ void GpMap::remove_outliers() {
 }
 
 void GpMap::check_health() {
-  const std::size_t n = graph_.states.size();
-  if (!last_solve_.failure.empty()) {
-    health_.lose(graph_.states[n - 1].t, last_solve_.failure);
+  const std::size_t n = graph().states.size();
+  if (last_update_.rejected && !last_update_.reason.empty()) {
+    health_.lose(graph().states[n - 1].t, last_update_.reason);
   } else {
-    health_.observe(graph_.states[n - 2].t, graph_.states[n - 1].t, landmarks_in_view());
+    health_.observe(graph().states[n - 2].t, graph().states[n - 1].t, landmarks_in_view());
   }
   if (!health_.lost()) return;
   context_.log(fmt::format("{:.3f} s: lost: {}", health_.status().time, health_.status().reason));
   // What the data never saw is not kept.
-  while (graph_.states.size() > 2 && graph_.states.back().t > health_.status().time) graph_.remove_newest_state();
+  while (graph().states.size() > 2 && graph().states.back().t > health_.status().time) engine_->remove_newest_state();
 }
 
 void GpMap::record(double t, double seconds) {
-  if (!graph_.states.empty() && graph_.states.back().t == t) online_.push_back({t, graph_.states.back().T});
-  const auto alive = std::ranges::count_if(graph_.landmarks, &FactorGraph::Landmark::alive);
-  updates_.push_back({t, seconds, static_cast<int>(graph_.states.size()), static_cast<int>(alive),
-                      graph_.observation_count(), last_solve_.iterations, last_solve_.final_cost});
+  if (engine_ && graph().states.back().t == t) online_.push_back({t, graph().states.back().T});
+  add_record(t, seconds, 1, {});
+}
+
+void GpMap::add_record(double t, double seconds, int iterations, std::optional<double> cost) {
+  UpdateRecord record{t, seconds, 0, 0, 0, iterations, cost};
+  if (engine_) {
+    record.states = static_cast<int>(graph().states.size());
+    record.landmarks = static_cast<int>(landmark_of_.size());
+    record.observations = graph().observation_count();
+  }
+  updates_.push_back(record);
 }
 
 // --- the end ------------------------------------------------------------------------------------------------------
 
 void GpMap::finish() {
   if (const std::optional<double> last = placement_.last()) step(*last);
-  if (graph_.states.empty()) {
+  if (!engine_) {
     health_.fail(state_times_.empty() ? 0.0 : state_times_.back(),
                  no_map_reason_.empty() ? "no observations" : "no first map: " + no_map_reason_);
     return;
   }
   if (options_.final_iterations == 0) return;
   const auto start = std::chrono::steady_clock::now();
-  last_solve_ = solve_batch(graph_, {options_.final_iterations, 1e-7, 0});
-  updates_.push_back({graph_.states.back().t, seconds_since(start), static_cast<int>(graph_.states.size()),
-                      static_cast<int>(landmark_of_.size()), graph_.observation_count(), last_solve_.iterations,
-                      last_solve_.final_cost});
+  const Engine::OptimiseSummary summary = engine_->optimise(options_.final_iterations, 1e-7);
+  context_.log(fmt::format("final estimate: cost {:.2f} after {:.2f}, {} iterations{}", summary.final_cost,
+                           summary.initial_cost, summary.iterations, summary.converged ? "" : ", not converged"));
+  add_record(graph().states.back().t, seconds_since(start), summary.iterations, summary.final_cost);
 }
 
 Feedback GpMap::feedback() {
   Feedback feedback;
-  if (!graph_.states.empty()) feedback.newest = graph_.states.back();
+  if (engine_) feedback.newest = graph().states.back();
   feedback.outliers.swap(new_outliers_);
   return feedback;
 }
 
 PoseTrajectory GpMap::trajectory() const {
   std::vector<StampedPose> poses;
-  for (const ControlState& state : graph_.states) poses.push_back({state.t, state.T});
+  if (!engine_) return {};
+  for (const ControlState& state : graph().states) poses.push_back({state.t, state.T});
   return PoseTrajectory(std::move(poses));
 }
 
 std::optional<SE3> GpMap::pose(double t) const {
-  const int k = graph_.interval_of(t);
+  const int k = engine_ ? graph().interval_of(t) : -1;
   if (k < 0) return std::nullopt;
   const auto index = static_cast<std::size_t>(k);
-  return GpInterval(graph_.states[index - 1], graph_.states[index]).pose(t);
+  return GpInterval(graph().states[index - 1], graph().states[index]).pose(t);
 }
 
 std::optional<Vector6> GpMap::velocity(double t) const {
-  const int k = graph_.interval_of(t);
+  const int k = engine_ ? graph().interval_of(t) : -1;
   if (k < 0) return std::nullopt;
   const auto index = static_cast<std::size_t>(k);
-  return GpInterval(graph_.states[index - 1], graph_.states[index]).velocity(t);
+  return GpInterval(graph().states[index - 1], graph().states[index]).velocity(t);
 }
 
-std::optional<Matrix12> GpMap::covariance(double t) const {
-  if (graph_.states.empty()) return std::nullopt;
-  return BatchCovariance(graph_).at(t);
-}
+std::optional<Matrix12> GpMap::covariance(double t) const { return engine_ ? engine_->covariance(t) : std::nullopt; }
 
 std::vector<Landmark> GpMap::map() const {
   std::vector<Landmark> result;
   for (const auto& [track, landmark] : landmark_of_) {
-    result.push_back({track, graph_.landmarks[static_cast<std::size_t>(landmark)].position});
+    result.push_back({track, graph().landmarks[static_cast<std::size_t>(landmark)].position});
   }
   return result;
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "backends/gp_map/batch_solver.hpp"
+#include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/health.hpp"
 #include "backends/gp_map/options.hpp"
 #include "backends/gp_map/state_placement.hpp"
@@ -41,7 +41,8 @@ class GpMap : public BackEnd {
   std::vector<Landmark> map() const override;
   std::span<const UpdateRecord> updates() const override { return updates_; }
 
-  const FactorGraph& graph() const { return graph_; }
+  /// The problem with its present estimate; not before initialisation.
+  const FactorGraph& graph() const { return engine_->graph(); }
 
  private:
   // Algorithm 1, a line each.
@@ -55,11 +56,11 @@ class GpMap : public BackEnd {
   void remove_outliers();
   void check_health();
   void record(double t, double seconds);
+  void add_record(double t, double seconds, int iterations, std::optional<double> cost);
 
   std::optional<FactorGraph> refine(const InitialGuess& guess, double t) const;
   double start_time(const InitialGuess& guess) const;
   void start_from(FactorGraph graph, const InitialGuess& guess);
-  void add_all_observations(FactorGraph& graph, int landmark, TrackId track) const;
   Observation observation(const TrackObservation& z) const;
   std::optional<std::pair<Vector3, LandmarkPrior>> locate(TrackId track, bool scarce) const;
   double median_depth() const;
@@ -70,16 +71,16 @@ class GpMap : public BackEnd {
   StatePlacement placement_;
   Initialiser initialiser_;
   TrackBuffer tracks_;
-  std::vector<double> state_times_;  ///< placed before the first map: the states of the initialisation
-  std::string no_map_reason_;        ///< of the last vain attempt
-  FactorGraph graph_;
+  std::vector<double> state_times_;        ///< placed before the first map: the states of the initialisation
+  std::string no_map_reason_;              ///< of the last vain attempt
+  mutable std::optional<Engine> engine_;   ///< from the first map on; mutable: covariances are made when asked for
   std::map<TrackId, int> landmark_of_;     ///< tracks that are landmarks
   std::map<TrackId, int> tried_with_;      ///< observations at the last vain attempt to locate a track
   std::vector<TrackId> track_of_;          ///< by landmark
   std::vector<TrackObservation> recent_;   ///< between the two newest states
   std::vector<TrackObservation> pending_;  ///< later than the newest state
   std::vector<TrackId> new_outliers_;
-  BatchSummary last_solve_;
+  UpdateSummary last_update_;
   Health health_;
   std::vector<StampedPose> online_;
   std::vector<UpdateRecord> updates_;

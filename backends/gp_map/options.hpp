@@ -74,8 +74,6 @@ struct Options {
   double ambiguity_ratio = 1.1;
   MapOptions map;
   HealthOptions health;
-  double window = 2.5;
-  int iterations = 2;
   int final_iterations = 30;
 
   void declare(OptionSet& set) {
@@ -97,8 +95,6 @@ struct Options {
         .range(1.0);
     set.group("map", map, "landmarks");
     set.group("health", health, "degraded and lost");
-    set.add("window", window, "states of this much time are optimised at each step, older ones held [s]").above(0.0);
-    set.add("iterations", iterations, "of Levenberg-Marquardt at each step, at most").range(1);
     set.add("final_iterations", final_iterations, "over the whole history, at the end; 0: none").range(0);
   }
 };

@@ -35,7 +35,7 @@ struct UpdateRecord {
   int landmarks = 0;
   int observations = 0;  ///< in the problem
   int iterations = 0;
-  double cost = 0.0;  ///< ½ Σ ρ(‖whitened residual‖²) after the update
+  std::optional<double> cost;  ///< ½ Σ ρ(‖whitened residual‖²) of the whole problem, where the update computed it
 };
 
 /// What a back-end tells the front-end, which may use it or not.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/structure/depth_reversal.hpp"
+
 namespace evbench {
 namespace {
 
@@ -76,6 +78,7 @@ Initialiser::Attempt Initialiser::attempt(const TrackBuffer& tracks, double t) {
   Attempt attempt{result.reason, {}};
   for (const TwoViewCandidate& candidate : result.candidates) {
     attempt.candidates.push_back(to_guess(candidate, matches.tracks, *reference_, t));
+    attempt.candidates.push_back(reverse_depth(attempt.candidates.back()));
   }
   return attempt;
 }
