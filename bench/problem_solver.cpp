@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "backends/gp_map/problem_graph.hpp"
-#include "core/support/error.hpp"
+#include "bench/peak_memory.hpp"
 
 namespace evbench {
 namespace {
@@ -40,12 +40,28 @@ class IncrementalRun {
       result.total_s += 1e-3 * result.step_ms.back();
       if (!result.updates.back().reason.empty()) result.reason = result.updates.back().reason;
     }
-    result.graph = engine_.graph();
+    result.peak_mib = peak_memory_mib();
+    result.graph = complete_graph();
     return result;
   }
 
  private:
-  static gp_map::EngineOptions engine_options(const SolveOptions& options) { return options.engine; }
+  static gp_map::EngineOptions engine_options(const SolveOptions& options) {
+    gp_map::EngineOptions engine = options.engine;
+    if (options.mode == SolveMode::fixed_lag) engine.lag = options.lag;
+    return engine;
+  }
+
+  /// All factors with the final estimate: with a lag the engine has forgotten most of them.
+  FactorGraph complete_graph() const {
+    FactorGraph graph = gp_map::to_graph(problem_);
+    graph.states = engine_.graph().states;
+    for (std::size_t j = 0; j < number_.size(); ++j) {
+      if (number_[j] < 0) continue;
+      graph.landmarks[j].position = engine_.graph().landmarks[static_cast<std::size_t>(number_[j])].position;
+    }
+    return graph;
+  }
 
   void add_step(std::size_t k) {
     ControlState state = problem_.states[k];
@@ -100,6 +116,7 @@ SolveResult solve_at_once(const Problem& problem, const SolveOptions& options) {
   result.step_ms.push_back(milliseconds_since(start));
   result.total_s = 1e-3 * result.step_ms.back();
   result.reason = summary.reason;
+  result.peak_mib = peak_memory_mib();
   result.graph = engine.graph();
   return result;
 }

@@ -24,6 +24,7 @@ struct SolveResult {
   std::vector<double> step_ms;
   std::vector<gp_map::UpdateSummary> updates;  ///< one a step; empty in batch mode
   double total_s = 0.0;                        ///< of the steps
+  double peak_mib = 0.0;                       ///< of the process when the last step was done
   std::string reason;                          ///< of the last step that had one
 };
 

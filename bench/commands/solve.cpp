@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/commands/commands.hpp"
-#include "bench/peak_memory.hpp"
 #include "bench/problem_solver.hpp"
 #include "core/support/atomic_file.hpp"
 #include "core/support/error.hpp"
@@ -34,7 +33,7 @@ double quantile(std::vector<double> values, double share) {
   return values[std::max<std::size_t>(rank, 1) - 1];
 }
 
-Json report(const SolveArguments& arguments, const SolveResult& result, double peak_mib) {
+Json report(const SolveArguments& arguments, const SolveResult& result) {
   const gp_map::Cost cost = evaluate(result.graph);
   if (!std::isfinite(cost.total())) throw InputError(arguments.problem + ": the solution's cost is not finite");
   Json json = {{"problem", arguments.problem},
@@ -49,7 +48,7 @@ Json report(const SolveArguments& arguments, const SolveResult& result, double p
                  {"p99", quantile(result.step_ms, 0.99)},
                  {"max", quantile(result.step_ms, 1.0)}}},
                {"total_s", result.total_s},
-               {"peak_rss_mib", peak_mib}};
+               {"peak_rss_mib", result.peak_mib}};
   if (!result.reason.empty()) json["reason"] = result.reason;
   if (arguments.check) json["relative_excess"] = check_against_batch(result.graph).relative_excess;
   return json;
@@ -76,7 +75,7 @@ std::string format_steps(const SolveResult& result) {
 
 void execute(const SolveArguments& arguments) {
   const SolveResult result = solve_problem(read_problem(arguments.problem), arguments.options);
-  const Json json = report(arguments, result, peak_memory_mib());
+  const Json json = report(arguments, result);
   fmt::print("{}\n", json.dump(2));
   if (!arguments.json.empty()) write_file(arguments.json, json.dump(2) + "\n");
   if (!arguments.states.empty()) write_file(arguments.states, format_states(result.graph));

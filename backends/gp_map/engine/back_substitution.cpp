@@ -70,7 +70,7 @@ void Engine::solve_back(int first_redone, UpdateSummary& summary) {
   for (int slot = 0; slot < root.slots(); ++slot) {
     if (root.occupant(slot) >= 0) set_landmark(root.occupant(slot), delta_.data() + Root::row_of_slot(slot), slot);
   }
-  for (int k = newest; k >= 1; --k) {
+  for (int k = newest; k > std::max(0, factorisation_.base()); --k) {
     Factorisation::Stage& stage = factorisation_.stage(k);
     if (k < first_redone) {
       const double change = stage.skipped + separator_change(k);
@@ -107,6 +107,7 @@ void Engine::refine_landmarks() {
   for (Change& change : changes_) {
     const int j = change.variable.index;
     if (change.variable.kind != Variable::Kind::landmark || !(change.size > options_.check_step)) continue;
+    if (factorisation_.in_base(change.variable)) continue;  // its own cost isn't known any more
     const Vector3 before = change.before.head<3>();
     const Vector3 start = points_.landmark(j) + before;
     const Vector3 refined = refine_landmark(graph_, j, start, points_.landmark_delta(j) - before, change.size);

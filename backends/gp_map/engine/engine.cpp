@@ -61,8 +61,9 @@ int Engine::add_landmark(const Vector3& guess, const LandmarkPrior& prior) {
 bool Engine::add_observation(int landmark, const Observation& observation) {
   const bool sound = std::isfinite(observation.t) && observation.pixel.allFinite() &&
                      std::isfinite(observation.inverse_sigma) && graph_.landmarks[at(landmark)].alive;
-  if (!sound || !graph_.add_observation(landmark, observation)) return false;
+  if (!sound || factorisation_.is_forgotten(landmark)) return false;
   const int k = graph_.interval_of(observation.t);
+  if (k <= factorisation_.base() || !graph_.add_observation(landmark, observation)) return false;
   points_.invalidate(k);
   touch(k);
   if (const auto eliminated = factorisation_.eliminated_at(landmark)) touch(*eliminated);
@@ -121,20 +122,41 @@ double Engine::size_of_landmark(int j, const Vector3& delta) const {
 }
 
 int Engine::first_stage(const Variable& variable) const {
+  if (factorisation_.in_base(variable)) return factorisation_.base() + 1;
   if (variable.kind == Variable::Kind::state) return variable.index;
   const auto& seen = graph_.landmarks[at(variable.index)].intervals;
   return seen.empty() ? restart_ : seen.front();
 }
 
 void Engine::move(const Variable& variable) {
+  touch(first_stage(variable));
   if (variable.kind == Variable::Kind::state) {
+    const Vector12 delta = points_.state_delta(variable.index);
     points_.move_state(graph_, variable.index);
-    touch(variable.index);
+    factorisation_.shift_base(variable, delta.data());
   } else {
-    const auto& seen = graph_.landmarks[at(variable.index)].intervals;
+    const Vector3 delta = points_.landmark_delta(variable.index);
     points_.move_landmark(graph_, variable.index);
-    if (!seen.empty()) touch(seen.front());
+    factorisation_.shift_base(variable, delta.data());
   }
+}
+
+/// Marginalises the states older than the lag.
+void Engine::forget_old() {
+  const double from = graph_.states.back().t - options_.lag;
+  int oldest = factorisation_.base() + 1;
+  while (graph_.states[at(oldest)].t < from) ++oldest;
+  const int before = factorisation_.base();
+  const int base = factorisation_.marginalise(oldest);
+  for (int k = before + 1; k <= base; ++k) {
+    for (const auto& group : graph_.intervals[at(k)].groups()) {
+      std::erase(graph_.landmarks[at(group.landmark)].intervals, k);
+    }
+    graph_.intervals[at(k)] = IntervalObservations();
+  }
+  std::erase_if(candidates_, [&](const Variable& v) {
+    return v.kind == Variable::Kind::state ? v.index < base : factorisation_.is_forgotten(v.index);
+  });
 }
 
 /// Moves the linearisation points that are too far from the estimate, and in the stages that are then redone those that
@@ -195,6 +217,7 @@ UpdateSummary Engine::update() {
     if (size > options_.relinearise) candidates_.push_back(v);
   }
   candidates_.insert(candidates_.end(), refined_.begin(), refined_.end());
+  if (options_.lag > 0.0 && damping == 0.0) forget_old();
   summary.stages = static_cast<int>(factorisation_.stages_done() - stages);
   summary.linearised = static_cast<int>(points_.linearised_observations() - linearised);
   return summary;

@@ -26,6 +26,9 @@ struct EngineOptions {
   int grace = 1;
   /// Of the newest intervals, how many keep their linearisation.
   int kept_intervals = 64;
+  /// States older than this before the newest are marginalised [s]; 0: full history. What they say about the others
+  /// stays as a prior, their estimates stay as they are, and what would change their factors is refused.
+  double lag = 0.0;
 };
 
 /// What an update did.
@@ -58,7 +61,7 @@ class Engine {
   const FactorGraph& graph() const { return graph_; }
 
   /// The oldest state that is still being estimated.
-  int first_state() const { return 0; }
+  int first_state() const { return std::max(0, factorisation_.base()); }
 
   /// A state later than the newest one, with the motion prior between them.
   void add_state(const ControlState& guess);
@@ -70,7 +73,7 @@ class Engine {
   int add_landmark(const Vector3& guess, const LandmarkPrior& prior = {});
 
   /// At any time within the states' span, late or not. False, and nothing added, outside it, for a value that is not
-  /// finite or a landmark that was removed.
+  /// finite, a landmark that was removed, and with a lag for what has been marginalised.
   bool add_observation(int landmark, const Observation& observation);
 
   /// Removes the observation of a landmark at exactly this time. False when there is none.
@@ -88,7 +91,8 @@ class Engine {
   /// One Gauss-Newton step over what the changes since the last update concern, damped if it would raise the cost.
   UpdateSummary update();
 
-  /// Gauss-Newton steps over everything, damped where needed, until a step lowers the cost by less than the tolerance.
+  /// Of a full history only. Gauss-Newton steps over everything, damped where needed, until a step lowers the cost by
+  /// less than the tolerance.
   struct OptimiseSummary {
     double initial_cost = 0.0, final_cost = 0.0;
     int iterations = 0;
@@ -114,7 +118,8 @@ class Engine {
     double size;      ///< [rad]
   };
 
-  void touch(int stage) { restart_ = std::min(restart_, stage); }
+  void touch(int stage) { restart_ = std::min(restart_, std::max(stage, factorisation_.base() + 1)); }
+  void forget_old();
   double size_of_state(int i, const Vector12& delta) const;
   double size_of_landmark(int j, const Vector3& delta) const;
   int first_stage(const Variable& variable) const;

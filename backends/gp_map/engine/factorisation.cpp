@@ -146,7 +146,7 @@ void Factorisation::find_finished(int k, const FactorGraph& graph) {
   for (int slot = 0; slot < root_.slots(); ++slot) {
     const int j = root_.occupant(slot);
     if (j < 0) continue;
-    const int last = graph.landmarks[at(j)].intervals.back();
+    const int last = last_interval(j, graph);
     if (last > k || (newest - last < grace_ && !landmarks_[at(j)].ended)) continue;
     if (k < anchor_stage_ && is_anchor(j)) continue;
     finished_.push_back(j);
@@ -197,13 +197,50 @@ void Factorisation::keep_snapshot(int k, int newest) {
 
 void Factorisation::thin_snapshots(int newest) {
   for (auto i = snapshots_.lower_bound(newest - kThinnedUpTo); i != snapshots_.end();) {
-    if (i->first % snapshot_spacing(newest - i->first) == 0) {
+    if (i->first == base_ || i->first % snapshot_spacing(newest - i->first) == 0) {
       ++i;
     } else {
       if (spare_.size() < 16) spare_.push_back(std::move(i->second));
       i = snapshots_.erase(i);
     }
   }
+}
+
+/// Those of a landmark in the base may all have been forgotten or removed.
+int Factorisation::last_interval(int j, const FactorGraph& graph) const {
+  const auto& seen = graph.landmarks[at(j)].intervals;
+  return seen.empty() ? base_ : seen.back();
+}
+
+int Factorisation::marginalise(int stage) {
+  auto snapshot = snapshots_.upper_bound(std::min(stage, done_));
+  if (snapshot == snapshots_.begin() || (--snapshot)->first <= base_) return base_;
+  for (int k = base_ + 1; k <= snapshot->first; ++k) {
+    for (const Conditional& conditional : stages_[at(k)].conditionals) {
+      for (const int j : conditional.landmarks) landmarks_[at(j)].forgotten = true;
+    }
+    stages_[at(k)] = Stage();
+  }
+  for (auto i = snapshots_.begin(); i != snapshot; ++i) spare_.push_back(std::move(i->second));
+  snapshots_.erase(snapshots_.begin(), snapshot);
+  base_ = snapshot->first;
+  return base_;
+}
+
+int Factorisation::row_in_base(const Variable& variable) const {
+  if (base_ < 0) return -1;
+  if (variable.kind == Variable::Kind::state) return variable.index == base_ ? Root::row_of_state(base_) : -1;
+  const auto& occupants = snapshots_.begin()->second.occupant;
+  const auto found = std::ranges::find(occupants, variable.index);
+  return found == occupants.end() ? -1 : Root::row_of_slot(static_cast<int>(found - occupants.begin()));
+}
+
+bool Factorisation::in_base(const Variable& variable) const { return row_in_base(variable) >= 0; }
+
+void Factorisation::shift_base(const Variable& variable, const double* shift) {
+  const int row = row_in_base(variable);
+  const int size = variable.kind == Variable::Kind::state ? 12 : 3;
+  if (row >= 0) snapshots_.begin()->second.shift(row, size, shift);
 }
 
 }  // namespace evbench::gp_map

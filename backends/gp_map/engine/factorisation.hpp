@@ -74,12 +74,24 @@ class Factorisation {
   /// The stage that eliminates a landmark (the one after the last done while it is in the root) and its row there.
   std::optional<std::pair<int, int>> find_landmark(int j) const;
 
+  /// Forgets the stages up to the newest snapshot not after `stage`: what they say about the variables in the root
+  /// there stays as a linear prior, the base. Returns the base's stage.
+  int marginalise(int stage);
+
+  /// The stage whose root is the base; −1: full history.
+  int base() const { return base_; }
+  bool in_base(const Variable& variable) const;
+  /// A landmark that was eliminated before the base can't be observed any more.
+  bool is_forgotten(int j) const { return landmarks_[static_cast<std::size_t>(j)].forgotten; }
+  /// A variable of the base is linearised at a point that lies `shift` further (12 or 3).
+  void shift_base(const Variable& variable, const double* shift);
+
   std::int64_t stages_done() const { return stages_done_; }
 
  private:
   struct LandmarkStatus {
     int eliminated_at = -1;
-    bool ended = false, held = false;
+    bool ended = false, held = false, forgotten = false;
   };
   int go_back_to(int first);
   std::optional<Variable> do_stage(int k, const FactorGraph& graph, LinearisationPoints& points, double damping);
@@ -93,9 +105,12 @@ class Factorisation {
   void keep_snapshot(int k, int newest);
   void thin_snapshots(int newest);
   bool is_anchor(int j) const;
+  int last_interval(int j, const FactorGraph& graph) const;
+  int row_in_base(const Variable& variable) const;
 
   int grace_;
   int done_ = -1;
+  int base_ = -1;
   int anchor_stage_ = -1;     ///< where the scale anchor is added: its last landmark has come in
   std::vector<int> anchors_;  ///< ascending
   Root root_;

@@ -110,6 +110,21 @@ void Root::save(Snapshot& to) const {
   }
 }
 
+void Root::Snapshot::shift(int row, int size, const double* shift) {
+  const int n = static_cast<int>(b.size());
+  const double* column = H.data();  // from the row of its block's first diagonal element on
+  for (int c = 0; c < n; ++c) {
+    const int first = c / kPadding * kPadding;
+    const bool own = c >= row && c < row + size;
+    for (int r = c; r < n; ++r) {
+      const double value = column[r - first];
+      if (own) b[static_cast<std::size_t>(r)] -= value * shift[c - row];
+      if (r > c && r >= row && r < row + size) b[static_cast<std::size_t>(c)] -= value * shift[r - row];
+    }
+    column += n - first;
+  }
+}
+
 void Root::restore(const Snapshot& from) {
   const int used = extent();
   forget_occupants();

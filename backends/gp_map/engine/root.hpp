@@ -59,6 +59,9 @@ class Root {
     int top = 0;
     std::vector<int> occupant;
     Buffer H, b;
+
+    /// b −= H(:, row...) shift: the increments of these rows are counted from a point that lies `shift` further.
+    void shift(int row, int size, const double* shift);
   };
   void save(Snapshot& to) const;
   void restore(const Snapshot& from);
