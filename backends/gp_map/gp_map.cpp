@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <set>
 
 #include "core/motion/gp_trajectory.hpp"
 #include "core/plugin/registry.hpp"
@@ -18,6 +19,7 @@ const Registration<BackEnd, GpMap> registration("gp_map",
 
 /// With this many times the parallax that is needed, the cheaper of two first maps is taken, however little cheaper.
 constexpr double kDecisiveParallax = 2.0;
+constexpr double kInView = 0.05;  ///< [s] since its last observation
 constexpr int kInitialIterations = 30;
 constexpr double kAnchorSigma = 1e-4;  ///< [rad, units] of the gauge: far below what data tell, well conditioned
 
@@ -195,7 +197,16 @@ void GpMap::add_observations() {
   }
 }
 
-int GpMap::landmarks_in_view() const { return static_cast<int>(graph().intervals.back().groups().size()); }
+/// Landmarks observed of late: intervals may be shorter than a track's time between two observations.
+int GpMap::landmarks_in_view() const {
+  std::set<int> seen;
+  const double since = graph().states.back().t - kInView;
+  for (std::size_t k = graph().intervals.size(); k-- > 1;) {
+    for (const auto& group : graph().intervals[k].groups()) seen.insert(group.landmark);
+    if (graph().states[k - 1].t <= since) break;
+  }
+  return static_cast<int>(seen.size());
+}
 
 void GpMap::add_landmarks() {
   const double newest = graph().states.back().t;

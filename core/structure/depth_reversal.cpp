@@ -1,6 +1,7 @@
 #include "core/structure/depth_reversal.hpp"
 
 #include <algorithm>
+#include <vector>
 
 #include "core/geometry/so3.hpp"
 
@@ -11,11 +12,18 @@ InitialGuess reverse_depth(const InitialGuess& guess) {
   const Vector3& p = guess.T1.p;
   result.T1.q = so3::exp(so3::log(guess.T1.q) + 2.0 * Vector3(-p.y(), p.x(), 0.0));
   result.T1.p = Vector3(-p.x(), -p.y(), p.z());
+  std::vector<double> depths;
   for (Landmark& landmark : result.landmarks) {
     const Vector3 ray = landmark.position / landmark.position.z();
     const double inverse_depth = std::clamp(2.0 - 1.0 / landmark.position.z(), 0.2, 2.0);
     landmark.position = ray / inverse_depth;
+    depths.push_back(1.0 / inverse_depth);
   }
+  if (depths.empty()) return result;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  for (Landmark& landmark : result.landmarks) landmark.position /= *middle;
+  result.T1.p /= *middle;
   return result;
 }
 

@@ -25,10 +25,11 @@ TEST_CASE("Depth reversal leaves the image of a short motion nearly as it is") {
 TEST_CASE("Reversing twice gives the guess back") {
   InitialGuess guess;
   guess.T1.p = {0.06, -0.04, 0.01};
-  guess.landmarks.push_back({0, Vector3(0.1, -0.1, 1.1)});
+  for (const double z : {0.9, 1.0, 1.1}) guess.landmarks.push_back({0, Vector3(0.1, -0.1, 1.0) * z});
   const InitialGuess twice = reverse_depth(reverse_depth(guess));
   CHECK(same_motion(twice.T1, guess.T1));
   CHECK((twice.landmarks[0].position - guess.landmarks[0].position).norm() < 1e-12);
+  CHECK(reverse_depth(guess).landmarks[1].position.z() == Approx(1.0));
 }
 
 }  // namespace evbench
