@@ -59,14 +59,19 @@ int Engine::add_landmark(const Vector3& guess, const LandmarkPrior& prior) {
 }
 
 bool Engine::add_observation(int landmark, const Observation& observation) {
+  live_.drop();
+  return insert(landmark, observation);
+}
+
+bool Engine::insert(int landmark, const Observation& observation) {
   const bool sound = std::isfinite(observation.t) && observation.pixel.allFinite() &&
                      std::isfinite(observation.inverse_sigma) && graph_.landmarks[at(landmark)].alive;
   if (!sound || factorisation_.is_forgotten(landmark)) return false;
   const int k = graph_.interval_of(observation.t);
   if (k <= factorisation_.base() || !graph_.add_observation(landmark, observation)) return false;
   points_.invalidate(k);
-  touch(k);
-  if (const auto eliminated = factorisation_.eliminated_at(landmark)) touch(*eliminated);
+  invalidate(k);
+  if (const auto eliminated = factorisation_.eliminated_at(landmark)) invalidate(*eliminated);
   factorisation_.resume_landmark(landmark);
   return true;
 }
@@ -81,6 +86,7 @@ bool Engine::remove_observation(int landmark, double t) {
 
 void Engine::remove_newest_state() {
   const int newest = static_cast<int>(graph_.states.size()) - 1;
+  live_.drop();
   graph_.remove_newest_state();
   points_.remove_newest_state();
   std::erase(candidates_, Variable{Variable::Kind::state, newest});
@@ -187,6 +193,7 @@ UpdateSummary Engine::update() {
     restart_ = 0;
     return summary;
   }
+  live_.drop();
   const std::int64_t stages = factorisation_.stages_done();
   const std::int64_t linearised = points_.linearised_observations();
   choose_points();

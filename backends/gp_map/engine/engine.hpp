@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "backends/gp_map/engine/factorisation.hpp"
+#include "backends/gp_map/engine/live_factor.hpp"
 
 namespace evbench::gp_map {
 
@@ -76,6 +77,12 @@ class Engine {
   /// finite, a landmark that was removed, and with a lag for what has been marginalised.
   bool add_observation(int landmark, const Observation& observation);
 
+  /// add_observation that at once brings the newest two states to what their factors so far ask for: exact for the
+  /// present linearisation (landmarks and older states follow with the next update). For observations in the newest
+  /// interval, after an update() of everything before the newest state, of landmarks that were alive in it; false, and
+  /// the observation only added, for others. Microseconds.
+  bool observe(int landmark, const Observation& observation);
+
   /// Removes the observation of a landmark at exactly this time. False when there is none.
   bool remove_observation(int landmark, double t);
 
@@ -118,7 +125,13 @@ class Engine {
     double size;      ///< [rad]
   };
 
-  void touch(int stage) { restart_ = std::min(restart_, std::max(stage, factorisation_.base() + 1)); }
+  /// Stage `stage` and those after it are to be redone.
+  void invalidate(int stage) { restart_ = std::min(restart_, std::max(stage, factorisation_.base() + 1)); }
+  void touch(int stage) {
+    live_.drop();
+    invalidate(stage);
+  }
+  bool insert(int landmark, const Observation& observation);
   void forget_old();
   double size_of_state(int i, const Vector12& delta) const;
   double size_of_landmark(int j, const Vector3& delta) const;
@@ -127,6 +140,7 @@ class Engine {
   void move(const Variable& variable);
   bool solve(int first_redone, double damping, UpdateSummary& summary);
   bool factorise_undamped();
+  bool open_live_factor();
   void solve_back(int first_redone, UpdateSummary& summary);
   double separator_change(int k) const;
   void set_state(int i, const double* delta);
@@ -140,6 +154,9 @@ class Engine {
   EngineOptions options_;
   LinearisationPoints points_;
   Factorisation factorisation_;
+  LiveFactor live_;
+  std::optional<GpInterval> live_interval_;  ///< at the linearisation points
+  GpInterval::Derivatives live_derivatives_;
   bool damped_ = false;               ///< the factorisation at hand is
   int restart_ = 0;                   ///< the oldest stage that has changed
   Buffer delta_;                      ///< increments in the root's layout, while solving back

@@ -47,4 +47,45 @@ TEST_CASE("Covariances of the engine are those of the batch solver") {
   }
 }
 
+TEST_CASE("The newest states after each observation are those of an update with the same observations") {
+  const auto path = testing::problem_file("small.txt.gz");
+  if (!path) return;
+  const FactorGraph all = to_graph(read_problem(*path));
+  constexpr int kStates = 40;
+  FactorGraph start = all;
+  while (start.states.size() > kStates) start.remove_newest_state();
+  EngineOptions linear;
+  linear.relinearise = linear.relinearise_redone = linear.check_step = 1e9;
+  linear.solve_tolerance = 0.0;
+  Engine one_by_one(start, linear);
+  one_by_one.optimise(10, 1e-10);
+  ControlState next = one_by_one.graph().states.back();
+  const double dt = all.states[kStates].t - next.t;
+  next.t += dt;
+  next.T = next.T * se3::exp(dt * next.velocity);
+  one_by_one.add_state(next);
+  Engine at_once = one_by_one;
+  int live = 0;
+  const IntervalObservations& interval = all.intervals[kStates];
+  for (const auto& group : interval.groups()) {
+    for (int i = group.begin; i < group.end; ++i) {
+      const Observation& z = interval.all()[static_cast<std::size_t>(i)];
+      if (start.landmarks[static_cast<std::size_t>(group.landmark)].intervals.empty()) continue;
+      if (!one_by_one.observe(group.landmark, z)) continue;
+      at_once.add_observation(group.landmark, z);
+      ++live;
+      if (live % 20 != 1) continue;
+      Engine updated = at_once;
+      updated.update();
+      for (const std::size_t k : {kStates - 1, kStates}) {
+        const ControlState& a = one_by_one.graph().states[k];
+        const ControlState& b = updated.graph().states[k];
+        CHECK(se3::log(a.T.inverse() * b.T).norm() < 1e-8);
+        CHECK((a.velocity - b.velocity).norm() < 1e-7);
+      }
+    }
+  }
+  CHECK(live > 50);
+}
+
 }  // namespace evbench::gp_map

@@ -1,0 +1,53 @@
+#include "backends/gp_map/engine/engine.hpp"
+#include "core/geometry/so3.hpp"
+
+// Per-observation updates: the newest two states follow each observation of the interval between them.
+namespace evbench::gp_map {
+namespace {
+
+ObservationRows linearise(const GpInterval& interval, const GpInterval::Derivatives& derivatives,
+                          const PinholeCamera& camera, const Vector3& landmark, const Observation& z) {
+  ObservationRows rows;
+  const GpInterval::Query at_z = interval.query(z.t, derivatives);
+  const Vector3 q = at_z.T.inverse() * landmark;
+  if (!(q.z() > 0.0)) return rows;  // its cost is constant there
+  const Matrix23 D = z.inverse_sigma * camera.project_jacobian(q);
+  rows.e = z.inverse_sigma * (camera.project(q) - z.pixel);
+  rows.landmark = D * at_z.T.R().transpose();
+  Matrix26 pose;  // q ← Exp(−δ) q
+  pose << D * so3::hat(q), -D;
+  rows.states << pose * at_z.J0.topRows<6>(), pose * at_z.J1.topRows<6>();
+  return rows;
+}
+
+}  // namespace
+
+/// The open interval's factor is built with the first observation in it, from the root of the last update.
+bool Engine::open_live_factor() {
+  const int newest = static_cast<int>(graph_.states.size()) - 1;
+  if (live_.is_of(newest)) return true;
+  if (newest < 1 || factorisation_.done() != newest - 1 || restart_ < newest) return false;
+  const ControlState& older = points_.state(newest - 1);
+  const ControlState& newer = points_.state(newest);
+  live_interval_.emplace(older, newer);
+  live_derivatives_ = live_interval_->derivatives();
+  return live_.build(factorisation_.root(), newest, points_.interval(graph_, newest));
+}
+
+bool Engine::observe(int landmark, const Observation& observation) {
+  const int newest = static_cast<int>(graph_.states.size()) - 1;
+  const int slot = factorisation_.root().slot_of(landmark);
+  // An observation of something else is part of the next update.
+  const bool live = slot >= 0 && graph_.interval_of(observation.t) == newest && open_live_factor();
+  if (!insert(landmark, observation) || !live) return false;
+  const ObservationRows rows =
+      linearise(*live_interval_, live_derivatives_, graph_.camera, points_.landmark(landmark), observation);
+  live_.add(slot, rows, graph_.loss.weight(rows.e.squaredNorm()));
+  const Vector24 delta = live_.solve_states();
+  if (!delta.allFinite()) return false;
+  points_.set_state_delta(graph_, newest - 1, delta.head<12>());
+  points_.set_state_delta(graph_, newest, delta.tail<12>());
+  return true;
+}
+
+}  // namespace evbench::gp_map
