@@ -47,7 +47,7 @@ TEST_CASE("A run's key depends on what determines the result and not on how it i
   CHECK_THAT(key, Catch::Matchers::StartsWith("bundle-adjustment-"));
   Json same = short_config();
   same["description"] = "in other words";
-  same["source"]["duration"] = 2.0;
+  same["source"]["duration"] = 3.0;
   CHECK(read(same).runs[0].key() == key);
   CHECK(read(short_config(), {"seed=2"}).runs[0].key() != key);
   CHECK(read(short_config(), {"backend.frame_duration=0.07"}).runs[0].key() != key);

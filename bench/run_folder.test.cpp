@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <map>
 
 #include "bench/testing/program.hpp"
 #include "core/support/error.hpp"
@@ -47,75 +48,94 @@ std::set<std::string> keys_of(const Json& json) {
   return keys;
 }
 
+/// The short comparison, run twice; once for all tests.
+struct TwoRuns {
+  TemporaryFolder folder;
+  std::map<std::string, std::string> first, second;
+
+  TwoRuns() {
+    folder.write("c.json", short_comparison().dump());
+    REQUIRE(testing::evbench(folder, "run c.json --out first --quiet").exit_code == 0);
+    REQUIRE(testing::evbench(folder, "run c.json --out second --quiet").exit_code == 0);
+    first = run_folders(folder, "first");
+    second = run_folders(folder, "second");
+  }
+};
+
+const TwoRuns& two_runs() {
+  static const TwoRuns runs;
+  return runs;
+}
+
 }  // namespace
 
-TEST_CASE("A run's folder holds the documented files, and its config can be run again from anywhere") {
-  const TemporaryFolder folder;
-  folder.write("c.json", short_comparison().dump());
-  REQUIRE(testing::evbench(folder, "run c.json --out first --quiet").exit_code == 0);
-  REQUIRE(testing::evbench(folder, "run c.json --out second --quiet").exit_code == 0);
-  const auto first = run_folders(folder, "first"), second = run_folders(folder, "second");
-  REQUIRE(first.size() == 2);
+TEST_CASE("A run's folder holds the documented files") {
+  const TwoRuns& runs = two_runs();
+  REQUIRE(runs.first.size() == 2);
+  for (const auto& [label, path] : runs.first) {
+    CHECK(names_in(path) == kFiles);
+    CHECK(json_file(path, "status.json").at("state").is_string());
+    const Json manifest = json_file(path, "manifest.json");
+    for (const char* key : {"program", "host", "seed", "config_sha256", "inputs_sha256", "observations"}) {
+      CHECK(manifest.contains(key));
+    }
+    CHECK_THAT(read_file(path + "/timing.csv"), Contains("t_s,update_ms,"));
+    CHECK_THAT(read_file(path + "/log.txt"), Contains(label) && Contains("tracks simulated"));
+  }
+  CHECK(names_in(runs.folder.file("first/short")).size() == 2);
+}
 
-  SECTION("files") {
-    for (const auto& [label, path] : first) {
-      CHECK(names_in(path) == kFiles);
-      CHECK(json_file(path, "status.json").at("state").is_string());
-      const Json manifest = json_file(path, "manifest.json");
-      for (const char* key : {"program", "host", "seed", "config_sha256", "inputs_sha256", "observations"}) {
-        CHECK(manifest.contains(key));
-      }
-      CHECK_THAT(read_file(path + "/timing.csv"), Contains("t_s,update_ms,"));
-      CHECK_THAT(read_file(path + "/log.txt"), Contains(label) && Contains("tracks simulated"));
+TEST_CASE("The same config twice gives the same bytes, but for measured times") {
+  const TwoRuns& runs = two_runs();
+  for (const auto& [label, path] : runs.first) {
+    INFO(label);
+    const std::string& other = runs.second.at(label);
+    CHECK(std::filesystem::path(path).filename() == std::filesystem::path(other).filename());
+    for (const char* name : {"config.json", "manifest.json", "final.tum", "online.tum", "map.ply", "status.json"}) {
+      CHECK(read_file(path + "/" + name) == read_file(other + "/" + name));
     }
-    CHECK(names_in(folder.file("first/short")).size() == 2);
+    const Json a = json_file(path, "metrics.json"), b = json_file(other, "metrics.json");
+    CHECK(a.at("final").at("ate").at("trans_m").at("rmse").is_number());
+    CHECK(a.at("final").dump() == b.at("final").dump());
+    CHECK(a.at("online").dump() == b.at("online").dump());
   }
-  SECTION("the same config twice: the same bytes") {
-    for (const auto& [label, path] : first) {
-      INFO(label);
-      CHECK(std::filesystem::path(path).filename() == std::filesystem::path(second.at(label)).filename());
-      for (const char* name : {"config.json", "manifest.json", "final.tum", "online.tum", "map.ply", "status.json"}) {
-        CHECK(read_file(path + "/" + name) == read_file(second.at(label) + "/" + name));
-      }
-      const Json a = json_file(path, "metrics.json"), b = json_file(second.at(label), "metrics.json");
-      CHECK(a.at("final").at("ate").at("trans_m").at("rmse").is_number());
-      CHECK(a.at("final").dump() == b.at("final").dump());
-      CHECK(a.at("online").dump() == b.at("online").dump());
+}
+
+TEST_CASE("All back-ends of a comparison get the identical observations") {
+  const TwoRuns& runs = two_runs();
+  CHECK(json_file(runs.first.at("asynchronous"), "manifest.json").at("tracks_sha256") ==
+        json_file(runs.first.at("frames of 50 ms"), "manifest.json").at("tracks_sha256"));
+}
+
+TEST_CASE("The config that a run wrote makes the same run again, from anywhere") {
+  const std::string& path = two_runs().first.at("frames of 50 ms");
+  const TemporaryFolder folder;
+  REQUIRE(testing::evbench(folder, "run '" + path + "/config.json' --out again --quiet").exit_code == 0);
+  const std::string again = run_folders(folder, "again").at("frames of 50 ms");
+  CHECK(std::filesystem::path(again).filename() == std::filesystem::path(path).filename());
+  CHECK(read_file(again + "/final.tum") == read_file(path + "/final.tum"));
+  CHECK(read_file(again + "/config.json") == read_file(path + "/config.json"));
+}
+
+TEST_CASE("Metrics of a run have the documented keys, the same as those of evbench eval") {
+  const TwoRuns& runs = two_runs();
+  const std::string& path = runs.first.at("asynchronous");
+  const Json metrics = json_file(path, "metrics.json");
+  for (const char* key : {"experiment", "label", "runtime_s", "realtime_factor", "peak_rss_mib", "status"}) {
+    CHECK(metrics.contains(key));
+  }
+  for (const char* trajectory : {"final", "online"}) {
+    for (const char* key : {"/ate/trans_m/rmse", "/ate/rot_deg/rmse", "/ate/trans_percent", "/rpe/trans_m/rmse",
+                            "/rpe/rot_deg/median", "/rpe/pairs", "/coverage", "/pairs", "/scale", "/path_m"}) {
+      INFO(trajectory << key);
+      CHECK(metrics.at(trajectory).at(Json::json_pointer(key)).is_number());
     }
   }
-  SECTION("all back-ends of a comparison get the identical observations") {
-    CHECK(json_file(first.at("asynchronous"), "manifest.json").at("tracks_sha256") ==
-          json_file(first.at("frames of 50 ms"), "manifest.json").at("tracks_sha256"));
-  }
-  SECTION("the config that was written makes the same run") {
-    const std::string& path = first.at("frames of 50 ms");
-    REQUIRE(testing::evbench(folder, "run '" + path + "/config.json' --out third --quiet").exit_code == 0);
-    const auto third = run_folders(folder, "third");
-    REQUIRE(third.count("frames of 50 ms") == 1);
-    const std::string& again = third.at("frames of 50 ms");
-    CHECK(std::filesystem::path(again).filename() == std::filesystem::path(path).filename());
-    CHECK(read_file(again + "/final.tum") == read_file(path + "/final.tum"));
-    CHECK(read_file(again + "/config.json") == read_file(path + "/config.json"));
-  }
-  SECTION("metrics have the documented keys, and those of evbench eval") {
-    const std::string& path = first.at("asynchronous");
-    const Json metrics = json_file(path, "metrics.json");
-    for (const char* key : {"experiment", "label", "runtime_s", "realtime_factor", "peak_rss_mib", "status"}) {
-      CHECK(metrics.contains(key));
-    }
-    for (const char* trajectory : {"final", "online"}) {
-      for (const char* key : {"/ate/trans_m/rmse", "/ate/rot_deg/rmse", "/ate/trans_percent", "/rpe/trans_m/rmse",
-                              "/rpe/rot_deg/median", "/rpe/pairs", "/coverage", "/pairs", "/scale", "/path_m"}) {
-        INFO(trajectory << key);
-        CHECK(metrics.at(trajectory).at(Json::json_pointer(key)).is_number());
-      }
-    }
-    REQUIRE(testing::evbench(folder, "eval '" + path + "/final.tum' '" + path + "/online.tum' --json e.json -as")
-                .exit_code == 0);
-    const Json eval = Json::parse(read_file(folder.file("e.json")));
-    CHECK(keys_of(eval.at("final")) == keys_of(metrics.at("final")));
-    for (const auto& [key, value] : metrics.items()) CHECK(eval.contains(key));
-  }
+  const std::string files = "'" + path + "/final.tum' '" + path + "/online.tum'";
+  REQUIRE(testing::evbench(runs.folder, "eval " + files + " --json eval.json -as").exit_code == 0);
+  const Json eval = Json::parse(read_file(runs.folder.file("eval.json")));
+  CHECK(keys_of(eval.at("final")) == keys_of(metrics.at("final")));
+  for (const auto& [key, value] : metrics.items()) CHECK(eval.contains(key));
 }
 
 TEST_CASE("Relative paths of a config refer to its folder, and inputs are hashed into the manifest") {

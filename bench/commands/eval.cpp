@@ -64,6 +64,15 @@ ScoreOptions score_options(const EvalArguments& arguments) {
   return options;
 }
 
+/// Errors name the estimate's file, as those of reading do.
+Scores score_files(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, const EvalArguments& arguments) {
+  try {
+    return score(ground_truth, estimate, score_options(arguments));
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", arguments.estimate, error.what()));
+  }
+}
+
 /// The structure of a run's metrics.json; what only a run knows is null.
 Json metrics_of(const EvalArguments& arguments, const Scores& scores) {
   Json metrics;
@@ -77,7 +86,7 @@ Json metrics_of(const EvalArguments& arguments, const Scores& scores) {
 void execute(const EvalArguments& arguments) {
   const PoseTrajectory ground_truth = read_trajectory(arguments.ground_truth, arguments.format);
   const PoseTrajectory estimate = read_trajectory(arguments.estimate, arguments.format);
-  const Scores scores = score(ground_truth, estimate, score_options(arguments));
+  const Scores scores = score_files(ground_truth, estimate, arguments);
   if (!arguments.json.empty()) write_file(arguments.json, metrics_of(arguments, scores).dump(2) + "\n");
   if (arguments.json == "/dev/stdout") return;
   fmt::print("ground truth {}\nestimate     {}\n{}", arguments.ground_truth, arguments.estimate, describe(scores));

@@ -40,14 +40,14 @@ inline std::set<std::string> names_in(const std::string& path) {
   return names;
 }
 
-/// A simulated sequence of 2 s with few tracks, seen by one back-end.
+/// A simulated sequence of 3 s with few tracks, seen by one back-end.
 inline Json short_config(const std::string& backend = "bundle_adjustment") {
   return {{"name", "short"},
           {"source",
            {{"type", "simulation"},
-            {"duration", 2},
-            {"motion", {{"kind", "smooth_random"}}},
-            {"tracks", {{"alive", 30}, {"rate", {20, 40}}}}}},
+            {"duration", 3},
+            {"motion", {{"kind", "robot_arm"}, {"period", 3}}},
+            {"tracks", {{"alive", 50}, {"rate", {50, 100}}, {"lifetime", {2, 5}}}}}},
           {"frontend", {{"type", "oracle"}}},
           {"backend", {{"type", backend}}},
           {"evaluation", {{"association", "interpolated"}}}};
