@@ -93,7 +93,6 @@ std::optional<Variable> Factorisation::do_stage(int k, const FactorGraph& graph,
   stage(k).entered.clear();
   stage(k).entered_slots.clear();
   add_factors(k, graph, points);
-  stage(k).conditionals.clear();
   if (k == 0) return std::nullopt;
   find_finished(k, graph);
   return eliminate_finished(k, points, damping);
@@ -161,13 +160,12 @@ std::optional<Variable> Factorisation::eliminate_finished(int k, const Linearisa
   damp_state(k - 1, points, damping);
   Stage& stage = stages_[at(k)];
   std::span<const int> rest = finished_;
-  bool last = false;
-  while (!last) {
-    last = rest.size() <= kMaxPivotLandmarks;
+  stage.conditionals.resize(rest.size() / kMaxPivotLandmarks + 1);  // not cleared: their memory is used again
+  for (Conditional& conditional : stage.conditionals) {
+    const bool last = &conditional == &stage.conditionals.back();
     const auto chunk = rest.first(last ? rest.size() : kMaxPivotLandmarks);
     rest = rest.subspan(chunk.size());
-    stage.conditionals.emplace_back();
-    const int failed = eliminate(root_, chunk, last ? k - 1 : -1, stage.conditionals.back());
+    const int failed = eliminate(root_, chunk, last ? k - 1 : -1, conditional);
     if (failed == static_cast<int>(chunk.size())) return Variable{Variable::Kind::state, k - 1};
     if (failed >= 0) return Variable{Variable::Kind::landmark, chunk[at(failed)]};
   }

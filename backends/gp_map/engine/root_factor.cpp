@@ -32,7 +32,7 @@ std::optional<Variable> Factorisation::factorise_root(const LinearisationPoints&
   factor_slots_ = root_.slots();
   factor_size_ = padded(landmark_rows + 12);
   const std::ptrdiff_t n = factor_size_;
-  factor_.assign(at(factor_size_) * at(factor_size_), 0.0);
+  factor_.resize(at(factor_size_) * at(factor_size_));
   solution_.assign(at(factor_size_), 0.0);
   double* F = factor_.data();
   double* x = solution_.data();
@@ -57,7 +57,10 @@ std::optional<Variable> Factorisation::factorise_root(const LinearisationPoints&
   }
   damp(landmark_rows, 12, is_held({Variable::Kind::state, done_}) ? std::max(damping, kHoldDamping) : damping,
        points.state_delta(done_).data());
-  for (int i = landmark_rows + 12; i < factor_size_; ++i) F[i * (n + 1)] = 1.0;
+  for (int c = 0; c < factor_size_; ++c) {
+    std::fill(F + c * n + std::max(c, landmark_rows + 12), F + (c + 1) * n, 0.0);
+    if (c >= landmark_rows + 12) F[c * (n + 1)] = 1.0;
+  }
   const int failed = cholesky_blocked(F, factor_size_, factor_size_, kPivotTolerance);
   if (failed >= landmark_rows) return Variable{Variable::Kind::state, done_};
   if (failed >= 0) return Variable{Variable::Kind::landmark, root_.occupant(failed / 3)};
