@@ -33,6 +33,16 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+/// Median angle between the views of a landmark from the first and from the newest control state [deg].
+double parallax_deg(const FactorGraph& graph) {
+  std::vector<double> angles;
+  for (const auto& landmark : graph.landmarks) {
+    const Vector3 a = landmark.position - graph.states.front().T.p, b = landmark.position - graph.states.back().T.p;
+    angles.push_back(std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / M_PI);
+  }
+  return median(std::move(angles));
+}
+
 }  // namespace
 
 GpMap::GpMap(const Options& options, const BackEndContext& context)
@@ -77,7 +87,8 @@ void GpMap::initialise(double t) {
   struct Refined {
     FactorGraph graph;
     const InitialGuess* guess;
-    double cost;  // per observation
+    double cost;      // per observation
+    double parallax;  // [deg]
   };
   std::vector<Refined> refined;
   for (const InitialGuess& guess : attempt.candidates) {
@@ -88,16 +99,22 @@ void GpMap::initialise(double t) {
     };
     if (std::ranges::any_of(refined, same)) continue;
     const double cost = evaluate(*graph).total() / graph->observation_count();
-    refined.push_back({std::move(*graph), &guess, cost});
+    const double parallax = parallax_deg(*graph);
+    refined.push_back({std::move(*graph), &guess, cost, parallax});
   }
   if (refined.empty()) {
     if (!attempt.candidates.empty()) no_map_reason_ = "the first map does not explain the observations";
     return;
   }
   std::ranges::sort(refined, {}, &Refined::cost);
-  const bool large_parallax =
-      refined[0].guess->median_parallax_deg >= kDecisiveParallax * options_.initialiser.two_view.min_parallax_deg;
-  if (refined.size() > 1 && refined[1].cost < options_.ambiguity_ratio * refined[0].cost && !large_parallax) {
+  // What two views showed may have been noise; the refined map has seen every observation.
+  const double needed = options_.initialiser.two_view.min_parallax_deg;
+  if (refined[0].parallax < needed) {
+    no_map_reason_ = fmt::format("median parallax {:.2f} deg, {:.2f} needed", refined[0].parallax, needed);
+    return;
+  }
+  if (refined.size() > 1 && refined[1].cost < options_.ambiguity_ratio * refined[0].cost &&
+      refined[0].parallax < kDecisiveParallax * needed) {
     no_map_reason_ = "two first maps explain the observations equally well";
     return;
   }
