@@ -1,6 +1,7 @@
 #include "backends/bundle_adjustment/bundle_adjustment.hpp"
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <chrono>
@@ -49,7 +50,9 @@ BundleAdjustment::BundleAdjustment(const Options& options, const BackEndContext&
       context_(context),
       frames_({options.frame_duration, options.frame_observations, options.common_noise_px}),
       initialiser_(initialiser_options(), context.camera),
-      waiting_for_("no observations") {}
+      waiting_for_("no observations") {
+  FLAGS_minloglevel = google::GLOG_ERROR;  // what Ceres warns of is in its summaries, and no news for a console
+}
 
 /// Frame means have the frame's time exactly: a window of no width finds them and nothing else.
 InitialiserOptions BundleAdjustment::initialiser_options() const {
@@ -74,6 +77,7 @@ void BundleAdjustment::observe(std::span<const TrackObservation> observations) {
 }
 
 void BundleAdjustment::advance(double t) {
+  advanced_to_ = t;
   for (Frame& frame : frames_.advance(t)) process(std::move(frame));
 }
 
@@ -291,6 +295,11 @@ void BundleAdjustment::update_motion(int view) {
 
 void BundleAdjustment::finish() {
   if (std::optional<Frame> frame = frames_.rest()) process(std::move(*frame));
+  if (!segments_.empty() && !lost_ && advanced_to_ - map_.views.back().t > options_.lost_after) {
+    const double newest = map_.views.back().t;
+    degraded_.push_back({newest, advanced_to_, "no observations"});
+    lost_ = newest + smallest_step;
+  }
   if (options_.global_solve) {
     for (std::size_t i = 0; i < segments_.size(); ++i) {
       const bool newest = i + 1 == segments_.size();
