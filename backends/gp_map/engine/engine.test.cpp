@@ -1,5 +1,6 @@
 #include "backends/gp_map/engine/engine.hpp"
 
+#include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
 #include "backends/gp_map/batch_solver.hpp"
@@ -86,6 +87,53 @@ TEST_CASE("The newest states after each observation are those of an update with 
     }
   }
   CHECK(live > 50);
+}
+
+TEST_CASE("With a lag the newest state stays that of full history within its uncertainty, and old intervals are gone") {
+  const auto path = testing::problem_file("small.txt.gz");
+  if (!path) return;
+  const FactorGraph all = to_graph(read_problem(*path));
+  EngineOptions lagged;
+  lagged.lag = 2.0;
+  Engine full(all.camera, all.qc, all.loss), lag(all.camera, all.qc, all.loss, lagged);
+  for (Engine* engine : {&full, &lag}) {
+    for (const auto& landmark : all.landmarks) engine->add_landmark(landmark.position, landmark.prior);
+  }
+  for (std::size_t k = 0; k < all.states.size(); ++k) {
+    for (Engine* engine : {&full, &lag}) {
+      ControlState state = all.states[k];
+      if (k > 0) {
+        const ControlState& newest = engine->graph().states.back();
+        state.T = newest.T * se3::exp((state.t - newest.t) * newest.velocity);
+        state.velocity = newest.velocity;
+      }
+      engine->add_state(state);
+      if (k == 0) {
+        for (const auto& prior : all.pose_priors) engine->add_pose_prior(prior);
+        for (const auto& prior : all.velocity_priors) engine->add_velocity_prior(prior);
+      }
+      const IntervalObservations& interval = all.intervals[k];
+      for (const auto& group : interval.groups()) {
+        for (int i = group.begin; i < group.end; ++i) {
+          CHECK(engine->add_observation(group.landmark, interval.all()[static_cast<std::size_t>(i)]));
+        }
+      }
+      engine->update();
+    }
+  }
+  CHECK(full.first_state() == 0);
+  const int first = lag.first_state();
+  CHECK(lag.graph().states.back().t - lag.graph().states[static_cast<std::size_t>(first)].t < 3.6);
+  CHECK(first > 20);
+  for (int k = 1; k <= first; ++k) CHECK(lag.graph().intervals[static_cast<std::size_t>(k)].all().empty());
+  CHECK_FALSE(lag.add_observation(all.intervals[2].groups()[0].landmark, {all.states[2].t, {100.0, 100.0}, 1.0}));
+
+  const Matrix24 joint = *full.neighbours(static_cast<int>(all.states.size()) - 2);
+  const Vector6 apart = se3::log(full.graph().states.back().T.inverse() * lag.graph().states.back().T);
+  const Matrix6 pose = joint.block<6, 6>(12, 12);
+  CHECK(apart.dot(pose.ldlt().solve(apart)) < 6.0);  // its mean if it were as far as the truth
+  CHECK(lag.neighbours(first));
+  CHECK_FALSE(lag.neighbours(first - 1));
 }
 
 }  // namespace evbench::gp_map
