@@ -61,7 +61,7 @@ TEST_CASE("A simulation follows a trajectory file and names it among its files")
 TEST_CASE("A simulation refuses options that contradict one another, and says which") {
   CHECK_THROWS_WITH(simulate(R"({"scene": {"near": 3, "far": 2}})"), Contains("near < far"));
   CHECK_THROWS_WITH(simulate(R"({"camera": {"distortion": "equidistant", "coefficients": [0.1]}})"),
-                    Contains("coefficients has 1"));
+                    Contains("source.camera.coefficients: has 1"));
   CHECK_THROWS_WITH(simulate(R"({"camera": {"distortion": "radial_tangential", "coefficients": [-5, 0, 0, 0, 0]}})"),
                     Contains("invertible"));
   CHECK_THROWS_WITH(simulate(R"({"motion": {"kind": "trajectory"}})"), Contains("motion.trajectory"));
