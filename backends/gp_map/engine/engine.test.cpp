@@ -136,4 +136,25 @@ TEST_CASE("With a lag the newest state stays that of full history within its unc
   CHECK_FALSE(lag.neighbours(first - 1));
 }
 
+TEST_CASE("What is not determined is named and held, and the rest is solved") {
+  Engine engine({200.0, 200.0, 120.0, 90.0}, Vector6::Constant(0.2), RobustLoss());
+  engine.add_state({});
+  engine.add_pose_prior({0, SE3(), Vector6::Constant(0.01)});
+  const UpdateSummary velocity = engine.update();
+  CHECK(velocity.reason == "state 0 is not determined by its observations and priors");
+  engine.add_velocity_prior({0, Vector6::Zero(), Vector6::Constant(0.1)});
+  ControlState next;
+  next.t = 0.1;
+  engine.add_state(next);
+  const Vector3 guess(0.2, 0.1, 3.0);
+  const int seen_once = engine.add_landmark(guess);
+  REQUIRE(engine.add_observation(seen_once, {0.05, {120.0, 90.0}, 1.0}));
+  const UpdateSummary update = engine.update();
+  CHECK(update.reason == "landmark 0 is not determined by its observations and priors");
+  CHECK_FALSE(update.rejected);
+  const Vector3 solved = engine.graph().landmarks[0].position;
+  CHECK(solved.z() == Approx(3.0).margin(0.1));  // its depth stays as guessed
+  CHECK(solved.head<2>().norm() < 0.05);         // its direction follows the observation
+}
+
 }  // namespace evbench::gp_map

@@ -80,15 +80,6 @@ void Root::add_landmark_factor(std::span<const int> landmarks, const AnchorLinea
   }
 }
 
-void Root::damp(int row, int rows, double lambda, const double* delta) {
-  for (int i = 0; i < rows; ++i) {
-    double& diagonal = column(row + i)[row + i];
-    const double added = damping_of(diagonal, lambda);
-    diagonal += added;
-    b_[static_cast<std::size_t>(row + i)] += added * delta[i];
-  }
-}
-
 void Root::clear() {
   forget_occupants();
   std::ranges::fill(H_, 0.0);

@@ -9,8 +9,21 @@
 
 namespace evbench::gp_map {
 
-/// What damping λ adds to a diagonal element of H: relative, with a floor for rows about which nothing is known.
-inline double damping_of(double diagonal, double lambda) { return lambda * std::max(diagonal, 1e-6); }
+/// Adds damping to `rows` rows of H from `row` on, and b so that they are pulled towards the increments `now`: to each
+/// three rows (a point, a rotation, ...) λ times their largest diagonal element, so that no direction of the three is
+/// preferred, with a floor for those about which nothing is known.
+inline void add_damping(double* H, std::ptrdiff_t stride, double* b, int row, int rows, double lambda,
+                        const double* now) {
+  constexpr double kFloor = 1e-6;
+  const auto diagonal = [&](int i) -> double& { return H[(row + i) * (stride + 1)]; };
+  for (int i = 0; i < rows; i += 3) {
+    const double added = lambda * std::max({kFloor, diagonal(i), diagonal(i + 1), diagonal(i + 2)});
+    for (int k = i; k < i + 3; ++k) {
+      diagonal(k) += added;
+      b[row + k] += added * now[k];
+    }
+  }
+}
 
 /// The trailing dense part of the factorisation: information matrix H and right-hand side b (H δ = b) of the newest two
 /// states and of the landmarks that are alive there, after everything older has been eliminated.
@@ -49,8 +62,9 @@ class Root {
   void add_interval(int k, const IntervalLinearisation& linear);
   /// A residual e of landmarks alone with one row J per landmark.
   void add_landmark_factor(std::span<const int> landmarks, const AnchorLinearisation& linear);
-  /// Adds damping_of(H_ii, λ) to the diagonal of some rows, pulling each towards the increment δ_i that it has now.
-  void damp(int row, int rows, double lambda, const double* delta);
+  void damp(int row, int rows, double lambda, const double* delta) {
+    add_damping(H(), stride_, b(), row, rows, lambda, delta);
+  }
 
   void clear();
 

@@ -40,11 +40,7 @@ std::optional<Variable> Factorisation::factorise_root(const LinearisationPoints&
   std::copy_n(root_.b() + Root::kStates, landmark_rows, x);
   std::copy_n(root_.b() + state_row, 12, x + landmark_rows);
   const auto damp = [&](int row, int rows, double lambda, const double* now) {
-    for (int i = row; i < row + rows && lambda > 0.0; ++i) {
-      const double added = damping_of(F[i * (n + 1)], lambda);
-      F[i * (n + 1)] += added;
-      x[i] += added * now[i - row];
-    }
+    if (lambda > 0.0) add_damping(F, n, x, row, rows, lambda, now);
   };
   for (int slot = 0; slot < root_.slots(); ++slot) {
     const int j = root_.occupant(slot);
