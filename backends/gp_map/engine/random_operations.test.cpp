@@ -93,7 +93,7 @@ class Session {
   double newest() const { return engine.graph().states.back().t; }
 
   void add_state() {
-    const ControlState& last = engine.graph().states.back();
+    const ControlState last = engine.graph().states.back();
     const double dt = random_.chance(0.02) ? 5.0 : random_.uniform(0.02, 0.15);
     ControlState next = last;
     next.t += dt;
