@@ -61,8 +61,8 @@ std::string map_ply(const std::vector<Landmark>& map) {
 std::string timing_csv(const std::vector<UpdateRecord>& updates) {
   std::string text = "t_s,update_ms,states,landmarks,observations,iterations,cost\n";
   for (const UpdateRecord& u : updates) {
-    text += fmt::format("{:.6f},{:.4f},{},{},{},{},{}\n", u.t, 1e3 * u.seconds, u.states, u.landmarks,
-                        u.observations, u.iterations, u.cost ? fmt::format("{:.9g}", *u.cost) : "");
+    text += fmt::format("{:.6f},{:.4f},{},{},{},{},{}\n", u.t, 1e3 * u.seconds, u.states, u.landmarks, u.observations,
+                        u.iterations, u.cost ? fmt::format("{:.9g}", *u.cost) : "");
   }
   return text;
 }
@@ -91,7 +91,7 @@ Json metrics_json(const RunConfig& config, const RunResult& result) {
 RunFolder::RunFolder(const std::string& out, const RunConfig& config)
     : path_(out + "/" + config.experiment + "/" + config.key()), folder_(path_) {}
 
-void RunFolder::write(const RunConfig& config, const RunResult& result) {
+void RunFolder::write(const RunConfig& config, const RunResult& result, bool problem) {
   const auto pretty = [](const Json& json) { return json.dump(2) + "\n"; };
   folder_.write("config.json", pretty(config.resolved()));
   folder_.write("manifest.json", pretty(manifest_json(config, result)));
@@ -102,6 +102,7 @@ void RunFolder::write(const RunConfig& config, const RunResult& result) {
   folder_.write("timing.csv", timing_csv(result.updates));
   folder_.write("log.txt", log_text(config, result));
   folder_.write("status.json", pretty(status_json(result.status)));
+  if (problem && result.problem) folder_.write("problem.txt", format_problem(*result.problem));
   folder_.commit();
 }
 

@@ -15,7 +15,8 @@ class RunFolder {
   /// Takes the folder: throws InputError when it can't be made or another run is writing to it, before any work.
   RunFolder(const std::string& out, const RunConfig& config);
 
-  void write(const RunConfig& config, const RunResult& result);
+  /// With `problem`, also problem.txt, the estimation problem that the run ended with, where the back-end has one.
+  void write(const RunConfig& config, const RunResult& result, bool problem = false);
   const std::string& path() const { return path_; }
 
  private:

@@ -138,6 +138,18 @@ TEST_CASE("Metrics of a run have the documented keys, the same as those of evben
   for (const auto& [key, value] : metrics.items()) CHECK(eval.contains(key));
 }
 
+TEST_CASE("A run writes the problem that it ended with, in the format that evbench solve reads") {
+  const TemporaryFolder folder;
+  folder.write("c.json", short_config("gp_map").dump());
+  REQUIRE(testing::evbench(folder, "run c.json --out out --problem --quiet").exit_code == 0);
+  const std::string run = run_folders(folder, "out").at("gp_map");
+  const Outcome solved = testing::evbench(folder, "solve '" + run + "/problem.txt' --mode batch --json s.json");
+  REQUIRE(solved.exit_code == 0);
+  const Json report = json_file(folder.path(), "s.json");
+  CHECK(report.at("cost").get<double>() > 0.0);
+  CHECK(report.at("cost_motion_prior").get<double>() > 0.0);
+}
+
 TEST_CASE("Relative paths of a config refer to its folder, and inputs are hashed into the manifest") {
   const TemporaryFolder folder;
   const TemporaryFolder elsewhere;

@@ -156,6 +156,7 @@ RunResult run(const RunConfig& config, const Source& source, const Progress& pro
     result.final_trajectory = result.online_trajectory = {};
   }
   result.map = backend->map();
+  result.problem = backend->problem();
   result.updates.assign(backend->updates().begin(), backend->updates().end());
   result.runtime_s = stopwatch.seconds();
   result.data_s = range.to - range.from;

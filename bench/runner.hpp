@@ -18,6 +18,7 @@ struct RunResult {
   PoseTrajectory final_trajectory;   ///< sampled at the config's trajectory rate
   PoseTrajectory online_trajectory;  ///< causal, the back-end's own times
   std::vector<Landmark> map;
+  std::optional<Problem> problem;  ///< that the back-end ended with, where it has one
   std::vector<UpdateRecord> updates;
   std::optional<Scores> final_scores, online_scores;
   std::string final_unscored, online_unscored;  ///< why there are no scores

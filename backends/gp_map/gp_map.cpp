@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "backends/gp_map/problem_graph.hpp"
 #include "core/motion/gp_trajectory.hpp"
 #include "core/plugin/registry.hpp"
 #include "core/structure/depth_reversal.hpp"
@@ -380,6 +381,11 @@ std::vector<Landmark> GpMap::map() const {
     result.push_back({track, graph().landmarks[static_cast<std::size_t>(landmark)].position});
   }
   return result;
+}
+
+std::optional<Problem> GpMap::problem() const {
+  if (!engine_) return std::nullopt;
+  return to_problem(graph());
 }
 
 }  // namespace evbench::gp_map

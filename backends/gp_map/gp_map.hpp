@@ -39,6 +39,7 @@ class GpMap : public BackEnd {
   std::optional<Vector6> velocity(double t) const override;
   std::optional<Matrix12> covariance(double t) const override;
   std::vector<Landmark> map() const override;
+  std::optional<Problem> problem() const override;
   std::span<const UpdateRecord> updates() const override { return updates_; }
 
   /// The problem with its present estimate; not before initialisation.

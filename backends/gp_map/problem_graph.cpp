@@ -41,6 +41,12 @@ Problem to_problem(const FactorGraph& graph) {
       problem.landmark_priors.push_back({number[j], landmark.prior.position, landmark.prior.sigma});
     }
   }
+  for (const int j : graph.anchor.landmarks) {
+    constexpr double kShareOfDistance = 0.05;
+    const Vector3& position = graph.landmarks[static_cast<std::size_t>(j)].position;
+    const double sigma = kShareOfDistance * (position - graph.anchor.origin).norm();
+    problem.landmark_priors.push_back({number[static_cast<std::size_t>(j)], position, sigma});
+  }
   for (const IntervalObservations& interval : graph.intervals) {
     for (const auto& group : interval.groups()) {
       for (int i = group.begin; i < group.end; ++i) {

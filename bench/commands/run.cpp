@@ -24,6 +24,7 @@ struct RunArguments {
   std::string out = "results";
   bool quiet = false;
   bool check = false;
+  bool problem = false;
 };
 
 /// One line that rewrites itself, on a terminal only.
@@ -63,7 +64,7 @@ int execute(const RunArguments& arguments) {
     ProgressLine line(fmt::format("[{}/{}] {}", folders.size() + 1, experiment.runs.size(), config.label),
                       arguments.quiet);
     const RunResult result = run(config, *source, [&](double t, double end) { line.update(t, end); });
-    folder.write(config, result);
+    folder.write(config, result, arguments.problem);
     folders.push_back(folder.path());
     failed = failed || result.status.state == RunState::failed;
   }
@@ -85,6 +86,8 @@ void add_run(CLI::App& app, int& exit_code) {
       ->allow_extra_args(true);
   command->add_option("--out", arguments->out, "Folder for results")->capture_default_str();
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  command->add_flag("--problem", arguments->problem,
+                    "Also write problem.txt: the problem that gp_map ended with, for evbench solve and other solvers");
   command->add_flag("--check", arguments->check, "Check the config and stop");
   command->footer(
       "Each run writes OUT/EXPERIMENT/RUN: config.json, manifest.json, final.tum, online.tum, map.ply, metrics.json,\n"

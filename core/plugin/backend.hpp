@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/data/problem.hpp"
 #include "core/data/track.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/gp_interval.hpp"
@@ -80,6 +81,10 @@ class BackEnd {
   virtual std::optional<Matrix12> covariance(double /*t*/) const { return std::nullopt; }
 
   virtual std::vector<Landmark> map() const = 0;
+
+  /// The estimation problem that the run ended with, for back-ends whose problem has that form.
+  virtual std::optional<Problem> problem() const { return std::nullopt; }
+
   virtual std::span<const UpdateRecord> updates() const = 0;
 };
 

@@ -53,6 +53,7 @@ OptionSet::Option& OptionSet::Option::choices(std::vector<std::string> values) {
 
 OptionSet::Option& OptionSet::Option::size(std::size_t count) {
   size_ = count;
+  may_be_empty_ = std::get<List*>(target_)->empty();
   return *this;
 }
 
@@ -135,7 +136,7 @@ void OptionSet::Option::read(const Json& value, const std::string& place) {
                      check_number(item.get<double>(), place);
                      list.push_back(item.get<double>());
                    }
-                   if (size_ && list.size() != *size_ && !list.empty()) {
+                   if (size_ && list.size() != *size_ && !(may_be_empty_ && list.empty())) {
                      throw InputError(fmt::format("{}: expected {} numbers, found {}", place, *size_, list.size()));
                    }
                    *target = std::move(list);

@@ -18,6 +18,7 @@ struct Options {
   bool on = true;
   std::string loss = "none";
   std::vector<double> range;
+  std::vector<double> weights = {1.0, 2.0};
   std::string path;
   Inner inner;
   void declare(OptionSet& set) {
@@ -26,6 +27,7 @@ struct Options {
     set.add("on", on, "whether");
     set.add("loss", loss, "robust loss").choices({"none", "huber"});
     set.add("range", range, "from, to [s]").size(2);
+    set.add("weights", weights, "two weights").size(2);
     set.add("path", path, "a file").required();
     set.group("inner", inner, "more");
   }
@@ -59,6 +61,8 @@ TEST_CASE("Bad options are refused with the place and what was expected") {
   CHECK_THROWS_WITH(read(R"({"path": "a", "count": 1.5})"), Contains("expected integer"));
   CHECK_THROWS_WITH(read(R"({"path": "a", "loss": "hubert"})"), Contains("did you mean \"huber\""));
   CHECK_THROWS_WITH(read(R"({"path": "a", "range": [1]})"), Contains("expected 2 numbers"));
+  CHECK_THROWS_WITH(read(R"({"path": "a", "weights": []})"), Contains("expected 2 numbers"));
+  CHECK(read(R"({"path": "a", "range": []})").range.empty());
   CHECK_THROWS_WITH(read(R"({"path": "a", "inner": {"width": 0}})"), Contains("inner.width") && Contains("> 0"));
   CHECK_THROWS_WITH(read(R"({"path": "a", "inner": 3})"), Contains("expected an object"));
   CHECK_THROWS_WITH(read("{}"), Contains("\"path\" is missing"));
