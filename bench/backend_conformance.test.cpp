@@ -186,6 +186,30 @@ TEST_CASE("Every back-end stays finite when tracks are wild") {
   });
 }
 
+TEST_CASE("Every back-end's online poses are told at their own times, and stay") {
+  const Sequence sequence;
+  for_each_backend([&](const std::string& name) {
+    constexpr double cut = 2.0, latency = 0.1;  // [s]; a frame is complete after its own time
+    const auto until_cut = only(sequence.observations, [](const TrackObservation& z) { return z.t <= 2.0; });
+    const auto early = estimate(name, sequence, until_cut, cut).online.poses();
+    const auto all = estimate(name, sequence, sequence.observations).online.poses();
+    REQUIRE_FALSE(early.empty());
+    REQUIRE(all.size() > early.size());
+    std::size_t compared = 0;
+    for (; compared < early.size() && early[compared].t < cut - latency; ++compared) {
+      REQUIRE(all[compared].t == early[compared].t);
+      REQUIRE(all[compared].T.p == early[compared].T.p);
+    }
+    CHECK(compared > 10);
+    // The first one is told when there is a map: ending the data just after it must leave it there.
+    const double told = all.front().t + latency;
+    Observations until_told;
+    std::ranges::copy_if(sequence.observations, std::back_inserter(until_told),
+                         [&](const auto& z) { return z.t <= told; });
+    CHECK_FALSE(estimate(name, sequence, until_told, told).online.empty());
+  });
+}
+
 TEST_CASE("Every back-end gives the same bits for the same observations") {
   const Sequence sequence;
   for_each_backend([&](const std::string& name) {

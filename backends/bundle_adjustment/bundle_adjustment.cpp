@@ -89,6 +89,8 @@ void BundleAdjustment::process(Frame frame) {
   const int view = map_.add(frame);
   if (segments_.empty()) remember(view);
   const SolveReport report = segments_.empty() ? initialise(view) : track(view);
+  // Of the first map's views only the newest one: the older ones were not known at their times.
+  if (!segments_.empty()) online_.push_back({map_.views[at(view)].t, map_.views[at(view)].T});
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   updates_.push_back(
       {frame.t, elapsed.count(), report.poses, report.landmarks, report.observations, report.iterations, report.cost});
@@ -162,7 +164,6 @@ SolveReport BundleAdjustment::initialise(int view) {
 }
 
 void BundleAdjustment::accept(Trial trial, int view) {
-  const bool first_map = segments_.empty();
   map_ = std::move(trial.map);
   segments_.push_back(trial.segment);
   context_.log(
@@ -174,8 +175,6 @@ void BundleAdjustment::accept(Trial trial, int view) {
   remove_outliers(trial.segment.first);
   map_.triangulate_new(context_.camera, triangulation_options(), {options_.min_track_frames, options_.min_track_time});
   update_motion(view);
-  if (!first_map) return;
-  for (int i = trial.segment.first; i <= view; ++i) online_.push_back({map_.views[at(i)].t, map_.views[at(i)].T});
 }
 
 SE3 BundleAdjustment::predict(double t, int from) const {
@@ -202,9 +201,8 @@ SolveReport BundleAdjustment::track(int view) {
     now.state = View::State::predicted;
     failing(view, failure);
     report = initialise(view);
-    if (failing_since_ && now.t - *failing_since_ > options_.lost_after) lost_ = failing_since_;
+    if (failing_since_ && map_.views[at(view)].t - *failing_since_ > options_.lost_after) lost_ = failing_since_;
   }
-  online_.push_back({map_.views[at(view)].t, map_.views[at(view)].T});
   return report;
 }
 
