@@ -92,8 +92,9 @@ void add_solve(CLI::App& app) {
       ->add_option("--mode", arguments->options.mode,
                    "incremental: a control state at a time; batch: at once from the initial guess; fixed-lag: "
                    "incremental, what is older than --lag is marginalised")
-      ->transform(CLI::CheckedTransformer(kModes))
-      ->type_name("NAME");
+      ->transform(CLI::CheckedTransformer(kModes).description("{incremental,batch,fixed-lag}"))
+      ->type_name("NAME")
+      ->default_str("incremental");
   command->add_option("--json", arguments->json, "Write the figures to this file, too")->type_name("FILE");
   command->add_option("--states", arguments->states, "Write the final states as a problem's STATE records")
       ->type_name("FILE");
