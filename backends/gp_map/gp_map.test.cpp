@@ -144,6 +144,16 @@ TEST_CASE("Covariance is positive and smallest at the anchor") {
   CHECK(middle->topLeftCorner<6, 6>().trace() > start->topLeftCorner<6, 6>().trace());
 }
 
+TEST_CASE("Control-state rates from 10 to 100 Hz change the error by less than a tenth") {
+  const TrackedScene scene(8.0, R"({"motion": {"kind": "robot_arm"}, "tracks": {"lifetime": [1.0, 5.0]}})");
+  const double usual = run(scene).scores.ate.trans_m.rmse;
+  for (const char* rate : {"10", "50", "100"}) {
+    INFO(rate);
+    const std::string options = std::string(R"({"placement": {"rate": )") + rate + "}}";
+    CHECK(run(scene, {.backend = options.c_str()}).scores.ate.trans_m.rmse == Approx(usual).epsilon(0.1));
+  }
+}
+
 TEST_CASE("Control states by number of observations follow the camera as well as those by rate") {
   const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
   const double by_rate = run(scene).scores.ate.trans_m.rmse;
