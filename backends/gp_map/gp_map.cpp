@@ -266,7 +266,7 @@ std::optional<std::pair<Vector3, LandmarkPrior>> GpMap::locate(TrackId track, bo
   const Triangulation result = triangulate(poses, pixels, context_.camera, options_.map.triangulation);
   if (result.ok()) return std::pair{result.point, LandmarkPrior{}};
   const bool waited = usable.back()->t - usable.front()->t >= options_.map.patience;
-  if (!scarce || !waited) return std::nullopt;
+  if (!scarce || !waited || result.state != Triangulation::State::low_parallax) return std::nullopt;
   const double depth = median_depth();
   const Vector3 point = poses.back() * (depth * graph().camera.ray(pixels.back()));
   return std::pair{point, LandmarkPrior{point, options_.map.depth_sigma * depth}};
