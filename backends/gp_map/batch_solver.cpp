@@ -50,12 +50,14 @@ Layout::Layout(const FactorGraph& graph, int first_state)
 /// The normal equations H δ = −g (lower triangle) of all factors that touch a free variable.
 class NormalEquations {
  public:
-  NormalEquations(const FactorGraph& graph, const Layout& layout) : layout_(layout), gradient(layout.size) {
+  Sparse matrix;
+  Eigen::VectorXd gradient;
+
+  NormalEquations(const FactorGraph& graph, const Layout& layout) : gradient(layout.size), layout_(layout) {
     gradient.setZero();
     IntervalLinearisation linear;
     for (int k = layout.first_interval; k < static_cast<int>(graph.states.size()); ++k) {
       linearise_interval(graph, k, linear);
-      cost += linear.cost;
       add_interval(k, linear);
     }
     add_priors(graph);
@@ -67,12 +69,6 @@ class NormalEquations {
   const Layout& layout_;
   std::vector<Triplet> triplets_;
 
- public:
-  Sparse matrix;
-  Eigen::VectorXd gradient;
-  double cost = 0.0;
-
- private:
   template <class Block>
   void add_block(int row, int column, const Block& block) {
     if (row < 0 || column < 0) return;
