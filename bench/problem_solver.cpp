@@ -132,7 +132,7 @@ SolveResult solve_problem(const Problem& problem, const SolveOptions& options) {
 Check check_against_batch(const FactorGraph& estimate) {
   Check check{0.0, estimate};
   const double cost = evaluate(estimate).total();
-  gp_map::solve_batch(check.optimum, {50, 1e-13, 0});
+  gp_map::solve_batch(check.optimum, {50, 1e-13});
   const double optimum = evaluate(check.optimum).total();
   check.relative_excess = (cost - optimum) / optimum;
   return check;

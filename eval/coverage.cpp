@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/support/median.hpp"
 #include "eval/association.hpp"
 
 namespace evbench {
@@ -19,10 +20,7 @@ std::vector<Span> without_holes(std::span<const double> times) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
   if (steps.empty()) return {};
-  std::vector<double> sorted = steps;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double hole = std::clamp(hole_factor * *middle, shortest_hole, longest_step);
+  const double hole = std::clamp(hole_factor * median(steps), shortest_hole, longest_step);
   std::vector<Span> spans = {{times.front(), times.front()}};
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i] > hole) spans.push_back({times[i + 1], times[i + 1]});

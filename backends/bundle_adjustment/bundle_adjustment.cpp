@@ -10,6 +10,7 @@
 #include "backends/bundle_adjustment/pose_refinement.hpp"
 #include "core/plugin/registry.hpp"
 #include "core/structure/depth_reversal.hpp"
+#include "core/support/median.hpp"
 
 namespace evbench::bundle_adjustment {
 namespace {
@@ -26,12 +27,6 @@ constexpr int global_rounds = 2;            // of solving and removing outliers
 constexpr double smallest_step = 1e-6;      // [s] between frames of observations with one and the same time
 
 std::size_t at(int view) { return static_cast<std::size_t>(view); }
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 

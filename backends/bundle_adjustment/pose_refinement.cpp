@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/geometry/so3.hpp"
+#include "core/support/median.hpp"
 
 namespace evbench::bundle_adjustment {
 namespace {
@@ -66,9 +67,7 @@ SE3 refine(SE3 T, const std::vector<Sighting>& sightings, const PinholeCamera& c
 double median_error(const SE3& T, const std::vector<Sighting>& sightings, const PinholeCamera& camera) {
   std::vector<double> errors;
   for (const Sighting& z : sightings) errors.push_back(reprojection_error(T, z.landmark, z.pixel, camera).norm());
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  return *middle;
+  return median(std::move(errors));
 }
 
 std::optional<SE3> pnp(const std::vector<Sighting>& sightings, const PinholeCamera& camera, double limit_px) {

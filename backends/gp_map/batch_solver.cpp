@@ -19,35 +19,29 @@ struct Cholesky : Eigen::CholmodSupernodalLLT<Sparse, Eigen::Lower> {
   Cholesky() { cholmod().print = 0; }
 };
 
-/// Which variables a solve moves and where they stand in the vector; −1: fixed.
+/// Where the variables stand in the vector; −1: landmarks that nobody observes.
 struct Layout {
-  int first_interval = 1;  ///< the first interval whose factors touch a free variable
   int size = 0;
   std::vector<int> state_offset, landmark_offset;
 
-  Layout(const FactorGraph& graph, int first_state);
+  explicit Layout(const FactorGraph& graph);
 };
 
-Layout::Layout(const FactorGraph& graph, int first_state)
+Layout::Layout(const FactorGraph& graph)
     : state_offset(graph.states.size(), -1), landmark_offset(graph.landmarks.size(), -1) {
   // Landmarks come first: they are eliminated first.
-  int earliest = std::max(1, first_state);
   for (std::size_t j = 0; j < graph.landmarks.size(); ++j) {
-    const auto& seen = graph.landmarks[j].intervals;
-    const bool free = !seen.empty() && (first_state == 0 || seen.back() >= first_state);
-    if (!free) continue;
+    if (graph.landmarks[j].intervals.empty()) continue;
     landmark_offset[j] = size;
     size += kLandmarkSize;
-    earliest = std::min(earliest, seen.front());
   }
-  first_interval = earliest;
-  for (std::size_t i = static_cast<std::size_t>(first_state); i < graph.states.size(); ++i) {
-    state_offset[i] = size;
+  for (int& offset : state_offset) {
+    offset = size;
     size += kStateSize;
   }
 }
 
-/// The normal equations H δ = −g (lower triangle) of all factors that touch a free variable.
+/// The normal equations H δ = −g (lower triangle) of all factors.
 class NormalEquations {
  public:
   Sparse matrix;
@@ -56,7 +50,7 @@ class NormalEquations {
   NormalEquations(const FactorGraph& graph, const Layout& layout) : gradient(layout.size), layout_(layout) {
     gradient.setZero();
     IntervalLinearisation linear;
-    for (int k = layout.first_interval; k < static_cast<int>(graph.states.size()); ++k) {
+    for (int k = 1; k < static_cast<int>(graph.states.size()); ++k) {
       linearise_interval(graph, k, linear);
       add_interval(k, linear);
     }
@@ -140,16 +134,9 @@ class NormalEquations {
   }
 };
 
-/// The cost of what the layout's solve can change, with everything that is constant in it.
-double cost_of(const FactorGraph& graph, const Layout& layout) {
-  return evaluate(graph, layout.first_interval).total();
-}
-
 void apply(FactorGraph& graph, const Layout& layout, const Eigen::VectorXd& step) {
   for (std::size_t i = 0; i < graph.states.size(); ++i) {
-    if (layout.state_offset[i] >= 0) {
-      graph.states[i] = graph.states[i].retract(step.segment<kStateSize>(layout.state_offset[i]));
-    }
+    graph.states[i] = graph.states[i].retract(step.segment<kStateSize>(layout.state_offset[i]));
   }
   for (std::size_t j = 0; j < graph.landmarks.size(); ++j) {
     if (layout.landmark_offset[j] >= 0) {
@@ -178,12 +165,12 @@ class Estimate {  // what a step changes, to undo it
 
 BatchSummary solve_batch(FactorGraph& graph, const BatchOptions& options) {
   BatchSummary summary;
-  const Layout layout(graph, options.first_state);
+  const Layout layout(graph);
   if (layout.size == 0) {
     summary.converged = true;
     return summary;
   }
-  summary.initial_cost = summary.final_cost = cost_of(graph, layout);
+  summary.initial_cost = summary.final_cost = evaluate(graph).total();
   Cholesky cholesky;
   bool analysed = false;
   double damping = 1e-6;  // relative to the diagonal
@@ -207,7 +194,7 @@ BatchSummary solve_batch(FactorGraph& graph, const BatchOptions& options) {
         usable = step.allFinite();
         if (usable) apply(graph, layout, step);
       }
-      const double cost = usable ? cost_of(graph, layout) : 0.0;
+      const double cost = usable ? evaluate(graph).total() : 0.0;
       accepted = usable && cost <= summary.final_cost;  // false for NaN
       if (accepted) {
         summary.converged = summary.final_cost - cost <= options.relative_tolerance * summary.final_cost;
@@ -235,7 +222,7 @@ struct BatchCovariance::Factor {
   Cholesky cholesky;
   bool usable = false;
 
-  explicit Factor(const FactorGraph& graph) : layout(graph, 0) {
+  explicit Factor(const FactorGraph& graph) : layout(graph) {
     const NormalEquations equations(graph, layout);
     cholesky.compute(equations.matrix);
     usable = cholesky.info() == Eigen::Success;

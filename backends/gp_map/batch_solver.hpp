@@ -11,20 +11,18 @@ namespace evbench::gp_map {
 struct BatchOptions {
   int max_iterations = 20;
   double relative_tolerance = 1e-8;  ///< stop when an accepted step lowers the cost by less than this share
-  /// States before this one stay as they are, and so do landmarks that no later interval observes: a window. 0: all.
-  int first_state = 0;
 };
 
 struct BatchSummary {
-  double initial_cost = 0.0, final_cost = 0.0;  ///< of the intervals that the solve looks at
+  double initial_cost = 0.0, final_cost = 0.0;
   int iterations = 0;
   bool converged = false;
   std::string failure;  ///< empty unless the system could not be solved or is not finite
 };
 
 /// Levenberg-Marquardt over the problem's states and landmarks with a supernodal sparse Cholesky factorisation
-/// (CHOLMOD) of the normal equations. Whole history or a window: the reference that incremental solvers are compared
-/// with. The estimate never gets worse: steps that raise the cost are undone.
+/// (CHOLMOD) of the normal equations. The reference that incremental solvers are
+/// compared with. The estimate never gets worse: steps that raise the cost are undone.
 BatchSummary solve_batch(FactorGraph& graph, const BatchOptions& options);
 
 /// Marginal covariances at the present estimate (Gauss-Newton approximation, increments on the right).

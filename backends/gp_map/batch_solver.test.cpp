@@ -43,7 +43,7 @@ FactorGraph flight(int states, double error) {
 
 double solved_cost(const std::string& path) {
   FactorGraph graph = to_graph(read_problem(path));
-  const BatchSummary summary = solve_batch(graph, {20, 1e-9, 0});
+  const BatchSummary summary = solve_batch(graph, {20, 1e-9});
   CHECK(summary.failure.empty());
   CHECK(summary.final_cost == Approx(evaluate(graph).total()));
   return summary.final_cost;
@@ -67,26 +67,17 @@ TEST_CASE("The batch solve reaches the medium problem's documented optimum, or a
 TEST_CASE("A solve never raises the cost and converges from far away") {
   FactorGraph graph = flight(20, 0.15);
   const double before = evaluate(graph).total();
-  const BatchSummary summary = solve_batch(graph, {50, 1e-10, 0});
+  const BatchSummary summary = solve_batch(graph, {50, 1e-10});
   CHECK(summary.converged);
   CHECK(summary.initial_cost == Approx(before));
   CHECK(summary.final_cost < 0.01 * before);
   FactorGraph again = graph;
-  CHECK(solve_batch(again, {5, 1e-10, 0}).final_cost <= summary.final_cost);
-}
-
-TEST_CASE("A window leaves older states where they are") {
-  FactorGraph graph = flight(20, 0.05);
-  const FactorGraph before = graph;
-  const BatchSummary summary = solve_batch(graph, {5, 1e-6, 12});
-  CHECK(summary.final_cost < summary.initial_cost);
-  for (std::size_t i = 0; i < 12; ++i) CHECK(graph.states[i].T.p == before.states[i].T.p);
-  CHECK(graph.states[15].T.p != before.states[15].T.p);
+  CHECK(solve_batch(again, {5, 1e-10}).final_cost <= summary.final_cost);
 }
 
 TEST_CASE("Marginal covariances equal those of the dense inverse") {
   FactorGraph graph = flight(5, 0.01);
-  solve_batch(graph, {20, 1e-12, 0});
+  solve_batch(graph, {20, 1e-12});
   constexpr int kStates = 5, kLandmarks = 12, kSize = 12 * kStates + 3 * kLandmarks;
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(kSize, kSize);
   IntervalLinearisation linear;
@@ -123,7 +114,7 @@ TEST_CASE("A problem without gauge is reported, not solved into nothing") {
   FactorGraph graph = flight(5, 0.0);
   graph.pose_priors.clear();
   for (auto& landmark : graph.landmarks) landmark.prior = {};
-  const BatchSummary summary = solve_batch(graph, {5, 1e-6, 0});
+  const BatchSummary summary = solve_batch(graph, {5, 1e-6});
   for (const ControlState& state : graph.states) CHECK(state.T.p.allFinite());
   CHECK(std::isfinite(summary.final_cost));
 }

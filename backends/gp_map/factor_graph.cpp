@@ -122,9 +122,9 @@ int FactorGraph::observation_count() const {
   return static_cast<int>(count);
 }
 
-Cost evaluate(const FactorGraph& graph, int first_interval) {
+Cost evaluate(const FactorGraph& graph) {
   Cost cost;
-  for (auto k = static_cast<std::size_t>(first_interval); k < graph.states.size(); ++k) {
+  for (std::size_t k = 1; k < graph.states.size(); ++k) {
     const GpInterval interval(graph.states[k - 1], graph.states[k]);
     cost.motion_prior += motion_prior_cost(interval, graph.qc);
     const IntervalObservations& observations = graph.intervals[k];

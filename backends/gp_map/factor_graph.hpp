@@ -117,8 +117,7 @@ struct Cost {
   double measurements = 0.0, motion_prior = 0.0, priors = 0.0;
   double total() const { return measurements + motion_prior + priors; }
 };
-/// Without the intervals before `first_interval`.
-Cost evaluate(const FactorGraph& graph, int first_interval = 1);
+Cost evaluate(const FactorGraph& graph);
 
 /// Mean reprojection error of a landmark over all its observations [px]; infinite when behind the camera.
 double reprojection_mean(const FactorGraph& graph, int landmark);

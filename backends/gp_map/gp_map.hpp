@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "backends/gp_map/engine/engine.hpp"
+#include "backends/gp_map/first_map.hpp"
 #include "backends/gp_map/health.hpp"
 #include "backends/gp_map/options.hpp"
 #include "backends/gp_map/state_placement.hpp"
@@ -18,9 +19,7 @@ namespace evbench::gp_map {
 /// Asynchronous continuous-time structure from motion by MAP inference under a Gaussian-process prior: Algorithm 1 of
 /// Liu et al., ICRA 2022. Every observation counts at its own time.
 ///
-/// World frame: the camera at the first control state. Unit of length: the median depth of the first map. Gauge and
-/// scale are anchored there, the first pose by a tight prior, the scale by the mean log distance of the first
-/// landmarks: the WNOA prior alone would shrink the world to a point.
+/// World frame and scale: first_map.hpp. The WNOA prior alone would shrink the world to a point.
 class GpMap : public BackEnd {
  public:
   using Options = gp_map::Options;
@@ -57,12 +56,12 @@ class GpMap : public BackEnd {
   void remove_outliers();
   void check_health();
   void record(double t, double seconds);
-  void add_record(double t, double seconds, int iterations, std::optional<double> cost);
 
-  std::optional<FactorGraph> refine(const InitialGuess& guess, double t) const;
-  double start_time(const InitialGuess& guess) const;
-  void start_from(FactorGraph graph, const InitialGuess& guess);
-  Observation observation(const TrackObservation& z) const;
+  void follow(double t);
+  void record_online(double t);
+  void add_record(double t, double seconds, int iterations, std::optional<double> cost);
+  void start_from(FirstMap map);
+  void become_landmark(TrackId track, int landmark);
   std::optional<std::pair<Vector3, LandmarkPrior>> locate(TrackId track, bool scarce) const;
   double median_depth() const;
   int landmarks_in_view() const;
@@ -70,18 +69,18 @@ class GpMap : public BackEnd {
   Options options_;
   BackEndContext context_;
   StatePlacement placement_;
-  Initialiser initialiser_;
-  TrackBuffer tracks_;
-  std::vector<double> state_times_;        ///< placed before the first map: the states of the initialisation
-  std::string no_map_reason_;              ///< of the last vain attempt
-  mutable std::optional<Engine> engine_;   ///< from the first map on; mutable: covariances are made when asked for
-  std::map<TrackId, int> landmark_of_;     ///< tracks that are landmarks
-  std::map<TrackId, int> tried_with_;      ///< observations at the last vain attempt to locate a track
-  std::vector<TrackId> track_of_;          ///< by landmark
-  std::vector<TrackObservation> recent_;   ///< between the two newest states
-  std::vector<TrackObservation> pending_;  ///< later than the newest state
+  FirstMapFinder first_map_;
+  TrackBuffer tracks_;                      ///< those that are no landmarks (yet)
+  mutable std::optional<Engine> engine_;    ///< from the first map on; mutable: covariances are made when asked for
+  std::map<TrackId, int> landmark_of_;      ///< tracks that are landmarks
+  std::map<TrackId, int> tried_with_;       ///< observations at the last vain attempt to locate a track
+  std::vector<TrackId> track_of_;           ///< by landmark
+  std::vector<TrackObservation> recent_;    ///< between the two newest states
+  std::vector<TrackObservation> pending_;   ///< later than the newest state
+  std::vector<TrackObservation> followed_;  ///< added one by one since the last step
   std::vector<TrackId> new_outliers_;
   UpdateSummary last_update_;
+  double seconds_since_step_ = 0.0;  ///< spent between two steps, in per-observation mode
   Health health_;
   std::vector<StampedPose> online_;
   std::vector<UpdateRecord> updates_;

@@ -13,15 +13,23 @@ struct PlacementOptions {
   std::string rule = "rate";
   double rate = 20.0;
   int observations = 100;
+  double motion = 2.0;
   double min_spacing = 0.01, max_spacing = 0.1;
 
   void declare(OptionSet& set) {
-    set.add("rule", rule, "rate: evenly in time; observations: after a number of observations")
-        .choices({"rate", "observations"});
+    set.add("rule", rule,
+            "rate: evenly in time; observations: after a number of observations; motion: when the tracks have moved")
+        .choices({"rate", "observations", "motion"});
     set.add("rate", rate, "rule \"rate\": control states per second [Hz]").range(0.5, 1000.0);
     set.add("observations", observations, "rule \"observations\": observations between two control states").range(1);
-    set.add("min_spacing", min_spacing, "rule \"observations\": least time between two [s]").range(1e-3, 10.0);
-    set.add("max_spacing", max_spacing, "rule \"observations\": greatest time between two [s]").range(1e-3, 10.0);
+    set.add("motion", motion,
+            "rule \"motion\": median distance of the tracks' newest observations from their last one before the newest "
+            "control state [px]")
+        .above(0.0);
+    set.add("min_spacing", min_spacing, "rules \"observations\", \"motion\": least time between two [s]")
+        .range(1e-3, 10.0);
+    set.add("max_spacing", max_spacing, "rules \"observations\", \"motion\": greatest time between two [s]")
+        .range(1e-3, 10.0);
   }
 };
 
@@ -74,6 +82,8 @@ struct Options {
   double ambiguity_ratio = 1.1;
   MapOptions map;
   HealthOptions health;
+  double lag = 0.0;
+  bool per_observation = false;
   int final_iterations = 30;
 
   void declare(OptionSet& set) {
@@ -95,6 +105,13 @@ struct Options {
         .range(1.0);
     set.group("map", map, "landmarks");
     set.group("health", health, "degraded and lost");
+    set.add("lag", lag,
+            "control states older than this are marginalised, for endless streams in bounded memory [s]; 0: full "
+            "history, with a final estimate over everything")
+        .range(0.0);
+    set.add("per_observation", per_observation,
+            "the newest pose and velocity follow each observation, not each control state; the causal trajectory has a "
+            "pose for each");
     set.add("final_iterations", final_iterations, "over the whole history, at the end; 0: none").range(0);
   }
 };

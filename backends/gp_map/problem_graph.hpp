@@ -2,6 +2,7 @@
 
 #include "backends/gp_map/factor_graph.hpp"
 #include "core/data/problem.hpp"
+#include "core/data/track.hpp"
 
 namespace evbench::gp_map {
 
@@ -13,5 +14,9 @@ FactorGraph to_graph(const Problem& problem);
 /// are left out, the others numbered anew. The format has no robust loss and no scale anchor: the loss is dropped, and
 /// each of the anchor's landmarks gets a prior at its present estimate, with a sigma of 5 % of its distance.
 Problem to_problem(const FactorGraph& graph);
+
+inline Observation to_observation(const TrackObservation& z, double sigma_scale) {
+  return {z.t, z.pixel, 1.0 / (z.sigma * sigma_scale)};
+}
 
 }  // namespace evbench::gp_map

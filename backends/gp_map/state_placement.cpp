@@ -2,46 +2,75 @@
 
 #include <algorithm>
 
+#include "core/support/median.hpp"
+
 namespace evbench::gp_map {
 
-void StatePlacement::observe(double t) {
-  if (!first_) first_ = t;
-  last_observation_ = t;
-  if (!newest_ || t > *newest_) times_.push_back(t);
-}
+namespace {
 
-std::optional<double> StatePlacement::by_rate(double now) const {
-  const double t = *first_ + static_cast<double>(count_) / options_.rate;
-  return t <= now ? std::optional(t) : std::nullopt;
-}
+constexpr double kForget = 1.0;  ///< [s] after which a track that is not observed has moved no more
 
-std::optional<double> StatePlacement::by_observations(double now) const {
-  if (count_ == 0) return *first_ <= now ? first_ : std::nullopt;
-  const double earliest = *newest_ + options_.min_spacing;
-  const double latest = *newest_ + std::max(options_.min_spacing, options_.max_spacing);
-  const auto wanted = static_cast<std::size_t>(options_.observations);
-  const double enough = times_.size() >= wanted ? times_[wanted - 1] : latest;
-  const double t = std::clamp(enough, earliest, latest);
-  return t <= now ? std::optional(t) : std::nullopt;
-}
+}  // namespace
 
-void StatePlacement::place(double t) {
-  newest_ = t;
-  ++count_;
-  times_.erase(times_.begin(), std::upper_bound(times_.begin(), times_.end(), t));
+void StatePlacement::observe(const TrackObservation& observation) {
+  if (!first_) first_ = observation.t;
+  last_observation_ = observation.t;
+  if (options_.rule != "rate") later_.push_back(observation);
 }
 
 std::optional<double> StatePlacement::next(double now) {
   if (!first_) return std::nullopt;
-  const std::optional<double> t = options_.rule == "rate" ? by_rate(now) : by_observations(now);
-  if (t) place(*t);
+  const bool by_data = newest_ && options_.rule != "rate";
+  const double t = by_data ? time_by_data() : upcoming();
+  if (t > now) return std::nullopt;
+  place(t);
   return t;
+}
+
+double StatePlacement::upcoming() const {
+  if (!newest_) return *first_;
+  return options_.rule == "rate" ? *first_ + static_cast<double>(placed_) / options_.rate : latest();
+}
+
+double StatePlacement::time_by_data() {
+  while (!enough_ && !later_.empty() && later_.front().t <= latest()) {
+    look_at(later_.front());
+    if (is_enough()) enough_ = later_.front().t;
+    later_.pop_front();
+  }
+  return std::clamp(enough_.value_or(latest()), earliest(), latest());
+}
+
+void StatePlacement::look_at(const TrackObservation& observation) {
+  ++count_;
+  if (options_.rule != "motion") return;
+  Displacement& track = displacements_.try_emplace(observation.track, Displacement{observation.pixel}).first->second;
+  track.to = observation.pixel;
+  track.t = observation.t;
+}
+
+bool StatePlacement::is_enough() const {
+  if (options_.rule == "observations") return count_ >= options_.observations;
+  std::vector<double> distances;
+  for (const auto& [id, track] : displacements_) {
+    if (track.t > *newest_) distances.push_back((track.to - track.from).norm());
+  }
+  return !distances.empty() && median(std::move(distances)) >= options_.motion;
+}
+
+void StatePlacement::place(double t) {
+  for (; !later_.empty() && later_.front().t <= t; later_.pop_front()) look_at(later_.front());
+  for (auto& [id, track] : displacements_) track.from = track.to;
+  std::erase_if(displacements_, [t](const auto& track) { return track.second.t < t - kForget; });
+  newest_ = t;
+  ++placed_;
+  count_ = 0;
+  enough_.reset();
 }
 
 std::optional<double> StatePlacement::last() {
   if (!newest_ || *newest_ >= *last_observation_) return std::nullopt;
-  const double t = options_.rule == "rate" ? *first_ + static_cast<double>(count_) / options_.rate
-                                           : std::max(*last_observation_, *newest_ + options_.min_spacing);
+  const double t = options_.rule == "rate" ? upcoming() : std::max(*last_observation_, earliest());
   place(t);
   return t;
 }

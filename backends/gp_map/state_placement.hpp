@@ -1,37 +1,64 @@
 #pragma once
 
+#include <cstdint>
+#include <deque>
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "backends/gp_map/options.hpp"
+#include "core/data/track.hpp"
 
 namespace evbench::gp_map {
 
-/// Decides at which times control states stand, from the times of the observations alone, so that a run does not depend
-/// on the pieces in which its observations arrive.
+/// Decides at which times control states stand, from the observations alone, so that a run does not depend on the
+/// pieces in which they arrive. The first state stands at the first observation.
+///
+/// * rate: state k stands k / rate after the first.
+/// * observations: at the observation that makes a number of them since the newest state.
+/// * motion: at the observation that brings the median, over the tracks observed since the newest state, of the
+///   distance in the image between a track's newest observation and its last one up to that state (its first one, for
+///   a younger track) to a number of pixels. Rotation and translation count alike: what the states have to follow is
+///   what is seen.
+/// The last two keep a least and a greatest spacing.
 class StatePlacement {
  public:
   explicit StatePlacement(const PlacementOptions& options) : options_(options) {}
 
-  /// Times of observations, in order.
-  void observe(double t);
+  /// Observations, in the order of their times.
+  void observe(const TrackObservation& observation);
 
-  /// The first state stands at the first observation. The time of the next one, when it is known and ≤ now.
+  /// The time of the next state, when it is known and ≤ now.
   std::optional<double> next(double now);
+
+  /// The time of the next state if nothing more is observed: it will not stand later.
+  double upcoming() const;
 
   /// The state that closes the trajectory: at or after the last observation. None when there is one already.
   std::optional<double> last();
 
  private:
-  PlacementOptions options_;
-  std::vector<double> times_;  // of observations after the newest state
-  std::optional<double> first_, newest_;
-  std::int64_t count_ = 0;  // states placed
-  std::optional<double> last_observation_;
+  /// A track's distance from where it was seen last up to the newest state.
+  struct Displacement {
+    Vector2 from = Vector2::Zero(), to = Vector2::Zero();
+    double t = 0.0;  ///< of `to`
+  };
 
-  std::optional<double> by_rate(double now) const;
-  std::optional<double> by_observations(double now) const;
+  double time_by_data();
+  void look_at(const TrackObservation& observation);
+  bool is_enough() const;
+  double earliest() const { return *newest_ + options_.min_spacing; }
+  double latest() const { return *newest_ + std::max(options_.min_spacing, options_.max_spacing); }
   void place(double t);
+
+  PlacementOptions options_;
+  std::deque<TrackObservation> later_;             ///< than the newest state, not looked at yet
+  std::optional<double> enough_;                   ///< when the data asked for the next state
+  int count_ = 0;                                  ///< observations since the newest state, of those looked at
+  std::map<TrackId, Displacement> displacements_;  ///< rule "motion"
+  std::optional<double> first_, newest_;
+  std::int64_t placed_ = 0;  ///< states
+  std::optional<double> last_observation_;
 };
 
 }  // namespace evbench::gp_map

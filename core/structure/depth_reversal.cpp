@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/geometry/so3.hpp"
+#include "core/support/median.hpp"
 
 namespace evbench {
 
@@ -20,10 +21,9 @@ InitialGuess reverse_depth(const InitialGuess& guess) {
     depths.push_back(1.0 / inverse_depth);
   }
   if (depths.empty()) return result;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  for (Landmark& landmark : result.landmarks) landmark.position /= *middle;
-  result.T1.p /= *middle;
+  const double depth = median(std::move(depths));
+  for (Landmark& landmark : result.landmarks) landmark.position /= depth;
+  result.T1.p /= depth;
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/structure/depth_reversal.hpp"
+#include "core/support/median.hpp"
 
 namespace evbench {
 namespace {
@@ -33,9 +34,7 @@ double median_depth(const TwoViewCandidate& candidate) {
   for (std::size_t i = 0; i < candidate.points.size(); ++i) {
     if (candidate.inlier[i]) depths.push_back(candidate.points[i].z());
   }
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return median(std::move(depths));
 }
 
 InitialGuess to_guess(const TwoViewCandidate& candidate, const std::vector<TrackId>& tracks, double t0, double t1) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/support/median.hpp"
+
 namespace evbench {
 namespace {
 
@@ -35,15 +37,12 @@ Vector2 robust_line_at(std::span<const TrackObservation> observations, double t)
   std::vector<double> weights(observations.size(), 1.0);
   Vector2 result = line_at(observations, weights, t);
   if (observations.size() < 4) return result;
-  std::vector<double> distances(observations.size()), sorted;
+  std::vector<double> distances(observations.size());
   for (int iteration = 0; iteration < 3; ++iteration) {
     for (std::size_t i = 0; i < observations.size(); ++i) {
       distances[i] = (observations[i].pixel - line_at(observations, weights, observations[i].t)).norm();
     }
-    sorted = distances;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    const double width = std::max(2.0 * *middle, 1e-3);
+    const double width = std::max(2.0 * median(distances), 1e-3);
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = distances[i] <= width ? 1.0 : width / distances[i];
     result = line_at(observations, weights, t);
   }
@@ -100,6 +99,10 @@ std::optional<Vector2> TrackBuffer::position(TrackId track, double t, double win
     return std::nullopt;
   }
   return robust_line_at(near, t);
+}
+
+void TrackBuffer::forget_ended_before(double t) {
+  std::erase_if(tracks_, [t](const auto& track) { return track.second.back().t < t; });
 }
 
 void TrackBuffer::remove(TrackId track) {

@@ -10,7 +10,7 @@
 
 namespace evbench {
 
-/// All track observations so far, by track. Every query is deterministic: tracks come in the order of their ids,
+/// Track observations so far, by track. Every query is deterministic: tracks come in the order of their ids,
 /// a track's observations in the order of their times.
 class TrackBuffer {
  public:
@@ -32,8 +32,15 @@ class TrackBuffer {
   /// no farther than window/4 from it; a single observation at t itself will do. None where the track doesn't cover t.
   std::optional<Vector2> position(TrackId track, double t, double window) const;
 
-  /// Forgets a track (an outlier); whatever comes of it later is ignored.
+  /// Removes a track (an outlier); whatever comes of it later is ignored.
   void remove(TrackId track);
+
+  /// Drops a track's observations; later ones are kept again.
+  void forget(TrackId track) { tracks_.erase(track); }
+
+  /// The same for all tracks whose last observation is older than t.
+  void forget_ended_before(double t);
+
   bool removed(TrackId track) const { return removed_.contains(track); }
 
  private:

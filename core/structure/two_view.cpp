@@ -12,6 +12,7 @@
 #include "core/geometry/so3.hpp"
 #include "core/structure/epipolar_refinement.hpp"
 #include "core/structure/triangulation.hpp"
+#include "core/support/median.hpp"
 
 namespace evbench {
 namespace {
@@ -81,13 +82,6 @@ std::vector<Hypothesis> hypotheses(const Matches& matches) {
   return result;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Triangulates every match and judges it.
 TwoViewCandidate judge(const Hypothesis& hypothesis, const Matches& matches) {
   TwoViewCandidate result;
@@ -111,7 +105,7 @@ TwoViewCandidate judge(const Hypothesis& hypothesis, const Matches& matches) {
     squares += point.rms_px * point.rms_px;
     parallaxes.push_back(point.parallax_deg);
   }
-  result.median_parallax_deg = median(parallaxes);
+  result.median_parallax_deg = parallaxes.empty() ? 0.0 : median(std::move(parallaxes));
   result.rms_px = result.inliers > 0 ? std::sqrt(squares / result.inliers) : 0.0;
   return result;
 }

@@ -64,6 +64,9 @@ class Engine {
   /// The oldest state that is still being estimated.
   int first_state() const { return std::max(0, factorisation_.base()); }
 
+  /// Whether a landmark has been marginalised: it takes no more observations.
+  bool forgotten(int landmark) const { return factorisation_.is_forgotten(landmark); }
+
   /// A state later than the newest one, with the motion prior between them.
   void add_state(const ControlState& guess);
   void add_pose_prior(const PosePrior& prior);

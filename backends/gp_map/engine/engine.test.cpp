@@ -15,7 +15,7 @@ TEST_CASE("Optimising with the engine ends where the batch solver ends") {
   FactorGraph oracle = to_graph(read_problem(*path));
   Engine engine(oracle, {});
   const auto summary = engine.optimise(10, 1e-12);
-  const auto expected = solve_batch(oracle, {20, 1e-12, 0});
+  const auto expected = solve_batch(oracle, {20, 1e-12});
   CHECK(summary.converged);
   CHECK(summary.final_cost == Approx(expected.final_cost).epsilon(1e-9));
   for (std::size_t i = 0; i < oracle.states.size(); ++i) {
