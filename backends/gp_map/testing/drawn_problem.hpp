@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "backends/gp_map/engine/engine.hpp"
+#include "core/simulation/random.hpp"
+
+namespace evbench::gp_map::testing {
+
+struct DrawnOptions {
+  enum class Gauge {
+    landmark_priors,  ///< every landmark has a prior
+    scale_anchor,     ///< none has, the scale anchor holds the scale
+  };
+  enum class Observed {
+    at_states,       ///< at the times of control states
+    between_states,  ///< at times between them, from the interpolated pose, as the factors have it
+  };
+  Gauge gauge = Gauge::landmark_priors;
+  Observed observed = Observed::between_states;
+  double qc = 0.01;          ///< [rad²/s³, m²/s³]
+  double pixel_sigma = 0.1;  ///< stated [px]
+  double noise_scale = 1.0;  ///< true pixel noise over the stated one
+};
+
+/// A problem whose unknowns and measurements are drawn from the very densities that the factors state, so that the
+/// error of an estimate must be as large as its covariance says. 60 control states in 3 s, 24 landmarks alive, each
+/// observed once an interval for at most a second. The noise is small: depths of landmarks seen with little parallax
+/// are far from Gaussian otherwise, which no covariance describes.
+class DrawnProblem {
+ public:
+  static constexpr int kStates = 60;
+  static constexpr int kSteps = 4;  ///< an interval's, of the drawn trajectory
+  static constexpr double kInterval = 0.05, kStep = kInterval / kSteps;
+
+  DrawnProblem(const DrawnOptions& options, std::uint64_t seed);
+
+  /// The trajectory at i kStep, i ≤ (kStates − 1) kSteps.
+  const ControlState& truth(int i) const { return truth_[static_cast<std::size_t>(i)]; }
+
+  /// Feeds all of it, one update a control state. A landmark enters with its fifth observation.
+  Engine solve_incrementally(const EngineOptions& options = {}) const;
+
+ private:
+  struct Landmark {
+    Vector3 position, guess;
+    LandmarkPrior prior;
+    int first = 0;  ///< interval in which it is seen first
+    std::vector<Observation> observations;
+  };
+
+  void draw_trajectory();
+  void draw_landmark(int first, int last);
+  void draw_anchor();
+  Vector3 normal3(double sigma);
+  Vector6 normal6(double sigma);
+
+  DrawnOptions options_;
+  Random random_;
+  Vector6 qc_;
+  PosePrior pose_prior_;
+  VelocityPrior velocity_prior_;
+  std::vector<ControlState> truth_;
+  std::vector<Landmark> landmarks_;
+  std::vector<int> anchors_;
+};
+
+}  // namespace evbench::gp_map::testing
