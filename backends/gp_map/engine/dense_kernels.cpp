@@ -49,6 +49,17 @@ void solve_right_rows(double* A, int lda, const double* L, int ldl, int p) {
   }
 }
 
+/// x −= Aᵀ y for a few columns of A.
+template <int Columns>
+void subtract_dots(double* x, const double* A, int lda, int n, const double* y) {
+  std::array<Lane, Columns> sums{};
+  for (int r = 0; r < n; r += kLanes) {
+    const Lane value = load(y + r);
+    for (int c = 0; c < Columns; ++c) sums[c] += load(A + c * lda + r) * value;
+  }
+  for (int c = 0; c < Columns; ++c) x[c] -= sum(sums[c]);
+}
+
 }  // namespace
 
 void subtract_outer_product(double* C, int ldc, const double* A, int lda, int n, int p) {
@@ -141,17 +152,11 @@ void subtract_product(double* y, const double* A, int lda, int n, int p, const d
 }
 
 void subtract_transposed_product(double* x, const double* A, int lda, int n, int p, const double* y) {
-  for (int k = 0; k < p; ++k) {
-    const double* column = A + static_cast<std::ptrdiff_t>(k) * lda;
-    Lane even{}, odd{};
-    int r = 0;
-    for (; r + 2 * kLanes <= n; r += 2 * kLanes) {
-      even += load(column + r) * load(y + r);
-      odd += load(column + r + kLanes) * load(y + r + kLanes);
-    }
-    for (; r < n; r += kLanes) even += load(column + r) * load(y + r);
-    x[k] -= sum(even + odd);
-  }
+  constexpr int kTogether = 6;  // enough independent sums to hide an addition's latency
+  int k = 0;
+  for (; k + kTogether <= p; k += kTogether) subtract_dots<kTogether>(x + k, A + std::ptrdiff_t{k} * lda, lda, n, y);
+  for (; k + 3 <= p; k += 3) subtract_dots<3>(x + k, A + std::ptrdiff_t{k} * lda, lda, n, y);
+  for (; k < p; ++k) subtract_dots<1>(x + k, A + std::ptrdiff_t{k} * lda, lda, n, y);
 }
 
 }  // namespace evbench::gp_map

@@ -119,12 +119,22 @@ double Engine::size_of_state(int i, const Vector12& delta) const {
   return std::max(rotation, translation / points_.nearest(i));
 }
 
+/// √(|δ|/d · |δ⊥|/d), the largest of the first and the last camera that see it: the error of linear projection is of
+/// second order, a change of distance times a change of direction. Poses aren't known better than this parallax.
 double Engine::size_of_landmark(int j, const Vector3& delta) const {
   const auto& seen = graph_.landmarks[at(j)].intervals;
   if (seen.empty()) return 0.0;
-  const double distance = std::min((points_.landmark(j) - points_.state(seen.back()).T.p).norm(),
-                                   (points_.landmark(j) - points_.state(seen.front()).T.p).norm());
-  return delta.norm() / std::max(distance, 1e-9);
+  constexpr double kParallax = 0.01, kNearest = 1e-9;
+  const double square = delta.squaredNorm();
+  double largest = 0.0;  // fourth power of the size
+  for (const int k : {seen.front(), seen.back()}) {
+    const Vector3 ray = points_.landmark(j) - points_.state(k).T.p;
+    const double distance2 = std::max(ray.squaredNorm(), kNearest * kNearest);
+    const double along = square / distance2;
+    const double across = ray.cross(delta).squaredNorm() / (distance2 * distance2);
+    largest = std::max(largest, along * std::max(across, kParallax * kParallax * along));
+  }
+  return std::sqrt(std::sqrt(largest));
 }
 
 int Engine::first_stage(const Variable& variable) const {

@@ -12,13 +12,14 @@ namespace evbench::gp_map {
 struct EngineOptions {
   /// A variable's linearisation point moves to the estimate, and the stages from there on are redone, when its
   /// increment changes a viewing direction by more than this [rad]: rotations as they are, translations by the
-  /// nearest landmark's distance, landmarks by theirs, velocities by what they move the trajectory between two states.
-  double relinearise = 0.05;
+  /// nearest landmark's distance, velocities by what they move the trajectory between two states. Landmarks by the
+  /// geometric mean of their change relative to their distance and its part across the viewing direction.
+  double relinearise = 0.015;
   /// ... unless more than this many stages would have to be redone: what is older stays linear until observations make
   /// its stages be redone, or until optimise(). Bounds the time of an update.
   int reach = 128;
   /// The same for variables in stages that are redone anyway: only their intervals have to be linearised anew.
-  double relinearise_redone = 0.0025;
+  double relinearise_redone = 0.0015;
   /// Back-substitution ends where the change of what a stage is solved from is below this [rad, as above].
   double solve_tolerance = 5e-4;
   /// An update that changes a variable by more than this [rad] must not raise the cost of the intervals concerned.

@@ -22,9 +22,10 @@ inline void store(double* to, Lane value) { *reinterpret_cast<LaneAt*>(to) = val
 inline Lane broadcast(double value) { return Lane{} + value; }
 
 inline double sum(Lane value) {
-  double total = 0.0;
-  for (int i = 0; i < kLanes; ++i) total += value[i];
-  return total;
+  for (int width = kLanes / 2; width > 0; width /= 2) {
+    for (int i = 0; i < width; ++i) value[i] += value[i + width];
+  }
+  return value[0];
 }
 
 /// A 3-vector in each lane.
