@@ -62,7 +62,7 @@ void Engine::set_landmark(int j, const double* delta, int slot) {
 /// Solves back from the root through the stages. All stages that were redone are solved; older ones as long as the
 /// change of the separator, added up over the updates since the stage was last solved, is above the tolerance: so what
 /// is skipped stays bounded however long it goes on.
-void Engine::solve_back(int first_redone, UpdateSummary& summary) {
+void Engine::solve_back(UpdateSummary& summary) {
   const Root& root = factorisation_.root();
   const int newest = factorisation_.done();
   slot_change_.assign(at((root.stride() - Root::kStates) / 3 + 1), 0.0);
@@ -72,11 +72,8 @@ void Engine::solve_back(int first_redone, UpdateSummary& summary) {
   }
   for (int k = newest; k > std::max(0, factorisation_.base()); --k) {
     Factorisation::Stage& stage = factorisation_.stage(k);
-    if (k < first_redone) {
-      const double change = stage.skipped + separator_change(k);
-      stage.skipped = change;
-      if (change < options_.solve_tolerance) break;
-    }
+    stage.skipped += separator_change(k);
+    if (stage.skipped < options_.solve_tolerance) break;
     stage.skipped = 0.0;
     ++summary.solved_back;
     for (auto conditional = stage.conditionals.rbegin(); conditional != stage.conditionals.rend(); ++conditional) {

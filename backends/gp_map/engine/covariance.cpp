@@ -75,8 +75,8 @@ bool Engine::factorise_undamped() {
   if (restart_ < static_cast<int>(graph_.states.size()) || damped_) {
     if (factorisation_.redo(restart_, graph_, points_, 0.0)) return false;
     restart_ = static_cast<int>(graph_.states.size());
-    if (factorisation_.factorise_root(points_, 0.0)) return false;
-    damped_ = false;
+    damped_ = factorisation_.factorise_root(points_, 0.0).has_value();  // if it failed, there is no factor to use
+    if (damped_) return false;
   }
   return true;
 }

@@ -47,6 +47,7 @@ void Engine::anchor_scale(const Vector3& origin, std::vector<int> landmarks) {
     if (!graph_.landmarks[at(j)].intervals.empty()) touch(graph_.landmarks[at(j)].intervals.front());
   }
   graph_.anchor_scale(origin, std::move(landmarks));
+  factorisation_.renew_anchor();
   for (const int j : graph_.anchor.landmarks) {
     if (!graph_.landmarks[at(j)].intervals.empty()) touch(graph_.landmarks[at(j)].intervals.front());
   }
@@ -160,8 +161,10 @@ void Engine::move(const Variable& variable) {
 /// Marginalises the states older than the lag.
 void Engine::forget_old() {
   const double from = graph_.states.back().t - options_.lag;
+  const int last = static_cast<int>(graph_.states.size()) - 2;  // the newest interval is always estimated
   int oldest = factorisation_.base() + 1;
-  while (graph_.states[at(oldest)].t < from) ++oldest;
+  if (oldest > last) return;
+  while (oldest < last && graph_.states[at(oldest)].t < from) ++oldest;
   const int before = factorisation_.base();
   const int base = factorisation_.marginalise(oldest);
   for (int k = before + 1; k <= base; ++k) {
@@ -211,7 +214,7 @@ UpdateSummary Engine::update() {
   constexpr double kFirstDamping = 1e-4, kMaxDamping = 1e8;
   double damping = 0.0;
   while (true) {
-    const bool solved = solve(first, damping, summary);
+    const bool solved = solve(damping, summary);
     if (solved) {
       refine_landmarks();
       if (!raises_cost()) break;
@@ -241,7 +244,7 @@ UpdateSummary Engine::update() {
 }
 
 /// Factorises and solves back; what could not be determined is held. False when that doesn't help.
-bool Engine::solve(int first_redone, double damping, UpdateSummary& summary) {
+bool Engine::solve(double damping, UpdateSummary& summary) {
   changes_.clear();
   refined_.clear();
   damped_ = damping > 0.0;
@@ -255,7 +258,7 @@ bool Engine::solve(int first_redone, double damping, UpdateSummary& summary) {
     }
     if (!singular) {
       factorisation_.solve_root(delta_);
-      solve_back(first_redone, summary);
+      solve_back(summary);
       return true;
     }
     if (factorisation_.is_held(*singular)) {
@@ -284,7 +287,7 @@ Engine::OptimiseSummary Engine::optimise(int max_iterations, double relative_tol
     while (!accepted && !summary.converged && damping < kMaxDamping) {
       restart_ = 0;
       UpdateSummary update;
-      const bool solved = solve(0, damping, update);
+      const bool solved = solve(damping, update);
       summary.reason = update.reason;
       const double cost = solved ? evaluate(graph_).total() : 0.0;
       const double decrease = summary.final_cost - cost;

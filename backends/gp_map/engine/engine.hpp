@@ -90,7 +90,8 @@ class Engine {
   /// Removes the observation of a landmark at exactly this time. False when there is none.
   bool remove_observation(int landmark, double t);
 
-  /// Takes the newest state back, with the observations in its interval and the priors on it.
+  /// Takes the newest state back, with the observations in its interval and the priors on it. With a lag not
+  /// first_state().
   void remove_newest_state();
 
   /// Removes a landmark with all its observations.
@@ -142,10 +143,10 @@ class Engine {
   int first_stage(const Variable& variable) const;
   void choose_points();
   void move(const Variable& variable);
-  bool solve(int first_redone, double damping, UpdateSummary& summary);
+  bool solve(double damping, UpdateSummary& summary);
   bool factorise_undamped();
   bool open_live_factor();
-  void solve_back(int first_redone, UpdateSummary& summary);
+  void solve_back(UpdateSummary& summary);
   double separator_change(int k) const;
   void set_state(int i, const double* delta);
   void set_landmark(int j, const double* delta, int slot);

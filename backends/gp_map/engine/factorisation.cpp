@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace evbench::gp_map {
 namespace {
@@ -51,13 +52,7 @@ std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph,
   const int newest = static_cast<int>(graph.states.size()) - 1;
   if (done_ > newest) first = std::min(first, newest + 1);  // states were taken back
   stages_.resize(graph.states.size());
-  anchors_ = graph.anchor.landmarks;
-  std::ranges::sort(anchors_);
-  anchor_stage_ = -1;
-  for (const int j : anchors_) {
-    const auto& seen = graph.landmarks[at(j)].intervals;
-    if (!seen.empty()) anchor_stage_ = std::max(anchor_stage_, seen.front());
-  }
+  first = std::min(first, place_anchor(graph));
   for (int k = go_back_to(first); k <= newest; ++k) {
     if (const auto singular = do_stage(k, graph, points, damping)) {
       done_ = k;  // nothing after it is usable, and it itself must be redone
@@ -65,10 +60,27 @@ std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph,
       return singular;
     }
     done_ = k;
+    if (k >= first) stage(k).skipped = std::numeric_limits<double>::infinity();
     keep_snapshot(k, newest);
   }
   thin_snapshots(newest);
   return std::nullopt;
+}
+
+/// Finds the stage that adds the scale anchor: none any more once it has become part of the base. Returns the oldest
+/// stage that has to be redone for that, as it may have moved without a change of the stages it moved from or to.
+int Factorisation::place_anchor(const FactorGraph& graph) {
+  const int before = anchor_stage_;
+  anchors_ = graph.anchor.landmarks;
+  std::ranges::sort(anchors_);
+  anchor_stage_ = -1;
+  for (const int j : anchors_) {
+    const auto& seen = graph.landmarks[at(j)].intervals;
+    if (!seen.empty() && !anchor_in_base_) anchor_stage_ = std::max(anchor_stage_, seen.front());
+  }
+  if (anchor_stage_ == before) return done_ + 1;
+  const int older = std::min(before, anchor_stage_);
+  return std::max(base_ + 1, older < 0 ? std::max(before, anchor_stage_) : older);
 }
 
 /// Makes the root what it was before stage `first` or an earlier one; returns the stage that is to be done next.
@@ -222,6 +234,10 @@ int Factorisation::marginalise(int stage) {
   for (auto i = snapshots_.begin(); i != snapshot; ++i) spare_.push_back(std::move(i->second));
   snapshots_.erase(snapshots_.begin(), snapshot);
   base_ = snapshot->first;
+  if (anchor_stage_ >= 0 && anchor_stage_ <= base_) {
+    anchor_in_base_ = true;
+    anchor_stage_ = -1;
+  }
   return base_;
 }
 

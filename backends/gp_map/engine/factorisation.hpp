@@ -32,7 +32,8 @@ class Factorisation {
     std::vector<Conditional> conditionals;  ///< in the order of elimination
     std::vector<int> entered;               ///< landmarks that came into the root in this stage
     std::vector<int> entered_slots;         ///< and where
-    double skipped = 0.0;  ///< change of the separator since the stage was last solved back (see Engine)
+    /// Change of the separator since the stage was last solved back (see Engine); infinite once it has been redone.
+    double skipped = 0.0;
   };
 
   /// A landmark that is not observed any more stays in the root for this many states [≥ 1].
@@ -85,6 +86,8 @@ class Factorisation {
   bool is_forgotten(int j) const { return landmarks_[static_cast<std::size_t>(j)].forgotten; }
   /// A variable of the base is linearised at a point that lies `shift` further (12 or 3).
   void shift_base(const Variable& variable, const double* shift);
+  /// The graph has got another scale anchor: what one that has been marginalised says stays in the base.
+  void renew_anchor() { anchor_in_base_ = false; }
 
   std::int64_t stages_done() const { return stages_done_; }
 
@@ -93,6 +96,7 @@ class Factorisation {
     int eliminated_at = -1;
     bool ended = false, held = false, forgotten = false;
   };
+  int place_anchor(const FactorGraph& graph);
   int go_back_to(int first);
   std::optional<Variable> do_stage(int k, const FactorGraph& graph, LinearisationPoints& points, double damping);
   void add_factors(int k, const FactorGraph& graph, LinearisationPoints& points);
@@ -111,6 +115,7 @@ class Factorisation {
   int grace_;
   int done_ = -1;
   int base_ = -1;
+  bool anchor_in_base_ = false;
   int anchor_stage_ = -1;     ///< where the scale anchor is added: its last landmark has come in
   std::vector<int> anchors_;  ///< ascending
   Root root_;

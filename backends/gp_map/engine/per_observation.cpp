@@ -45,6 +45,9 @@ bool Engine::observe(int landmark, const Observation& observation) {
   live_.add(slot, rows, graph_.loss.weight(rows.e.squaredNorm()));
   const Vector24 delta = live_.solve_states();
   if (!delta.allFinite()) return false;
+  // What older states are solved from has changed.
+  factorisation_.stage(newest - 1).skipped +=
+      size_of_state(newest - 1, delta.head<12>() - points_.state_delta(newest - 1));
   points_.set_state_delta(graph_, newest - 1, delta.head<12>());
   points_.set_state_delta(graph_, newest, delta.tail<12>());
   return true;

@@ -1,0 +1,212 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "backends/gp_map/testing/random_session.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kStep = 0.1;  ///< [s] between states
+
+/// A camera that moves sideways at 0.5 m/s past landmarks without priors; exact observations, guesses 10 % too far.
+class Flight {
+ public:
+  /// The scale anchor is held loosely, so that the covariance shows how often it counts.
+  explicit Flight(const EngineOptions& options = {}) : engine(empty_graph(), options) {
+    ControlState first;
+    first.velocity = motion();
+    engine.add_state(first);
+    engine.add_pose_prior({0, first.T, Vector6::Constant(0.01)});
+    engine.add_velocity_prior({0, first.velocity, Vector6::Constant(1.0)});
+    for (int j = 0; j < kLandmarks; ++j) engine.add_landmark(1.1 * landmark(j));
+  }
+
+  static FactorGraph empty_graph() {
+    FactorGraph graph;
+    graph.camera = {200.0, 200.0, 120.0, 90.0};
+    graph.anchor.sigma = 0.02;
+    return graph;
+  }
+  static Vector6 motion() {
+    Vector6 velocity = Vector6::Zero();
+    velocity(3) = 0.5;
+    return velocity;
+  }
+  static Vector3 landmark(int j) { return {0.3 * (j % 4) - 0.4, 0.25 * (j / 4) - 0.3, 2.0 + 0.3 * (j % 3)}; }
+  static Observation observation(int j, double t) {
+    return {t, PinholeCamera{200.0, 200.0, 120.0, 90.0}.project(landmark(j) - Vector3(0.5 * t, 0.0, 0.0)), 1.0};
+  }
+  double newest() const { return engine.graph().states.back().t; }
+
+  void add_state(double dt = kStep) {
+    ControlState next = engine.graph().states.back();
+    next.t += dt;
+    next.T = next.T * se3::exp(dt * next.velocity);
+    engine.add_state(next);
+  }
+  /// A state more, with two observations of each of the first `count` landmarks.
+  void fly(int count = kSeen) {
+    add_state();
+    for (int j = 0; j < count; ++j) {
+      for (const double back : {0.05, 0.0}) REQUIRE(engine.add_observation(j, observation(j, newest() - back)));
+    }
+  }
+
+  static constexpr int kSeen = 10, kLandmarks = 12;
+  Engine engine;
+};
+
+/// That the engine's stages are those of its factors: redoing all of them changes nothing.
+void check_nothing_is_stale(Engine& engine) {
+  const FactorGraph before = engine.graph();
+  const auto now = engine.neighbours(static_cast<int>(before.states.size()) - 2);
+  engine.add_velocity_prior({0, Vector6::Zero(), Vector6::Constant(1e9)});
+  const auto redone = engine.neighbours(static_cast<int>(before.states.size()) - 2);
+  REQUIRE(now);
+  REQUIRE(redone);
+  CHECK((*now - *redone).norm() < 1e-4 * redone->norm());
+}
+
+}  // namespace
+
+TEST_CASE("The scale anchor counts once, whenever its landmarks come in or lose their observations") {
+  Flight flight(testing::linear_options());
+  for (int k = 0; k < 3; ++k) flight.fly();
+  flight.engine.anchor_scale({0.0, 0.0, -1.0}, {0, 1, 11});
+  flight.engine.update();
+  check_nothing_is_stale(flight.engine);
+  for (int k = 0; k < 6; ++k) flight.fly(k < 3 ? 10 : 5);
+  flight.engine.update();
+  flight.fly();
+  const double first_seen = flight.newest();
+  REQUIRE(flight.engine.add_observation(11, Flight::observation(11, first_seen)));
+  flight.engine.update();
+  check_nothing_is_stale(flight.engine);
+  flight.fly();
+  flight.engine.update();
+  REQUIRE(flight.engine.remove_observation(11, first_seen));
+  flight.engine.update();
+  check_nothing_is_stale(flight.engine);
+}
+
+TEST_CASE("A scale anchor that has been marginalised is not added again") {
+  EngineOptions lagged = testing::linear_options();
+  lagged.lag = 0.3;
+  Flight flight(lagged), full(testing::linear_options());
+  for (Flight* f : {&flight, &full}) {
+    f->fly();
+    f->fly();
+    f->engine.update();
+    f->engine.anchor_scale({0.0, 0.0, -1.0}, {0, 1, 2});
+  }
+  for (int k = 0; k < 12; ++k) {
+    for (Flight* f : {&flight, &full}) {
+      f->fly();
+      f->engine.update();
+    }
+  }
+  REQUIRE(flight.engine.first_state() > 5);
+  const int newest = static_cast<int>(full.engine.graph().states.size()) - 1;
+  const Matrix24 expected = *full.engine.neighbours(newest - 1);
+  CHECK((*flight.engine.neighbours(newest - 1) - expected).norm() < 1e-3 * expected.norm());
+}
+
+TEST_CASE("Without its last landmark there is no scale anchor, and what held the scale otherwise goes on holding it") {
+  Flight flight;
+  for (int k = 0; k < 5; ++k) flight.fly();
+  flight.engine.anchor_scale({0.0, 0.0, -1.0}, {0, 1});
+  flight.engine.update();
+  flight.engine.remove_landmark(0);
+  flight.engine.remove_landmark(1);
+  CHECK(flight.engine.graph().anchor.landmarks.empty());
+  const UpdateSummary update = flight.engine.update();
+  CHECK_FALSE(update.rejected);
+  CHECK(update.reason.empty());
+  check_nothing_is_stale(flight.engine);
+}
+
+TEST_CASE("A gap longer than the lag leaves the newest interval to be estimated, however often it is updated") {
+  EngineOptions lagged;
+  lagged.lag = 0.3;
+  Flight flight(lagged);
+  for (int k = 0; k < 6; ++k) {
+    flight.fly();
+    flight.engine.update();
+  }
+  for (int k = 0; k < 3; ++k) {
+    flight.add_state(5.0);
+    for (int i = 0; i < 4; ++i) flight.engine.update();
+    CHECK(flight.engine.first_state() + 1 < static_cast<int>(flight.engine.graph().states.size()));
+    CHECK(flight.engine.neighbours(static_cast<int>(flight.engine.graph().states.size()) - 2));
+  }
+  flight.engine.remove_newest_state();
+  flight.engine.update();
+  flight.engine.update();
+  flight.add_state();
+  CHECK_FALSE(flight.engine.update().rejected);
+}
+
+TEST_CASE("A covariance asked for between a change and its update doesn't keep the update from being complete") {
+  Flight flight;
+  for (int k = 0; k < 20; ++k) {
+    flight.fly(k < 3 ? Flight::kLandmarks : Flight::kSeen);
+    flight.engine.update();
+  }
+  Observation wrong = Flight::observation(11, 0.25);  // of a landmark that says little about the newest state
+  wrong.pixel += Vector2(3.0, -2.0);
+  REQUIRE(flight.engine.add_observation(11, wrong));
+  Engine asked = flight.engine;
+  REQUIRE(asked.neighbours(19));
+  const Vector3 before = asked.graph().landmarks[11].position;
+  asked.update();
+  flight.engine.update();
+  const Vector3 &a = asked.graph().landmarks[11].position, &b = flight.engine.graph().landmarks[11].position;
+  CHECK((b - before).norm() > 1e-3);
+  CHECK((a - b).norm() < 1e-4);
+}
+
+TEST_CASE("What the newest states learnt one observation at a time reaches the older ones with the update") {
+  EngineOptions options;
+  options.grace = 10;
+  Flight flight(options);
+  const int known = flight.engine.add_landmark(Flight::landmark(0), {Flight::landmark(0), 1e-4});
+  const auto see_known = [&](double t) {
+    Observation z = Flight::observation(0, t);
+    z.pixel.y() += 4.0 * t;
+    return z;
+  };
+  for (int k = 0; k < 10; ++k) {
+    flight.fly(0);
+    if (k < 4) REQUIRE(flight.engine.add_observation(known, see_known(flight.newest())));
+    flight.engine.update();
+  }
+  flight.add_state();
+  Engine at_once = flight.engine;
+  for (const double back : {0.09, 0.06, 0.03}) {
+    REQUIRE(flight.engine.observe(known, see_known(flight.newest() - back)));
+    REQUIRE(at_once.add_observation(known, see_known(flight.newest() - back)));
+  }
+  flight.engine.update();
+  at_once.update();
+  for (std::size_t k = 0; k < at_once.graph().states.size(); ++k) {
+    const SE3 &a = flight.engine.graph().states[k].T, &b = at_once.graph().states[k].T;
+    CAPTURE(k);
+    CHECK((a.p - b.p).norm() < 1e-4);
+  }
+}
+
+TEST_CASE("A singular system has no covariance, the first time and the second") {
+  Engine engine({200.0, 200.0, 120.0, 90.0}, Vector6::Ones(), {});
+  ControlState state;
+  engine.add_state(state);
+  state.t = kStep;
+  engine.add_state(state);
+  for (int i = 0; i < 3; ++i) CHECK_FALSE(engine.neighbours(0));
+  engine.update();
+  for (int i = 0; i < 2; ++i) {
+    const auto held = engine.neighbours(0);
+    if (held) CHECK(held->allFinite());
+  }
+}
+
+}  // namespace evbench::gp_map

@@ -1,0 +1,267 @@
+#include "backends/gp_map/testing/random_session.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+namespace evbench::gp_map::testing {
+namespace {
+
+const PinholeCamera kCamera{200.0, 200.0, 120.0, 90.0};
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+SE3 true_pose(double t) {
+  SE3 T;
+  T.q = Eigen::Quaterniond(Eigen::AngleAxisd(0.2 * std::sin(0.9 * t), Vector3(0.3, 1.0, 0.2).normalized()));
+  T.p = Vector3(std::sin(1.3 * t), 0.4 * std::sin(0.7 * t), 0.3 * std::cos(t));
+  return T;
+}
+
+void require_finite(const FactorGraph& graph) {
+  bool finite = true;
+  for (const auto& state : graph.states) {
+    finite = finite && state.T.p.allFinite() && state.T.q.coeffs().allFinite() && state.velocity.allFinite();
+  }
+  for (const auto& landmark : graph.landmarks) finite = finite && landmark.position.allFinite();
+  REQUIRE(finite);
+}
+
+/// Up to rounding, whatever the units of its rows.
+template <class Matrix>
+void require_positive_definite(const Matrix& covariance) {
+  REQUIRE(covariance.allFinite());
+  REQUIRE(covariance.diagonal().minCoeff() > 0.0);
+  const auto scale = covariance.diagonal().cwiseSqrt().cwiseInverse().eval();
+  const Matrix correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+  constexpr double kRounding = 1e-6;
+  REQUIRE(Eigen::SelfAdjointEigenSolver<Matrix>(correlation, Eigen::EigenvaluesOnly).eigenvalues()(0) > -kRounding);
+}
+
+}  // namespace
+
+EngineOptions linear_options() {
+  EngineOptions linear;
+  linear.relinearise = linear.relinearise_redone = linear.check_step = std::numeric_limits<double>::infinity();
+  linear.solve_tolerance = 0.0;
+  return linear;
+}
+
+RandomSession::RandomSession(std::uint64_t seed, const SessionOptions& options)
+    : random_(seed),
+      options_(options),
+      engine_(kCamera, Vector6::Constant(0.2), chance(0.3) ? RobustLoss("cauchy", 2.0) : RobustLoss(), options.engine) {
+  if (options.full_twin) {
+    EngineOptions full = options.engine;
+    full.lag = 0.0;
+    twin_.emplace(graph(), full);
+  }
+  ControlState first;
+  first.T = true_pose(0.0);
+  for (Engine* engine : {&engine_, twin_ ? &*twin_ : nullptr}) {
+    if (engine == nullptr) continue;
+    engine->add_state(first);
+    engine->add_pose_prior({0, first.T, Vector6::Constant(0.01)});
+    engine->add_velocity_prior({0, Vector6::Zero(), Vector6::Constant(2.0)});
+  }
+  update();
+}
+
+int RandomSession::draw_length() {
+  if (chance(0.02)) return 30 + static_cast<int>(random_.index(120));
+  return 3 + static_cast<int>(random_.index(28));
+}
+
+void RandomSession::operate() {
+  const double which = random_.uniform();
+  if (which < 0.33 || truth_.empty()) return add_state();
+  if (which < 0.47) return late_observation();
+  if (which < 0.53) return remove_landmark(any_landmark());
+  if (which < 0.60) return remove_observation();
+  if (which < 0.65) {
+    const int ended = any_landmark();
+    engine_.end_landmark(ended);
+    if (twin_) twin_->end_landmark(ended);
+  } else if (which < 0.70) {
+    if (const auto seen = look()) give(seen->landmark, seen->observation);  // whether it had ended or was removed
+  } else if (which < 0.73) {
+    refused();
+  } else if (which < 0.75) {
+    degenerate_landmark();
+  } else if (which < 0.78) {
+    remove_newest_state();
+  } else if (which < 0.81) {
+    if (options_.anchor) anchor_scale();
+  } else if (which < 0.82) {
+    for (const int j : std::vector(graph().anchor.landmarks)) remove_landmark(j);
+  } else if (which < 0.85) {
+    if (options_.covariances) check_covariances();
+  } else {
+    update();
+  }
+}
+
+void RandomSession::update() {
+  undetermined_ |= !engine_.update().reason.empty();
+  require_finite(graph());
+  if (!twin_) return;
+  undetermined_ |= !twin_->update().reason.empty();
+  require_finite(twin_->graph());
+}
+
+void RandomSession::check_covariances() {
+  const int states = static_cast<int>(graph().states.size());
+  const int k = static_cast<int>(random_.index(graph().states.size()));
+  const auto joint = engine_.neighbours(k);
+  if (joint) require_positive_definite(*joint);
+  if (k + 1 >= states || k < engine_.first_state()) CHECK_FALSE(joint);
+  if (const auto covariance = engine_.covariance(random_.uniform(0.0, newest())))
+    require_positive_definite(*covariance);
+  CHECK_FALSE(engine_.covariance(newest() + 0.1));
+  if (truth_.empty()) return;
+  if (const auto covariance = engine_.landmark_covariance(any_landmark())) require_positive_definite(*covariance);
+}
+
+void RandomSession::add_state() {
+  const double gap = random_.uniform();
+  const double dt = gap < 0.02 ? 5.0 : random_.uniform(0.02, 0.15);
+  const ControlState last = twin_ ? twin_->graph().states.back() : graph().states.back();
+  ControlState next = last;
+  next.t += dt;
+  next.T = dt > 1.0 ? true_pose(next.t) : last.T * se3::exp(dt * last.velocity);
+  if (chance(0.5)) update();  // then observations may be taken in one by one
+  engine_.add_state(next);
+  if (twin_) twin_->add_state(next);
+  const double share = chance(0.1) ? 0.0 : 0.8;  // sometimes nothing is seen
+  const int count = static_cast<int>(truth_.size());
+  for (int j = std::max(0, count - 7); j < count; ++j) {
+    if (chance(share)) observe(j, last.t, next.t);
+  }
+  while (chance(0.5)) {
+    add_landmark();
+    const bool from_one_place = chance(0.1);
+    observe(static_cast<int>(truth_.size()) - 1, from_one_place ? next.t : last.t, next.t);
+    if (chance(0.9)) observe(static_cast<int>(truth_.size()) - 1, from_one_place ? next.t : last.t, next.t);
+  }
+}
+
+int RandomSession::insert_landmark(const Vector3& truth, const Vector3& guess, const LandmarkPrior& prior) {
+  truth_.push_back(truth);
+  if (twin_) twin_->add_landmark(guess, prior);
+  return engine_.add_landmark(guess, prior);
+}
+
+void RandomSession::add_landmark() {
+  const Vector3 q(random_.uniform(-1.0, 1.0), random_.uniform(-0.8, 0.8), random_.uniform(2.0, 6.0));
+  const SE3 T = true_pose(newest());
+  const Vector3 guess = T * (random_.uniform(0.8, 1.25) * q);
+  insert_landmark(T * q, guess, chance(0.9) ? LandmarkPrior{guess, 1.0} : LandmarkPrior{});
+}
+
+/// None when it is not before the camera.
+std::optional<Observation> RandomSession::measure(int landmark, double t) {
+  const Vector3 q = true_pose(t).inverse() * truth_[static_cast<std::size_t>(landmark)];
+  if (q.z() < 0.1) return std::nullopt;
+  const Vector2 noise(random_.uniform(-1.0, 1.0), random_.uniform(-1.0, 1.0));
+  return Observation{t, kCamera.project(q) + noise, 1.0};
+}
+
+std::optional<RandomSession::Seen> RandomSession::look() {
+  const std::size_t states = graph().states.size();
+  if (truth_.empty() || states < 2) return std::nullopt;
+  const int j = any_landmark();
+  const auto observation = measure(j, time_in(graph().states[states - 2].t, newest()));
+  if (!observation) return std::nullopt;
+  return Seen{j, *observation};
+}
+
+void RandomSession::observe(int landmark, double from, double to) {
+  const double t = time_in(from, to);
+  const auto observation = measure(landmark, t);
+  if (observation) give(landmark, *observation);
+  const auto second = chance(0.05) ? measure(landmark, t) : std::nullopt;  // two at one time
+  if (second) give(landmark, *second);
+}
+
+/// One by one or for the next update. Whether it was accepted.
+bool RandomSession::give(int landmark, const Observation& observation) {
+  const int before = graph().observation_count();
+  bool accepted;
+  if (chance(0.3)) {
+    const bool followed = engine_.observe(landmark, observation);
+    require_finite(graph());
+    accepted = graph().observation_count() > before;
+    if (followed) CHECK(accepted);
+  } else {
+    accepted = engine_.add_observation(landmark, observation);
+  }
+  CHECK(graph().observation_count() == before + (accepted ? 1 : 0));
+  if (accepted) CHECK(graph().landmarks[static_cast<std::size_t>(landmark)].alive);
+  if (accepted && twin_) CHECK(twin_->add_observation(landmark, observation));
+  return accepted;
+}
+
+/// Of any landmark, ended, eliminated and removed ones too.
+void RandomSession::late_observation() {
+  const double to = random_.uniform(0.0, newest());
+  observe(any_landmark(), chance(0.3) ? 0.0 : 0.5 * to, to);
+}
+
+void RandomSession::remove_landmark(int landmark) {
+  if (twin_) {  // what has been marginalised can't be taken back
+    const auto& seen = twin_->graph().landmarks[static_cast<std::size_t>(landmark)].intervals;
+    if (!seen.empty() && seen.front() <= engine_.first_state()) return;
+    twin_->remove_landmark(landmark);
+  }
+  engine_.remove_landmark(landmark);
+}
+
+void RandomSession::remove_observation() {
+  const auto& intervals = graph().intervals;
+  const auto& interval = intervals[random_.index(intervals.size())];
+  if (interval.groups().empty()) return;
+  const auto group = interval.groups()[random_.index(interval.groups().size())];
+  const double t = interval.all()[static_cast<std::size_t>(group.begin)].t;
+  CHECK(engine_.remove_observation(group.landmark, t));
+  if (twin_) CHECK(twin_->remove_observation(group.landmark, t));
+}
+
+void RandomSession::remove_newest_state() {
+  if (static_cast<int>(graph().states.size()) <= engine_.first_state() + 3) return;
+  engine_.remove_newest_state();
+  if (twin_) twin_->remove_newest_state();
+}
+
+void RandomSession::refused() {
+  const int j = any_landmark();
+  CHECK_FALSE(engine_.add_observation(j, {newest() + 1.0, {120.0, 90.0}, 1.0}));
+  CHECK_FALSE(engine_.add_observation(j, {-1.0, {120.0, 90.0}, 1.0}));
+  CHECK_FALSE(engine_.add_observation(j, {newest(), {kNaN, 90.0}, 1.0}));
+  CHECK_FALSE(engine_.add_observation(j, {kNaN, {120.0, 90.0}, 1.0}));
+  CHECK_FALSE(engine_.observe(j, {newest() + 1.0, {120.0, 90.0}, 1.0}));
+  CHECK_FALSE(engine_.observe(j, {newest(), {120.0, kNaN}, 1.0}));
+  CHECK_FALSE(engine_.remove_observation(j, newest() + 1.0));
+}
+
+/// Behind the camera or nearly at infinity, with a prior or not, seen anywhere in the image.
+void RandomSession::degenerate_landmark() {
+  if (graph().states.size() < 2) return;
+  const SE3 T = true_pose(newest());
+  const Vector3 behind = T * Vector3(0.1, 0.2, -3.0);
+  const Vector3 far = T * (std::pow(10.0, random_.uniform(3.0, 12.0)) * Vector3(0.1, -0.2, 1.0));
+  const Vector3 place = chance(0.5) ? far : behind;
+  const int j = insert_landmark(place, place, chance(0.5) ? LandmarkPrior{place, 1.0} : LandmarkPrior{});
+  const Vector2 pixel(random_.uniform(0.0, 240.0), random_.uniform(0.0, 180.0));
+  give(j, {time_in(graph().states[graph().states.size() - 2].t, newest()), pixel, 1.0});
+}
+
+/// Some landmarks hold the scale from now on: observed or not yet.
+void RandomSession::anchor_scale() {
+  std::vector<int> anchors;
+  for (int j = static_cast<int>(truth_.size()) - 1; j >= 0 && anchors.size() < 5; --j) {
+    if (graph().landmarks[static_cast<std::size_t>(j)].alive && chance(0.6)) anchors.push_back(j);
+  }
+  engine_.anchor_scale(graph().states.front().T.p - Vector3(0.0, 0.0, 0.5), anchors);
+}
+
+}  // namespace evbench::gp_map::testing

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "backends/gp_map/engine/engine.hpp"
+#include "core/simulation/random.hpp"
+
+namespace evbench::gp_map::testing {
+
+/// Options under which the problem is linear: then every order of operations ends at one estimate.
+EngineOptions linear_options();
+
+struct SessionOptions {
+  EngineOptions engine;
+  bool anchor = true;       ///< the scale anchor is set and loses landmarks
+  bool full_twin = false;   ///< a second engine, of full history, is given all that the first one accepted
+  bool covariances = true;  ///< are asked for in between
+};
+
+/// A small world and an engine that is told about it in every way possible, sensible or not. What holds whatever is
+/// done is checked after every operation: estimates and covariances are finite, covariances positive definite,
+/// impossible requests refused.
+class RandomSession {
+ public:
+  RandomSession(std::uint64_t seed, const SessionOptions& options);
+
+  /// Short ones mostly, 1 in 50 is long.
+  int draw_length();
+  void operate();
+  void update();
+  void check_covariances();
+
+  Random& random() { return random_; }
+  Engine& engine() { return engine_; }
+  const Engine& twin() const { return *twin_; }
+  bool undetermined() const { return undetermined_; }  ///< something was held in some update
+
+  /// Of a random landmark at a random time in the newest interval; none when it is not in view or there is no interval.
+  struct Seen {
+    int landmark = 0;
+    Observation observation;
+  };
+  std::optional<Seen> look();
+
+ private:
+  const FactorGraph& graph() const { return engine_.graph(); }
+  double newest() const { return graph().states.back().t; }
+  bool chance(double p) { return random_.uniform() < p; }
+  int any_landmark() { return static_cast<int>(random_.index(truth_.size())); }
+  double time_in(double from, double to) { return chance(0.1) ? to : random_.uniform(from, to); }
+
+  void add_state();
+  void add_landmark();
+  int insert_landmark(const Vector3& truth, const Vector3& guess, const LandmarkPrior& prior);
+  std::optional<Observation> measure(int landmark, double t);
+  void observe(int landmark, double from, double to);
+  bool give(int landmark, const Observation& observation);
+  void late_observation();
+  void remove_landmark(int landmark);
+  void remove_observation();
+  void remove_newest_state();
+  void refused();
+  void degenerate_landmark();
+  void anchor_scale();
+
+  Random random_;
+  SessionOptions options_;
+  Engine engine_;
+  std::optional<Engine> twin_;
+  std::vector<Vector3> truth_;  ///< of the landmarks
+  bool undetermined_ = false;
+};
+
+}  // namespace evbench::gp_map::testing
