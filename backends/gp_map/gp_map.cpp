@@ -271,7 +271,7 @@ void GpMap::finish() {
   }
   if (options_.final_iterations == 0 || options_.lag > 0.0) return;
   const auto start = std::chrono::steady_clock::now();
-  const Engine::OptimiseSummary summary = engine_->optimise(options_.final_iterations, 1e-7);
+  const Engine::OptimiseSummary summary = engine_->optimise(options_.final_iterations, 1e-9);
   context_.log(fmt::format("final estimate: cost {:.2f} after {:.2f}, {} iterations{}", summary.final_cost,
                            summary.initial_cost, summary.iterations, summary.converged ? "" : ", not converged"));
   add_record(graph().states.back().t, seconds_since(start), summary.iterations, summary.final_cost);
