@@ -213,17 +213,20 @@ double GpMap::median_depth() const {
 
 void GpMap::optimise() { last_update_ = engine_->update(); }
 
+/// Of the landmarks seen in the newest interval.
 void GpMap::remove_outliers() {
   std::vector<int> seen;
   for (const auto& group : graph().intervals.back().groups()) seen.push_back(group.landmark);
-  for (const int landmark : seen) {
-    if (reprojection_mean(graph(), landmark) <= options_.map.outlier_threshold) continue;
-    const TrackId track = track_of_[static_cast<std::size_t>(landmark)];
-    engine_->remove_landmark(landmark);
-    landmark_of_.erase(track);
-    tracks_.remove(track);
-    new_outliers_.push_back(track);
-  }
+  for (const int landmark : seen) remove_if_outlier(landmark);
+}
+
+void GpMap::remove_if_outlier(int landmark) {
+  if (reprojection_mean(graph(), landmark) <= options_.map.outlier_threshold) return;
+  const TrackId track = track_of_[static_cast<std::size_t>(landmark)];
+  engine_->remove_landmark(landmark);
+  landmark_of_.erase(track);
+  tracks_.remove(track);
+  new_outliers_.push_back(track);
 }
 
 void GpMap::check_health() {
@@ -271,6 +274,8 @@ void GpMap::finish() {
   }
   if (options_.final_iterations == 0 || options_.lag > 0.0) return;
   const auto start = std::chrono::steady_clock::now();
+  const auto landmarks = landmark_of_;
+  for (const auto& [track, landmark] : landmarks) remove_if_outlier(landmark);
   const Engine::OptimiseSummary summary = engine_->optimise(options_.final_iterations, 1e-9);
   context_.log(fmt::format("final estimate: cost {:.2f} after {:.2f}, {} iterations{}", summary.final_cost,
                            summary.initial_cost, summary.iterations, summary.converged ? "" : ", not converged"));

@@ -61,6 +61,7 @@ class GpMap : public BackEnd {
   void record_online(double t);
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
   void start_from(FirstMap map);
+  void remove_if_outlier(int landmark);
   void become_landmark(TrackId track, int landmark);
   std::optional<std::pair<Vector3, LandmarkPrior>> locate(TrackId track, bool scarce) const;
   double median_depth() const;

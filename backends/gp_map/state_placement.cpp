@@ -6,12 +6,6 @@
 
 namespace evbench::gp_map {
 
-namespace {
-
-constexpr double kForget = 1.0;  ///< [s] after which a track that is not observed has moved no more
-
-}  // namespace
-
 void StatePlacement::observe(const TrackObservation& observation) {
   if (!first_) first_ = observation.t;
   last_observation_ = observation.t;
@@ -52,16 +46,14 @@ void StatePlacement::look_at(const TrackObservation& observation) {
 bool StatePlacement::is_enough() const {
   if (options_.rule == "observations") return count_ >= options_.observations;
   std::vector<double> distances;
-  for (const auto& [id, track] : displacements_) {
-    if (track.t > *newest_) distances.push_back((track.to - track.from).norm());
-  }
+  for (const auto& [id, track] : displacements_) distances.push_back((track.to - track.from).norm());
   return !distances.empty() && median(std::move(distances)) >= options_.motion;
 }
 
 void StatePlacement::place(double t) {
   for (; !later_.empty() && later_.front().t <= t; later_.pop_front()) look_at(later_.front());
   for (auto& [id, track] : displacements_) track.from = track.to;
-  std::erase_if(displacements_, [t](const auto& track) { return track.second.t < t - kForget; });
+  std::erase_if(displacements_, [&](const auto& track) { return track.second.t < t - options_.max_spacing; });
   newest_ = t;
   ++placed_;
   count_ = 0;

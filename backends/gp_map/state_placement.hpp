@@ -16,10 +16,9 @@ namespace evbench::gp_map {
 ///
 /// * rate: state k stands k / rate after the first.
 /// * observations: at the observation that makes a number of them since the newest state.
-/// * motion: at the observation that brings the median, over the tracks observed since the newest state, of the
-///   distance in the image between a track's newest observation and its last one up to that state (its first one, for
-///   a younger track) to a number of pixels. Rotation and translation count alike: what the states have to follow is
-///   what is seen.
+/// * motion: at the observation that brings the median displacement of the tracks in the image to a number of pixels,
+///   each from its last observation up to the newest state (its first one, for a younger track) to its newest one.
+///   Rotation and translation count alike: what the states have to follow is what is seen.
 /// The last two keep a least and a greatest spacing.
 class StatePlacement {
  public:

@@ -1,5 +1,6 @@
 #include "backends/gp_map/state_placement.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 namespace evbench::gp_map {
@@ -22,7 +23,7 @@ std::vector<double> placed(const PlacementOptions& options, const std::vector<Tr
   std::size_t next = 0;
   for (double now = piece; next < observations.size(); now += piece) {
     for (; next < observations.size() && observations[next].t <= now; ++next) placement.observe(observations[next]);
-    while (const auto t = placement.next(now)) {
+    while (const auto t = placement.next(std::min(now, observations.back().t))) {
       CHECK(*t <= now);
       times.push_back(*t);
     }

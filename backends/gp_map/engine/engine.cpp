@@ -216,7 +216,7 @@ UpdateSummary Engine::update() {
   while (true) {
     const bool solved = solve(damping, summary);
     if (solved) {
-      refine_landmarks();
+      refine_landmarks(options_.check_step);
       if (!raises_cost()) break;
     }
     if (solved) swap_changes();
@@ -277,6 +277,8 @@ Engine::OptimiseSummary Engine::optimise(int max_iterations, double relative_tol
   summary.initial_cost = summary.final_cost = evaluate(graph_).total();
   constexpr double kDampingOfSteps = 1e-3;  ///< up to which a small decrease means a minimum, not a short step
   constexpr double kMaxDamping = 1e8, kRounding = 1e-11;
+  constexpr double kLeastShare = 1.0 / 16.0;  ///< of a step, halved until it lowers the cost; then damping, which holds
+                                              ///< back the slow modes most, where a shorter step keeps its direction
   double damping = 0.0;
   while (summary.iterations < max_iterations && !summary.converged) {
     for (int i = 0; i < static_cast<int>(graph_.states.size()); ++i) points_.move_state(graph_, i);
@@ -289,11 +291,20 @@ Engine::OptimiseSummary Engine::optimise(int max_iterations, double relative_tol
       UpdateSummary update;
       const bool solved = solve(damping, update);
       summary.reason = update.reason;
-      const double cost = solved ? evaluate(graph_).total() : 0.0;
+      double cost = solved ? evaluate(graph_).total() : 0.0;
+      double share = 1.0;
+      if (solved && !(cost <= summary.final_cost)) {
+        refine_landmarks(0.0);
+        cost = evaluate(graph_).total();
+      }
+      for (; solved && !(cost <= summary.final_cost) && share > kLeastShare; share *= 0.5) {
+        halve_changes();
+        cost = evaluate(graph_).total();
+      }
       const double decrease = summary.final_cost - cost;
       accepted = solved && decrease >= 0.0;
       const bool little = std::abs(decrease) <= std::max(kRounding, relative_tolerance) * summary.final_cost;
-      summary.converged = solved && little && damping < kDampingOfSteps;
+      summary.converged = solved && little && damping < kDampingOfSteps && share == 1.0;
       if (accepted) {
         summary.final_cost = cost;
         damping = damping < 1e-6 ? 0.0 : 0.1 * damping;

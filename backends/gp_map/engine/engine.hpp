@@ -23,7 +23,7 @@ struct EngineOptions {
   /// Back-substitution ends where the change of what a stage is solved from is below this [rad, as above].
   double solve_tolerance = 5e-4;
   /// An update that changes a variable by more than this [rad] must not raise the cost of the intervals concerned.
-  double check_step = 0.05;
+  double check_step = 0.02;
   /// States for which a landmark may go unobserved before it is eliminated [≥ 1].
   int grace = 1;
   /// Of the newest intervals, how many keep their linearisation.
@@ -103,8 +103,8 @@ class Engine {
   /// One Gauss-Newton step over what the changes since the last update concern, damped if it would raise the cost.
   UpdateSummary update();
 
-  /// Of a full history only. Gauss-Newton steps over everything, damped where needed, until a step lowers the cost by
-  /// less than the tolerance.
+  /// Of a full history only. Gauss-Newton steps over everything, shortened and damped where needed, until a full step
+  /// lowers the cost by less than the tolerance.
   struct OptimiseSummary {
     double initial_cost = 0.0, final_cost = 0.0;
     int iterations = 0;
@@ -150,10 +150,11 @@ class Engine {
   double separator_change(int k) const;
   void set_state(int i, const double* delta);
   void set_landmark(int j, const double* delta, int slot);
-  void refine_landmarks();
+  void refine_landmarks(double least_change);
   double concerned_cost(const std::vector<int>& intervals) const;
   bool raises_cost();
   void swap_changes();
+  void halve_changes();
 
   FactorGraph graph_;
   EngineOptions options_;
