@@ -1,5 +1,8 @@
 #include "backends/gp_map/gp_map.hpp"
 
+#include <malloc.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -159,6 +162,66 @@ TEST_CASE("Control states by number of observations follow the camera as well as
   const double by_rate = run(scene).scores.ate.trans_m.rmse;
   const auto by_count = run(scene, {.backend = R"({"placement": {"rule": "observations", "observations": 200}})"});
   CHECK(by_count.scores.ate.trans_m.rmse == Approx(by_rate).epsilon(0.1));
+}
+
+TEST_CASE("Control states by motion in the image follow the camera as well as those by rate") {
+  const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
+  const double by_rate = run(scene).scores.ate.trans_m.rmse;
+  const auto by_motion = run(scene, {.backend = R"({"placement": {"rule": "motion"}})"});
+  CHECK(by_motion.scores.ate.trans_m.rmse == Approx(by_rate).epsilon(0.1));
+}
+
+TEST_CASE("A lag of 2 s costs less than a tenth of full history's accuracy") {
+  double full = 0.0, lagged = 0.0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const TrackedScene scene(15.0, R"({"tracks": {"lifetime": [1.0, 4.0], "outlier_share": 0.1}})", seed);
+    full += run(scene).scores.ate.trans_m.rmse;
+    const auto result = run(scene, {.backend = R"({"lag": 2})"});
+    CHECK(result.backend->trajectory().start() < 1.0);
+    CHECK_FALSE(result.backend->problem());
+    lagged += result.scores.ate.trans_m.rmse;
+  }
+  CHECK(lagged < 1.1 * full);
+}
+
+#if !defined(__SANITIZE_ADDRESS__)
+TEST_CASE("With a lag, memory grows by the results alone") {
+  const TrackedScene scene(30.0, R"({"tracks": {"lifetime": [1.0, 4.0], "outlier_share": 0.1}})");
+  const auto bytes_per_state = [&](const char* options) {
+    BackEndContext context;
+    context.camera = scene.camera();
+    GpMap backend(read_options<Options>(Json::parse(options), "backend"), context);
+    auto next = scene.observations().begin();
+    const auto bytes_at = [&](double until) {
+      for (double t = scene.observations().begin()->t; t < until; t += 0.01) {
+        const auto last = std::find_if(next, scene.observations().end(), [&](const auto& z) { return z.t > t; });
+        backend.observe({next, last});
+        backend.advance(t);
+        next = last;
+      }
+      return static_cast<double>(mallinfo2().uordblks);
+    };
+    const double before = bytes_at(10.0);
+    const std::size_t states = backend.graph().states.size();
+    return (bytes_at(29.9) - before) / static_cast<double>(backend.graph().states.size() - states);
+  };
+  CHECK(bytes_per_state("{}") > 20000.0);
+  CHECK(bytes_per_state(R"({"lag": 2})") < 3000.0);  // poses, update records, landmarks
+}
+#endif
+
+TEST_CASE("Per observation, the causal trajectory has a pose for each, and the final one is the usual one") {
+  const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
+  const auto usual = run(scene);
+  for (const char* rule : {"rate", "observations", "motion"}) {
+    INFO(rule);
+    const std::string options = std::string(R"({"per_observation": true, "placement": {"rule": ")") + rule + R"("}})";
+    const auto result = run(scene, {.backend = options.c_str()});
+    CHECK(result.backend->online().size() > 20 * usual.backend->online().size());
+    CHECK(result.scores.ate.trans_m.rmse == Approx(usual.scores.ate.trans_m.rmse).epsilon(0.1));
+    const Scores causal = score(scene.ground_truth(), result.backend->online(), {.association = "interpolated"});
+    CHECK(causal.ate.trans_percent < 1.0);
+  }
 }
 
 }  // namespace evbench::gp_map

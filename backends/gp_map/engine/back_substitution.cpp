@@ -96,14 +96,14 @@ double Engine::separator_change(int k) const {
   return change;
 }
 
-/// Landmarks that have moved by `least_change` [rad] or more are solved for by themselves, given the poses as they are now: back towards where
+/// Landmarks that have moved a lot are solved for by themselves, given the poses as they are now: back towards where
 /// they were as far as their own cost asks for it, then by Gauss-Newton steps of 3 unknowns. A landmark seen with
 /// little parallax easily overshoots, through the camera even, and this costs no new factorisation as damping would.
 /// The result becomes its linearisation point with the next update.
-void Engine::refine_landmarks(double least_change) {
+void Engine::refine_landmarks() {
   for (Change& change : changes_) {
     const int j = change.variable.index;
-    if (change.variable.kind != Variable::Kind::landmark || change.size < least_change) continue;
+    if (change.variable.kind != Variable::Kind::landmark || !(change.size > options_.check_step)) continue;
     if (factorisation_.in_base(change.variable)) continue;  // its own cost isn't known any more
     const Vector3 before = change.before.head<3>();
     const Vector3 start = points_.landmark(j) + before;

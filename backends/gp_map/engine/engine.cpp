@@ -169,7 +169,9 @@ void Engine::forget_old() {
   const int base = factorisation_.marginalise(oldest);
   for (int k = before + 1; k <= base; ++k) {
     for (const auto& group : graph_.intervals[at(k)].groups()) {
-      std::erase(graph_.landmarks[at(group.landmark)].intervals, k);
+      std::vector<int>& seen = graph_.landmarks[at(group.landmark)].intervals;
+      std::erase(seen, k);
+      if (seen.empty()) seen.shrink_to_fit();
     }
     graph_.intervals[at(k)] = IntervalObservations();
   }
@@ -216,7 +218,7 @@ UpdateSummary Engine::update() {
   while (true) {
     const bool solved = solve(damping, summary);
     if (solved) {
-      refine_landmarks(options_.check_step);
+      refine_landmarks();
       if (!raises_cost()) break;
     }
     if (solved) swap_changes();
@@ -293,10 +295,6 @@ Engine::OptimiseSummary Engine::optimise(int max_iterations, double relative_tol
       summary.reason = update.reason;
       double cost = solved ? evaluate(graph_).total() : 0.0;
       double share = 1.0;
-      if (solved && !(cost <= summary.final_cost)) {
-        refine_landmarks(0.0);
-        cost = evaluate(graph_).total();
-      }
       for (; solved && !(cost <= summary.final_cost) && share > kLeastShare; share *= 0.5) {
         halve_changes();
         cost = evaluate(graph_).total();

@@ -150,7 +150,7 @@ class Engine {
   double separator_change(int k) const;
   void set_state(int i, const double* delta);
   void set_landmark(int j, const double* delta, int slot);
-  void refine_landmarks(double least_change);
+  void refine_landmarks();
   double concerned_cost(const std::vector<int>& intervals) const;
   bool raises_cost();
   void swap_changes();

@@ -58,6 +58,7 @@ RandomSession::RandomSession(std::uint64_t seed, const SessionOptions& options)
   }
   ControlState first;
   first.T = true_pose(0.0);
+  state_guesses_.push_back(first);
   for (Engine* engine : {&engine_, twin_ ? &*twin_ : nullptr}) {
     if (engine == nullptr) continue;
     engine->add_state(first);
@@ -109,6 +110,13 @@ void RandomSession::update() {
   require_finite(twin_->graph());
 }
 
+FactorGraph RandomSession::linear_problem() const {
+  FactorGraph problem = twin_ ? twin_->graph() : graph();
+  problem.states = state_guesses_;
+  for (std::size_t j = 0; j < landmark_guesses_.size(); ++j) problem.landmarks[j].position = landmark_guesses_[j];
+  return problem;
+}
+
 void RandomSession::check_covariances() {
   const int states = static_cast<int>(graph().states.size());
   const int k = static_cast<int>(random_.index(graph().states.size()));
@@ -130,6 +138,7 @@ void RandomSession::add_state() {
   next.t += dt;
   next.T = dt > 1.0 ? true_pose(next.t) : last.T * se3::exp(dt * last.velocity);
   if (chance(0.5)) update();  // then observations may be taken in one by one
+  state_guesses_.push_back(next);
   engine_.add_state(next);
   if (twin_) twin_->add_state(next);
   const double share = chance(0.1) ? 0.0 : 0.8;  // sometimes nothing is seen
@@ -147,6 +156,7 @@ void RandomSession::add_state() {
 
 int RandomSession::insert_landmark(const Vector3& truth, const Vector3& guess, const LandmarkPrior& prior) {
   truth_.push_back(truth);
+  landmark_guesses_.push_back(guess);
   if (twin_) twin_->add_landmark(guess, prior);
   return engine_.add_landmark(guess, prior);
 }
@@ -228,6 +238,7 @@ void RandomSession::remove_observation() {
 
 void RandomSession::remove_newest_state() {
   if (static_cast<int>(graph().states.size()) <= engine_.first_state() + 3) return;
+  state_guesses_.pop_back();
   engine_.remove_newest_state();
   if (twin_) twin_->remove_newest_state();
 }

@@ -36,6 +36,8 @@ class RandomSession {
   Engine& engine() { return engine_; }
   const Engine& twin() const { return *twin_; }
   bool undetermined() const { return undetermined_; }  ///< something was held in some update
+  /// What a linear session has solved: the problem (the twin's if there is one) with all variables at their guesses.
+  FactorGraph linear_problem() const;
 
   /// Of a random landmark at a random time in the newest interval; none when it is not in view or there is no interval.
   struct Seen {
@@ -70,6 +72,8 @@ class RandomSession {
   Engine engine_;
   std::optional<Engine> twin_;
   std::vector<Vector3> truth_;  ///< of the landmarks
+  std::vector<ControlState> state_guesses_;
+  std::vector<Vector3> landmark_guesses_;
   bool undetermined_ = false;
 };
 
