@@ -1,0 +1,85 @@
+#include "core/events/event_stream.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "core/events/formats.hpp"
+
+namespace evbench {
+namespace {
+
+constexpr std::int64_t kBeginning = std::numeric_limits<std::int64_t>::min();
+
+}  // namespace
+
+EventStream::EventStream(const std::string& path, const StreamOptions& options)
+    : EventStream(open_events(path, options.read), path, options) {}
+
+EventStream::EventStream(std::unique_ptr<EventReader> reader, std::string path, const StreamOptions& options)
+    : path_(std::move(path)),
+      reader_(std::move(reader)),
+      options_(options),
+      faults_(path_, options.read.strict),
+      from_(kBeginning),
+      newest_(kBeginning) {
+  if (options.rebase) {
+    std::vector<Event> first;
+    if (reader_->read(first) && !first.empty()) zero_ = first.front().t;
+    reader_->seek(kBeginning);
+  }
+  if (options.from) seek(*options.from);
+}
+
+void EventStream::seek(std::int64_t t) {
+  from_ = t + zero_;
+  newest_ = kBeginning;
+  ended_ = false;
+  reader_->seek(from_);
+}
+
+bool EventStream::read(std::vector<Event>& events) {
+  while (!ended_ && reader_->read(events)) {
+    check(events);
+    if (!events.empty()) return true;
+  }
+  events.clear();
+  ended_ = true;
+  return false;
+}
+
+/// Keeps what is in order, in the sensor, and in the range, with times of the stream.
+void EventStream::check(std::vector<Event>& events) {
+  const int width = info().width > 0 ? info().width : 1 << 16, height = info().height > 0 ? info().height : 1 << 16;
+  const std::int64_t end = options_.to ? *options_.to + zero_ : std::numeric_limits<std::int64_t>::max();
+  std::size_t kept = 0;
+  for (const Event& event : events) {
+    if (event.x >= width || event.y >= height) {
+      faults_.add(fmt::format("events outside the sensor of {}x{} pixels", width, height),
+                  fmt::format("{} us, pixel ({}, {})", event.t, event.x, event.y));
+      continue;
+    }
+    if (event.t < newest_) {
+      faults_.add("events that go back in time", fmt::format("{} us after {} us", event.t, newest_));
+      continue;
+    }
+    newest_ = event.t;
+    if (event.t < from_) continue;
+    if (event.t >= end) {
+      ended_ = true;
+      break;
+    }
+    events[kept] = event;
+    events[kept++].t -= zero_;
+  }
+  events.resize(kept);
+}
+
+std::vector<std::pair<std::string, Faults::Fault>> EventStream::faults() const {
+  std::vector<std::pair<std::string, Faults::Fault>> all(reader_->faults().all().begin(),
+                                                         reader_->faults().all().end());
+  all.insert(all.end(), faults_.all().begin(), faults_.all().end());
+  return all;
+}
+
+}  // namespace evbench

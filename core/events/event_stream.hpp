@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/events/reader.hpp"
+
+namespace evbench {
+
+/// Which part of a recording, and with which zero.
+struct StreamOptions {
+  ReadOptions read;
+  bool rebase = false;  ///< times from the first event on; otherwise the file's own
+  /// [µs] after rebasing; the end is not included.
+  std::optional<std::int64_t> from, to;
+};
+
+/// A recording's events in time order, within the sensor, in a time range: what everybody but the readers uses. Events
+/// that go back in time or lie outside the sensor are left out and counted as faults (errors in strict mode).
+class EventStream {
+ public:
+  EventStream(const std::string& path, const StreamOptions& options = {});
+  EventStream(std::unique_ptr<EventReader> reader, std::string path, const StreamOptions& options = {});
+
+  /// Replaces `events` by the next ones. False, and none, at the end.
+  bool read(std::vector<Event>& events);
+
+  /// Reading goes on with the first event at or after t [µs, after rebasing].
+  void seek(std::int64_t t);
+
+  /// The file's time of this stream's zero [µs].
+  std::int64_t zero() const { return zero_; }
+  const StreamInfo& info() const { return reader_->info(); }
+  EventReader& reader() { return *reader_; }
+
+  /// The reader's and this stream's.
+  std::vector<std::pair<std::string, Faults::Fault>> faults() const;
+
+ private:
+  void check(std::vector<Event>& events);
+
+  std::string path_;
+  std::unique_ptr<EventReader> reader_;
+  StreamOptions options_;
+  Faults faults_;
+  std::int64_t zero_ = 0;
+  std::int64_t from_;    ///< the file's time
+  std::int64_t newest_;  ///< likewise
+  bool ended_ = false;
+};
+
+}  // namespace evbench

@@ -1,0 +1,35 @@
+#include "core/events/formats.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "core/events/formats/all.hpp"
+#include "core/support/byte_source.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+
+std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOptions& options) {
+  constexpr std::size_t kHead = 1 << 16;
+  std::vector<std::byte> head;
+  if (!std::filesystem::is_directory(path)) {
+    FileBytes file(path);
+    head.resize(kHead);
+    head.resize(file.read(0, head));
+    if (head.empty()) throw InputError(fmt::format("{}: is empty; expected events", path));
+  }
+  std::vector<std::string> names;
+  for (const EventFormat& format : event_formats()) {
+    if (format.recognises(path, head)) return format.open(path, options);
+    names.push_back(format.name);
+  }
+  throw InputError(fmt::format("{}: is of no known event format; known: {}", path, fmt::join(names, ", ")));
+}
+
+const std::vector<EventFormat>& event_formats() {
+  static const std::vector<EventFormat> formats = {};
+  return formats;
+}
+
+}  // namespace evbench

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/events/reader.hpp"
+
+namespace evbench {
+
+/// A file format. One file in formats/ each.
+struct EventFormat {
+  std::string name;         ///< e.g. "evt3"
+  std::string description;  ///< a line
+  /// By the beginning of the file (up to 64 KiB; empty for a folder), not by its name.
+  std::function<bool(const std::string& path, std::span<const std::byte> head)> recognises;
+  std::function<std::unique_ptr<EventReader>(const std::string& path, const ReadOptions& options)> open;
+};
+
+/// All of them, in the order in which they are asked.
+const std::vector<EventFormat>& event_formats();
+
+/// Opens a recording by what it contains. Throws InputError when no format recognises it, or it is broken.
+std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOptions& options = {});
+
+}  // namespace evbench

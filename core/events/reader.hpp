@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/events/event.hpp"
+#include "core/events/faults.hpp"
+#include "core/geometry/camera.hpp"
+#include "core/motion/pose_trajectory.hpp"
+
+namespace evbench {
+
+/// How to read a recording.
+struct ReadOptions {
+  std::string topic;          ///< of a bag, group of an HDF5 file: whose events; empty: the only one, or the first
+  bool strict = false;        ///< faults are errors, not counted skips
+  int width = 0, height = 0;  ///< sensor [px], where the file doesn't say; 0: unknown
+};
+
+/// What a recording's headers say.
+struct StreamInfo {
+  std::string format;                                         ///< e.g. "Prophesee EVT 3"
+  int width = 0, height = 0;                                  ///< sensor [px]; 0: unknown
+  std::optional<std::int64_t> count;                          ///< of events, where known without reading them
+  std::optional<std::int64_t> start, end;                     ///< [µs] of the first and last event, likewise
+  std::vector<std::string> topics;                            ///< everything in a container: "name (type), n messages"
+  std::vector<std::pair<std::string, std::string>> metadata;  ///< further fields of the header
+};
+
+/// The events of a recording as its format has them; times are the file's own. EventStream (event_stream.hpp) puts
+/// order, sensor limits, a time range and a zero on top of that.
+class EventReader {
+ public:
+  virtual ~EventReader() = default;
+
+  virtual const StreamInfo& info() const = 0;
+
+  /// Replaces `events` by the next ones, some ten thousand at a time, in the file's order. False, and none, at the end.
+  /// Memory does not depend on the length of the file.
+  virtual bool read(std::vector<Event>& events) = 0;
+
+  /// Reading goes on at or before the first event with time ≥ t [µs]: by the format's index where it has one, by
+  /// reading from the beginning elsewhere.
+  virtual void seek(std::int64_t t) = 0;
+
+  /// So far.
+  virtual const Faults& faults() const = 0;
+
+  /// Where the recording itself has them; T_world_camera or T_world_body as the format says, its times in [s].
+  virtual std::optional<PoseTrajectory> ground_truth() { return std::nullopt; }
+  virtual std::optional<Camera> calibration() { return std::nullopt; }
+};
+
+}  // namespace evbench
