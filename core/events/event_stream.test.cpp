@@ -1,0 +1,81 @@
+#include "core/events/event_stream.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "core/support/error.hpp"
+
+using namespace evbench;
+
+namespace {
+
+/// Gives events three at a time.
+class ListReader : public EventReader {
+ public:
+  explicit ListReader(std::vector<Event> events) : events_(std::move(events)), faults_("list", false) {
+    info_.width = info_.height = 10;
+  }
+  const StreamInfo& info() const override { return info_; }
+  bool read(std::vector<Event>& events) override {
+    const std::size_t last = std::min(next_ + 3, events_.size());
+    events.assign(events_.begin() + static_cast<std::ptrdiff_t>(next_),
+                  events_.begin() + static_cast<std::ptrdiff_t>(last));
+    next_ = last;
+    return !events.empty();
+  }
+  void seek(std::int64_t) override { next_ = 0; }
+  const Faults& faults() const override { return faults_; }
+
+ private:
+  std::vector<Event> events_;
+  StreamInfo info_;
+  Faults faults_;
+  std::size_t next_ = 0;
+};
+
+std::vector<std::int64_t> times(const std::vector<Event>& events, const StreamOptions& options) {
+  EventStream stream(std::make_unique<ListReader>(events), "list", options);
+  std::vector<std::int64_t> result;
+  for (std::vector<Event> chunk; stream.read(chunk);) {
+    for (const Event& event : chunk) result.push_back(event.t);
+  }
+  return result;
+}
+
+const std::vector<Event> kFive{
+    {100, 1, 1, true}, {110, 2, 1, false}, {110, 3, 1, true}, {130, 4, 1, true}, {150, 5, 1, true}};
+
+}  // namespace
+
+TEST_CASE("A stream gives all events, or those in a range, from the file's zero or the first event's") {
+  CHECK(times(kFive, {}) == std::vector<std::int64_t>{100, 110, 110, 130, 150});
+  CHECK(times(kFive, {.rebase = true}) == std::vector<std::int64_t>{0, 10, 10, 30, 50});
+  CHECK(times(kFive, {.from = 110, .to = 150}) == std::vector<std::int64_t>{110, 110, 130});
+  CHECK(times(kFive, {.rebase = true, .from = 30}) == std::vector<std::int64_t>{30, 50});
+  CHECK(times({}, {.rebase = true}).empty());
+}
+
+TEST_CASE("Events outside the sensor or back in time are left out and counted, or refused") {
+  auto events = kFive;
+  events[1].x = 10;
+  events[4].t = 120;
+  EventStream stream(std::make_unique<ListReader>(events), "list");
+  std::size_t count = 0;
+  for (std::vector<Event> chunk; stream.read(chunk);) count += chunk.size();
+  CHECK(count == 3);
+  REQUIRE(stream.faults().size() == 2);
+  CHECK(stream.faults()[0].second.count == 1);
+  StreamOptions strict;
+  strict.read.strict = true;
+  CHECK_THROWS_AS(times(events, strict), InputError);
+}
+
+TEST_CASE("A stream can go back to any time") {
+  EventStream stream(std::make_unique<ListReader>(kFive), "list", {.rebase = true});
+  std::vector<Event> chunk;
+  while (stream.read(chunk)) {
+  }
+  stream.seek(30);
+  REQUIRE(stream.read(chunk));
+  CHECK(chunk.front().t == 30);
+}
