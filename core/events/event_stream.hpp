@@ -11,10 +11,10 @@ namespace evbench {
 
 /// Which part of a recording, and with which zero.
 struct StreamOptions {
-  ReadOptions read;
+  ReadOptions read = {};
   bool rebase = false;  ///< times from the first event on; otherwise the file's own
   /// [µs] after rebasing; the end is not included.
-  std::optional<std::int64_t> from, to;
+  std::optional<std::int64_t> from = {}, to = {};
 };
 
 /// A recording's events in time order, within the sensor, in a time range: what everybody but the readers uses. Events
