@@ -19,8 +19,9 @@ struct Variable {
   bool operator==(const Variable&) const = default;
 };
 
-/// Damping of variables that are held.
-inline constexpr double kHoldDamping = 1e-6;
+/// Damping of variables that are held. They stay so when observations determine them later: at 1e-6 a landmark known to
+/// 20 m seemed known to 3.4 m, and moved the newest state by 4 standard deviations.
+inline constexpr double kHoldDamping = 1e-9;
 
 /// The block Cholesky factorisation of the normal equations in the order of time. Stage k adds interval k (k−1 → k) and
 /// the priors on state k to the root, eliminates the landmarks that are seen for the last time in k or before, then

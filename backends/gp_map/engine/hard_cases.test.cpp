@@ -209,4 +209,42 @@ TEST_CASE("A singular system has no covariance, the first time and the second") 
   }
 }
 
+TEST_CASE("A landmark that one observation left undetermined weighs no more than others once it is determined") {
+  constexpr int kStates = 8, kNear = 6, kFirst = 3;  // the landmark at the edge is seen from state kFirst on
+  const auto play = [&](bool each) {
+    Engine engine(Flight::empty_graph(), testing::linear_options());
+    for (int j = 0; j < kNear; ++j) {
+      const Vector3 x(0.3 * (j % 3) - 0.3, 0.4 * (j / 3) - 0.2, 2.0 + 0.3 * j);
+      engine.add_landmark(x, {x, 1.0});
+    }
+    engine.add_landmark({5.55, -2.2, 2.0});
+    bool undetermined = false;
+    for (int k = 0; k < kStates; ++k) {
+      ControlState state;
+      state.t = kStep * k;
+      state.T.p = state.t * Flight::motion().tail<3>();
+      state.velocity = Flight::motion();
+      engine.add_state(state);
+      if (k == 0) {
+        engine.add_pose_prior({0, state.T, Vector6::Constant(0.01)});
+        engine.add_velocity_prior({0, state.velocity, Vector6::Constant(1.0)});
+      }
+      for (int j = 0; k > 0 && j < (k < kFirst ? kNear : kNear + 1); ++j) {
+        const Vector2 pixel(80.0 + 20.0 * ((7 * j + 3 * k) % 5), 80.0 + 10.0 * ((5 * j + k) % 3));
+        REQUIRE(engine.add_observation(j, {state.t, pixel, 1.0}));
+      }
+      if (each) undetermined |= !engine.update().reason.empty();
+    }
+    CHECK(engine.update().reason.empty());
+    CHECK(undetermined == each);
+    return engine;
+  };
+  Engine each = play(true), at_once = play(false);
+  const Vector3 sigma = at_once.covariance(kStep * (kStates - 1))->diagonal().segment<3>(3).cwiseSqrt();
+  const Vector3 apart = each.graph().states.back().T.p - at_once.graph().states.back().T.p;
+  CHECK(apart.cwiseQuotient(sigma).norm() < 0.02);
+  const Matrix3 expected = *at_once.landmark_covariance(kNear);
+  CHECK((*each.landmark_covariance(kNear) - expected).norm() < 0.1 * expected.norm());
+}
+
 }  // namespace evbench::gp_map

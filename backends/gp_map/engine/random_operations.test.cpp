@@ -153,6 +153,32 @@ TEST_CASE("Redoing only what changed gives what redoing everything gives, and a 
   agreement.check_shares(2 * all);
 }
 
+TEST_CASE("An observation linearised 4 mm before the camera costs the digits that rounding explains, and no others") {
+  constexpr std::uint64_t kSeed = 200'015'647;
+  const EngineOptions options = draw_options(linear_options(), kSeed);
+  RandomSession session(kSeed, {.engine = options, .anchor = false});
+  play(session);
+  session.update();
+  constexpr int kInterval = 7, kLandmark = 8;  // information 4e15, beside priors of 1
+  const auto fresh = [&] {
+    Engine engine(session.linear_problem(), options);
+    engine.update();
+    return engine.graph();
+  };
+  const double bound = rounding_bounds(session.linear_problem()).back().position;
+  const FactorGraph before = session.engine().graph();
+  CHECK(bound > 0.1);
+  CHECK((before.states.back().T.p - fresh().states.back().T.p).norm() < bound);
+
+  const IntervalObservations& observations = before.intervals[kInterval];
+  const auto group = std::ranges::find(observations.groups(), kLandmark, &IntervalObservations::Group::landmark);
+  REQUIRE(group != observations.groups().end());
+  REQUIRE(session.engine().remove_observation(kLandmark, observations.all()[static_cast<std::size_t>(group->begin)].t));
+  session.update();
+  CHECK(rounding_bounds(session.linear_problem()).back().position < 1e-5);
+  CHECK((session.engine().graph().states.back().T.p - fresh().states.back().T.p).norm() < 1e-6);
+}
+
 TEST_CASE("With a lag the states are those of full history as long as the problem is linear") {
   Agreement agreement;
   int forgot = 0, all = 0;
