@@ -222,11 +222,24 @@ void GpMap::remove_outliers() {
 
 void GpMap::remove_if_outlier(int landmark) {
   if (reprojection_mean(graph(), landmark) <= options_.map.outlier_threshold) return;
+  hold_scale_without(landmark);
   const TrackId track = track_of_[static_cast<std::size_t>(landmark)];
   engine_->remove_landmark(landmark);
   landmark_of_.erase(track);
   tracks_.remove(track);
   new_outliers_.push_back(track);
+}
+
+/// One of few landmarks that hold the scale is about to go: those seen now join the others, at the scale of now.
+void GpMap::hold_scale_without(int leaving) {
+  std::set<int> anchors(graph().anchor.landmarks.begin(), graph().anchor.landmarks.end());
+  if (anchors.erase(leaving) == 0 || std::ssize(anchors) >= options_.health.min_landmarks) return;
+  for (const auto& group : graph().intervals.back().groups()) {
+    if (group.landmark != leaving) anchors.insert(group.landmark);
+  }
+  context_.log(fmt::format("{:.3f} s: most landmarks that held the scale were outliers; {} hold it now",
+                           graph().states.back().t, anchors.size()));
+  engine_->anchor_scale(graph().anchor.origin, {anchors.begin(), anchors.end()});
 }
 
 void GpMap::check_health() {

@@ -62,6 +62,7 @@ class GpMap : public BackEnd {
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
   void start_from(FirstMap map);
   void remove_if_outlier(int landmark);
+  void hold_scale_without(int leaving);
   void become_landmark(TrackId track, int landmark);
   std::optional<std::pair<Vector3, LandmarkPrior>> locate(TrackId track, bool scarce) const;
   double median_depth() const;

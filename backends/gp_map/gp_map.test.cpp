@@ -81,6 +81,32 @@ TEST_CASE("The first landmarks keep the mean log distance that they were given")
   CHECK(std::abs(linearise_anchor(result.backend->graph()).e) < 5.0);  // in sigmas of 1e-4
 }
 
+TEST_CASE("When most landmarks that hold the scale turn out to be outliers, others hold it too") {
+  // The first map, at 0.85 s, has 25 tracks; 40 others come then; from 1.4 s on the first ones jump away in turn.
+  const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [7.0, 8.0], "alive": 65}})");
+  constexpr TrackId kFirst = 25;
+  std::vector<TrackObservation> observations;
+  for (TrackObservation z : scene.observations()) {
+    if (z.track >= kFirst && z.t < 0.86) continue;
+    const double angle = static_cast<double>(z.track);
+    if (z.track < kFirst && z.t > 1.4 + 0.02 * angle) z.pixel += 100.0 * Vector2(std::cos(angle), std::sin(angle));
+    observations.push_back(z);
+  }
+  BackEndContext context;
+  context.camera = scene.camera();
+  int handed_over = 0;
+  context.log = [&](const std::string& line) { handed_over += line.find("hold it now") != std::string::npos ? 1 : 0; };
+  GpMap backend({}, context);
+  backend.observe(observations);
+  backend.advance(6.0);
+  backend.finish();
+  CHECK(handed_over == 1);
+  CHECK(backend.graph().anchor.landmarks.size() > 10);
+  CHECK(backend.status().state == RunState::ok);
+  const Scores scores = score(scene.ground_truth(), backend.trajectory(), {.association = "interpolated"});
+  CHECK(scores.ate.trans_percent < 2.0);
+}
+
 TEST_CASE("A short blackout is carried by the prior and said") {
   const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [1.0, 3.0], "blackouts": [3.0, 3.3]}})");
   const auto result = run(scene);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,7 +26,7 @@ struct SceneOptions {
 std::optional<Vector2> visible_pixel(const Camera& camera, const SE3& T_world_camera, const Vector3& point,
                                      double border);
 
-/// What there is to see: dots that do not occlude one another, placed where the camera looks during the motion.
+/// What there is to see: dots, placed where the camera looks during the motion.
 /// - volume: dots anywhere in the box that the views between the depths near and far fill;
 /// - plane: dots on the plane that the mean view direction meets at right angles half way between near and far;
 /// - boxes: dots on the faces of boxes that stand in that volume;
@@ -34,6 +35,15 @@ class Scene {
  public:
   /// Throws InputError unless near < far.
   Scene(const SceneOptions& options, const Camera& camera, const Motion& motion, double duration, Random random);
+
+  /// Is nothing of the scene between the camera at T_world_camera and a point?
+  using Visibility = std::function<bool(const SE3& T_world_camera, const Vector3& point)>;
+
+  /// The given dots, world frame, of surfaces that hide what is behind them.
+  Scene(std::vector<Vector3> points, const Camera& camera, Visibility unoccluded);
+
+  /// visible_pixel() where nothing is in front of the point.
+  std::optional<Vector2> pixel(const SE3& T_world_camera, const Vector3& point, double border) const;
 
   /// All dots, world frame; empty for frustum.
   const std::vector<Vector3>& points() const { return points_; }
@@ -51,6 +61,7 @@ class Scene {
   SceneOptions options_;
   Camera camera_;
   std::vector<Vector3> points_;
+  Visibility unoccluded_;  ///< none: no dot hides another
   std::vector<double> busy_until_;
 };
 

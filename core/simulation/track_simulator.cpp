@@ -110,7 +110,7 @@ class TrackSimulator {
     const ImageMotion image_motion = draw_image_motion(kind);
     const double end = std::min(duration_, birth + random_.uniform(options_.lifetime[0], options_.lifetime[1]));
     const double gap = 1.0 / random_.uniform(options_.rate[0], options_.rate[1]);
-    const std::optional<Vector2> start = visible_pixel(camera_, motion_(birth), pick->position, options_.border);
+    const std::optional<Vector2> start = scene_.pixel(motion_(birth), pick->position, options_.border);
 
     const std::size_t before = result_.observations.size();
     double dropout = next_dropout(birth);
@@ -124,7 +124,7 @@ class TrackSimulator {
       const double stamp = std::min(std::round(t * 1e6) * 1e-6, duration_);
       if (blackout_at(stamp) != nullptr) break;
       std::optional<Vector2> pixel =
-          kind == TrackKind::outlier ? start : visible_pixel(camera_, motion_(stamp), pick->position, options_.border);
+          kind == TrackKind::outlier ? start : scene_.pixel(motion_(stamp), pick->position, options_.border);
       if (pixel) *pixel += image_motion(stamp - birth);
       if (!pixel || !camera_.contains(*pixel, options_.border)) break;
       observe(stamp, *pixel);
