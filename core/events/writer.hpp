@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/events/event.hpp"
+#include "core/geometry/camera.hpp"
+#include "core/motion/pose_trajectory.hpp"
+
+namespace evbench {
+
+/// What a file says beside its events; formats keep what they have a place for.
+struct RecordingHeader {
+  int width = 0, height = 0;  ///< sensor [px]; 0: unknown
+  std::vector<std::pair<std::string, std::string>> metadata;
+  std::optional<Camera> calibration;
+  PoseTrajectory ground_truth;  ///< empty: unknown
+};
+
+/// Writes a recording, events given in time order and within the sensor. All functions throw InputError for what the
+/// format can't hold and for a disk that is full.
+class EventWriter {
+ public:
+  virtual ~EventWriter() = default;
+  virtual void write(std::span<const Event> events) = 0;
+  /// Once, at the end: only then is the file complete.
+  virtual void finish() = 0;
+};
+
+/// A format that can be written.
+struct WritableFormat {
+  std::string name;         ///< e.g. "native"
+  std::string extension;    ///< that stands for it, e.g. ".evb"
+  std::string description;  ///< a line
+  std::unique_ptr<EventWriter> (*make)(const std::string& path, const RecordingHeader& header);
+};
+
+const std::vector<WritableFormat>& writable_formats();
+
+}  // namespace evbench

@@ -1,0 +1,54 @@
+#include "core/support/file_mapping.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+const std::size_t kPage = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+
+}  // namespace
+
+FileMapping::FileMapping(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
+    ::close(descriptor);
+    throw InputError(fmt::format("{}: is no regular file", path));
+  }
+  size_ = static_cast<std::size_t>(status.st_size);
+  void* const data = size_ == 0 ? nullptr : ::mmap(nullptr, size_, PROT_READ, MAP_SHARED, descriptor, 0);
+  const int error = errno;
+  ::close(descriptor);
+  if (data == MAP_FAILED) throw InputError(fmt::format("{}: can't be mapped: {}", path, std::strerror(error)));
+  data_ = static_cast<std::byte*>(data);
+}
+
+FileMapping::~FileMapping() {
+  if (data_ != nullptr) ::munmap(data_, size_);
+}
+
+void FileMapping::expect(std::size_t offset, std::size_t size) const {
+  const std::size_t from = offset / kPage * kPage, to = std::min(offset + size, size_);
+#ifdef MADV_POPULATE_READ
+  if (from < to) ::madvise(data_ + from, to - from, MADV_POPULATE_READ);  // a hint: without it pages come as touched
+#endif
+}
+
+void FileMapping::forget(std::size_t offset, std::size_t size) const {
+  const std::size_t from = offset / kPage * kPage, to = std::min(offset + size, size_) / kPage * kPage;
+  if (from < to) ::madvise(data_ + from, to - from, MADV_DONTNEED);
+}
+
+}  // namespace evbench
