@@ -28,7 +28,8 @@ std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOpti
 }
 
 const std::vector<EventFormat>& event_formats() {
-  static const std::vector<EventFormat> formats = {};
+  static const std::vector<EventFormat> formats = {native_format(), hdf5_format(), evt2_format(), evt21_format(),
+                                                   evt3_format()};
   return formats;
 }
 

@@ -16,7 +16,7 @@ namespace evbench {
 
 /// How to read a recording.
 struct ReadOptions {
-  std::string topic;          ///< of a bag, group of an HDF5 file: whose events; empty: the only one, or the first
+  std::string topic = {};     ///< of a bag, group of an HDF5 file: whose events; empty: the only one, or the first
   bool strict = false;        ///< faults are errors, not counted skips
   int width = 0, height = 0;  ///< sensor [px], where the file doesn't say; 0: unknown
 };

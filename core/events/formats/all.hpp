@@ -3,4 +3,12 @@
 #include "core/events/formats.hpp"
 
 // Every format of this folder: a function each, listed in ../formats.cpp.
-namespace evbench {}  // namespace evbench
+namespace evbench {
+
+EventFormat evt2_format();
+EventFormat evt21_format();
+EventFormat evt3_format();
+EventFormat hdf5_format();
+EventFormat native_format();
+
+}  // namespace evbench
