@@ -1,0 +1,327 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <type_traits>
+
+#include "core/events/formats/all.hpp"
+#include "core/events/formats/hdf5_file.hpp"
+#include "core/events/formats/hdf5_layout.hpp"
+#include "core/geometry/se3.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+constexpr std::int64_t kBroken = std::numeric_limits<std::int64_t>::min();
+
+/// [µs] from integer µs or floating-point s; kBroken for what is no time.
+template <class Number>
+std::int64_t to_time(Number t) {
+  if constexpr (std::is_floating_point_v<Number>) {
+    const double us = 1e6 * static_cast<double>(t);
+    return std::abs(us) < 9e18 ? std::llround(us) : kBroken;
+  } else if constexpr (std::is_same_v<Number, std::uint64_t>) {
+    return t <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) ? static_cast<std::int64_t>(t)
+                                                                                     : kBroken;
+  } else {
+    return static_cast<std::int64_t>(t);
+  }
+}
+
+/// False when it is no pixel's coordinate.
+template <class Number>
+bool to_pixel(Number value, std::uint16_t& pixel) {
+  if constexpr (!std::is_same_v<Number, std::uint8_t> && !std::is_same_v<Number, std::uint16_t>) {
+    if (!(value >= Number(0) && static_cast<double>(value) <= 65535.0)) return false;
+  }
+  pixel = static_cast<std::uint16_t>(value);
+  return true;
+}
+
+class Hdf5Reader : public EventReader {
+ public:
+  Hdf5Reader(const std::string& path, const ReadOptions& options);
+
+  const StreamInfo& info() const override { return info_; }
+  bool read(std::vector<Event>& events) override;
+  void seek(std::int64_t t) override;
+  const Faults& faults() const override { return faults_; }
+  std::optional<PoseTrajectory> ground_truth() override;
+  std::optional<Camera> calibration() override;
+
+ private:
+  void open_columns();
+  void describe(const ReadOptions& options);
+  void read_columns(std::uint64_t count, std::vector<Event>& events);
+  void read_rows(std::uint64_t count, std::vector<Event>& events);
+  void drop_broken(std::vector<Event>& events);
+  std::int64_t time(std::uint64_t row) const;
+
+  hdf5::File file_;
+  hdf5::EventLayout layout_;
+  hdf5::Dataset x_, y_, t_, p_, rows_, index_;
+  hdf5::Values values_;
+  StreamInfo info_;
+  Faults faults_;
+  std::int64_t offset_ = 0;   ///< added to all times [µs]
+  std::uint64_t length_ = 0;  ///< events
+  std::uint64_t next_ = 0;    ///< row
+};
+
+Hdf5Reader::Hdf5Reader(const std::string& path, const ReadOptions& options)
+    : file_(path), layout_(choose_events(file_, options.topic)), faults_(path, options.strict) {
+  open_columns();
+  if (!layout_.offset.empty()) {
+    const std::int64_t offset = to_time(file_.dataset(layout_.offset).first(0) * 1e-6);
+    if (offset == kBroken) throw InputError(fmt::format("{}: /{}: is no time", path, layout_.offset));
+    offset_ = offset;
+  }
+  describe(options);
+}
+
+void Hdf5Reader::open_columns() {
+  if (layout_.is_rows()) {
+    rows_ = file_.dataset(layout_.group);
+    if (rows_.shape().size() != 2 || rows_.columns() != 4) {
+      throw InputError(fmt::format("{}: /{}: is {}; expected rows of 4 numbers x y t p", file_.path(), layout_.group,
+                                   rows_.describe()));
+    }
+    length_ = rows_.rows();
+    return;
+  }
+  x_ = file_.dataset(layout_.x);
+  y_ = file_.dataset(layout_.y);
+  t_ = file_.dataset(layout_.t);
+  p_ = file_.dataset(layout_.p);
+  length_ = std::min({x_.rows(), y_.rows(), t_.rows(), p_.rows()});
+  std::uint64_t longest = 0;
+  for (const hdf5::Dataset* column : {&x_, &y_, &t_, &p_}) {
+    if (column->shape().empty() || column->columns() != 1) {
+      throw InputError(fmt::format("{}: /{}: has a column that is {}; expected one number a row", file_.path(),
+                                   layout_.group, column->describe()));
+    }
+    longest = std::max(longest, column->rows());
+  }
+  if (longest != length_) {
+    faults_.add("columns of different length", fmt::format("row {}", length_),
+                static_cast<std::int64_t>(longest - length_));
+  }
+  if (!layout_.index.empty()) index_ = file_.dataset(layout_.index);
+}
+
+void Hdf5Reader::describe(const ReadOptions& options) {
+  info_.format = fmt::format("HDF5 ({})", layout_.name);
+  info_.count = static_cast<std::int64_t>(length_);
+  if (length_ > 0) {
+    const std::int64_t start = time(0), end = time(length_ - 1);
+    if (start != kBroken) info_.start = start;
+    if (end != kBroken) info_.end = end;
+  }
+  info_.width = file_.attribute(layout_.is_rows() ? "" : layout_.group, "width");
+  info_.height = file_.attribute(layout_.is_rows() ? "" : layout_.group, "height");
+  if (const auto camera = calibration()) {
+    info_.width = camera->width;
+    info_.height = camera->height;
+  }
+  if (info_.width <= 0 || info_.height <= 0) {
+    info_.width = options.width > 0 ? options.width : layout_.width;
+    info_.height = options.height > 0 ? options.height : layout_.height;
+  }
+  for (const auto& object : file_.objects()) {
+    if (!object.is_dataset) continue;
+    try {
+      const hdf5::Dataset dataset = file_.dataset(object.path);
+      info_.topics.push_back(fmt::format("/{} ({}), {} rows", object.path, dataset.describe(), dataset.rows()));
+    } catch (const InputError&) {
+      info_.topics.push_back(fmt::format("/{} (not numbers, or not readable)", object.path));
+    }
+  }
+  info_.metadata.emplace_back("events in", "/" + layout_.group);
+  if (offset_ != 0) info_.metadata.emplace_back("t_offset [us]", fmt::to_string(offset_));
+}
+
+std::int64_t Hdf5Reader::time(std::uint64_t row) const {
+  hdf5::Values values;
+  const hdf5::Dataset& dataset = layout_.is_rows() ? rows_ : t_;
+  dataset.read(row, 1, values);
+  std::int64_t t = kBroken;
+  values.visit([&](auto numbers) { t = to_time(numbers[layout_.is_rows() ? 2 : 0]); });
+  return t == kBroken ? t : t + offset_;
+}
+
+bool Hdf5Reader::read(std::vector<Event>& events) {
+  constexpr std::uint64_t kBlock = 1 << 16;
+  events.clear();
+  while (events.empty() && next_ < length_) {
+    const std::uint64_t count = std::min(kBlock, length_ - next_);
+    events.resize(count);
+    if (layout_.is_rows()) {
+      read_rows(count, events);
+    } else {
+      read_columns(count, events);
+    }
+    drop_broken(events);
+    next_ += count;
+  }
+  return !events.empty();
+}
+
+void Hdf5Reader::read_columns(std::uint64_t count, std::vector<Event>& events) {
+  t_.read(next_, count, values_);
+  values_.visit([&](auto numbers) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const std::int64_t t = to_time(numbers[i]);
+      events[i].t = t == kBroken ? t : t + offset_;
+    }
+  });
+  x_.read(next_, count, values_);
+  values_.visit([&](auto numbers) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (!to_pixel(numbers[i], events[i].x)) events[i].t = kBroken;
+    }
+  });
+  y_.read(next_, count, values_);
+  values_.visit([&](auto numbers) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (!to_pixel(numbers[i], events[i].y)) events[i].t = kBroken;
+    }
+  });
+  p_.read(next_, count, values_);
+  values_.visit([&](auto numbers) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) events[i].on = numbers[i] > 0;
+  });
+}
+
+void Hdf5Reader::read_rows(std::uint64_t count, std::vector<Event>& events) {
+  rows_.read(next_, count, values_);
+  values_.visit([&](auto numbers) {
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      const auto row = numbers.subspan(4 * i, 4);
+      Event& event = events[i];
+      event.t = to_time(row[2]);
+      if (!to_pixel(row[0], event.x) || !to_pixel(row[1], event.y)) event.t = kBroken;
+      event.on = row[3] > 0;
+    }
+  });
+}
+
+void Hdf5Reader::drop_broken(std::vector<Event>& events) {
+  const auto broken = std::find_if(events.begin(), events.end(), [](const Event& e) { return e.t == kBroken; });
+  if (broken == events.end()) return;
+  const std::uint64_t row = next_ + static_cast<std::uint64_t>(broken - events.begin());
+  const auto count = std::erase_if(events, [](const Event& event) { return event.t == kBroken; });
+  faults_.add("events whose x, y or t is no pixel or no time", fmt::format("row {}", row),
+              static_cast<std::int64_t>(count));
+}
+
+/// By the index of milliseconds where it agrees with the times, by bisection of the times elsewhere.
+void Hdf5Reader::seek(std::int64_t t) {
+  const auto may_start_at = [&](std::uint64_t row) { return row == 0 || (row <= length_ && time(row - 1) < t); };
+  next_ = 0;
+  if (length_ == 0 || t <= time(0)) return;
+  const std::int64_t ms = (t - offset_) / 1000;
+  if (!layout_.index.empty() && t > offset_ && static_cast<std::uint64_t>(ms) < index_.rows()) {
+    const double row = index_.first(static_cast<std::uint64_t>(ms));
+    if (row >= 0.0 && row <= static_cast<double>(length_) && may_start_at(static_cast<std::uint64_t>(row))) {
+      next_ = static_cast<std::uint64_t>(row);
+      return;
+    }
+  }
+  std::uint64_t before = 0, after = length_;  // time(before) < t ≤ time(after)
+  while (after - before > 1) {
+    const std::uint64_t middle = before + (after - before) / 2;
+    (time(middle) < t ? before : after) = middle;
+  }
+  next_ = after;
+}
+
+/// MVSEC: poses of the left camera, T_world_camera as 4x4 matrices, in the file itself or in the *_gt.hdf5 beside it.
+std::optional<PoseTrajectory> Hdf5Reader::ground_truth() {
+  constexpr std::uint64_t kMost = 1 << 26;
+  const std::string poses = "davis/left/pose", stamps = "davis/left/pose_ts";
+  const auto read_from = [&](const hdf5::File& file) -> std::optional<PoseTrajectory> {
+    if (!file.has_dataset(poses) || !file.has_dataset(stamps)) return std::nullopt;
+    const std::vector<double> T = file.dataset(poses).read_all(kMost), t = file.dataset(stamps).read_all(kMost);
+    if (T.size() != 16 * t.size()) {
+      throw InputError(fmt::format("{}: /{}: has {} numbers for {} stamps; expected 4x4 matrices", file.path(), poses,
+                                   T.size(), t.size()));
+    }
+    std::vector<StampedPose> result;
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(&T[16 * i]);
+      const Matrix3 R = matrix.topLeftCorner<3, 3>();
+      if (!matrix.allFinite() || !(R * R.transpose()).isIdentity(1e-3)) {
+        throw InputError(
+            fmt::format("{}: /{}: is no pose in row {}; expected a rotation and a translation", file.path(), poses, i));
+      }
+      result.push_back({t[i], {Eigen::Quaterniond(R).normalized(), matrix.topRightCorner<3, 1>()}});
+    }
+    return PoseTrajectory(std::move(result), file.path());
+  };
+  if (auto own = read_from(file_)) return own;
+  const std::filesystem::path path(file_.path());
+  std::string name = path.stem().string();
+  if (!name.ends_with("_data")) return std::nullopt;
+  name.replace(name.size() - 4, 4, "gt");
+  const std::filesystem::path beside = path.parent_path() / (name + path.extension().string());
+  return std::filesystem::exists(beside) ? read_from(hdf5::File(beside.string())) : std::nullopt;
+}
+
+/// M3ED: group calib beside the columns.
+std::optional<Camera> Hdf5Reader::calibration() {
+  const std::string group = layout_.group + "/calib/";
+  for (const char* name : {"intrinsics", "distortion_coeffs", "resolution"}) {
+    if (!file_.has_dataset(group + name)) return std::nullopt;
+  }
+  const auto numbers = [&](const char* name, std::size_t count) {
+    const std::vector<double> values = file_.dataset(group + name).read_all(100);
+    if (values.size() != count) {
+      throw InputError(
+          fmt::format("{}: /{}{}: has {} numbers; expected {}", file_.path(), group, name, values.size(), count));
+    }
+    return values;
+  };
+  const auto intrinsics = numbers("intrinsics", 4), coefficients = numbers("distortion_coeffs", 4),
+             resolution = numbers("resolution", 2);
+  Camera camera;
+  camera.pinhole = {intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]};
+  camera.distortion = DistortionModel::radial_tangential;
+  if (file_.has_dataset(group + "distortion_model") && file_.text(group + "distortion_model") == "equidistant") {
+    camera.distortion = DistortionModel::equidistant;
+  }
+  for (int i = 0; i < 4; ++i) camera.coefficients[i] = coefficients[static_cast<std::size_t>(i)];
+  for (const double side : resolution) {
+    if (!(side >= 1.0 && side <= 65536.0)) {
+      throw InputError(fmt::format("{}: /{}resolution: has {}; expected 1 to 65536", file_.path(), group, side));
+    }
+  }
+  camera.width = static_cast<int>(resolution[0]);
+  camera.height = static_cast<int>(resolution[1]);
+  return camera;
+}
+
+/// The signature stands at the beginning, or after a user's block of 512, 1024, ... bytes.
+bool has_signature(std::span<const std::byte> head) {
+  constexpr unsigned char kSignature[] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1A, '\n'};
+  for (std::size_t at = 0; at + 8 <= head.size(); at = at == 0 ? 512 : 2 * at) {
+    if (std::equal(std::begin(kSignature), std::end(kSignature), head.begin() + static_cast<std::ptrdiff_t>(at),
+                   [](unsigned char a, std::byte b) { return std::byte{a} == b; })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+EventFormat hdf5_format() {
+  return {
+      "hdf5", "HDF5 as in DSEC, MVSEC, TUM-VIE, M3ED, EDS",
+      [](const std::string&, std::span<const std::byte> head) { return has_signature(head); },
+      [](const std::string& path, const ReadOptions& options) { return std::make_unique<Hdf5Reader>(path, options); }};
+}
+
+}  // namespace evbench
