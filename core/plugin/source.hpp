@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/data/track.hpp"
+#include "core/events/reader.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/pose_trajectory.hpp"
 
@@ -27,6 +28,10 @@ class Source {
 
   /// T_world_camera; empty when unknown.
   virtual const PoseTrajectory& ground_truth() const = 0;
+
+  /// A new reader of the sequence's events, in sequence time [µs]; it may outlive the source. nullptr where there are
+  /// none: a source of tracks.
+  virtual std::unique_ptr<EventReader> events() const { return nullptr; }
 
   /// Track observations with known association (raw pixels, time order), for sources that know it: simulators.
   /// None where the source does not.

@@ -8,6 +8,7 @@
 #include "core/support/error.hpp"
 
 namespace evbench {
+
 void SceneOptions::declare(OptionSet& set) {
   set.add("kind", kind, "what the camera looks at").choices({"volume", "plane", "boxes", "frustum"});
   set.add("points", points, "number of dots (not frustum)").range(1, 1e6);

@@ -4,22 +4,9 @@
 #include "core/simulation/motion.hpp"
 #include "core/simulation/scene.hpp"
 #include "core/simulation/track_simulator.hpp"
+#include "core/sources/simulated_camera.hpp"
 
 namespace evbench {
-
-struct SimulatedCameraOptions {
-  int width = 240, height = 180;
-  double focal_length = 200.0;
-  std::string distortion = "none";
-  std::vector<double> coefficients;
-
-  void declare(OptionSet& set);
-};
-
-/// The camera that the options describe, its principal point in the middle of the image. Throws InputError, naming
-/// `place`, when the number of coefficients does not suit the lens model or the model cannot be inverted at a corner of
-/// the image.
-Camera make_camera(const SimulatedCameraOptions& options, const std::string& place);
 
 /// A simulated sequence from 0 to `duration`: motion, scene and feature tracks with known association, ground truth.
 /// Equal options and seed give equal bytes.

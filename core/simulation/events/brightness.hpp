@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+
+namespace evbench {
+
+/// What falls on the pixels: log intensity over time, interval by interval, so that whoever makes it may choose
+/// intervals in which it changes little.
+class Brightness {
+ public:
+  /// An interval is divided into so many parts, at whose ends single pixels can be asked for.
+  static constexpr int parts = 32;
+
+  virtual ~Brightness() = default;
+
+  virtual int width() const = 0;
+  virtual int height() const = 0;
+
+  /// Begins (again) at time t [s].
+  virtual void start(double t) = 0;
+
+  /// Goes on to the next interval, which begins where the last one ended; returns its end [s], at most `limit`.
+  virtual double advance(double limit) = 0;
+
+  /// Log intensity of all pixels at the interval's end, by rows.
+  virtual std::span<const float> image() const = 0;
+
+  /// Log intensity of a pixel at the end of a part of the interval, 0 < part < parts. May be called by several threads.
+  virtual float within(int x, int y, int part) const = 0;
+};
+
+}  // namespace evbench

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/events/reader.hpp"
+#include "core/simulation/events/brightness.hpp"
+#include "core/simulation/events/pixel_model.hpp"
+
+namespace evbench {
+
+struct SimulatorOptions {
+  SensorOptions sensor;
+  double time_accuracy = 5e-6;
+  int threads = 0;
+
+  void declare(OptionSet& set);
+};
+
+/// An event camera that looks at a brightness: a recording that is made while it is read. Within an interval of the
+/// brightness a pixel's log intensity is taken as a straight line; where it emits events and the line is wrong by more
+/// than time_accuracy, the interval is halved for this pixel, down to Brightness::parts parts. Events come by (t, y,
+/// x). Equal brightness, options and seed give equal bytes, whatever the number of threads.
+class EventSimulator : public EventReader {
+ public:
+  /// From 0 to `duration` [s].
+  EventSimulator(std::unique_ptr<Brightness> brightness, const SimulatorOptions& options, double duration,
+                 std::uint64_t seed);
+
+  const StreamInfo& info() const override { return info_; }
+  bool read(std::vector<Event>& events) override;
+  /// Begins again, unless t is still to come: what was before t has to be simulated.
+  void seek(std::int64_t t) override;
+  const Faults& faults() const override { return faults_; }
+
+ private:
+  void restart();
+  void step();
+  void advance_pixel(int x, int y, std::vector<Event>& events);
+  void release(double until);
+
+  std::unique_ptr<Brightness> brightness_;
+  SimulatorOptions options_;
+  double duration_;
+  std::uint64_t seed_;
+  StreamInfo info_;
+  Faults faults_;
+  std::vector<Pixel> pixels_;
+  double t_ = 0.0, interval_end_ = 0.0;   ///< [s]
+  std::vector<std::vector<Event>> rows_;  ///< of the interval
+  std::vector<Event> waiting_;            ///< later events may still come before these
+  std::vector<Event> ready_;              ///< in order
+};
+
+}  // namespace evbench

@@ -1,0 +1,90 @@
+#include "core/simulation/events/scene_brightness.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evbench {
+namespace {
+
+constexpr double kLongest = 0.01, kShortest = 1e-6;  // [s] of an interval
+constexpr int kStride = 4;                           // [px] between probes
+
+}  // namespace
+
+void RenderingOptions::declare(OptionSet& set) {
+  set.add("max_displacement", max_displacement, "largest motion of a point over the image between renderings [px]")
+      .range(0.01, 10.0);
+  set.add("blur", blur, "standard deviation of what a pixel averages over: its area and the optics [px]")
+      .range(0.2, 20.0);
+}
+
+SceneBrightness::SceneBrightness(const Camera& camera, std::shared_ptr<const RenderedScene> scene, Motion motion,
+                                 const RenderingOptions& options, int threads)
+    : scene_(std::move(scene)),
+      motion_(std::move(motion)),
+      options_(options),
+      threads_(threads),
+      renderer_(camera, scene_->surfaces, scene_->texture, options.blur) {}
+
+void SceneBrightness::start(double t) {
+  from_ = to_ = t;
+  last_length_ = 1e-3;
+  renderer_.render(motion_(t), threads_, frame_);
+}
+
+double SceneBrightness::advance(double limit) {
+  const SE3 T = motion_(to_);
+  probes_.clear();
+  for (int y = kStride / 2; y < height(); y += kStride) {
+    for (int x = kStride / 2; x < width(); x += kStride) {
+      const std::size_t i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(x);
+      if (frame_.hits[i].surface < 0) continue;
+      const Vector3 local = frame_.hits[i].depth * renderer_.ray(i);
+      probes_.push_back({renderer_.camera().pinhole.project(local), T * local});
+    }
+  }
+  from_ = to_;
+  to_ = choose_end(limit);
+  last_length_ = to_ - from_;
+  std::swap(frame_, last_);
+  views_.clear();
+  for (int part = 1; part < parts; ++part) {
+    views_.push_back(renderer_.view(motion_(from_ + (to_ - from_) * part / parts)));
+  }
+  renderer_.render(motion_(to_), threads_, frame_);
+  return to_;
+}
+
+/// The largest of a probe over the image [px], when the camera has moved there.
+double SceneBrightness::displacement(const SE3& T_world_camera) const {
+  const SE3 T_camera_world = T_world_camera.inverse();
+  double largest = 0.0;
+  for (const Probe& probe : probes_) {
+    const Vector3 local = T_camera_world * probe.point;
+    if (local.z() <= 0.0) continue;
+    largest = std::max(largest, (renderer_.camera().pinhole.project(local) - probe.pixel).squaredNorm());
+  }
+  return std::sqrt(largest);
+}
+
+/// From the last interval's length on, by the ratio of displacements.
+double SceneBrightness::choose_end(double limit) const {
+  constexpr int attempts = 8;
+  double length = last_length_;
+  for (int i = 0; i < attempts; ++i) {
+    const double moved = displacement(motion_(std::min(from_ + length, limit)));
+    const bool small = moved < 0.7 * options_.max_displacement && length < kLongest;
+    if (moved <= options_.max_displacement && !small) break;
+    const double ratio = 0.9 * options_.max_displacement / std::max(moved, 1e-9);
+    length = std::clamp(length * std::clamp(ratio, 0.1, 10.0), kShortest, kLongest);
+  }
+  return std::min(from_ + length, limit);
+}
+
+float SceneBrightness::within(int x, int y, int part) const {
+  const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(x);
+  return renderer_.pixel(views_[static_cast<std::size_t>(part - 1)], i, frame_.edge[i] != 0 || last_.edge[i] != 0);
+}
+
+}  // namespace evbench

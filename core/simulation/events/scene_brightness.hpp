@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/simulation/events/brightness.hpp"
+#include "core/simulation/motion.hpp"
+#include "core/simulation/rendering/rendered_scene.hpp"
+#include "core/simulation/rendering/renderer.hpp"
+
+namespace evbench {
+
+struct RenderingOptions {
+  double max_displacement = 0.5;
+  double blur = 0.45;
+
+  void declare(OptionSet& set);
+};
+
+/// What a camera sees of a scene along a motion. An interval is as long as lets no point of the scene move by more than
+/// max_displacement over the image (as far as every fourth pixel of every fourth row tells), at most 10 ms.
+class SceneBrightness : public Brightness {
+ public:
+  /// `threads`: 0: one a processor.
+  SceneBrightness(const Camera& camera, std::shared_ptr<const RenderedScene> scene, Motion motion,
+                  const RenderingOptions& options, int threads);
+
+  int width() const override { return renderer_.camera().width; }
+  int height() const override { return renderer_.camera().height; }
+  void start(double t) override;
+  double advance(double limit) override;
+  std::span<const float> image() const override { return frame_.log_intensity; }
+  float within(int x, int y, int part) const override;
+
+ private:
+  double displacement(const SE3& T_world_camera) const;
+  double choose_end(double limit) const;
+
+  std::shared_ptr<const RenderedScene> scene_;
+  Motion motion_;
+  RenderingOptions options_;
+  int threads_;
+  Renderer renderer_;
+  double from_ = 0.0, to_ = 0.0;  ///< the interval [s]
+  Frame frame_, last_;            ///< at its end and its beginning
+  std::vector<View> views_;       ///< at the ends of its parts but the last
+  struct Probe {
+    Vector2 pixel;  ///< undistorted
+    Vector3 point;  ///< world frame
+  };
+  std::vector<Probe> probes_;  ///< at its end
+  double last_length_ = 1e-3;  ///< [s]
+};
+
+}  // namespace evbench

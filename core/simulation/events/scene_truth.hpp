@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/geometry/camera.hpp"
+#include "core/simulation/motion.hpp"
+#include "core/simulation/rendering/rendered_scene.hpp"
+
+namespace evbench {
+
+/// What is true of a simulated recording, at any time t [s] of it.
+class SceneTruth {
+ public:
+  SceneTruth(const Camera& camera, std::shared_ptr<const RenderedScene> scene, Motion motion);
+
+  SE3 pose(double t) const { return motion_(t); }  ///< T_world_camera
+
+  /// Along the camera's z [m], at a raw pixel; none where the lens model has no inverse or nothing is there.
+  std::optional<double> depth(const Vector2& pixel, double t) const;
+
+  /// The point of the scene at a raw pixel, world frame; none as above.
+  std::optional<Vector3> point(const Vector2& pixel, double t) const;
+
+  /// The raw pixel at which a point of the scene (world frame) is seen: its true track. None outside the image or less
+  /// than `border` [px] inside it, and where something is in front.
+  std::optional<Vector2> pixel(const Vector3& point, double t, double border = 0.0) const;
+
+  /// Is nothing in front of the point?
+  bool unoccluded(const SE3& T_world_camera, const Vector3& point) const;
+
+ private:
+  Camera camera_;
+  std::shared_ptr<const RenderedScene> scene_;
+  Motion motion_;
+};
+
+}  // namespace evbench

@@ -1,0 +1,127 @@
+#include "core/simulation/rendering/patterns.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+constexpr int kShift = 6;  // binary places of the vertices that OpenCV draws
+constexpr double kWhite = 235.0;
+
+using Polygon = std::vector<Vector2>;
+
+/// Vertices at angles of equal distance, the radii taken in turn.
+Polygon star(const Vector2& centre, int vertices, const std::vector<double>& radii, double angle) {
+  Polygon polygon;
+  for (int i = 0; i < vertices; ++i) {
+    const double a = angle + 2.0 * M_PI * i / vertices;
+    polygon.push_back(centre + radii[static_cast<std::size_t>(i) % radii.size()] * Vector2(std::cos(a), std::sin(a)));
+  }
+  return polygon;
+}
+
+Polygon l_shape(const Vector2& centre, double radius, double angle) {
+  const std::vector<Vector2> corners{{-0.6, -0.8}, {-0.1, -0.8}, {-0.1, 0.3}, {0.6, 0.3}, {0.6, 0.8}, {-0.6, 0.8}};
+  Polygon polygon;
+  for (const Vector2& corner : corners) polygon.push_back(centre + radius * (Eigen::Rotation2Dd(angle) * corner));
+  return polygon;
+}
+
+void fill(cv::Mat& picture, const Polygon& polygon, double grey) {
+  std::vector<cv::Point> vertices;
+  for (const Vector2& vertex : polygon) {
+    vertices.emplace_back(static_cast<int>(std::lround(std::ldexp(vertex.x(), kShift))),
+                          static_cast<int>(std::lround(std::ldexp(vertex.y(), kShift))));
+  }
+  cv::fillPoly(picture, vertices, cv::Scalar(grey), cv::LINE_AA, kShift);
+}
+
+cv::Mat blank(int side) { return {side, side, CV_8U, cv::Scalar(kWhite)}; }
+
+/// A place in each square of a grid, so that something of this radius stays within the square.
+std::vector<Vector2> places(int side, double square, double radius, Random& random) {
+  std::vector<Vector2> result;
+  const int count = std::max(1, static_cast<int>(side / square));
+  const double room = static_cast<double>(side) / count, margin = std::min(radius, 0.5 * room);
+  for (int row = 0; row < count; ++row) {
+    for (int column = 0; column < count; ++column) {
+      const double x = random.uniform(margin, room - margin), y = random.uniform(margin, room - margin);
+      result.emplace_back(column * room + x, row * room + y);
+    }
+  }
+  return result;
+}
+
+void find_corners(Pattern& pattern, double distance) {
+  std::vector<cv::Point2f> corners;
+  cv::goodFeaturesToTrack(pattern.picture, corners, 10000, 0.02, distance, {}, 5);
+  for (const cv::Point2f& corner : corners) pattern.features.emplace_back(corner.x, corner.y);
+}
+
+}  // namespace
+
+Pattern draw_dots(int side, double diameter, Random& random) {
+  Pattern pattern{blank(side), places(side, 3.0 * diameter, 0.6 * diameter, random)};
+  constexpr int vertices = 48;
+  for (const Vector2& centre : pattern.features) {
+    fill(pattern.picture, star(centre, vertices, {0.5 * diameter}, 0.0), 30.0);
+  }
+  return pattern;
+}
+
+Pattern draw_shapes(int side, double size, Random& random) {
+  Pattern pattern{blank(side), {}};
+  for (const Vector2& centre : places(side, 1.6 * size, 0.6 * size, random)) {
+    const double radius = size * random.uniform(0.35, 0.55), angle = random.uniform(0.0, 2.0 * M_PI);
+    const double grey = random.uniform(20.0, 90.0);
+    switch (random.index(6)) {
+      case 0: fill(pattern.picture, star(centre, 96, {radius}, 0.0), grey); break;
+      case 1: fill(pattern.picture, star(centre, 3, {radius}, angle), grey); break;
+      case 2: fill(pattern.picture, star(centre, 4, {radius}, angle), grey); break;
+      case 3: fill(pattern.picture, star(centre, 6, {radius}, angle), grey); break;
+      case 4: fill(pattern.picture, star(centre, 10, {radius, 0.45 * radius}, angle), grey); break;
+      default: fill(pattern.picture, l_shape(centre, radius, angle), grey); break;
+    }
+  }
+  find_corners(pattern, 0.2 * size);
+  return pattern;
+}
+
+Pattern draw_leaves(int side, double smallest, Random& random) {
+  Pattern pattern{blank(side), {}};
+  constexpr double largest = 16.0;  // times the smallest
+  // Mean area of a leaf by that density: ∫ d² d⁻³ / ∫ d⁻³ = 2 ln(largest) / (1 − largest⁻²) of the smallest one's. So
+  // many leaves fall that each place is covered three times on average.
+  const double area = 0.5 * smallest * smallest * 2.0 * std::log(largest);
+  const int count = static_cast<int>(3.0 * side * side / area);
+  for (int i = 0; i < count; ++i) {
+    const double diameter = smallest / std::sqrt(1.0 - random.uniform() * (1.0 - 1.0 / (largest * largest)));
+    const Vector2 centre(random.uniform(0.0, side), random.uniform(0.0, side));
+    const int vertices = 3 + static_cast<int>(random.index(3));
+    const double radius = 0.5 * diameter, angle = random.uniform(0.0, 2.0 * M_PI);
+    const std::vector<double> radii{radius, radius * random.uniform(0.6, 1.0), radius * random.uniform(0.8, 1.0)};
+    fill(pattern.picture, star(centre, vertices, radii, angle), random.uniform(20.0, kWhite));
+  }
+  find_corners(pattern, smallest);
+  return pattern;
+}
+
+Pattern read_picture(const std::string& path) {
+  Pattern pattern;
+  pattern.picture = cv::imread(path, cv::IMREAD_GRAYSCALE);
+  if (pattern.picture.empty()) {
+    throw InputError(fmt::format("{}: can't be read as a picture; expected a PNG, JPEG, TIFF, ... file", path));
+  }
+  find_corners(pattern, 5.0);
+  return pattern;
+}
+
+}  // namespace evbench

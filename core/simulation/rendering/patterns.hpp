@@ -1,0 +1,33 @@
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "core/geometry/types.hpp"
+#include "core/simulation/random.hpp"
+
+namespace evbench {
+
+/// A picture to put on a surface: grey values of 8 bits, as displays show them.
+struct Pattern {
+  cv::Mat picture;
+  std::vector<Vector2> features;  ///< places that can be tracked, in the picture's pixels (its first one's centre is 0)
+};
+
+/// Dark discs of this diameter, on white, at random places but apart: one a square of three diameters. Features: their
+/// centres.
+Pattern draw_dots(int side, double diameter, Random& random);
+
+/// Dark discs, triangles, squares, hexagons, stars and L shapes of about this size, of different greys, on white, one
+/// a square of 1.6 sizes.
+Pattern draw_shapes(int side, double size, Random& random);
+
+/// Polygons of random grey that cover one another like fallen leaves, from `smallest` to 16 times that in diameter,
+/// as many of a size as statistics of natural images ask for (Lee et al. 2001: density ~ diameter⁻³). Rich in corners.
+Pattern draw_leaves(int side, double smallest, Random& random);
+
+/// An image file of any format that OpenCV reads. Throws InputError when it can't be read.
+Pattern read_picture(const std::string& path);
+
+}  // namespace evbench

@@ -1,0 +1,141 @@
+#include "core/simulation/rendering/rendered_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core/simulation/layout.hpp"
+#include "core/simulation/rendering/patterns.hpp"
+#include "core/support/error.hpp"
+#include "core/support/path.hpp"
+
+namespace evbench {
+namespace {
+
+using Box = Eigen::AlignedBox3d;
+
+/// A pattern and how large it is on the surfaces [m].
+struct Print {
+  Pattern pattern;
+  Vector2 size;
+  Vector2 metres(const Vector2& pixel) const {
+    return (pixel.array() + 0.5) * size.array() / Eigen::Array2d(pattern.picture.cols, pattern.picture.rows);
+  }
+};
+
+/// How many pixels of the image the smallest detail of a kind measures at mean depth, unless the options say it.
+double detail_pixels(const std::string& kind) {
+  if (kind == "dots") return 7.0;
+  return kind == "shapes" ? 40.0 : 5.0;
+}
+
+/// A print `width` [m] wide, as far as there is room for its texels: half a pixel each where the camera is nearest.
+Print make_print(const RenderedSceneOptions& options, const Camera& camera, double width, Random& random,
+                 const std::string& folder) {
+  if (!options.picture.empty()) {
+    Print print{read_picture(resolve_path(options.picture, folder)), {}};
+    print.size = options.picture_width *
+                 Vector2(1.0, static_cast<double>(print.pattern.picture.rows) / print.pattern.picture.cols);
+    return print;
+  }
+  const double depth = 0.5 * (options.near + options.far), pixel = 1.0 / camera.pinhole.fx;
+  const double detail = options.detail > 0.0 ? options.detail : detail_pixels(options.kind) * depth * pixel;
+  const double texel = std::min(0.5 * (options.kind == "boxes" ? options.near : depth) * pixel, detail / 4.0);
+  const auto texels = static_cast<unsigned>(std::clamp(width / texel, 512.0, 4096.0));
+  const int side = static_cast<int>(std::bit_ceil(texels));
+  const double size = detail / texel;
+  Pattern pattern = options.kind == "dots"     ? draw_dots(side, size, random)
+                    : options.kind == "shapes" ? draw_shapes(side, size, random)
+                                               : draw_leaves(side, size, random);
+  return {std::move(pattern), Vector2::Constant(side * texel)};
+}
+
+/// What cannot stand in the camera's way: boxes around the path are drawn again.
+bool clear_of_path(const StandingBox& box, const SceneLayout& layout, double distance) {
+  return std::ranges::all_of(layout.path.poses(), [&](const StampedPose& pose) {
+    const Vector3 local = box.turn.conjugate() * (layout.frame.inverse() * pose.T.p - box.centre);
+    return ((local.cwiseAbs() - box.half).cwiseMax(0.0)).norm() > distance;
+  });
+}
+
+std::vector<Surface> boxes_in_room(const RenderedSceneOptions& options, const SceneLayout& layout, Random& random) {
+  constexpr int attempts = 20;
+  const Box volume = layout.viewed_volume(options.near, options.far);
+  std::vector<Surface> surfaces;
+  for (int i = 0; i < options.boxes; ++i) {
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+      const StandingBox box(volume, random);
+      if (!clear_of_path(box, layout, 0.5 * options.near)) continue;
+      surfaces.push_back({Surface::Kind::box, layout.frame * SE3{box.turn, box.centre}, box.half});
+      break;
+    }
+  }
+  Box room = volume;
+  for (const StampedPose& pose : layout.path.poses()) room.extend(layout.frame.inverse() * pose.T.p);
+  surfaces.push_back({Surface::Kind::room, layout.frame * SE3{Eigen::Quaterniond::Identity(), room.center()},
+                      0.5 * room.sizes() + Vector3::Constant(0.3 * options.near)});
+  return surfaces;
+}
+
+std::vector<Surface> plane(const RenderedSceneOptions& options, const SceneLayout& layout) {
+  const Box rectangle = layout.viewed_rectangle(0.5 * (options.near + options.far));
+  return {{Surface::Kind::plane, layout.frame * SE3{Eigen::Quaterniond::Identity(), rectangle.center()},
+           0.5 * rectangle.sizes()}};
+}
+
+/// The print's features on a face.
+void add_features(const Surface& surface, int face, const Print& print, std::vector<Vector3>& features) {
+  const Eigen::Index axis = face / 2, right = (axis + 1) % 3, down = (axis + 2) % 3;
+  for (const Vector2& pixel : print.pattern.features) {
+    const Vector2 place = print.metres(pixel) - surface.offsets[static_cast<std::size_t>(face)];
+    if (std::abs(place.x()) > surface.half[right] || std::abs(place.y()) > surface.half[down]) continue;
+    Vector3 local;
+    local[right] = place.x();
+    local[down] = place.y();
+    local[axis] = face % 2 == 1 ? surface.half[axis] : -surface.half[axis];  // 0 for a plane
+    features.push_back(surface.T_world_surface * local);
+  }
+}
+
+}  // namespace
+
+void RenderedSceneOptions::declare(OptionSet& set) {
+  set.add("kind", kind, "what the camera looks at").choices({"plane", "dots", "shapes", "boxes"});
+  set.add("near", near, "smallest depth seen from the path [m]; planes are half way").above(0.0);
+  set.add("far", far, "largest depth seen from the path [m]").above(0.0);
+  set.add("boxes", boxes, "number of boxes").range(0, 1e4);
+  set.add("detail", detail, "size of dots, of shapes, of the finest texture [m]; 0: what suits the camera").range(0.0);
+  set.add("picture", picture, "path of a picture to put on the surfaces instead; empty: none").path();
+  set.add("picture_width", picture_width, "its width on a surface, after which it is mirrored [m]").above(0.0);
+}
+
+RenderedScene make_rendered_scene(const RenderedSceneOptions& options, const Camera& camera, const Motion& motion,
+                                  double duration, Random random, const std::string& folder, const std::string& place) {
+  if (!(options.near < options.far)) {
+    throw InputError(
+        fmt::format("{}: near is {} m and far {} m; expected near < far", place, options.near, options.far));
+  }
+  const SceneLayout layout(camera, sample_motion(motion, duration, 10.0));
+  const bool boxes = options.kind == "boxes";
+  std::vector<Surface> surfaces = boxes ? boxes_in_room(options, layout, random) : plane(options, layout);
+  const Vector3& largest = surfaces.back().half;
+  const Print print = make_print(options, camera, 2.0 * largest.maxCoeff(), random, folder);
+  for (Surface& surface : surfaces) {
+    for (Vector2& offset : surface.offsets) {
+      // The print's middle is the plane's, and anywhere on a box.
+      offset = 0.5 * print.size;
+      if (boxes) offset = print.size.cwiseProduct(Vector2(random.uniform(), random.uniform()));
+    }
+  }
+  RenderedScene scene{std::move(surfaces), Texture(print.pattern.picture, print.size), {}};
+  for (const Surface& surface : scene.surfaces) {
+    for (int face = 0; face < 6; ++face) {
+      if (boxes || face == 4) add_features(surface, face, print, scene.features);
+    }
+  }
+  return scene;
+}
+
+}  // namespace evbench

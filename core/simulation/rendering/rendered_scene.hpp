@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/geometry/camera.hpp"
+#include "core/plugin/options.hpp"
+#include "core/simulation/motion.hpp"
+#include "core/simulation/random.hpp"
+#include "core/simulation/rendering/texture.hpp"
+#include "core/simulation/rendering/view.hpp"
+
+namespace evbench {
+
+struct RenderedSceneOptions {
+  std::string kind = "plane";
+  double near = 1.0, far = 3.0;
+  int boxes = 12;
+  double detail = 0.0;
+  std::string picture;
+  double picture_width = 1.0;
+
+  void declare(OptionSet& set);
+};
+
+/// Surfaces to render and what is printed on them.
+struct RenderedScene {
+  std::vector<Surface> surfaces;
+  Texture texture;
+  /// Places on the surfaces that can be tracked (dots' centres, corners), world frame; some may never be visible.
+  std::vector<Vector3> features;
+};
+
+/// A scene where the camera looks during the motion:
+/// - dots: dark dots on a white plane;
+/// - shapes: dark geometric shapes on a white plane;
+/// - plane: a plane with a picture, or with fallen leaves (see draw_leaves);
+/// - boxes: boxes with that in a room with that, between the depths near and far from the path.
+/// Planes meet the mean view direction at right angles half way between near and far.
+/// Throws InputError, naming `place`, unless near < far, and for a picture that can't be read (relative to `folder`).
+RenderedScene make_rendered_scene(const RenderedSceneOptions& options, const Camera& camera, const Motion& motion,
+                                  double duration, Random random, const std::string& folder, const std::string& place);
+
+}  // namespace evbench

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/camera.hpp"
+#include "core/simulation/rendering/view.hpp"
+
+namespace evbench {
+
+/// A picture by a renderer; all by rows.
+struct Frame {
+  std::vector<float> log_intensity;
+  std::vector<Hit> hits;           ///< of the pixels' centres; surface −1 where there is nothing
+  std::vector<std::uint8_t> edge;  ///< does a neighbour see another face?
+};
+
+/// Renders log intensity by casting rays through a camera with lens. A pixel's intensity is averaged with a Gaussian of
+/// standard deviation `blur` [px] (a pixel's area and the optics): by nine samples of the filtered texture, or, where a
+/// neighbour sees another face, by 32 rays. Nothing moves in jumps, then, when the camera moves.
+class Renderer {
+ public:
+  /// The surfaces' texture is where they have no end, too.
+  Renderer(const Camera& camera, const std::vector<Surface>& surfaces, const Texture& texture, double blur);
+
+  const Camera& camera() const { return camera_; }
+  View view(const SE3& T_world_camera) const { return {*surfaces_, T_world_camera}; }
+
+  /// `threads`: 0: one a processor.
+  void render(const SE3& T_world_camera, int threads, Frame& frame) const;
+
+  /// One pixel of a picture; `edge` as in Frame.
+  float pixel(const View& view, std::size_t index, bool edge) const;
+
+  /// The ray (x, y, 1) of a pixel's centre. Where the lens model has no inverse, the pixel sees nothing.
+  const Vector3& ray(std::size_t index) const { return rays_[index].centre; }
+
+ private:
+  struct Ray {
+    Vector3 centre;    ///< (x, y, 1), undistorted
+    Matrix2 jacobian;  ///< of x and y by the pixel
+    bool valid;
+  };
+  Ray make_ray(const Vector2& pixel) const;
+  float intensity(const View& view, const Hit& hit, const Ray& ray) const;
+  float intensity_at_edge(const View& view, const Ray& ray) const;
+
+  Camera camera_;
+  const std::vector<Surface>* surfaces_;
+  const Texture* texture_;
+  double blur_;
+  std::vector<Ray> rays_;
+  std::vector<Vector2> spread_;  ///< offsets of the rays at an edge [px]
+};
+
+}  // namespace evbench
