@@ -5,10 +5,13 @@
 // Every format of this folder: a function each, listed in ../formats.cpp.
 namespace evbench {
 
+EventFormat dat_format();
+EventFormat es_format();
 EventFormat evt2_format();
 EventFormat evt21_format();
 EventFormat evt3_format();
 EventFormat hdf5_format();
 EventFormat native_format();
+EventFormat ros1_bag_format();
 
 }  // namespace evbench
