@@ -28,7 +28,7 @@ std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOpti
 }
 
 const std::vector<EventFormat>& event_formats() {
-  static const std::vector<EventFormat> formats = {native_format(), hdf5_format(), ros1_bag_format(), evt2_format(), evt21_format(),
+  static const std::vector<EventFormat> formats = {native_format(), hdf5_format(), ros1_bag_format(), ros2_sqlite_format(), mcap_format(), evt2_format(), evt21_format(),
                                                    evt3_format(), dat_format(), es_format()};
   return formats;
 }

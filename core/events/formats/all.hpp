@@ -13,5 +13,7 @@ EventFormat evt3_format();
 EventFormat hdf5_format();
 EventFormat native_format();
 EventFormat ros1_bag_format();
+EventFormat mcap_format();
+EventFormat ros2_sqlite_format();
 
 }  // namespace evbench
