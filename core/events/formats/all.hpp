@@ -5,7 +5,9 @@
 // Every format of this folder: a function each, listed in ../formats.cpp.
 namespace evbench {
 
+EventFormat aedat4_format();
 EventFormat dat_format();
+EventFormat ecd_text_format();
 EventFormat es_format();
 EventFormat evt2_format();
 EventFormat evt21_format();
