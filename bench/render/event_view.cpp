@@ -1,0 +1,73 @@
+#include "bench/render/event_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/render/event_image.hpp"
+#include "bench/render/time_surface.hpp"
+#include "core/data/calib.hpp"
+#include "core/data/tum.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+/// As the recording says; otherwise what its events in the time range need.
+cv::Size sensor_size(const std::string& path, const StreamOptions& options, const StreamInfo& info) {
+  if (info.width > 0 && info.height > 0) return {info.width, info.height};
+  cv::Size size(1, 1);
+  EventStream stream(path, options);
+  for (std::vector<Event> events; stream.read(events);) {
+    for (const Event& event : events) {
+      size.width = std::max(size.width, event.x + 1);
+      size.height = std::max(size.height, event.y + 1);
+    }
+  }
+  return size;
+}
+
+}  // namespace
+
+EventView::EventView(const std::string& path, const RenderOptions& options, const WindowExtent& extent)
+    : stream_(path, options.stream),
+      size_(sensor_size(path, options.stream, stream_.info())),
+      window_(stream_, extent),
+      mode_(options.mode),
+      palette_(options.dark ? dark_palette() : light_palette()),
+      decay_(options.decay * 1e6) {
+  if (mode_ == RenderMode::compensated) prepare_compensation(path, options);
+}
+
+void EventView::prepare_compensation(const std::string& path, const RenderOptions& options) {
+  const std::string whose = options.trajectory.empty() ? path : options.trajectory;
+  trajectory_ = options.trajectory.empty() ? stream_.reader().ground_truth().value_or(PoseTrajectory())
+                                           : read_tum(options.trajectory);
+  if (trajectory_.empty()) {
+    throw InputError(fmt::format("{}: has no ground truth; compensation needs --trajectory", path));
+  }
+  const std::optional<Camera> camera = options.calibration.empty()
+                                           ? stream_.reader().calibration()
+                                           : read_calib(options.calibration, size_.width, size_.height);
+  if (!camera) throw InputError(fmt::format("{}: has no calibration; compensation needs --calib", path));
+  if (camera->width != size_.width || camera->height != size_.height) {
+    throw InputError(fmt::format("{}: calibration of {}x{} pixels; expected the sensor's {}x{}", path, camera->width,
+                                 camera->height, size_.width, size_.height));
+  }
+  compensation_.emplace(trajectory_, *camera, options.depth, whose);
+}
+
+EventView::Sight EventView::before(std::int64_t t) {
+  const EventSlice slice = window_.before(t);
+  switch (mode_) {
+    case RenderMode::events: break;
+    case RenderMode::time_surface:
+      return {draw_time_surface(time_surface(slice.events, size_, t, decay_), palette_), t};
+    case RenderMode::compensated:
+      return {draw_counts(compensation_->accumulate(slice.events, slice.middle(), stream_.zero()), palette_),
+              slice.middle()};
+  }
+  return {draw_events(slice.events, size_, palette_), t};
+}
+
+}  // namespace evbench

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "bench/render/event_window.hpp"
+#include "bench/render/motion_compensation.hpp"
+#include "bench/render/palette.hpp"
+#include "bench/render/render.hpp"
+
+namespace evbench {
+
+/// One recording as it is seen at a time: reads what it needs, time moves forward.
+class EventView {
+ public:
+  EventView(const std::string& path, const RenderOptions& options, const WindowExtent& extent);
+  EventView(const EventView&) = delete;
+  EventView& operator=(const EventView&) = delete;
+
+  struct Sight {
+    Picture picture;     ///< a sensor pixel a pixel
+    std::int64_t t = 0;  ///< what it shows [µs]: the end of its events' time, or where they are moved to
+  };
+  Sight before(std::int64_t t);
+
+  EventStream& stream() { return stream_; }
+  EventWindow& window() { return window_; }
+  cv::Size size() const { return size_; }  ///< sensor [px]
+
+ private:
+  void prepare_compensation(const std::string& path, const RenderOptions& options);
+
+  EventStream stream_;
+  cv::Size size_;
+  EventWindow window_;
+  RenderMode mode_;
+  Palette palette_;
+  double decay_;               ///< [µs]
+  PoseTrajectory trajectory_;  ///< for compensation, as is:
+  std::optional<MotionCompensation> compensation_;
+};
+
+}  // namespace evbench

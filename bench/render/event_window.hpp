@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/events/event_stream.hpp"
+
+namespace evbench {
+
+/// The events of a stretch of time.
+struct EventSlice {
+  std::int64_t begin = 0, end = 0;  ///< [µs]; the end is not included
+  std::span<const Event> events;    ///< in time order
+
+  std::int64_t middle() const { return begin + (end - begin) / 2; }
+};
+
+/// How much of a stream is looked at at once: a time, or a number of events.
+struct WindowExtent {
+  std::int64_t duration = 20000;          ///< [µs]
+  std::optional<std::size_t> count = {};  ///< where set, instead of the duration
+};
+
+/// A window that moves forward over a stream. Keeps no more than the window's events and a chunk of the stream.
+class EventWindow {
+ public:
+  EventWindow(EventStream& stream, const WindowExtent& extent) : stream_(&stream), extent_(extent) {}
+
+  /// The newest events before t [µs], until the next call. t must not be less than in a call before.
+  EventSlice before(std::int64_t t);
+
+  /// Time of the first event that no window has reached [µs]; none at the end.
+  std::optional<std::int64_t> next();
+
+ private:
+  bool fill();
+  void trim(std::int64_t t);
+
+  EventStream* stream_;
+  WindowExtent extent_;
+  std::vector<Event> window_;
+  std::vector<Event> chunk_;
+  std::size_t used_ = 0;  ///< of the chunk
+};
+
+}  // namespace evbench

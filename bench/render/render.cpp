@@ -1,0 +1,143 @@
+#include "bench/render/render.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "bench/render/event_view.hpp"
+#include "bench/render/picture_sink.hpp"
+#include "bench/render/track_overlay.hpp"
+#include "core/data/tracks.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+constexpr std::int64_t kMaxStill = 100000;  // pictures without an event: more are a clock's fault
+
+std::int64_t microseconds(double seconds) { return std::max<std::int64_t>(1, std::llround(seconds * 1e6)); }
+
+WindowExtent make_extent(const RenderOptions& options, bool one_picture, std::int64_t period) {
+  WindowExtent extent;
+  extent.count = options.count;
+  if (options.duration) {
+    extent.duration = microseconds(*options.duration);
+  } else if (one_picture && options.stream.from && options.stream.to) {
+    extent.duration = *options.stream.to - *options.stream.from;
+  } else {
+    const double shown = options.mode == RenderMode::time_surface ? 5.0 * options.decay : 0.02;
+    extent.duration = std::max(microseconds(shown), one_picture ? 0 : period);
+  }
+  return extent;
+}
+
+/// The end of the first picture's time. Reads the stream anew, as a count tells it only by reading.
+std::int64_t first_end(const std::string& path, const StreamOptions& options, const WindowExtent& extent) {
+  EventStream stream(path, options);
+  std::vector<Event> events;
+  std::size_t count = 0;
+  std::int64_t newest = 0;
+  while (stream.read(events)) {
+    if (!extent.count) return options.from.value_or(events.front().t) + extent.duration;
+    if (count + events.size() >= *extent.count) return events[*extent.count - count - 1].t + 1;
+    count += events.size();
+    newest = events.back().t;
+  }
+  if (count == 0) throw InputError(fmt::format("{}: has no events between --from and --to", path));
+  return newest + 1;
+}
+
+int make_scale(const RenderOptions& options, int width) { return options.scale.value_or((640 + width - 1) / width); }
+
+Picture enlarge(const Picture& picture, int scale) {
+  Picture large;
+  cv::resize(picture, large, {}, scale, scale, cv::INTER_NEAREST);
+  return large;
+}
+
+/// With a bar between, aligned at the top.
+Picture side_by_side(const Picture& left, const Picture& right, const Palette& palette) {
+  constexpr int kBar = 4;
+  const int height = std::max(left.rows, right.rows);
+  Picture both(height, left.cols + kBar + right.cols, palette.background);
+  left.copyTo(both(cv::Rect(0, 0, left.cols, left.rows)));
+  both(cv::Rect(left.cols, 0, kBar, height)).setTo(palette.frame);
+  right.copyTo(both(cv::Rect(left.cols + kBar, 0, right.cols, right.rows)));
+  return both;
+}
+
+/// Draws the pictures, one time after the other.
+class Renderer {
+ public:
+  Renderer(const std::string& in, const RenderOptions& options, const WindowExtent& extent)
+      : palette_(options.dark ? dark_palette() : light_palette()),
+        main_(in, options, extent),
+        scale_(make_scale(options, main_.size().width)) {
+    if (!options.tracks.empty()) {
+      tracks_.emplace(read_tracks(options.tracks, main_.size().width, main_.size().height).observations, options.tail);
+    }
+    if (!options.beside.empty()) beside_.emplace(options.beside, options, extent);
+  }
+
+  Picture before(std::int64_t t) {
+    const EventView::Sight sight = main_.before(t);
+    Picture picture = enlarge(sight.picture, scale_);
+    if (tracks_) {
+      tracks_->draw(static_cast<double>(sight.t + main_.stream().zero()) * 1e-6, scale_, palette_, picture);
+    }
+    if (!beside_) return picture;
+    return side_by_side(picture, enlarge(beside_->before(t).picture, scale_), palette_);
+  }
+
+  /// Time of the first event that is still to be drawn.
+  std::optional<std::int64_t> next() { return main_.window().next(); }
+
+  std::vector<std::pair<std::string, Faults::Fault>> faults() {
+    auto all = main_.stream().faults();
+    if (beside_) {
+      for (auto& fault : beside_->stream().faults()) all.push_back(std::move(fault));
+    }
+    return all;
+  }
+
+ private:
+  Palette palette_;
+  EventView main_;
+  int scale_;
+  std::optional<TrackOverlay> tracks_;
+  std::optional<EventView> beside_;
+};
+
+}  // namespace
+
+RenderReport render(const std::string& in, const std::string& out, const RenderOptions& options,
+                    const std::function<void(std::int64_t, std::int64_t)>& progress) {
+  const std::unique_ptr<PictureSink> sink = open_picture_sink(out, options.fps);
+  const std::int64_t period = microseconds(options.speed / options.fps);
+  const WindowExtent extent = make_extent(options, !sink->takes_many(), period);
+  Renderer renderer(in, options, extent);
+  RenderReport report;
+  std::int64_t t = first_end(in, options.stream, extent);
+  while (true) {
+    const Picture picture = renderer.before(t);
+    sink->add(picture);
+    report.size = picture.size();
+    ++report.pictures;
+    if (progress) progress(report.pictures, t);
+    const std::optional<std::int64_t> next = renderer.next();
+    if (!next || !sink->takes_many()) break;
+    if ((*next - t) / period > kMaxStill) {
+      throw InputError(
+          fmt::format("{}: has no events between {:.6f} and {:.6f} s; choose the time with --from and --to", in,
+                      static_cast<double>(t) * 1e-6, static_cast<double>(*next) * 1e-6));
+    }
+    t += period;
+  }
+  sink->finish();
+  report.faults = renderer.faults();
+  return report;
+}
+
+}  // namespace evbench

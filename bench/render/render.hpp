@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/render/palette.hpp"
+#include "core/events/event_stream.hpp"
+
+namespace evbench {
+
+enum class RenderMode {
+  events,        ///< event_image.hpp
+  time_surface,  ///< time_surface.hpp
+  compensated,   ///< motion_compensation.hpp, at the middle of each picture's time
+};
+
+struct RenderOptions {
+  StreamOptions stream;
+  RenderMode mode = RenderMode::events;
+  /// What a picture shows: [s], or a number of events. Neither: what --from and --to enclose for one picture that has
+  /// both, otherwise 20 ms, five times the decay for time surfaces, or the time between pictures if that is longer.
+  std::optional<double> duration;
+  std::optional<std::size_t> count;
+  double decay = 0.03;             ///< of time surfaces [s]
+  double fps = 30.0, speed = 1.0;  ///< pictures a second of playback; seconds of the recording in one of playback
+  std::optional<int> scale;        ///< pixels a sensor pixel; none: so many that the sensor has 640 or more across
+  bool dark = false;
+  std::string tracks;           ///< file `id t x y`, drawn over `in`; empty: none
+  double tail = 0.1;            ///< of tracks [s]
+  std::string trajectory;       ///< TUM, for compensation; empty: the recording's own
+  std::string calibration;      ///< calib.txt, likewise
+  std::optional<double> depth;  ///< of the plane [m]; none: only the rotation is compensated
+  std::string beside;           ///< another recording, at the right; empty: none
+};
+
+struct RenderReport {
+  std::int64_t pictures = 0;
+  cv::Size size;                                              ///< of a picture
+  std::vector<std::pair<std::string, Faults::Fault>> faults;  ///< of the recordings, left out
+};
+
+/// Draws a recording to `out` (picture_sink.hpp). The first picture shows the beginning of the time range; the next
+/// ones follow every speed / fps seconds, up to the one that shows the last event. Times of tracks and trajectory are
+/// the file's own. `progress` is told how many pictures are done, and their time [µs]. Throws InputError for what can't
+/// be read or written, a time range without events, a trajectory that does not reach, and options that don't fit.
+RenderReport render(const std::string& in, const std::string& out, const RenderOptions& options,
+                    const std::function<void(std::int64_t, std::int64_t)>& progress = {});
+
+}  // namespace evbench

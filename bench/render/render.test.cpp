@@ -1,0 +1,263 @@
+#include "bench/render/render.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+#include <set>
+
+#include "bench/render/picture_sink.hpp"
+#include "bench/render/testing/recording.hpp"
+#include "bench/render/track_overlay.hpp"
+#include "core/support/error.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// For 100 ms an event a millisecond, from 1 s on; on and off in turn, along the sensor's columns.
+std::vector<Event> hundred_events() {
+  std::vector<Event> events;
+  for (int i = 0; i < 100; ++i) {
+    events.push_back(
+        {1000000 + 1000 * i, static_cast<std::uint16_t>(i % 20), static_cast<std::uint16_t>(i / 20), i % 2 == 0});
+  }
+  return events;
+}
+
+std::set<std::string> names(const std::string& folder) {
+  std::set<std::string> all;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) all.insert(entry.path().filename().string());
+  return all;
+}
+
+/// Pixels that are not white.
+int drawn_pixels(const std::string& path) {
+  const Picture picture = cv::imread(path, cv::IMREAD_COLOR);
+  int count = 0;
+  for (const Colour& colour : picture) count += colour == Colour(255, 255, 255) ? 0 : 1;
+  return count;
+}
+
+/// All pictures of a video that another program can read.
+std::vector<cv::Mat> read_video(const std::string& path) {
+  cv::VideoCapture video(path);
+  std::vector<cv::Mat> pictures;
+  for (cv::Mat picture; video.read(picture);) pictures.push_back(picture.clone());
+  return pictures;
+}
+
+}  // namespace
+
+TEST_CASE("A picture shows the events of its duration or count, at any scale") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events()), out = folder.file("a.png");
+  RenderOptions options;
+  options.scale = 1;
+  CHECK(render(in, out, options).size == cv::Size(20, 10));
+  CHECK(drawn_pixels(out) == 20);  // 20 ms
+  options.count = 7;
+  render(in, out, options);
+  CHECK(drawn_pixels(out) == 7);
+  options.count.reset();
+  options.duration = 0.03;
+  options.stream.from = 1080000;
+  render(in, out, options);
+  CHECK(drawn_pixels(out) == 20);  // to the end
+  options.duration.reset();
+  options.stream.from = 1010000;
+  options.stream.to = 1050000;
+  render(in, out, options);
+  CHECK(drawn_pixels(out) == 40);  // what the range encloses
+  options.scale = 3;
+  render(in, out, options);
+  CHECK(drawn_pixels(out) == 40 * 9);
+  options.scale.reset();
+  CHECK(render(in, out, options).size == cv::Size(640, 320));
+}
+
+TEST_CASE("The same recording and options give the same bytes") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events());
+  folder.write("tracks.txt", "1 1.00 3 4\n1 1.01 5 4\n2 1.01 12 4\n");
+  for (const RenderMode mode : {RenderMode::events, RenderMode::time_surface}) {
+    RenderOptions options;
+    options.mode = mode;
+    options.tracks = folder.file("tracks.txt");
+    render(in, folder.file("a.png"), options);
+    render(in, folder.file("b.png"), options);
+    CHECK(read_file(folder.file("a.png")) == read_file(folder.file("b.png")));
+  }
+}
+
+TEST_CASE("A folder gets a picture each speed / fps seconds, until the last event is shown") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events());
+  RenderOptions options;
+  options.fps = 50.0;
+  options.speed = 0.5;  // a picture each 10 ms
+  options.duration = 0.01;
+  options.scale = 1;
+  CHECK(render(in, folder.file("pictures/"), options).pictures == 10);
+  CHECK(names(folder.path()) == std::set<std::string>{"a.evb", "pictures"});
+  for (int i = 0; i < 10; ++i) CHECK(drawn_pixels(folder.file("pictures/00000" + std::to_string(i) + ".png")) == 10);
+
+  options.speed = 1.0;
+  CHECK(render(in, folder.file("pictures"), options).pictures == 6);  // an older one is replaced
+  CHECK(names(folder.file("pictures")).size() == 6);
+}
+
+TEST_CASE("A folder that holds anything but rendered pictures is left alone") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events());
+  for (const char* name : {"mine.txt", "a.png", "1.png", "0000001png"}) {
+    const TemporaryFolder other;
+    other.write(name, "x");
+    CHECK_THROWS_WITH(render(in, other.path(), {}), Contains(name));
+    CHECK(names(other.path()) == std::set<std::string>{name});
+  }
+}
+
+TEST_CASE("A video can be read, with the number of pictures and the colours that were drawn") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events()), out = folder.file("a.mp4");
+  RenderOptions options;
+  options.fps = 25.0;
+  options.speed = 0.1;  // a picture each 4 ms
+  options.duration = 0.02;
+  options.scale = 16;
+  std::vector<std::int64_t> told;
+  const RenderReport report =
+      render(in, out, options, [&](std::int64_t pictures, std::int64_t) { told.push_back(pictures); });
+  CHECK(report.pictures == 21);  // from 20 ms on
+  CHECK(told.size() == 21);
+  CHECK(told.back() == 21);
+  CHECK(names(folder.path()) == std::set<std::string>{"a.evb", "a.mp4"});
+  const std::vector<cv::Mat> video = read_video(out);
+  REQUIRE(video.size() == 21);
+  CHECK(video[0].size() == cv::Size(320, 160));
+  CHECK(cv::VideoCapture(out).get(cv::CAP_PROP_FPS) == Approx(25.0));
+  const Picture first = video[0];
+  CHECK(cv::norm(first(8, 8), light_palette().on) < 60);
+  CHECK(cv::norm(first(8, 24), light_palette().off) < 60);
+  CHECK(cv::norm(first(100, 100), light_palette().background) < 20);
+}
+
+TEST_CASE("A video of odd size is made even at its borders") {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("a.mp4");
+  const auto sink = open_picture_sink(out, 30.0);
+  for (int i = 0; i < 3; ++i) sink->add(Picture(33, 55, Colour(0, 0, 200)));
+  sink->finish();
+  const std::vector<cv::Mat> video = read_video(out);
+  REQUIRE(video.size() == 3);
+  CHECK(video[0].size() == cv::Size(56, 34));
+}
+
+TEST_CASE("What is interrupted leaves nothing, and an older file") {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.png", "a.mp4", "pictures/"}) {
+    open_picture_sink(folder.file(name), 30.0)->add(Picture(16, 16, Colour(0, 0, 0)));
+    CHECK(names(folder.path()).empty());
+  }
+  folder.write("a.mp4", "older");
+  open_picture_sink(folder.file("a.mp4"), 30.0)->add(Picture(16, 16, Colour(0, 0, 0)));
+  CHECK(read_file(folder.file("a.mp4")) == "older");
+}
+
+TEST_CASE("Two recordings stand side by side, at the same times") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events()), out = folder.file("a.png");
+  RecordingHeader header;
+  header.width = 30;
+  header.height = 12;
+  const std::vector<Event> two{{1005000, 29, 11, true}, {1050000, 3, 3, true}};
+  RenderOptions options;
+  options.beside = write_native(folder, "b.evb", two, header);
+  options.scale = 2;
+  CHECK(render(in, out, options).size == cv::Size(40 + 4 + 60, 24));
+  const Picture picture = cv::imread(out);
+  CHECK(picture(0, 0) == light_palette().on);
+  CHECK(picture(23, 103) == light_palette().on);
+  CHECK(picture(7, 51) == light_palette().background);  // later
+  CHECK(picture(5, 41) == light_palette().frame);
+}
+
+TEST_CASE("Tracks are drawn over the recording that they belong to") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events()), out = folder.file("a.png");
+  RenderOptions options;
+  options.tracks = folder.write("tracks.txt", "4 1.019 10 8\n4 1.5 15 8\n");
+  options.scale = 4;
+  render(in, out, options);
+  const Picture picture = cv::imread(out);
+  CHECK(picture(34, 42) == track_colour(4, light_palette()));
+}
+
+TEST_CASE("A sensor of unknown size is as large as its events need") {
+  const TemporaryFolder folder;
+  const std::vector<Event> events{{100, 5, 7, true}, {200, 9, 3, false}};
+  const std::string in = write_native(folder, "a.evb", events, {});
+  RenderOptions options;
+  options.scale = 1;
+  options.count = 2;
+  CHECK(render(in, folder.file("a.png"), options).size == cv::Size(10, 8));
+}
+
+TEST_CASE("A recording with ground truth and calibration is compensated by them") {
+  const TemporaryFolder folder;
+  RecordingHeader header;
+  header.width = 20;
+  header.height = 10;
+  Camera camera;
+  camera.pinhole = {20.0, 20.0, 10.0, 5.0};
+  camera.width = 20;
+  camera.height = 10;
+  header.calibration = camera;
+  header.ground_truth = PoseTrajectory(std::vector<StampedPose>{{0.5, {}}, {1.5, {}}});
+  RenderOptions options;
+  options.mode = RenderMode::compensated;
+  options.scale = 1;
+  const std::string out = folder.file("a.png");
+  render(write_native(folder, "own.evb", hundred_events(), header), out, options);
+  CHECK(drawn_pixels(out) == 20);
+
+  const std::string bare = write_native(folder, "bare.evb", hundred_events());
+  CHECK_THROWS_WITH(render(bare, out, options), Contains("bare.evb") && Contains("--trajectory"));
+  options.trajectory = folder.write("truth.txt", "0.5 0 0 0 0 0 0 1\n1.5 0 0 0 0 0 0 1\n");
+  CHECK_THROWS_WITH(render(bare, out, options), Contains("bare.evb") && Contains("--calib"));
+  options.calibration = folder.write("calib.txt", "20 20 10 5 0 0 0 0 0\n");
+  render(bare, out, options);
+  CHECK(drawn_pixels(out) == 20);
+  options.trajectory = folder.write("late.txt", "1.015 0 0 0 0 0 0 1\n1.5 0 0 0 0 0 0 1\n");
+  CHECK_THROWS_WITH(render(bare, out, options), Contains("late.txt") && Contains("--from"));
+}
+
+TEST_CASE("What can't be drawn or written is refused with a sentence, and nothing is written") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events());
+  const auto refused = [&](const std::string& out, const RenderOptions& options, const std::string& message) {
+    CHECK_THROWS_WITH(render(in, folder.file(out), options), Contains(message));
+    CHECK_THROWS_AS(render(in, folder.file(out), options), InputError);
+  };
+  RenderOptions nothing;
+  nothing.stream.from = 5000000;
+  for (const char* out : {"a.png", "a.mp4", "a/"}) refused(out, nothing, "a.evb: has no events between");
+  for (const char* out : {"no/a.png", "no/a.mp4", "no/a/"}) refused(out, {}, "is missing");
+  refused("a.gif", {}, "expected .png");
+  refused("a", {}, "expected .png");
+  RenderOptions missing;
+  missing.beside = folder.file("nowhere.evb");
+  refused("a.png", missing, "nowhere.evb");
+  CHECK(names(folder.path()) == std::set<std::string>{"a.evb"});
+}
+
+TEST_CASE("A clock that jumps by days is refused, not filmed") {
+  const TemporaryFolder folder;
+  const std::vector<Event> events{{0, 1, 1, true}, {1'000'000'000'000, 2, 2, true}};
+  CHECK_THROWS_WITH(render(write_native(folder, "a.evb", events), folder.file("a.mp4"), {}),
+                    Contains("1000000.000000 s"));
+  CHECK(names(folder.path()) == std::set<std::string>{"a.evb"});
+}

@@ -1,0 +1,62 @@
+#include "bench/render/track_overlay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <opencv2/imgproc.hpp>
+
+namespace evbench {
+namespace {
+
+constexpr int kFractionBits = 4;  // of the coordinates of OpenCV's drawing functions
+
+/// The sensor's pixel in an enlarged picture, whose pixel (0, 0) has its centre at (0, 0), too.
+cv::Point enlarged(const Vector2& pixel, int scale) {
+  const double limit = 1e6;  // observations may lie far outside
+  const auto coordinate = [&](double value) {
+    const double place = (std::clamp(value, -limit, limit) + 0.5) * scale - 0.5;
+    return static_cast<int>(std::lround(std::ldexp(place, kFractionBits)));
+  };
+  return {coordinate(pixel.x()), coordinate(pixel.y())};
+}
+
+cv::Scalar scalar(const Colour& colour) { return {double(colour[0]), double(colour[1]), double(colour[2])}; }
+
+}  // namespace
+
+Colour track_colour(TrackId track, const Palette& palette) {
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  const double turns = static_cast<double>(track) * kGoldenRatio;
+  // Hues from 40 to 190 and from 265 to 335 degrees.
+  double hue = 40.0 + 220.0 * (turns - std::floor(turns));
+  if (hue > 190.0) hue += 75.0;
+  const bool dark = palette.background[1] < 128;
+  cv::Mat3f colour(1, 1, cv::Vec3f(static_cast<float>(hue), dark ? 0.75F : 1.0F, dark ? 1.0F : 0.68F));
+  cv::cvtColor(colour, colour, cv::COLOR_HSV2BGR);
+  Colour result;
+  for (int i = 0; i < 3; ++i) result[i] = cv::saturate_cast<std::uint8_t>(255.0F * colour(0, 0)[i]);
+  return result;
+}
+
+void TrackOverlay::draw(double t, int scale, const Palette& palette, Picture& picture) const {
+  const auto first = std::ranges::upper_bound(observations_, t - tail_, {}, &TrackObservation::t);
+  const auto last = std::ranges::upper_bound(observations_, t, {}, &TrackObservation::t);
+  std::map<TrackId, std::vector<const TrackObservation*>> tracks;
+  for (auto o = first; o < last; ++o) tracks[o->track].push_back(&*o);
+  const int thickness = std::max(1, scale / 2);
+  const int radius = std::max(2, (3 * scale + 1) / 4) << kFractionBits;
+  for (const auto& [id, positions] : tracks) {
+    const Colour colour = track_colour(id, palette);
+    for (std::size_t i = 1; i < positions.size(); ++i) {
+      const double age = (t - positions[i]->t) / tail_;
+      cv::line(picture, enlarged(positions[i - 1]->pixel, scale), enlarged(positions[i]->pixel, scale),
+               scalar(blend(colour, palette.background, 0.7 * age)), thickness, cv::LINE_AA, kFractionBits);
+    }
+    const cv::Point head = enlarged(positions.back()->pixel, scale);
+    cv::circle(picture, head, radius + (1 << kFractionBits), scalar(palette.background), cv::FILLED, cv::LINE_AA,
+               kFractionBits);
+    cv::circle(picture, head, radius, scalar(colour), cv::FILLED, cv::LINE_AA, kFractionBits);
+  }
+}
+
+}  // namespace evbench
