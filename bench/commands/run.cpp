@@ -1,14 +1,14 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/progress_line.hpp"
 #include "bench/run_folder.hpp"
 #include "bench/runner.hpp"
 #include "eval/table.hpp"
@@ -27,28 +27,6 @@ struct RunArguments {
   bool problem = false;
 };
 
-/// One line that rewrites itself, on a terminal only.
-class ProgressLine {
- public:
-  ProgressLine(std::string title, bool quiet)
-      : title_(std::move(title)), shown_(!quiet && ::isatty(STDERR_FILENO) != 0) {}
-  ~ProgressLine() {
-    if (shown_) fmt::print(stderr, "\r\033[K");
-  }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-
-  void update(double t, double end) {
-    if (!shown_) return;
-    fmt::print(stderr, "\r\033[K{}  {:.2f} of {:.2f} s", title_, std::min(t, end), end);
-    std::fflush(stderr);
-  }
-
- private:
-  std::string title_;
-  bool shown_;
-};
-
 int execute(const RunArguments& arguments) {
   const Experiment experiment = read_experiment(arguments.config, arguments.overrides);
   if (arguments.check) {
@@ -63,7 +41,9 @@ int execute(const RunArguments& arguments) {
     RunFolder folder(arguments.out, config);
     ProgressLine line(fmt::format("[{}/{}] {}", folders.size() + 1, experiment.runs.size(), config.label),
                       arguments.quiet);
-    const RunResult result = run(config, *source, [&](double t, double end) { line.update(t, end); });
+    const RunResult result = run(config, *source, [&](double t, double end) {
+      line.update(fmt::format("{:.2f} of {:.2f} s", std::min(t, end), end));
+    });
     folder.write(config, result, arguments.problem);
     folders.push_back(folder.path());
     failed = failed || result.status.state == RunState::failed;

@@ -22,6 +22,9 @@ class AtomicFolder {
   /// Writes a file of this name into the folder; throws InputError when it can't.
   void write(const std::string& name, std::string_view content) const;
 
+  /// The temporary folder, for files that are too big for write().
+  const std::string& part() const { return part_; }
+
   void commit();
 
  private:

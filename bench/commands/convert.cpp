@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+
+#include "bench/commands/commands.hpp"
+#include "bench/commands/progress_line.hpp"
+#include "bench/recordings/conversion.hpp"
+#include "core/events/writer.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+struct ConvertArguments {
+  std::string in, out;
+  std::optional<double> from, to;  // [s]
+  bool quiet = false;
+  ConversionOptions options;
+};
+
+std::optional<std::int64_t> microseconds(const std::optional<double>& seconds, const char* option) {
+  if (!seconds) return std::nullopt;
+  if (!(std::abs(*seconds) < 1e12)) throw InputError(fmt::format("{}: is {}; expected seconds", option, *seconds));
+  return std::llround(*seconds * 1e6);
+}
+
+void execute(const ConvertArguments& arguments) {
+  ConversionOptions options = arguments.options;
+  options.stream.from = microseconds(arguments.from, "--from");
+  options.stream.to = microseconds(arguments.to, "--to");
+  if (options.stream.from && options.stream.to && *options.stream.from >= *options.stream.to) {
+    throw InputError(fmt::format("--from {} --to {}: expected from < to", *arguments.from, *arguments.to));
+  }
+  ConversionReport report;
+  {
+    ProgressLine line(arguments.in, arguments.quiet);
+    report = convert(arguments.in, arguments.out, options, [&](std::int64_t events, std::int64_t t) {
+      line.update(fmt::format("{:.1f} million events, {:.2f} s", static_cast<double>(events) * 1e-6,
+                              static_cast<double>(t) * 1e-6));
+    });
+  }
+  if (arguments.quiet) return;
+  for (const auto& [kind, fault] : report.faults) {
+    fmt::print("left out: {} {}; the first: {}\n", fault.count, kind, fault.first);
+  }
+  if (report.outside > 0) fmt::print("left out: {} events that lie outside the undistorted image\n", report.outside);
+  fmt::print("written: {} ({}), {} events\n", arguments.out, report.format, report.written);
+}
+
+std::string formats_text() {
+  std::string text = "Formats that can be written, by the extension of OUT or by --format:\n";
+  for (const WritableFormat& format : writable_formats()) {
+    text += fmt::format("  {:<8}{:<6}{}\n", format.name, format.extension, format.description);
+  }
+  return text + "OUT appears when it is complete; an interrupted conversion leaves nothing, and what was there before.";
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app) {
+  auto arguments = std::make_shared<ConvertArguments>();
+  CLI::App* command = app.add_subcommand("convert", "Convert a recording of events: native cache, text, HDF5");
+  command->add_option("in", arguments->in, "File or folder, of any format that evbench reads")
+      ->required()
+      ->type_name("IN");
+  command->add_option("out", arguments->out, "File to write")->required()->type_name("OUT");
+  command->add_option("--format", arguments->options.format, "Format of OUT, whatever its extension")
+      ->type_name("NAME");
+  command->add_option("--from", arguments->from, "Only events from this time on [s], after --rebase");
+  command->add_option("--to", arguments->to, "Only events before this time [s], after --rebase");
+  command->add_flag("--rebase", arguments->options.stream.rebase, "The first event's time becomes zero");
+  command
+      ->add_option("--undistort", arguments->options.undistort,
+                   "Move events to where an ideal pinhole would see them, to the nearest pixel; those outside are left "
+                   "out. CALIB: a calib.txt, or \"own\": the recording's")
+      ->type_name("CALIB");
+  command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  add_read_options(*command, arguments->options.stream.read);
+  command->footer(formats_text());
+  command->callback([arguments] { execute(*arguments); });
+}
+
+}  // namespace evbench

@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "bench/commands/commands.hpp"
+#include "bench/commands/progress_line.hpp"
+#include "bench/datasets/fetch.hpp"
+#include "core/data/datasets.hpp"
+
+namespace evbench {
+namespace {
+
+void list_datasets() {
+  std::string collection;
+  for (const Dataset& dataset : read_catalogue(catalogue_path())) {
+    if (dataset.collection != collection) {
+      collection = dataset.collection;
+      fmt::print("{}\n  {}, {}\n", collection, dataset.homepage, dataset.licence);
+    }
+    const bool there = std::filesystem::is_directory(dataset_folder(dataset.name));
+    fmt::print("  {} {:<28} {}\n", there ? '*' : ' ', dataset.name, dataset.description);
+  }
+  fmt::print("\n*: in {}\n", datasets_folder());
+}
+
+void get_dataset(const std::string& name, bool quiet) {
+  const std::vector<Dataset> catalogue = read_catalogue(catalogue_path());
+  const Dataset& dataset = find_dataset(catalogue, name);
+  const std::string folder = dataset_folder(name);
+  const auto tell = [&](const std::string& line) {
+    if (!quiet) fmt::print("{}\n", line);
+  };
+  if (std::filesystem::is_directory(folder)) {
+    tell(fmt::format("{}: is there already", folder));
+    return;
+  }
+  tell(fmt::format("{}: {}\nLicence: {}; see {}", dataset.name, dataset.collection, dataset.licence, dataset.homepage));
+  std::fflush(stdout);
+  ProgressLine line(name, quiet);
+  DownloadOptions options;
+  options.progress = [&](std::uint64_t have, std::optional<std::uint64_t> total) {
+    const double mib = static_cast<double>(have) * 0x1p-20;
+    line.update(total ? fmt::format("{:.1f} of {:.1f} MiB", mib, static_cast<double>(*total) * 0x1p-20)
+                      : fmt::format("{:.1f} MiB", mib));
+  };
+  fetch_dataset(dataset, folder, options, tell);
+  tell("written: " + folder);
+}
+
+}  // namespace
+
+void add_dataset(CLI::App& app) {
+  struct Arguments {
+    std::string name;
+    bool quiet = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("dataset", "List and fetch public recordings");
+  command->require_subcommand(1);
+  command->add_subcommand("list", "List the catalogue; a star marks what is there")->callback(list_datasets);
+  CLI::App* get = command->add_subcommand("get", "Fetch a dataset; a download that broke off goes on");
+  get->add_option("name", arguments->name, "Name, e.g. ecd/dynamic_6dof")->required();
+  get->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  get->callback([arguments] { get_dataset(arguments->name, arguments->quiet); });
+  command->footer(
+      "Datasets are kept in the folder that EVBENCH_DATASETS names, or ~/.cache/evbench/datasets. A source of type\n"
+      "recording takes them by name: {\"dataset\": \"ecd/dynamic_6dof\"}. Their licences are their own.");
+}
+
+}  // namespace evbench

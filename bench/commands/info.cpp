@@ -1,0 +1,57 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "bench/commands/commands.hpp"
+#include "bench/commands/progress_line.hpp"
+#include "bench/recordings/summary.hpp"
+
+namespace evbench {
+namespace {
+
+struct InfoArguments {
+  std::string file;
+  ReadOptions options;
+  bool json = false, quiet = false;
+};
+
+void execute(const InfoArguments& arguments) {
+  RecordingSummary summary;
+  {
+    ProgressLine line(arguments.file, arguments.quiet);
+    summary = summarise(arguments.file, arguments.options, [&](std::int64_t events, std::int64_t t) {
+      line.update(fmt::format("{:.1f} million events, {:.2f} s", static_cast<double>(events) * 1e-6,
+                              static_cast<double>(t) * 1e-6));
+    });
+  }
+  fmt::print("{}", arguments.json ? summary_json(arguments.file, summary).dump(2) + "\n"
+                                  : format_summary(arguments.file, summary));
+}
+
+}  // namespace
+
+void add_read_options(CLI::App& command, ReadOptions& options) {
+  command.add_option("--topic", options.topic,
+                     "Whose events: topic of a bag, group of an HDF5 file; default: the first");
+  command.add_flag("--strict", options.strict, "The first oddity of the recording is an error, not a counted skip");
+  command.add_option("--width", options.width, "Sensor's width, where the file does not say [px]")
+      ->check(CLI::Range(1, 65536));
+  command.add_option("--height", options.height, "Sensor's height, likewise [px]")->check(CLI::Range(1, 65536));
+}
+
+void add_info(CLI::App& app) {
+  auto arguments = std::make_shared<InfoArguments>();
+  CLI::App* command = app.add_subcommand("info", "Describe a recording of events: format, counts, rates, oddities");
+  command->add_option("file", arguments->file, "File or folder, of any format that evbench reads")
+      ->required()
+      ->type_name("FILE");
+  command->add_flag("--json", arguments->json, "Print JSON");
+  command->add_flag("--quiet", arguments->quiet, "Show no progress");
+  add_read_options(*command, arguments->options);
+  command->footer(
+      "Oddities are events that were left out: back in time, outside the sensor, in damaged parts of the file.");
+  command->callback([arguments] { execute(*arguments); });
+}
+
+}  // namespace evbench

@@ -1,0 +1,136 @@
+#include "bench/recordings/conversion.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "core/data/calib.hpp"
+#include "core/events/writer.hpp"
+#include "core/support/error.hpp"
+#include "core/support/nearest.hpp"
+#include "core/support/part_file.hpp"
+
+namespace evbench {
+namespace {
+
+/// Where a lens' pixels lie in the ideal pinhole's image, to the nearest pixel.
+class NearestUndistortion {
+ public:
+  explicit NearestUndistortion(const Camera& camera) : width_(static_cast<std::size_t>(camera.width)) {
+    for (int y = 0; y < camera.height; ++y) {
+      for (int x = 0; x < camera.width; ++x) table_.push_back(undistort(camera, x, y));
+    }
+  }
+
+  /// Moves events; returns how many lie outside now and were left out.
+  std::int64_t apply(std::vector<Event>& events) const {
+    return static_cast<std::int64_t>(std::erase_if(events, [&](Event& event) {
+      const Pixel pixel = table_[event.y * width_ + event.x];
+      if (pixel.x == kOutside) return true;
+      event.x = static_cast<std::uint16_t>(pixel.x);
+      event.y = static_cast<std::uint16_t>(pixel.y);
+      return false;
+    }));
+  }
+
+ private:
+  static constexpr std::int32_t kOutside = -1;
+  struct Pixel {
+    std::int32_t x = kOutside, y = kOutside;
+  };
+
+  static Pixel undistort(const Camera& camera, int x, int y) {
+    const std::optional<Vector2> ideal = camera.undistort(Vector2(x, y));
+    if (!ideal) return {};
+    const Vector2 nearest(std::round(ideal->x()), std::round(ideal->y()));
+    if (!camera.contains(nearest)) return {};
+    return {static_cast<std::int32_t>(nearest.x()), static_cast<std::int32_t>(nearest.y())};
+  }
+
+  std::size_t width_;
+  std::vector<Pixel> table_;
+};
+
+const WritableFormat& find_format(const std::string& out, const std::string& name) {
+  const std::string extension = std::filesystem::path(out).extension().string();
+  std::vector<std::string> names, known;
+  for (const WritableFormat& format : writable_formats()) {
+    if (name.empty() ? format.extension == extension : format.name == name) return format;
+    names.push_back(format.name);
+    known.push_back(fmt::format("{} ({})", format.extension, format.name));
+  }
+  if (!name.empty()) throw InputError(fmt::format("--format: is \"{}\"{}", name, suggestion(name, names)));
+  throw InputError(fmt::format("{}: the extension says no format that can be written; expected one of {}, or --format",
+                               out, fmt::join(known, ", ")));
+}
+
+PoseTrajectory shifted(const PoseTrajectory& trajectory, double by) {
+  std::vector<StampedPose> poses = trajectory.poses();
+  for (StampedPose& pose : poses) pose.t += by;
+  return PoseTrajectory(std::move(poses));
+}
+
+RecordingHeader make_header(EventStream& stream, const std::string& in) {
+  RecordingHeader header;
+  header.width = stream.info().width;
+  header.height = stream.info().height;
+  header.metadata = stream.info().metadata;
+  header.metadata.emplace_back("converted from", fmt::format("{} ({})", in, stream.info().format));
+  header.calibration = stream.reader().calibration();
+  if (const auto truth = stream.reader().ground_truth()) {
+    header.ground_truth = shifted(*truth, -1e-6 * static_cast<double>(stream.zero()));
+  }
+  return header;
+}
+
+/// The lens to be undone; the header then says that there is none.
+Camera take_lens(const std::string& calibration, const std::string& in, RecordingHeader& header) {
+  if (header.width <= 0 || header.height <= 0) {
+    throw InputError(
+        fmt::format("{}: does not say the sensor's size, which --undistort needs; give --width, --height", in));
+  }
+  if (calibration == "own" && !header.calibration) {
+    throw InputError(fmt::format("{}: has no calibration of its own; give a calib.txt to --undistort", in));
+  }
+  Camera lens = calibration == "own" ? *header.calibration : read_calib(calibration, header.width, header.height);
+  lens.width = header.width;
+  lens.height = header.height;
+  header.calibration = Camera{lens.pinhole, DistortionModel::none, {}, lens.width, lens.height};
+  header.calibration->coefficients.setZero();
+  header.metadata.emplace_back("undistorted", "to the nearest pixel");
+  return lens;
+}
+
+}  // namespace
+
+ConversionReport convert(const std::string& in, const std::string& out, const ConversionOptions& options,
+                         const std::function<void(std::int64_t, std::int64_t)>& progress) {
+  const WritableFormat& format = find_format(out, options.format);
+  EventStream stream(in, options.stream);
+  RecordingHeader header = make_header(stream, in);
+  std::optional<NearestUndistortion> undistortion;
+  if (!options.undistort.empty()) undistortion.emplace(take_lens(options.undistort, in, header));
+
+  PartFile file(out);
+  ConversionReport report;
+  report.format = format.name;
+  std::int64_t read = 0;
+  {
+    const auto writer = format.make(file.writable_path(), header);
+    for (std::vector<Event> events; stream.read(events);) {
+      read += static_cast<std::int64_t>(events.size());
+      const std::int64_t reached = events.back().t;
+      if (undistortion) report.outside += undistortion->apply(events);
+      report.written += static_cast<std::int64_t>(events.size());
+      writer->write(events);
+      if (progress) progress(read, reached);
+    }
+    writer->finish();
+  }
+  file.commit();
+  report.faults = stream.faults();
+  return report;
+}
+
+}  // namespace evbench

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/events/event_stream.hpp"
+
+namespace evbench {
+
+struct ConversionOptions {
+  StreamOptions stream;
+  std::string format;     ///< a writable format's name; empty: by the extension
+  std::string undistort;  ///< calib.txt of the lens that is to be undone, or "own": the recording's; empty: not
+};
+
+struct ConversionReport {
+  std::string format;
+  std::int64_t written = 0;
+  std::int64_t outside = 0;                                   ///< undistorted pixels beyond the sensor, left out
+  std::vector<std::pair<std::string, Faults::Fault>> faults;  ///< of the recording, left out
+};
+
+/// Writes a recording in another format. Nothing is left at `out` when that fails or is interrupted, and an older file
+/// stays. `progress` is told how many events have been read, and the time reached [µs].
+/// Throws InputError when `out` names no writable format, for a sensor of unknown size where undistortion needs it, and
+/// for what reader and writer refuse.
+ConversionReport convert(const std::string& in, const std::string& out, const ConversionOptions& options,
+                         const std::function<void(std::int64_t, std::int64_t)>& progress = {});
+
+}  // namespace evbench

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/events/event.hpp"
+
+namespace evbench {
+
+/// How many events there were when, in bounded memory although nobody knows beforehand how long it will last: bins of
+/// equal width, which doubles when they run out.
+class RateHistogram {
+ public:
+  static constexpr std::size_t kBins = 2048;  ///< at most
+
+  /// In time order, as EventStream gives them.
+  void add(std::span<const Event> events);
+
+  double start() const { return static_cast<double>(start_) * 1e-6; }  ///< [s] of the first event
+  double width() const { return static_cast<double>(width_) * 1e-6; }  ///< of a bin [s]
+
+  /// [events/s], a number a bin. The last bin counts as long as its events last.
+  std::vector<double> rates() const;
+
+  /// Mean rates of `count` equal parts of the time from the first event to the last [events/s].
+  std::vector<double> resampled(std::size_t count) const;
+
+ private:
+  void halve();
+
+  std::vector<std::int64_t> bins_;
+  std::int64_t start_ = 0, newest_ = 0;  ///< [µs]
+  std::int64_t width_ = 1000;            ///< [µs]
+};
+
+/// Bars of eighths of a line, `rows` lines high, with the scale beside and the times below; one bar a rate.
+std::string plot_rates(const std::vector<double>& rates, double start, double end, int rows = 4);
+
+}  // namespace evbench

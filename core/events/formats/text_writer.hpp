@@ -1,0 +1,31 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+
+#include "core/events/writer.hpp"
+
+namespace evbench {
+
+/// The Event-Camera Dataset's events.txt: `t x y p`, seconds with six decimals, polarity 0 or 1.
+class TextWriter : public EventWriter {
+ public:
+  explicit TextWriter(const std::string& path);
+  ~TextWriter() override;
+  TextWriter(const TextWriter&) = delete;
+  TextWriter& operator=(const TextWriter&) = delete;
+
+  void write(std::span<const Event> events) override;
+  void finish() override;
+
+ private:
+  [[noreturn]] void fail() const;
+
+  std::string path_;
+  std::FILE* file_ = nullptr;
+  fmt::memory_buffer buffer_;
+};
+
+}  // namespace evbench
