@@ -79,6 +79,17 @@ std::vector<Surface> boxes_in_room(const RenderedSceneOptions& options, const Sc
   return surfaces;
 }
 
+/// Any that lets the face lie within the print; for a face that is as large, the print's middle.
+Vector2 offset_on_print(const Surface& surface, int face, const Print& print, Random& random) {
+  Vector2 offset;
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const double half = surface.half[(face / 2 + 1 + i) % 3];
+    const double room = surface.kind == Surface::Kind::box ? std::max(0.0, print.size[i] - 2.0 * half) : 0.0;
+    offset[i] = 0.5 * print.size[i] + room * (random.uniform() - 0.5);
+  }
+  return offset;
+}
+
 std::vector<Surface> plane(const RenderedSceneOptions& options, const SceneLayout& layout) {
   const Box rectangle = layout.viewed_rectangle(0.5 * (options.near + options.far));
   return {{Surface::Kind::plane, layout.frame * SE3{Eigen::Quaterniond::Identity(), rectangle.center()},
@@ -123,10 +134,8 @@ RenderedScene make_rendered_scene(const RenderedSceneOptions& options, const Cam
   const Vector3& largest = surfaces.back().half;
   const Print print = make_print(options, camera, 2.0 * largest.maxCoeff(), random, folder);
   for (Surface& surface : surfaces) {
-    for (Vector2& offset : surface.offsets) {
-      // The print's middle is the plane's, and anywhere on a box.
-      offset = 0.5 * print.size;
-      if (boxes) offset = print.size.cwiseProduct(Vector2(random.uniform(), random.uniform()));
+    for (int face = 0; face < 6; ++face) {
+      surface.offsets[static_cast<std::size_t>(face)] = offset_on_print(surface, face, print, random);
     }
   }
   RenderedScene scene{std::move(surfaces), Texture(print.pattern.picture, print.size), {}};

@@ -31,6 +31,9 @@ double normal_quantile(double p) {
   return 0.5 * (low + high);
 }
 
+/// By how many the samples along a side of a pixel's footprint are multiplied when it is longer than the other.
+int samples(double side, double other) { return std::clamp(static_cast<int>(std::lround(side / other)), 1, 4); }
+
 float log_of(float intensity) { return std::log(intensity); }
 
 }  // namespace
@@ -107,15 +110,19 @@ float Renderer::intensity(const View& view, const Hit& hit, const Ray& ray) cons
   if (hit.surface < 0) return texture_->mean();
   const View::Place place = view.place(hit, ray.centre);
   const Matrix2 step = blur_ * kSpacing * (place.jacobian * ray.jacobian);  // columns: along the image's axes
-  const float level = texture_->level(std::sqrt(std::max(step.col(0).squaredNorm(), step.col(1).squaredNorm())));
+  // Where the surface is foreshortened, the long axis of a pixel's footprint gets more samples of finer texels.
+  const double width = step.col(0).norm(), height = step.col(1).norm();
+  const int across = samples(width, height), down = samples(height, width);
+  const float level = texture_->level(std::max(width / across, height / down));
+  const Vector2 right = step.col(0) / across, below = step.col(1) / down;
   float sum = 0.0F;
-  for (int i = -1; i <= 1; ++i) {
-    for (int j = -1; j <= 1; ++j) {
-      const auto weight = static_cast<float>((2 - std::abs(i)) * (2 - std::abs(j)));
-      sum += weight * texture_->sample(place.texture + i * step.col(0) + j * step.col(1), level);
+  for (int i = 1 - 2 * down; i < 2 * down; ++i) {
+    for (int j = 1 - 2 * across; j < 2 * across; ++j) {
+      const auto weight = static_cast<float>((2 * down - std::abs(i)) * (2 * across - std::abs(j)));
+      sum += weight * texture_->sample(place.texture + i * below + j * right, level);
     }
   }
-  return sum / 16.0F;
+  return sum / static_cast<float>(16 * down * down * across * across);
 }
 
 float Renderer::intensity_at_edge(const View& view, const Ray& ray) const {

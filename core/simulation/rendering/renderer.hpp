@@ -16,8 +16,9 @@ struct Frame {
 };
 
 /// Renders log intensity by casting rays through a camera with lens. A pixel's intensity is averaged with a Gaussian of
-/// standard deviation `blur` [px] (a pixel's area and the optics): by nine samples of the filtered texture, or, where a
-/// neighbour sees another face, by 32 rays. Nothing moves in jumps, then, when the camera moves.
+/// standard deviation `blur` [px] (a pixel's area and the optics): by nine samples of the filtered texture (more where
+/// it is foreshortened), or, where a neighbour sees another face, by 32 rays. Nothing moves in jumps, then, when the
+/// camera moves.
 class Renderer {
  public:
   /// The surfaces' texture is where they have no end, too.
