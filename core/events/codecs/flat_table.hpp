@@ -31,16 +31,17 @@ class FlatTable {
     return place == 0 || place + sizeof(T) > bytes_.size() ? otherwise : load<T>(bytes_.data() + place);
   }
 
-  /// The elements of a vector of structs, or the characters of a string; empty when it isn't (wholly) there.
-  std::span<const std::byte> elements(std::size_t field, std::size_t size) const {
-    const std::size_t place = follow(find(field));
-    if (place == 0 || place + 4 > bytes_.size()) return {};
+  /// The elements of a vector of structs, or the characters of a string; empty without the field, none when it is cut.
+  std::optional<std::span<const std::byte>> elements(std::size_t field, std::size_t size) const {
+    const std::size_t offset = find(field), place = follow(offset);
+    if (offset == 0) return std::span<const std::byte>();
+    if (place == 0 || place + 4 > bytes_.size()) return std::nullopt;
     const std::uint64_t length = std::uint64_t{load<std::uint32_t>(bytes_.data() + place)} * size;
-    if (length > bytes_.size() - place - 4) return {};
+    if (length > bytes_.size() - place - 4) return std::nullopt;
     return bytes_.subspan(place + 4, static_cast<std::size_t>(length));
   }
   std::string_view text(std::size_t field) const {
-    const auto characters = elements(field, 1);
+    const auto characters = elements(field, 1).value_or(std::span<const std::byte>());
     return {reinterpret_cast<const char*>(characters.data()), characters.size()};
   }
 

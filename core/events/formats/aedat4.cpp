@@ -14,7 +14,7 @@
 namespace evbench {
 namespace {
 
-constexpr std::string_view kMagic = "#!AER-DAT4.0\r\n";
+constexpr std::string_view kMagic = "#!AER-DAT4.0\r\n", kAnyVersion = "#!AER-DAT";
 constexpr std::uint64_t kMostHeader = 16u << 20, kMostPacket = 256u << 20;
 constexpr std::size_t kPacketHeader = 8, kEvent = 16;
 
@@ -50,6 +50,9 @@ void Aedat4Reader::read_header() {
     throw InputError(fmt::format("{}: byte {}: {}", file_->name(), kMagic.size(), what));
   };
   if (file_->read(0, head) != head.size()) fail("ends within the header");
+  if (std::string_view(reinterpret_cast<const char*>(head.data()), kMagic.size()) != kMagic) {
+    throw InputError(fmt::format("{}: is AEDAT of another version; expected 4.0", file_->name()));
+  }
   const std::uint64_t size = load<std::uint32_t>(head.data() + kMagic.size());
   begin_ = head.size() + size;
   if (size > kMostHeader || begin_ > file_->size()) {
@@ -121,8 +124,9 @@ bool Aedat4Reader::read_table(std::int64_t offset) {
   const auto root = FlatTable::root(data_, "FTAB");
   if (!root) return false;
   auto elements = root->elements(0, 4);
-  for (; elements.size() >= 4; elements = elements.subspan(4)) {
-    const auto entry = root->table(elements);
+  if (!elements) return false;
+  for (; elements->size() >= 4; elements = elements->subspan(4)) {
+    const auto entry = root->table(*elements);
     if (!entry) return false;
     const auto id = static_cast<std::int32_t>(entry->get<std::uint64_t>(1) & 0xFFFF'FFFF);
     Stream& stream = streams_[id];
@@ -131,7 +135,8 @@ bool Aedat4Reader::read_table(std::int64_t offset) {
     if (stream.type != "EVTS") continue;
     const auto place = static_cast<std::uint64_t>(entry->get<std::int64_t>(0));
     starts_.emplace(id, entry->get<std::int64_t>(3));
-    packets_[id].push_back({place, entry->get<std::int64_t>(4)});
+    if (place < begin_ + kPacketHeader) return false;
+    packets_[id].push_back({place - kPacketHeader, entry->get<std::int64_t>(4)});  // it says where the content begins
   }
   return true;
 }
@@ -218,8 +223,9 @@ bool Aedat4Reader::decode(std::vector<Event>& events) {
   const auto packet = FlatTable::root(data_, "EVTS");
   if (!packet) return false;
   const auto elements = packet->elements(0, kEvent);
-  events.resize(elements.size() / kEvent);
-  const std::byte* from = elements.data();
+  if (!elements) return false;
+  events.resize(elements->size() / kEvent);
+  const std::byte* from = elements->data();
   for (Event& event : events) {
     event = {load<std::int64_t>(from), load<std::uint16_t>(from + 8), load<std::uint16_t>(from + 10),
              from[12] != std::byte{0}};
@@ -236,13 +242,17 @@ void Aedat4Reader::seek(std::int64_t t) {
   for (const Packet& packet : packets->second) {
     if (packet.end >= t) at_ = std::min(at_, packet.offset);
   }
+  std::byte header[kPacketHeader];
+  const bool is_packet =
+      at_ == end_ || (file_->read(at_, header) == kPacketHeader && load<std::int32_t>(header) == stream_);
+  if (!is_packet) at_ = begin_;  // a table of another kind, or broken
 }
 
 EventFormat aedat4_format() {
   return {"aedat4", "AEDAT 4.0 of iniVation's DV",
           [](const std::string&, std::span<const std::byte> head) {
-            return head.size() >= kMagic.size() &&
-                   std::equal(kMagic.begin(), kMagic.end(), head.begin(),
+            return head.size() >= kAnyVersion.size() &&
+                   std::equal(kAnyVersion.begin(), kAnyVersion.end(), head.begin(),
                               [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
           },
           [](const std::string& path, const ReadOptions& options) {
