@@ -23,6 +23,10 @@ int run_program(int argc, char** argv) {
   evbench::add_list(app);
   evbench::add_describe(app);
   evbench::add_solve(app);
+  evbench::add_info(app);
+  evbench::add_convert(app);
+  evbench::add_dataset(app);
+  evbench::add_render(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

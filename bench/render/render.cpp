@@ -27,8 +27,9 @@ WindowExtent make_extent(const RenderOptions& options, bool one_picture, std::in
   } else if (one_picture && options.stream.from && options.stream.to) {
     extent.duration = *options.stream.to - *options.stream.from;
   } else {
-    const double shown = options.mode == RenderMode::time_surface ? 5.0 * options.decay : 0.02;
-    extent.duration = std::max(microseconds(shown), one_picture ? 0 : period);
+    extent.duration = 20000;
+    if (!one_picture) extent.duration = std::max(period, std::min(extent.duration, 10 * period));
+    if (options.mode == RenderMode::time_surface) extent.duration = microseconds(5.0 * options.decay);
   }
   return extent;
 }
@@ -45,7 +46,7 @@ std::int64_t first_end(const std::string& path, const StreamOptions& options, co
     count += events.size();
     newest = events.back().t;
   }
-  if (count == 0) throw InputError(fmt::format("{}: has no events between --from and --to", path));
+  if (count == 0) throw InputError(fmt::format("{}: has no events in the time range that is asked for", path));
   return newest + 1;
 }
 

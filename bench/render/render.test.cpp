@@ -109,6 +109,23 @@ TEST_CASE("A folder gets a picture each speed / fps seconds, until the last even
   CHECK(names(folder.file("pictures")).size() == 6);
 }
 
+TEST_CASE(
+    "Unless it is said, a picture of a film shows at least what happened since the last one, at most ten times that") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events());
+  const auto drawn = [&](double speed) {
+    RenderOptions options;
+    options.fps = 1000.0;
+    options.speed = speed;
+    options.scale = 1;
+    render(in, folder.file("pictures/"), options);
+    return drawn_pixels(folder.file("pictures/000000.png"));
+  };
+  CHECK(drawn(50.0) == 50);
+  CHECK(drawn(10.0) == 20);
+  CHECK(drawn(1.0) == 10);
+}
+
 TEST_CASE("A folder that holds anything but rendered pictures is left alone") {
   const TemporaryFolder folder;
   const std::string in = write_native(folder, "a.evb", hundred_events());
@@ -244,7 +261,7 @@ TEST_CASE("What can't be drawn or written is refused with a sentence, and nothin
   };
   RenderOptions nothing;
   nothing.stream.from = 5000000;
-  for (const char* out : {"a.png", "a.mp4", "a/"}) refused(out, nothing, "a.evb: has no events between");
+  for (const char* out : {"a.png", "a.mp4", "a/"}) refused(out, nothing, "a.evb: has no events in the time range");
   for (const char* out : {"no/a.png", "no/a.mp4", "no/a/"}) refused(out, {}, "is missing");
   refused("a.gif", {}, "expected .png");
   refused("a", {}, "expected .png");

@@ -22,6 +22,9 @@ cv::Point enlarged(const Vector2& pixel, int scale) {
 
 cv::Scalar scalar(const Colour& colour) { return {double(colour[0]), double(colour[1]), double(colour[2])}; }
 
+int thickness(int scale) { return std::max(1, (2 * scale + 1) / 3); }  // [px] of a tail
+int radius(int scale) { return std::max(2, (4 * scale + 1) / 3); }     // [px] of a dot
+
 }  // namespace
 
 Colour track_colour(TrackId track, const Palette& palette) {
@@ -43,19 +46,19 @@ void TrackOverlay::draw(double t, int scale, const Palette& palette, Picture& pi
   const auto last = std::ranges::upper_bound(observations_, t, {}, &TrackObservation::t);
   std::map<TrackId, std::vector<const TrackObservation*>> tracks;
   for (auto o = first; o < last; ++o) tracks[o->track].push_back(&*o);
-  const int thickness = std::max(1, scale / 2);
-  const int radius = std::max(2, (3 * scale + 1) / 4) << kFractionBits;
   for (const auto& [id, positions] : tracks) {
     const Colour colour = track_colour(id, palette);
-    for (std::size_t i = 1; i < positions.size(); ++i) {
-      const double age = (t - positions[i]->t) / tail_;
-      cv::line(picture, enlarged(positions[i - 1]->pixel, scale), enlarged(positions[i]->pixel, scale),
-               scalar(blend(colour, palette.background, 0.7 * age)), thickness, cv::LINE_AA, kFractionBits);
+    // Rimmed with the background, so that it stands out from the events.
+    for (const bool rim : {true, false}) {
+      for (std::size_t i = 1; i < positions.size(); ++i) {
+        const double age = (t - positions[i]->t) / tail_;
+        cv::line(picture, enlarged(positions[i - 1]->pixel, scale), enlarged(positions[i]->pixel, scale),
+                 scalar(rim ? palette.background : blend(colour, palette.background, 0.7 * age)),
+                 thickness(scale) + (rim ? 2 : 0), cv::LINE_AA, kFractionBits);
+      }
+      cv::circle(picture, enlarged(positions.back()->pixel, scale), (radius(scale) + (rim ? 1 : 0)) << kFractionBits,
+                 scalar(rim ? palette.background : colour), cv::FILLED, cv::LINE_AA, kFractionBits);
     }
-    const cv::Point head = enlarged(positions.back()->pixel, scale);
-    cv::circle(picture, head, radius + (1 << kFractionBits), scalar(palette.background), cv::FILLED, cv::LINE_AA,
-               kFractionBits);
-    cv::circle(picture, head, radius, scalar(colour), cv::FILLED, cv::LINE_AA, kFractionBits);
   }
 }
 

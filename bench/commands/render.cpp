@@ -1,0 +1,149 @@
+#include "bench/render/render.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+
+#include "bench/commands/commands.hpp"
+#include "bench/commands/progress_line.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+RenderMode parse_mode(const std::string& name) {
+  if (name == "time_surface") return RenderMode::time_surface;
+  return name == "compensated" ? RenderMode::compensated : RenderMode::events;
+}
+
+struct RenderArguments {
+  std::string in, out, mode = "events";
+  std::optional<double> from, to;               // [s]
+  std::optional<double> duration, decay, tail;  // [ms]
+  bool quiet = false;
+  RenderOptions options;
+};
+
+std::optional<std::int64_t> microseconds(const std::optional<double>& seconds, const char* option) {
+  if (!seconds) return std::nullopt;
+  if (!(std::abs(*seconds) < 1e12)) throw InputError(fmt::format("{}: is {}; expected seconds", option, *seconds));
+  return std::llround(*seconds * 1e6);
+}
+
+RenderOptions render_options(const RenderArguments& arguments) {
+  RenderOptions options = arguments.options;
+  options.stream.from = microseconds(arguments.from, "--from");
+  options.stream.to = microseconds(arguments.to, "--to");
+  if (options.stream.from && options.stream.to && *options.stream.from >= *options.stream.to) {
+    throw InputError(fmt::format("--from {} --to {}: expected from < to", *arguments.from, *arguments.to));
+  }
+  options.mode = parse_mode(arguments.mode);
+  if (arguments.duration) options.duration = *arguments.duration * 1e-3;
+  if (arguments.decay) options.decay = *arguments.decay * 1e-3;
+  if (arguments.tail) options.tail = *arguments.tail * 1e-3;
+  return options;
+}
+
+void execute(const RenderArguments& arguments) {
+  RenderReport report;
+  {
+    ProgressLine line(arguments.out, arguments.quiet);
+    report = render(arguments.in, arguments.out, render_options(arguments), [&](std::int64_t pictures, std::int64_t t) {
+      line.update(fmt::format("{} pictures, {:.3f} s", pictures, static_cast<double>(t) * 1e-6));
+    });
+  }
+  if (arguments.quiet) return;
+  for (const auto& [kind, fault] : report.faults) {
+    fmt::print("left out: {} {}; the first: {}\n", fault.count, kind, fault.first);
+  }
+  fmt::print("written: {}, {} {} of {}x{} pixels\n", arguments.out, report.pictures,
+             report.pictures == 1 ? "picture" : "pictures", report.size.width, report.size.height);
+}
+
+void add_time_options(CLI::App& command, RenderArguments& arguments) {
+  RenderOptions& options = arguments.options;
+  const CLI::Range positive(1e-9, 1e9);
+  command.add_option("--from", arguments.from, "Only events from this time on [s], after --rebase");
+  command.add_option("--to", arguments.to, "Only events before this time [s], after --rebase");
+  command.add_flag("--rebase", options.stream.rebase, "The first event's time becomes zero; that of --beside, too");
+  auto* duration = command.add_option("--duration", arguments.duration,
+                                      "Events of how long a picture shows [ms]; default: 20, or what --from and --to "
+                                      "enclose; in a video 1 to 10 times the time between pictures");
+  duration->check(CLI::Range(0.001, 1e9));
+  command.add_option("--count", options.count, "How many events a picture shows, instead of a duration")
+      ->check(CLI::Range(1, 1000000000))
+      ->excludes(duration);
+  command.add_option("--fps", options.fps, "Pictures a second of playback")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  command.add_option("--speed", options.speed, "Of playback: 0.1 is ten times slower than it was")
+      ->check(positive)
+      ->capture_default_str();
+}
+
+void add_mode_options(CLI::App& command, RenderArguments& arguments) {
+  RenderOptions& options = arguments.options;
+  command
+      .add_option("--mode", arguments.mode,
+                  "events: red (brighter) and blue (darker), the newest on top; time_surface: the fainter the older; "
+                  "compensated: moved along the camera's motion to one time")
+      ->check(CLI::IsMember({"events", "time_surface", "compensated"}))
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_option("--decay", arguments.decay, "Time constant of time surfaces [ms]; default: 30")
+      ->check(CLI::Range(0.001, 1e9));
+  command
+      .add_option("--trajectory", options.trajectory,
+                  "Motion for compensation (TUM, T_world_camera); default: the recording's ground truth")
+      ->type_name("FILE");
+  command
+      .add_option("--calib", options.calibration,
+                  "calib.txt for compensation (fx fy cx cy k1 k2 p1 p2 k3); default: the recording's")
+      ->type_name("FILE");
+  command
+      .add_option("--depth", options.depth,
+                  "Compensate translation, too, for a plane at this depth [m] in front of the camera")
+      ->check(CLI::Range(1e-6, 1e9));
+}
+
+void add_picture_options(CLI::App& command, RenderArguments& arguments) {
+  RenderOptions& options = arguments.options;
+  command.add_option("--tracks", options.tracks, "Draw these feature tracks (id t x y) over the events")
+      ->type_name("FILE");
+  command.add_option("--tail", arguments.tail, "How long a track's tail is [ms]; default: 100")
+      ->check(CLI::Range(0.001, 1e9));
+  command.add_option("--beside", options.beside, "Another recording, at the right at the same times")
+      ->type_name("FILE");
+  command
+      .add_option("--scale", options.scale,
+                  "Enlarge each pixel of the sensor to N x N; default: until the sensor is 640 pixels wide")
+      ->check(CLI::Range(1, 32))
+      ->type_name("N");
+  command.add_flag("--dark", options.dark, "On a dark background");
+}
+
+}  // namespace
+
+void add_render(CLI::App& app) {
+  auto arguments = std::make_shared<RenderArguments>();
+  CLI::App* command = app.add_subcommand("render", "Draw a recording of events: pictures (PNG) and video (MP4)");
+  command->add_option("in", arguments->in, "File or folder, of any format that evbench reads")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("out", arguments->out, "NAME.png: one picture; NAME.mp4: a video; NAME/: a folder of pictures")
+      ->required()
+      ->type_name("OUT");
+  add_time_options(*command, *arguments);
+  add_mode_options(*command, *arguments);
+  add_picture_options(*command, *arguments);
+  command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  add_read_options(*command, arguments->options.stream.read);
+  command->footer(
+      "OUT appears when it is complete. A sensor of unknown size is taken as large as its events need; --width and "
+      "--height say it. Times of tracks and trajectory are the recording's own, before --rebase.");
+  command->callback([arguments] { execute(*arguments); });
+}
+
+}  // namespace evbench
