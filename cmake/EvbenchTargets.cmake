@@ -8,6 +8,11 @@ target_compile_options(evbench_flags INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow>
   $<$<BOOL:${EVBENCH_WERROR}>:-Werror>
   $<$<BOOL:${EVBENCH_NATIVE}>:-march=native>)
+if(EVBENCH_FUZZ)
+  set(fuzz_flags -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_compile_options(evbench_flags INTERFACE ${fuzz_flags})
+  target_link_options(evbench_flags INTERFACE ${fuzz_flags})
+endif()
 if(EVBENCH_SANITIZE)
   target_compile_options(evbench_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
                                                  -fno-omit-frame-pointer)
@@ -39,6 +44,23 @@ function(evbench_tests name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINKS} evbench_test_support evbench_flags)
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:")
+endfunction()
+
+# evbench_fuzz_targets(LINKS ...): each fuzz/NAME.fuzz.cpp of a folder as a libFuzzer program fuzz_NAME. To be run as
+# "fuzz_NAME -max_total_time=600 NEW_CORPUS fuzz/corpus/NAME".
+function(evbench_fuzz_targets)
+  if(NOT EVBENCH_FUZZ)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS fuzz/*.fuzz.cpp)
+  foreach(source IN LISTS sources)
+    get_filename_component(name ${source} NAME)
+    string(REPLACE ".fuzz.cpp" "" name ${name})
+    add_executable(fuzz_${name} ${source})
+    target_link_libraries(fuzz_${name} PRIVATE ${ARG_LINKS} evbench_flags)
+    target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+  endforeach()
 endfunction()
 
 # Headers, libraries and the package files that find_package(evbench) reads.

@@ -8,12 +8,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cstring>
-#include <ctime>
-#include <limits>
 
+#include "bench/micro/reading_speed.hpp"
 #include "bench/peak_memory.hpp"
 #include "core/events/event_stream.hpp"
 #include "core/events/formats.hpp"
@@ -23,35 +20,6 @@
 namespace {
 
 using namespace evbench;
-
-struct Reading {
-  std::int64_t events = 0;
-  double wall_s = std::numeric_limits<double>::infinity();
-  double processor_s = std::numeric_limits<double>::infinity();
-};
-
-double processor_seconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-/// Best of three.
-template <class Open>
-Reading measure(Open open) {
-  Reading best;
-  std::vector<Event> events;
-  for (int i = 0; i < 3; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    const double processor_start = processor_seconds();
-    const auto source = open();
-    std::int64_t count = 0;
-    while (source->read(events)) count += static_cast<std::int64_t>(events.size());
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    best = {count, std::min(best.wall_s, seconds), std::min(best.processor_s, processor_seconds() - processor_start)};
-  }
-  return best;
-}
 
 void print(const char* what, const Reading& reading) {
   const double millions = static_cast<double>(reading.events) * 1e-6;
@@ -93,8 +61,8 @@ int main(int argc, char** argv) {
     for (int i = 1; i < argc; ++i) {
       const std::string path = argv[i];
       fmt::print("{} ({})\n", path, open_events(path)->info().format);
-      print("reader", measure([&] { return open_events(path); }));
-      print("stream", measure([&] { return std::make_unique<EventStream>(path); }));
+      print("reader", measure_reading([&] { return open_events(path); }));
+      print("stream", measure_reading([&] { return std::make_unique<EventStream>(path); }));
     }
     fmt::print("peak memory: {:.0f} MiB\n", peak_memory_mib());
     return 0;
