@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <csignal>
 #include <memory>
 
 #include "bench/commands/commands.hpp"
@@ -12,6 +13,8 @@
 
 namespace evbench {
 namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
 
 struct ConvertArguments {
   std::string in, out;
@@ -33,10 +36,13 @@ void execute(const ConvertArguments& arguments) {
   if (options.stream.from && options.stream.to && *options.stream.from >= *options.stream.to) {
     throw InputError(fmt::format("--from {} --to {}: expected from < to", *arguments.from, *arguments.to));
   }
+  // Ends the conversion as an error does, which cleans up.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { interrupted = 1; });
   ConversionReport report;
   {
     ProgressLine line(arguments.in, arguments.quiet);
     report = convert(arguments.in, arguments.out, options, [&](std::int64_t events, std::int64_t t) {
+      if (interrupted != 0) throw InputError(arguments.out + ": interrupted; nothing was written");
       line.update(fmt::format("{:.1f} million events, {:.2f} s", static_cast<double>(events) * 1e-6,
                               static_cast<double>(t) * 1e-6));
     });

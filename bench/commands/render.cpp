@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <memory>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/interruption.hpp"
 #include "bench/commands/progress_line.hpp"
-#include "core/support/error.hpp"
+#include "bench/commands/time_range.hpp"
 
 namespace evbench {
 namespace {
@@ -20,25 +20,15 @@ RenderMode parse_mode(const std::string& name) {
 
 struct RenderArguments {
   std::string in, out, mode = "events";
-  std::optional<double> from, to;               // [s]
+  TimeRange range;
   std::optional<double> duration, decay, tail;  // [ms]
   bool quiet = false;
   RenderOptions options;
 };
 
-std::optional<std::int64_t> microseconds(const std::optional<double>& seconds, const char* option) {
-  if (!seconds) return std::nullopt;
-  if (!(std::abs(*seconds) < 1e12)) throw InputError(fmt::format("{}: is {}; expected seconds", option, *seconds));
-  return std::llround(*seconds * 1e6);
-}
-
 RenderOptions render_options(const RenderArguments& arguments) {
   RenderOptions options = arguments.options;
-  options.stream.from = microseconds(arguments.from, "--from");
-  options.stream.to = microseconds(arguments.to, "--to");
-  if (options.stream.from && options.stream.to && *options.stream.from >= *options.stream.to) {
-    throw InputError(fmt::format("--from {} --to {}: expected from < to", *arguments.from, *arguments.to));
-  }
+  set_time_range(arguments.range, options.stream);
   options.mode = parse_mode(arguments.mode);
   if (arguments.duration) options.duration = *arguments.duration * 1e-3;
   if (arguments.decay) options.decay = *arguments.decay * 1e-3;
@@ -49,8 +39,10 @@ RenderOptions render_options(const RenderArguments& arguments) {
 void execute(const RenderArguments& arguments) {
   RenderReport report;
   {
+    const Interruption interruption;
     ProgressLine line(arguments.out, arguments.quiet);
     report = render(arguments.in, arguments.out, render_options(arguments), [&](std::int64_t pictures, std::int64_t t) {
+      interruption.check(arguments.out);
       line.update(fmt::format("{} pictures, {:.3f} s", pictures, static_cast<double>(t) * 1e-6));
     });
   }
@@ -64,22 +56,19 @@ void execute(const RenderArguments& arguments) {
 
 void add_time_options(CLI::App& command, RenderArguments& arguments) {
   RenderOptions& options = arguments.options;
-  const CLI::Range positive(1e-9, 1e9);
-  command.add_option("--from", arguments.from, "Only events from this time on [s], after --rebase");
-  command.add_option("--to", arguments.to, "Only events before this time [s], after --rebase");
-  command.add_flag("--rebase", options.stream.rebase, "The first event's time becomes zero; that of --beside, too");
+  add_time_range(command, arguments.range, options.stream);
   auto* duration = command.add_option("--duration", arguments.duration,
                                       "Events of how long a picture shows [ms]; default: 20, or what --from and --to "
                                       "enclose; in a video 1 to 10 times the time between pictures");
   duration->check(CLI::Range(0.001, 1e9));
   command.add_option("--count", options.count, "How many events a picture shows, instead of a duration")
-      ->check(CLI::Range(1, 1000000000))
+      ->check(CLI::Range(1, 100000000))
       ->excludes(duration);
   command.add_option("--fps", options.fps, "Pictures a second of playback")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
   command.add_option("--speed", options.speed, "Of playback: 0.1 is ten times slower than it was")
-      ->check(positive)
+      ->check(CLI::Range(1e-6, 1e6))
       ->capture_default_str();
 }
 

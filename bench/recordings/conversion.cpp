@@ -112,7 +112,7 @@ ConversionReport convert(const std::string& in, const std::string& out, const Co
   std::optional<NearestUndistortion> undistortion;
   if (!options.undistort.empty()) undistortion.emplace(take_lens(options.undistort, in, header));
 
-  PartFile file(out);
+  PartFile file(out, format.needs_name);
   ConversionReport report;
   report.format = format.name;
   std::int64_t read = 0;

@@ -36,6 +36,7 @@ struct WritableFormat {
   std::string name;         ///< e.g. "native"
   std::string extension;    ///< that stands for it, e.g. ".evb"
   std::string description;  ///< a line
+  bool needs_name;          ///< can't write to a file that has none yet (PartFile)
   std::unique_ptr<EventWriter> (*make)(const std::string& path, const RecordingHeader& header);
 };
 

@@ -3,8 +3,10 @@
 #include <filesystem>
 
 #include "core/data/calib.hpp"
+#include "core/data/datasets.hpp"
 #include "core/data/robotevt.hpp"
 #include "core/data/tum.hpp"
+#include "core/events/formats.hpp"
 #include "core/support/path.hpp"
 
 namespace evbench {
@@ -21,7 +23,9 @@ PoseTrajectory shifted(const PoseTrajectory& trajectory, double offset) {
 }  // namespace
 
 void Recording::Options::declare(OptionSet& set) {
+  set.add("dataset", dataset, "name of a public recording (evbench dataset list), instead of a folder");
   set.add("folder", folder, "folder with calib.txt and groundtruth.txt").path();
+  set.add("events", events, "events of any format that evbench reads, instead of the folder's").path();
   set.add("calibration", calibration, "calibration file, instead of the folder's calib.txt").path();
   set.add("ground_truth", ground_truth, "ground truth file, instead of the folder's groundtruth.txt").path();
   set.add("ground_truth_format", ground_truth_format, "its format").choices({"tum", "robotevt"});
@@ -35,13 +39,27 @@ void Recording::Options::declare(OptionSet& set) {
 }
 
 Recording::Recording(const Options& options, const SourceContext& context) : place_(context.place) {
-  const std::string folder = options.folder.empty() ? "" : resolve_path(options.folder, context.folder);
+  if (!options.dataset.empty() && !options.folder.empty()) {
+    throw InputError(fmt::format("{}: dataset and folder are given; expected one of them", place_));
+  }
+  std::string folder = options.folder.empty() ? "" : resolve_path(options.folder, context.folder);
+  if (!options.dataset.empty()) folder = existing_dataset_folder(options.dataset, place_ + ".dataset");
+  events_ = options.events.empty() ? folder : resolve_path(options.events, context.folder);
   Options resolved = options;
   if (!options.calibration.empty()) resolved.calibration = resolve_path(options.calibration, context.folder);
   if (!options.ground_truth.empty()) resolved.ground_truth = resolve_path(options.ground_truth, context.folder);
   read_camera(resolved, folder);
   read_ground_truth(resolved, folder);
   set_time_range(options.time_range);
+}
+
+std::unique_ptr<EventReader> Recording::events() const {
+  if (events_.empty()) return nullptr;
+  const std::string cache = events_ + "/events.evb";
+  ReadOptions options;
+  options.width = camera_.width;
+  options.height = camera_.height;
+  return open_events(std::filesystem::exists(cache) ? cache : events_, options);
 }
 
 void Recording::read_camera(const Options& options, const std::string& folder) {

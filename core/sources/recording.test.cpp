@@ -2,7 +2,9 @@
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <filesystem>
 
+#include "core/events/formats/native.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
@@ -74,6 +76,39 @@ TEST_CASE("A recording refuses what is missing or makes no sense, and says what"
   CHECK_THROWS_WITH(open(R"({"folder": ".", "time_range": [10, 12]})", folder.path()), Contains("does not meet"));
   CHECK_THROWS_WITH(open(R"({"folder": "${EVBENCH_NOT_SET}/x"})", folder.path()), Contains("EVBENCH_NOT_SET"));
   CHECK_THROWS_AS(open(R"({"folder": ".", "distortion": "fisheye"})", folder.path()), InputError);
+}
+
+TEST_CASE("A recording is found by the name of a dataset, and gives its events") {
+  const testing::TemporaryFolder folder;
+  ::setenv("EVBENCH_DATASETS", folder.path().c_str(), 1);
+  const std::string json = R"({"dataset": "ecd/dynamic_6dof"})";
+  CHECK_THROWS_WITH(open(json, ""), Contains(".dataset: ") && Contains("evbench dataset get ecd/dynamic_6dof"));
+  std::filesystem::create_directories(folder.file("ecd/dynamic_6dof"));
+  folder.write("ecd/dynamic_6dof/calib.txt", kCalibration);
+  folder.write("ecd/dynamic_6dof/groundtruth.txt", kGroundTruth);
+  NativeWriter writer(folder.file("ecd/dynamic_6dof/events.evb"), {});
+  writer.write(std::vector<Event>{{1500000, 239, 1, true}});
+  writer.finish();
+  const Recording source = open(json, "");
+  CHECK(source.ground_truth().size() == 3);
+  const auto reader = source.events();
+  REQUIRE(reader);
+  CHECK(reader->info().width == 240);
+  std::vector<Event> events;
+  REQUIRE(reader->read(events));
+  CHECK(events == std::vector<Event>{{1500000, 239, 1, true}});
+  CHECK_THROWS_WITH(open(R"({"dataset": "ecd/dynamic_6dof", "folder": "."})", ""), Contains("expected one of them"));
+  ::unsetenv("EVBENCH_DATASETS");
+}
+
+TEST_CASE("A recording of a calibration alone has no events; a file of them is named in its own option") {
+  const testing::TemporaryFolder folder;
+  folder.write("calib.txt", kCalibration);
+  CHECK(open(R"({"calibration": "calib.txt", "time_range": [0, 1]})", folder.path()).events() == nullptr);
+  NativeWriter writer(folder.file("a.evb"), {});
+  writer.finish();
+  const std::string json = R"({"calibration": "calib.txt", "time_range": [0, 1], "events": "a.evb"})";
+  CHECK(open(json, folder.path()).events()->info().count == 0);
 }
 
 TEST_CASE("The real poster_translation opens with its ground truth") {

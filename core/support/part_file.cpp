@@ -20,14 +20,14 @@ namespace {
 
 }  // namespace
 
-PartFile::PartFile(const std::string& path) : path_(path), part_(path + ".part") {
+PartFile::PartFile(const std::string& path, bool named) : path_(path), part_(path + ".part") {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
     throw InputError(fmt::format("{}: is a folder; expected a file name", path));
   }
   std::string folder = std::filesystem::path(path).parent_path().string();
   if (folder.empty()) folder = ".";
-  descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0644);
+  if (!named) descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0644);
   nameless_ = descriptor_ >= 0;
   if (!nameless_) descriptor_ = ::open(part_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (descriptor_ < 0) fail(path_, errno);

@@ -11,8 +11,9 @@ namespace evbench {
 /// write_file() (atomic_file.hpp) is for content that is there at once.
 class PartFile {
  public:
+  /// `named`: `path`.part in any case, for libraries that don't write to a file without a name (HDF5).
   /// Throws InputError when the folder is missing or can't be written to, and when `path` is a folder.
-  explicit PartFile(const std::string& path);
+  explicit PartFile(const std::string& path, bool named = false);
   ~PartFile();
   PartFile(const PartFile&) = delete;
   PartFile& operator=(const PartFile&) = delete;

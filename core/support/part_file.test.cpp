@@ -11,9 +11,10 @@ using namespace evbench;
 using Catch::Matchers::Contains;
 
 TEST_CASE("A part file has its name, in place of an older file, once it is committed") {
+  const bool named = GENERATE(false, true);
   const testing::TemporaryFolder folder;
   const std::string path = folder.write("out", "old");
-  PartFile file(path);
+  PartFile file(path, named);
   std::ofstream(file.writable_path()) << "new";
   CHECK(testing::read_file(path) == "old");
   file.commit();
@@ -24,7 +25,7 @@ TEST_CASE("A part file has its name, in place of an older file, once it is commi
 TEST_CASE("A part file that is not committed leaves nothing behind") {
   const testing::TemporaryFolder folder;
   {
-    const PartFile file(folder.file("out"));
+    const PartFile file(folder.file("out"), GENERATE(false, true));
     std::ofstream(file.writable_path()) << "half";
   }
   CHECK(std::filesystem::is_empty(folder.path()));

@@ -27,6 +27,8 @@ NativeReader::NativeReader(std::unique_ptr<FileMapping> mapping, std::span<const
       name_(name),
       faults_(name, options.strict) {
   read_header();
+  if (info_.width == 0) info_.width = options.width;
+  if (info_.height == 0) info_.height = options.height;
   read_index();
   read_metadata();
 }

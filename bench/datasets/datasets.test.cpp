@@ -1,0 +1,310 @@
+#include <archive.h>
+#include <archive_entry.h>
+#include <httplib.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <thread>
+
+#include "bench/datasets/download.hpp"
+#include "bench/datasets/fetch.hpp"
+#include "bench/datasets/unpack.hpp"
+#include "bench/testing/program.hpp"
+#include "core/support/error.hpp"
+#include "core/support/sha256.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// Serves one file at /file.zip and counts; connections can be cut and ranges ignored.
+class Server {
+ public:
+  explicit Server(std::string content) : content_(std::move(content)) {
+    server_.Get("/file.zip", [this](const httplib::Request& request, httplib::Response& response) {
+      ++requests_;
+      last_range_ = request.get_header_value("Range");
+      serve(request, response);
+    });
+    server_.Get("/moved.zip",
+                [](const httplib::Request&, httplib::Response& response) { response.set_redirect("/file.zip"); });
+    server_.Get("/broken.zip", [this](const httplib::Request&, httplib::Response& response) {
+      ++requests_;
+      response.status = 503;
+    });
+    port_ = server_.bind_to_any_port("127.0.0.1");
+    thread_ = std::thread([this] { server_.listen_after_bind(); });
+    while (!server_.is_running()) std::this_thread::yield();
+  }
+  ~Server() {
+    server_.stop();
+    thread_.join();
+  }
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  std::string url(const std::string& name = "file.zip") const {
+    return "http://127.0.0.1:" + std::to_string(port_) + "/" + name;
+  }
+
+  int cuts = 0;  ///< connections that are still to be cut, in the middle of what was asked for
+  bool knows_ranges = true;
+  std::string etag = "\"1\"";
+  int requests() const { return requests_; }
+  const std::string& last_range() const { return last_range_; }
+  void change(std::string content) { content_ = std::move(content); }
+
+ private:
+  void serve(const httplib::Request& request, httplib::Response& response) {
+    std::string body = content_;
+    if (!etag.empty()) response.set_header("ETag", etag);
+    const std::string condition = request.get_header_value("If-Range");
+    const bool ranged = knows_ranges && last_range_.starts_with("bytes=") && (condition.empty() || condition == etag);
+    if (ranged) {
+      const std::size_t from = std::stoul(last_range_.substr(6));
+      if (from >= body.size()) {
+        response.status = 416;
+        return;
+      }
+      // The library cuts by itself what has no status: the answer is made by hand.
+      response.status = 206;
+      response.set_header("Content-Range", "bytes " + std::to_string(from) + "-" + std::to_string(body.size() - 1) +
+                                               "/" + std::to_string(body.size()));
+      body = body.substr(from);
+    }
+    const_cast<httplib::Request&>(request).ranges.clear();
+    const std::size_t given = cuts > 0 ? body.size() / 2 : body.size();
+    cuts -= cuts > 0 ? 1 : 0;
+    response.set_content_provider(body.size(), "application/zip",
+                                  [body, given](std::size_t offset, std::size_t, httplib::DataSink& sink) {
+                                    if (offset >= given) return false;
+                                    return sink.write(body.data() + offset, given - offset);
+                                  });
+  }
+
+  std::string content_;
+  httplib::Server server_;
+  int port_ = 0;
+  std::thread thread_;
+  std::atomic<int> requests_ = 0;
+  std::string last_range_;
+};
+
+DownloadOptions quick() {
+  DownloadOptions options;
+  options.pause = std::chrono::milliseconds(0);
+  return options;
+}
+
+std::string noise(std::size_t size) {
+  std::string text;
+  for (std::size_t i = 0; i < size; ++i) text += static_cast<char>(i * i / 7 % 251);
+  return text;
+}
+
+struct ArchiveEntry {
+  std::string name, content;
+  unsigned type = AE_IFREG;
+  std::string target = {};
+};
+
+/// A zip, or a tar.gz.
+std::string make_archive(const std::string& path, const std::vector<ArchiveEntry>& entries) {
+  archive* const a = archive_write_new();
+  if (path.ends_with(".zip")) {
+    archive_write_set_format_zip(a);
+  } else {
+    archive_write_set_format_pax_restricted(a);
+    archive_write_add_filter_gzip(a);
+  }
+  REQUIRE(archive_write_open_filename(a, path.c_str()) == ARCHIVE_OK);
+  for (const ArchiveEntry& e : entries) {
+    archive_entry* const entry = archive_entry_new();
+    archive_entry_set_pathname(entry, e.name.c_str());
+    archive_entry_set_filetype(entry, e.type);
+    archive_entry_set_perm(entry, 0644);
+    archive_entry_set_size(entry, static_cast<la_int64_t>(e.content.size()));
+    if (e.type == AE_IFLNK) archive_entry_set_symlink(entry, e.target.c_str());
+    REQUIRE(archive_write_header(a, entry) == ARCHIVE_OK);
+    archive_write_data(a, e.content.data(), e.content.size());
+    archive_entry_free(entry);
+  }
+  archive_write_close(a);
+  archive_write_free(a);
+  return path;
+}
+
+std::string made_folder(const TemporaryFolder& folder, const std::string& name) {
+  std::filesystem::create_directory(folder.file(name));
+  return folder.file(name);
+}
+
+}  // namespace
+
+TEST_CASE("A download has the file's bytes, also by way of a redirection, and leaves nothing else") {
+  const TemporaryFolder folder;
+  const Server server(noise(300000));
+  std::uint64_t reported = 0;
+  DownloadOptions options = quick();
+  options.sha256 = sha256(noise(300000));
+  options.progress = [&](std::uint64_t have, std::optional<std::uint64_t> total) {
+    reported = have;
+    CHECK(total == 300000u);
+  };
+  download(server.url(GENERATE("file.zip", "moved.zip")), folder.file("a.zip"), options);
+  CHECK(read_file(folder.file("a.zip")) == noise(300000));
+  CHECK(reported == 300000);
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.zip"});
+}
+
+TEST_CASE("A download whose connection is cut goes on where it stopped, or from the beginning without ranges") {
+  const TemporaryFolder folder;
+  Server server(noise(300000));
+  server.cuts = 3;
+  server.knows_ranges = GENERATE(true, false);
+  download(server.url(), folder.file("a.zip"), quick());
+  CHECK(read_file(folder.file("a.zip")) == noise(300000));
+  CHECK(server.requests() == 4);
+  CHECK_THAT(server.last_range(), Catch::StartsWith("bytes="));
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.zip"});
+}
+
+TEST_CASE("A download that broke off too often says so; the next call goes on") {
+  const TemporaryFolder folder;
+  Server server(noise(300000));
+  server.cuts = 2;
+  DownloadOptions options = quick();
+  options.attempts = 2;
+  CHECK_THROWS_WITH(download(server.url(), folder.file("a.zip"), options),
+                    Contains("broke off after 225000 bytes") && Contains("goes on from there"));
+  CHECK(read_file(folder.file("a.zip.part")) == noise(225000));
+  download(server.url(), folder.file("a.zip"), options);
+  CHECK(server.last_range() == "bytes=225000-");
+  CHECK(read_file(folder.file("a.zip")) == noise(300000));
+}
+
+TEST_CASE("A file that changed on the server since the download broke off is fetched from its beginning") {
+  const TemporaryFolder folder;
+  Server server(noise(300000));
+  server.cuts = 1;
+  DownloadOptions options = quick();
+  options.attempts = 1;
+  CHECK_THROWS_AS(download(server.url(), folder.file("a.zip"), options), InputError);
+  server.change(std::string(200000, 'x'));
+  server.etag = "\"2\"";
+  download(server.url(), folder.file("a.zip"), options);
+  CHECK(read_file(folder.file("a.zip")) == std::string(200000, 'x'));
+}
+
+TEST_CASE("A part file that is longer than what the server has is thrown away") {
+  const TemporaryFolder folder;
+  const Server server(noise(1000));
+  folder.write("a.zip.part", std::string(5000, 'x'));
+  download(server.url(), folder.file("a.zip"), quick());
+  CHECK(read_file(folder.file("a.zip")) == noise(1000));
+}
+
+TEST_CASE("What a server refuses, another checksum and too big a file are errors that say so") {
+  const TemporaryFolder folder;
+  const Server server(noise(1000));
+  CHECK_THROWS_WITH(download(server.url("no.zip"), folder.file("a.zip"), quick()),
+                    Contains("no.zip") && Contains("answers 404"));
+  CHECK_THROWS_WITH(download(server.url("broken.zip"), folder.file("a.zip"), quick()), Contains("503"));
+  CHECK(server.requests() == 5);
+  DownloadOptions options = quick();
+  options.sha256 = std::string(64, '0');
+  CHECK_THROWS_WITH(download(server.url(), folder.file("a.zip"), options),
+                    Contains("has the SHA-256 " + sha256(noise(1000))) && Contains("removed"));
+  options = quick();
+  options.limit = 999;
+  CHECK_THROWS_WITH(download(server.url(), folder.file("a.zip"), options), Contains("bigger"));
+  CHECK_THROWS_AS(download("http://127.0.0.1:1/file.zip", folder.file("a.zip"), quick()), InputError);
+  CHECK_THROWS_AS(download("file:///etc/hostname", folder.file("a.zip"), quick()), InputError);
+  CHECK(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("An archive is unpacked, without the folder that all of it is in") {
+  const TemporaryFolder folder;
+  const std::string name = GENERATE("a.zip", "a.tar.gz");
+  const std::string plain = made_folder(folder, "plain"), wrapped = made_folder(folder, "wrapped");
+  unpack(make_archive(folder.file(name), {{"events.txt", noise(200000)}, {"images/1.png", "1"}}), plain, 1 << 20);
+  CHECK(read_file(plain + "/events.txt") == noise(200000));
+  CHECK(read_file(plain + "/images/1.png") == "1");
+  unpack(make_archive(folder.file(name), {{"seq/events.txt", "e"}, {"seq/seq/1.png", "1"}}), wrapped, 1 << 20);
+  CHECK(read_file(wrapped + "/events.txt") == "e");
+  CHECK(read_file(wrapped + "/seq/1.png") == "1");
+}
+
+TEST_CASE("An archive that leads out of the folder, has links, repeats itself or is too big is refused") {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::vector<ArchiveEntry>& entries, const std::string& message) {
+    for (const char* name : {"a.zip", "a.tar.gz"}) {
+      INFO(name << " " << entries[0].name);
+      const std::string target = folder.file("target");
+      std::filesystem::remove_all(target);
+      std::filesystem::create_directory(target);
+      CHECK_THROWS_WITH(unpack(make_archive(folder.file(name), entries), target, 1000), Contains(message));
+    }
+  };
+  refused({{"../out.txt", "x"}}, "leads out");
+  refused({{"a/../../out.txt", "x"}}, "leads out");
+  refused({{"/tmp/out.txt", "x"}}, "leads out");
+  refused({{"..\\out.txt", "x"}}, "leads out");
+  refused({{"link", "", AE_IFLNK, "/etc"}, {"link/out.txt", "x"}}, "link or device");
+  refused({{"a.txt", "x"}, {"a.txt", "y"}}, "twice");
+  refused({{"a.txt", std::string(600, 'x')}, {"b.txt", std::string(600, 'x')}}, "more than the catalogue allows");
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.zip", "a.tar.gz", "target"});
+  folder.write("b.zip", "no zip at all");
+  CHECK_THROWS_WITH(unpack(folder.file("b.zip"), folder.file("target"), 1000), Contains("b.zip: is a damaged archive"));
+}
+
+TEST_CASE("A zip that is truncated or has a flipped bit is refused") {
+  const TemporaryFolder folder;
+  const std::string bytes = read_file(make_archive(folder.file("a.zip"), {{"events.txt", noise(5000)}}));
+  folder.write("short.zip", bytes.substr(0, bytes.size() / 2));
+  CHECK_THROWS_AS(unpack(folder.file("short.zip"), made_folder(folder, "short"), 1 << 20), InputError);
+  std::string flipped = bytes;
+  flipped[1000] = static_cast<char>(flipped[1000] ^ 4);
+  folder.write("flipped.zip", flipped);
+  CHECK_THROWS_AS(unpack(folder.file("flipped.zip"), made_folder(folder, "flipped"), 1 << 20), InputError);
+}
+
+TEST_CASE("dataset get fetches and unpacks by name, once; dataset list marks what is there") {
+  const TemporaryFolder folder;
+  make_archive(folder.file("sequence.zip"),
+               {{"events.txt", "0.1 1 1 1\n"}, {"calib.txt", "200 200 120 90 0 0 0 0 0\n"}});
+  Server server(read_file(folder.file("sequence.zip")));
+  server.cuts = 1;
+  const Json files = {{{"url", server.url("{name}.zip")}, {"unpack", true}}};
+  folder.write(
+      "catalogue.json",
+      Json{{"collections",
+            {{{"name", "local"},
+              {"title", "Test"},
+              {"homepage", "h"},
+              {"licence", "CC0"},
+              {"verified", "yes"},
+              {"limit_gib", 1},
+              {"files", files},
+              {"sequences", {{{"name", "file"}, {"description", "d"}}, {{"name", "no"}, {"description", "d"}}}}}}}}
+          .dump());
+  const std::string environment =
+      "export EVBENCH_CATALOGUE=catalogue.json EVBENCH_DATASETS=sets; \"$evbench\" dataset ";
+  const Outcome get = testing::shell(folder, environment + "get local/file");
+  CHECK(get.exit_code == 0);
+  CHECK(get.err.empty());
+  CHECK_THAT(get.out, Contains("CC0") && Contains("SHA-256 " + sha256_file(folder.file("sequence.zip"))) &&
+                          Contains("written: sets/local/file"));
+  CHECK(read_file(folder.file("sets/local/file/events.txt")) == "0.1 1 1 1\n");
+  CHECK(names_in(folder.file("sets/local")) == std::set<std::string>{"file"});
+  CHECK_THAT(testing::shell(folder, environment + "get local/file").out, Contains("is there already"));
+  CHECK(server.requests() == 2);
+  CHECK_THAT(testing::shell(folder, environment + "list").out, Contains("* local/file ") && Contains("    local/no "));
+  const Outcome missing = testing::shell(folder, environment + "get local/no");
+  CHECK(missing.exit_code == 2);
+  CHECK_THAT(missing.err, Contains("answers 404"));
+  CHECK_THAT(testing::shell(folder, environment + "get local/fil").err, Contains("did you mean \"local/file\"?"));
+  CHECK(names_in(folder.file("sets/local")) == std::set<std::string>{"file", "no.download"});
+}

@@ -1,0 +1,216 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "bench/recordings/conversion.hpp"
+#include "bench/recordings/summary.hpp"
+#include "bench/testing/program.hpp"
+#include "core/events/formats.hpp"
+#include "core/events/formats/native.hpp"
+#include "core/support/error.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// Events from 2 s on, 1 ms apart, that walk over a 240x180 sensor; every third is off.
+std::vector<Event> walking_events(std::int64_t count) {
+  std::vector<Event> events;
+  for (std::int64_t i = 0; i < count; ++i) {
+    events.push_back(
+        {2000000 + 1000 * i, static_cast<std::uint16_t>(i % 240), static_cast<std::uint16_t>(i % 180), i % 3 != 0});
+  }
+  return events;
+}
+
+RecordingHeader davis_header() {
+  RecordingHeader header;
+  header.width = 240;
+  header.height = 180;
+  header.calibration = Camera{{200, 200, 120, 90}, DistortionModel::radial_tangential, {}, 240, 180};
+  header.calibration->coefficients << -0.35, 0.12, 0, 0, 0;
+  header.ground_truth = PoseTrajectory({{2.0, SE3()}, {3.0, {Eigen::Quaterniond::Identity(), Vector3(0.5, 0, 0)}}});
+  return header;
+}
+
+void write_native(const std::string& path, const std::vector<Event>& events, const RecordingHeader& header) {
+  NativeWriter writer(path, header);
+  writer.write(events);
+  writer.finish();
+}
+
+std::vector<Event> read_all(const std::string& path) {
+  EventStream stream(path);
+  std::vector<Event> all;
+  for (std::vector<Event> events; stream.read(events);) all.insert(all.end(), events.begin(), events.end());
+  return all;
+}
+
+/// A chunk that does not agree with its checksum.
+void damage(const std::string& path) {
+  std::string bytes = read_file(path);
+  bytes[100] = static_cast<char>(bytes[100] ^ 1);
+  std::filesystem::remove(path);
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+}  // namespace
+
+TEST_CASE("info says a recording's format, sensor, counts, times, rates, calibration and ground truth") {
+  const TemporaryFolder folder;
+  write_native(folder.file("a.evb"), walking_events(1000), davis_header());
+  const Outcome text = testing::evbench(folder, "info a.evb");
+  CHECK(text.exit_code == 0);
+  CHECK(text.err.empty());
+  CHECK_THAT(text.out, Contains("evbench native 1") && Contains("240x180 pixels") &&
+                           Contains("1000: 666 on, 334 off (66.6 % on)") &&
+                           Contains("2.000000 to 2.999000 s: 0.999000 s") && Contains("0.001 million/s on average") &&
+                           Contains("radial_tangential") && Contains("2 poses, 2.000 to 3.000 s, path 0.50 m") &&
+                           Contains("oddities      none") && Contains("█"));
+  const Json json = Json::parse(testing::evbench(folder, "info a.evb --json").out);
+  CHECK(json.at("events") == 1000);
+  CHECK(json.at("on") == 666);
+  CHECK(json.at("start_us") == 2000000);
+  CHECK(json.at("end_us") == 2999000);
+  CHECK(json.at("sensor").at("width") == 240);
+  CHECK(json.at("calibration").at("fx") == 200.0);
+  CHECK(json.at("ground_truth").at("poses") == 2);
+  CHECK(json.at("oddities").empty());
+}
+
+TEST_CASE("info of a recording without events, and of one with damage, says so") {
+  const TemporaryFolder folder;
+  write_native(folder.file("none.evb"), {}, {});
+  CHECK_THAT(testing::evbench(folder, "info none.evb").out, Contains("events        none") && Contains("unknown"));
+  CHECK(Json::parse(testing::evbench(folder, "info none.evb --json").out).at("start_us").is_null());
+  write_native(folder.file("a.evb"), walking_events(20000), davis_header());
+  damage(folder.file("a.evb"));
+  CHECK_THAT(testing::evbench(folder, "info a.evb").out,
+             Contains("16384 events in damaged chunks (checksum), left out"));
+  const Outcome strict = testing::evbench(folder, "info a.evb --strict");
+  CHECK(strict.exit_code == 2);
+  CHECK_THAT(strict.err, Contains("chunk 0 at byte 64"));
+  CHECK_THAT(testing::evbench(folder, "info nowhere").err, Contains("nowhere"));
+}
+
+TEST_CASE("A recording of 100 days still has a histogram, of bounded size, with all its events") {
+  RateHistogram histogram;
+  std::vector<Event> events;
+  for (int i = 0; i < 1000; ++i) events.push_back({i * std::int64_t{8640000000}, 0, 0, true});
+  histogram.add(events);
+  CHECK(histogram.rates().size() <= RateHistogram::kBins);
+  double count = 0.0;
+  for (const double rate : histogram.resampled(10)) count += rate * 999 * 8640.0 / 10.0;
+  CHECK(count == Approx(1000.0).epsilon(1e-6));
+}
+
+TEST_CASE("Rates are plotted as high as they are") {
+  const std::string plot = plot_rates({0.0, 1e6, 2e6}, 0.0, 3.0, 1);
+  CHECK_THAT(plot, Contains("2.000 | ▄█\n") && Contains("0.000 s"));
+  CHECK_FALSE(plot_rates({}, 0.0, 0.0).empty());
+}
+
+TEST_CASE("convert writes native, text and HDF5 files that read back as the same events") {
+  const TemporaryFolder folder;
+  const auto events = walking_events(5000);
+  write_native(folder.file("a.evb"), events, davis_header());
+  for (const char* out : {"b.evb", "b.h5"}) {
+    const Outcome outcome = testing::evbench(folder, std::string("convert a.evb ") + out);
+    INFO(out << outcome.err);
+    CHECK(outcome.exit_code == 0);
+    CHECK_THAT(outcome.out, Contains(std::string("written: ") + out) && Contains("5000 events"));
+    CHECK(read_all(folder.file(out)) == events);
+  }
+  CHECK(testing::evbench(folder, "convert a.evb b --format text --quiet").out.empty());
+  CHECK_THAT(read_file(folder.file("b")), Catch::StartsWith("2.000000 0 0 0\n2.001000 1 1 1\n"));
+  const auto reader = open_events(folder.file("b.evb"));
+  REQUIRE(reader->calibration());
+  CHECK(reader->ground_truth()->size() == 2);
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", "b.evb", "b.h5", "b"});
+}
+
+TEST_CASE("Text has times before zero with their sign") {
+  const TemporaryFolder folder;
+  write_native(folder.file("a.evb"), {{-1500000, 1, 2, true}, {-1, 1, 2, false}, {7, 1, 2, true}}, davis_header());
+  convert(folder.file("a.evb"), folder.file("a.txt"), {});
+  CHECK(read_file(folder.file("a.txt")) == "-1.500000 1 2 1\n-0.000001 1 2 0\n0.000007 1 2 1\n");
+}
+
+TEST_CASE("convert takes a time range, with times from the first event on or as they are") {
+  const TemporaryFolder folder;
+  write_native(folder.file("a.evb"), walking_events(5000), davis_header());
+  REQUIRE(testing::evbench(folder, "convert a.evb b.evb --from 3 --to 4.5").exit_code == 0);
+  auto cut = read_all(folder.file("b.evb"));
+  CHECK(cut.size() == 1500);
+  CHECK(cut.front().t == 3000000);
+  CHECK(cut.back().t == 4499000);
+  REQUIRE(testing::evbench(folder, "convert a.evb b.evb --from 1 --to 2 --rebase").exit_code == 0);
+  cut = read_all(folder.file("b.evb"));
+  CHECK(cut.size() == 1000);
+  CHECK(cut.front().t == 1000000);
+  CHECK(open_events(folder.file("b.evb"))->ground_truth()->start() == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("convert undoes the lens: events go to where a pinhole sees them, or are left out and counted") {
+  const TemporaryFolder folder;
+  const auto events = walking_events(720);
+  write_native(folder.file("a.evb"), events, davis_header());
+  ConversionOptions options;
+  options.undistort = "own";
+  const ConversionReport report = convert(folder.file("a.evb"), folder.file("b.evb"), options);
+  const Camera lens = *davis_header().calibration;
+  std::vector<Event> expected;
+  for (Event event : events) {
+    const Vector2 ideal = lens.undistort(Vector2(event.x, event.y)).value();
+    if (ideal.x() < -0.5 || ideal.y() < -0.5 || ideal.x() >= 239.5 || ideal.y() >= 179.5) continue;
+    event.x = static_cast<std::uint16_t>(ideal.x() + 0.5);
+    event.y = static_cast<std::uint16_t>(ideal.y() + 0.5);
+    expected.push_back(event);
+  }
+  CHECK(report.outside > 0);
+  CHECK(report.written + report.outside == 720);
+  CHECK(read_all(folder.file("b.evb")) == expected);
+  CHECK(open_events(folder.file("b.evb"))->calibration()->distortion == DistortionModel::none);
+  folder.write("calib.txt", "200 200 120 90 -0.35 0.12 0 0 0\n");
+  REQUIRE(testing::evbench(folder, "convert a.evb c.evb --undistort calib.txt").exit_code == 0);
+  CHECK(read_all(folder.file("c.evb")) == expected);
+}
+
+TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing behind") {
+  const TemporaryFolder folder;
+  write_native(folder.file("a.evb"), walking_events(20000), davis_header());
+  write_native(folder.file("unknown.evb"), walking_events(10), {});
+  const auto refused = [&](const std::string& arguments, const std::string& message) {
+    const Outcome outcome = testing::evbench(folder, "convert " + arguments);
+    INFO(arguments);
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains(message));
+  };
+  refused("a.evb b.xyz", "expected one of .evb (native)");
+  refused("a.evb b --format nativ", "did you mean \"native\"?");
+  refused("a.evb b.evb --from 3 --to 2", "expected from < to");
+  refused("a.evb b.evb --undistort nowhere.txt", "nowhere.txt");
+  refused("unknown.evb b.evb --undistort own", "--width");
+  refused("unknown.evb b.evb --undistort own --width 10 --height 10", "no calibration of its own");
+  refused("a.evb no/b.evb", "no/b.evb");
+  damage(folder.file("a.evb"));
+  refused("a.evb b.evb --strict", "checksum");
+  refused("a.evb b.h5 --strict", "checksum");
+  CHECK_THAT(testing::evbench(folder, "convert a.evb ok.evb").out,
+             Contains("left out: 16384 events in damaged chunks"));
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", "unknown.evb", "ok.evb"});
+}
+
+TEST_CASE("A conversion that is interrupted leaves nothing, and the older file as it was") {
+  const TemporaryFolder folder;
+  write_native(folder.file("a.evb"), walking_events(2000000), davis_header());
+  const std::string out = GENERATE("b.txt", "b.h5");
+  folder.write(out, "old");
+  const Outcome outcome =
+      testing::shell(folder, "\"$evbench\" convert a.evb " + out + " & sleep 0.1; kill -INT $!; wait $!");
+  if (outcome.exit_code == 2) CHECK_THAT(outcome.err, Contains("interrupted"));
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", out});
+  CHECK((outcome.exit_code == 0) == (read_file(folder.file(out)) != "old"));
+}

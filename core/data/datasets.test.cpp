@@ -1,0 +1,72 @@
+#include "core/data/datasets.hpp"
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+
+#include "core/support/error.hpp"
+#include "core/testing/data.hpp"
+
+using namespace evbench;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// An environment variable, for as long as this object lives.
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) { ::setenv(name, value.c_str(), 1); }
+  ~Variable() { ::unsetenv(name_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+};
+
+std::string collection(const std::string& file, const std::string& sequences) {
+  return R"({"collections": [{"name": "c", "title": "t", "homepage": "h", "licence": "l", "verified": "v",
+    "limit_gib": 1, "files": [)" +
+         file + R"(], "sequences": [)" + sequences + "]}]}";
+}
+
+const char* const kSequence = R"({"name": "a", "description": "d"})";
+
+}  // namespace
+
+TEST_CASE("The catalogue that comes with the program has the Event-Camera Dataset with addresses and licence") {
+  const auto catalogue = read_catalogue(catalogue_path());
+  const Dataset& dataset = find_dataset(catalogue, "ecd/dynamic_6dof");
+  REQUIRE(dataset.files.size() == 1);
+  CHECK(dataset.files[0].url == "https://rpg.ifi.uzh.ch/datasets/davis/dynamic_6dof.zip");
+  CHECK(dataset.files[0].unpack);
+  CHECK(dataset.licence == "CC BY-NC-SA 3.0");
+  CHECK_THROWS_WITH(find_dataset(catalogue, "ecd/dynamic_6d0f"), Contains("did you mean \"ecd/dynamic_6dof\"?"));
+}
+
+TEST_CASE("A dataset that is there is found by its name; for one that isn't, the command that fetches it is named") {
+  const testing::TemporaryFolder folder;
+  const Variable variable("EVBENCH_DATASETS", folder.path());
+  CHECK_THROWS_WITH(existing_dataset_folder("ecd/dynamic_6dof", "here"),
+                    Contains("here: ") && Contains("evbench dataset get ecd/dynamic_6dof"));
+  CHECK_THROWS_WITH(existing_dataset_folder("ecd/dynamic_6d0f", "here"), Contains("did you mean"));
+  std::filesystem::create_directories(folder.file("ecd/dynamic_6dof"));
+  CHECK(existing_dataset_folder("ecd/dynamic_6dof", "here") == folder.file("ecd/dynamic_6dof"));
+  for (const char* name : {"../x", "/etc", "ecd//x", "", "ecd/"}) {
+    CHECK_THROWS_WITH(existing_dataset_folder(name, "here"), Contains("is no name of a dataset"));
+  }
+}
+
+TEST_CASE("A catalogue that is broken is refused with the place") {
+  const testing::TemporaryFolder folder;
+  const auto refused = [&](const std::string& text, const std::string& message) {
+    CHECK_THROWS_WITH(read_catalogue(folder.write("c.json", text)), Contains("c.json") && Contains(message));
+  };
+  refused("{", "parse error");
+  refused("{}", "collections");
+  refused(collection(R"({"url": "ftp://x/{name}"})", kSequence), "c/a: url: is \"ftp://x/a\"");
+  refused(collection(R"({"url": "http://x", "sha256": "12"})", kSequence), "sha256");
+  refused(collection(R"({"url": "http://x"})", R"({"name": "../a", "description": "d"})"), "expected words");
+  refused(collection(R"({"url": "http://x"})", std::string(kSequence) + ", " + kSequence), "is there twice");
+  CHECK_THROWS_AS(read_catalogue(folder.file("no.json")), InputError);
+}
