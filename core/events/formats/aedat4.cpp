@@ -237,7 +237,7 @@ bool Aedat4Reader::decode(std::vector<Event>& events) {
 void Aedat4Reader::seek(std::int64_t t) {
   at_ = begin_;
   const auto packets = packets_.find(stream_);
-  if (packets == packets_.end()) return;
+  if (packets == packets_.end() || t <= starts_[stream_]) return;
   at_ = end_;
   for (const Packet& packet : packets->second) {
     if (packet.end >= t) at_ = std::min(at_, packet.offset);

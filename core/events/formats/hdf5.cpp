@@ -17,17 +17,16 @@ namespace {
 
 constexpr std::int64_t kBroken = std::numeric_limits<std::int64_t>::min();
 
-/// [µs] from integer µs or floating-point s; kBroken for what is no time.
+/// [µs] from integer µs or floating-point s; kBroken for what is no time. The largest leaves room for an offset.
 template <class Number>
 std::int64_t to_time(Number t) {
-  if constexpr (std::is_floating_point_v<Number>) {
-    const double us = 1e6 * static_cast<double>(t);
-    return std::abs(us) < 9e18 ? std::llround(us) : kBroken;
-  } else if constexpr (std::is_same_v<Number, std::uint64_t>) {
-    return t <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) ? static_cast<std::int64_t>(t)
-                                                                                     : kBroken;
-  } else {
+  constexpr double kMost = 4e18;
+  if constexpr (sizeof(Number) < 8 && std::is_integral_v<Number>) {
     return static_cast<std::int64_t>(t);
+  } else {
+    const double us = (std::is_floating_point_v<Number> ? 1e6 : 1.0) * static_cast<double>(t);
+    if (!(std::abs(us) < kMost)) return kBroken;
+    return std::is_floating_point_v<Number> ? std::llround(us) : static_cast<std::int64_t>(t);
   }
 }
 
@@ -75,7 +74,7 @@ Hdf5Reader::Hdf5Reader(const std::string& path, const ReadOptions& options)
     : file_(path), layout_(choose_events(file_, options.topic)), faults_(path, options.strict) {
   open_columns();
   if (!layout_.offset.empty()) {
-    const std::int64_t offset = to_time(file_.dataset(layout_.offset).first(0) * 1e-6);
+    const std::int64_t offset = to_time(1e-6 * file_.dataset(layout_.offset).first(0));
     if (offset == kBroken) throw InputError(fmt::format("{}: /{}: is no time", path, layout_.offset));
     offset_ = offset;
   }

@@ -8,10 +8,12 @@
 
 #include "core/events/formats.hpp"
 #include "core/events/formats/hdf5_filters.hpp"
+#include "core/events/testing/reading.hpp"
 #include "core/support/error.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
+using testing::read_all;
 
 namespace {
 
@@ -100,12 +102,6 @@ void write_columns(Writer& file, const std::string& group, H5Z_filter_t filter =
   file.add(group + "y", c.y, 0, filter);
   file.add(group + "t", c.t, 0, filter);
   file.add(group + "p", c.p, 0, filter);
-}
-
-std::vector<Event> read_all(EventReader& reader) {
-  std::vector<Event> all;
-  for (std::vector<Event> chunk; reader.read(chunk);) all.insert(all.end(), chunk.begin(), chunk.end());
-  return all;
 }
 
 void check_recording(const std::vector<Event>& events, std::int64_t offset = 0) {

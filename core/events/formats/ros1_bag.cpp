@@ -1,13 +1,12 @@
+#include "core/events/formats/ros1_bag.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "core/events/codecs/byte_cursor.hpp"
 #include "core/events/codecs/decompress.hpp"
 #include "core/events/formats/all.hpp"
-#include "core/events/formats/message_source.hpp"
-#include "core/support/byte_source.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
@@ -20,26 +19,7 @@ constexpr std::size_t kMostHeader = 1 << 20, kMostChunk = 256u << 20;
 
 enum Op : unsigned { kMessage = 2, kBag = 3, kChunk = 5, kChunkInfo = 6, kConnection = 7 };
 
-/// A record: a header of fields name=value, and data.
-struct Record {
-  std::map<std::string, std::span<const std::byte>, std::less<>> fields;
-  std::uint64_t data = 0;  ///< offset
-  std::uint32_t size = 0;  ///< of the data
-
-  template <class T>
-  T number(std::string_view name) const {
-    const auto field = fields.find(name);
-    return field == fields.end() || field->second.size() != sizeof(T) ? T{} : load<T>(field->second.data());
-  }
-  std::string text(std::string_view name) const {
-    const auto field = fields.find(name);
-    if (field == fields.end()) return "";
-    return {reinterpret_cast<const char*>(field->second.data()), field->second.size()};
-  }
-  unsigned op() const { return number<std::uint8_t>("op"); }
-};
-
-bool parse_fields(std::span<const std::byte> header, Record& record) {
+bool parse_fields(std::span<const std::byte> header, BagRecord& record) {
   record.fields.clear();
   ByteCursor cursor(header);
   while (cursor.ok() && cursor.left() > 0) {
@@ -52,58 +32,18 @@ bool parse_fields(std::span<const std::byte> header, Record& record) {
   return cursor.ok();
 }
 
-/// ROS's bag format 2.0 (http://wiki.ros.org/Bags/Format/2.0), read by ourselves: librosbag_storage trusts the file's
-/// lengths and offsets, so that broken bags make it crash or allocate gigabytes.
-class RosBag : public MessageSource {
- public:
-  RosBag(std::unique_ptr<ByteSource> file, Faults& faults);
-
-  const std::vector<Topic>& topics() const override { return topics_; }
-  void select(std::set<std::uint32_t> topics) override {
-    selected_ = std::move(topics);
-    go_to(kMagic.size());
-  }
-  std::optional<Message> next() override;
-  void seek(std::int64_t t) override;
-
- private:
-  struct ChunkInfo {
-    std::uint64_t offset = 0;
-    std::int64_t end = 0;  ///< [ns]
-  };
-
-  void go_to(std::uint64_t offset) {
-    at_ = offset;
-    chunk_.clear();
-    used_ = 0;
-  }
-  bool read_record(std::uint64_t offset, Record& record);
-  bool read_data(const Record& record, std::vector<std::byte>& data);
-  bool read_index(std::uint64_t offset, std::uint32_t chunks);
-  void scan();
-  bool next_chunk();
-  bool load_chunk(const Record& record);
-  std::optional<Message> next_in_chunk();
-  void add_topic(const Record& record, std::span<const std::byte> data);
-  void count(std::uint32_t connection, std::uint64_t messages);
-  std::string place() const { return fmt::format("byte {}", at_); }
-
-  std::unique_ptr<ByteSource> file_;
-  Faults& faults_;
-  std::vector<Topic> topics_;
-  std::set<std::uint32_t> selected_;
-  std::vector<ChunkInfo> chunks_;
-  std::vector<std::byte> header_, packed_, chunk_;
-  std::size_t used_ = 0;   ///< of the chunk
-  std::uint64_t at_ = 0;   ///< next record of the file
-  std::uint64_t end_ = 0;  ///< of the chunks
-};
+}  // namespace
 
 RosBag::RosBag(std::unique_ptr<ByteSource> file, Faults& faults) : file_(std::move(file)), faults_(faults) {
-  Record bag;
+  BagRecord bag;
   end_ = file_->size();
-  if (!read_record(kMagic.size(), bag) || bag.op() != kBag) {
-    throw InputError(fmt::format("{}: byte {}: has no bag header; expected one", file_->name(), kMagic.size()));
+  std::byte magic[kBegin];
+  if (file_->read(0, magic) != kBegin || std::string_view(reinterpret_cast<const char*>(magic), kBegin) != kMagic) {
+    throw InputError(
+        fmt::format("{}: is a bag of another version; expected version 2.0 (`rosbag fix`)", file_->name()));
+  }
+  if (!read_record(kBegin, bag) || bag.op() != kBag) {
+    throw InputError(fmt::format("{}: byte {}: has no bag header; expected one", file_->name(), kBegin));
   }
   if (const std::string encryptor = bag.text("encryptor"); !encryptor.empty()) {
     throw InputError(fmt::format("{}: is encrypted by {}; expected a bag that is not", file_->name(), encryptor));
@@ -121,7 +61,7 @@ RosBag::RosBag(std::unique_ptr<ByteSource> file, Faults& faults) : file_(std::mo
 }
 
 /// False when it isn't whole.
-bool RosBag::read_record(std::uint64_t offset, Record& record) {
+bool RosBag::read_record(std::uint64_t offset, BagRecord& record) {
   std::byte length[4];
   if (file_->read(offset, length) != 4) return false;
   const std::uint64_t size = load<std::uint32_t>(length);
@@ -134,7 +74,7 @@ bool RosBag::read_record(std::uint64_t offset, Record& record) {
   return record.data + record.size <= file_->size() && parse_fields(header_, record);
 }
 
-bool RosBag::read_data(const Record& record, std::vector<std::byte>& data) {
+bool RosBag::read_data(const BagRecord& record, std::vector<std::byte>& data) {
   if (record.size > kMostChunk) return false;
   data.resize(record.size);
   return file_->read(record.data, data) == data.size();
@@ -142,7 +82,7 @@ bool RosBag::read_data(const Record& record, std::vector<std::byte>& data) {
 
 /// Connections and chunks, as listed at the end of the bag.
 bool RosBag::read_index(std::uint64_t offset, std::uint32_t chunks) {
-  Record record;
+  BagRecord record;
   while (offset < file_->size()) {
     if (!read_record(offset, record) || !read_data(record, packed_)) return false;
     if (record.op() == kConnection) add_topic(record, packed_);
@@ -163,8 +103,8 @@ bool RosBag::read_index(std::uint64_t offset, std::uint32_t chunks) {
 
 /// Reads all chunks for what an index would say.
 void RosBag::scan() {
-  go_to(kMagic.size());
-  Record record;
+  go_to(kBegin);
+  BagRecord record;
   while (next_chunk()) {
     while (used_ < chunk_.size()) {
       ByteCursor cursor(std::span<const std::byte>(chunk_).subspan(used_));
@@ -179,9 +119,9 @@ void RosBag::scan() {
   }
 }
 
-void RosBag::add_topic(const Record& record, std::span<const std::byte> data) {
+void RosBag::add_topic(const BagRecord& record, std::span<const std::byte> data) {
   const auto id = record.number<std::uint32_t>("conn");
-  Record connection;
+  BagRecord connection;
   if (!parse_fields(data, connection)) return;
   Topic topic{id, record.text("topic"), plain_type(connection.text("type")), {}, Wire::ros1, true};
   for (Topic& known : topics_) {
@@ -201,7 +141,7 @@ void RosBag::count(std::uint32_t connection, std::uint64_t messages) {
 
 /// Makes the next chunk the current one. False at the end.
 bool RosBag::next_chunk() {
-  Record record;
+  BagRecord record;
   while (at_ < end_) {
     if (!read_record(at_, record)) {
       faults_.add("broken or cut records, where reading ends", place());
@@ -215,7 +155,7 @@ bool RosBag::next_chunk() {
   return false;
 }
 
-bool RosBag::load_chunk(const Record& record) {
+bool RosBag::load_chunk(const BagRecord& record) {
   const std::string compression = record.text("compression");
   const auto size = record.number<std::uint32_t>("size");
   used_ = 0;
@@ -241,7 +181,7 @@ std::optional<Message> RosBag::next() {
 }
 
 std::optional<Message> RosBag::next_in_chunk() {
-  Record record;
+  BagRecord record;
   while (used_ < chunk_.size()) {
     ByteCursor cursor(std::span<const std::byte>(chunk_).subspan(used_));
     const auto header = cursor.bytes(cursor.get<std::uint32_t>());
@@ -263,29 +203,21 @@ void RosBag::seek(std::int64_t t) {
   for (const ChunkInfo& chunk : chunks_) {
     if (chunk.end >= t) first = std::min(first, chunk.offset);
   }
-  go_to(chunks_.empty() ? kMagic.size() : first);
+  go_to(chunks_.empty() ? kBegin : first);
 }
 
-}  // namespace
-
 EventFormat ros1_bag_format() {
-  return {
-      "ros1-bag", "ROS 1 bag with event_camera_msgs, dvs_msgs or prophesee_event_msgs",
-      [](const std::string&, std::span<const std::byte> head) {
-        return head.size() >= 9 && std::equal(kMagic.begin(), kMagic.begin() + 9, head.begin(),
-                                              [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
-      },
-      [](const std::string& path, const ReadOptions& options) {
-        return read_bag(path, "ROS 1 bag", options, [path](Faults& faults) {
-          auto file = std::make_unique<FileBytes>(path);
-          std::byte magic[kMagic.size()];
-          if (file->read(0, magic) != kMagic.size() ||
-              std::string_view(reinterpret_cast<const char*>(magic), kMagic.size()) != kMagic) {
-            throw InputError(fmt::format("{}: is a bag of another version; expected version 2.0 (`rosbag fix`)", path));
-          }
-          return std::make_unique<RosBag>(std::move(file), faults);
-        });
-      }};
+  return {"ros1-bag", "ROS 1 bag with event_camera_msgs, dvs_msgs or prophesee_event_msgs",
+          [](const std::string&, std::span<const std::byte> head) {
+            return head.size() >= kMagic.size() &&
+                   std::equal(kMagic.begin(), kMagic.begin() + 9, head.begin(),
+                              [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
+          },
+          [](const std::string& path, const ReadOptions& options) {
+            return read_bag(path, "ROS 1 bag", options, [path](Faults& faults) {
+              return std::make_unique<RosBag>(std::make_unique<FileBytes>(path), faults);
+            });
+          }};
 }
 
 }  // namespace evbench

@@ -6,16 +6,11 @@
 #include <vector>
 
 #include "core/events/formats.hpp"
+#include "core/events/testing/reading.hpp"
 #include "core/support/error.hpp"
 #include "core/testing/data.hpp"
 
 namespace evbench::testing {
-
-inline std::vector<Event> read_all(EventReader& reader) {
-  std::vector<Event> all;
-  for (std::vector<Event> chunk; reader.read(chunk);) all.insert(all.end(), chunk.begin(), chunk.end());
-  return all;
-}
 
 inline std::vector<Event> read_all(const std::string& path, const ReadOptions& options = {}) {
   return read_all(*open_events(path, options));
