@@ -20,7 +20,7 @@ RenderMode parse_mode(const std::string& name) {
 
 struct RenderArguments {
   std::string in, out, mode = "events";
-  TimeRange range;
+  TimeRangeArguments range;
   std::optional<double> duration, decay, tail;  // [ms]
   bool quiet = false;
   RenderOptions options;

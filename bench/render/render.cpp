@@ -127,8 +127,9 @@ RenderReport render(const std::string& in, const std::string& out, const RenderO
     report.size = picture.size();
     ++report.pictures;
     if (progress) progress(report.pictures, t);
+    if (!sink->takes_many()) break;
     const std::optional<std::int64_t> next = renderer.next();
-    if (!next || !sink->takes_many()) break;
+    if (!next) break;
     if ((*next - t) / period > kMaxStill) {
       throw InputError(
           fmt::format("{}: has no events between {:.6f} and {:.6f} s; choose the time with --from and --to", in,

@@ -20,9 +20,9 @@ enum class RenderMode {
 struct RenderOptions {
   StreamOptions stream;
   RenderMode mode = RenderMode::events;
-  /// What a picture shows: [s], or a number of events. Neither: five times the decay for time surfaces; what --from and
-  /// --to enclose for one picture that has both; otherwise 20 ms, in a video at least the time between two pictures and
-  /// at most ten times that.
+  /// What a picture shows: [s], or a number of events. Neither: what --from and --to enclose for one picture that has
+  /// both; five times the decay for time surfaces; otherwise 20 ms, in a video at least the time between two pictures
+  /// and at most ten times that.
   std::optional<double> duration;
   std::optional<std::size_t> count;
   double decay = 0.03;             ///< of time surfaces [s]
