@@ -28,8 +28,9 @@ std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOpti
 }
 
 const std::vector<EventFormat>& event_formats() {
-  static const std::vector<EventFormat> formats = {native_format(), hdf5_format(), aedat4_format(), ros1_bag_format(), ros2_sqlite_format(), mcap_format(), evt2_format(), evt21_format(),
-                                                   evt3_format(), dat_format(), es_format(), ecd_text_format()};
+  static const std::vector<EventFormat> formats = {
+      native_format(), hdf5_format(),  aedat4_format(), ros1_bag_format(), ros2_sqlite_format(), mcap_format(),
+      evt2_format(),   evt21_format(), evt3_format(),   dat_format(),      es_format(),          ecd_text_format()};
   return formats;
 }
 

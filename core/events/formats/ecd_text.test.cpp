@@ -244,6 +244,16 @@ TEST_CASE("A zip that is broken, or without events, is refused, and a broken fil
   }
 }
 
+TEST_CASE("What a zip blows up to is not kept in memory") {
+  const TemporaryFolder folder;
+  const std::string blanks(std::size_t{65} << 20, ' ');
+  write_zip(folder.file("bomb.zip"), {{"events.txt", kRecording[0].second + blanks}, {"groundtruth.txt", blanks}});
+  const auto reader = open_events(folder.file("bomb.zip"));
+  CHECK((read_all(*reader) == kTwo));
+  CHECK(fault_counts(*reader) == std::vector<std::int64_t>{1});
+  CHECK_THROWS_WITH(reader->ground_truth(), Catch::Contains("groundtruth.txt: has more than"));
+}
+
 TEST_CASE("Texts truncated anywhere, or with any bytes, are read as far as they go") {
   std::string content;
   for (int i = 0; i < 500; ++i) content += fmt::format("0.{:06},{},{},1\n", i, i % 240, i % 180);
