@@ -32,8 +32,9 @@ struct BagRecord {
   unsigned op() const { return number<std::uint8_t>("op"); }
 };
 
-/// ROS's bag format 2.0 (http://wiki.ros.org/Bags/Format/2.0), read by ourselves: librosbag_storage trusts the file's
-/// lengths and offsets, so that broken bags make it crash or allocate gigabytes.
+/// ROS's bag format 2.0 (http://wiki.ros.org/Bags/Format/2.0). Read by ourselves, as librosbag_storage copies from
+/// where the bag's index points to without comparing that with the chunk (rosbag/bag.h), and has no way to read a bag
+/// that was cut short.
 class RosBag : public ros::MessageSource {
  public:
   RosBag(std::unique_ptr<ByteSource> file, Faults& faults);
