@@ -118,6 +118,7 @@ void RenderedSceneOptions::declare(OptionSet& set) {
   set.add("far", far, "largest depth seen from the path [m]").above(0.0);
   set.add("boxes", boxes, "number of boxes").range(0, 1e4);
   set.add("detail", detail, "size of dots, of shapes, of the finest texture [m]; 0: what suits the camera").range(0.0);
+  set.add("black", black, "intensity of black on the surfaces, that of white being 1: the contrast").range(1e-3, 0.99);
   set.add("picture", picture, "path of a picture to put on the surfaces instead; empty: none").path();
   set.add("picture_width", picture_width, "its width on a surface, after which it is mirrored [m]").above(0.0);
 }
@@ -138,7 +139,7 @@ RenderedScene make_rendered_scene(const RenderedSceneOptions& options, const Cam
       surface.offsets[static_cast<std::size_t>(face)] = offset_on_print(surface, face, print, random);
     }
   }
-  RenderedScene scene{std::move(surfaces), Texture(print.pattern.picture, print.size), {}};
+  RenderedScene scene{std::move(surfaces), Texture(print.pattern.picture, print.size, options.black), {}};
   for (const Surface& surface : scene.surfaces) {
     for (int face = 0; face < 6; ++face) {
       if (boxes || face == 4) add_features(surface, face, print, scene.features);

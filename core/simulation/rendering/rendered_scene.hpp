@@ -17,7 +17,8 @@ struct RenderedSceneOptions {
   double near = 1.0, far = 3.0;
   int boxes = 12;
   double detail = 0.0;
-  std::string picture;
+  double black = 0.05;
+  std::string picture = {};
   double picture_width = 1.0;
 
   void declare(OptionSet& set);

@@ -8,9 +8,6 @@
 namespace evbench {
 namespace {
 
-/// What a photodiode sees in the blackest black: dark current, stray light.
-constexpr double kFloor = 0.01;
-
 int power_of_two(int size) {
   return std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(size, 1)))), 8, 8192);
 }
@@ -23,13 +20,13 @@ int mirrored(int index, int size) {
 
 }  // namespace
 
-Texture::Texture(const cv::Mat& picture, const Vector2& size) {
+Texture::Texture(const cv::Mat& picture, const Vector2& size, double black) {
   const cv::Size scaled(power_of_two(picture.cols), power_of_two(picture.rows));
   cv::Mat level;
   cv::resize(picture, level, scaled, 0.0, 0.0, cv::INTER_LINEAR);
   level.convertTo(level, CV_32F, 1.0 / 255.0);
   cv::pow(level, 2.2, level);
-  level = kFloor + (1.0 - kFloor) * level;
+  level = black + (1.0 - black) * level;
   mean_ = static_cast<float>(cv::mean(level)[0]);
   texels_per_metre_ = {scaled.width / size.x(), scaled.height / size.y()};
   texel_ = 1.0 / texels_per_metre_.minCoeff();

@@ -14,7 +14,8 @@ class Texture {
  public:
   /// `picture`: grey values of 8 bits as displays show them (gamma 2.2), any size; scaled to powers of two, at least 8
   /// and at most 8192. `size`: of the picture on the surface [m]; its top left corner is at (0, 0).
-  Texture(const cv::Mat& picture, const Vector2& size);
+  /// `black`: intensity of grey value 0, if that of 255 is 1: no ink is black, and no photodiode without dark current.
+  Texture(const cv::Mat& picture, const Vector2& size, double black);
 
   /// Intensity in (0, 1] at a place [m], averaged over texels of 2^level times the picture's; the level need not be
   /// whole (trilinear). No averaging below level 0.

@@ -1,0 +1,119 @@
+#include "core/sources/event_simulation.hpp"
+
+#include <catch2/catch.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/testing/data.hpp"
+
+using namespace evbench;
+using Catch::Matchers::Contains;
+
+namespace {
+
+EventSimulation simulation(const std::string& json, std::uint64_t seed = 1, const std::string& folder = "") {
+  return {read_options<EventSimulation::Options>(Json::parse(json), "config"), {seed, folder}};
+}
+
+std::vector<Event> events_of(const Source& source) {
+  std::vector<Event> all;
+  const std::unique_ptr<EventReader> reader = source.events();
+  for (std::vector<Event> chunk; reader->read(chunk);) all.insert(all.end(), chunk.begin(), chunk.end());
+  return all;
+}
+
+const std::string kSmall = R"("duration": 0.1, "camera": {"width": 96, "height": 72, "focal_length": 80})";
+
+}  // namespace
+
+TEST_CASE("A simulated recording is registered, and gives events, its camera, ground truth and tracks") {
+  const auto& entry = Registry<Source>::instance().find("event_simulation", "test");
+  const auto source = entry.make(Json::parse("{" + kSmall + "}"), "config.source", {7, ""});
+  CHECK(source->camera().width == 96);
+  CHECK(source->ground_truth().size() == 21);
+  CHECK(source->true_tracks()->size() > 100);
+  const auto reader = source->events();
+  CHECK(reader->info().width == 96);
+  const auto events = events_of(*source);
+  CHECK(events.size() > 2000);
+  CHECK(events.back().t <= 100000);
+}
+
+TEST_CASE("A source of tracks has no events") {
+  const auto& entry = Registry<Source>::instance().find("simulation", "test");
+  CHECK(entry.make(Json::parse(R"({"duration": 1})"), "config.source", {7, ""})->events() == nullptr);
+}
+
+TEST_CASE("Every scene gives the same events with any number of threads, and others with another seed") {
+  const std::string scene = GENERATE("plane", "dots", "shapes", "boxes");
+  const auto events = [&](int threads, std::uint64_t seed) {
+    return events_of(simulation(
+        fmt::format(R"({{{}, "scene": {{"kind": "{}"}}, "simulator": {{"threads": {}}}}})", kSmall, scene, threads),
+        seed));
+  };
+  const auto one = events(1, 1);
+  CHECK(one.size() > 500);
+  CHECK(events(2, 1) == one);
+  CHECK(events(4, 1) == one);
+  CHECK(events(1, 2) != one);
+}
+
+TEST_CASE("The true track of a point, its depth and the point seen at a pixel agree, and boxes hide points") {
+  const auto source = simulation(R"({"duration": 1, "scene": {"kind": "boxes"},
+      "camera": {"distortion": "radial_tangential", "coefficients": [-0.35, 0.15, 0, 0, 0]}})");
+  const SceneTruth truth = source.truth();
+  int seen = 0, hidden = 0;
+  for (const Vector3& point : source.scene().features) {
+    for (const double t : {0.1, 0.8}) {
+      const SE3 T = truth.pose(t);
+      const auto pixel = truth.pixel(point, t);
+      if (!pixel) {
+        hidden += visible_pixel(source.camera(), T, point, 0.0).has_value() ? 1 : 0;
+        continue;
+      }
+      ++seen;
+      REQUIRE(*truth.depth(*pixel, t) == Approx((T.inverse() * point).z()).epsilon(1e-3));
+      REQUIRE((*truth.point(*pixel, t) - point).norm() < 1e-2);
+    }
+  }
+  CHECK(seen > 100);
+  CHECK(hidden > 100);
+}
+
+TEST_CASE("Events come where the true track of a dot's rim passes") {
+  const auto source = simulation(R"({"duration": 0.3, "scene": {"kind": "dots"}, "simulator": {"sensor":
+      {"noise_rate": 0, "leak_rate": 0}}})");
+  const SceneTruth truth = source.truth();
+  const auto events = events_of(source);
+  REQUIRE(events.size() > 1000);
+  int near = 0, tried = 0;
+  for (std::size_t i = 0; i < events.size(); i += 50) {
+    const double t = 1e-6 * static_cast<double>(events[i].t);
+    double distance = 1e9;
+    for (const Vector3& point : source.scene().features) {
+      const Vector2 pixel = source.camera().project(truth.pose(t).inverse() * point);
+      distance = std::min(distance, (pixel - Vector2(events[i].x, events[i].y)).norm());
+    }
+    ++tried;
+    near += std::abs(distance - 3.5) < 1.8 ? 1 : 0;  // dots are 7 px wide at mean depth
+  }
+  CHECK(near > 0.95 * tried);
+}
+
+TEST_CASE("A picture and a calibration can be read, and their faults are named") {
+  const testing::TemporaryFolder folder;
+  cv::Mat picture(60, 80, CV_8U);
+  cv::randu(picture, 0, 255);
+  cv::imwrite(folder.file("picture.png"), picture);
+  folder.write("calib.txt", "80 80 47.5 35.5 -0.3 0.1 0 0 0");
+  const auto source = simulation(R"({"duration": 0.1, "scene": {"picture": "picture.png"},
+      "camera": {"width": 96, "height": 72, "calib": "calib.txt", "distortion": "radial_tangential"}})",
+                                 1, folder.path());
+  CHECK(source.files() == std::vector<std::string>{folder.file("calib.txt"), folder.file("picture.png")});
+  CHECK(source.camera().coefficients[0] == -0.3);
+  CHECK(events_of(source).size() > 1000);
+  CHECK_THROWS_WITH(simulation(R"({"duration": 0.1, "scene": {"picture": "calib.txt"}})", 1, folder.path()),
+                    Contains("can't be read as a picture"));
+  CHECK_THROWS_WITH(simulation(R"({"duration": 0.1, "scene": {"near": 3, "far": 2}})"), Contains("near < far"));
+  CHECK_THROWS_WITH(simulation(R"({"duration": 0.1, "simulator": {"sensor": {"threshold_on": 0}}})"),
+                    Contains("threshold_on"));
+}
