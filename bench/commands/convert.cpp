@@ -1,48 +1,34 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
-#include <csignal>
 #include <memory>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/interruption.hpp"
 #include "bench/commands/progress_line.hpp"
+#include "bench/commands/time_range.hpp"
 #include "bench/recordings/conversion.hpp"
 #include "core/events/writer.hpp"
-#include "core/support/error.hpp"
 
 namespace evbench {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
-
 struct ConvertArguments {
   std::string in, out;
-  std::optional<double> from, to;  // [s]
+  TimeRangeArguments range;
   bool quiet = false;
   ConversionOptions options;
 };
 
-std::optional<std::int64_t> microseconds(const std::optional<double>& seconds, const char* option) {
-  if (!seconds) return std::nullopt;
-  if (!(std::abs(*seconds) < 1e12)) throw InputError(fmt::format("{}: is {}; expected seconds", option, *seconds));
-  return std::llround(*seconds * 1e6);
-}
-
 void execute(const ConvertArguments& arguments) {
   ConversionOptions options = arguments.options;
-  options.stream.from = microseconds(arguments.from, "--from");
-  options.stream.to = microseconds(arguments.to, "--to");
-  if (options.stream.from && options.stream.to && *options.stream.from >= *options.stream.to) {
-    throw InputError(fmt::format("--from {} --to {}: expected from < to", *arguments.from, *arguments.to));
-  }
-  // Ends the conversion as an error does, which cleans up.
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { interrupted = 1; });
+  set_time_range(arguments.range, options.stream);
+  const Interruption interruption;
   ConversionReport report;
   {
     ProgressLine line(arguments.in, arguments.quiet);
     report = convert(arguments.in, arguments.out, options, [&](std::int64_t events, std::int64_t t) {
-      if (interrupted != 0) throw InputError(arguments.out + ": interrupted; nothing was written");
+      interruption.check(arguments.out);
       line.update(fmt::format("{:.1f} million events, {:.2f} s", static_cast<double>(events) * 1e-6,
                               static_cast<double>(t) * 1e-6));
     });
@@ -74,9 +60,7 @@ void add_convert(CLI::App& app) {
   command->add_option("out", arguments->out, "File to write")->required()->type_name("OUT");
   command->add_option("--format", arguments->options.format, "Format of OUT, whatever its extension")
       ->type_name("NAME");
-  command->add_option("--from", arguments->from, "Only events from this time on [s], after --rebase");
-  command->add_option("--to", arguments->to, "Only events before this time [s], after --rebase");
-  command->add_flag("--rebase", arguments->options.stream.rebase, "The first event's time becomes zero");
+  add_time_range(*command, arguments->range, arguments->options.stream);
   command
       ->add_option("--undistort", arguments->options.undistort,
                    "Move events to where an ideal pinhole would see them, to the nearest pixel; those outside are left "
