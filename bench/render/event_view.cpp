@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "bench/render/event_image.hpp"
 #include "bench/render/time_surface.hpp"
@@ -58,16 +59,16 @@ void EventView::prepare_compensation(const std::string& path, const RenderOption
 }
 
 EventView::Sight EventView::before(std::int64_t t) {
-  const EventSlice slice = window_.before(t);
+  const std::span<const Event> events = window_.before(t);
   switch (mode_) {
     case RenderMode::events: break;
-    case RenderMode::time_surface:
-      return {draw_time_surface(time_surface(slice.events, size_, t, decay_), palette_), t};
+    case RenderMode::time_surface: return {draw_time_surface(time_surface(events, size_, t, decay_), palette_), t};
     case RenderMode::compensated:
-      return {draw_counts(compensation_->accumulate(slice.events, slice.middle(), stream_.zero()), palette_),
-              slice.middle()};
+      // The middle of the events, not of the window: a trajectory may end with the events.
+      if (!events.empty()) t = std::midpoint(events.front().t, events.back().t);
+      return {draw_counts(compensation_->accumulate(events, t, stream_.zero()), palette_), t};
   }
-  return {draw_events(slice.events, size_, palette_), t};
+  return {draw_events(events, size_, palette_), t};
 }
 
 }  // namespace evbench

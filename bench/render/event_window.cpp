@@ -15,7 +15,7 @@ std::optional<std::int64_t> EventWindow::next() {
   return chunk_[used_].t;
 }
 
-EventSlice EventWindow::before(std::int64_t t) {
+std::span<const Event> EventWindow::before(std::int64_t t) {
   while (fill() && chunk_[used_].t < t) {
     const auto first = chunk_.begin() + static_cast<std::ptrdiff_t>(used_);
     const auto last = std::ranges::lower_bound(first, chunk_.end(), t, {}, &Event::t);
@@ -24,9 +24,7 @@ EventSlice EventWindow::before(std::int64_t t) {
     trim(t);
   }
   trim(t);
-  std::int64_t begin = t - extent_.duration;
-  if (extent_.count) begin = window_.empty() ? t : window_.front().t;
-  return {begin, t, window_};
+  return window_;
 }
 
 /// Forgets what lies before the window that ends at t.

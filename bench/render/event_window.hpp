@@ -9,14 +9,6 @@
 
 namespace evbench {
 
-/// The events of a stretch of time.
-struct EventSlice {
-  std::int64_t begin = 0, end = 0;  ///< [µs]; the end is not included
-  std::span<const Event> events;    ///< in time order
-
-  std::int64_t middle() const { return begin + (end - begin) / 2; }
-};
-
 /// How much of a stream is looked at at once: a time, or a number of events.
 struct WindowExtent {
   std::int64_t duration = 20000;          ///< [µs]
@@ -28,8 +20,8 @@ class EventWindow {
  public:
   EventWindow(EventStream& stream, const WindowExtent& extent) : stream_(&stream), extent_(extent) {}
 
-  /// The newest events before t [µs], until the next call. t must not be less than in a call before.
-  EventSlice before(std::int64_t t);
+  /// The newest events before t [µs], valid until the next call. t must not be less than in a call before.
+  std::span<const Event> before(std::int64_t t);
 
   /// Time of the first event that no window has reached [µs]; none at the end.
   std::optional<std::int64_t> next();

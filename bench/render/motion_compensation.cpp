@@ -86,6 +86,7 @@ PolarityCounts MotionCompensation::accumulate(std::span<const Event> events, std
                                               std::int64_t zero) const {
   const cv::Size size(camera_.width, camera_.height);
   PolarityCounts counts{cv::Mat1f(size, 0.0F), cv::Mat1f(size, 0.0F)};
+  if (events.empty()) return counts;
   const SE3 T_reference_world = pose(reference + zero).inverse();
   std::int64_t t = std::numeric_limits<std::int64_t>::min();
   SE3 T_reference_event;

@@ -14,7 +14,7 @@ namespace evbench {
 enum class RenderMode {
   events,        ///< event_image.hpp
   time_surface,  ///< time_surface.hpp
-  compensated,   ///< motion_compensation.hpp, at the middle of each picture's time
+  compensated,   ///< motion_compensation.hpp, at the middle of each picture's events
 };
 
 struct RenderOptions {

@@ -252,6 +252,19 @@ TEST_CASE("A recording with ground truth and calibration is compensated by them"
   CHECK_THROWS_WITH(render(bare, out, options), Contains("late.txt") && Contains("--from"));
 }
 
+TEST_CASE("A film is compensated up to the last event, where a trajectory may end, and over times without events") {
+  const TemporaryFolder folder;
+  std::vector<Event> events = hundred_events();
+  std::erase_if(events, [](const Event& event) { return event.t > 1030000 && event.t < 1090000; });
+  RenderOptions options;
+  options.mode = RenderMode::compensated;
+  options.duration = 0.01;
+  options.fps = 100.0;
+  options.trajectory = folder.write("truth.txt", "1 0 0 0 0 0 0 1\n1.0991 0 0 0 0 0 0 1\n");
+  options.calibration = folder.write("calib.txt", "20 20 10 5 0 0 0 0 0\n");
+  CHECK(render(write_native(folder, "a.evb", events), folder.file("a/"), options).pictures == 10);
+}
+
 TEST_CASE("What can't be drawn or written is refused with a sentence, and nothing is written") {
   const TemporaryFolder folder;
   const std::string in = write_native(folder, "a.evb", hundred_events());
