@@ -197,6 +197,21 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
   return experiment;
 }
 
+std::unique_ptr<Source> read_source(const std::string& path) {
+  const Json json = parse_file(path);
+  if (!json.is_object() || !json.contains("source")) {
+    throw InputError(fmt::format("{}: expected a config with a \"source\"", path));
+  }
+  const std::string folder = std::filesystem::absolute(path).parent_path().string();
+  const PluginConfig config = plugin<Source>(json["source"], path + ": source", folder);
+  const Json seed = json.value("seed", Json(1));
+  if (!seed.is_number_integer() || seed < 0)
+    throw InputError(fmt::format("{}: seed: expected a whole number from 0 on", path));
+  return Registry<Source>::instance()
+      .find(config.type, config.place)
+      .make(config.options, config.place, {seed.get<std::uint64_t>(), folder, config.place});
+}
+
 std::string describe_experiment() {
   ExperimentOptions options;
   OptionSet set;

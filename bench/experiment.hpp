@@ -1,10 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/plugin/options.hpp"
+#include "core/plugin/source.hpp"
 #include "eval/scores.hpp"
 
 namespace evbench {
@@ -44,6 +46,9 @@ struct Experiment {
 /// ("backends.0.frame_duration=0.1") and the value JSON, or text where it is not JSON.
 /// Throws InputError with the place for anything that is not as expected; nothing has been run or written then.
 Experiment read_experiment(const std::string& path, const std::vector<std::string>& overrides);
+
+/// A config file's source alone; nothing else of the file is looked at but its seed.
+std::unique_ptr<Source> read_source(const std::string& path);
 
 /// A config file's top level: for people, and as a JSON Schema with all registered plugins' options, for editors.
 std::string describe_experiment();

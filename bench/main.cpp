@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "bench/commands/commands.hpp"
+#include "bench/recordings/config_events.hpp"
 #include "bench/version.hpp"
 
 namespace {
@@ -16,6 +17,7 @@ int run_program(int argc, char** argv) {
   app.set_version_flag("--version", evbench::version_text());
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "Print this help and that of every command");
+  evbench::add_event_format(evbench::config_format());
   int exit_code = 0;
   evbench::add_run(app, exit_code);
   evbench::add_eval(app);

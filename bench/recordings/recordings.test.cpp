@@ -214,3 +214,24 @@ TEST_CASE("A conversion that is interrupted leaves nothing, and the older file a
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", out});
   CHECK((outcome.exit_code == 0) == (read_file(folder.file(out)) != "old"));
 }
+
+TEST_CASE("A config is a recording of its source's events, with camera and ground truth") {
+  const TemporaryFolder folder;
+  const auto write_config = [&](const char* text) { std::ofstream(folder.file("a.json")) << text; };
+  write_config(R"({"seed": 3, "source": {"type": "event_simulation", "duration": 0.2,
+                   "camera": {"width": 60, "height": 40, "focal_length": 50}, "scene": {"kind": "shapes"}}})");
+  const Outcome converted = testing::evbench(folder, "convert a.json a.evb");
+  CHECK(converted.err.empty());
+  REQUIRE(converted.exit_code == 0);
+  const auto recording = open_events(folder.file("a.evb"));
+  CHECK(recording->info().width == 60);
+  CHECK(recording->info().count.value() > 100);
+  REQUIRE(recording->ground_truth());
+  CHECK(recording->ground_truth()->end() == Approx(0.2).margin(0.01));
+  CHECK(recording->calibration()->height == 40);
+
+  write_config(R"({"source": {"type": "simulation"}})");
+  const Outcome refused = testing::evbench(folder, "info a.json");
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.err, Contains("its source has no events"));
+}

@@ -9,6 +9,16 @@
 #include "core/support/error.hpp"
 
 namespace evbench {
+namespace {
+
+std::vector<EventFormat>& all_formats() {
+  static std::vector<EventFormat> formats = {native_format(),      hdf5_format(), aedat4_format(), ros1_bag_format(),
+                                             ros2_sqlite_format(), mcap_format(), evt2_format(),   evt21_format(),
+                                             evt3_format(),        dat_format(),  es_format(),     ecd_text_format()};
+  return formats;
+}
+
+}  // namespace
 
 std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOptions& options) {
   constexpr std::size_t kHead = 1 << 16;
@@ -27,11 +37,8 @@ std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOpti
   throw InputError(fmt::format("{}: is of no known event format; known: {}", path, fmt::join(names, ", ")));
 }
 
-const std::vector<EventFormat>& event_formats() {
-  static const std::vector<EventFormat> formats = {
-      native_format(), hdf5_format(),  aedat4_format(), ros1_bag_format(), ros2_sqlite_format(), mcap_format(),
-      evt2_format(),   evt21_format(), evt3_format(),   dat_format(),      es_format(),          ecd_text_format()};
-  return formats;
-}
+const std::vector<EventFormat>& event_formats() { return all_formats(); }
+
+void add_event_format(EventFormat format) { all_formats().insert(all_formats().begin(), std::move(format)); }
 
 }  // namespace evbench

@@ -23,6 +23,9 @@ struct EventFormat {
 /// All of them, in the order in which they are asked.
 const std::vector<EventFormat>& event_formats();
 
+/// Another one, asked before those here: for what this folder may not know.
+void add_event_format(EventFormat format);
+
 /// Opens a recording by what it contains. Throws InputError when no format recognises it, or it is broken.
 std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOptions& options = {});
 

@@ -1,0 +1,48 @@
+#include "bench/recordings/config_events.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "bench/experiment.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+class ConfigEvents : public EventReader {
+ public:
+  explicit ConfigEvents(const std::string& path) : source_(read_source(path)), reader_(source_->events()) {
+    if (!reader_) throw InputError(fmt::format("{}: its source has no events", path));
+  }
+
+  const StreamInfo& info() const override { return reader_->info(); }
+  bool read(std::vector<Event>& events) override { return reader_->read(events); }
+  void seek(std::int64_t t) override { reader_->seek(t); }
+  const Faults& faults() const override { return reader_->faults(); }
+  std::optional<Camera> calibration() override { return source_->camera(); }
+  std::optional<PoseTrajectory> ground_truth() override {
+    if (source_->ground_truth().empty()) return std::nullopt;
+    return source_->ground_truth();
+  }
+
+ private:
+  std::unique_ptr<Source> source_;
+  std::unique_ptr<EventReader> reader_;
+};
+
+bool begins_like_json(const std::string&, std::span<const std::byte> head) {
+  const auto first =
+      std::ranges::find_if(head, [](std::byte b) { return std::isspace(static_cast<unsigned char>(b)) == 0; });
+  return first != head.end() && *first == std::byte{'{'};
+}
+
+}  // namespace
+
+EventFormat config_format() {
+  return {"config", "JSON config of evbench: the events of its source", begins_like_json,
+          [](const std::string& path, const ReadOptions&) { return std::make_unique<ConfigEvents>(path); }};
+}
+
+}  // namespace evbench
