@@ -70,15 +70,17 @@ void EventStream::check(std::vector<Event>& events) {
     }
     return;
   }
+  // Told once a chunk: a recording may be nothing but faults.
+  std::int64_t outside = 0, backwards = 0;
+  std::string first_outside, first_backwards;
   std::size_t kept = 0;
   for (const Event& event : events) {
     if (event.x >= width || event.y >= height) {
-      faults_.add(fmt::format("events outside the sensor of {}x{} pixels", width, height),
-                  fmt::format("{} us, pixel ({}, {})", event.t, event.x, event.y));
+      if (outside++ == 0) first_outside = fmt::format("{} us, pixel ({}, {})", event.t, event.x, event.y);
       continue;
     }
     if (event.t < newest_) {
-      faults_.add("events that go back in time", fmt::format("{} us after {} us", event.t, newest_));
+      if (backwards++ == 0) first_backwards = fmt::format("{} us after {} us", event.t, newest_);
       continue;
     }
     newest_ = event.t;
@@ -90,6 +92,10 @@ void EventStream::check(std::vector<Event>& events) {
     events[kept] = event;
     events[kept++].t -= zero_;
   }
+  if (outside > 0) {
+    faults_.add(fmt::format("events outside the sensor of {}x{} pixels", width, height), first_outside, outside);
+  }
+  if (backwards > 0) faults_.add("events that go back in time", first_backwards, backwards);
   events.resize(kept);
 }
 

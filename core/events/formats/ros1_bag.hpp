@@ -33,8 +33,7 @@ struct BagRecord {
 };
 
 /// ROS's bag format 2.0 (http://wiki.ros.org/Bags/Format/2.0). Read by ourselves, as librosbag_storage copies from
-/// where the bag's index points to without comparing that with the chunk (rosbag/bag.h), and has no way to read a bag
-/// that was cut short.
+/// where the bag's index points to without comparing that with the chunk (rosbag/bag.h).
 class RosBag : public ros::MessageSource {
  public:
   RosBag(std::unique_ptr<ByteSource> file, Faults& faults);
