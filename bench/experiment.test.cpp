@@ -137,7 +137,7 @@ TEST_CASE("Runs of a comparison that would write to the same folder are refused"
 TEST_CASE("Every config that comes with evbench can be read, and each of its runs run again") {
   int count = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(EVBENCH_CONFIGS)) {
-    if (entry.path().extension() != ".json") continue;
+    if (entry.path().extension() != ".json" || entry.path().filename() == "datasets.json") continue;  // the catalogue
     INFO(entry.path());
     ++count;
     for (const RunConfig& run : read_experiment(entry.path().string(), {}).runs) {
