@@ -253,7 +253,8 @@ void GpMap::check_health() {
   context_.log(fmt::format("{:.3f} s: lost: {}", health_.status().time, health_.status().reason));
   // What the data never saw is not kept.
   const auto unseen = [&](double t) { return t > health_.status().time; };
-  while (graph().states.size() > 2 && unseen(graph().states.back().t)) engine_->remove_newest_state();
+  const auto oldest = static_cast<std::size_t>(engine_->first_state());  // with a lag, what is older is settled
+  while (graph().states.size() > oldest + 2 && unseen(graph().states.back().t)) engine_->remove_newest_state();
   std::erase_if(online_, [&](const StampedPose& pose) { return unseen(pose.t); });
 }
 

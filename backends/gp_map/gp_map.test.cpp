@@ -129,6 +129,14 @@ TEST_CASE("A long blackout ends the run as lost, with what there was before") {
   CHECK(result.scores.ate.trans_percent < 1.5);
 }
 
+TEST_CASE("A run with a lag shorter than the patience ends as lost, too") {
+  const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0], "blackouts": [2.0, 4.5]}})");
+  const auto result = run(scene, {.backend = R"({"lag": 0.3})"});
+  CHECK(result.backend->status().state == RunState::lost);
+  CHECK(result.backend->trajectory().end() < 3.3);
+  CHECK(result.backend->online().end() == Approx(2.0).margin(0.15));
+}
+
 TEST_CASE("A stretch of pure rotation does not destroy the trajectory") {
   const TrackedScene scene(7.0, R"({"motion": {"rotation_only": [3.0, 4.5]}, "tracks": {"lifetime": [1.0, 3.0]}})");
   const auto result = run(scene);

@@ -27,6 +27,19 @@ TEST_CASE("a track's observations come in the order of their times, however they
   CHECK(buffer.alive(0.15, 0.06) == std::vector<TrackId>{3, 7});
 }
 
+TEST_CASE("a forgotten track begins anew, a removed one does not") {
+  TrackBuffer buffer;
+  buffer.add(std::vector{observation(1, 0.1, 1, 0), observation(2, 0.5, 2, 0), observation(3, 0.9, 3, 0)});
+  buffer.forget_ended_before(0.5);
+  CHECK(buffer.ids() == std::vector<TrackId>{2, 3});
+  buffer.forget(2);
+  buffer.remove(3);
+  CHECK(buffer.empty());
+  buffer.add(std::vector{observation(2, 1.0, 2, 0), observation(3, 1.0, 3, 0)});
+  CHECK(buffer.ids() == std::vector<TrackId>{2});
+  CHECK(buffer.observations(2).size() == 1);
+}
+
 TEST_CASE("observations that are not finite never enter the buffer") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   TrackBuffer buffer;
