@@ -134,6 +134,7 @@ TEST_CASE("A run with a lag shorter than the patience ends as lost, too") {
   const auto result = run(scene, {.backend = R"({"lag": 0.3})"});
   CHECK(result.backend->status().state == RunState::lost);
   CHECK(result.backend->trajectory().end() < 3.3);
+  CHECK(result.backend->trajectory().end() > 2.3);  // what was marginalised is not taken back
   CHECK(result.backend->online().end() == Approx(2.0).margin(0.15));
 }
 
