@@ -50,10 +50,11 @@ TrackFile read_tracks(const std::string& path, int width, int height, double sig
   file.report.records = static_cast<std::int64_t>(all.size());
   file.report.unordered = count_unordered(all);
   std::ranges::stable_sort(all, {}, [](const TrackObservation& o) { return std::tuple(o.t, o.track); });
-  const auto repeated = std::ranges::unique(
-      all, [](const TrackObservation& a, const TrackObservation& b) { return a.t == b.t && a.track == b.track; });
-  file.report.duplicates = static_cast<std::int64_t>(repeated.size());
-  all.erase(repeated.begin(), repeated.end());
+  const auto repeated = std::unique(all.begin(), all.end(), [](const TrackObservation& a, const TrackObservation& b) {
+    return a.t == b.t && a.track == b.track;
+  });
+  file.report.duplicates = all.end() - repeated;
+  all.erase(repeated, all.end());
 
   Camera sensor;
   sensor.width = width;

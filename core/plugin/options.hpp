@@ -60,6 +60,10 @@ class OptionSet {
     Json schema() const;
   };
 
+  OptionSet();
+  OptionSet(OptionSet&& other) noexcept;
+  ~OptionSet();
+
   /// `text` is one sentence part with the unit in brackets. A Json target takes any value.
   Option& add(const std::string& name, Target target, const std::string& text);
   template <class T>
@@ -100,6 +104,11 @@ struct OptionSet::Group {
   std::string name, text;
   OptionSet set;
 };
+
+// Here, where a group is a complete type.
+inline OptionSet::OptionSet() = default;
+inline OptionSet::OptionSet(OptionSet&&) noexcept = default;
+inline OptionSet::~OptionSet() = default;
 
 /// A struct's options, read from JSON.
 template <class Struct>
