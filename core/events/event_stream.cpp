@@ -13,12 +13,17 @@ namespace {
 
 constexpr std::int64_t kBeginning = std::numeric_limits<std::int64_t>::min();
 
-/// All in time order, none before `from`, all within the sensor? Without branches, as it is asked of every event.
+/// All in time order, none before `from`, all within the sensor? Without branches and in the narrowest types, so that
+/// it is vectorised: this is asked of every event.
 bool are_fine(std::span<const Event> events, std::int64_t from, int width, int height) {
-  bool wrong = events.front().t < from;
-  for (std::size_t i = 1; i < events.size(); ++i) wrong |= events[i].t < events[i - 1].t;
-  for (const Event& event : events) wrong |= (event.x >= width) | (event.y >= height);
-  return !wrong;
+  const auto last_x = static_cast<std::uint32_t>(width - 1), last_y = static_cast<std::uint32_t>(height - 1);
+  std::uint64_t back = events.front().t < from;
+  std::uint32_t outside = (last_x - events.front().x) | (last_y - events.front().y);  // in the highest bit
+  for (std::size_t i = 1; i < events.size(); ++i) {
+    back |= static_cast<std::uint64_t>(events[i].t < events[i - 1].t);
+    outside |= (last_x - events[i].x) | (last_y - events[i].y);
+  }
+  return back == 0 && outside >> 31 == 0;
 }
 
 }  // namespace

@@ -39,13 +39,6 @@ FileMapping::~FileMapping() {
   if (data_ != nullptr) ::munmap(data_, size_);
 }
 
-void FileMapping::expect(std::size_t offset, std::size_t size) const {
-  const std::size_t from = offset / kPage * kPage, to = std::min(offset + size, size_);
-#ifdef MADV_POPULATE_READ
-  if (from < to) ::madvise(data_ + from, to - from, MADV_POPULATE_READ);  // a hint: without it pages come as touched
-#endif
-}
-
 void FileMapping::forget(std::size_t offset, std::size_t size) const {
   const std::size_t from = offset / kPage * kPage, to = std::min(offset + size, size_) / kPage * kPage;
   if (from < to) ::madvise(data_ + from, to - from, MADV_DONTNEED);

@@ -18,8 +18,6 @@ class FileMapping {
 
   std::span<const std::byte> bytes() const { return {data_, size_}; }
 
-  /// These bytes will be read soon: the pages are mapped at once instead of one by one.
-  void expect(std::size_t offset, std::size_t size) const;
   /// These bytes are done with: their pages no longer count as this program's memory. They can be read again.
   void forget(std::size_t offset, std::size_t size) const;
 

@@ -123,20 +123,28 @@ bool NativeReader::is_intact(std::size_t number) {
   return false;
 }
 
+/// The pages read so far go back to the kernel a MiB at a time: each time, the processor forgets where pages are.
+void NativeReader::hold(std::size_t offset, std::size_t size) {
+  constexpr std::size_t kMost = 1 << 20;
+  if (!mapping_) return;
+  if (offset != held_end_ || held_end_ - held_begin_ > kMost) {
+    mapping_->forget(held_begin_, held_end_ - held_begin_);
+    held_begin_ = offset;
+  }
+  held_end_ = offset + size;
+}
+
 bool NativeReader::read(std::vector<Event>& events) {
   while (next_ < chunks_.size()) {
     const std::size_t number = next_++;
     const Chunk& chunk = chunks_[number];
     const auto offset = static_cast<std::size_t>(chunk.offset);
     const std::size_t size = native::packed_size(chunk.layout, chunk.events);
-    if (mapping_) mapping_->expect(offset, size);
-    const bool intact = is_intact(number);
-    if (intact) {
-      events.resize(chunk.events);
-      native::unpack(bytes_.subspan(offset, size), chunk, {header_.width, header_.height}, events);
-    }
-    if (mapping_) mapping_->forget(offset, size);
-    if (intact) return true;
+    hold(offset, size);
+    if (!is_intact(number)) continue;
+    events.resize(chunk.events);
+    native::unpack(bytes_.subspan(offset, size), chunk, {header_.width, header_.height}, events);
+    return true;
   }
   events.clear();
   return false;

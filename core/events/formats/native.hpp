@@ -39,6 +39,7 @@ class NativeReader : public EventReader {
   void read_index();
   void check_chunk(std::size_t number, std::uint64_t offset) const;
   void read_metadata();
+  void hold(std::size_t offset, std::size_t size);
   bool is_intact(std::size_t number);
   [[noreturn]] void fail(const std::string& message) const;
 
@@ -47,8 +48,9 @@ class NativeReader : public EventReader {
   std::string name_;
   native::Header header_;
   std::vector<native::Chunk> chunks_;
-  std::vector<bool> verified_;  ///< by chunk
-  std::size_t next_ = 0;        ///< chunk
+  std::vector<bool> verified_;                 ///< by chunk
+  std::size_t next_ = 0;                       ///< chunk
+  std::size_t held_begin_ = 0, held_end_ = 0;  ///< bytes of the mapping that the kernel hasn't got back
   StreamInfo info_;
   std::optional<Camera> calibration_;
   std::optional<PoseTrajectory> ground_truth_;
