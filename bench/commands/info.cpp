@@ -38,6 +38,11 @@ void add_read_options(CLI::App& command, ReadOptions& options) {
   command.add_option("--width", options.width, "Sensor's width, where the file does not say [px]")
       ->check(CLI::Range(1, 65536));
   command.add_option("--height", options.height, "Sensor's height, likewise [px]")->check(CLI::Range(1, 65536));
+  command
+      .add_option("--columns", options.columns,
+                  "Columns of text in their order, where it is not what it looks like: t (or t_s, t_ms, t_us, t_ns), "
+                  "x, y, p; anything else is passed over")
+      ->type_name("t,x,y,p");
 }
 
 void add_info(CLI::App& app) {

@@ -111,6 +111,10 @@ void add_picture_options(CLI::App& command, RenderArguments& arguments) {
       ->check(CLI::Range(1, 32))
       ->type_name("N");
   command.add_flag("--dark", options.dark, "On a dark background");
+  command.add_flag(
+      "--time", options.time,
+      "Write the time into the lower left corner: the end of what a picture shows, or the time that events "
+      "are moved to");
 }
 
 }  // namespace

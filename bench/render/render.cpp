@@ -8,6 +8,7 @@
 
 #include "bench/render/event_view.hpp"
 #include "bench/render/picture_sink.hpp"
+#include "bench/render/time_label.hpp"
 #include "bench/render/track_overlay.hpp"
 #include "core/data/tracks.hpp"
 #include "core/support/error.hpp"
@@ -74,6 +75,7 @@ class Renderer {
  public:
   Renderer(const std::string& in, const RenderOptions& options, const WindowExtent& extent)
       : palette_(options.dark ? dark_palette() : light_palette()),
+        with_time_(options.time),
         main_(in, options, extent),
         scale_(make_scale(options, main_.size().width)) {
     if (!options.tracks.empty()) {
@@ -88,6 +90,7 @@ class Renderer {
     if (tracks_) {
       tracks_->draw(static_cast<double>(sight.t + main_.stream().zero()) * 1e-6, scale_, palette_, picture);
     }
+    if (with_time_) draw_time(sight.t, palette_, picture);
     if (!beside_) return picture;
     return side_by_side(picture, enlarge(beside_->before(t).picture, scale_), palette_);
   }
@@ -105,6 +108,7 @@ class Renderer {
 
  private:
   Palette palette_;
+  bool with_time_;
   EventView main_;
   int scale_;
   std::optional<TrackOverlay> tracks_;

@@ -29,6 +29,7 @@ struct RenderOptions {
   double fps = 30.0, speed = 1.0;  ///< pictures a second of playback; seconds of the recording in one of playback
   std::optional<int> scale;        ///< pixels a sensor pixel; none: so many that the sensor has 640 or more across
   bool dark = false;
+  bool time = false;            ///< is written into the pictures (time_label.hpp)
   std::string tracks;           ///< file `id t x y`, drawn over `in`; empty: none
   double tail = 0.1;            ///< of tracks [s]
   std::string trajectory;       ///< TUM, for compensation; empty: the recording's own

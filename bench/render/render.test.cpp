@@ -51,6 +51,27 @@ std::vector<cv::Mat> read_video(const std::string& path) {
 
 }  // namespace
 
+TEST_CASE("A picture tells its time where that is asked for") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events());
+  const auto draw = [&](const std::string& name, bool time, std::int64_t from) {
+    RenderOptions options;
+    options.time = time;
+    options.stream.from = from;
+    render(in, folder.file(name), options);
+    return Picture(cv::imread(folder.file(name), cv::IMREAD_COLOR));
+  };
+  const Picture without = draw("without.png", false, 1000000), with = draw("with.png", true, 1000000);
+  cv::Mat changed;
+  cv::findNonZero(cv::Mat(cv::abs(without - with)).reshape(1, with.rows), changed);
+  REQUIRE(changed.total() > 50);
+  const cv::Rect box = cv::boundingRect(changed);
+  CHECK(box.x < 30);
+  CHECK(box.y > with.rows - 30);
+  const cv::Rect corner(0, with.rows - 30, 100, 30);
+  CHECK(cv::norm(with(corner), draw("later.png", true, 1050000)(corner)) > 0.0);
+}
+
 TEST_CASE("A picture shows the events of its duration or count, at any scale") {
   const TemporaryFolder folder;
   const std::string in = write_native(folder, "a.evb", hundred_events()), out = folder.file("a.png");

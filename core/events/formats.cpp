@@ -34,6 +34,12 @@ std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOpti
     if (format.recognises(path, head)) return format.open(path, options);
     names.push_back(format.name);
   }
+  if (std::filesystem::is_directory(path)) {
+    throw InputError(
+        fmt::format("{}: is a folder that is no recording (e.g. with an events.txt); expected one, or a "
+                    "file of events",
+                    path));
+  }
   throw InputError(fmt::format("{}: is of no known event format; known: {}", path, fmt::join(names, ", ")));
 }
 

@@ -19,6 +19,7 @@ struct ReadOptions {
   std::string topic = {};     ///< of a bag, group of an HDF5 file: whose events; empty: the only one, or the first
   bool strict = false;        ///< faults are errors, not counted skips
   int width = 0, height = 0;  ///< sensor [px], where the file doesn't say; 0: unknown
+  std::string columns = {};   ///< of text, e.g. "t_us,x,y,p" (text_layout.hpp); empty: as the file looks
 };
 
 /// What a recording's headers say.

@@ -94,7 +94,6 @@ Column read_name(std::string_view text, std::optional<Unit>& unit) {
 void read_names(const std::vector<std::string_view>& names, TextLayout& layout, std::optional<Unit>& unit,
                 const std::string& place) {
   for (const std::string_view name : names) layout.columns.push_back(read_name(name, unit));
-  layout.has_names = true;
   for (const Column wanted : kOrders[0]) {
     if (std::count(layout.columns.begin(), layout.columns.end(), wanted) != 1) {
       throw InputError(fmt::format("{}: names the columns \"{:.80}\"; expected time, x, y and polarity, once each",
@@ -209,9 +208,15 @@ bool parse_number(std::string_view text, double& number) {
   return error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
 }
 
-TextLayout detect_text_layout(std::string_view head, bool whole, const std::string& name) {
+TextLayout detect_text_layout(std::string_view head, bool whole, const std::string& name, const std::string& asked) {
+  using Origin = TextLayout::Origin;
   TextLayout layout;
   std::optional<Unit> unit;
+  bool has_header = false;
+  if (!asked.empty()) {
+    read_names(split_columns(asked), layout, unit, fmt::format("{}: what is asked for", name));
+    layout.origin = Origin::caller;
+  }
   Lines lines(head, whole);
   std::string_view line;
   for (; lines.next(line); ++layout.lines, layout.begin = lines.position()) {
@@ -220,19 +225,25 @@ TextLayout detect_text_layout(std::string_view head, bool whole, const std::stri
     if (columns.empty()) continue;
     if (columns[0].starts_with('#') || columns[0].starts_with('%')) {
       read_comment(line, layout);
-    } else if (!is_number(columns[0]) && !layout.has_names) {
+    } else if (!is_number(columns[0]) && !has_header) {
+      has_header = true;
+      if (layout.origin == Origin::caller) continue;
       read_names(columns, layout, unit, place);
+      layout.origin = Origin::header;
     } else if (columns.size() == 2 && layout.width == 0) {
       read_size(columns, layout);
     } else {
-      if (columns.size() != (layout.has_names ? layout.columns.size() : 4)) {
-        throw InputError(fmt::format("{}: has {} columns; expected time, x, y and polarity", place, columns.size()));
+      const bool has_names = layout.origin != Origin::values;
+      if (columns.size() != (has_names ? layout.columns.size() : 4)) {
+        throw InputError(fmt::format(
+            "{}: has {} columns; expected {}", place, columns.size(),
+            has_names ? fmt::format("{}, as they are named", layout.columns.size()) : "time, x, y and polarity"));
       }
       const auto separator = line.find_first_of(",;\t");
       layout.separator = separator == std::string_view::npos ? ' ' : line[separator];
       const Rows rows = read_rows(lines, line, columns.size());
       if (rows.empty()) throw InputError(fmt::format("{}: is \"{:.80}\"; expected numbers", place, line));
-      if (!layout.has_names) find_order(rows, layout, place);
+      if (!has_names) find_order(rows, layout, place);
       read_values(rows, unit, layout);
       return layout;
     }
@@ -244,9 +255,10 @@ TextLayout detect_text_layout(std::string_view head, bool whole, const std::stri
 std::vector<std::pair<std::string, std::string>> TextLayout::description() const {
   constexpr const char* kColumns[] = {"t", "x", "y", "p", "-"};
   constexpr const char* kUnits[] = {"seconds", "milliseconds", "microseconds", "nanoseconds"};
+  constexpr const char* kOrigins[] = {"", " (named in the file)", " (as asked for)"};
   std::vector<std::string> order;
   for (const Column column : columns) order.push_back(kColumns[static_cast<std::size_t>(column)]);
-  return {{"columns", fmt::format("{}{}", fmt::join(order, " "), has_names ? " (named in the file)" : "")},
+  return {{"columns", fmt::format("{}{}", fmt::join(order, " "), kOrigins[static_cast<std::size_t>(origin)])},
           {"separator", separator == ' '    ? "blank"
                         : separator == '\t' ? "tab"
                                             : std::string(1, separator)},

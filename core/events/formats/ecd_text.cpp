@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string_view>
+#include <tuple>
 
 #include "core/data/calib.hpp"
 #include "core/data/tum.hpp"
@@ -12,6 +14,8 @@
 #include "core/events/codecs/event_text.hpp"
 #include "core/events/formats/all.hpp"
 #include "core/events/formats/ecd_files.hpp"
+#include "core/support/error.hpp"
+#include "core/support/text_reader.hpp"
 
 namespace evbench {
 namespace {
@@ -29,11 +33,11 @@ bool is_text(std::span<const std::byte> head) {
          });
 }
 
-TextLayout find_layout(ByteSource& source) {
+TextLayout find_layout(ByteSource& source, const ReadOptions& options) {
   constexpr std::size_t kHead = 1 << 16;
   std::vector<std::byte> head(kHead);
   head.resize(source.read(0, head));
-  return detect_text_layout(text_of(head), head.size() < kHead, source.name());
+  return detect_text_layout(text_of(head), head.size() < kHead, source.name(), options.columns);
 }
 
 StreamInfo info_of(const TextLayout& layout, const ReadOptions& options) {
@@ -43,6 +47,50 @@ StreamInfo info_of(const TextLayout& layout, const ReadOptions& options) {
   info.height = layout.height > 0 ? layout.height : options.height;
   info.metadata = layout.description();
   return info;
+}
+
+/// The Event-Camera Dataset, whose text says no size, was recorded with a DAVIS 240C. Whether this may be one of its
+/// recordings is told by the calibration's principal point: those of other sensors lie elsewhere.
+bool may_be_davis240(const EcdFiles& files) {
+  constexpr double kTolerance = 25.0;  // [px] from the middle
+  if (!files.has("calib.txt")) return false;
+  PinholeCamera camera;
+  try {
+    files.read("calib.txt", [&](const std::string& path) { camera = read_calib(path, 240, 180).pinhole; });
+  } catch (const InputError&) {
+    return false;  // told to whoever asks for the calibration
+  }
+  return std::abs(camera.cx - 119.5) < kTolerance && std::abs(camera.cy - 89.5) < kTolerance;
+}
+
+/// Where neither the text nor an option says it.
+void find_sensor(const EcdFiles& files, StreamInfo& info) {
+  if (const auto size = files.picture_size()) {
+    std::tie(info.width, info.height) = *size;
+    info.metadata.emplace_back("sensor size", "that of the pictures beside the events");
+  } else if (info.width == 0 && info.height == 0 && may_be_davis240(files)) {
+    info.width = 240;
+    info.height = 180;
+    info.metadata.emplace_back("sensor size", "the Event-Camera Dataset's (DAVIS 240C), as calib.txt fits it");
+  }
+}
+
+/// How many pictures images.txt names, and when.
+std::string pictures_text(const EcdFiles& files) {
+  std::int64_t count = 0;
+  double first = 0.0, last = 0.0;  // [s]
+  try {
+    files.read("images.txt", [&](const std::string& path) {
+      for (TextReader reader(path); reader.next(); ++count) {
+        reader.expect_columns(2, "t file");
+        last = reader.number(0, "the time");
+        if (count == 0) first = last;
+      }
+    });
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return fmt::format("{} in images.txt, {:.3f} to {:.3f} s", count, first, last);
 }
 
 /// With what lies beside the events.
@@ -75,7 +123,7 @@ class EcdReader : public DecodedReader {
 }  // namespace
 
 std::unique_ptr<EventReader> open_text(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
-  const TextLayout layout = find_layout(*source);
+  const TextLayout layout = find_layout(*source, options);
   return std::make_unique<DecodedReader>(std::move(source), layout.begin, std::make_unique<EventTextDecoder>(layout),
                                          info_of(layout, options), options);
 }
@@ -83,13 +131,11 @@ std::unique_ptr<EventReader> open_text(std::unique_ptr<ByteSource> source, const
 std::unique_ptr<EventReader> open_ecd_text(const std::string& path, const ReadOptions& options) {
   EcdFiles files(path);
   auto source = files.open_events();
-  const TextLayout layout = find_layout(*source);
+  const TextLayout layout = find_layout(*source, options);
   StreamInfo info = info_of(layout, options);
-  if (const auto size = files.picture_size(); size && layout.width == 0) {
-    std::tie(info.width, info.height) = *size;
-    info.metadata.emplace_back("sensor size", "that of the pictures beside the events");
-  }
+  if (layout.width == 0) find_sensor(files, info);
   info.topics = files.others();
+  if (files.has("images.txt")) info.metadata.emplace_back("pictures", pictures_text(files));
   return std::make_unique<EcdReader>(std::move(files), std::move(source), layout, std::move(info), options);
 }
 

@@ -138,6 +138,42 @@ TEST_CASE("Orders, separators, units, polarities and names of columns are found 
   }
 }
 
+TEST_CASE("Columns that are asked for stand in place of those that are found, or named in the file") {
+  const std::string content = "96 133 3.811 1 9\n127 171 3.82 0 9\n";  // y x t[ms] p
+  CHECK_THROWS_WITH(text(content), Catch::Contains("has 5 columns"));
+  for (const std::string header : {"", "a b c d e\n"}) {
+    const auto reader = text(header + content, {.columns = "y,x,t_ms,p,other"});
+    CHECK((read_all(*reader) == std::vector<Event>{{3811, 133, 96, true}, {3820, 171, 127, false}}));
+    CHECK(metadata(*reader, "columns") == "y x t p - (as asked for)");
+    CHECK(metadata(*reader, "unit of time") == "milliseconds");
+    CHECK(reader->faults().empty());
+  }
+  CHECK_THROWS_WITH(text(content, {.columns = "t,x,y"}), Catch::Contains("what is asked for: names the columns"));
+  CHECK_THROWS_WITH(text(content, {.columns = "t,x,y,p"}), Catch::Contains("5 columns; expected 4, as they are named"));
+}
+
+TEST_CASE("Without pictures a calibration that fits the Event-Camera Dataset's sensor tells its size") {
+  const TemporaryFolder folder;
+  folder.write("events.txt", kRecording[0].second);
+  const auto width = [&](const std::string& calibration, const ReadOptions& options = {}) {
+    folder.write("calib.txt", calibration);
+    return open_events(folder.file("events.txt"), options)->info().width;
+  };
+  CHECK(width(kRecording[1].second) == 240);
+  CHECK(width(kRecording[1].second, {.width = 346, .height = 260}) == 346);
+  CHECK(width("199.1 198.8 173 130 -0.37 0.15 0 0 0\n") == 0);
+  CHECK(width("no numbers\n") == 0);
+}
+
+TEST_CASE("The pictures' times beside the events are told") {
+  const TemporaryFolder folder;
+  folder.write("events.txt", kRecording[0].second);
+  folder.write("images.txt", "0.5 images/a.png\n0.75 images/b.png\n");
+  CHECK(metadata(*open_events(folder.file("events.txt")), "pictures") == "2 in images.txt, 0.500 to 0.750 s");
+  folder.write("images.txt", "0.5\n");
+  CHECK_THAT(metadata(*open_events(folder.file("events.txt")), "pictures"), Catch::Contains("expected"));
+}
+
 TEST_CASE("Nanoseconds without a name are told by their size or their rate") {
   std::string small, unix_time;
   for (int i = 0; i < 200; ++i) {
