@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what evbench is built with (packages.txt, Debian 12) and builds a preset: ./setup.sh [release|debug|sanitize]
+# Installs what evbench is built with (packages.txt, Debian 12) and builds a preset, release or another: ./setup.sh fuzz
 set -euo pipefail
 cd "$(dirname "$0")"
 preset=${1:-release}

@@ -9,8 +9,12 @@ target_compile_options(evbench_flags INTERFACE
   $<$<BOOL:${EVBENCH_WERROR}>:-Werror>
   $<$<BOOL:${EVBENCH_NATIVE}>:-march=native>)
 if(EVBENCH_FUZZ)
-  set(fuzz_flags -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  target_compile_options(evbench_flags INTERFACE ${fuzz_flags})
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "EVBENCH_FUZZ needs clang++ for its libFuzzer; the compiler is ${CMAKE_CXX_COMPILER}")
+  endif()
+  set(fuzz_flags -fsanitize=fuzzer-no-link,address,undefined,float-cast-overflow -fno-sanitize-recover=all
+                 -fno-omit-frame-pointer)
+  target_compile_options(evbench_flags INTERFACE ${fuzz_flags} -D_GLIBCXX_ASSERTIONS)
   target_link_options(evbench_flags INTERFACE ${fuzz_flags})
 endif()
 if(EVBENCH_SANITIZE)
@@ -46,13 +50,19 @@ function(evbench_tests name)
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:")
 endfunction()
 
-# evbench_fuzz_targets(LINKS ...): each fuzz/NAME.fuzz.cpp of a folder as a libFuzzer program fuzz_NAME. To be run as
-# "fuzz_NAME -max_total_time=600 NEW_CORPUS fuzz/corpus/NAME".
+# evbench_fuzz_targets(LINKS ... UNTESTED ...): each fuzz/NAME.fuzz.cpp of a folder as a libFuzzer program fuzz_NAME, built
+# by the target fuzz_targets. Its test runs fuzz/corpus/NAME, then new inputs for EVBENCH_FUZZ_SECONDS in bounded memory.
+# In the build folder, fuzz/corpus/NAME keeps the new inputs that reach more code, fuzz/findings/NAME-... those that fail.
+# UNTESTED names those without a test.
 function(evbench_fuzz_targets)
   if(NOT EVBENCH_FUZZ)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LINKS;UNTESTED" ${ARGN})
+  if(NOT TARGET fuzz_targets)
+    add_custom_target(fuzz_targets)
+  endif()
+  math(EXPR most_seconds "${EVBENCH_FUZZ_SECONDS} + 120")
   file(GLOB sources CONFIGURE_DEPENDS fuzz/*.fuzz.cpp)
   foreach(source IN LISTS sources)
     get_filename_component(name ${source} NAME)
@@ -60,6 +70,18 @@ function(evbench_fuzz_targets)
     add_executable(fuzz_${name} ${source})
     target_link_libraries(fuzz_${name} PRIVATE ${ARG_LINKS} evbench_flags)
     target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+    add_dependencies(fuzz_targets fuzz_${name})
+    if(name IN_LIST ARG_UNTESTED)
+      continue()
+    endif()
+    set(found ${CMAKE_BINARY_DIR}/fuzz/corpus/${name})
+    file(MAKE_DIRECTORY ${found} ${CMAKE_BINARY_DIR}/fuzz/findings)
+    add_test(NAME "fuzz: ${name}"
+             COMMAND fuzz_${name} -max_total_time=${EVBENCH_FUZZ_SECONDS} -timeout=20 -rss_limit_mb=1500
+                     -malloc_limit_mb=700 -print_final_stats=1
+                     -artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/findings/${name}-
+                     ${found} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus/${name})
+    set_tests_properties("fuzz: ${name}" PROPERTIES TIMEOUT ${most_seconds})
   endforeach()
 endfunction()
 

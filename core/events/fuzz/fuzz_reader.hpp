@@ -10,20 +10,37 @@
 
 namespace evbench {
 
-/// Any bytes as a recording: read twice, with the same events, or refused.
-template <class Open>
-int fuzz_reader(const std::uint8_t* data, std::size_t size, Open open) {
-  const auto count = [](EventReader& reader) {
+/// Uses all of a reader. Twice from the beginning there are the same events, or the program ends as a finding.
+inline void exercise(EventReader& reader) {
+  constexpr std::int64_t kBeginning = std::numeric_limits<std::int64_t>::min();
+  std::int64_t first = 0, last = 0;
+  const auto count = [&] {
     std::size_t total = 0;
-    for (std::vector<Event> events; reader.read(events);) total += events.size();
+    for (std::vector<Event> events; reader.read(events); total += events.size()) {
+      if (total == 0) first = events.front().t;
+      last = events.back().t;
+    }
     return total;
   };
+  const std::size_t all = count();
+  reader.seek(kBeginning);
+  if (count() != all) __builtin_trap();
+  for (const std::int64_t t : {first / 2 + last / 2, last, kBeginning, std::numeric_limits<std::int64_t>::max()}) {
+    std::vector<Event> events;
+    reader.seek(t);
+    reader.read(events);
+  }
+  reader.ground_truth();
+  reader.calibration();
+}
+
+/// Any bytes as a recording: read, or refused.
+template <class Open>
+int fuzz_reader(const std::uint8_t* data, std::size_t size, Open open) {
   try {
     const auto reader =
         open(std::make_unique<MemoryBytes>(std::as_bytes(std::span(data, size)), "fuzz"), ReadOptions());
-    const std::size_t first = count(*reader);
-    reader->seek(std::numeric_limits<std::int64_t>::min());
-    if (count(*reader) != first) __builtin_trap();
+    exercise(*reader);
   } catch (const InputError&) {
   }
   return 0;

@@ -1,14 +1,6 @@
-#include "core/events/formats/mcap.hpp"
-
-#include "core/events/fuzz/fuzz_reader.hpp"
-
-using namespace evbench;
+#include "core/events/formats/all.hpp"
+#include "core/events/fuzz/fuzz_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return fuzz_reader(data, size, [&](std::unique_ptr<ByteSource>, const ReadOptions& options) {
-    return ros::read_bag("fuzz", "MCAP", options, [&](Faults& faults) {
-      return std::make_unique<McapBag>(std::make_unique<MemoryBytes>(std::as_bytes(std::span(data, size)), "fuzz"),
-                                       faults);
-    });
-  });
+  return evbench::fuzz_file(data, size, evbench::mcap_format());
 }
