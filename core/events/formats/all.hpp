@@ -16,6 +16,7 @@ EventFormat hdf5_format();
 EventFormat native_format();
 EventFormat ros1_bag_format();
 EventFormat mcap_format();
+EventFormat ros2_folder_format();
 EventFormat ros2_sqlite_format();
 
 }  // namespace evbench

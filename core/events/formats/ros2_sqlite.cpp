@@ -1,3 +1,5 @@
+#include "core/events/formats/ros2_sqlite.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sqlite3.h>
@@ -6,7 +8,6 @@
 #include <filesystem>
 
 #include "core/events/formats/all.hpp"
-#include "core/events/formats/message_source.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
@@ -24,7 +25,6 @@ struct CloseStatement {
 };
 using Statement = std::unique_ptr<sqlite3_stmt, CloseStatement>;
 
-/// A ROS 2 bag in SQLite (rosbag2_storage_sqlite3): tables topics and messages, in the order of recording.
 class SqliteBag : public MessageSource {
  public:
   SqliteBag(const std::string& path, Faults& faults);
@@ -154,16 +154,21 @@ void SqliteBag::seek(std::int64_t t) {
 
 }  // namespace
 
+std::unique_ptr<MessageSource> open_sqlite_bag(const std::string& path, Faults& faults) {
+  return std::make_unique<SqliteBag>(path, faults);
+}
+
+bool is_sqlite(std::span<const std::byte> head) {
+  return head.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), head.begin(),
+                                                    [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
+}
+
 EventFormat ros2_sqlite_format() {
   return {"ros2-sqlite", "ROS 2 bag in SQLite (.db3) with event_camera_msgs",
-          [](const std::string&, std::span<const std::byte> head) {
-            return head.size() >= kMagic.size() &&
-                   std::equal(kMagic.begin(), kMagic.end(), head.begin(),
-                              [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
-          },
+          [](const std::string&, std::span<const std::byte> head) { return is_sqlite(head); },
           [](const std::string& path, const ReadOptions& options) {
             return read_bag(path, "ROS 2 bag (SQLite)", options,
-                            [path](Faults& faults) { return std::make_unique<SqliteBag>(path, faults); });
+                            [path](Faults& faults) { return open_sqlite_bag(path, faults); });
           }};
 }
 

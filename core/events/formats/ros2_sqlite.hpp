@@ -1,0 +1,16 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/events/formats/message_source.hpp"
+
+namespace evbench {
+
+/// A ROS 2 bag in SQLite (rosbag2_storage_sqlite3): tables topics and messages, in the order of recording.
+/// Throws InputError when SQLite can't open it, or it has other tables.
+std::unique_ptr<ros::MessageSource> open_sqlite_bag(const std::string& path, Faults& faults);
+
+bool is_sqlite(std::span<const std::byte> head);
+
+}  // namespace evbench
