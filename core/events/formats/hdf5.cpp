@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
-#include <type_traits>
 
 #include "core/events/formats/all.hpp"
+#include "core/events/formats/hdf5_columns.hpp"
 #include "core/events/formats/hdf5_file.hpp"
 #include "core/events/formats/hdf5_layout.hpp"
 #include "core/geometry/se3.hpp"
@@ -15,30 +14,9 @@
 namespace evbench {
 namespace {
 
-constexpr std::int64_t kBroken = std::numeric_limits<std::int64_t>::min();
+using hdf5::kBroken;
 
-/// [µs] from integer µs or floating-point s; kBroken for what is no time. The largest leaves room for an offset.
-template <class Number>
-std::int64_t to_time(Number t) {
-  constexpr double kMost = 4e18;
-  if constexpr (sizeof(Number) < 8 && std::is_integral_v<Number>) {
-    return static_cast<std::int64_t>(t);
-  } else {
-    const double us = (std::is_floating_point_v<Number> ? 1e6 : 1.0) * static_cast<double>(t);
-    if (!(std::abs(us) < kMost)) return kBroken;
-    return std::is_floating_point_v<Number> ? std::llround(us) : static_cast<std::int64_t>(t);
-  }
-}
-
-/// False when it is no pixel's coordinate.
-template <class Number>
-bool to_pixel(Number value, std::uint16_t& pixel) {
-  if constexpr (!std::is_same_v<Number, std::uint8_t> && !std::is_same_v<Number, std::uint16_t>) {
-    if (!(value >= Number(0) && static_cast<double>(value) <= 65535.0)) return false;
-  }
-  pixel = static_cast<std::uint16_t>(value);
-  return true;
-}
+constexpr double kMostOffset = 2e18;  ///< [µs]
 
 class Hdf5Reader : public EventReader {
  public:
@@ -54,15 +32,18 @@ class Hdf5Reader : public EventReader {
  private:
   void open_columns();
   void describe(const ReadOptions& options);
-  void read_columns(std::uint64_t count, std::vector<Event>& events);
-  void read_rows(std::uint64_t count, std::vector<Event>& events);
-  void drop_broken(std::vector<Event>& events);
+  void load();
+  bool convert(std::uint64_t row, std::span<Event> events) const;
+  void drop_broken(std::uint64_t row, std::vector<Event>& events);
   std::int64_t time(std::uint64_t row) const;
 
   hdf5::File file_;
   hdf5::EventLayout layout_;
   hdf5::Dataset x_, y_, t_, p_, rows_, index_;
-  hdf5::Values values_;
+  struct {
+    hdf5::Values x, y, t, p, rows;
+    std::uint64_t begin = 0, end = 0;
+  } loaded_;  ///< some rows
   StreamInfo info_;
   Faults faults_;
   std::int64_t offset_ = 0;   ///< added to all times [µs]
@@ -74,9 +55,9 @@ Hdf5Reader::Hdf5Reader(const std::string& path, const ReadOptions& options)
     : file_(path), layout_(choose_events(file_, options.topic)), faults_(path, options.strict) {
   open_columns();
   if (!layout_.offset.empty()) {
-    const std::int64_t offset = to_time(1e-6 * file_.dataset(layout_.offset).first(0));
-    if (offset == kBroken) throw InputError(fmt::format("{}: /{}: is no time", path, layout_.offset));
-    offset_ = offset;
+    const double offset = file_.dataset(layout_.offset).first(0);
+    if (!(std::abs(offset) < kMostOffset)) throw InputError(fmt::format("{}: /{}: is no time", path, layout_.offset));
+    offset_ = std::llround(offset);
   }
   describe(options);
 }
@@ -144,74 +125,56 @@ void Hdf5Reader::describe(const ReadOptions& options) {
 
 std::int64_t Hdf5Reader::time(std::uint64_t row) const {
   hdf5::Values values;
-  const hdf5::Dataset& dataset = layout_.is_rows() ? rows_ : t_;
-  dataset.read(row, 1, values);
-  std::int64_t t = kBroken;
-  values.visit([&](auto numbers) { t = to_time(numbers[layout_.is_rows() ? 2 : 0]); });
-  return t == kBroken ? t : t + offset_;
+  (layout_.is_rows() ? rows_ : t_).read(row, 1, values);
+  return hdf5::to_time({&values, layout_.is_rows() ? 2u : 0u}, 0, offset_);
 }
 
 bool Hdf5Reader::read(std::vector<Event>& events) {
-  constexpr std::uint64_t kBlock = 1 << 16;
-  events.clear();
-  while (events.empty() && next_ < length_) {
-    const std::uint64_t count = std::min(kBlock, length_ - next_);
-    events.resize(count);
-    if (layout_.is_rows()) {
-      read_rows(count, events);
-    } else {
-      read_columns(count, events);
-    }
-    drop_broken(events);
-    next_ += count;
+  constexpr std::uint64_t kEvents = 1 << 14;  // they stay in the second-level cache
+  while (next_ < length_) {
+    if (next_ < loaded_.begin || next_ >= loaded_.end) load();
+    events.resize(std::min(kEvents, loaded_.end - next_));
+    const std::uint64_t row = next_;
+    next_ += events.size();
+    if (!convert(row, events)) drop_broken(row, events);
+    if (!events.empty()) return true;
   }
-  return !events.empty();
+  events.clear();
+  return false;
 }
 
-void Hdf5Reader::read_columns(std::uint64_t count, std::vector<Event>& events) {
-  t_.read(next_, count, values_);
-  values_.visit([&](auto numbers) {
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      const std::int64_t t = to_time(numbers[i]);
-      events[i].t = t == kBroken ? t : t + offset_;
-    }
-  });
-  x_.read(next_, count, values_);
-  values_.visit([&](auto numbers) {
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      if (!to_pixel(numbers[i], events[i].x)) events[i].t = kBroken;
-    }
-  });
-  y_.read(next_, count, values_);
-  values_.visit([&](auto numbers) {
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      if (!to_pixel(numbers[i], events[i].y)) events[i].t = kBroken;
-    }
-  });
-  p_.read(next_, count, values_);
-  values_.visit([&](auto numbers) {
-    for (std::size_t i = 0; i < numbers.size(); ++i) events[i].on = numbers[i] > 0;
-  });
+/// Some rows from the next on: so many that what a call of the library costs does not count.
+void Hdf5Reader::load() {
+  const std::uint64_t most = layout_.is_rows() ? 1 << 14 : 1 << 17;
+  const std::uint64_t end = std::min(length_, (next_ / most + 1) * most), count = end - next_;
+  loaded_.end = 0;  // nothing, should this fail
+  if (layout_.is_rows()) {
+    rows_.read(next_, count, loaded_.rows);
+  } else {
+    x_.read(next_, count, loaded_.x);
+    y_.read(next_, count, loaded_.y);
+    t_.read(next_, count, loaded_.t);
+    p_.read(next_, count, loaded_.p);
+  }
+  loaded_.begin = next_;
+  loaded_.end = end;
 }
 
-void Hdf5Reader::read_rows(std::uint64_t count, std::vector<Event>& events) {
-  rows_.read(next_, count, values_);
-  values_.visit([&](auto numbers) {
-    for (std::size_t i = 0; i < events.size(); ++i) {
-      const auto row = numbers.subspan(4 * i, 4);
-      Event& event = events[i];
-      event.t = to_time(row[2]);
-      if (!to_pixel(row[0], event.x) || !to_pixel(row[1], event.y)) event.t = kBroken;
-      event.on = row[3] > 0;
-    }
-  });
+/// False when some are broken.
+bool Hdf5Reader::convert(std::uint64_t row, std::span<Event> events) const {
+  const std::size_t first = row - loaded_.begin;
+  if (!layout_.is_rows()) {
+    return hdf5::to_events({&loaded_.x, first}, {&loaded_.y, first}, {&loaded_.t, first}, {&loaded_.p, first}, offset_,
+                           events);
+  }
+  const auto column = [&](std::size_t number) { return hdf5::ColumnView{&loaded_.rows, 4 * first + number, 4}; };
+  return hdf5::to_events(column(0), column(1), column(2), column(3), offset_, events);
 }
 
-void Hdf5Reader::drop_broken(std::vector<Event>& events) {
-  const auto broken = std::find_if(events.begin(), events.end(), [](const Event& e) { return e.t == kBroken; });
-  if (broken == events.end()) return;
-  const std::uint64_t row = next_ + static_cast<std::uint64_t>(broken - events.begin());
-  const auto count = std::erase_if(events, [](const Event& event) { return event.t == kBroken; });
+void Hdf5Reader::drop_broken(std::uint64_t row, std::vector<Event>& events) {
+  const auto is_broken = [](const Event& event) { return event.t == kBroken; };
+  row += static_cast<std::uint64_t>(std::ranges::find_if(events, is_broken) - events.begin());
+  const auto count = std::erase_if(events, is_broken);
   faults_.add("events whose x, y or t is no pixel or no time", fmt::format("row {}", row),
               static_cast<std::int64_t>(count));
 }

@@ -102,7 +102,8 @@ void check_filters(hid_t properties, const std::string& name) {
   }
 }
 
-/// A chunk is decompressed as a whole: two fit in the cache, so that reading in parts decompresses it once.
+/// A chunk is decompressed as a whole: two fit in the cache, so that reading in parts decompresses it once. Without
+/// compression there is no cache: what passes through it is only copied once more.
 void set_cache(hid_t creation, hid_t access, std::size_t number_size, const std::string& name) {
   constexpr std::uint64_t kMostBytes = 256u << 20;
   if (H5Pget_layout(creation) != H5D_CHUNKED) return;
@@ -115,7 +116,8 @@ void set_cache(hid_t creation, hid_t access, std::size_t number_size, const std:
     }
     bytes *= sides[i];
   }
-  H5Pset_chunk_cache(access, 521, std::max<std::size_t>(1u << 20, 2 * bytes), 1.0);
+  const bool compressed = H5Pget_nfilters(creation) > 0;
+  H5Pset_chunk_cache(access, 521, compressed ? std::max<std::size_t>(1u << 20, 2 * bytes) : 0, 1.0);
 }
 
 herr_t add_object(hid_t, const char* name, const H5O_info_t* info, void* data) {

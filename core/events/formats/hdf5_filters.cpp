@@ -59,26 +59,34 @@ std::size_t zstd_filter(unsigned flags, std::size_t, const unsigned[], std::size
 }  // namespace
 
 std::optional<std::vector<std::byte>> decompress_lzf(std::span<const std::byte> in, std::size_t size) {
-  std::vector<std::byte> out;
-  std::size_t at = 0;
+  constexpr std::size_t kMostGrowth = 264 / 3;  // the longest copy takes three bytes
+  std::vector<std::byte> out(std::min(size, kMostGrowth * in.size()));
+  std::size_t at = 0, made = 0;
   const auto next = [&] { return at < in.size() ? std::to_integer<std::size_t>(in[at++]) : 0; };
   while (at < in.size()) {
     const std::size_t control = next();
     if (control < 32) {
       const std::size_t length = control + 1;
-      if (length > in.size() - at || length > size - out.size()) return std::nullopt;
-      out.insert(out.end(), in.begin() + static_cast<std::ptrdiff_t>(at),
-                 in.begin() + static_cast<std::ptrdiff_t>(at + length));
+      if (length > in.size() - at || length > out.size() - made) return std::nullopt;
+      std::copy_n(in.data() + at, length, out.data() + made);
       at += length;
+      made += length;
       continue;
     }
     std::size_t length = (control >> 5) + 2;
     if (length == 9) length += next();
     if (at == in.size()) return std::nullopt;
     const std::size_t distance = ((control & 31) << 8) + next() + 1;
-    if (distance > out.size() || length > size - out.size()) return std::nullopt;
-    for (std::size_t i = 0; i < length; ++i) out.push_back(out[out.size() - distance]);  // may overlap what it makes
+    if (distance > made || length > out.size() - made) return std::nullopt;
+    std::byte* const to = out.data() + made;
+    if (distance >= length) {
+      std::copy_n(to - distance, length, to);
+    } else {
+      for (std::size_t i = 0; i < length; ++i) to[i] = to[i - distance];  // a copy of what it makes itself
+    }
+    made += length;
   }
+  out.resize(made);
   return out;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/events/codecs/event_words.hpp"
+
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -32,20 +34,15 @@ Word pack_word(const Event& event, std::int64_t base, unsigned x_bits, unsigned 
   return static_cast<Word>(word << 1) | static_cast<Word>(event.on);
 }
 
-/// `count` words into events, each put together as two words: that is what compilers vectorise well.
+/// `count` words into events.
 template <class Word>
 void unpack_words(const std::byte* words, std::size_t count, std::int64_t base, unsigned x_bits, unsigned y_bits,
                   Event* out) {
-  static_assert(offsetof(Event, t) == 0 && offsetof(Event, x) == 8 && offsetof(Event, y) == 10 &&
-                offsetof(Event, on) == 12 && std::is_trivially_copyable_v<Event>);
   const std::uint64_t x_mask = (std::uint64_t{1} << x_bits) - 1, y_mask = (std::uint64_t{1} << y_bits) - 1;
-  auto* const to = reinterpret_cast<std::byte*>(out);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint64_t word = load<Word>(words + i * sizeof(Word));
     const std::uint64_t t = static_cast<std::uint64_t>(base) + (word >> (1 + x_bits + y_bits));
-    const std::uint64_t pixel = (word >> 1 & x_mask) | (word >> (1 + x_bits) & y_mask) << 16 | (word & 1) << 32;
-    std::memcpy(to + i * sizeof(Event), &t, sizeof t);
-    std::memcpy(to + i * sizeof(Event) + sizeof t, &pixel, sizeof pixel);
+    store_event(t, (word >> 1 & x_mask) | (word >> (1 + x_bits) & y_mask) << 16 | (word & 1) << 32, out + i);
   }
 }
 
