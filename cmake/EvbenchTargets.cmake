@@ -50,15 +50,14 @@ function(evbench_tests name)
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:")
 endfunction()
 
-# evbench_fuzz_targets(LINKS ... UNTESTED ...): each fuzz/NAME.fuzz.cpp of a folder as a libFuzzer program fuzz_NAME, built
-# by the target fuzz_targets. Its test runs fuzz/corpus/NAME, then new inputs for EVBENCH_FUZZ_SECONDS in bounded memory.
-# In the build folder, fuzz/corpus/NAME keeps the new inputs that reach more code, fuzz/findings/NAME-... those that fail.
-# UNTESTED names those without a test.
+# evbench_fuzz_targets(LINKS ...): each fuzz/NAME.fuzz.cpp of a folder as a libFuzzer program fuzz_NAME, built by the
+# target fuzz_targets. Its test runs fuzz/corpus/NAME, then new inputs for EVBENCH_FUZZ_SECONDS in bounded memory. In the
+# build folder, fuzz/corpus/NAME keeps the new inputs that reach more code, fuzz/findings/NAME-... those that fail.
 function(evbench_fuzz_targets)
   if(NOT EVBENCH_FUZZ)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "" "LINKS;UNTESTED" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
   if(NOT TARGET fuzz_targets)
     add_custom_target(fuzz_targets)
   endif()
@@ -71,13 +70,10 @@ function(evbench_fuzz_targets)
     target_link_libraries(fuzz_${name} PRIVATE ${ARG_LINKS} evbench_flags)
     target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
     add_dependencies(fuzz_targets fuzz_${name})
-    if(name IN_LIST ARG_UNTESTED)
-      continue()
-    endif()
     set(found ${CMAKE_BINARY_DIR}/fuzz/corpus/${name})
     file(MAKE_DIRECTORY ${found} ${CMAKE_BINARY_DIR}/fuzz/findings)
     add_test(NAME "fuzz: ${name}"
-             COMMAND fuzz_${name} -max_total_time=${EVBENCH_FUZZ_SECONDS} -timeout=20 -rss_limit_mb=1500
+             COMMAND fuzz_${name} -max_total_time=${EVBENCH_FUZZ_SECONDS} -timeout=30 -rss_limit_mb=1500
                      -malloc_limit_mb=700 -print_final_stats=1
                      -artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/findings/${name}-
                      ${found} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus/${name})

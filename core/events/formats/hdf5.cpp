@@ -8,6 +8,7 @@
 #include "core/events/formats/hdf5_columns.hpp"
 #include "core/events/formats/hdf5_file.hpp"
 #include "core/events/formats/hdf5_layout.hpp"
+#include "core/events/formats/hdf5_trial.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/support/error.hpp"
 
@@ -184,9 +185,9 @@ void Hdf5Reader::seek(std::int64_t t) {
   const auto may_start_at = [&](std::uint64_t row) { return row == 0 || (row <= length_ && time(row - 1) < t); };
   next_ = 0;
   if (length_ == 0 || t <= time(0)) return;
-  const std::int64_t ms = (t - offset_) / 1000;
-  if (!layout_.index.empty() && t > offset_ && static_cast<std::uint64_t>(ms) < index_.rows()) {
-    const double row = index_.first(static_cast<std::uint64_t>(ms));
+  const std::uint64_t ms = (static_cast<std::uint64_t>(t) - static_cast<std::uint64_t>(offset_)) / 1000;
+  if (!layout_.index.empty() && t > offset_ && ms < index_.rows()) {
+    const double row = index_.first(ms);
     if (row >= 0.0 && row <= static_cast<double>(length_) && may_start_at(static_cast<std::uint64_t>(row))) {
       next_ = static_cast<std::uint64_t>(row);
       return;
@@ -283,7 +284,11 @@ EventFormat hdf5_format() {
   return {
       "hdf5", "HDF5 as in DSEC, MVSEC, TUM-VIE, M3ED, EDS",
       [](const std::string&, std::span<const std::byte> head) { return has_signature(head); },
-      [](const std::string& path, const ReadOptions& options) { return std::make_unique<Hdf5Reader>(path, options); }};
+      [](const std::string& path, const ReadOptions& options) {
+        const auto open = [&] { return std::make_unique<Hdf5Reader>(path, options); };
+        hdf5::refuse_crashes(path, open);
+        return open();
+      }};
 }
 
 }  // namespace evbench

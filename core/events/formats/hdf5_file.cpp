@@ -17,6 +17,9 @@ namespace {
 
 static_assert(sizeof(hid_t) == sizeof(std::int64_t));
 
+constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 48;  // of a data set
+constexpr std::uint64_t kMostColumns = 1 << 20;                 // where single rows are read
+
 /// Innermost reason of the library's last error.
 std::string reason() {
   std::string text = "unknown reason";
@@ -196,6 +199,9 @@ std::vector<double> Dataset::read_all(std::uint64_t most) const {
 }
 
 double Dataset::first(std::uint64_t row) const {
+  if (columns() == 0 || columns() > kMostColumns) {
+    throw InputError(fmt::format("{}: has rows of {} numbers; expected 1 to {}", name_, columns(), kMostColumns));
+  }
   Values values;
   read(row, 1, values);
   return values.doubles().at(0);
@@ -229,6 +235,11 @@ Dataset File::dataset(const std::string& path) const {
   if (rank < 0) throw InputError(fmt::format("{}: has no shape: {}", name, reason()));
   std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
   H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
+  std::uint64_t numbers_left = kMostNumbers;
+  for (const hsize_t side : shape) {
+    if (side > numbers_left) throw InputError(fmt::format("{}: has a shape too large to be true", name));
+    numbers_left /= std::max<hsize_t>(side, 1);
+  }
   dataset.shape_.assign(shape.begin(), shape.end());
 
   const Handle creation(checked(H5Dget_create_plist(id.get()), name), close_properties);
