@@ -81,7 +81,11 @@ void EventSimulator::restart() {
   const std::span<const float> image = brightness_->image();
   pixels_.clear();
   pixels_.reserve(image.size());
-  for (std::size_t i = 0; i < image.size(); ++i) pixels_.emplace_back(options_.sensor, seed_, i, 0.0, image[i]);
+  quiet_.clear();
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    pixels_.emplace_back(options_.sensor, seed_, i, 0.0, image[i]);
+    quiet_.push_back(pixels_.back().quiet());
+  }
   waiting_.clear();
   ready_.clear();
 }
@@ -103,11 +107,10 @@ bool EventSimulator::read(std::vector<Event>& events) {
 }
 
 void EventSimulator::step() {
+  const std::span<const float> image = brightness_->image();
+  last_image_.assign(image.begin(), image.end());
   interval_end_ = brightness_->advance(duration_);
-  parallel_for(options_.threads, info_.height, [this](int y) {
-    std::vector<Event>& row = rows_[static_cast<std::size_t>(y)];
-    for (int x = 0; x < info_.width; ++x) advance_pixel(x, y, row);
-  });
+  parallel_for(options_.threads, info_.height, [this](int y) { advance_row(y); });
   t_ = interval_end_;
   for (std::vector<Event>& row : rows_) {
     waiting_.insert(waiting_.end(), row.begin(), row.end());
@@ -115,6 +118,17 @@ void EventSimulator::step() {
   }
   // Jitter is at most four standard deviations, and times are rounded.
   release(t_ < duration_ ? t_ - 4.0 * options_.sensor.jitter : std::numeric_limits<double>::infinity());
+}
+
+void EventSimulator::advance_row(int y) {
+  const std::span<const float> image = brightness_->image();
+  std::size_t index = static_cast<std::size_t>(y) * static_cast<std::size_t>(info_.width);
+  for (int x = 0; x < info_.width; ++x, ++index) {
+    if (quiet_[index].holds(interval_end_, image[index])) continue;
+    pixels_[index].skip(t_, last_image_[index]);
+    advance_pixel(x, y, rows_[static_cast<std::size_t>(y)]);
+    quiet_[index] = pixels_[index].quiet();
+  }
 }
 
 void EventSimulator::advance_pixel(int x, int y, std::vector<Event>& events) {

@@ -36,6 +36,7 @@ class EventSimulator : public EventReader {
  private:
   void restart();
   void step();
+  void advance_row(int y);
   void advance_pixel(int x, int y, std::vector<Event>& events);
   void release(double until);
 
@@ -45,7 +46,9 @@ class EventSimulator : public EventReader {
   std::uint64_t seed_;
   StreamInfo info_;
   Faults faults_;
-  std::vector<Pixel> pixels_;
+  std::vector<Pixel> pixels_;             ///< each as it was when something last happened to it
+  std::vector<Pixel::Quiet> quiet_;       ///< what they need not be told
+  std::vector<float> last_image_;         ///< log intensities at the interval's beginning
   double t_ = 0.0, interval_end_ = 0.0;   ///< [s]
   std::vector<std::vector<Event>> rows_;  ///< of the interval
   std::vector<Event> waiting_;            ///< later events may still come before these

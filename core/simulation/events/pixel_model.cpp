@@ -63,6 +63,17 @@ bool Pixel::fires(double t, double L) const {
   return !blind_ && (change >= on_ || change <= -off_);
 }
 
+Pixel::Quiet Pixel::quiet() const {
+  constexpr double longest =
+      0.05;  // [s] that the leak is thought ahead, and the share of the threshold that it may take
+  constexpr double share = 0.1, margin = 1e-5;  // margin: more than is lost by rounding
+  constexpr float far = std::numeric_limits<float>::infinity();
+  if (blind_) return {-far, far, std::nextafter(blind_until_, t_)};
+  const double ahead = std::min({next_noise_ - t_, longest, leak_ > 0.0F ? share * on_ / leak_ : longest});
+  return {static_cast<float>(reference_ - off_ + margin), static_cast<float>(reference_ + on_ - leak_ * ahead - margin),
+          std::nextafter(t_ + ahead, t_)};
+}
+
 void Pixel::advance(const SensorOptions& options, double t, double L, std::vector<Event>& events) {
   const double from = t_, L_from = L_, slope = t > from ? (L - L_from) / (t - from) : 0.0;
   while (next_noise_ <= t) {

@@ -45,6 +45,22 @@ class Pixel {
 
   double log_intensity() const { return L_; }
 
+  /// Where L may go, and how long, before the pixel has to be told: until then nothing happens, and skip() tells it.
+  struct Quiet {
+    float low, high;  ///< exclusive
+    double until;     ///< [s]; inclusive
+
+    bool holds(double t, float L) const { return t <= until && low < L && L < high; }
+  };
+  Quiet quiet() const;
+
+  /// L is what it is at time t, and nothing happened on the way (see Quiet).
+  void skip(double t, double L) {
+    if (!blind_) reference_ -= leak_ * (t - t_);
+    t_ = t;
+    L_ = L;
+  }
+
  private:
   void run(const SensorOptions& options, double t, double L, std::vector<Event>& events);
   void emit(const SensorOptions& options, bool on, std::vector<Event>& events);

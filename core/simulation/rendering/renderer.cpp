@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/support/parallel.hpp"
 
@@ -10,9 +11,8 @@ namespace {
 
 constexpr int kEdgeRays = 32;
 
-/// The sum of three kernels has the variance blur²: the weights (1, 2, 1) of samples `s` apart (s²/2), linear
-/// interpolation between texels of width s (s²/6), and the texels themselves (s²/12).
-constexpr double kSpacing = 1.0 / 0.8660254037844386;
+/// Axes of a pixel's footprint that differ by less than this are taken as equal, of their squares.
+constexpr double kRound = 1.25;
 
 /// The number's bits behind the binary point, mirrored at it: van der Corput's sequence.
 double van_der_corput(int i) {
@@ -31,9 +31,6 @@ double normal_quantile(double p) {
   return 0.5 * (low + high);
 }
 
-/// By how many the samples along a side of a pixel's footprint are multiplied when it is longer than the other.
-int samples(double side, double other) { return std::clamp(static_cast<int>(std::lround(side / other)), 1, 4); }
-
 float log_of(float intensity) { return std::log(intensity); }
 
 }  // namespace
@@ -51,17 +48,17 @@ Renderer::Renderer(const Camera& camera, const std::vector<Surface>& surfaces, c
 
 Renderer::Ray Renderer::make_ray(const Vector2& pixel) const {
   constexpr double h = 0.5;
-  Ray ray{{0.0, 0.0, 1.0}, Matrix2::Zero(), false};
+  const Ray blind{Vector2::Constant(std::numeric_limits<double>::quiet_NaN()), Eigen::Matrix2f::Zero()};
   const std::optional<Vector2> centre = camera_.undistort(pixel);
-  if (!centre) return ray;
+  if (!centre) return blind;
+  Ray ray{camera_.pinhole.ray(*centre).head<2>(), {}};
   for (Eigen::Index axis = 0; axis < 2; ++axis) {
     const Vector2 step = h * Vector2::Unit(axis);
     const std::optional<Vector2> before = camera_.undistort(pixel - step), after = camera_.undistort(pixel + step);
-    if (!before || !after) return ray;
-    ray.jacobian.col(axis) = (camera_.pinhole.ray(*after) - camera_.pinhole.ray(*before)).head<2>() / (2.0 * h);
+    if (!before || !after) return blind;
+    const Vector3 slope = (camera_.pinhole.ray(*after) - camera_.pinhole.ray(*before)) / (2.0 * h);
+    ray.jacobian.col(axis) = slope.head<2>().cast<float>();
   }
-  ray.centre = camera_.pinhole.ray(*centre);
-  ray.valid = true;
   return ray;
 }
 
@@ -71,75 +68,103 @@ void Renderer::render(const SE3& T_world_camera, int threads, Frame& frame) cons
   frame.edge.resize(rays_.size());
   const View seen = view(T_world_camera);
   const int width = camera_.width, height = camera_.height;
-  const auto index_of = [width](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-  };
+  const auto row = [width](int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width); };
+  std::vector<std::uint8_t> even(static_cast<std::size_t>(height));  // rows that see a single face
   parallel_for(threads, height, [&](int y) {
-    for (std::size_t i = index_of(0, y); i < index_of(0, y + 1); ++i) {
-      frame.hits[i] = rays_[i].valid ? seen.hit(rays_[i].centre).value_or(Hit{}) : Hit{};
+    for (std::size_t i = row(y); i < row(y + 1); ++i) {
+      frame.hits[i] = rays_[i].valid() ? seen.hit(rays_[i].direction()).value_or(Hit{}) : Hit{};
     }
+    const auto begin = frame.hits.begin() + static_cast<std::ptrdiff_t>(row(y));
+    even[static_cast<std::size_t>(y)] =
+        std::all_of(begin, begin + width, [&](const Hit& h) { return h.same_face(*begin); });
   });
   parallel_for(threads, height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      const std::size_t i = index_of(x, y);
-      const Hit& hit = frame.hits[i];
-      bool edge = false;
-      for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); ++v) {
-        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u) {
-          const Hit& other = frame.hits[index_of(u, v)];
-          edge = edge || other.surface != hit.surface || other.face != hit.face;
-        }
-      }
-      frame.edge[i] = edge;
+    mark_edges(y, even, frame);
+    for (std::size_t i = row(y); i < row(y + 1); ++i) {
       const Ray& ray = rays_[i];
-      frame.log_intensity[i] = log_of(!ray.valid ? texture_->mean()
-                                      : edge     ? intensity_at_edge(seen, ray)
-                                                 : intensity(seen, hit, ray));
+      frame.log_intensity[i] = log_of(!ray.valid()    ? texture_->mean()
+                                      : frame.edge[i] ? intensity_at_edge(seen, ray)
+                                                      : intensity(seen, frame.hits[i], ray));
     }
   });
+}
+
+/// Of a row, with the rows above and below.
+void Renderer::mark_edges(int y, const std::vector<std::uint8_t>& even, Frame& frame) const {
+  const int width = camera_.width, top = std::max(y - 1, 0), bottom = std::min(y + 1, camera_.height - 1);
+  const auto index_of = [width](int x, int v) {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  };
+  bool same = true;
+  for (int v = top; v <= bottom; ++v) {
+    same =
+        same && even[static_cast<std::size_t>(v)] && frame.hits[index_of(0, v)].same_face(frame.hits[index_of(0, y)]);
+  }
+  for (int x = 0; x < width; ++x) {
+    bool edge = false;
+    for (int v = top; v <= bottom && !same; ++v) {
+      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u) {
+        edge = edge || !frame.hits[index_of(u, v)].same_face(frame.hits[index_of(x, y)]);
+      }
+    }
+    frame.edge[index_of(x, y)] = edge;
+  }
 }
 
 float Renderer::pixel(const View& view, std::size_t index, bool edge) const {
   const Ray& ray = rays_[index];
-  if (!ray.valid) return log_of(texture_->mean());
+  if (!ray.valid()) return log_of(texture_->mean());
   if (edge) return log_of(intensity_at_edge(view, ray));
-  return log_of(intensity(view, view.hit(ray.centre).value_or(Hit{}), ray));
+  return log_of(intensity(view, view.hit(ray.direction()).value_or(Hit{}), ray));
 }
 
 float Renderer::intensity(const View& view, const Hit& hit, const Ray& ray) const {
   if (hit.surface < 0) return texture_->mean();
-  const View::Place place = view.place(hit, ray.centre);
-  const Matrix2 step = blur_ * kSpacing * (place.jacobian * ray.jacobian);  // columns: along the image's axes
-  // Where the surface is foreshortened, the long axis of a pixel's footprint gets more samples of finer texels.
-  const double width = step.col(0).norm(), height = step.col(1).norm();
-  const int across = samples(width, height), down = samples(height, width);
-  const float level = texture_->level(std::max(width / across, height / down));
-  const Vector2 right = step.col(0) / across, below = step.col(1) / down;
+  const View::Place place = view.place(hit, ray.direction());
+  const Matrix2 step = blur_ * (place.jacobian * ray.jacobian.cast<double>());
+  const Matrix2 covariance = step * step.transpose();
+  const double mean = 0.5 * covariance.trace();
+  const double difference = std::sqrt(std::max(0.0, mean * mean - covariance.determinant()));
+  const double longer = mean + difference, shorter = std::max(mean - difference, 1e-3 * longer);
+  if (longer < kRound * shorter) return texture_->sample(place.texture, mean);
+  // A long footprint is a row of round ones.
+  return row_of_samples(place.texture, covariance, longer, shorter);
+}
+
+/// Round samples along the longer axis of a footprint, `longer` and `shorter` the variances along its axes. With
+/// weights 1, 2, ..., n, ..., 2, 1 and the distance d between them their places have the variance d² (n² − 1) / 6.
+float Renderer::row_of_samples(const Vector2& centre, const Matrix2& covariance, double longer, double shorter) const {
+  constexpr int most = 8;
+  constexpr double apart = 1.6;  // so many standard deviations of one at most
+  const auto spread = [](int n) { return (n * n - 1) / 6.0; };
+  int n = 2;
+  while (n < most && longer - shorter > apart * apart * shorter * spread(n)) ++n;
+  // Either row of covariance − shorter I lies along the longer axis; the larger is taken.
+  const Matrix2 rest = covariance - shorter * Matrix2::Identity();
+  const Vector2 axis = rest(0, 0) > rest(1, 1) ? rest.row(0) : rest.row(1);
+  shorter = std::max(shorter, longer / (1.0 + apart * apart * spread(most)));
+  const Vector2 step = std::sqrt((longer - shorter) / spread(n)) * axis.normalized();
   float sum = 0.0F;
-  for (int i = 1 - 2 * down; i < 2 * down; ++i) {
-    for (int j = 1 - 2 * across; j < 2 * across; ++j) {
-      const auto weight = static_cast<float>((2 * down - std::abs(i)) * (2 * across - std::abs(j)));
-      sum += weight * texture_->sample(place.texture + i * below + j * right, level);
-    }
+  for (int i = 1 - n; i < n; ++i) {
+    sum += static_cast<float>(n - std::abs(i)) * texture_->sample(centre + i * step, shorter);
   }
-  return sum / static_cast<float>(16 * down * down * across * across);
+  return sum / static_cast<float>(n * n);
 }
 
 float Renderer::intensity_at_edge(const View& view, const Ray& ray) const {
   constexpr double footprint = 0.3;  // of a ray, as a share of the blur
+  const Matrix2 jacobian = ray.jacobian.cast<double>();
   float sum = 0.0F;
   for (const Vector2& offset : spread_) {
-    Vector3 cast = ray.centre;
-    cast.head<2>() += ray.jacobian * offset;
+    const Vector3 cast = (ray.centre + jacobian * offset).homogeneous();
     const std::optional<Hit> hit = view.hit(cast);
     if (!hit) {
       sum += texture_->mean();
       continue;
     }
     const View::Place place = view.place(*hit, cast);
-    const Matrix2 step = footprint * blur_ * (place.jacobian * ray.jacobian);
-    const double width = std::sqrt(std::max(step.col(0).squaredNorm(), step.col(1).squaredNorm()));
-    sum += texture_->sample(place.texture, texture_->level(width));
+    const Matrix2 step = footprint * blur_ * (place.jacobian * jacobian);
+    sum += texture_->sample(place.texture, std::max(step.col(0).squaredNorm(), step.col(1).squaredNorm()));
   }
   return sum / kEdgeRays;
 }

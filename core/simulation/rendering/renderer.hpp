@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -16,9 +17,9 @@ struct Frame {
 };
 
 /// Renders log intensity by casting rays through a camera with lens. A pixel's intensity is averaged with a Gaussian of
-/// standard deviation `blur` [px] (a pixel's area and the optics): by nine samples of the filtered texture (more where
-/// it is foreshortened), or, where a neighbour sees another face, by 32 rays. Nothing moves in jumps, then, when the
-/// camera moves.
+/// standard deviation `blur` [px] (a pixel's area and the optics): by a sample of the blurred texture (several in a
+/// line where it is foreshortened), or, where a neighbour sees another face, by 32 rays. Nothing moves in jumps, then,
+/// when the camera moves.
 class Renderer {
  public:
   /// The surfaces' texture is where they have no end, too.
@@ -33,18 +34,22 @@ class Renderer {
   /// One pixel of a picture; `edge` as in Frame.
   float pixel(const View& view, std::size_t index, bool edge) const;
 
-  /// The ray (x, y, 1) of a pixel's centre. Where the lens model has no inverse, the pixel sees nothing.
-  const Vector3& ray(std::size_t index) const { return rays_[index].centre; }
+  /// The ray (x, y, 1) of a pixel's centre; NaN where the lens model has no inverse: such a pixel sees nothing.
+  Vector3 ray(std::size_t index) const { return rays_[index].direction(); }
 
  private:
   struct Ray {
-    Vector3 centre;    ///< (x, y, 1), undistorted
-    Matrix2 jacobian;  ///< of x and y by the pixel
-    bool valid;
+    Vector2 centre;            ///< x and y of (x, y, 1), undistorted; NaN: sees nothing
+    Eigen::Matrix2f jacobian;  ///< of x and y by the pixel
+
+    bool valid() const { return !std::isnan(centre.x()); }
+    Vector3 direction() const { return {centre.x(), centre.y(), 1.0}; }
   };
   Ray make_ray(const Vector2& pixel) const;
   float intensity(const View& view, const Hit& hit, const Ray& ray) const;
+  float row_of_samples(const Vector2& centre, const Matrix2& covariance, double longer, double shorter) const;
   float intensity_at_edge(const View& view, const Ray& ray) const;
+  void mark_edges(int y, const std::vector<std::uint8_t>& even, Frame& frame) const;
 
   Camera camera_;
   const std::vector<Surface>* surfaces_;

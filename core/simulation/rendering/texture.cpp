@@ -18,6 +18,10 @@ int mirrored(int index, int size) {
   return index < size ? index : 2 * size - 1 - index;
 }
 
+void blur(cv::Mat& picture, double variance) {
+  cv::GaussianBlur(picture, picture, {}, std::sqrt(variance), 0.0, cv::BORDER_REFLECT);
+}
+
 }  // namespace
 
 Texture::Texture(const cv::Mat& picture, const Vector2& size, double black) {
@@ -28,32 +32,28 @@ Texture::Texture(const cv::Mat& picture, const Vector2& size, double black) {
   cv::pow(level, 2.2, level);
   level = black + (1.0 - black) * level;
   mean_ = static_cast<float>(cv::mean(level)[0]);
-  texels_per_metre_ = {scaled.width / size.x(), scaled.height / size.y()};
-  texel_ = 1.0 / texels_per_metre_.minCoeff();
-  while (true) {
-    pyramid_.push_back({level.cols, level.rows, {level.begin<float>(), level.end<float>()}});
-    if (std::min(level.cols, level.rows) == 1) break;
+  Vector2 texels_per_metre(scaled.width / size.x(), scaled.height / size.y());
+  per_texel_square_ = texels_per_metre.minCoeff() * texels_per_metre.minCoeff();
+  const auto add_level = [&] {
+    pyramid_.push_back({level.cols, level.rows, texels_per_metre, {level.begin<float>(), level.end<float>()}});
+  };
+  add_level();
+  // Variances [texel²]: a texel's 1/12 and the interpolation's 1/6 are there; halving the resolution by the mean of two
+  // adds 1/4.
+  blur(level, 1.0 - 1.0 / 4.0);
+  add_level();
+  while (std::min(level.cols, level.rows) > 1) {
+    blur(level, 4.0 * (1.0 - 1.0 / 6.0) - (1.0 - 1.0 / 6.0) - 1.0 / 4.0);
     cv::Mat half;
     cv::resize(level, half, {}, 0.5, 0.5, cv::INTER_AREA);
     level = half;
+    texels_per_metre *= 0.5;
+    add_level();
   }
 }
 
-float Texture::level(double width) const { return std::log2(static_cast<float>(width / texel_)); }
-
-float Texture::sample(const Vector2& place, float level) const {
-  if (level >= static_cast<float>(pyramid_.size() - 1)) return mean_;
-  level = std::max(level, 0.0F);
-  const auto fine = static_cast<std::size_t>(level);
-  const float weight = level - static_cast<float>(fine);
-  const Vector2 texel = place.cwiseProduct(texels_per_metre_) * std::ldexp(1.0, -static_cast<int>(fine));
-  const float value = pyramid_[fine].at(texel.x() - 0.5, texel.y() - 0.5);
-  if (weight == 0.0F) return value;
-  const float coarse = pyramid_[fine + 1].at(0.5 * texel.x() - 0.5, 0.5 * texel.y() - 0.5);
-  return value + weight * (coarse - value);
-}
-
-float Texture::Picture::at(double x, double y) const {
+inline float Texture::Level::at(const Vector2& place) const {
+  const double x = place.x() * texels_per_metre.x() - 0.5, y = place.y() * texels_per_metre.y() - 0.5;
   const double left = std::floor(x), top = std::floor(y);
   const auto fx = static_cast<float>(x - left), fy = static_cast<float>(y - top);
   const int column = static_cast<int>(left), row = static_cast<int>(top);
@@ -62,6 +62,18 @@ float Texture::Picture::at(double x, double y) const {
   const float* const lower = values.data() + static_cast<std::ptrdiff_t>(mirrored(row + 1, height)) * width;
   const float a = upper[x0] + fx * (upper[x1] - upper[x0]), b = lower[x0] + fx * (lower[x1] - lower[x0]);
   return a + fy * (b - a);
+}
+
+float Texture::sample(const Vector2& place, double variance) const {
+  // Level k has the variance 4^(k-1) texel²; the share of the coarser of two is that which gives the variance wanted.
+  double quarters = 4.0 * variance * per_texel_square_;
+  if (!(quarters > 1.0)) return pyramid_[0].at(place);
+  std::size_t fine = 0;
+  for (; quarters >= 4.0; quarters *= 0.25) ++fine;
+  if (fine + 1 >= pyramid_.size()) return mean_;
+  const auto coarser = static_cast<float>((quarters - 1.0) / 3.0);
+  const float value = pyramid_[fine].at(place);
+  return value + coarser * (pyramid_[fine + 1].at(place) - value);
 }
 
 }  // namespace evbench

@@ -9,7 +9,7 @@
 namespace evbench {
 
 /// A grey picture on a surface, which it covers by being mirrored at its edges again and again, without seams: linear
-/// intensity, with a pyramid of pictures of half the resolution each for looking at it from afar.
+/// intensity, with a pyramid of pictures blurred twice as much each for looking at it from afar.
 class Texture {
  public:
   /// `picture`: grey values of 8 bits as displays show them (gamma 2.2), any size; scaled to powers of two, at least 8
@@ -17,27 +17,26 @@ class Texture {
   /// `black`: intensity of grey value 0, if that of 255 is 1: no ink is black, and no photodiode without dark current.
   Texture(const cv::Mat& picture, const Vector2& size, double black);
 
-  /// Intensity in (0, 1] at a place [m], averaged over texels of 2^level times the picture's; the level need not be
-  /// whole (trilinear). No averaging below level 0.
-  float sample(const Vector2& place, float level) const;
-
-  /// The level whose texels are `width` [m] wide.
-  float level(double width) const;
+  /// Intensity in (0, 1] at a place [m], averaged with a Gaussian of this variance [m²]; where that is less than a
+  /// texel can show, with the least that it can.
+  float sample(const Vector2& place, double variance) const;
 
   /// Of the whole picture.
   float mean() const { return mean_; }
 
  private:
-  struct Picture {
-    int width = 0, height = 0;
+  struct Level {
+    int width = 0, height = 0;  ///< [texels]
+    Vector2 texels_per_metre;
     std::vector<float> values;
 
-    float at(double x, double y) const;  ///< bilinear; pixels
+    float at(const Vector2& place) const;  ///< bilinear
   };
 
-  std::vector<Picture> pyramid_;
-  Vector2 texels_per_metre_;
-  double texel_;  ///< the larger side of a texel [m]
+  /// The first has the picture's texels and, as they and the bilinear interpolation blur by themselves, a variance of
+  /// 1/4 texel²; the second has the same texels and a variance of 1 texel²; from then on both double in width.
+  std::vector<Level> pyramid_;
+  double per_texel_square_ = 0.0;  ///< one over the square of a texel's larger side [1/m²]
   float mean_ = 0.0F;
 };
 

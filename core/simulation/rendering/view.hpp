@@ -30,6 +30,8 @@ struct Surface {
 struct Hit {
   int surface = -1, face = 0;
   double depth = 0.0;  ///< along the camera's z [m]
+
+  bool same_face(const Hit& other) const { return surface == other.surface && face == other.face; }
 };
 
 /// Surfaces as a camera sees them from one place: rays and hits in the camera's frame.
