@@ -7,12 +7,12 @@
 
 namespace evbench {
 
-PoseTrajectory read_tum(const std::string& path) {
+PoseTrajectory read_tum(const std::string& path, double time_unit) {
   TextReader reader(path);
   std::vector<StampedPose> poses;
   while (reader.next()) {
     reader.expect_columns(8, "t px py pz qx qy qz qw");
-    const double t = reader.number(0, "the time");
+    const double t = time_unit * reader.number(0, "the time");
     const SE3 T{read_quaternion(reader, 4), read_vector3(reader, 1, "the position")};
     append_pose(reader, {t, T}, poses);
   }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "core/events/companions/companions.hpp"
 #include "core/events/formats/all.hpp"
 #include "core/support/byte_source.hpp"
 #include "core/support/error.hpp"
@@ -19,29 +20,50 @@ std::vector<EventFormat>& all_formats() {
   return formats;
 }
 
+/// Nothing for a folder.
+std::vector<std::byte> read_head(const std::string& path) {
+  constexpr std::size_t kHead = 1 << 16;
+  std::vector<std::byte> head;
+  if (std::filesystem::is_directory(path)) return head;
+  FileBytes file(path);
+  head.resize(kHead);
+  head.resize(file.read(0, head));
+  if (head.empty()) throw InputError(fmt::format("{}: is empty; expected events", path));
+  return head;
+}
+
+const EventFormat* find_format(const std::string& path, std::span<const std::byte> head) {
+  for (const EventFormat& format : event_formats()) {
+    if (format.recognises(path, head)) return &format;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOptions& options) {
-  constexpr std::size_t kHead = 1 << 16;
-  std::vector<std::byte> head;
-  if (!std::filesystem::is_directory(path)) {
-    FileBytes file(path);
-    head.resize(kHead);
-    head.resize(file.read(0, head));
-    if (head.empty()) throw InputError(fmt::format("{}: is empty; expected events", path));
+  const auto files = std::make_shared<const RecordingFiles>(path);
+  std::string events = files->events();
+  if (events.empty()) events = path;  // a folder that is a format itself
+  const std::vector<std::byte> head = read_head(events);
+  if (const EventFormat* format = find_format(events, head)) {
+    auto reader = format->open(events, options);
+    return format->has_companions ? with_companions(std::move(reader), files, options.topic) : std::move(reader);
   }
-  std::vector<std::string> names;
-  for (const EventFormat& format : event_formats()) {
-    if (format.recognises(path, head)) return format.open(path, options);
-    names.push_back(format.name);
-  }
-  if (std::filesystem::is_directory(path)) {
+  if (std::filesystem::is_directory(path) && events == path) {
     throw InputError(
         fmt::format("{}: is a folder that is no recording (e.g. with an events.txt); expected one, or a "
                     "file of events",
                     path));
   }
-  throw InputError(fmt::format("{}: is of no known event format; known: {}", path, fmt::join(names, ", ")));
+  std::vector<std::string> names;
+  for (const EventFormat& format : event_formats()) names.push_back(format.name);
+  throw InputError(fmt::format("{}: is of no known event format; known: {}", events, fmt::join(names, ", ")));
+}
+
+bool holds_events(const std::string& path) {
+  if (!std::filesystem::is_directory(path)) return std::filesystem::exists(path);
+  return !RecordingFiles(path).events().empty() || find_format(path, {}) != nullptr;
 }
 
 const std::vector<EventFormat>& event_formats() { return all_formats(); }

@@ -18,6 +18,7 @@ struct EventFormat {
   /// By the beginning of the file (up to 64 KiB; empty for a folder), not by its name.
   std::function<bool(const std::string& path, std::span<const std::byte> head)> recognises;
   std::function<std::unique_ptr<EventReader>(const std::string& path, const ReadOptions& options)> open;
+  bool has_companions = true;  ///< what lies beside the file may belong to it (companions/)
 };
 
 /// All of them, in the order in which they are asked.
@@ -26,7 +27,11 @@ const std::vector<EventFormat>& event_formats();
 /// Another one, asked before those here: for what this folder may not know.
 void add_event_format(EventFormat format);
 
-/// Opens a recording by what it contains. Throws InputError when no format recognises it, or it is broken.
+/// Opens a recording, a file or a folder (recording_files.hpp), by what it contains, with the calibration and ground
+/// truth that lie beside it. Throws InputError when no format recognises it, or it is broken.
 std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOptions& options = {});
+
+/// Is there a file of events at the path, or in the folder?
+bool holds_events(const std::string& path);
 
 }  // namespace evbench

@@ -26,6 +26,7 @@ struct ReadOptions {
 struct StreamInfo {
   std::string format;                                         ///< e.g. "Prophesee EVT 3"
   int width = 0, height = 0;                                  ///< sensor [px]; 0: unknown
+  bool size_assumed = false;                                  ///< the file doesn't say it; the data set has it
   std::optional<std::int64_t> count;                          ///< of events, where known without reading them
   std::optional<std::int64_t> start, end;                     ///< [µs] of the first and last event, likewise
   std::vector<std::string> topics;                            ///< everything in a container: "name (type), n messages"
@@ -51,9 +52,12 @@ class EventReader {
   /// So far.
   virtual const Faults& faults() const = 0;
 
-  /// Where the recording itself has them; T_world_camera or T_world_body as the format says, its times in [s].
+  /// Where the recording has them; poses are T_world_camera, or of another body where the metadata says so, times in
+  /// [s].
   virtual std::optional<PoseTrajectory> ground_truth() { return std::nullopt; }
   virtual std::optional<Camera> calibration() { return std::nullopt; }
+  /// Paths of the files beside the events that these two have read.
+  virtual std::vector<std::string> files_beside() const { return {}; }
 };
 
 }  // namespace evbench

@@ -6,6 +6,7 @@
 #include "core/data/datasets.hpp"
 #include "core/data/robotevt.hpp"
 #include "core/data/tum.hpp"
+#include "core/events/companions/companions.hpp"
 #include "core/events/formats.hpp"
 #include "core/support/path.hpp"
 
@@ -20,20 +21,42 @@ PoseTrajectory shifted(const PoseTrajectory& trajectory, double offset) {
   return PoseTrajectory(std::move(poses));
 }
 
+/// A recording of which only the folder is there, e.g. with a file of tracks.
+class NoEvents : public EventReader {
+ public:
+  explicit NoEvents(const ReadOptions& options) {
+    info_.width = options.width;
+    info_.height = options.height;
+  }
+  const StreamInfo& info() const override { return info_; }
+  bool read(std::vector<Event>& events) override {
+    events.clear();
+    return false;
+  }
+  void seek(std::int64_t) override {}
+  const Faults& faults() const override { return faults_; }
+
+ private:
+  StreamInfo info_;
+  Faults faults_{"", false};
+};
+
 }  // namespace
 
 void Recording::Options::declare(OptionSet& set) {
   set.add("dataset", dataset, "name of a public recording (evbench dataset list), instead of a folder");
-  set.add("folder", folder, "folder with calib.txt and groundtruth.txt").path();
+  set.add("folder", folder, "a recording's folder: its events, calibration and ground truth").path();
   set.add("events", events, "events of any format that evbench reads, instead of the folder's").path();
-  set.add("calibration", calibration, "calibration file, instead of the folder's calib.txt").path();
-  set.add("ground_truth", ground_truth, "ground truth file, instead of the folder's groundtruth.txt").path();
-  set.add("ground_truth_format", ground_truth_format, "its format").choices({"tum", "robotevt"});
-  set.add("width", width, "sensor's width [px]").range(1, 1e5);
-  set.add("height", height, "sensor's height [px]").range(1, 1e5);
-  set.add("distortion", distortion, "lens model of the calibration")
+  set.add("calibration", calibration, "calibration file like calib.txt, instead of the folder's").path();
+  set.add("ground_truth", ground_truth, "ground truth file like groundtruth.txt, instead of the folder's").path();
+  set.add("ground_truth_format", ground_truth_format, "its format, or that of groundtruth.txt")
+      .choices({"tum", "robotevt"});
+  set.add("width", width, "sensor's width, where the recording does not say it [px]; 0: 240").range(0, 1e5);
+  set.add("height", height, "sensor's height, likewise [px]; 0: 180").range(0, 1e5);
+  set.add("distortion", distortion, "lens model of a named calibration, or of calib.txt")
       .choices({"none", "radial_tangential", "equidistant"});
-  set.add("time_range", time_range, "part of the sequence that is used, [from, to] [s]; empty: the ground truth's")
+  set.add("time_range", time_range,
+          "part of the sequence that is used, [from, to] [s]; empty: the ground truth's, or the events'")
       .size(2);
   set.add("time_offset", time_offset, "added to the ground truth's times to get the sequence's [s]");
 }
@@ -48,46 +71,97 @@ Recording::Recording(const Options& options, const SourceContext& context) : pla
   Options resolved = options;
   if (!options.calibration.empty()) resolved.calibration = resolve_path(options.calibration, context.folder);
   if (!options.ground_truth.empty()) resolved.ground_truth = resolve_path(options.ground_truth, context.folder);
-  read_camera(resolved, folder);
-  read_ground_truth(resolved, folder);
-  set_time_range(options.time_range);
+  const auto usual = [&](const char* name, bool said, std::string& path) {  // whose format the options say
+    if (path.empty() && said && std::filesystem::exists(folder + "/" + name)) path = folder + "/" + name;
+  };
+  usual("calib.txt", options.distortion != Options().distortion, resolved.calibration);
+  usual("groundtruth.txt", options.ground_truth_format != Options().ground_truth_format, resolved.ground_truth);
+
+  Own own = find_own(resolved, folder);
+  set_camera(resolved, folder, own);
+  set_ground_truth(resolved, own);
+  set_time_range(options.time_range, own);
 }
 
 std::unique_ptr<EventReader> Recording::events() const {
   if (events_.empty()) return nullptr;
-  const std::string cache = events_ + "/events.evb";
   ReadOptions options;
   options.width = camera_.width;
   options.height = camera_.height;
-  return open_events(std::filesystem::exists(cache) ? cache : events_, options);
+  return open_events(events_, options);
 }
 
-void Recording::read_camera(const Options& options, const std::string& folder) {
-  if (options.calibration.empty() && folder.empty()) {
-    throw InputError(fmt::format("{}: neither folder nor calibration is given; expected one of them", place_));
+/// Of the folder, or where there is none, of the file of events; nothing where all is named.
+Recording::Own Recording::find_own(const Options& options, const std::string& folder) {
+  Own own;
+  const bool find_camera = options.calibration.empty(), find_truth = options.ground_truth.empty();
+  const std::string path = folder.empty() ? events_ : folder;
+  if (path.empty() || (!find_camera && !find_truth)) return own;
+  if (path == folder && !std::filesystem::is_directory(folder)) return own;  // what is missing of it is told
+  ReadOptions read_options;
+  read_options.width = options.width;
+  read_options.height = options.height;
+  const auto reader = holds_events(path) ? open_events(path, read_options)
+                                         : with_companions(std::make_unique<NoEvents>(read_options),
+                                                           std::make_shared<const RecordingFiles>(path), "");
+  if (find_camera) own.camera = reader->calibration();
+  if (find_truth) own.ground_truth = reader->ground_truth();
+  const StreamInfo& info = reader->info();
+  if (info.start && info.end && *info.start < *info.end) {
+    own.events = {1e-6 * static_cast<double>(*info.start), 1e-6 * static_cast<double>(*info.end)};
   }
-  const std::string path = options.calibration.empty() ? folder + "/calib.txt" : options.calibration;
-  camera_ = read_calib(path, options.width, options.height, parse_distortion_model(options.distortion));
-  files_.push_back(path);
+  for (const auto& [key, text] : info.metadata) {
+    if (key == "remark" && find_truth) remarks_.push_back(text);
+  }
+  files_ = reader->files_beside();
+  return own;
 }
 
-void Recording::read_ground_truth(const Options& options, const std::string& folder) {
-  std::string path = options.ground_truth;
-  if (path.empty()) {  // the folder's own may be missing, one that is named may not
-    const std::string usual = folder + "/groundtruth.txt";
-    if (!folder.empty() && std::filesystem::exists(usual)) path = usual;
-  }
-  if (path.empty()) {
-    remarks_.push_back("no ground truth: the run can't be scored");
+void Recording::set_camera(const Options& options, const std::string& folder, const Own& own) {
+  constexpr int kUsualWidth = 240, kUsualHeight = 180;  // DAVIS 240C, of the Event-Camera Dataset
+  const int width = options.width > 0 ? options.width : kUsualWidth,
+            height = options.height > 0 ? options.height : kUsualHeight;
+  if (!options.calibration.empty()) {
+    camera_ = read_calib(options.calibration, width, height, parse_distortion_model(options.distortion));
+    files_.push_back(options.calibration);
     return;
   }
-  const PoseTrajectory read = options.ground_truth_format == "tum" ? read_tum(path) : read_robotevt(path);
-  ground_truth_ = shifted(read, options.time_offset);
-  files_.push_back(path);
+  if (events_.empty()) {
+    throw InputError(fmt::format("{}: neither folder nor calibration is given; expected one of them", place_));
+  }
+  if (!own.camera) {
+    throw InputError(
+        fmt::format("{}: no calibration is known of {}, e.g. {}/calib.txt: no such file; name one as "
+                    "calibration",
+                    place_, folder.empty() ? events_ : folder,
+                    folder.empty() ? std::filesystem::path(events_).parent_path().string() : folder));
+  }
+  camera_ = *own.camera;
+  if (camera_.width <= 0 || camera_.height <= 0) {
+    camera_.width = width;
+    camera_.height = height;
+  }
 }
 
-void Recording::set_time_range(const std::vector<double>& range) {
+void Recording::set_ground_truth(const Options& options, Own& own) {
+  if (!options.ground_truth.empty()) {
+    own.ground_truth =
+        options.ground_truth_format == "tum" ? read_tum(options.ground_truth) : read_robotevt(options.ground_truth);
+    files_.push_back(options.ground_truth);
+  }
+  if (own.ground_truth) {
+    ground_truth_ = shifted(*own.ground_truth, options.time_offset);
+  } else {
+    remarks_.push_back("no ground truth: the run can't be scored");
+  }
+}
+
+void Recording::set_time_range(const std::vector<double>& range, const Own& own) {
   if (range.empty() && ground_truth_.empty()) {
+    if (own.events) {
+      range_ = *own.events;
+      return;
+    }
     throw InputError(fmt::format("{}: without ground truth, time_range must be given: [from, to] in seconds", place_));
   }
   range_ = range.empty() ? TimeRange{ground_truth_.start(), ground_truth_.end()} : TimeRange{range[0], range[1]};

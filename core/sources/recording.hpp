@@ -1,23 +1,25 @@
 #pragma once
 
+#include <optional>
+
 #include "core/plugin/registry.hpp"
 
 namespace evbench {
 
 /// A recorded sequence: calibration and, where it is known, ground truth. The tracks come from a front-end.
 ///
-/// A `folder` in the Event-Camera Dataset's layout holds calib.txt and groundtruth.txt (which may be missing); both can
-/// be named one by one instead. A `dataset` is the folder of a public one that `evbench dataset get` fetched. Events
-/// come from the file `events` of any format, or from the folder: its events.evb (a native copy that `evbench convert`
-/// made) before others. Paths may have ${EVBENCH_DATA}. Throws InputError for files that are missing or
-/// damaged, for a time range that is empty or that the ground truth does not meet, and when neither says how long the
-/// sequence is.
+/// A `folder` is a recording's (core/events/recording_files.hpp): events, and what lies beside them or is in them,
+/// calibration and ground truth (core/events/companions/), e.g. calib.txt and groundtruth.txt of the Event-Camera
+/// Dataset; each can be missing, and be named instead. A `dataset` is the folder of a public one that `evbench dataset
+/// get` fetched. Without a folder, `events` is asked for what isn't named. Throws InputError for files that are missing
+/// or damaged, for a time range that is empty or that the ground truth does not meet, and when nothing says how long
+/// the sequence is.
 class Recording : public Source {
  public:
   struct Options {
     std::string dataset, folder, events, calibration, ground_truth;
     std::string ground_truth_format = "tum";
-    int width = 240, height = 180;
+    int width = 0, height = 0;
     std::string distortion = "radial_tangential";
     std::vector<double> time_range;
     double time_offset = 0.0;
@@ -30,22 +32,30 @@ class Recording : public Source {
   const Camera& camera() const override { return camera_; }
   TimeRange time_range() const override { return range_; }
   const PoseTrajectory& ground_truth() const override { return ground_truth_; }
-  /// All of them: times are the file's own, which are the sequence's. Throws InputError for a file that is missing or of
-  /// no known format.
+  /// All of them: times are the file's own, which are the sequence's. Throws InputError for a file that is missing or
+  /// of no known format.
   std::unique_ptr<EventReader> events() const override;
   std::vector<std::string> files() const override { return files_; }
   std::vector<std::string> remarks() const override { return remarks_; }
 
  private:
+  /// What events and what lies beside them say.
+  struct Own {
+    std::optional<Camera> camera;
+    std::optional<PoseTrajectory> ground_truth;
+    std::optional<TimeRange> events;  ///< where that is known without reading them
+  };
+
   std::string place_, events_;  ///< events: path; empty: none
   Camera camera_;
   PoseTrajectory ground_truth_;
   TimeRange range_;
   std::vector<std::string> files_, remarks_;
 
-  void read_camera(const Options& options, const std::string& folder);
-  void read_ground_truth(const Options& options, const std::string& folder);
-  void set_time_range(const std::vector<double>& range);
+  Own find_own(const Options& options, const std::string& folder);
+  void set_camera(const Options& options, const std::string& folder, const Own& own);
+  void set_ground_truth(const Options& options, Own& own);
+  void set_time_range(const std::vector<double>& range, const Own& own);
 };
 
 }  // namespace evbench

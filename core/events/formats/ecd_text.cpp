@@ -3,17 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <filesystem>
+#include <optional>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "core/data/calib.hpp"
-#include "core/data/tum.hpp"
 #include "core/events/codecs/decoded_reader.hpp"
 #include "core/events/codecs/event_text.hpp"
 #include "core/events/formats/all.hpp"
-#include "core/events/formats/ecd_files.hpp"
+#include "core/events/recording_files.hpp"
 #include "core/support/error.hpp"
 #include "core/support/text_reader.hpp"
 
@@ -51,21 +52,40 @@ StreamInfo info_of(const TextLayout& layout, const ReadOptions& options) {
 
 /// The Event-Camera Dataset, whose text says no size, was recorded with a DAVIS 240C. Whether this may be one of its
 /// recordings is told by the calibration's principal point: those of other sensors lie elsewhere.
-bool may_be_davis240(const EcdFiles& files) {
+bool may_be_davis240(const RecordingFiles& files) {
   constexpr double kTolerance = 25.0;  // [px] from the middle
   if (!files.has("calib.txt")) return false;
-  PinholeCamera camera;
   try {
-    files.read("calib.txt", [&](const std::string& path) { camera = read_calib(path, 240, 180).pinhole; });
+    const auto middle = [](const std::string& path) { return read_calib(path, 240, 180).pinhole; };
+    const PinholeCamera camera = files.get("calib.txt", middle);
+    return std::abs(camera.cx - 119.5) < kTolerance && std::abs(camera.cy - 89.5) < kTolerance;
   } catch (const InputError&) {
     return false;  // told to whoever asks for the calibration
   }
-  return std::abs(camera.cx - 119.5) < kTolerance && std::abs(camera.cy - 89.5) < kTolerance;
+}
+
+/// Width and height of the first picture in images/; none where there is no PNG.
+std::optional<std::pair<int, int>> picture_size(const RecordingFiles& files) {
+  // PNG: signature, then the header's length and name, width and height, big-endian.
+  constexpr std::string_view kSignature("\x89PNG\r\n\x1A\n\0\0\0\x0DIHDR", 16);
+  constexpr int kLargest = 65535;
+  const auto pictures = files.matching("images/*.png");
+  if (pictures.empty()) return std::nullopt;
+  std::array<std::byte, 24> head{};
+  files.open(pictures.front())->read(0, head);
+  if (text_of(head).substr(0, kSignature.size()) != kSignature) return std::nullopt;
+  const auto side = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<std::uint32_t>(head[at + i]);
+    return value >= 1 && value <= kLargest ? static_cast<int>(value) : 0;
+  };
+  if (side(16) == 0 || side(20) == 0) return std::nullopt;
+  return std::pair(side(16), side(20));
 }
 
 /// Where neither the text nor an option says it.
-void find_sensor(const EcdFiles& files, StreamInfo& info) {
-  if (const auto size = files.picture_size()) {
+void find_sensor(const RecordingFiles& files, StreamInfo& info) {
+  if (const auto size = picture_size(files)) {
     std::tie(info.width, info.height) = *size;
     info.metadata.emplace_back("sensor size", "that of the pictures beside the events");
   } else if (info.width == 0 && info.height == 0 && may_be_davis240(files)) {
@@ -76,7 +96,7 @@ void find_sensor(const EcdFiles& files, StreamInfo& info) {
 }
 
 /// How many pictures images.txt names, and when.
-std::string pictures_text(const EcdFiles& files) {
+std::string pictures_text(const RecordingFiles& files) {
   std::int64_t count = 0;
   double first = 0.0, last = 0.0;  // [s]
   try {
@@ -93,33 +113,6 @@ std::string pictures_text(const EcdFiles& files) {
   return fmt::format("{} in images.txt, {:.3f} to {:.3f} s", count, first, last);
 }
 
-/// With what lies beside the events.
-class EcdReader : public DecodedReader {
- public:
-  EcdReader(EcdFiles files, std::unique_ptr<ByteSource> source, const TextLayout& layout, StreamInfo info,
-            const ReadOptions& options)
-      : DecodedReader(std::move(source), layout.begin, std::make_unique<EventTextDecoder>(layout), std::move(info),
-                      options),
-        files_(std::move(files)) {}
-
-  std::optional<PoseTrajectory> ground_truth() override {
-    std::optional<PoseTrajectory> result;
-    if (!files_.has("groundtruth.txt")) return result;
-    files_.read("groundtruth.txt", [&](const std::string& path) { result = read_tum(path); });
-    return result;
-  }
-
-  std::optional<Camera> calibration() override {
-    std::optional<Camera> result;
-    if (!files_.has("calib.txt")) return result;
-    files_.read("calib.txt", [&](const std::string& path) { result = read_calib(path, info().width, info().height); });
-    return result;
-  }
-
- private:
-  EcdFiles files_;
-};
-
 }  // namespace
 
 std::unique_ptr<EventReader> open_text(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
@@ -129,20 +122,22 @@ std::unique_ptr<EventReader> open_text(std::unique_ptr<ByteSource> source, const
 }
 
 std::unique_ptr<EventReader> open_ecd_text(const std::string& path, const ReadOptions& options) {
-  EcdFiles files(path);
+  const RecordingFiles files(path);
   auto source = files.open_events();
   const TextLayout layout = find_layout(*source, options);
   StreamInfo info = info_of(layout, options);
   if (layout.width == 0) find_sensor(files, info);
-  info.topics = files.others();
+  for (const char* name : {"calib.txt", "groundtruth.txt", "images.txt", "imu.txt"}) {
+    if (files.has(name) && files.path(name) != path) info.topics.emplace_back(name);
+  }
   if (files.has("images.txt")) info.metadata.emplace_back("pictures", pictures_text(files));
-  return std::make_unique<EcdReader>(std::move(files), std::move(source), layout, std::move(info), options);
+  return std::make_unique<DecodedReader>(std::move(source), layout.begin, std::make_unique<EventTextDecoder>(layout),
+                                         std::move(info), options);
 }
 
 EventFormat ecd_text_format() {
   return {"ecd_text", "text, a line an event: Event-Camera Dataset (file, folder, .zip) and CSV",
-          [](const std::string& path, std::span<const std::byte> head) {
-            if (head.empty()) return std::filesystem::is_regular_file(path + "/events.txt");
+          [](const std::string&, std::span<const std::byte> head) {
             return is_text(head) || text_of(head).starts_with("PK\3\4");
           },
           open_ecd_text};

@@ -1,0 +1,134 @@
+#include "core/events/companions/companions.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <set>
+
+#include "core/events/companions/data_sets.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+constexpr auto kDataSets = {ecd_companions,  dsec_companions, tumvie_companions,
+                            m3ed_companions, eds_companions,  mvsec_companions};
+
+/// A reader that stands in for another, with what lies beside its events.
+class AccompaniedReader : public EventReader {
+ public:
+  AccompaniedReader(std::unique_ptr<EventReader> reader, Companions companions,
+                    std::shared_ptr<const RecordingFiles> files);
+
+  const StreamInfo& info() const override { return info_; }
+  bool read(std::vector<Event>& events) override { return reader_->read(events); }
+  void seek(std::int64_t t) override { reader_->seek(t); }
+  const Faults& faults() const override { return reader_->faults(); }
+  std::optional<PoseTrajectory> ground_truth() override;
+  std::optional<Camera> calibration() override;
+  std::vector<std::string> files_beside() const override { return {files_beside_.begin(), files_beside_.end()}; }
+
+ private:
+  void find_sensor();
+  std::unique_ptr<EventReader> reader_;
+  Companions companions_;  ///< those that stand in for what the reader doesn't have
+  std::shared_ptr<const RecordingFiles> files_;
+  StreamInfo info_;
+  std::set<std::string> files_beside_;
+};
+
+AccompaniedReader::AccompaniedReader(std::unique_ptr<EventReader> reader, Companions companions,
+                                     std::shared_ptr<const RecordingFiles> files)
+    : reader_(std::move(reader)), companions_(std::move(companions)), files_(std::move(files)), info_(reader_->info()) {
+  if (companions_.calibration && reader_->calibration()) companions_.calibration.reset();
+  if (companions_.ground_truth && reader_->ground_truth()) companions_.ground_truth.reset();
+  if (info_.size_assumed || info_.width <= 0 || info_.height <= 0) find_sensor();
+  const auto tell = [&](const char* what, const auto& found) {
+    if (found) info_.metadata.emplace_back(what, fmt::format("{} ({})", fmt::join(found->names, ", "), found->whose));
+  };
+  tell("calibration", companions_.calibration);
+  tell("ground truth", companions_.ground_truth);
+  if (companions_.ground_truth && !companions_.ground_truth->remark.empty()) {
+    info_.metadata.emplace_back("remark", companions_.ground_truth->remark);
+  }
+}
+
+std::optional<Camera> AccompaniedReader::calibration() {
+  if (!companions_.calibration) return reader_->calibration();
+  for (const std::string& name : companions_.calibration->names) files_beside_.insert(files_->path(name));
+  return companions_.calibration->read(info_.width, info_.height);
+}
+
+std::optional<PoseTrajectory> AccompaniedReader::ground_truth() {
+  if (!companions_.ground_truth) return reader_->ground_truth();
+  for (const std::string& name : companions_.ground_truth->names) files_beside_.insert(files_->path(name));
+  return companions_.ground_truth->read();
+}
+
+/// A size that the calibration says is better than one that was assumed.
+void AccompaniedReader::find_sensor() {
+  int width = 0, height = 0;
+  std::string whose = "the calibration's";
+  try {
+    if (companions_.calibration) {
+      const Camera camera = companions_.calibration->read(0, 0);
+      width = camera.width;
+      height = camera.height;
+    }
+  } catch (const InputError&) {
+    // Told to whoever asks for the calibration.
+  }
+  if (width <= 0 && info_.width <= 0 && companions_.sensor) {
+    width = companions_.sensor->width;
+    height = companions_.sensor->height;
+    whose = companions_.sensor->whose;
+  }
+  if (width <= 0) return;
+  info_.width = width;
+  info_.height = height;
+  std::erase_if(info_.metadata, [](const auto& entry) { return entry.first == "sensor size"; });
+  info_.metadata.emplace_back("sensor size", whose);
+}
+
+bool is_right(const std::filesystem::path& events, const std::string& topic) {
+  return topic.find("right") != std::string::npos || events.filename().string().find("right") != std::string::npos ||
+         events.parent_path().filename() == "right";
+}
+
+}  // namespace
+
+std::string EventsPlace::name_before(const std::string& end) const {
+  const std::string name = std::filesystem::path(path).filename().string();
+  return name.ends_with(end) ? name.substr(0, name.size() - end.size()) : "";
+}
+
+std::string partner(const EventsPlace& place, const std::string& end, const std::string& partners_end) {
+  const std::string name = place.name_before(end);
+  if (!name.empty()) return place.files->has(name + partners_end) ? name + partners_end : "";
+  const auto all = place.files->matching("*" + partners_end);
+  return all.size() == 1 ? all.front() : "";
+}
+
+Companions find_companions(const std::shared_ptr<const RecordingFiles>& files, const std::string& topic) {
+  const std::string path = files->events();
+  const EventsPlace place{files, path, is_right(path, topic)};
+  Companions companions;
+  for (const auto& data_set : kDataSets) {
+    Companions found = data_set(place);
+    if (!companions.calibration) companions.calibration = std::move(found.calibration);
+    if (!companions.ground_truth) companions.ground_truth = std::move(found.ground_truth);
+    if (!companions.sensor) companions.sensor = std::move(found.sensor);
+  }
+  return companions;
+}
+
+std::unique_ptr<EventReader> with_companions(std::unique_ptr<EventReader> reader,
+                                             const std::shared_ptr<const RecordingFiles>& files,
+                                             const std::string& topic) {
+  Companions companions = find_companions(files, topic);
+  if (!companions.calibration && !companions.ground_truth && !companions.sensor) return reader;
+  return std::make_unique<AccompaniedReader>(std::move(reader), std::move(companions), files);
+}
+
+}  // namespace evbench

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace evbench {
+
+/// A value in a JSON or YAML file that others wrote, and where it stands. What is missing, or of another kind than
+/// expected, is an InputError that names file and keys: "cam_to_cam.yaml: intrinsics: has no cam0; ...".
+class Field {
+ public:
+  static Field read_json(const std::string& path);
+  static Field read_yaml(const std::string& path);
+
+  bool has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
+  Field at(const std::string& key) const;
+  Field at(std::size_t index) const;
+
+  double number() const;                                 ///< finite
+  std::vector<double> numbers(std::size_t count) const;  ///< a list of that length
+  std::string text() const;
+
+  const std::string& place() const { return place_; }  ///< file and keys
+
+  /// Throws an InputError that begins with the place.
+  [[noreturn]] void fail(const std::string& message) const;
+
+ private:
+  using Json = nlohmann::json;
+  Field(std::shared_ptr<const Json> file, const Json* value, std::string place)
+      : file_(std::move(file)), value_(value), place_(std::move(place)) {}
+
+  std::shared_ptr<const Json> file_;
+  const Json* value_;
+  std::string place_;  ///< file and key
+};
+
+}  // namespace evbench

@@ -1,0 +1,41 @@
+#include "core/events/companions/hdf5_poses.hpp"
+
+#include <fmt/format.h>
+
+#include "core/events/companions/calibration_fields.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench::hdf5 {
+namespace {
+
+std::vector<double> read_numbers(const File& file, const std::string& name) {
+  constexpr std::uint64_t kMost = 1 << 26;
+  if (!file.has_dataset(name)) throw InputError(fmt::format("{}: /{}: is missing; expected poses", file.path(), name));
+  return file.dataset(name).read_all(kMost);
+}
+
+}  // namespace
+
+std::vector<StampedPose> read_poses(const File& file, const std::string& matrices, const std::string& times,
+                                    double unit) {
+  const std::vector<double> T = read_numbers(file, matrices), t = read_numbers(file, times);
+  if (t.empty() || T.size() != 16 * t.size()) {
+    throw InputError(fmt::format("{}: /{}: has {} numbers for {} times; expected a 4x4 matrix for each", file.path(),
+                                 matrices, T.size(), t.size()));
+  }
+  std::vector<StampedPose> poses;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    poses.push_back({unit * t[i], checked_pose(fmt::format("{}: /{}: row {}", file.path(), matrices, i), &T[16 * i])});
+  }
+  return poses;
+}
+
+SE3 read_pose(const File& file, const std::string& matrix) {
+  const std::vector<double> T = read_numbers(file, matrix);
+  if (T.size() != 16) {
+    throw InputError(fmt::format("{}: /{}: has {} numbers; expected a 4x4 matrix", file.path(), matrix, T.size()));
+  }
+  return checked_pose(fmt::format("{}: /{}", file.path(), matrix), T.data());
+}
+
+}  // namespace evbench::hdf5

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/events/formats/hdf5_file.hpp"
+#include "core/motion/pose_trajectory.hpp"
+
+namespace evbench::hdf5 {
+
+/// Poses as 4x4 matrices, row by row, with their times in another data set of `unit` seconds. Throws InputError, naming
+/// file and data set, for what is missing or no pose.
+std::vector<StampedPose> read_poses(const File& file, const std::string& matrices, const std::string& times,
+                                    double unit);
+
+/// One such matrix.
+SE3 read_pose(const File& file, const std::string& matrix);
+
+}  // namespace evbench::hdf5

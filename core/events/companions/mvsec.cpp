@@ -1,0 +1,45 @@
+#include "core/events/companions/calibration_fields.hpp"
+#include "core/events/companions/data_sets.hpp"
+#include "core/events/companions/hdf5_poses.hpp"
+
+namespace evbench {
+
+Companions mvsec_companions(const EventsPlace& place) {
+  Companions found;
+  const auto files = place.files;
+  const std::string camera = place.right ? "cam1" : "cam0";
+  const auto chains = files->matching("camchain-imucam*.yaml");
+  const auto read_chain = [=] {
+    return files->get(chains.front(), [](const std::string& path) { return Field::read_yaml(path); });
+  };
+  if (!chains.empty()) {
+    const auto read = [=](int, int) { return kalibr_camera(read_chain().at(camera)); };
+    found.calibration = {{chains.front()}, camera + " of a Kalibr calibration", read};
+  }
+  const std::string name = partner(place, "_data.hdf5", "_gt.hdf5");
+  if (name.empty()) return found;
+  const auto read_left = [=] {
+    return files->get(name, [](const std::string& path) {
+      return hdf5::read_poses(hdf5::File(path), "davis/left/pose", "davis/left/pose_ts", 1.0);
+    });
+  };
+  if (place.right && !chains.empty()) {
+    const auto read = [=] {
+      const SE3 T_left_right = matrix_pose(read_chain().at("cam1").at("T_cn_cnm1")).inverse();
+      auto poses = read_left();
+      for (StampedPose& pose : poses) pose.T = pose.T * T_left_right;
+      return PoseTrajectory(std::move(poses), files->path(name));
+    };
+    found.ground_truth = {{name, chains.front()}, "the right camera", read};
+  } else {
+    const auto read = [=] { return PoseTrajectory(read_left(), files->path(name)); };
+    found.ground_truth = {{name}, "the left camera", read};
+    if (place.right) {
+      found.ground_truth->remark =
+          "the ground truth is that of the left camera: no camchain-imucam*.yaml leads to the right one";
+    }
+  }
+  return found;
+}
+
+}  // namespace evbench

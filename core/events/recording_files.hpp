@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/events/formats/zip_archive.hpp"
+#include "core/support/byte_source.hpp"
+
+namespace evbench {
+
+/// A recording's folder, or a .zip of one: which file holds the events, and what lies beside it.
+class RecordingFiles {
+ public:
+  /// `path`: a folder, a .zip with an events.txt, or a file of events of any name. The folder of DSEC's
+  /// events/left/events.h5 is that with events/ in it. Throws InputError for a .zip without an events.txt.
+  explicit RecordingFiles(const std::string& path);
+
+  /// Path of the events, or of the .zip that has them; empty: a folder without. In a folder the first of events.evb (a
+  /// native copy), events.txt, and the names of DSEC, TUM-VIE, M3ED, MVSEC and EDS. Throws InputError for a folder with
+  /// two of the same kind.
+  std::string events() const;
+  std::unique_ptr<ByteSource> open_events() const;
+
+  /// Names are relative to the folder.
+  bool has(const std::string& name) const;
+  /// The names that fit a pattern, sorted: `*` stands for anything but a slash, and only in the last part.
+  std::vector<std::string> matching(const std::string& pattern) const;
+  std::string path(const std::string& name) const;
+
+  std::unique_ptr<ByteSource> open(const std::string& name) const;
+
+  /// Calls a function that reads a file by its path; what is in a .zip is unpacked into memory, up to 64 MiB.
+  void read(const std::string& name, const std::function<void(const std::string& path)>& read) const;
+
+  /// The result of such a function.
+  template <class F>
+  auto get(const std::string& name, F f) const {
+    std::optional<std::invoke_result_t<F, const std::string&>> result;
+    read(name, [&](const std::string& path) { result.emplace(f(path)); });
+    return std::move(*result);
+  }
+
+ private:
+  std::optional<ZipArchive> archive_;
+  std::string folder_;  ///< in the archive, or the file system; with the slash
+  std::string events_;  ///< likewise; empty: to be looked for
+};
+
+}  // namespace evbench
