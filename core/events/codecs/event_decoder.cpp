@@ -14,9 +14,10 @@ std::size_t EventDecoder::finish(std::span<const std::byte> in, std::uint64_t of
 
 void decode_packet(EventDecoder& decoder, std::span<const std::byte> packet, std::vector<Event>& events,
                    Faults& faults) {
+  constexpr std::size_t kBytes = 4;  // of an event, usually: room for more than there are would be filled in vain
   std::size_t done = 0, count = events.size();
   while (true) {
-    events.resize(count + std::max(EventDecoder::kMostOfRecord, packet.size() - done));
+    events.resize(count + std::max(EventDecoder::kMostOfRecord, (packet.size() - done) / kBytes));
     const auto progress = decoder.decode(packet.subspan(done), done, std::span(events).subspan(count), faults);
     done += progress.bytes;
     count += progress.events;

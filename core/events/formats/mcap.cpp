@@ -125,7 +125,7 @@ bool McapBag::note(Op op, std::span<const std::byte> data) {
 
 void McapBag::go_to(std::uint64_t offset) {
   at_ = offset;
-  chunk_.clear();
+  chunk_ = {};
   used_ = 0;
 }
 
@@ -145,7 +145,7 @@ std::optional<ros::Message> McapBag::next() {
 std::optional<ros::Message> McapBag::next_of_all() {
   while (true) {
     while (used_ < chunk_.size()) {
-      ByteCursor cursor(std::span<const std::byte>(chunk_).subspan(used_));
+      ByteCursor cursor(chunk_.subspan(used_));
       const auto op = static_cast<Op>(cursor.get<std::uint8_t>());
       const auto data = cursor.bytes(cursor.get<std::uint64_t>());
       if (!cursor.ok()) {
@@ -187,21 +187,22 @@ bool McapBag::load_chunk(std::span<const std::byte> data) {
   const std::string compression = field_text(cursor);
   const auto packed = cursor.bytes(cursor.get<std::uint64_t>());
   used_ = 0;
-  chunk_.clear();
+  chunk_ = {};
   if (!cursor.ok() || size > kMostBytes) return false;
-  bool whole = false;
-  if (compression.empty()) {
-    chunk_.assign(packed.begin(), packed.end());
-    whole = true;
-  } else if (compression == "lz4") {
-    whole = decompress_lz4(packed, size, chunk_);
-  } else if (compression == "zstd") {
-    whole = decompress_zstd(packed, size, chunk_);
+  std::span<const std::byte> records = packed;
+  if (!compression.empty()) {
+    const bool unpacked = compression == "lz4"    ? decompress_lz4(packed, size, unpacked_)
+                          : compression == "zstd" ? decompress_zstd(packed, size, unpacked_)
+                                                  : false;
+    if (!unpacked) return false;
+    records = unpacked_;
   }
-  whole = whole && chunk_.size() == size &&
-          (checksum == 0 || checksum == crc32_z(0, reinterpret_cast<const Bytef*>(chunk_.data()), chunk_.size()));
-  if (!whole) chunk_.clear();
-  return whole;
+  if (records.size() != size) return false;
+  if (checksum != 0 && checksum != crc32_z(0, reinterpret_cast<const Bytef*>(records.data()), records.size())) {
+    return false;
+  }
+  chunk_ = records;
+  return true;
 }
 
 void McapBag::seek(std::int64_t t) {

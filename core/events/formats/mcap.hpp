@@ -66,11 +66,12 @@ class McapBag : public ros::MessageSource {
   std::vector<ros::Topic> topics_;
   std::set<std::uint32_t> selected_;
 
-  std::vector<std::byte> data_;   ///< of the last record
-  std::vector<std::byte> chunk_;  ///< decompressed
-  std::size_t used_ = 0;          ///< of the chunk
-  std::uint64_t at_ = 0;          ///< next record of the file
-  std::uint64_t end_ = 0;         ///< of the records with messages
+  std::vector<std::byte> data_;  ///< of the last record of the file
+  std::vector<std::byte> unpacked_;
+  std::span<const std::byte> chunk_;  ///< its records, in one of these two
+  std::size_t used_ = 0;              ///< of the chunk
+  std::uint64_t at_ = 0;              ///< next record of the file
+  std::uint64_t end_ = 0;             ///< of the records with messages
 };
 
 }  // namespace evbench

@@ -42,7 +42,7 @@ class RecordedFile {
     }
     const auto head = head_of(path);
     if (is_sqlite(head)) {
-      messages_ = open_sqlite_bag(path, faults);
+      messages_ = open_sqlite_bag(path, faults, false);
     } else if (McapBag::is_mcap(head)) {
       messages_ = std::make_unique<McapBag>(std::make_unique<FileBytes>(path), faults);
     } else {

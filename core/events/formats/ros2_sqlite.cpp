@@ -27,7 +27,7 @@ using Statement = std::unique_ptr<sqlite3_stmt, CloseStatement>;
 
 class SqliteBag : public MessageSource {
  public:
-  SqliteBag(const std::string& path, Faults& faults);
+  SqliteBag(const std::string& path, Faults& faults, bool count);
 
   const std::vector<Topic>& topics() const override { return topics_; }
   void select(std::set<std::uint32_t> topics) override {
@@ -44,6 +44,7 @@ class SqliteBag : public MessageSource {
   bool step(sqlite3_stmt* statement);
   std::string text(sqlite3_stmt* statement, int column) const;
   void read_topics();
+  void count_messages();
 
   std::string path_;
   Faults& faults_;
@@ -70,7 +71,7 @@ std::string uri(const std::string& path) {
   return result + (journal ? "?mode=ro" : "?mode=ro&immutable=1");
 }
 
-SqliteBag::SqliteBag(const std::string& path, Faults& faults) : path_(path), faults_(faults) {
+SqliteBag::SqliteBag(const std::string& path, Faults& faults, bool count) : path_(path), faults_(faults) {
   constexpr int kMostBytes = 256 << 20;  // of a message
   sqlite3* database = nullptr;
   const int result = sqlite3_open_v2(uri(path).c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
@@ -85,6 +86,7 @@ SqliteBag::SqliteBag(const std::string& path, Faults& faults) : path_(path), fau
     throw InputError(fmt::format("{}: is no ROS 2 bag; expected the tables topics and messages", path));
   }
   read_topics();
+  if (count) count_messages();
 }
 
 Statement SqliteBag::prepare(const std::string& query) {
@@ -113,10 +115,21 @@ std::string SqliteBag::text(sqlite3_stmt* statement, int column) const {
 void SqliteBag::read_topics() {
   const Statement topics = prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
   while (step(topics.get())) {
-    topics_.push_back({static_cast<std::uint32_t>(sqlite3_column_int64(topics.get(), 0)), text(topics.get(), 1),
-                       plain_type(text(topics.get(), 2)), 0, Wire::cdr, text(topics.get(), 3) == "cdr"});
+    topics_.push_back({static_cast<std::uint32_t>(sqlite3_column_int64(topics.get(), 0)),
+                       text(topics.get(), 1),
+                       plain_type(text(topics.get(), 2)),
+                       {},
+                       Wire::cdr,
+                       text(topics.get(), 3) == "cdr"});
   }
-  const Statement counts = prepare("SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id");
+}
+
+/// Of several topics SQLite has to read half of the file for that; of one it has an index.
+void SqliteBag::count_messages() {
+  for (Topic& topic : topics_) topic.count = 0;
+  const Statement counts =
+      prepare(topics_.size() == 1 ? fmt::format("SELECT {}, COUNT(*) FROM messages", topics_.front().id)
+                                  : "SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id");
   while (step(counts.get())) {
     for (Topic& topic : topics_) {
       if (topic.id == static_cast<std::uint32_t>(sqlite3_column_int64(counts.get(), 0))) {
@@ -154,8 +167,8 @@ void SqliteBag::seek(std::int64_t t) {
 
 }  // namespace
 
-std::unique_ptr<MessageSource> open_sqlite_bag(const std::string& path, Faults& faults) {
-  return std::make_unique<SqliteBag>(path, faults);
+std::unique_ptr<MessageSource> open_sqlite_bag(const std::string& path, Faults& faults, bool count) {
+  return std::make_unique<SqliteBag>(path, faults, count);
 }
 
 bool is_sqlite(std::span<const std::byte> head) {
@@ -168,7 +181,7 @@ EventFormat ros2_sqlite_format() {
           [](const std::string&, std::span<const std::byte> head) { return is_sqlite(head); },
           [](const std::string& path, const ReadOptions& options) {
             return read_bag(path, "ROS 2 bag (SQLite)", options,
-                            [path](Faults& faults) { return open_sqlite_bag(path, faults); });
+                            [path](Faults& faults) { return open_sqlite_bag(path, faults, true); });
           }};
 }
 
