@@ -4,11 +4,11 @@
 #include <memory>
 
 #include "bench/commands/commands.hpp"
-#include "bench/commands/interruption.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/commands/time_range.hpp"
 #include "bench/recordings/conversion.hpp"
 #include "core/events/writer.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
@@ -23,12 +23,11 @@ struct ConvertArguments {
 void execute(const ConvertArguments& arguments) {
   ConversionOptions options = arguments.options;
   set_time_range(arguments.range, options.stream);
-  const Interruption interruption;
+  const Interruption interruption(arguments.out + ": interrupted; nothing was written");
   ConversionReport report;
   {
     ProgressLine line(arguments.in, arguments.quiet);
     report = convert(arguments.in, arguments.out, options, [&](std::int64_t events, std::int64_t t) {
-      interruption.check(arguments.out);
       line.update(fmt::format("{:.1f} million events, {:.2f} s", static_cast<double>(events) * 1e-6,
                               static_cast<double>(t) * 1e-6));
     });
@@ -46,7 +45,11 @@ std::string formats_text() {
   for (const WritableFormat& format : writable_formats()) {
     text += fmt::format("  {:<8}{:<6}{}\n", format.name, format.extension, format.description);
   }
-  return text + "OUT appears when it is complete; an interrupted conversion leaves nothing, and what was there before.";
+  return text +
+         "Calibration, ground truth and the header's fields are kept by native alone, the sensor's size by hdf5, too.\n"
+         "OUT appears when it is complete; an interrupted conversion leaves nothing, and what was there before. Text "
+         "can\n"
+         "be written to a pipe or device, e.g. convert IN /dev/stdout --format text --quiet | head.";
 }
 
 }  // namespace

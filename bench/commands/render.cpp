@@ -6,9 +6,9 @@
 #include <memory>
 
 #include "bench/commands/commands.hpp"
-#include "bench/commands/interruption.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/commands/time_range.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
@@ -39,10 +39,9 @@ RenderOptions render_options(const RenderArguments& arguments) {
 void execute(const RenderArguments& arguments) {
   RenderReport report;
   {
-    const Interruption interruption;
+    const Interruption interruption(arguments.out + ": interrupted; nothing was written");
     ProgressLine line(arguments.out, arguments.quiet);
     report = render(arguments.in, arguments.out, render_options(arguments), [&](std::int64_t pictures, std::int64_t t) {
-      interruption.check(arguments.out);
       line.update(fmt::format("{} pictures, {:.3f} s", pictures, static_cast<double>(t) * 1e-6));
     });
   }

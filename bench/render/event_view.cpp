@@ -25,6 +25,7 @@ cv::Size sensor_size(const std::string& path, const StreamOptions& options, cons
       size.height = std::max(size.height, event.y + 1);
     }
   }
+  check_sensor_size(path, size.width, size.height);
   return size;
 }
 

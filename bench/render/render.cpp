@@ -12,6 +12,7 @@
 #include "bench/render/track_overlay.hpp"
 #include "core/data/tracks.hpp"
 #include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
@@ -131,6 +132,7 @@ RenderReport render(const std::string& in, const std::string& out, const RenderO
     report.size = picture.size();
     ++report.pictures;
     if (progress) progress(report.pictures, t);
+    check_interruption();
     if (!sink->takes_many()) break;
     const std::optional<std::int64_t> next = renderer.next();
     if (!next) break;

@@ -7,6 +7,8 @@
 #include <span>
 
 #include "core/events/formats.hpp"
+#include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
@@ -28,6 +30,13 @@ bool are_fine(std::span<const Event> events, std::int64_t from, int width, int h
 
 }  // namespace
 
+void check_sensor_size(const std::string& path, int width, int height) {
+  constexpr std::int64_t kMost = 64'000'000;
+  if (std::int64_t{width} * height <= kMost) return;
+  throw InputError(fmt::format("{}: a sensor of {}x{} pixels; expected {} million pixels at most", path, width, height,
+                               kMost / 1'000'000));
+}
+
 EventStream::EventStream(const std::string& path, const StreamOptions& options)
     : EventStream(open_events(path, options.read), path, options) {}
 
@@ -38,6 +47,7 @@ EventStream::EventStream(std::unique_ptr<EventReader> reader, std::string path, 
       faults_(path_, options.read.strict),
       from_(kBeginning),
       newest_(kBeginning) {
+  check_sensor_size(path_, info().width, info().height);
   if (options.rebase) {
     std::vector<Event> first;
     if (reader_->read(first) && !first.empty()) zero_ = first.front().t;
@@ -55,6 +65,7 @@ void EventStream::seek(std::int64_t t) {
 
 bool EventStream::read(std::vector<Event>& events) {
   while (!ended_ && reader_->read(events)) {
+    check_interruption();
     check(events);
     if (!events.empty()) return true;
   }

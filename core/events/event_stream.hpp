@@ -17,10 +17,16 @@ struct StreamOptions {
   std::optional<std::int64_t> from = {}, to = {};
 };
 
+/// Throws InputError for a sensor beyond any that is made (64 million pixels): the tables and pictures of what a
+/// damaged header says would take all memory. 0 is unknown.
+void check_sensor_size(const std::string& path, int width, int height);
+
 /// A recording's events in time order, within the sensor, in a time range: what everybody but the readers uses. Events
 /// that go back in time or lie outside the sensor are left out and counted as faults (errors in strict mode).
+/// Reading can be interrupted (interruption.hpp).
 class EventStream {
  public:
+  /// Throws InputError for what is no recording and by check_sensor_size().
   EventStream(const std::string& path, const StreamOptions& options = {});
   EventStream(std::unique_ptr<EventReader> reader, std::string path, const StreamOptions& options = {});
 

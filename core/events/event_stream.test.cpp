@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 
 using namespace evbench;
 
@@ -68,6 +69,23 @@ TEST_CASE("Events outside the sensor or back in time are left out and counted, o
   StreamOptions strict;
   strict.read.strict = true;
   CHECK_THROWS_AS(times(events, strict), InputError);
+}
+
+TEST_CASE("A sensor beyond any that is made is refused, an unknown one is not") {
+  CHECK_NOTHROW(check_sensor_size("a", 0, 65536));
+  CHECK_NOTHROW(check_sensor_size("a", 8000, 8000));
+  CHECK_THROWS_WITH(check_sensor_size("a", 65535, 65535),
+                    "a: a sensor of 65535x65535 pixels; expected 64 million pixels at most");
+}
+
+TEST_CASE("Reading can be interrupted, also where no event lies in the range") {
+  StreamOptions options;
+  options.from = GENERATE(0, 1000);
+  EventStream stream(std::make_unique<ListReader>(kFive), "list", options);
+  const Interruption interruption("interrupted");
+  std::raise(SIGTERM);
+  std::vector<Event> chunk;
+  CHECK_THROWS_WITH(stream.read(chunk), "interrupted");
 }
 
 TEST_CASE("A stream can go back to any time") {

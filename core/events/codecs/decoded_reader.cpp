@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/support/interruption.hpp"
+
 namespace evbench {
 namespace {
 
@@ -25,6 +27,7 @@ DecodedReader::DecodedReader(std::unique_ptr<ByteSource> source, std::uint64_t b
 
 /// Moves what is left to the buffer's beginning and reads more behind it. False when there is no more.
 bool DecodedReader::fill() {
+  check_interruption();  // a file may be long and have no events
   std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(used_),
             buffer_.begin() + static_cast<std::ptrdiff_t>(filled_), buffer_.begin());
   filled_ -= std::exchange(used_, 0);

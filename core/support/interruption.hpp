@@ -1,0 +1,31 @@
+#pragma once
+
+#include <csignal>
+#include <string>
+
+namespace evbench {
+
+/// While one lives, a signal that asks the program to end (SIGINT by Ctrl-C, SIGTERM, SIGHUP) lets the next
+/// check_interruption() throw, so that what was begun is removed as after an error. The same signal once more ends the
+/// program at once. A signal that was ignored (nohup) stays so. There is one at a time.
+class Interruption {
+ public:
+  /// `message`: of the error, e.g. "a.txt: interrupted; nothing was written".
+  explicit Interruption(std::string message);
+  ~Interruption();
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+
+  /// Has the program been asked to end?
+  static bool is_requested();
+
+ private:
+  static constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
+  struct sigaction before_[std::size(kSignals)] = {};
+};
+
+/// To be called in every loop that may last: throws InputError with the message of the Interruption that lives, once
+/// the program has been asked to end.
+void check_interruption();
+
+}  // namespace evbench
