@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
+#include <new>
 
 #include "bench/commands/commands.hpp"
 #include "bench/recordings/config_events.hpp"
@@ -33,6 +35,12 @@ int run_program(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::filesystem::filesystem_error& error) {  // a folder that can't be read, links in a circle
+    fmt::print(stderr, "evbench: {}: {}\n", error.path1().string(), error.code().message());
+    return 2;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "evbench: the memory is not enough\n");
+    return 2;
   } catch (const std::exception& error) {
     fmt::print(stderr, "evbench: {}\n", error.what());
     return 2;

@@ -13,12 +13,23 @@ namespace {
 
 class ConfigEvents : public EventReader {
  public:
-  explicit ConfigEvents(const std::string& path) : source_(read_source(path)), reader_(source_->events()) {
+  ConfigEvents(const std::string& path, const ReadOptions& options)
+      : path_(path), strict_(options.strict), source_(read_source(path)), reader_(source_->events()) {
     if (!reader_) throw InputError(fmt::format("{}: its source has no events", path));
+    if (!options.topic.empty() || !options.columns.empty()) {
+      throw InputError(fmt::format("{}: is a config, which has neither topics nor columns", path));
+    }
   }
 
   const StreamInfo& info() const override { return reader_->info(); }
-  bool read(std::vector<Event>& events) override { return reader_->read(events); }
+  bool read(std::vector<Event>& events) override {
+    const bool any = reader_->read(events);
+    const auto& faults = reader_->faults().all();
+    if (strict_ && !faults.empty()) {
+      throw InputError(fmt::format("{}: {}: {}", path_, faults.begin()->second.first, faults.begin()->first));
+    }
+    return any;
+  }
   void seek(std::int64_t t) override { reader_->seek(t); }
   const Faults& faults() const override { return reader_->faults(); }
   std::optional<Camera> calibration() override { return source_->camera(); }
@@ -28,6 +39,8 @@ class ConfigEvents : public EventReader {
   }
 
  private:
+  std::string path_;
+  bool strict_;
   std::unique_ptr<Source> source_;
   std::unique_ptr<EventReader> reader_;
 };
@@ -41,8 +54,10 @@ bool begins_like_json(const std::string&, std::span<const std::byte> head) {
 }  // namespace
 
 EventFormat config_format() {
-  return {"config", "JSON config of evbench: the events of its source", begins_like_json,
-          [](const std::string& path, const ReadOptions&) { return std::make_unique<ConfigEvents>(path); }};
+  return {
+      "config", "JSON config of evbench: the events of its source", begins_like_json,
+      [](const std::string& path, const ReadOptions& options) { return std::make_unique<ConfigEvents>(path, options); },
+      /*has_companions=*/false};
 }
 
 }  // namespace evbench

@@ -8,6 +8,7 @@
 #include "core/data/calib.hpp"
 #include "core/events/writer.hpp"
 #include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 #include "core/support/nearest.hpp"
 #include "core/support/part_file.hpp"
 
@@ -84,6 +85,10 @@ RecordingHeader make_header(EventStream& stream, const std::string& in) {
   return header;
 }
 
+bool fits(const Camera& camera, const RecordingHeader& header) {
+  return camera.width == header.width && camera.height == header.height;
+}
+
 /// The lens to be undone; the header then says that there is none.
 Camera take_lens(const std::string& calibration, const std::string& in, RecordingHeader& header) {
   if (header.width <= 0 || header.height <= 0) {
@@ -93,13 +98,30 @@ Camera take_lens(const std::string& calibration, const std::string& in, Recordin
   if (calibration == "own" && !header.calibration) {
     throw InputError(fmt::format("{}: has no calibration of its own; give a calib.txt to --undistort", in));
   }
-  Camera lens = calibration == "own" ? *header.calibration : read_calib(calibration, header.width, header.height);
-  lens.width = header.width;
-  lens.height = header.height;
+  const Camera lens = calibration == "own" ? *header.calibration : read_calib(calibration, header.width, header.height);
+  if (!fits(lens, header)) {
+    throw InputError(fmt::format("{}: calibration of {}x{} pixels; expected the sensor's {}x{}", in, lens.width,
+                                 lens.height, header.width, header.height));
+  }
   header.calibration = Camera{lens.pinhole, DistortionModel::none, {}, lens.width, lens.height};
   header.calibration->coefficients.setZero();
   header.metadata.emplace_back("undistorted", "to the nearest pixel");
   return lens;
+}
+
+/// A calibration of another sensor is of no use.
+void drop_misfit(RecordingHeader& header) {
+  if (!header.calibration || header.width <= 0 || fits(*header.calibration, header)) return;
+  const Camera& camera = *header.calibration;
+  header.metadata.emplace_back("calibration left out", fmt::format("of {}x{} pixels", camera.width, camera.height));
+  header.calibration.reset();
+}
+
+/// Why nothing was left to be written.
+const char* why_none(const StreamOptions& options, const ConversionReport& report) {
+  if (report.outside > 0) return "all events lie outside the undistorted image";
+  if (options.from || options.to) return "has no events in the time range that is asked for";
+  return report.faults.empty() ? "has no events" : "all events are faulty";
 }
 
 }  // namespace
@@ -111,13 +133,14 @@ ConversionReport convert(const std::string& in, const std::string& out, const Co
   RecordingHeader header = make_header(stream, in);
   std::optional<NearestUndistortion> undistortion;
   if (!options.undistort.empty()) undistortion.emplace(take_lens(options.undistort, in, header));
+  drop_misfit(header);
 
-  PartFile file(out, format.needs_name);
+  PartFile file(out, format.needs);
   ConversionReport report;
   report.format = format.name;
   std::int64_t read = 0;
   {
-    const auto writer = format.make(file.writable_path(), header);
+    const auto writer = format.make(file.writable_path(), out, header);
     for (std::vector<Event> events; stream.read(events);) {
       read += static_cast<std::int64_t>(events.size());
       const std::int64_t reached = events.back().t;
@@ -128,8 +151,12 @@ ConversionReport convert(const std::string& in, const std::string& out, const Co
     }
     writer->finish();
   }
-  file.commit();
+  check_interruption();
   report.faults = stream.faults();
+  if (report.written == 0) {
+    throw InputError(fmt::format("{}: {}; nothing was written", in, why_none(options.stream, report)));
+  }
+  file.commit();
   return report;
 }
 

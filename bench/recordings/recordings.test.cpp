@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
@@ -8,6 +9,7 @@
 #include "core/events/formats.hpp"
 #include "core/events/formats/native.hpp"
 #include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -182,6 +184,11 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
   const TemporaryFolder folder;
   write_native(folder.file("a.evb"), walking_events(20000), davis_header());
   write_native(folder.file("unknown.evb"), walking_events(10), {});
+  write_native(folder.file("none.evb"), {}, {});
+  folder.write("mistaken.json", R"({"source": {"type": "recording", "events": "a.evb", "calibration": "aside.txt",
+                                               "width": 320, "height": 240, "time_range": [2, 3]}})");
+  folder.write("aside.txt", "200 200 5000 5000 0 0 0 0 0\n");
+  folder.write("ok.txt", "old");
   const auto refused = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = testing::evbench(folder, "convert " + arguments);
     INFO(arguments);
@@ -194,25 +201,89 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
   refused("a.evb b.evb --undistort nowhere.txt", "nowhere.txt");
   refused("unknown.evb b.evb --undistort own", "--width");
   refused("unknown.evb b.evb --undistort own --width 10 --height 10", "no calibration of its own");
+  refused("unknown.evb b.evb --undistort calib.txt --width 8000 --height 8001", "64 million pixels at most");
+  refused("mistaken.json b.evb --undistort own", "calibration of 320x240 pixels; expected the sensor's 240x180");
   refused("a.evb no/b.evb", "no/b.evb");
+  refused("a.evb ok.txt --from 100", "has no events in the time range");
+  refused("a.evb ok.txt --undistort aside.txt", "all events lie outside the undistorted image");
+  refused("none.evb ok.txt", "has no events; nothing was written");
+  CHECK(read_file(folder.file("ok.txt")) == "old");
   damage(folder.file("a.evb"));
   refused("a.evb b.evb --strict", "checksum");
   refused("a.evb b.h5 --strict", "checksum");
   CHECK_THAT(testing::evbench(folder, "convert a.evb ok.evb").out,
              Contains("left out: 16384 events in damaged chunks"));
-  CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", "unknown.evb", "ok.evb"});
+  REQUIRE(testing::evbench(folder, "convert mistaken.json ok.evb").exit_code == 0);
+  CHECK_FALSE(open_events(folder.file("ok.evb"))->calibration());  // it fits another sensor
+  CHECK(names_in(folder.path()) ==
+        std::set<std::string>{"a.evb", "unknown.evb", "none.evb", "mistaken.json", "aside.txt", "ok.txt", "ok.evb"});
 }
 
 TEST_CASE("A conversion that is interrupted leaves nothing, and the older file as it was") {
   const TemporaryFolder folder;
-  write_native(folder.file("a.evb"), walking_events(2000000), davis_header());
-  const std::string out = GENERATE("b.txt", "b.h5");
+  write_native(folder.file("a.evb"), walking_events(100000), davis_header());
+  const std::string out = GENERATE("b.txt", "b.h5", "b.evb");
   folder.write(out, "old");
-  const Outcome outcome =
-      testing::shell(folder, "\"$evbench\" convert a.evb " + out + " & sleep 0.1; kill -INT $!; wait $!");
-  if (outcome.exit_code == 2) CHECK_THAT(outcome.err, Contains("interrupted"));
+  {
+    const Interruption interruption("interrupted");
+    const auto interrupt = [](std::int64_t, std::int64_t) { std::raise(SIGINT); };
+    CHECK_THROWS_WITH(convert(folder.file("a.evb"), folder.file(out), {}, interrupt), "interrupted");
+  }
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", out});
-  CHECK((outcome.exit_code == 0) == (read_file(folder.file(out)) != "old"));
+  CHECK(read_file(folder.file(out)) == "old");
+}
+
+TEST_CASE("A signal ends a conversion with an error that says so") {
+  const TemporaryFolder folder;
+  write_native(folder.file("a.evb"), walking_events(100000), davis_header());
+  // A pipe that nobody reads holds the program: it is there when the signal comes. Its handler is set by then.
+  const Outcome outcome = testing::shell(folder,
+                                         "mkfifo b.txt; \"$evbench\" convert a.evb b.txt & exec 3< b.txt; "
+                                         "head -c 1 <&3 > /dev/null; kill -TERM $!; wait $!");
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("b.txt: interrupted; nothing was written"));
+}
+
+TEST_CASE("A conversion can be interrupted while no event lies in the range") {
+  const TemporaryFolder folder;
+  write_native(folder.file("a.evb"), walking_events(100000), davis_header());
+  const Interruption interruption("interrupted");
+  std::raise(SIGTERM);
+  ConversionOptions options;
+  options.stream.to = 0;
+  CHECK_THROWS_WITH(convert(folder.file("a.evb"), folder.file("b.txt"), options), "interrupted");
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb"});
+}
+
+TEST_CASE("Text is converted into a pipe; other formats are not") {
+  const TemporaryFolder folder;
+  write_native(folder.file("a.evb"), walking_events(3), davis_header());
+  const Outcome text = testing::shell(folder, "\"$evbench\" convert a.evb /dev/stdout --format text --quiet | cat");
+  CHECK(text.out == "2.000000 0 0 0\n2.001000 1 1 1\n2.002000 2 2 1\n");
+  const Outcome hdf5 = testing::evbench(folder, "convert a.evb /dev/null --format hdf5");
+  CHECK(hdf5.exit_code == 2);
+  CHECK_THAT(hdf5.err, Contains("/dev/null: is a pipe or a device"));
+}
+
+TEST_CASE("A disk that is full while a file is written is an error that names the file") {
+  const TemporaryFolder folder;
+  std::vector<Event> events;
+  std::uint32_t state = 1;
+  for (int i = 0; i < 50000; ++i) {
+    state = state * 1664525 + 1013904223;
+    events.push_back({10 * i + state % 9, static_cast<std::uint16_t>(state >> 8 & 127),
+                      static_cast<std::uint16_t>(state >> 16 & 127), state >> 31 != 0});
+  }
+  write_native(folder.file("a.evb"), events, davis_header());
+  const std::string out = GENERATE("b.txt", "b.h5", "b.evb");
+  folder.write(out, "old");
+  // A limit on the size of files stands for the disk.
+  const Outcome outcome = testing::shell(folder, "trap '' XFSZ; ulimit -f 64; \"$evbench\" convert a.evb " + out +
+                                                     "; code=$?; ulimit -f unlimited; exit $code");
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains(out + ": can't be written") && !Contains(".part") && !Contains("/proc"));
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", out});
+  CHECK(read_file(folder.file(out)) == "old");
 }
 
 TEST_CASE("A config is a recording of its source's events, with camera and ground truth") {
@@ -229,6 +300,17 @@ TEST_CASE("A config is a recording of its source's events, with camera and groun
   REQUIRE(recording->ground_truth());
   CHECK(recording->ground_truth()->end() == Approx(0.2).margin(0.01));
   CHECK(recording->calibration()->height == 40);
+  CHECK_THAT(testing::evbench(folder, "info a.json --topic /events").err, Contains("has neither topics nor columns"));
+
+  write_native(folder.file("b.evb"), walking_events(20000), davis_header());
+  damage(folder.file("b.evb"));
+  folder.write("calib.txt", "200 200 120 90 0 0 0 0 0\n");
+  write_config(R"({"source": {"type": "recording", "events": "b.evb", "calibration": "calib.txt",
+                   "width": 240, "height": 180, "time_range": [2, 3]}})");
+  CHECK(testing::evbench(folder, "convert a.json b.txt").exit_code == 0);
+  const Outcome strict = testing::evbench(folder, "convert a.json b.txt --strict");
+  CHECK(strict.exit_code == 2);
+  CHECK_THAT(strict.err, Contains("a.json") && Contains("damaged chunks"));
 
   write_config(R"({"source": {"type": "simulation"}})");
   const Outcome refused = testing::evbench(folder, "info a.json");

@@ -8,17 +8,17 @@ namespace evbench {
 
 const std::vector<WritableFormat>& writable_formats() {
   static const std::vector<WritableFormat> formats = {
-      {"native", ".evb", "evbench's own cache: mapped into memory, checksummed, fastest", false,
-       [](const std::string& path, const RecordingHeader& header) -> std::unique_ptr<EventWriter> {
-         return std::make_unique<NativeWriter>(path, header);
+      {"native", ".evb", "evbench's own cache: mapped into memory, checksummed, fastest", PartFile::Needs::seeking,
+       [](const std::string& path, const std::string& name, const RecordingHeader& header) {
+         return std::unique_ptr<EventWriter>(std::make_unique<NativeWriter>(path, header, name));
        }},
-      {"text", ".txt", "t x y p, as in the Event-Camera Dataset", false,
-       [](const std::string& path, const RecordingHeader&) -> std::unique_ptr<EventWriter> {
-         return std::make_unique<TextWriter>(path);
+      {"text", ".txt", "t x y p, as in the Event-Camera Dataset", PartFile::Needs::nothing,
+       [](const std::string& path, const std::string& name, const RecordingHeader&) {
+         return std::unique_ptr<EventWriter>(std::make_unique<TextWriter>(path, name));
        }},
-      {"hdf5", ".h5", "HDF5 in DSEC's layout", true,
-       [](const std::string& path, const RecordingHeader& header) -> std::unique_ptr<EventWriter> {
-         return std::make_unique<DsecWriter>(path, header);
+      {"hdf5", ".h5", "HDF5 in DSEC's layout", PartFile::Needs::name,
+       [](const std::string& path, const std::string& name, const RecordingHeader& header) {
+         return std::unique_ptr<EventWriter>(std::make_unique<DsecWriter>(path, name, header));
        }},
   };
   return formats;

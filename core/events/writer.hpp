@@ -10,6 +10,7 @@
 #include "core/events/event.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/pose_trajectory.hpp"
+#include "core/support/part_file.hpp"
 
 namespace evbench {
 
@@ -36,8 +37,9 @@ struct WritableFormat {
   std::string name;         ///< e.g. "native"
   std::string extension;    ///< that stands for it, e.g. ".evb"
   std::string description;  ///< a line
-  bool needs_name;          ///< can't write to a file that has none yet (PartFile)
-  std::unique_ptr<EventWriter> (*make)(const std::string& path, const RecordingHeader& header);
+  PartFile::Needs needs;    ///< of the file that it writes to
+  /// `path`: to write to; `name`: what messages call it.
+  std::unique_ptr<EventWriter> (*make)(const std::string& path, const std::string& name, const RecordingHeader& header);
 };
 
 const std::vector<WritableFormat>& writable_formats();

@@ -11,6 +11,8 @@
 #include <filesystem>
 
 #include "core/support/error.hpp"
+#include "core/support/part_file.hpp"
+#include "core/support/path.hpp"
 
 namespace evbench {
 namespace fs = std::filesystem;
@@ -35,18 +37,14 @@ void write_durably(const std::string& path, std::string_view content, const std:
   }
   if (error == 0 && ::fsync(file) != 0 && errno != EINVAL && errno != EROFS) error = errno;
   if (::close(file) != 0 && error == 0) error = errno;
-  if (error != 0) {
-    std::error_code ignored;
-    if (fs::is_regular_file(path, ignored)) ::unlink(path.c_str());
-    fail(shown, "can't be written", error);
-  }
+  if (error != 0) fail(shown, "can't be written", error);
 }
 
-/// Opens and locks a file; -1 when another process has it locked.
-int open_locked(const std::string& path) {
+/// Opens and locks a file; -1 when another process has it locked. Errors name the folder `shown`.
+int open_locked(const std::string& path, const std::string& shown) {
   while (true) {
     const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (file < 0) fail(path, "can't be written", errno);
+    if (file < 0) fail(shown, "can't be written", errno);
     const bool locked = ::flock(file, LOCK_EX | LOCK_NB) == 0;
     struct stat held {
     }, named{};
@@ -62,35 +60,29 @@ int open_locked(const std::string& path) {
 }  // namespace
 
 void write_file(const std::string& path, std::string_view content) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) throw InputError(fmt::format("{}: is a folder; expected a file name", path));
-  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
-    write_durably(path, content, path);  // a device or a pipe is written to, not replaced
-    return;
-  }
-  const std::string part = fmt::format("{}.part{}", path, ::getpid());
-  write_durably(part, content, path);
-  if (::rename(part.c_str(), path.c_str()) != 0) {
-    const int error = errno;
-    ::unlink(part.c_str());
-    fail(path, "can't be written", error);
-  }
+  PartFile file(path, PartFile::Needs::nothing);
+  write_durably(file.writable_path(), content, path);
+  file.commit();
 }
 
 AtomicFolder::AtomicFolder(const std::string& path)
-    : path_(path), part_(path + ".part"), old_(path + ".old"), lock_path_(path + ".lock") {
+    : path_(path),
+      target_(follow_links(path)),
+      part_(target_ + ".evbench.part"),
+      old_(target_ + ".evbench.old"),
+      lock_path_(target_ + ".evbench.lock") {
   std::error_code error;
-  const fs::path parent = fs::path(path).parent_path();
+  const fs::path parent = fs::path(target_).parent_path();
   if (!parent.empty()) fs::create_directories(parent, error);
   if (error) throw InputError(fmt::format("{}: can't be made: {}", parent.string(), error.message()));
-  lock_ = open_locked(lock_path_);
+  lock_ = open_locked(lock_path_, path);
   if (lock_ < 0) {
-    throw InputError(fmt::format("{}: another run is writing to this folder; give one of them another --out", path));
+    throw InputError(fmt::format("{}: another run is writing to this folder; wait for it, or write elsewhere", path));
   }
   fs::remove_all(part_, error);  // what a killed run left
-  if (!fs::exists(path_, error)) fs::rename(old_, path_, error);
+  if (!fs::exists(target_, error)) fs::rename(old_, target_, error);
   if (!fs::create_directory(part_, error)) {
-    const std::string message = fmt::format("{}: can't be made: {}", part_, error.message());
+    const std::string message = fmt::format("{}: can't be made: {}", path, error.message());
     ::unlink(lock_path_.c_str());
     ::close(lock_);
     throw InputError(message);
@@ -111,12 +103,12 @@ void AtomicFolder::write(const std::string& name, std::string_view content) cons
 void AtomicFolder::commit() {
   std::error_code error;
   fs::remove_all(old_, error);
-  if (fs::exists(path_, error)) fs::rename(path_, old_, error);
+  if (fs::exists(target_, error)) fs::rename(target_, old_, error);
   if (error) throw InputError(fmt::format("{}: can't be replaced: {}", path_, error.message()));
-  fs::rename(part_, path_, error);
+  fs::rename(part_, target_, error);
   if (error) {
     std::error_code ignored;
-    fs::rename(old_, path_, ignored);  // what was there before stays
+    fs::rename(old_, target_, ignored);  // what was there before stays
     throw InputError(fmt::format("{}: can't be written: {}", path_, error.message()));
   }
   fs::remove_all(old_, error);

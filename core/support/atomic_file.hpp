@@ -5,13 +5,14 @@
 
 namespace evbench {
 
-/// Writes a whole file under a temporary name beside it and renames it: readers see the old content or the new, never a
-/// half. Throws InputError (folder missing, no permission, disk full) and leaves no temporary file behind.
+/// Writes a whole file as a PartFile: readers see the old content or the new, never a half; a pipe or device is written
+/// to. Throws InputError (folder missing, no permission, disk full) and leaves nothing behind.
 void write_file(const std::string& path, std::string_view content);
 
 /// A folder that appears under its name only when it is complete: files are written into a temporary folder beside it
-/// (name + ".part"), commit() renames it, replacing an older folder of that name. Locked while it exists: a second
-/// writer of the same folder gets an InputError. Not committed, it disappears with the object.
+/// (name + ".evbench.part"), commit() renames it, replacing an older folder of that name, or the one that a symbolic
+/// link of that name leads to. Locked while it exists: a second writer of the same folder gets an InputError. Not
+/// committed, it disappears with the object; what a killed program left, the next writer removes.
 class AtomicFolder {
  public:
   explicit AtomicFolder(const std::string& path);
@@ -28,7 +29,7 @@ class AtomicFolder {
   void commit();
 
  private:
-  std::string path_, part_, old_, lock_path_;
+  std::string path_, target_, part_, old_, lock_path_;
   int lock_ = -1;
 };
 

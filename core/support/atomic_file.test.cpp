@@ -64,6 +64,23 @@ TEST_CASE("A folder that is not committed leaves what was there before") {
   CHECK(count_entries(folder.path()) == 1);
 }
 
+TEST_CASE("A folder takes the place of what a link leads to, and leaves alone what others have beside it") {
+  const testing::TemporaryFolder folder;
+  std::filesystem::create_directories(folder.file("disk/run"));
+  std::filesystem::create_symlink("disk/run", folder.file("run"));
+  std::filesystem::create_directory(folder.file("disk/run.part"));
+  folder.write("disk/run.part/a", "mine");
+  {
+    AtomicFolder run(folder.file("run"));
+    run.write("a", "new");
+    run.commit();
+  }
+  CHECK(std::filesystem::is_symlink(folder.file("run")));
+  CHECK(read_file(folder.file("disk/run/a")) == "new");
+  CHECK(read_file(folder.file("disk/run.part/a")) == "mine");
+  CHECK(count_entries(folder.file("disk")) == 2);
+}
+
 TEST_CASE("A folder has one writer at a time") {
   const testing::TemporaryFolder folder;
   {
@@ -76,11 +93,11 @@ TEST_CASE("A folder has one writer at a time") {
 
 TEST_CASE("What a killed writer left is cleared away, and what it was replacing comes back") {
   const testing::TemporaryFolder folder;
-  std::filesystem::create_directory(folder.file("run.part"));
-  folder.write("run.part/half", "x");
-  std::filesystem::create_directory(folder.file("run.old"));
-  folder.write("run.old/a", "old");
-  folder.write("run.lock", "");
+  std::filesystem::create_directory(folder.file("run.evbench.part"));
+  folder.write("run.evbench.part/half", "x");
+  std::filesystem::create_directory(folder.file("run.evbench.old"));
+  folder.write("run.evbench.old/a", "old");
+  folder.write("run.evbench.lock", "");
   { const AtomicFolder run(folder.file("run")); }
   CHECK(read_file(folder.file("run/a")) == "old");
   CHECK(count_entries(folder.path()) == 1);

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -10,48 +11,78 @@
 #include <filesystem>
 
 #include "core/support/error.hpp"
+#include "core/support/path.hpp"
 
 namespace evbench {
 namespace {
+
+namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const std::string& path, int error) {
   throw InputError(fmt::format("{}: can't be written: {}", path, std::strerror(error)));
 }
 
+std::string folder_of(const std::string& path) {
+  const std::string folder = fs::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
 }  // namespace
 
-PartFile::PartFile(const std::string& path, bool named) : path_(path), part_(path + ".part") {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw InputError(fmt::format("{}: is a folder; expected a file name", path));
+/// Makes the name beside the file by `succeeds`, which must fail with EEXIST where the name is taken.
+template <class Try>
+void PartFile::take_name(Try succeeds) {
+  const std::string name = fmt::format("{}.part{}", target_, ::getpid());
+  std::string candidate = name;
+  for (int i = 1; !succeeds(candidate); ++i) {
+    if (errno != EEXIST) fail(path_, errno);
+    candidate = fmt::format("{}-{}", name, i);
   }
-  std::string folder = std::filesystem::path(path).parent_path().string();
-  if (folder.empty()) folder = ".";
-  if (!named) descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0644);
-  nameless_ = descriptor_ >= 0;
-  if (!nameless_) descriptor_ = ::open(part_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor_ < 0) fail(path_, errno);
-  writable_path_ = nameless_ ? fmt::format("/proc/self/fd/{}", descriptor_) : part_;
+  part_ = candidate;
+}
+
+PartFile::PartFile(const std::string& path, Needs needs) : path_(path) {
+  std::error_code error;
+  const fs::file_status there = fs::status(path, error);
+  if (fs::is_directory(there)) throw InputError(fmt::format("{}: is a folder; expected a file name", path));
+  if (fs::exists(there) && !fs::is_regular_file(there)) {
+    if (needs != Needs::nothing) {
+      throw InputError(fmt::format("{}: is a pipe or a device; expected a file, as what is written there needs", path));
+    }
+    writable_path_ = path;
+    return;
+  }
+  target_ = follow_links(path);
+  if (needs != Needs::name) {
+    descriptor_ = ::open(folder_of(target_).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0644);
+    writable_path_ = fmt::format("/proc/self/fd/{}", descriptor_);
+  }
+  if (descriptor_ < 0) {
+    take_name([&](const std::string& name) {
+      descriptor_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+      return descriptor_ >= 0;
+    });
+    writable_path_ = part_;
+  }
+  if (fs::exists(there)) ::fchmod(descriptor_, static_cast<mode_t>(there.permissions()) & 0777);
 }
 
 PartFile::~PartFile() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);
-  if (!nameless_) ::unlink(part_.c_str());
+  if (!part_.empty()) ::unlink(part_.c_str());
 }
 
 void PartFile::commit() {
+  if (descriptor_ < 0) return;
   // A full disk is noticed here and not lost.
   if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) fail(path_, errno);
-  if (nameless_) {  // linkat() does not replace: by way of the .part name
-    ::unlink(part_.c_str());
-    if (::linkat(AT_FDCWD, writable_path_.c_str(), AT_FDCWD, part_.c_str(), AT_SYMLINK_FOLLOW) != 0) fail(path_, errno);
+  if (part_.empty()) {  // linkat() does not replace: by way of a name beside it
+    take_name([&](const std::string& name) {
+      return ::linkat(AT_FDCWD, writable_path_.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    });
   }
-  if (::rename(part_.c_str(), path_.c_str()) != 0) {
-    const int error = errno;
-    ::unlink(part_.c_str());
-    fail(path_, error);
-  }
+  if (::rename(part_.c_str(), target_.c_str()) != 0) fail(path_, errno);
   ::close(descriptor_);
   descriptor_ = -1;
 }

@@ -39,4 +39,15 @@ std::string anchored_path(const std::string& path, const std::string& folder) {
   return (std::filesystem::path(folder) / path).lexically_normal().string();
 }
 
+std::string follow_links(const std::string& path) {
+  constexpr int kMost = 40;  // as the kernel
+  std::filesystem::path at = path;
+  std::error_code error;
+  for (int i = 0; std::filesystem::is_symlink(at, error); ++i) {
+    if (i == kMost) throw InputError(fmt::format("{}: is a symbolic link that leads in a circle", path));
+    at = at.parent_path() / std::filesystem::read_symlink(at, error);
+  }
+  return at.string();
+}
+
 }  // namespace evbench

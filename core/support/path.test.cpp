@@ -2,8 +2,10 @@
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <filesystem>
 
 #include "core/support/error.hpp"
+#include "core/testing/data.hpp"
 
 using namespace evbench;
 using Catch::Matchers::Contains;
@@ -23,6 +25,21 @@ TEST_CASE("Environment variables in paths are expanded, unset ones are refused w
   CHECK_THROWS_AS(resolve_path("${EVBENCH_TEST_VARIABLE}/x", ""), InputError);
   CHECK_THROWS_WITH(resolve_path("${EVBENCH_TEST_VARIABLE}/x", ""), Contains("EVBENCH_TEST_VARIABLE is not set"));
   CHECK_THROWS_WITH(resolve_path("${EVBENCH_TEST_VARIABLE", ""), Contains("closing brace"));
+}
+
+TEST_CASE("Links are followed to where they lead, also to nothing, but not in a circle") {
+  const testing::TemporaryFolder folder;
+  const auto link = [&](const char* target, const char* name) {
+    std::filesystem::create_symlink(target, folder.file(name));
+    return folder.file(name);
+  };
+  std::filesystem::create_directory(folder.file("sub"));
+  CHECK(follow_links(link("sub/b", "a")) == folder.file("sub/b"));
+  link("/nowhere/x", "sub/b");
+  CHECK(follow_links(folder.file("a")) == "/nowhere/x");
+  CHECK(follow_links(folder.file("none")) == folder.file("none"));
+  link("two", "one");
+  CHECK_THROWS_WITH(follow_links(link("one", "two")), Contains("in a circle"));
 }
 
 TEST_CASE("An anchored path is the same for every folder and keeps its variables") {

@@ -24,8 +24,9 @@ void write_attribute(hid_t object, const char* name, int value) {
 
 }  // namespace
 
-DsecWriter::DsecWriter(const std::string& path, const RecordingHeader& header) : path_(path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are told by this class
+DsecWriter::DsecWriter(const std::string& path, std::string name, const RecordingHeader& header)
+    : name_(std::move(name)) {
+  hdf5::start_library();
   file_ = {check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)), H5Fclose};
   events_ = {check(H5Gcreate2(file_.get(), "events", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)), H5Gclose};
   if (header.width > 0) write_attribute(events_.get(), "width", header.width);
@@ -37,7 +38,7 @@ DsecWriter::DsecWriter(const std::string& path, const RecordingHeader& header) :
 }
 
 std::int64_t DsecWriter::check(std::int64_t id) const {
-  if (id < 0) throw InputError(fmt::format("{}: can't be written by the HDF5 library (disk full?)", path_));
+  if (id < 0) throw InputError(fmt::format("{}: can't be written by the HDF5 library (disk full?)", name_));
   return id;
 }
 
@@ -74,7 +75,7 @@ void DsecWriter::write(std::span<const Event> events) {
       throw InputError(
           fmt::format("{}: an event {} us after the first; DSEC's layout holds 0 to 2^32 - 1 (71 min): "
                       "give a time range",
-                      path_, since));
+                      name_, since));
     }
     while (static_cast<std::int64_t>(ms_to_idx_.size()) * 1000 <= since) ms_to_idx_.push_back(count_ + t.size());
     t.push_back(static_cast<std::uint32_t>(since));

@@ -16,7 +16,8 @@ namespace evbench {
 /// Throws InputError for more than 71 min, which is what 32 bits hold.
 class DsecWriter : public EventWriter {
  public:
-  DsecWriter(const std::string& path, const RecordingHeader& header);
+  /// `name`: what messages call the file.
+  DsecWriter(const std::string& path, std::string name, const RecordingHeader& header);
 
   void write(std::span<const Event> events) override;
   void finish() override;
@@ -31,7 +32,7 @@ class DsecWriter : public EventWriter {
   void append(const Column& column, std::uint64_t first, const void* numbers, std::size_t count) const;
   std::int64_t check(std::int64_t id) const;  ///< throws for what the library couldn't do
 
-  std::string path_;
+  std::string name_;
   hdf5::Handle file_, events_;
   Column t_, x_, y_, p_;
   std::vector<std::uint64_t> ms_to_idx_;

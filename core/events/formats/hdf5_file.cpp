@@ -133,6 +133,12 @@ herr_t add_object(hid_t, const char* name, const H5O_info_t* info, void* data) {
 
 }  // namespace
 
+void start_library() {
+  static const bool left_alone = H5dont_atexit() >= 0;  // fails when another part of the program was first: so be it
+  static_cast<void>(left_alone);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
 Handle& Handle::operator=(Handle&& other) noexcept {
   if (this != &other) {
     reset();
@@ -208,7 +214,7 @@ double Dataset::first(std::uint64_t row) const {
 }
 
 File::File(std::string path) : path_(std::move(path)) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // its stack is put into our messages instead of on the console
+  start_library();
   register_filters();
   id_ = Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), close_file);
   checked(id_.get(), path_);

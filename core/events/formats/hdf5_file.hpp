@@ -8,6 +8,11 @@
 
 namespace evbench::hdf5 {
 
+/// To be called before anything else is asked of the library; may be called again. The library keeps its errors to
+/// itself (they are put into our messages) and leaves alone, when the program ends, what could not be closed: after a
+/// full disk it would crash there.
+void start_library();
+
 /// An identifier of the HDF5 library and how to close it.
 class Handle {
  public:

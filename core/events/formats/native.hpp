@@ -60,7 +60,8 @@ class NativeReader : public EventReader {
 /// Writes it. Times must not go back.
 class NativeWriter : public EventWriter {
  public:
-  NativeWriter(const std::string& path, const RecordingHeader& header);
+  /// `name`: what messages call the file; empty: the path.
+  NativeWriter(const std::string& path, const RecordingHeader& header, const std::string& name = {});
   ~NativeWriter() override;
   NativeWriter(const NativeWriter&) = delete;
   NativeWriter& operator=(const NativeWriter&) = delete;
@@ -73,7 +74,7 @@ class NativeWriter : public EventWriter {
   void end_chunk();
   void put(std::span<const std::byte> bytes);
 
-  std::string path_, metadata_;
+  std::string name_, metadata_;
   native::Header header_;
   std::vector<native::Chunk> chunks_;
   std::vector<Event> pending_;

@@ -19,12 +19,12 @@ std::span<const std::byte> bytes_of(const T& value) {
 
 }  // namespace
 
-NativeWriter::NativeWriter(const std::string& path, const RecordingHeader& header)
-    : path_(path),
+NativeWriter::NativeWriter(const std::string& path, const RecordingHeader& header, const std::string& name)
+    : name_(name.empty() ? path : name),
       metadata_(native::format_metadata(header)),
       newest_(std::numeric_limits<std::int64_t>::min()),
       file_(std::fopen(path.c_str(), "wb")) {
-  if (file_ == nullptr) throw InputError(fmt::format("{}: can't be written: {}", path_, std::strerror(errno)));
+  if (file_ == nullptr) throw InputError(fmt::format("{}: can't be written: {}", name_, std::strerror(errno)));
   header_.width = static_cast<std::uint32_t>(header.width);
   header_.height = static_cast<std::uint32_t>(header.height);
   put(bytes_of(native::Header{}));  // its place; without magic until all is written
@@ -36,7 +36,7 @@ NativeWriter::~NativeWriter() {
 
 void NativeWriter::put(std::span<const std::byte> bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), static_cast<std::FILE*>(file_)) != bytes.size()) {
-    throw InputError(fmt::format("{}: can't be written: {}", path_, std::strerror(errno)));
+    throw InputError(fmt::format("{}: can't be written: {}", name_, std::strerror(errno)));
   }
   size_ += bytes.size();
 }
@@ -46,14 +46,14 @@ void NativeWriter::check(const Event& event) const {
     throw InputError(
         fmt::format("{}: an event of {} us comes after one of {} us; the native format has events in time "
                     "order",
-                    path_, event.t, newest_));
+                    name_, event.t, newest_));
   }
   if (event.t <= -native::kMaxTime || event.t >= native::kMaxTime) {
-    throw InputError(fmt::format("{}: an event of {} us; the native format holds times within {} us", path_, event.t,
+    throw InputError(fmt::format("{}: an event of {} us; the native format holds times within {} us", name_, event.t,
                                  native::kMaxTime));
   }
   if ((header_.width > 0 && event.x >= header_.width) || (header_.height > 0 && event.y >= header_.height)) {
-    throw InputError(fmt::format("{}: an event at pixel ({}, {}) is outside the sensor of {}x{} pixels", path_, event.x,
+    throw InputError(fmt::format("{}: an event at pixel ({}, {}) is outside the sensor of {}x{} pixels", name_, event.x,
                                  event.y, header_.width, header_.height));
   }
 }
@@ -100,7 +100,7 @@ void NativeWriter::finish() {
   std::rewind(file);
   put(bytes_of(header_));
   file_ = nullptr;
-  if (std::fclose(file) != 0) throw InputError(fmt::format("{}: can't be written: {}", path_, std::strerror(errno)));
+  if (std::fclose(file) != 0) throw InputError(fmt::format("{}: can't be written: {}", name_, std::strerror(errno)));
 }
 
 }  // namespace evbench

@@ -9,10 +9,12 @@
 #include <iterator>
 
 #include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 
-TextWriter::TextWriter(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "wb")) {
+TextWriter::TextWriter(const std::string& path, std::string name)
+    : name_(std::move(name)), file_(std::fopen(path.c_str(), "wb")) {
   if (file_ == nullptr) fail();
 }
 
@@ -21,7 +23,8 @@ TextWriter::~TextWriter() {
 }
 
 void TextWriter::fail() const {
-  throw InputError(fmt::format("{}: can't be written: {}", path_, std::strerror(errno)));
+  check_interruption();  // it may have waited for a pipe's reader
+  throw InputError(fmt::format("{}: can't be written: {}", name_, std::strerror(errno)));
 }
 
 void TextWriter::write(std::span<const Event> events) {

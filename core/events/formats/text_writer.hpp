@@ -12,7 +12,8 @@ namespace evbench {
 /// The Event-Camera Dataset's events.txt: `t x y p`, seconds with six decimals, polarity 0 or 1.
 class TextWriter : public EventWriter {
  public:
-  explicit TextWriter(const std::string& path);
+  /// `name`: what messages call the file.
+  TextWriter(const std::string& path, std::string name);
   ~TextWriter() override;
   TextWriter(const TextWriter&) = delete;
   TextWriter& operator=(const TextWriter&) = delete;
@@ -23,7 +24,7 @@ class TextWriter : public EventWriter {
  private:
   [[noreturn]] void fail() const;
 
-  std::string path_;
+  std::string name_;
   std::FILE* file_ = nullptr;
   fmt::memory_buffer buffer_;
 };
