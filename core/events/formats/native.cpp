@@ -140,6 +140,7 @@ bool NativeReader::read(std::vector<Event>& events) {
     const Chunk& chunk = chunks_[number];
     const auto offset = static_cast<std::size_t>(chunk.offset);
     const std::size_t size = native::packed_size(chunk.layout, chunk.events);
+    if (mapping_) mapping_->expect_whole();
     hold(offset, size);
     if (!is_intact(number)) continue;
     events.resize(chunk.events);

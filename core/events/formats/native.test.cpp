@@ -136,6 +136,23 @@ TEST_CASE("A native file that is truncated anywhere is refused") {
   CHECK_THROWS_AS(read_bytes(bytes + "x"), InputError);
 }
 
+TEST_CASE("A native file that is shortened while it is read is an error; one that is replaced is read to its end") {
+  const testing::TemporaryFolder folder;
+  const auto events = random_events(100000, 240, 180, 10.0);
+  const std::string path = write_native(folder.file("events.evb"), events, davis_header());
+  std::vector<Event> chunk;
+  {
+    NativeReader reader(path);
+    write_native(folder.file("other.evb"), {}, {});
+    std::filesystem::rename(folder.file("other.evb"), path);
+    CHECK(read_all(reader) == events);
+  }
+  NativeReader reader(write_native(path, events, davis_header()));
+  REQUIRE(reader.read(chunk));
+  std::filesystem::resize_file(path, 100000);
+  CHECK_THROWS_WITH(reader.read(chunk), Contains("events.evb: was shortened"));
+}
+
 TEST_CASE("A flipped bit anywhere in a native file is noticed") {
   const testing::TemporaryFolder folder;
   const auto events = random_events(300, 240, 180, 10.0);
