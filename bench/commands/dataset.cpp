@@ -8,9 +8,16 @@
 #include "bench/commands/progress_line.hpp"
 #include "bench/datasets/fetch.hpp"
 #include "core/data/datasets.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
+
+constexpr const char* kPlace =
+    "Datasets are kept in the folder that EVBENCH_DATASETS names, or ~/.cache/evbench/datasets, each in one of its "
+    "name;\n"
+    "NAME.download beside it has what was fetched of one that is not complete yet. A source of type recording takes\n"
+    "them by name: {\"dataset\": \"ecd/dynamic_6dof\"}. Their licences are their own.";
 
 void list_datasets() {
   std::string collection;
@@ -29,21 +36,24 @@ void get_dataset(const std::string& name, bool quiet) {
   const std::vector<Dataset> catalogue = read_catalogue(catalogue_path());
   const Dataset& dataset = find_dataset(catalogue, name);
   const std::string folder = dataset_folder(name);
+  ProgressLine progress(name, quiet);
   const auto tell = [&](const std::string& line) {
-    if (!quiet) fmt::print("{}\n", line);
+    if (quiet) return;
+    progress.clear();
+    fmt::print("{}\n", line);
+    std::fflush(stdout);
   };
   if (std::filesystem::is_directory(folder)) {
     tell(fmt::format("{}: is there already", folder));
     return;
   }
   tell(fmt::format("{}: {}\nLicence: {}; see {}", dataset.name, dataset.collection, dataset.licence, dataset.homepage));
-  std::fflush(stdout);
-  ProgressLine line(name, quiet);
+  const Interruption interruption(name + ": interrupted; the same command goes on from there");
   DownloadOptions options;
   options.progress = [&](std::uint64_t have, std::optional<std::uint64_t> total) {
     const double mib = static_cast<double>(have) * 0x1p-20;
-    line.update(total ? fmt::format("{:.1f} of {:.1f} MiB", mib, static_cast<double>(*total) * 0x1p-20)
-                      : fmt::format("{:.1f} MiB", mib));
+    progress.update(total ? fmt::format("{:.1f} of {:.1f} MiB", mib, static_cast<double>(*total) * 0x1p-20)
+                          : fmt::format("{:.1f} MiB", mib));
   };
   fetch_dataset(dataset, folder, options, tell);
   tell("written: " + folder);
@@ -61,12 +71,11 @@ void add_dataset(CLI::App& app) {
   command->require_subcommand(1);
   command->add_subcommand("list", "List the catalogue; a star marks what is there")->callback(list_datasets);
   CLI::App* get = command->add_subcommand("get", "Fetch a dataset; a download that broke off goes on");
+  get->footer(kPlace);
   get->add_option("name", arguments->name, "Name, e.g. ecd/dynamic_6dof")->required();
   get->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   get->callback([arguments] { get_dataset(arguments->name, arguments->quiet); });
-  command->footer(
-      "Datasets are kept in the folder that EVBENCH_DATASETS names, or ~/.cache/evbench/datasets. A source of type\n"
-      "recording takes them by name: {\"dataset\": \"ecd/dynamic_6dof\"}. Their licences are their own.");
+  command->footer(kPlace);
 }
 
 }  // namespace evbench

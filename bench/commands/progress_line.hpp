@@ -14,11 +14,15 @@ class ProgressLine {
  public:
   ProgressLine(std::string title, bool quiet)
       : title_(std::move(title)), shown_(!quiet && ::isatty(STDERR_FILENO) != 0) {}
-  ~ProgressLine() {
-    if (shown_) fmt::print(stderr, "\r\033[K");
-  }
+  ~ProgressLine() { clear(); }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
+
+  /// Makes room for other text; the next update shows the line again.
+  void clear() {
+    if (shown_) fmt::print(stderr, "\r\033[K");
+    std::fflush(stderr);
+  }
 
   /// At most ten times a second, so that it may be called as often as one likes.
   void update(const std::string& text) {

@@ -3,7 +3,9 @@
 #include <httplib.h>
 
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <fstream>
+#include <map>
 #include <thread>
 
 #include "bench/datasets/download.hpp"
@@ -11,6 +13,7 @@
 #include "bench/datasets/unpack.hpp"
 #include "bench/testing/program.hpp"
 #include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 #include "core/support/sha256.hpp"
 
 using namespace evbench;
@@ -19,7 +22,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// Serves one file at /file.zip and counts; connections can be cut and ranges ignored.
+/// Serves one file at /file.zip and counts; connections can be cut and ranges ignored. Others at /more/NAME.
 class Server {
  public:
   explicit Server(std::string content) : content_(std::move(content)) {
@@ -33,6 +36,15 @@ class Server {
     server_.Get("/broken.zip", [this](const httplib::Request&, httplib::Response& response) {
       ++requests_;
       response.status = 503;
+    });
+    server_.Get("/more/(.*)", [this](const httplib::Request& request, httplib::Response& response) {
+      const std::string name = request.matches[1];
+      ++asked_for[name];
+      if (more.count(name) == 0) {
+        response.status = 404;
+      } else {
+        response.set_content(more[name], name.ends_with(".html") ? "text/html; charset=utf-8" : "application/zip");
+      }
     });
     port_ = server_.bind_to_any_port("127.0.0.1");
     thread_ = std::thread([this] { server_.listen_after_bind(); });
@@ -51,7 +63,9 @@ class Server {
 
   int cuts = 0;  ///< connections that are still to be cut, in the middle of what was asked for
   bool knows_ranges = true;
-  std::string etag = "\"1\"";
+  std::string etag = "\"1\"", last_modified;
+  std::map<std::string, std::string> more;
+  std::map<std::string, int> asked_for;  ///< of these
   int requests() const { return requests_; }
   const std::string& last_range() const { return last_range_; }
   void change(std::string content) { content_ = std::move(content); }
@@ -60,12 +74,15 @@ class Server {
   void serve(const httplib::Request& request, httplib::Response& response) {
     std::string body = content_;
     if (!etag.empty()) response.set_header("ETag", etag);
+    if (!last_modified.empty()) response.set_header("Last-Modified", last_modified);
     const std::string condition = request.get_header_value("If-Range");
-    const bool ranged = knows_ranges && last_range_.starts_with("bytes=") && (condition.empty() || condition == etag);
+    const bool same = condition.empty() || condition == etag || condition == last_modified;
+    const bool ranged = knows_ranges && last_range_.starts_with("bytes=") && same;
     if (ranged) {
       const std::size_t from = std::stoul(last_range_.substr(6));
       if (from >= body.size()) {
         response.status = 416;
+        response.set_header("Content-Range", "bytes */" + std::to_string(body.size()));
         return;
       }
       // The library cuts by itself what has no status: the answer is made by hand.
@@ -198,6 +215,72 @@ TEST_CASE("A file that changed on the server since the download broke off is fet
   CHECK(read_file(folder.file("a.zip")) == std::string(200000, 'x'));
 }
 
+TEST_CASE(
+    "Without a strong tag, the time of the last change tells versions apart; without either all is fetched anew") {
+  const TemporaryFolder folder;
+  Server server(noise(300000));
+  server.cuts = 1;
+  server.etag = GENERATE("", "W/\"1\"");
+  const bool dated = GENERATE(true, false), changed = GENERATE(true, false);
+  if (dated) server.last_modified = "Tue, 01 Jul 2025 00:00:00 GMT";
+  DownloadOptions options = quick();
+  options.attempts = 1;
+  CHECK_THROWS_WITH(download(server.url(), folder.file("a.zip"), options),
+                    Contains(dated ? "goes on from there" : "begins anew"));
+  const std::string now = changed ? std::string(310000, 'x') : noise(300000);
+  if (changed && dated) server.last_modified = "Wed, 02 Jul 2025 00:00:00 GMT";
+  server.change(now);
+  download(server.url(), folder.file("a.zip"), options);
+  CHECK(server.last_range() == (dated ? "bytes=150000-" : ""));
+  CHECK(read_file(folder.file("a.zip")) == now);
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.zip"});
+}
+
+TEST_CASE("A download of which all bytes are there, but which was not finished, is not fetched again") {
+  const TemporaryFolder folder;
+  const Server server(noise(1000));
+  folder.write("a.zip.part", noise(1000));
+  folder.write("a.zip.part.version", "\"1\"");
+  download(server.url(), folder.file("a.zip"), quick());
+  CHECK(server.last_range() == "bytes=1000-");
+  CHECK(server.requests() == 1);
+  CHECK(read_file(folder.file("a.zip")) == noise(1000));
+}
+
+TEST_CASE("A web page in the place of a file is an error; a file that begins likewise is not") {
+  const TemporaryFolder folder;
+  Server server("");
+  server.more = {{"a.zip", "\n<!DOCTYPE HTML><p>Not found"}, {"b.html", "<?xml?><html>"}, {"c.xml", "<?xml?><a/>"}};
+  for (const char* name : {"more/a.zip", "more/b.html"}) {
+    CHECK_THROWS_WITH(download(server.url(name), folder.file("a"), quick()), Contains("answers with a web page"));
+  }
+  CHECK(std::filesystem::is_empty(folder.path()));
+  CHECK_NOTHROW(download(server.url("more/c.xml"), folder.file("c.xml"), quick()));
+}
+
+TEST_CASE("A download that is interrupted says so and keeps what is there") {
+  const TemporaryFolder folder;
+  const Server server(noise(30000000));
+  DownloadOptions options = quick();
+  options.progress = [](std::uint64_t, std::optional<std::uint64_t>) {
+    if (!Interruption::is_requested()) std::raise(SIGTERM);
+  };
+  {
+    const Interruption interruption("interrupted");
+    CHECK_THROWS_WITH(download(server.url(), folder.file("a.zip"), options), "interrupted");
+  }
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.zip.part", "a.zip.part.version"});
+  download(server.url(), folder.file("a.zip"), quick());
+  CHECK_THAT(server.last_range(), Catch::StartsWith("bytes="));
+  CHECK(read_file(folder.file("a.zip")) == noise(30000000));
+}
+
+TEST_CASE("An error while a download is written passes through") {
+  const TemporaryFolder folder;
+  const Server server(noise(1000));
+  CHECK_THROWS_WITH(download(server.url(), folder.file("no/a.zip"), quick()), Contains("a.zip.part: can't be written"));
+}
+
 TEST_CASE("A part file that is longer than what the server has is thrown away") {
   const TemporaryFolder folder;
   const Server server(noise(1000));
@@ -269,6 +352,47 @@ TEST_CASE("A zip that is truncated or has a flipped bit is refused") {
   flipped[1000] = static_cast<char>(flipped[1000] ^ 4);
   folder.write("flipped.zip", flipped);
   CHECK_THROWS_AS(unpack(folder.file("flipped.zip"), made_folder(folder, "flipped"), 1 << 20), InputError);
+}
+
+TEST_CASE("An archive has names of any language") {
+  const TemporaryFolder folder;
+  const std::string bytes = read_file(make_archive(folder.file("a.zip"), {{"ae_name.txt", "x"}, {"b.txt", "y"}}));
+  std::string named = bytes;  // libarchive writes such names only where the locale has them
+  for (std::size_t at = named.find("ae_name"); at != std::string::npos; at = named.find("ae_name", at + 7)) {
+    named.replace(at, 2, "\xc3\xa4");
+    // Bit 11 of the flags: the name is UTF-8. They are before the name, by what the kind of header says.
+    const bool central = at >= 46 && named.compare(at - 46, 4, "PK\1\2") == 0;
+    named[at - (central ? 46 - 9 : 30 - 7)] = static_cast<char>(named[at - (central ? 46 - 9 : 30 - 7)] | 8);
+  }
+  folder.write("named.zip", named);
+  unpack(folder.file("named.zip"), made_folder(folder, "out"), 1000);
+  CHECK(read_file(folder.file("out/\xc3\xa4_name.txt")) == "x");
+  CHECK(read_file(folder.file("out/b.txt")) == "y");
+}
+
+TEST_CASE("What was fetched of a dataset stays until all of it is there; a damaged archive is fetched again") {
+  const TemporaryFolder folder;
+  Server server("");
+  const std::string zip = read_file(make_archive(folder.file("b.zip"), {{"events.txt", noise(5000)}}));
+  server.more = {{"a.h5", noise(1000)}};
+  Dataset dataset;
+  dataset.limit_gib = 1.0;
+  dataset.files = {{server.url("more/a.h5"), "a.h5", "", false}, {server.url("more/b.zip"), "b.zip", "", true}};
+  const std::string target = folder.file("set");
+  const auto fetch = [&] { fetch_dataset(dataset, target, quick(), [](const std::string&) {}); };
+  CHECK_THROWS_WITH(fetch(), Contains("b.zip") && Contains("404"));
+  CHECK(names_in(folder.path()) == std::set<std::string>{"b.zip", "set.download"});
+  CHECK(names_in(target + ".download") == std::set<std::string>{"a.h5"});
+  server.more["b.zip"] = zip.substr(0, zip.size() / 2);
+  CHECK_THROWS_WITH(fetch(), Contains("damaged archive") && Contains("removed, the same command fetches"));
+  CHECK(names_in(target + ".download") == std::set<std::string>{"a.h5"});
+  server.more["b.zip"] = zip;
+  fetch();
+  CHECK(server.asked_for["a.h5"] == 1);
+  CHECK(server.asked_for["b.zip"] == 3);
+  CHECK(read_file(target + "/a.h5") == noise(1000));
+  CHECK(read_file(target + "/events.txt") == noise(5000));
+  CHECK(names_in(folder.path()) == std::set<std::string>{"b.zip", "set"});
 }
 
 TEST_CASE("dataset get fetches and unpacks by name, once; dataset list marks what is there") {

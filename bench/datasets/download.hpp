@@ -18,11 +18,13 @@ struct DownloadOptions {
 };
 
 /// Fetches a file by HTTP(S). It is `path`.part until it is complete and its checksum is right; a download that broke
-/// off goes on where it stopped, also in a later call (by Range, and If-Range with the server's entity tag, kept in
-/// `path`.part.etag: a file that has changed meanwhile is fetched from its beginning). Servers without Range are fine.
+/// off goes on where it stopped, also in a later call: by Range, and If-Range with the server's entity tag or else its
+/// time of the last change, kept in `path`.part.version. A file that has changed meanwhile, or of which the server says
+/// neither, is fetched from its beginning. Servers without Range are fine.
 ///
-/// Throws InputError, naming the address, for what the server refuses (404, ...), a connection that broke too often
-/// (what is there stays), a file that is too big, and one with another checksum (which is removed).
+/// Throws InputError, naming the address, for what the server refuses (404, ...), a connection that broke too often and
+/// an Interruption (what is there stays), a file that is too big, one with another checksum, and a web page in the
+/// place of the file (these are removed).
 void download(const std::string& url, const std::string& path, const DownloadOptions& options = {});
 
 }  // namespace evbench

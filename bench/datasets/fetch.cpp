@@ -14,19 +14,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string name_in(const std::string& url) {
-  const std::string path = url.substr(0, url.find_first_of("?#"));
-  return path.substr(path.find_last_of('/') + 1);
+/// A file or folder into a folder that has none of its name.
+void move_into(const fs::path& folder, const fs::path& path) {
+  const fs::path target = folder / path.filename();
+  if (fs::exists(target)) {
+    throw InputError(fmt::format("{}: is in two of the dataset's files", path.filename().string()));
+  }
+  fs::rename(path, target);
 }
 
-/// Everything in a folder into another one that has none of it.
-void move_content(const fs::path& from, const fs::path& to) {
-  for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
-    const fs::path target = to / entry.path().filename();
-    if (fs::exists(target)) throw InputError(fmt::format("{}: is in two of the dataset's files", target.string()));
-    fs::rename(entry.path(), target);
+/// An archive that is of no use is removed: fetched once more, it may be good.
+void unpack_into(const fs::path& folder, const fs::path& archive, const std::string& url, std::uint64_t limit) {
+  const fs::path unpacked = folder / ".unpacked";
+  fs::create_directory(unpacked);
+  try {
+    unpack(archive.string(), unpacked.string(), limit);
+  } catch (const BadArchive& error) {
+    fs::remove(archive);
+    throw InputError(fmt::format("{}: removed, the same command fetches {} again", error.what(), url));
   }
-  fs::remove(from);
+  for (const fs::directory_entry& entry : fs::directory_iterator(unpacked)) move_into(folder, entry.path());
+  fs::remove(unpacked);
 }
 
 }  // namespace
@@ -36,23 +44,21 @@ void fetch_dataset(const Dataset& dataset, const std::string& folder, const Down
   AtomicFolder atomic(folder);  // locks, too
   const fs::path downloads = folder + ".download";
   fs::create_directories(downloads);
+  DownloadOptions options = download_options;
+  options.limit = static_cast<std::uint64_t>(dataset.limit_gib * 0x1p30);
   for (const Dataset::File& file : dataset.files) {
-    DownloadOptions options = download_options;
     options.sha256 = file.sha256;
-    options.limit = static_cast<std::uint64_t>(dataset.limit_gib * 0x1p30);
-    const fs::path path = downloads / name_in(file.url);
-    if (!fs::exists(path)) download(file.url, path.string(), options);
-    told(fmt::format("{}: {} bytes, SHA-256 {} ({})", file.url, fs::file_size(path), sha256_file(path.string()),
+    const std::string path = downloads / file.name;
+    if (!fs::exists(path)) download(file.url, path, options);
+    told(fmt::format("{}: {} bytes, SHA-256 {} ({})", file.url, fs::file_size(path), sha256_file(path),
                      file.sha256.empty() ? "not compared: the catalogue has none" : "as the catalogue has it"));
-    if (file.unpack) {
-      const fs::path unpacked = downloads / "unpacked";
-      fs::remove_all(unpacked);
-      fs::create_directory(unpacked);
-      unpack(path.string(), unpacked.string(), options.limit);
-      move_content(unpacked, atomic.part());
-    } else {
-      fs::rename(path, fs::path(atomic.part()) / path.filename());
-    }
+  }
+  // Nothing is taken from the downloads before all of it is known to be good.
+  for (const Dataset::File& file : dataset.files) {
+    if (file.unpack) unpack_into(atomic.part(), downloads / file.name, file.url, options.limit);
+  }
+  for (const Dataset::File& file : dataset.files) {
+    if (!file.unpack) move_into(atomic.part(), downloads / file.name);
   }
   atomic.commit();
   std::error_code ignored;

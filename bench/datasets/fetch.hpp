@@ -8,9 +8,10 @@
 
 namespace evbench {
 
-/// Downloads a dataset's files and unpacks them into `folder`, which appears when all of it is there; downloads that
-/// break off stay in `folder`.download and go on with the next call. `told` gets a line for each step, `download` has
-/// the pause, attempts and progress of downloads. Throws InputError.
+/// Downloads a dataset's files and unpacks them into `folder`, which appears when all of it is there. Until then
+/// `folder`.download has the files, those that are complete and those that broke off, and the next call goes on from
+/// there; an archive that is damaged is removed. `told` gets a line for each file, `download` has the pause, attempts
+/// and progress of downloads. Throws InputError.
 void fetch_dataset(const Dataset& dataset, const std::string& folder, const DownloadOptions& download,
                    const std::function<void(const std::string&)>& told);
 

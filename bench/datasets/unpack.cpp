@@ -4,12 +4,15 @@
 #include <archive_entry.h>
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <clocale>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <vector>
 
-#include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
@@ -18,6 +21,24 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kBlock = 1 << 20;  // [bytes]
 constexpr int kMaxEntries = 1000000;
+
+/// Names in archives are UTF-8, whatever the user's locale is: libarchive converts them by the thread's.
+class Utf8Locale {
+ public:
+  Utf8Locale() : utf8_(::newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr)) {
+    if (utf8_ != nullptr) before_ = ::uselocale(utf8_);
+  }
+  ~Utf8Locale() {
+    if (utf8_ == nullptr) return;
+    ::uselocale(before_);
+    ::freelocale(utf8_);
+  }
+  Utf8Locale(const Utf8Locale&) = delete;
+  Utf8Locale& operator=(const Utf8Locale&) = delete;
+
+ private:
+  locale_t utf8_, before_ = nullptr;
+};
 
 class Unpacker {
  public:
@@ -34,14 +55,17 @@ class Unpacker {
     for (int count = 0;; ++count) {
       const int result = archive_read_next_header(archive_.get(), &entry);
       if (result == ARCHIVE_EOF) return;
-      if (result != ARCHIVE_OK) fail(message());
+      if (result < ARCHIVE_WARN) fail(message());  // a warning is of a name that this locale has no characters for
       if (count == kMaxEntries) fail(fmt::format("has more than {} entries", kMaxEntries));
       extract(entry);
     }
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw InputError(fmt::format("{}: {}", path_, message)); }
+  [[noreturn]] void fail(const std::string& message) const { throw BadArchive(fmt::format("{}: {}", path_, message)); }
+  [[noreturn]] void fail_writing(const std::string& name, int error) const {
+    throw InputError(fmt::format("{}: the entry \"{}\" can't be written: {}", path_, name, std::strerror(error)));
+  }
   std::string message() const {
     const char* const text = archive_error_string(archive_.get());
     return fmt::format("is a damaged archive: {}", text != nullptr ? text : "unknown error");
@@ -67,24 +91,23 @@ class Unpacker {
     const fs::path target = fs::path(folder_) / name;
     std::error_code error;
     fs::create_directories(type == AE_IFDIR ? target : target.parent_path(), error);
-    if (error) fail(fmt::format("the entry \"{}\" can't be written: {}", name, error.message()));
+    if (error) fail_writing(name, error.value());
     if (type == AE_IFREG) extract_file(name, target);
   }
 
   void extract_file(const std::string& name, const fs::path& target) {
     if (fs::exists(target)) fail(fmt::format("the entry \"{}\" is there twice", name));
     const std::unique_ptr<std::FILE, decltype(&std::fclose)> file(std::fopen(target.c_str(), "wb"), std::fclose);
-    if (!file) fail(fmt::format("the entry \"{}\" can't be written", name));
+    if (!file) fail_writing(name, errno);
     while (const la_ssize_t got = archive_read_data(archive_.get(), block_.data(), block_.size())) {
       if (got < 0) fail(fmt::format("{} (entry \"{}\")", message(), name));
       const auto size = static_cast<std::size_t>(got);
       if (size > left_) fail(fmt::format("unpacks to more than the catalogue allows, at entry \"{}\"", name));
       left_ -= size;
-      if (std::fwrite(block_.data(), 1, size, file.get()) != size) {
-        fail(fmt::format("the entry \"{}\" can't be written (disk full?)", name));
-      }
+      if (std::fwrite(block_.data(), 1, size, file.get()) != size) fail_writing(name, errno);
+      check_interruption();
     }
-    if (std::fflush(file.get()) != 0) fail(fmt::format("the entry \"{}\" can't be written (disk full?)", name));
+    if (std::fflush(file.get()) != 0) fail_writing(name, errno);
   }
 
   std::string path_, folder_;
@@ -106,6 +129,7 @@ void lift_single_folder(const std::string& folder) {
 }  // namespace
 
 void unpack(const std::string& archive, const std::string& folder, std::uint64_t limit) {
+  const Utf8Locale locale;
   Unpacker(archive, folder, limit).run();
   lift_single_folder(folder);
 }

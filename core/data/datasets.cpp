@@ -45,6 +45,11 @@ Dataset::File read_file(const Json& json, const std::string& name) {
   if (!file.url.starts_with("https://") && !file.url.starts_with("http://")) {
     throw InputError(fmt::format("url: is \"{}\"; expected http:// or https://", file.url));
   }
+  const std::string path = file.url.substr(0, file.url.find_first_of("?#"));
+  file.name = path.substr(path.find_last_of('/') + 1);
+  if (file.name.empty() || file.name.starts_with('.') || path.find('/', path.find("://") + 3) == std::string::npos) {
+    throw InputError(fmt::format("url: is \"{}\"; expected one that ends in a file's name", file.url));
+  }
   if (!file.sha256.empty() && !std::regex_match(file.sha256, std::regex("[0-9a-f]{64}"))) {
     throw InputError(fmt::format("sha256: is \"{}\"; expected 64 hexadecimal digits", file.sha256));
   }
@@ -65,6 +70,10 @@ Dataset read_dataset(const Json& collection, const Json& sequence) {
   dataset.limit_gib = collection.at("limit_gib").get<double>();
   for (const Json& file : sequence.contains("files") ? sequence.at("files") : collection.at("files")) {
     dataset.files.push_back(read_file(file, name));
+    const std::string& last = dataset.files.back().name;
+    if (std::ranges::count(dataset.files, last, &Dataset::File::name) > 1) {
+      throw InputError(fmt::format("url: two of the files are called \"{}\"; expected another name for each", last));
+    }
   }
   return dataset;
 }

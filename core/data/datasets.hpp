@@ -9,6 +9,7 @@ namespace evbench {
 struct Dataset {
   struct File {
     std::string url;
+    std::string name;     ///< that the address ends in, e.g. "dynamic_6dof.zip"; each file of a dataset has another
     std::string sha256;   ///< 64 digits; empty: unknown
     bool unpack = false;  ///< an archive (zip, tar.gz)
   };

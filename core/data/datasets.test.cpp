@@ -65,8 +65,14 @@ TEST_CASE("A catalogue that is broken is refused with the place") {
   refused("{", "parse error");
   refused("{}", "collections");
   refused(collection(R"({"url": "ftp://x/{name}"})", kSequence), "c/a: url: is \"ftp://x/a\"");
-  refused(collection(R"({"url": "http://x", "sha256": "12"})", kSequence), "sha256");
-  refused(collection(R"({"url": "http://x"})", R"({"name": "../a", "description": "d"})"), "expected words");
-  refused(collection(R"({"url": "http://x"})", std::string(kSequence) + ", " + kSequence), "is there twice");
+  for (const char* url : {"http://x", "http://x/", "http://x/f/?a=b.zip", "http://x/..", "http://x/.f"}) {
+    refused(collection(std::string(R"({"url": ")") + url + "\"}", kSequence),
+            "expected one that ends in a file's name");
+  }
+  refused(collection(R"({"url": "http://x/f"}, {"url": "http://y/f?a=b"})", kSequence),
+          "two of the files are called \"f\"");
+  refused(collection(R"({"url": "http://x/f", "sha256": "12"})", kSequence), "sha256");
+  refused(collection(R"({"url": "http://x/f"})", R"({"name": "../a", "description": "d"})"), "expected words");
+  refused(collection(R"({"url": "http://x/f"})", std::string(kSequence) + ", " + kSequence), "is there twice");
   CHECK_THROWS_AS(read_catalogue(folder.file("no.json")), InputError);
 }
