@@ -8,6 +8,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/commands/time_range.hpp"
+#include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
 namespace evbench {
@@ -37,6 +38,7 @@ RenderOptions render_options(const RenderArguments& arguments) {
 }
 
 void execute(const RenderArguments& arguments) {
+  if (arguments.decay && arguments.mode != "time_surface") throw InputError("--decay: is for --mode time_surface");
   RenderReport report;
   {
     const Interruption interruption(arguments.out + ": interrupted; nothing was written");
@@ -98,10 +100,11 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
 
 void add_picture_options(CLI::App& command, RenderArguments& arguments) {
   RenderOptions& options = arguments.options;
-  command.add_option("--tracks", options.tracks, "Draw these feature tracks (id t x y) over the events")
-      ->type_name("FILE");
+  auto* tracks = command.add_option("--tracks", options.tracks, "Draw these feature tracks (id t x y) over the events");
+  tracks->type_name("FILE");
   command.add_option("--tail", arguments.tail, "How long a track's tail is [ms]; default: 100")
-      ->check(CLI::Range(0.001, 1e9));
+      ->check(CLI::Range(0.001, 1e9))
+      ->needs(tracks);
   command.add_option("--beside", options.beside, "Another recording, at the right at the same times")
       ->type_name("FILE");
   command

@@ -61,15 +61,19 @@ void EventView::prepare_compensation(const std::string& path, const RenderOption
 
 EventView::Sight EventView::before(std::int64_t t) {
   const std::span<const Event> events = window_.before(t);
+  const bool any = !events.empty();
   switch (mode_) {
     case RenderMode::events: break;
-    case RenderMode::time_surface: return {draw_time_surface(time_surface(events, size_, t, decay_), palette_), t};
+    case RenderMode::time_surface:
+      // Not beyond the end of the recording, where all would have faded.
+      if (any && !window_.next()) t = std::min(t, events.back().t + 1);
+      return {draw_time_surface(time_surface(events, size_, t, decay_), palette_), t, any};
     case RenderMode::compensated:
       // The middle of the events, not of the window: a trajectory may end with the events.
-      if (!events.empty()) t = std::midpoint(events.front().t, events.back().t);
-      return {draw_counts(compensation_->accumulate(events, t, stream_.zero()), palette_), t};
+      if (any) t = std::midpoint(events.front().t, events.back().t);
+      return {draw_counts(compensation_->accumulate(events, t, stream_.zero()), palette_), t, any};
   }
-  return {draw_events(events, size_, palette_), t};
+  return {draw_events(events, size_, palette_), t, any};
 }
 
 }  // namespace evbench

@@ -21,6 +21,7 @@ class EventView {
   struct Sight {
     Picture picture;     ///< a sensor pixel a pixel
     std::int64_t t = 0;  ///< what it shows [µs]: the end of its events' time, or where they are moved to
+    bool has_events = false;
   };
   Sight before(std::int64_t t);
 

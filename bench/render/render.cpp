@@ -17,7 +17,7 @@
 namespace evbench {
 namespace {
 
-constexpr std::int64_t kMaxStill = 100000;  // pictures without an event: more are a clock's fault
+constexpr double kMaxStill = 1e5;  // pictures without an event: more are a clock's fault
 
 std::int64_t microseconds(double seconds) { return std::max<std::int64_t>(1, std::llround(seconds * 1e6)); }
 
@@ -52,6 +52,18 @@ std::int64_t first_end(const std::string& path, const StreamOptions& options, co
   return newest + 1;
 }
 
+void check_options(const RenderOptions& options) {
+  if (options.mode != RenderMode::compensated &&
+      (!options.trajectory.empty() || !options.calibration.empty() || options.depth)) {
+    throw InputError(
+        "trajectory, calibration and depth are for motion-compensated pictures; this mode has no use for them");
+  }
+  if (options.speed / options.fps < 1e-6) {
+    throw InputError(fmt::format("{} pictures a second at speed {}: one every {:.3g} us; expected 1 us or more",
+                                 options.fps, options.speed, options.speed / options.fps * 1e6));
+  }
+}
+
 int make_scale(const RenderOptions& options, int width) { return options.scale.value_or((640 + width - 1) / width); }
 
 Picture enlarge(const Picture& picture, int scale) {
@@ -77,6 +89,8 @@ class Renderer {
   Renderer(const std::string& in, const RenderOptions& options, const WindowExtent& extent)
       : palette_(options.dark ? dark_palette() : light_palette()),
         with_time_(options.time),
+        in_(in),
+        beside_path_(options.beside),
         main_(in, options, extent),
         scale_(make_scale(options, main_.size().width)) {
     if (!options.tracks.empty()) {
@@ -87,13 +101,24 @@ class Renderer {
 
   Picture before(std::int64_t t) {
     const EventView::Sight sight = main_.before(t);
+    drawn_ |= sight.has_events;
     Picture picture = enlarge(sight.picture, scale_);
     if (tracks_) {
       tracks_->draw(static_cast<double>(sight.t + main_.stream().zero()) * 1e-6, scale_, palette_, picture);
     }
     if (with_time_) draw_time(sight.t, palette_, picture);
     if (!beside_) return picture;
-    return side_by_side(picture, enlarge(beside_->before(t).picture, scale_), palette_);
+    const EventView::Sight other = beside_->before(t);
+    drawn_beside_ |= other.has_events;
+    return side_by_side(picture, enlarge(other.picture, scale_), palette_);
+  }
+
+  /// Throws InputError when nothing but empty pictures were drawn of a recording.
+  void expect_events() const {
+    constexpr const char* kNone =
+        "{}: has no events at the times that are drawn; choose them with --from, --to, --rebase";
+    if (!drawn_) throw InputError(fmt::format(kNone, in_));
+    if (beside_ && !drawn_beside_) throw InputError(fmt::format(kNone, beside_path_));
   }
 
   /// Time of the first event that is still to be drawn.
@@ -110,23 +135,27 @@ class Renderer {
  private:
   Palette palette_;
   bool with_time_;
+  std::string in_, beside_path_;
   EventView main_;
   int scale_;
   std::optional<TrackOverlay> tracks_;
   std::optional<EventView> beside_;
+  bool drawn_ = false, drawn_beside_ = false;  ///< any event?
 };
 
 }  // namespace
 
 RenderReport render(const std::string& in, const std::string& out, const RenderOptions& options,
                     const std::function<void(std::int64_t, std::int64_t)>& progress) {
+  check_options(options);
   const std::unique_ptr<PictureSink> sink = open_picture_sink(out, options.fps);
-  const std::int64_t period = microseconds(options.speed / options.fps);
-  const WindowExtent extent = make_extent(options, !sink->takes_many(), period);
+  const double period = options.speed / options.fps * 1e6;  // [us]
+  const WindowExtent extent = make_extent(options, !sink->takes_many(), std::llround(period));
   Renderer renderer(in, options, extent);
   RenderReport report;
-  std::int64_t t = first_end(in, options.stream, extent);
+  const std::int64_t first = first_end(in, options.stream, extent);
   while (true) {
+    const std::int64_t t = first + std::llround(period * static_cast<double>(report.pictures));
     const Picture picture = renderer.before(t);
     sink->add(picture);
     report.size = picture.size();
@@ -136,13 +165,13 @@ RenderReport render(const std::string& in, const std::string& out, const RenderO
     if (!sink->takes_many()) break;
     const std::optional<std::int64_t> next = renderer.next();
     if (!next) break;
-    if ((*next - t) / period > kMaxStill) {
+    if (static_cast<double>(*next - t) / period > kMaxStill) {
       throw InputError(
           fmt::format("{}: has no events between {:.6f} and {:.6f} s; choose the time with --from and --to", in,
                       static_cast<double>(t) * 1e-6, static_cast<double>(*next) * 1e-6));
     }
-    t += period;
   }
+  renderer.expect_events();
   sink->finish();
   report.faults = renderer.faults();
   return report;

@@ -115,6 +115,55 @@ TEST_CASE("The same recording and options give the same bytes") {
   }
 }
 
+TEST_CASE("Pictures follow at fractions of a microsecond without drifting, and not faster than one") {
+  const TemporaryFolder folder;
+  std::vector<Event> events;
+  for (int i = 0; i < 100; ++i) events.push_back({i, 1, 1, true});
+  const std::string in = write_native(folder, "a.evb", events);
+  RenderOptions options;
+  options.speed = 1e-4;  // a picture each 3.33 us, of 30 us
+  CHECK(render(in, folder.file("out/"), options).pictures == 22);
+  options.speed = 1e-5;
+  CHECK_THROWS_WITH(render(in, folder.file("out/"), options), Contains("0.333 us; expected 1 us or more"));
+}
+
+TEST_CASE("Nothing is drawn where there are no events, in the recording or in that beside") {
+  const TemporaryFolder folder;
+  const std::vector<Event> two{{1000000, 1, 1, true}, {2000000, 1, 1, true}}, one{{9000000, 1, 1, true}};
+  const std::string in = write_native(folder, "a.evb", two), late = write_native(folder, "late.evb", one);
+  const std::string out = folder.file("a.png");
+  RenderOptions options;
+  options.stream.from = 1500000;
+  options.duration = 0.01;
+  options.stream.to = 1510000;
+  CHECK_THROWS_WITH(render(in, out, options), Contains("no events"));
+  options = {};
+  options.beside = late;
+  CHECK_THROWS_WITH(render(in, out, options), Contains("late.evb: has no events at the times that are drawn"));
+  CHECK_FALSE(std::filesystem::exists(out));
+  options.stream.rebase = true;
+  CHECK_NOTHROW(render(in, out, options));
+}
+
+TEST_CASE("A time surface of a short recording is as fresh as its last event") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events()), out = folder.file("a.png");
+  RenderOptions options;
+  options.mode = RenderMode::time_surface;
+  options.scale = 1;
+  render(in, out, options);  // 150 ms from the first event on, though there are but 100
+  const Picture picture = cv::imread(out, cv::IMREAD_COLOR);
+  CHECK(cv::norm(picture(4, 19) - light_palette().off) < 10.0);  // the last event
+}
+
+TEST_CASE("What only compensation can use is refused elsewhere") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events());
+  RenderOptions options;
+  options.depth = 1.0;
+  CHECK_THROWS_WITH(render(in, folder.file("a.png"), options), Contains("for motion-compensated pictures"));
+}
+
 TEST_CASE("A folder gets a picture each speed / fps seconds, until the last event is shown") {
   const TemporaryFolder folder;
   const std::string in = write_native(folder, "a.evb", hundred_events());

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,8 +24,8 @@ struct StreamOptions {
 void check_sensor_size(const std::string& path, int width, int height);
 
 /// A recording's events in time order, within the sensor, in a time range: what everybody but the readers uses. Events
-/// that go back in time or lie outside the sensor are left out and counted as faults (errors in strict mode).
-/// Reading can be interrupted (interruption.hpp).
+/// out of order, outside the sensor or beyond ±2^61 µs are left out and counted as faults (errors in strict mode): as
+/// few as possible of each chunk, after none of an earlier chunk. Reading can be interrupted (interruption.hpp).
 class EventStream {
  public:
   /// Throws InputError for what is no recording and by check_sensor_size().
@@ -45,15 +47,21 @@ class EventStream {
   std::vector<std::pair<std::string, Faults::Fault>> faults() const;
 
  private:
+  static constexpr std::int64_t kBeginning = std::numeric_limits<std::int64_t>::min();
+  static constexpr std::int64_t kEnd = std::numeric_limits<std::int64_t>::max();
+
+  void find_zero();
   void check(std::vector<Event>& events);
+  void leave_out_outside(std::vector<Event>& events, int width, int height);
+  void leave_out_disorder(std::vector<Event>& events);
 
   std::string path_;
   std::unique_ptr<EventReader> reader_;
-  StreamOptions options_;
   Faults faults_;
+  std::map<std::string, std::int64_t> rehearsed_;  ///< the reader's faults that it tells twice, as zero was looked for
   std::int64_t zero_ = 0;
-  std::int64_t from_;    ///< the file's time
-  std::int64_t newest_;  ///< likewise
+  std::int64_t from_ = kBeginning, end_ = kEnd;  ///< the file's time
+  std::int64_t newest_ = kBeginning;             ///< likewise
   bool ended_ = false;
 };
 

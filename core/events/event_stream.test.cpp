@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <limits>
+#include <map>
 
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
@@ -10,10 +12,11 @@ using namespace evbench;
 
 namespace {
 
-/// Gives events three at a time.
+/// Gives events three at a time, with `holes` faults before each three.
 class ListReader : public EventReader {
  public:
-  explicit ListReader(std::vector<Event> events) : events_(std::move(events)), faults_("list", false) {
+  explicit ListReader(std::vector<Event> events, std::int64_t holes = 0)
+      : events_(std::move(events)), faults_("list", false), holes_(holes) {
     info_.width = info_.height = 10;
   }
   const StreamInfo& info() const override { return info_; }
@@ -22,6 +25,7 @@ class ListReader : public EventReader {
     events.assign(events_.begin() + static_cast<std::ptrdiff_t>(next_),
                   events_.begin() + static_cast<std::ptrdiff_t>(last));
     next_ = last;
+    if (holes_ > 0 && !events.empty()) faults_.add("holes", "somewhere", holes_);
     return !events.empty();
   }
   void seek(std::int64_t) override { next_ = 0; }
@@ -31,6 +35,7 @@ class ListReader : public EventReader {
   std::vector<Event> events_;
   StreamInfo info_;
   Faults faults_;
+  std::int64_t holes_;
   std::size_t next_ = 0;
 };
 
@@ -56,7 +61,42 @@ TEST_CASE("A stream gives all events, or those in a range, from the file's zero 
   CHECK(times({}, {.rebase = true}).empty());
 }
 
-TEST_CASE("Events outside the sensor or back in time are left out and counted, or refused") {
+TEST_CASE("A time that is far too late is left out, not all that follow") {
+  auto events = kFive;
+  events[1].t = 1'000'000;
+  CHECK(times(events, {}) == std::vector<std::int64_t>{100, 110, 130, 150});
+  CHECK(times(events, {.to = 140}) == std::vector<std::int64_t>{100, 110, 130});
+}
+
+TEST_CASE("Times that would overflow are left out and counted") {
+  auto events = kFive;
+  events[0].t = std::numeric_limits<std::int64_t>::min();
+  events[4].t = std::numeric_limits<std::int64_t>::max();
+  EventStream stream(std::make_unique<ListReader>(events), "list", {.rebase = true});
+  std::vector<Event> all;
+  for (std::vector<Event> chunk; stream.read(chunk);) all.insert(all.end(), chunk.begin(), chunk.end());
+  CHECK(all.size() == 3);
+  REQUIRE(stream.faults().size() == 1);
+  CHECK(stream.faults()[0].first == "events beyond any time (2^61 us)");
+  CHECK(stream.faults()[0].second.count == 2);
+}
+
+TEST_CASE("Zero is the first event that is given, and what is wrong before it is told once") {
+  auto events = kFive;
+  events[0].x = 10;
+  EventStream stream(std::make_unique<ListReader>(events, 2), "list", {.rebase = true});
+  std::vector<Event> chunk;
+  REQUIRE(stream.read(chunk));
+  CHECK(chunk.front().t == 0);
+  CHECK(stream.zero() == 110);
+  while (stream.read(chunk)) {
+  }
+  std::map<std::string, std::int64_t> counts;
+  for (const auto& [kind, fault] : stream.faults()) counts[kind] = fault.count;
+  CHECK(counts == std::map<std::string, std::int64_t>{{"events outside the sensor of 10x10 pixels", 1}, {"holes", 4}});
+}
+
+TEST_CASE("Events outside the sensor or out of order are left out and counted, or refused") {
   auto events = kFive;
   events[1].x = 10;
   events[4].t = 120;

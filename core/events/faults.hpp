@@ -23,6 +23,7 @@ class Faults {
   };
   const std::map<std::string, Fault>& all() const { return faults_; }
   bool empty() const { return faults_.empty(); }
+  void clear() { faults_.clear(); }
 
  private:
   std::string file_;

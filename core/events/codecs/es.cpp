@@ -30,7 +30,8 @@ EventDecoder::Progress EsDecoder::decode_as(std::span<const std::byte> in, std::
     if (end - at < static_cast<std::ptrdiff_t>(kRecord)) break;
     time += difference;
     const bool on = (flags >> (kFlagBits - 1)) != 0;
-    *event = {time, load<std::uint16_t>(at + 1), load<std::uint16_t>(at + 3), on};
+    const auto y = static_cast<std::uint16_t>(top_ - load<std::uint16_t>(at + 3));
+    *event = {time, load<std::uint16_t>(at + 1), y, on};
     event += kind == Kind::dvs || (flags & 1) == 0;
     at += kRecord;
   }

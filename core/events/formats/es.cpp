@@ -47,7 +47,7 @@ std::unique_ptr<EventReader> open_es(std::unique_ptr<ByteSource> source, const R
   if (info.width == 0 || info.height == 0) {
     fail(fmt::format("has a sensor of {}x{} pixels", info.width, info.height), "at least one pixel");
   }
-  auto decoder = std::make_unique<EsDecoder>(kind == 1 ? EsDecoder::Kind::dvs : EsDecoder::Kind::atis);
+  auto decoder = std::make_unique<EsDecoder>(kind == 1 ? EsDecoder::Kind::dvs : EsDecoder::Kind::atis, info.height);
   return std::make_unique<DecodedReader>(std::move(source), kHeader, std::move(decoder), std::move(info), options);
 }
 

@@ -38,7 +38,18 @@ TEST_CASE("A real Event Stream recording decodes to its known count and duration
 
 TEST_CASE("DVS events have five bytes, and overflows of 127 us") {
   const auto reader = es(header(1) + data_of(Bytes{0x03, 1, 1, 2, 0, 0xFF, 0xFF, 0xFE, 0x04, 3, 0, 4, 0}));
-  CHECK((read_all(*reader) == std::vector<Event>{{1, 257, 2, true}, {1 + 254 + 2, 3, 4, false}}));
+  CHECK((read_all(*reader) == std::vector<Event>{{1, 257, 237, true}, {1 + 254 + 2, 3, 235, false}}));
+}
+
+TEST_CASE("Rows of Event Stream count from the bottom, and those that no sensor has stay outside") {
+  const auto reader = es(header(1, {4, 0, 3, 0}) +
+                         data_of(Bytes{0x02, 0, 0, 0, 0, 0x02, 1, 0, 2, 0, 0x02, 2, 0, 3, 0, 0x02, 3, 0, 0xFF, 0xFF}));
+  const std::vector<Event> events = read_all(*reader);
+  REQUIRE(events.size() == 4);
+  CHECK(events[0].y == 2);
+  CHECK(events[1].y == 0);
+  CHECK(events[2].y >= 3);
+  CHECK(events[3].y >= 3);
 }
 
 TEST_CASE("ATIS events have overflows of 63 us with a number, and exposure measurements between them") {
@@ -46,7 +57,7 @@ TEST_CASE("ATIS events have overflows of 63 us with a number, and exposure measu
                                                    0xFF, 0xFD, 0xFC,     // 3 overflows, 1, a reset
                                                    0x09, 5, 0, 6, 0,     // 2 us, an exposure measurement
                                                    0x04, 3, 0, 4, 0}));  // 1 us, off
-  CHECK((read_all(*reader) == std::vector<Event>{{1, 1, 2, true}, {1 + 4 * 63 + 3, 3, 4, false}}));
+  CHECK((read_all(*reader) == std::vector<Event>{{1, 1, 237, true}, {1 + 4 * 63 + 3, 3, 235, false}}));
 }
 
 TEST_CASE("Event Stream files of another version or kind, or without pixels, are refused") {
