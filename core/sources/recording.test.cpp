@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/events/formats/native.hpp"
+#include "core/events/testing/data_sets.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
@@ -99,6 +100,61 @@ TEST_CASE("A recording is found by the name of a dataset, and gives its events")
   CHECK(events == std::vector<Event>{{1500000, 239, 1, true}});
   CHECK_THROWS_WITH(open(R"({"dataset": "ecd/dynamic_6dof", "folder": "."})", ""), Contains("expected one of them"));
   ::unsetenv("EVBENCH_DATASETS");
+}
+
+TEST_CASE("Public data sets are recordings by their names alone, with calibration, ground truth and time range") {
+  const testing::TemporaryFolder folder;
+  if (!testing::write_data_sets(folder)) return;
+  ::setenv("EVBENCH_DATASETS", folder.path().c_str(), 1);
+  const struct {
+    const char* name;
+    double fx;
+    int width;
+    std::size_t poses, files;
+    double from, to;
+  } cases[] = {{"dsec/seq", 500, 640, 0, 1, 50'000, 50'000.099},
+               {"tumvie/mocap-desk", 1002, 1280, 3, 3, 1, 1.1},
+               {"m3ed/falcon", 1030, 1280, 2, 1, 1, 1.09},
+               {"eds/peanuts", 560, 640, 2, 2, 1.6e9, 1.6e9 + 0.1}};
+  for (const auto& [name, fx, width, poses, files, from, to] : cases) {
+    CAPTURE(name);
+    const Recording source = open(std::string(R"({"dataset": ")") + name + "\"}", "");
+    CHECK(source.camera().pinhole.fx == fx);
+    CHECK(source.camera().width == width);
+    CHECK(source.ground_truth().size() == poses);
+    CHECK(source.files().size() == files);
+    CHECK(source.time_range().from == Approx(from).epsilon(1e-12));
+    CHECK(source.time_range().to == Approx(to).epsilon(1e-12));
+    CHECK(source.remarks().size() == (poses == 0 ? 1 : 0));
+    CHECK(source.events()->info().count == 100);
+  }
+  ::unsetenv("EVBENCH_DATASETS");
+}
+
+TEST_CASE("A recording is a file of events alone where that says all, or what it lacks is named") {
+  const testing::TemporaryFolder folder;
+  if (!testing::write_data_sets(folder)) return;
+  const Recording source = open(R"({"events": "m3ed/falcon/falcon_data.h5"})", folder.path());
+  CHECK(source.camera().pinhole.fx == 1030.0);
+  CHECK(source.ground_truth().size() == 2);
+  const Recording named =
+      open(R"({"folder": "m3ed/falcon", "ground_truth": "eds/peanuts/stamped_groundtruth.txt"})", folder.path());
+  CHECK(named.ground_truth().start() == 1.6e9);
+  CHECK(named.files() == std::vector<std::string>{folder.file("eds/peanuts/stamped_groundtruth.txt")});
+  std::filesystem::remove(folder.file("dsec/seq/cam_to_cam.yaml"));
+  CHECK_THROWS_WITH(open(R"({"folder": "dsec/seq"})", folder.path()), Contains("no calibration is known of"));
+}
+
+TEST_CASE("A recording's usual files are read as the options say") {
+  const testing::TemporaryFolder folder;
+  folder.write("calib.txt", "200 201 120 90 0.1 0.2 0.3 0.4\n");
+  folder.write("groundtruth.txt", "0 1 0 0 0 1 0 0 0 1 1 2 3\n1 1 0 0 0 1 0 0 0 1 1 2 4\n");
+  const Recording source = open(
+      R"({"folder": ".", "distortion": "equidistant", "ground_truth_format": "robotevt", "width": 346, "height": 260})",
+      folder.path());
+  CHECK(source.camera().distortion == DistortionModel::equidistant);
+  CHECK(source.camera().width == 346);
+  CHECK(source.ground_truth().poses()[1].T.p.z() == 4.0);
 }
 
 TEST_CASE("A recording of a calibration alone has no events; a file of them is named in its own option") {

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/events/companions/calibration_fields.hpp"
 #include "core/support/error.hpp"
+#include "core/support/trial.hpp"
 
 namespace evbench::hdf5 {
 namespace {
@@ -14,20 +17,33 @@ std::vector<double> read_numbers(const File& file, const std::string& name) {
   return file.dataset(name).read_all(kMost);
 }
 
-}  // namespace
-
-std::vector<StampedPose> read_poses(const File& file, const std::string& matrices, const std::string& times,
-                                    double unit) {
+std::vector<StampedPose> read_untried(const std::string& path, const std::string& matrices, const std::string& times,
+                                      double unit) {
+  const File file(path);
   const std::vector<double> T = read_numbers(file, matrices), t = read_numbers(file, times);
   if (t.empty() || T.size() != 16 * t.size()) {
-    throw InputError(fmt::format("{}: /{}: has {} numbers for {} times; expected a 4x4 matrix for each", file.path(),
-                                 matrices, T.size(), t.size()));
+    throw InputError(fmt::format("{}: /{}: has {} numbers for {} times; expected a 4x4 matrix for each", path, matrices,
+                                 T.size(), t.size()));
   }
   std::vector<StampedPose> poses;
   for (std::size_t i = 0; i < t.size(); ++i) {
-    poses.push_back({unit * t[i], checked_pose(fmt::format("{}: /{}: row {}", file.path(), matrices, i), &T[16 * i])});
+    if (!std::isfinite(t[i])) throw InputError(fmt::format("{}: /{}: row {}: is no time", path, times, i));
+    poses.push_back({unit * t[i], checked_pose(fmt::format("{}: /{}: row {}", path, matrices, i), &T[16 * i])});
   }
   return poses;
+}
+
+}  // namespace
+
+std::vector<StampedPose> read_poses(const std::string& path, const std::string& matrices, const std::string& times,
+                                    double unit) {
+  constexpr unsigned kMostSeconds = 10;
+  const std::string end = trial([&] { read_untried(path, matrices, times, unit); }, kMostSeconds);
+  if (!end.empty()) {
+    throw InputError(
+        fmt::format("{}: is broken in a way that the HDF5 library cannot read; it ended with: {}", path, end));
+  }
+  return read_untried(path, matrices, times, unit);
 }
 
 SE3 read_pose(const File& file, const std::string& matrix) {

@@ -8,9 +8,9 @@
 
 namespace evbench::hdf5 {
 
-/// Poses as 4x4 matrices, row by row, with their times in another data set of `unit` seconds. Throws InputError, naming
-/// file and data set, for what is missing or no pose.
-std::vector<StampedPose> read_poses(const File& file, const std::string& matrices, const std::string& times,
+/// Poses of a file as 4x4 matrices, row by row, with their times in another data set of `unit` seconds. Throws
+/// InputError, naming file and data set, for what is missing or no pose, and for a file on which the library crashes.
+std::vector<StampedPose> read_poses(const std::string& path, const std::string& matrices, const std::string& times,
                                     double unit);
 
 /// One such matrix.

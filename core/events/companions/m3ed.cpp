@@ -10,7 +10,7 @@ Companions m3ed_companions(const EventsPlace& place) {
   const auto read = [place, name] {
     constexpr double kMicrosecond = 1e-6;
     auto poses = place.files->get(name, [](const std::string& path) {
-      return hdf5::read_poses(hdf5::File(path), "Cn_T_C0", "ts", kMicrosecond);  // camera now ← camera at first
+      return hdf5::read_poses(path, "Cn_T_C0", "ts", kMicrosecond);  // camera now ← camera at first
     });
     SE3 T_left_camera;
     if (place.right)

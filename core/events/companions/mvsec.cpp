@@ -20,7 +20,7 @@ Companions mvsec_companions(const EventsPlace& place) {
   if (name.empty()) return found;
   const auto read_left = [=] {
     return files->get(name, [](const std::string& path) {
-      return hdf5::read_poses(hdf5::File(path), "davis/left/pose", "davis/left/pose_ts", 1.0);
+      return hdf5::read_poses(path, "davis/left/pose", "davis/left/pose_ts", 1.0);
     });
   };
   if (place.right && !chains.empty()) {

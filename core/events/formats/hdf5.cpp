@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <tuple>
 
+#include "core/events/companions/calibration_fields.hpp"
 #include "core/events/formats/all.hpp"
 #include "core/events/formats/hdf5_columns.hpp"
 #include "core/events/formats/hdf5_file.hpp"
 #include "core/events/formats/hdf5_layout.hpp"
 #include "core/events/formats/hdf5_trial.hpp"
-#include "core/geometry/se3.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
@@ -27,12 +27,12 @@ class Hdf5Reader : public EventReader {
   bool read(std::vector<Event>& events) override;
   void seek(std::int64_t t) override;
   const Faults& faults() const override { return faults_; }
-  std::optional<PoseTrajectory> ground_truth() override;
   std::optional<Camera> calibration() override;
 
  private:
   void open_columns();
   void describe(const ReadOptions& options);
+  void find_sensor(const ReadOptions& options);
   void load();
   bool convert(std::uint64_t row, std::span<Event> events) const;
   void drop_broken(std::uint64_t row, std::vector<Event>& events);
@@ -101,16 +101,6 @@ void Hdf5Reader::describe(const ReadOptions& options) {
     if (start != kBroken) info_.start = start;
     if (end != kBroken) info_.end = end;
   }
-  info_.width = file_.attribute(layout_.is_rows() ? "" : layout_.group, "width");
-  info_.height = file_.attribute(layout_.is_rows() ? "" : layout_.group, "height");
-  if (const auto camera = calibration()) {
-    info_.width = camera->width;
-    info_.height = camera->height;
-  }
-  if (info_.width <= 0 || info_.height <= 0) {
-    info_.width = options.width > 0 ? options.width : layout_.width;
-    info_.height = options.height > 0 ? options.height : layout_.height;
-  }
   for (const auto& object : file_.objects()) {
     if (!object.is_dataset) continue;
     try {
@@ -122,6 +112,25 @@ void Hdf5Reader::describe(const ReadOptions& options) {
   }
   info_.metadata.emplace_back("events in", "/" + layout_.group);
   if (offset_ != 0) info_.metadata.emplace_back("t_offset [us]", fmt::to_string(offset_));
+  find_sensor(options);
+}
+
+/// From the calibration or an attribute of the file; otherwise what the user says, or the data set is known to have.
+void Hdf5Reader::find_sensor(const ReadOptions& options) {
+  const std::string group = layout_.is_rows() ? "" : layout_.group;
+  if (const auto camera = calibration()) {
+    info_.width = camera->width;
+    info_.height = camera->height;
+  } else if (const auto size = hdf5::find_sensor_size(file_, group)) {
+    std::tie(info_.width, info_.height) = *size;
+  } else {
+    info_.size_assumed = true;
+    info_.width = options.width > 0 ? options.width : layout_.width;
+    info_.height = options.height > 0 ? options.height : layout_.height;
+    if (options.width <= 0 && layout_.width > 0) {
+      info_.metadata.emplace_back("sensor size", fmt::format("{}'s; the file does not say it", layout_.name));
+    }
+  }
 }
 
 std::int64_t Hdf5Reader::time(std::uint64_t row) const {
@@ -201,69 +210,26 @@ void Hdf5Reader::seek(std::int64_t t) {
   next_ = after;
 }
 
-/// MVSEC: poses of the left camera, T_world_camera as 4x4 matrices, in the file itself or in the *_gt.hdf5 beside it.
-std::optional<PoseTrajectory> Hdf5Reader::ground_truth() {
-  constexpr std::uint64_t kMost = 1 << 26;
-  const std::string poses = "davis/left/pose", stamps = "davis/left/pose_ts";
-  const auto read_from = [&](const hdf5::File& file) -> std::optional<PoseTrajectory> {
-    if (!file.has_dataset(poses) || !file.has_dataset(stamps)) return std::nullopt;
-    const std::vector<double> T = file.dataset(poses).read_all(kMost), t = file.dataset(stamps).read_all(kMost);
-    if (T.size() != 16 * t.size()) {
-      throw InputError(fmt::format("{}: /{}: has {} numbers for {} stamps; expected 4x4 matrices", file.path(), poses,
-                                   T.size(), t.size()));
-    }
-    std::vector<StampedPose> result;
-    for (std::size_t i = 0; i < t.size(); ++i) {
-      const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(&T[16 * i]);
-      const Matrix3 R = matrix.topLeftCorner<3, 3>();
-      if (!matrix.allFinite() || !(R * R.transpose()).isIdentity(1e-3)) {
-        throw InputError(
-            fmt::format("{}: /{}: is no pose in row {}; expected a rotation and a translation", file.path(), poses, i));
-      }
-      result.push_back({t[i], {Eigen::Quaterniond(R).normalized(), matrix.topRightCorner<3, 1>()}});
-    }
-    return PoseTrajectory(std::move(result), file.path());
-  };
-  if (auto own = read_from(file_)) return own;
-  const std::filesystem::path path(file_.path());
-  std::string name = path.stem().string();
-  if (!name.ends_with("_data")) return std::nullopt;
-  name.replace(name.size() - 4, 4, "gt");
-  const std::filesystem::path beside = path.parent_path() / (name + path.extension().string());
-  return std::filesystem::exists(beside) ? read_from(hdf5::File(beside.string())) : std::nullopt;
-}
-
 /// M3ED: group calib beside the columns.
 std::optional<Camera> Hdf5Reader::calibration() {
   const std::string group = layout_.group + "/calib/";
-  for (const char* name : {"intrinsics", "distortion_coeffs", "resolution"}) {
-    if (!file_.has_dataset(group + name)) return std::nullopt;
-  }
+  const auto place = [&](const char* name) { return fmt::format("{}: /{}{}", file_.path(), group, name); };
   const auto numbers = [&](const char* name, std::size_t count) {
     const std::vector<double> values = file_.dataset(group + name).read_all(100);
     if (values.size() != count) {
-      throw InputError(
-          fmt::format("{}: /{}{}: has {} numbers; expected {}", file_.path(), group, name, values.size(), count));
+      throw InputError(fmt::format("{}: has {} numbers; expected {}", place(name), values.size(), count));
     }
     return values;
   };
-  const auto intrinsics = numbers("intrinsics", 4), coefficients = numbers("distortion_coeffs", 4),
-             resolution = numbers("resolution", 2);
-  Camera camera;
-  camera.pinhole = {intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]};
-  camera.distortion = DistortionModel::radial_tangential;
-  if (file_.has_dataset(group + "distortion_model") && file_.text(group + "distortion_model") == "equidistant") {
-    camera.distortion = DistortionModel::equidistant;
+  for (const char* name : {"intrinsics", "distortion_coeffs", "resolution"}) {
+    if (!file_.has_dataset(group + name)) return std::nullopt;
   }
-  for (int i = 0; i < 4; ++i) camera.coefficients[i] = coefficients[static_cast<std::size_t>(i)];
-  for (const double side : resolution) {
-    if (!(side >= 1.0 && side <= 65536.0)) {
-      throw InputError(fmt::format("{}: /{}resolution: has {}; expected 1 to 65536", file_.path(), group, side));
-    }
+  DistortionModel distortion = DistortionModel::radial_tangential;
+  if (file_.has_dataset(group + "distortion_model")) {
+    distortion = kalibr_distortion(place("distortion_model"), file_.text(group + "distortion_model"));
   }
-  camera.width = static_cast<int>(resolution[0]);
-  camera.height = static_cast<int>(resolution[1]);
-  return camera;
+  return checked_camera(place(""), numbers("intrinsics", 4), distortion, numbers("distortion_coeffs", 4),
+                        numbers("resolution", 2));
 }
 
 /// The signature stands at the beginning, or after a user's block of 512, 1024, ... bytes.
@@ -281,14 +247,13 @@ bool has_signature(std::span<const std::byte> head) {
 }  // namespace
 
 EventFormat hdf5_format() {
-  return {
-      "hdf5", "HDF5 as in DSEC, MVSEC, TUM-VIE, M3ED, EDS",
-      [](const std::string&, std::span<const std::byte> head) { return has_signature(head); },
-      [](const std::string& path, const ReadOptions& options) {
-        const auto open = [&] { return std::make_unique<Hdf5Reader>(path, options); };
-        hdf5::refuse_crashes(path, open);
-        return open();
-      }};
+  return {"hdf5", "HDF5 as in DSEC, MVSEC, TUM-VIE, M3ED, EDS",
+          [](const std::string&, std::span<const std::byte> head) { return has_signature(head); },
+          [](const std::string& path, const ReadOptions& options) {
+            const auto open = [&] { return std::make_unique<Hdf5Reader>(path, options); };
+            hdf5::refuse_crashes(path, open);
+            return open();
+          }};
 }
 
 }  // namespace evbench

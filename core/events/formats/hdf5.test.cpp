@@ -255,7 +255,7 @@ TEST_CASE("Columns at the root are read in chunks, as they are and through defla
     write_columns(file, "", filter);
   }
   const auto reader = open_events(folder.file("events.h5"), {.width = 640, .height = 480});
-  CHECK(reader->info().format == "HDF5 (EDS)");
+  CHECK(reader->info().format == "HDF5 (x, y, t, p)");
   CHECK(reader->info().width == 640);
   check_recording(read_all(*reader));
   reader->seek(123'456);
@@ -325,6 +325,9 @@ with h5py.File(sys.argv[1], 'w') as f:
     f.create_dataset('events/ts', data=(5000 + 3 * i) * 1e-6, compression='gzip', shuffle=True)
     f.create_dataset('events/ps', data=(i % 3 == 0))
     f['events'].attrs['width'], f['events'].attrs['height'] = 640, 480
+with h5py.File(sys.argv[1] + '.2', 'w') as f:
+    for name in 'xytp': f['events/' + name] = i % 2
+    f.attrs['sensor_resolution'] = [260, 346]
 )");
   const std::string path = folder.file("python.h5"), python = "/usr/bin/python3 ";
   if (std::system((python + "-c 'import h5py' 2>/dev/null").c_str()) != 0) {
@@ -335,6 +338,8 @@ with h5py.File(sys.argv[1], 'w') as f:
   const auto reader = open_events(path);
   CHECK(reader->info().width == 640);
   check_recording(read_all(*reader));
+  CHECK(open_events(path + ".2")->info().width == 346);
+  CHECK_FALSE(open_events(path + ".2")->info().size_assumed);
 }
 
 TEST_CASE("HDF5 files without events, of other shapes, or broken are refused with a sentence, never a crash") {

@@ -280,17 +280,19 @@ std::string File::text(const std::string& path) const {
   return result.c_str();  // up to the padding
 }
 
-int File::attribute(const std::string& group, const std::string& name) const {
+std::vector<int> File::attribute(const std::string& group, const std::string& name) const {
+  constexpr hssize_t kMost = 16;
   const std::string object = "/" + group;
-  if (H5Aexists_by_name(id_.get(), object.c_str(), name.c_str(), H5P_DEFAULT) <= 0) return 0;
+  if (H5Aexists_by_name(id_.get(), object.c_str(), name.c_str(), H5P_DEFAULT) <= 0) return {};
   const Handle id(H5Aopen_by_name(id_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), close_attribute);
   checked(id.get(), path_);
   const Handle type(checked(H5Aget_type(id.get()), path_), close_type);
   const Handle space(checked(H5Aget_space(id.get()), path_), close_space);
-  if (H5Tget_class(type.get()) != H5T_INTEGER || H5Sget_simple_extent_npoints(space.get()) != 1) return 0;
-  int value = 0;
-  checked(H5Aread(id.get(), H5T_NATIVE_INT, &value), path_);
-  return value;
+  const hssize_t count = H5Sget_simple_extent_npoints(space.get());
+  if (H5Tget_class(type.get()) != H5T_INTEGER || count < 1 || count > kMost) return {};
+  std::vector<int> values(static_cast<std::size_t>(count));
+  checked(H5Aread(id.get(), H5T_NATIVE_INT, values.data()), path_);
+  return values;
 }
 
 }  // namespace evbench::hdf5

@@ -102,8 +102,8 @@ class File {
 
   Dataset dataset(const std::string& path) const;
   std::string text(const std::string& path) const;  ///< of a data set that is one string
-  /// An integer attribute of a group ("" is the root); 0 when there is none.
-  int attribute(const std::string& group, const std::string& name) const;
+  /// An attribute of a group ("" is the root) of up to 16 integers; none when there isn't such a one.
+  std::vector<int> attribute(const std::string& group, const std::string& name) const;
   const std::string& path() const { return path_; }
 
  private:

@@ -52,12 +52,12 @@ std::optional<EventLayout> columns_layout(const File& file, const std::string& g
     layout.name = "M3ED";
     layout.width = 1280;
     layout.height = 720;
-  } else if (!layout.index.empty()) {
+  } else if (!layout.index.empty() && group == "events") {
     layout.name = "TUM-VIE";
     layout.width = 1280;
     layout.height = 720;
   } else {
-    layout.name = "EDS";
+    layout.name = "x, y, t, p";
   }
   return layout;
 }
@@ -85,6 +85,23 @@ std::vector<EventLayout> find_events(const File& file) {
   }
   std::sort(layouts.begin(), layouts.end(), [](const auto& a, const auto& b) { return a.group < b.group; });
   return layouts;
+}
+
+std::optional<std::pair<int, int>> find_sensor_size(const File& file, const std::string& group) {
+  constexpr int kLargest = 65536;
+  const auto is_side = [](int side) { return side >= 1 && side <= kLargest; };
+  for (const std::string& object : {group, std::string()}) {
+    const auto width = file.attribute(object, "width"), height = file.attribute(object, "height");
+    if (width.size() == 1 && height.size() == 1 && is_side(width[0]) && is_side(height[0])) {
+      return std::pair(width[0], height[0]);
+    }
+    for (const char* name : {"sensor_resolution", "resolution"}) {
+      const auto both = file.attribute(object, name);
+      if (both.size() == 2 && is_side(both[0]) && is_side(both[1]))
+        return std::pair(std::max(both[0], both[1]), std::min(both[0], both[1]));
+    }
+  }
+  return std::nullopt;
 }
 
 EventLayout choose_events(const File& file, const std::string& topic) {
