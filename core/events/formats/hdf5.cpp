@@ -224,6 +224,10 @@ std::optional<Camera> Hdf5Reader::calibration() {
   for (const char* name : {"intrinsics", "distortion_coeffs", "resolution"}) {
     if (!file_.has_dataset(group + name)) return std::nullopt;
   }
+  if (file_.has_dataset(group + "camera_model") && file_.text(group + "camera_model") != "pinhole") {
+    throw InputError(
+        fmt::format("{}: is \"{}\"; expected pinhole", place("camera_model"), file_.text(group + "camera_model")));
+  }
   DistortionModel distortion = DistortionModel::radial_tangential;
   if (file_.has_dataset(group + "distortion_model")) {
     distortion = kalibr_distortion(place("distortion_model"), file_.text(group + "distortion_model"));
