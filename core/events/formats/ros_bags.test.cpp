@@ -1,4 +1,5 @@
 #include <cstdlib>
+#include <filesystem>
 
 #include "core/events/testing/mcap_writer.hpp"
 #include "core/events/testing/recordings.hpp"
@@ -28,6 +29,23 @@ TEST_CASE("The same recording in a ROS 1 bag and a ROS 2 bag gives the same even
   CHECK(reader->info().width == 640);
   CHECK(reader->info().topics ==
         std::vector<std::string>{"/event_camera/events (event_camera_msgs/EventPacket), 517 messages"});
+}
+
+TEST_CASE("Messages that say how they are padded are read as those that don't") {
+  const auto db3 = testing::data_file(kDb3);
+  if (!db3) return;
+  const testing::TemporaryFolder folder;
+  std::filesystem::copy_file(*db3, folder.file("padded.db3"));
+  const std::string script = folder.write("pad.py",
+                                          "import sqlite3, sys\n"
+                                          "file = sqlite3.connect(sys.argv[1])\n"
+                                          "file.create_function('padded', 1, lambda d: d[:3] + b'\\3' + d[4:])\n"
+                                          "file.execute('UPDATE messages SET data = padded(data)')\n"
+                                          "file.commit()\n");
+  REQUIRE(std::system(("/usr/bin/python3 " + script + " " + folder.file("padded.db3")).c_str()) == 0);
+  const auto reader = open_events(folder.file("padded.db3"));
+  CHECK(testing::read_all(*reader) == testing::read_all(*db3));
+  CHECK(reader->faults().empty());
 }
 
 TEST_CASE("EVT 3 packets with triggers decode to the sums that event_camera_codecs tests for") {

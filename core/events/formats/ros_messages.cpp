@@ -8,13 +8,14 @@
 namespace evbench::ros {
 namespace {
 
-constexpr std::size_t kCdrHeader = 4;  ///< what says that it is little-endian; alignment counts from behind it
+/// What says that it is little-endian, and options, as that of padding; alignment counts from behind it.
+constexpr std::size_t kCdrHeader = 4;
 
 /// The fields of a message.
 class Fields {
  public:
   Fields(std::span<const std::byte> data, Wire wire) : cursor_(data), wire_(wire) {
-    if (wire == Wire::cdr) little_endian_ = cursor_.get<std::uint32_t>() == 0x0100;
+    if (wire == Wire::cdr) little_endian_ = (cursor_.get<std::uint32_t>() & 0xFFFF) == 0x0100;
   }
   template <class T>
   T get() {
