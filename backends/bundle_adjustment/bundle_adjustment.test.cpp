@@ -40,7 +40,7 @@ struct Simulation {
 
 /// Observations of fifty points at 100 Hz, each at times of its own, in time order.
 std::vector<TrackObservation> simulate(const Simulation& simulation) {
-  testing::Random random(4);
+  Random random(4);
   std::vector<TrackObservation> result;
   TrackId id = 0;
   for (const Vector3& point : testing::scene_points(simulation.scene, 50, random, 2.0)) {
@@ -48,7 +48,8 @@ std::vector<TrackObservation> simulate(const Simulation& simulation) {
     const Vector2 drift(random.uniform(-25, 25), random.uniform(-25, 25));
     for (double t = random.uniform(0.0, 0.01); t <= simulation.duration; t += random.uniform(0.008, 0.012)) {
       if (t > simulation.blackout_from && t < simulation.blackout_to) continue;
-      Vector2 pixel = davis().project(simulation.motion(t).inverse() * point) + random.noise(simulation.noise);
+      Vector2 pixel =
+          davis().project(simulation.motion(t).inverse() * point) + testing::noise(simulation.noise, random);
       if (outlier) pixel += t * drift;
       const bool renamed = simulation.new_tracks_after_blackout && t >= simulation.blackout_to;
       result.push_back({renamed ? id + 1000 : id, t, pixel, std::max(0.1, simulation.noise)});

@@ -113,7 +113,19 @@ TEST_CASE("A picture and a calibration can be read, and their faults are named")
   CHECK(events_of(source).size() > 1000);
   CHECK_THROWS_WITH(simulation(R"({"duration": 0.1, "scene": {"picture": "calib.txt"}})", 1, folder.path()),
                     Contains("can't be read as a picture"));
+  CHECK_THROWS_WITH(simulation(R"({"duration": 0.1, "scene": {"picture": "none.png"}})", 1, folder.path()),
+                    Contains("none.png: no such file"));
   CHECK_THROWS_WITH(simulation(R"({"duration": 0.1, "scene": {"near": 3, "far": 2}})"), Contains("near < far"));
   CHECK_THROWS_WITH(simulation(R"({"duration": 0.1, "simulator": {"sensor": {"threshold_on": 0}}})"),
                     Contains("threshold_on"));
+  CHECK_THROWS_WITH(simulation(R"({"duration": 0.1, "simulator": {"sensor": {"refractory": -1}}})"),
+                    Contains("refractory"));
+  CHECK_THROWS_WITH(simulation(R"({"duration": 0.1, "camera": {"width": 10000, "height": 10000}})"),
+                    Contains("10000 x 10000 pixels; expected at most"));
+}
+
+TEST_CASE("A motion that leads through the plane is refused, with the time at which it does") {
+  CHECK_THROWS_WITH(simulation(R"({"duration": 3, "motion": {"kind": "smooth_random", "amplitude": 3},
+                                   "scene": {"near": 0.2, "far": 0.4}})"),
+                    Contains("s the camera is") && Contains("before the plane"));
 }

@@ -11,7 +11,6 @@
 
 using namespace evbench;
 using evbench::testing::davis;
-using evbench::testing::Random;
 using evbench::testing::Scene;
 
 namespace {
@@ -28,7 +27,7 @@ TrackBuffer tracks_of(Scene scene, const Motion& motion, double duration, double
     std::vector<TrackObservation> track;
     for (double t = random.uniform(0.0, 0.005); t <= duration; t += 0.005) {
       const Vector3 local = motion(t).inverse() * point;
-      track.push_back({id, t, davis().project(local) + random.noise(noise), 1.0});
+      track.push_back({id, t, davis().project(local) + testing::noise(noise, random), 1.0});
     }
     buffer.add(track);
     ++id;

@@ -8,7 +8,6 @@
 
 using namespace evbench;
 using evbench::testing::davis;
-using evbench::testing::Random;
 using State = Triangulation::State;
 
 namespace {
@@ -47,7 +46,7 @@ TEST_CASE("a point is triangulated from noisy pixels to the accuracy that the ba
   const Vector3 point(0.3, -0.2, 2.5);
   const auto poses = sideways(20, 0.05);
   auto pixels = pixels_of(point, poses);
-  for (Vector2& pixel : pixels) pixel += random.noise(0.7);
+  for (Vector2& pixel : pixels) pixel += testing::noise(0.7, random);
   const Triangulation result = triangulate(poses, pixels, davis());
   REQUIRE(result.ok());
   CHECK((result.point - point).norm() < 0.05);

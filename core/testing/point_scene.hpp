@@ -1,38 +1,19 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "core/data/track.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/geometry/se3.hpp"
+#include "core/simulation/random.hpp"
 
 namespace evbench::testing {
 
-/// A generator that gives the same numbers with every standard library.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-
-  double uniform(double from, double to) {  // splitmix64 (Steele 2014)
-    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15u);
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return from + (to - from) * static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
-  }
-  double normal() {  // Irwin-Hall
-    double sum = -6.0;
-    for (int i = 0; i < 12; ++i) sum += uniform(0.0, 1.0);
-    return sum;
-  }
-  Vector2 noise(double sigma) {
-    const double x = normal();
-    return sigma * Vector2(x, normal());
-  }
-
- private:
-  std::uint64_t state_;
-};
+/// Gaussian noise of a pixel.
+inline Vector2 noise(double sigma, Random& random) {
+  const double x = random.normal();
+  return sigma * Vector2(x, random.normal());
+}
 
 /// The DAVIS240C of the Event-Camera Dataset, undistorted.
 inline PinholeCamera davis() { return {199.0, 199.0, 120.0, 90.0}; }

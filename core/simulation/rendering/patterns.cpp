@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -116,6 +117,9 @@ Pattern draw_leaves(int side, double smallest, Random& random) {
 
 Pattern read_picture(const std::string& path) {
   Pattern pattern;
+  if (!std::filesystem::is_regular_file(path)) {
+    throw InputError(fmt::format("{}: no such file; expected a picture", path));
+  }
   pattern.picture = cv::imread(path, cv::IMREAD_GRAYSCALE);
   if (pattern.picture.empty()) {
     throw InputError(fmt::format("{}: can't be read as a picture; expected a PNG, JPEG, TIFF, ... file", path));

@@ -90,6 +90,21 @@ Vector2 offset_on_print(const Surface& surface, int face, const Print& print, Ra
   return offset;
 }
 
+/// Throws InputError where the path comes so near to the plane, or behind it, that there is nothing to see.
+void check_before_plane(double depth, const SceneLayout& layout, const Motion& motion, double duration,
+                        const std::string& place) {
+  constexpr double rate = 50.0, nearest = 0.02;  // [Hz]; share of the depth
+  for (double t = 0.0; t <= duration; t += 1.0 / rate) {
+    const double left = depth - (layout.frame.inverse() * motion(t).p).z();
+    if (left > nearest * depth) continue;
+    throw InputError(
+        fmt::format("{}: at {:.2f} s the camera is {:.3f} m before the plane, which is {:.3g} m ahead of the motion's "
+                    "mean; expected "
+                    "larger near and far, or a smaller motion",
+                    place, t, left, depth));
+  }
+}
+
 std::vector<Surface> plane(const RenderedSceneOptions& options, const SceneLayout& layout) {
   const Box rectangle = layout.viewed_rectangle(0.5 * (options.near + options.far));
   return {{Surface::Kind::plane, layout.frame * SE3{Eigen::Quaterniond::Identity(), rectangle.center()},
@@ -131,6 +146,7 @@ RenderedScene make_rendered_scene(const RenderedSceneOptions& options, const Cam
   }
   const SceneLayout layout(camera, sample_motion(motion, duration, 10.0));
   const bool boxes = options.kind == "boxes";
+  if (!boxes) check_before_plane(0.5 * (options.near + options.far), layout, motion, duration, place);
   std::vector<Surface> surfaces = boxes ? boxes_in_room(options, layout, random) : plane(options, layout);
   const Vector3& largest = surfaces.back().half;
   const Print print = make_print(options, camera, 2.0 * largest.maxCoeff(), random, folder);
