@@ -1,14 +1,22 @@
 // event_reality: simulated events beside real ones. EVBENCH_DATA names the folder of real excerpts; the table goes to
-// standard output as Markdown. Simulated is a similar scene along the same motion, with the same camera.
+// standard output as Markdown.
+//
+// The rule: a similar scene, along the same motion, with the same lens, all options at their defaults but one, the
+// contrast threshold (ON and OFF alike). It is fitted on the first half of an excerpt so that the event rate there is
+// the real one, by bisection; what is printed are measurements of the second half. dynamic_rotation, from the same
+// camera as shapes_rotation, is also simulated with the threshold of that one: nothing is fitted to it.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
-#include <functional>
 #include <map>
+#include <opencv2/imgcodecs.hpp>
 
 #include "core/data/calib.hpp"
 #include "core/events/event_stream.hpp"
@@ -21,11 +29,13 @@ using namespace evbench;
 
 namespace {
 
-constexpr double kWarmUp = 0.1;  // [s] simulated before what is measured: pixels begin settled, real ones do not
+constexpr double kWarmUp = 0.05;  // [s] simulated before what is measured: pixels begin settled, real ones do not
 
+/// Some events and the time that they were looked for [s].
 struct Recording {
   std::vector<Event> events;
-  double seconds() const { return 1e-6 * static_cast<double>(events.back().t - events.front().t); }
+  double seconds = 0.0;
+  double rate() const { return static_cast<double>(events.size()) / seconds; }
 };
 
 /// A constant motion: T_world_camera(t) = (exp(ω t), v t).
@@ -35,44 +45,77 @@ struct Drive {
 };
 
 struct Case {
-  std::string name, events, scene_text;
+  std::string name, scene_text;
   Camera camera;
   Drive drive;
   RenderedSceneOptions scene;
+  Recording first, second;  ///< halves of the excerpt
 };
 
-Recording read_recording(EventStream&& stream) {
-  Recording recording;
+Recording read_recording(EventStream&& stream, double seconds) {
+  Recording recording{{}, seconds};
   for (std::vector<Event> chunk; stream.read(chunk);) {
     recording.events.insert(recording.events.end(), chunk.begin(), chunk.end());
   }
   return recording;
 }
 
-SimulatorOptions sensor() {
-  SimulatorOptions options;
-  options.sensor.threshold_on = 0.6;
-  options.sensor.threshold_off = 0.45;
-  options.sensor.threshold_mismatch = 0.06;
-  options.sensor.refractory = 1e-3;
-  options.sensor.noise_rate = 0.1;
-  options.sensor.leak_rate = 0.2;
-  options.sensor.jitter = 100e-6;
-  return options;
+void read_halves(Case& c, const std::string& path) {
+  StreamOptions options;
+  options.read.width = c.camera.width;
+  options.read.height = c.camera.height;
+  const std::vector<Event> events = read_recording(EventStream(path, options), 0.0).events;
+  if (events.size() < 2) throw InputError(fmt::format("{}: has {} events; expected more", path, events.size()));
+  const std::int64_t begin = events.front().t, end = events.back().t + 1, middle = (begin + end) / 2;
+  const auto split = std::ranges::lower_bound(events, middle, {}, &Event::t);
+  c.first = {{events.begin(), split}, 1e-6 * static_cast<double>(middle - begin)};
+  c.second = {{split, events.end()}, 1e-6 * static_cast<double>(end - middle)};
 }
 
-Recording simulate(const Case& c, double seconds) {
-  const double duration = kWarmUp + seconds;
-  // The middle of the motion is where the scene is: the drive begins before it.
-  const Motion motion = [drive = c.drive, half = 0.5 * duration](double t) { return drive(t - half); };
-  auto scene = std::make_shared<const RenderedScene>(
-      make_rendered_scene(c.scene, c.camera, motion, duration, Random(1), "", c.name));
-  auto brightness = std::make_unique<SceneBrightness>(c.camera, scene, motion, RenderingOptions{}, 0);
-  StreamOptions range;
-  range.from = static_cast<std::int64_t>(kWarmUp * 1e6);
-  return read_recording(
-      EventStream(std::make_unique<EventSimulator>(std::move(brightness), sensor(), duration, 1), "simulation", range));
-}
+/// The case's scene, ready to be simulated.
+class Stage {
+ public:
+  explicit Stage(const Case& c) : case_(&c), duration_(kWarmUp + c.first.seconds + c.second.seconds) {
+    // The scene is where the middle of the motion is: the drive begins before it.
+    motion_ = [drive = c.drive, half = 0.5 * duration_](double t) { return drive(t - half); };
+    scene_ = std::make_shared<const RenderedScene>(
+        make_rendered_scene(c.scene, c.camera, motion_, duration_, Random(1), "", c.name));
+  }
+
+  Recording first_half(double threshold) const { return simulate(threshold, kWarmUp, kWarmUp + case_->first.seconds); }
+  Recording second_half(double threshold) const {
+    return simulate(threshold, kWarmUp + case_->first.seconds, duration_);
+  }
+
+  /// The threshold with which the first half has the real rate: bisection of its logarithm.
+  double fit() const {
+    constexpr int steps = 8;
+    double low = 0.05, high = 2.0;
+    for (int i = 0; i < steps; ++i) {
+      const double middle = std::sqrt(low * high);
+      (first_half(middle).rate() > case_->first.rate() ? low : high) = middle;
+    }
+    return std::sqrt(low * high);
+  }
+
+ private:
+  Recording simulate(double threshold, double from, double to) const {
+    SimulatorOptions options;
+    options.sensor.threshold_on = options.sensor.threshold_off = threshold;
+    auto brightness = std::make_unique<SceneBrightness>(case_->camera, scene_, motion_, RenderingOptions{}, 0);
+    StreamOptions range;
+    range.from = static_cast<std::int64_t>(from * 1e6);
+    range.to = static_cast<std::int64_t>(to * 1e6);
+    return read_recording(EventStream(std::make_unique<EventSimulator>(std::move(brightness), options, duration_, 1),
+                                      "simulation", range),
+                          to - from);
+  }
+
+  const Case* case_;
+  double duration_;
+  Motion motion_;
+  std::shared_ptr<const RenderedScene> scene_;
+};
 
 /// Quartiles of the times between a pixel's events [ms].
 std::array<double, 3> inter_event_times(const Recording& recording) {
@@ -121,52 +164,81 @@ double variance(const Recording& recording, const Case& c, std::size_t count, do
   return squares / n - sum * sum / (n * n);
 }
 
-/// Compensated over uncompensated, at the depth that suits best (rotations: any).
-double sharpness(const Recording& recording, const Case& c) {
-  constexpr std::size_t count = 15000;
-  double best = 0.0;
-  for (double depth = 0.2; depth < 3.0; depth *= 1.05) best = std::max(best, variance(recording, c, count, depth, 1.0));
-  return best / variance(recording, c, count, 1.0, 0.0);
+/// The depth at which compensation makes the sharpest image, and how much sharper than none.
+struct Sharpness {
+  double depth = 0.0, gain = 0.0;
+};
+Sharpness sharpest(const Recording& recording, const Case& c) {
+  constexpr std::size_t count = 8000;
+  const double unmoved = variance(recording, c, count, 1.0, 0.0);
+  Sharpness best;
+  for (double depth = 0.2; depth < 3.0; depth *= 1.05) {
+    const double gain = variance(recording, c, count, depth, 1.0) / unmoved;
+    if (gain > best.gain) best = {depth, gain};
+    if (c.drive.velocity.isZero()) break;  // rotations: any depth
+  }
+  return best;
 }
 
-void print_row(const std::string& name, const Recording& recording, const Case& c) {
-  const auto count = static_cast<double>(recording.events.size());
+void print_row(const std::string& name, const std::string& threshold, const Recording& recording, const Case& c) {
   const auto on = static_cast<double>(std::ranges::count(recording.events, true, &Event::on));
   const auto [low, middle, high] = inter_event_times(recording);
-  fmt::print("| {} | {:.0f} | {:.3f} | {:.0f} | {:.1f} | {:.2f} / {:.2f} / {:.2f} | {:.2f} |\n", name, count,
-             recording.seconds(), 1e-3 * count / recording.seconds(), 100.0 * on / count, low, middle, high,
-             sharpness(recording, c));
+  fmt::print("| {} | {} | {:.0f} | {:.1f} | {:.2f} / {:.2f} / {:.2f} | {:.2f} |\n", name, threshold,
+             1e-3 * recording.rate(), 100.0 * on / static_cast<double>(recording.events.size()), low, middle, high,
+             sharpest(recording, c).gain);
+  std::fflush(stdout);
 }
 
 Vector3 read_vector(const std::string& path) {
   Vector3 v = Vector3::Zero();
-  std::ifstream(path) >> v.x() >> v.y() >> v.z();
+  if (!(std::ifstream(path) >> v.x() >> v.y() >> v.z())) {
+    throw InputError(fmt::format("{}: can't be read; expected three numbers", path));
+  }
   return v;
 }
 
-std::vector<Case> cases(const std::string& data) {
-  const auto camera = [&](const std::string& name) { return read_calib(data + "/" + name + "/calib.txt", 240, 180); };
-  Case slider{"slider_depth",
-              data + "/slider_depth/events_chunk.txt",
-              "boxes 0.35 to 0.9 m away",
-              camera("slider_depth"),
-              {},
-              {}};
-  slider.drive.velocity = {0.31, 0.0, 0.0};
-  slider.scene = {.kind = "boxes", .near = 0.35, .far = 0.9, .boxes = 10, .detail = 0.05, .black = 0.2};
-  Case shapes{
-      "shapes_rotation", data + "/shapes_rotation/events_excerpt.txt", "shapes", camera("shapes_rotation"), {}, {}};
-  shapes.drive.omega = read_vector(data + "/shapes_rotation/motion.txt");
-  shapes.scene = {.kind = "shapes", .near = 0.8, .far = 1.6, .black = 0.1};
-  Case office{"dynamic_rotation",
-              data + "/dynamic_rotation/events_excerpt.txt",
-              "boxes 1 to 4 m away",
-              camera("dynamic_rotation"),
-              {},
-              {}};
-  office.drive.omega = read_vector(data + "/dynamic_rotation/motion.txt");
-  office.scene = {.kind = "boxes", .near = 1.0, .far = 4.0, .boxes = 20, .detail = 0.3, .black = 0.15};
-  return {slider, shapes, office};
+/// The camera's own picture, whose grey values are linear in the light, as a picture for displays.
+void write_for_display(const std::string& from, const std::string& to) {
+  cv::Mat picture = cv::imread(from, cv::IMREAD_GRAYSCALE);
+  if (picture.empty()) throw InputError(fmt::format("{}: can't be read as a picture", from));
+  picture.convertTo(picture, CV_64F, 1.0 / 255.0);
+  cv::pow(picture, 1.0 / 2.2, picture);
+  picture.convertTo(picture, CV_8U, 255.0);
+  cv::imwrite(to, picture);
+}
+
+/// A plane with the recording's first frame, at the depth at which the first half's events compensate best.
+Case slider_depth(const std::string& folder, const std::string& picture) {
+  Case c{"slider_depth", "a plane with the real frame", read_calib(folder + "/calib.txt", 240, 180), {}, {}, {}, {}};
+  c.drive.velocity = {0.31, 0.0, 0.0};
+  read_halves(c, folder + "/events_chunk.txt");
+  const double depth = sharpest(c.first, c).depth;
+  write_for_display(folder + "/images/frame_00000000.png", picture);
+  c.scene = {.near = 0.99 * depth, .far = 1.01 * depth, .picture = picture};
+  c.scene.picture_width = c.camera.width / c.camera.pinhole.fx * depth;
+  c.scene_text += fmt::format(" at {:.2f} m", depth);
+  return c;
+}
+
+Case rotation(const std::string& folder, const std::string& name, const std::string& kind) {
+  Case c{name, kind, read_calib(folder + "/calib.txt", 240, 180), {}, {}, {}, {}};
+  c.drive.omega = read_vector(folder + "/motion.txt");
+  read_halves(c, folder + "/events_excerpt.txt");
+  c.scene.kind = kind;
+  return c;
+}
+
+/// Real, fitted, and with the threshold of another recording of the same camera; returns the fitted one.
+double compare(const Case& c, double other = 0.0, const std::string& other_name = "") {
+  print_row(c.name + ", real", "", c.second, c);
+  const Stage stage(c);
+  const double threshold = stage.fit();
+  print_row("simulated: " + c.scene_text, fmt::format("{:.2f}", threshold), stage.second_half(threshold), c);
+  if (other > 0.0) {
+    print_row("simulated: " + c.scene_text, fmt::format("{:.2f}, from {}", other, other_name), stage.second_half(other),
+              c);
+  }
+  return threshold;
 }
 
 }  // namespace
@@ -174,18 +246,16 @@ std::vector<Case> cases(const std::string& data) {
 int main() try {
   const char* const data = std::getenv("EVBENCH_DATA");
   if (data == nullptr) throw InputError("EVBENCH_DATA: is not set; expected the folder of real data");
+  const std::string folder = data;
   fmt::print(
-      "| recording | events | time [s] | rate [1000/s] | ON [%] | between a pixel's events, quartiles [ms] | "
-      "sharpness |\n| --- | --- | --- | --- | --- | --- | --- |\n");
-  for (const Case& c : cases(data)) {
-    StreamOptions options;
-    options.read.width = c.camera.width;
-    options.read.height = c.camera.height;
-    const Recording real = read_recording(EventStream(c.events, options));
-    if (real.events.empty()) throw InputError(fmt::format("{}: has no events", c.events));
-    print_row(c.name + ", real", real, c);
-    print_row(fmt::format("simulated: {}", c.scene_text), simulate(c, real.seconds()), c);
-  }
+      "| second half of | threshold | rate [1000/s] | ON [%] | between a pixel's events, quartiles [ms] | sharpness |\n"
+      "| --- | --- | --- | --- | --- | --- |\n");
+  const std::string picture = std::filesystem::temp_directory_path() / fmt::format("event_reality_{}.png", ::getpid());
+  const Case slider = slider_depth(folder + "/slider_depth", picture);
+  compare(slider);
+  std::filesystem::remove(picture);
+  const double threshold = compare(rotation(folder + "/shapes_rotation", "shapes_rotation", "shapes"));
+  compare(rotation(folder + "/dynamic_rotation", "dynamic_rotation", "boxes"), threshold, "shapes_rotation");
   return 0;
 } catch (const std::exception& error) {
   fmt::print(stderr, "event_reality: {}\n", error.what());
