@@ -15,7 +15,7 @@ using Catch::Matchers::Contains;
 namespace {
 
 std::vector<Event> random_events(std::size_t count, int width, int height, double mean_gap) {
-  testing::Random random(7);
+  Random random(7);
   std::vector<Event> events;
   std::int64_t t = -500;
   for (std::size_t i = 0; i < count; ++i) {
