@@ -11,6 +11,7 @@ namespace evbench {
 class ByteSource {
  public:
   virtual ~ByteSource() = default;
+  /// [bytes]; 0 where nobody knows before the end is read (a file in a .zip).
   virtual std::uint64_t size() const = 0;
   /// Reads from `offset` on, as many as there are; returns their number, 0 from the end on.
   virtual std::size_t read(std::uint64_t offset, std::span<std::byte> out) = 0;

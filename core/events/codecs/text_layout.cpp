@@ -31,7 +31,10 @@ constexpr Order kOrders[] = {{Column::t, Column::x, Column::y, Column::p},
 /// The lines of a text, one after the other.
 class Lines {
  public:
-  Lines(std::string_view text, bool whole) : text_(text), whole_(whole) {}
+  Lines(std::string_view text, bool whole) : text_(text), whole_(whole) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (text.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+  }
   bool next(std::string_view& line) {
     const auto end = text_.find('\n', at_);
     if (at_ >= text_.size() || (end == std::string_view::npos && !whole_)) return false;
@@ -140,8 +143,10 @@ void find_order(const Rows& rows, TextLayout& layout, const std::string& place) 
     if (best == nullptr || rows.back()[time_column(order)] > rows.back()[time_column(*best)]) best = &order;
   }
   if (best == nullptr) {
-    throw InputError(fmt::format("{}: has lines like \"{}\"; expected time, x, y and polarity in some order", place,
-                                 fmt::to_string(fmt::join(rows.front(), " "))));
+    throw InputError(
+        fmt::format("{}: has lines like \"{}\"; expected time, x, y and polarity in some order, times that do "
+                    "not decrease, or to be told the columns",
+                    place, fmt::to_string(fmt::join(rows.front(), " "))));
   }
   layout.columns.assign(best->begin(), best->end());
 }
@@ -218,6 +223,7 @@ TextLayout detect_text_layout(std::string_view head, bool whole, const std::stri
     layout.origin = Origin::caller;
   }
   Lines lines(head, whole);
+  layout.begin = lines.position();
   std::string_view line;
   for (; lines.next(line); ++layout.lines, layout.begin = lines.position()) {
     const std::string place = fmt::format("{}:{}", name, layout.lines + 1);

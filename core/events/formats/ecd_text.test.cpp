@@ -123,6 +123,8 @@ TEST_CASE("Orders, separators, units, polarities and names of columns are found 
       {"\"t\",\"x\",\"y\",\"extra\",\"polarity\"\n3811,96,133,7,0\n3820,127,171,7,1\n", "t x y - p (named in the file)",
        ",", "microseconds", "0, 1"},
       {"# comment\n\n0.003811 96 133 0\n# another\n3.82e-3 127 171 1\n", "t x y p", "blank", "seconds", "0, 1"},
+      {"\xEF\xBB\xBFt,x,y,p\n3811,96,133,0\n3820,127,171,1\n", "t x y p (named in the file)", ",", "microseconds",
+       "0, 1"},
       {"t[ms] x y p\n3.811 96 133 0\n3.8204 127 171 1\n", "t x y p (named in the file)", "blank", "milliseconds",
        "0, 1"},
   };

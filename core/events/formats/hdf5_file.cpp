@@ -27,8 +27,6 @@ std::string reason() {
     if (error->desc != nullptr && *error->desc != '\0') *static_cast<std::string*>(data) = error->desc;
     return 0;
   };
-  H5Ewalk2(
-      H5E_DEFAULT, H5E_WALK_UPWARD, [](unsigned, const H5E_error2_t*, void*) -> herr_t { return 0; }, nullptr);
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, visit, &text);
   return text;
 }

@@ -10,9 +10,8 @@
 
 namespace evbench {
 
-/// A .zip, or another archive that libarchive knows: its files by name. Nothing is unpacked but what is read, piece by
-/// piece; links and folders are no files. Throws InputError for a broken archive, and for one of more than 100,000
-/// files.
+/// A .zip: its files by name. Nothing is unpacked but what is read, piece by piece; links and folders are no files.
+/// Throws InputError for a broken archive, and for one of more than 100,000 files.
 class ZipArchive {
  public:
   explicit ZipArchive(std::string path);

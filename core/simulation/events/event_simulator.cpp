@@ -92,7 +92,7 @@ void EventSimulator::restart() {
 
 void EventSimulator::seek(std::int64_t t) {
   const std::int64_t now = ready_.empty() ? static_cast<std::int64_t>(t_ * 1e6) : ready_.front().t;
-  if (t < now || t_ > 0.0) restart();
+  if (t_ > 0.0 && t < now) restart();
   while (t_ < duration_ && (ready_.empty() || ready_.back().t < t)) {
     ready_.clear();
     step();

@@ -27,9 +27,8 @@ struct SensorOptions {
 /// - Its thresholds differ from the nominal ones by Gaussian mismatch (at least a tenth of the nominal one remains).
 /// - The junction leak of its reset switch moves the remembered L, so that ON events come at leak_rate on average even
 ///   when nothing changes.
-/// - Noise makes events of random polarity, a Poisson process of noise_rate (of hot_rate in a hot pixel); they reset
-/// the
-///   pixel as others do.
+/// - Noise makes events of random polarity, a Poisson process of noise_rate (of hot_rate in a hot pixel); they
+///   reset the pixel as others do.
 /// - The times of all its events are off by Gaussian jitter of at most four standard deviations, but remain in order.
 class Pixel {
  public:
