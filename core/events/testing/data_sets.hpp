@@ -57,11 +57,13 @@ text('dsec/nested/calibration/cam_to_cam.yaml', yaml)
 with h5('tumvie/mocap-desk/mocap-desk-events_left.h5') as f:
     columns(f.create_group('events'), 1_000_000)
     f['ms_to_idx'] = i.astype(np.uint64)
-lens = '{"camera_type": "kb4", "intrinsics": {"fx": %d, "fy": 1001, "cx": 640, "cy": 360, "k1": 0.1, "k2": 0.2, "k3": 0.3, "k4": 0.4}}'
+lens = ('{"camera_type": "kb4", "intrinsics": {"fx": %d, "fy": 1001, "cx": 640, "cy": 360, '
+        '"k1": 0.1, "k2": 0.2, "k3": 0.3, "k4": 0.4}}')
 turned = '{"px": 0, "py": 0, "pz": 0.2, "qx": 1, "qy": 0, "qz": 0, "qw": 0}'
 still = '{"px": 0, "py": 0, "pz": 0, "qx": 0, "qy": 0, "qz": 0, "qw": 1}'
 text('tumvie/mocap-desk/camera-calibrationA.json',
-     '{"value0": {"T_imu_cam": [%s, %s, %s, %s], "intrinsics": [%s], "resolution": [[1024, 1024], [1024, 1024], [1280, 720], [1280, 720]]}}'
+     '{"value0": {"T_imu_cam": [%s, %s, %s, %s], "intrinsics": [%s], '
+     '"resolution": [[1024, 1024], [1024, 1024], [1280, 720], [1280, 720]]}}'
      % (still, still, turned, still, ', '.join(lens % (1000 + n) for n in range(4))))
 text('tumvie/mocap-desk/mocap-imu-calibrationA.json',
      '{"value0": {"T_imu_marker": {"px": 0.1, "py": 0, "pz": 0, "qx": 0, "qy": 0, "qz": 0, "qw": 1}}}')
@@ -78,7 +80,8 @@ with h5('m3ed/falcon/falcon_data.h5') as f:
         columns(f.create_group('prophesee/' + side), 1_000_000)
         f[f'prophesee/{side}/ms_map_idx'] = i.astype(np.uint64)
         c = f.create_group(f'prophesee/{side}/calib')
-        c['intrinsics'], c['distortion_coeffs'], c['resolution'] = [fx, fx, 630.0, 350.0], [0.1, 0.2, 0.0, 0.0], [1280, 720]
+        c['intrinsics'], c['resolution'] = [fx, fx, 630.0, 350.0], [1280, 720]
+        c['distortion_coeffs'] = [0.1, 0.2, 0.0, 0.0]
         c['camera_model'], c['distortion_model'] = 'pinhole', 'radtan'
         T = np.eye(4); T[0, 3] = 0.1 * (side == 'right')
         c['T_to_prophesee_left'] = T
@@ -96,7 +99,8 @@ text('mvsec/flying1/camchain-imucam-flying.yaml', kalibr(220, 230, lens='equidis
 
 with h5('eds/peanuts/events.h5') as f:
     columns(f, 1_600_000_000_000_000)
-text('eds/peanuts/stamped_groundtruth.txt', '#timestamp tx ty tz qx qy qz qw\n1600000000.0 1 2 3 0 0 0 1\n1600000000.1 1 2 4 0 0 0 1\n')
+text('eds/peanuts/stamped_groundtruth.txt',
+     '#timestamp tx ty tz qx qy qz qw\n1600000000.0 1 2 3 0 0 0 1\n1600000000.1 1 2 4 0 0 0 1\n')
 text('eds/peanuts/images_timestamps.txt', '1600000000000000\n')
 text('eds/peanuts/camchain-calib.yaml', kalibr(760, 560))
 )PY";

@@ -1,0 +1,28 @@
+#include <catch2/catch.hpp>
+
+#include "bench/testing/program.hpp"
+#include "core/events/testing/data_sets.hpp"
+
+using namespace evbench;
+using Catch::Matchers::Contains;
+
+TEST_CASE("Folders of public data sets are described, converted and drawn, and can be named in a config") {
+  const testing::TemporaryFolder folder;
+  if (!testing::write_data_sets(folder)) return;
+  const std::string set =
+      GENERATE("dsec/seq", "dsec/nested", "tumvie/mocap-desk", "m3ed/falcon", "mvsec/flying1", "eds/peanuts");
+  CAPTURE(set);
+  const testing::Outcome info = testing::evbench(folder, "info --quiet " + set);
+  CHECK(info.exit_code == 0);
+  CHECK_THAT(info.out, Contains("events        100: 50 on, 50 off"));
+  CHECK_THAT(info.out, Contains("calibration   fx "));
+  CHECK((info.out.find("ground truth  none") != std::string::npos) == set.starts_with("dsec"));
+  CHECK(testing::evbench(folder, "render " + set + " a.png").exit_code == 0);
+  CHECK(testing::evbench(folder, "convert " + set + " " + set + "/events.evb").exit_code == 0);
+  CHECK_THAT(testing::evbench(folder, "info --quiet " + set).out, Contains("evbench native"));
+  folder.write("a.json", R"({"source": {"type": "recording", "dataset": ")" + set + "\"}}");
+  const testing::Outcome named =
+      testing::shell(folder, "EVBENCH_DATASETS='" + folder.path() + "' \"$evbench\" info --quiet a.json");
+  CHECK(named.exit_code == 0);
+  CHECK_THAT(named.out, Contains("calibration   fx "));
+}
