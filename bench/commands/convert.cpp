@@ -46,10 +46,9 @@ std::string formats_text() {
     text += fmt::format("  {:<8}{:<6}{}\n", format.name, format.extension, format.description);
   }
   return text +
-         "Calibration, ground truth and the header's fields are kept by native alone, the sensor's size by hdf5, too.\n"
-         "OUT appears when it is complete; an interrupted conversion leaves nothing, and what was there before. Text "
-         "can\n"
-         "be written to a pipe or device, e.g. convert IN /dev/stdout --format text --quiet | head.";
+         "Calibration, ground truth and header are kept by native alone; hdf5 keeps the sensor's size.\n"
+         "OUT appears when it is complete; an interrupted conversion leaves nothing, and what was there before.\n"
+         "Text can be written to a pipe or device: convert IN /dev/stdout --format text --quiet | head";
 }
 
 }  // namespace

@@ -14,10 +14,9 @@ namespace evbench {
 namespace {
 
 constexpr const char* kPlace =
-    "Datasets are kept in the folder that EVBENCH_DATASETS names, or ~/.cache/evbench/datasets, each in one of its "
-    "name;\n"
-    "NAME.download beside it has what was fetched of one that is not complete yet. A source of type recording takes\n"
-    "them by name: {\"dataset\": \"ecd/dynamic_6dof\"}. Their licences are their own.";
+    "Datasets are kept in the folder that EVBENCH_DATASETS names, or ~/.cache/evbench/datasets, each in one of its\n"
+    "name; NAME.download beside it has what was fetched of one that is not complete yet. A source of type recording\n"
+    "takes them by name: {\"dataset\": \"ecd/dynamic_6dof\"}. Their licences are their own.";
 
 void list_datasets() {
   std::string collection;

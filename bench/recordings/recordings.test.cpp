@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
@@ -187,7 +189,7 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
   write_native(folder.file("none.evb"), {}, {});
   folder.write("mistaken.json", R"({"source": {"type": "recording", "events": "a.evb", "calibration": "aside.txt",
                                                "width": 320, "height": 240, "time_range": [2, 3]}})");
-  folder.write("aside.txt", "200 200 5000 5000 0 0 0 0 0\n");
+  folder.write("aside.txt", "200 200 5000 5000 -0.35 0 0 0 0\n");
   folder.write("ok.txt", "old");
   const auto refused = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = testing::evbench(folder, "convert " + arguments);
@@ -195,6 +197,9 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
     CHECK(outcome.exit_code == 2);
     CHECK_THAT(outcome.err, Contains(message));
   };
+  REQUIRE(::mkfifo(folder.file("pipe").c_str(), 0600) == 0);
+  refused("pipe b.evb", "pipe: is no regular file");
+  std::filesystem::remove(folder.file("pipe"));
   refused("a.evb b.xyz", "expected one of .evb (native)");
   refused("a.evb b --format nativ", "did you mean \"native\"?");
   refused("a.evb b.evb --from 3 --to 2", "expected from < to");

@@ -13,7 +13,9 @@
 
 namespace evbench {
 
-FileBytes::FileBytes(std::string path) : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_RDONLY)) {
+// O_NONBLOCK: a pipe is refused at once, not when it has a writer.
+FileBytes::FileBytes(std::string path)
+    : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   if (descriptor_ < 0) throw InputError(fmt::format("{}: {}", path_, std::strerror(errno)));
   struct stat status {};
   if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {

@@ -1,12 +1,16 @@
 #include "core/events/formats/text_writer.hpp"
 
+#include <fcntl.h>
 #include <fmt/compile.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
+#include <string_view>
+#include <utility>
 
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
@@ -14,17 +18,18 @@
 namespace evbench {
 
 TextWriter::TextWriter(const std::string& path, std::string name)
-    : name_(std::move(name)), file_(std::fopen(path.c_str(), "wb")) {
-  if (file_ == nullptr) fail();
+    : name_(std::move(name)), file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)) {
+  if (file_ < 0) fail();
 }
 
 TextWriter::~TextWriter() {
-  if (file_ != nullptr) std::fclose(file_);
+  if (file_ >= 0) ::close(file_);
 }
 
 void TextWriter::fail() const {
+  const int error = errno;
   check_interruption();  // it may have waited for a pipe's reader
-  throw InputError(fmt::format("{}: can't be written: {}", name_, std::strerror(errno)));
+  throw InputError(fmt::format("{}: can't be written: {}", name_, std::strerror(error)));
 }
 
 void TextWriter::write(std::span<const Event> events) {
@@ -34,12 +39,16 @@ void TextWriter::write(std::span<const Event> events) {
     fmt::format_to(std::back_inserter(buffer_), FMT_COMPILE("{}{}.{:06} {} {} {}\n"), event.t < 0 ? "-" : "",
                    std::llabs(t.quot), std::llabs(t.rem), event.x, event.y, event.on ? 1 : 0);
   }
-  if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size()) fail();
+  for (std::string_view left(buffer_.data(), buffer_.size()); !left.empty();) {
+    const ssize_t written = ::write(file_, left.data(), left.size());
+    if (written < 0) fail();
+    left.remove_prefix(static_cast<std::size_t>(written));
+    check_interruption();  // which is why a part was written, where a pipe is full
+  }
 }
 
 void TextWriter::finish() {
-  std::FILE* const file = std::exchange(file_, nullptr);
-  if (std::fclose(file) != 0) fail();
+  if (::close(std::exchange(file_, -1)) != 0) fail();
 }
 
 }  // namespace evbench

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <string>
 
 #include "core/events/writer.hpp"
@@ -25,7 +24,7 @@ class TextWriter : public EventWriter {
   [[noreturn]] void fail() const;
 
   std::string name_;
-  std::FILE* file_ = nullptr;
+  int file_ = -1;
   fmt::memory_buffer buffer_;
 };
 
