@@ -48,6 +48,9 @@ std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOpti
   const std::vector<std::byte> head = read_head(events);
   if (const EventFormat* format = find_format(events, head)) {
     auto reader = format->open(events, options);
+    if (!options.topic.empty() && reader->info().topics.empty()) {
+      throw InputError(fmt::format("{}: has no topics or groups, of which {} would be one", events, options.topic));
+    }
     return format->has_companions ? with_companions(std::move(reader), files, options.topic) : std::move(reader);
   }
   if (std::filesystem::is_directory(path) && events == path) {

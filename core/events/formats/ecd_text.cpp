@@ -127,9 +127,11 @@ std::unique_ptr<EventReader> open_ecd_text(const std::string& path, const ReadOp
   const TextLayout layout = find_layout(*source, options);
   StreamInfo info = info_of(layout, options);
   if (layout.width == 0) find_sensor(files, info);
+  std::vector<std::string> beside;
   for (const char* name : {"calib.txt", "groundtruth.txt", "images.txt", "imu.txt"}) {
-    if (files.has(name) && files.path(name) != path) info.topics.emplace_back(name);
+    if (files.has(name) && files.path(name) != path) beside.emplace_back(name);
   }
+  if (!beside.empty()) info.metadata.emplace_back("beside the events", fmt::to_string(fmt::join(beside, ", ")));
   if (files.has("images.txt")) info.metadata.emplace_back("pictures", pictures_text(files));
   return std::make_unique<DecodedReader>(std::move(source), layout.begin, std::make_unique<EventTextDecoder>(layout),
                                          std::move(info), options);

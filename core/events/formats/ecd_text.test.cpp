@@ -254,7 +254,8 @@ TEST_CASE("A recording is read alike from a folder, a zip, and a zip of a folder
     CHECK((read_all(*reader) == kTwo));
     CHECK(reader->info().width == 240);
     CHECK(reader->info().height == 180);
-    CHECK(reader->info().topics == std::vector<std::string>{"calib.txt", "groundtruth.txt"});
+    CHECK(metadata(*reader, "beside the events") == "calib.txt, groundtruth.txt");
+    CHECK_THROWS_WITH(open_events(folder.file(name), {.topic = "/left"}), Catch::Contains("no topics or groups"));
     REQUIRE(reader->calibration());
     CHECK(reader->calibration()->pinhole.fx == 199.1);
     REQUIRE(reader->ground_truth());
