@@ -5,6 +5,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/experiment.hpp"
+#include "core/events/formats.hpp"
 #include "core/plugin/registry.hpp"
 
 namespace evbench {
@@ -33,11 +34,13 @@ bool describe(const std::string& kind, const std::string& name, bool schema) {
 }  // namespace
 
 void add_list(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("list", "List sources, front-ends and back-ends");
+  CLI::App* command = app.add_subcommand("list", "List sources, front-ends, back-ends and formats of events");
   command->callback([] {
     list<Source>();
     list<FrontEnd>();
     list<BackEnd>();
+    fmt::print("formats of events:\n");
+    for (const EventFormat& format : event_formats()) fmt::print("  {:<20} {}\n", format.name, format.description);
   });
 }
 
