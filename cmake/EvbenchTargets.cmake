@@ -50,14 +50,15 @@ function(evbench_tests name)
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:")
 endfunction()
 
-# evbench_fuzz_targets(LINKS ...): each fuzz/NAME.fuzz.cpp of a folder as a libFuzzer program fuzz_NAME, built by the
+# evbench_fuzz_targets(LINKS ... [CORPUS_ONLY ...]): each fuzz/NAME.fuzz.cpp of a folder as a libFuzzer program fuzz_NAME, built by the
 # target fuzz_targets. Its test runs fuzz/corpus/NAME, then new inputs for EVBENCH_FUZZ_SECONDS in bounded memory. In the
 # build folder, fuzz/corpus/NAME keeps the new inputs that reach more code, fuzz/findings/NAME-... those that fail.
+# The tests of CORPUS_ONLY try no new inputs: where a library has bugs of its own, each finding would be one of them.
 function(evbench_fuzz_targets)
   if(NOT EVBENCH_FUZZ)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LINKS;CORPUS_ONLY" ${ARGN})
   if(NOT TARGET fuzz_targets)
     add_custom_target(fuzz_targets)
   endif()
@@ -72,8 +73,12 @@ function(evbench_fuzz_targets)
     add_dependencies(fuzz_targets fuzz_${name})
     set(found ${CMAKE_BINARY_DIR}/fuzz/corpus/${name})
     file(MAKE_DIRECTORY ${found} ${CMAKE_BINARY_DIR}/fuzz/findings)
+    set(extent -max_total_time=${EVBENCH_FUZZ_SECONDS})
+    if(name IN_LIST ARG_CORPUS_ONLY)
+      set(extent -runs=0)
+    endif()
     add_test(NAME "fuzz: ${name}"
-             COMMAND fuzz_${name} -max_total_time=${EVBENCH_FUZZ_SECONDS} -timeout=30 -rss_limit_mb=1500
+             COMMAND fuzz_${name} ${extent} -timeout=30 -rss_limit_mb=1500
                      -malloc_limit_mb=700 -print_final_stats=1
                      -artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/findings/${name}-
                      ${found} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus/${name})
