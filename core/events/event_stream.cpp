@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <span>
 
@@ -50,31 +51,37 @@ EventStream::EventStream(std::unique_ptr<EventReader> reader, std::string path, 
   if (options.from) seek(*options.from);
 }
 
-/// Reads up to the first event that is one, and goes back. What was wrong there will be told when it is read again.
+/// The first event that is one; goes back to the beginning.
 void EventStream::find_zero() {
-  const std::map<std::string, Faults::Fault> at_opening = reader_->faults().all();
   std::vector<Event> first;
   if (read(first)) zero_ = first.front().t;
-  for (const auto& [kind, fault] : reader_->faults().all()) {
-    const auto before = at_opening.find(kind);
-    rehearsed_[kind] = fault.count - (before == at_opening.end() ? 0 : before->second.count);
-  }
-  faults_.clear();
-  newest_ = kBeginning;
-  ended_ = false;
-  reader_->seek(kBeginning);
+  seek_reader(kBeginning);
 }
 
 void EventStream::seek(std::int64_t t) {
   from_ = t + zero_;
+  seek_reader(from_);
+}
+
+void EventStream::seek_reader(std::int64_t t) {
   newest_ = kBeginning;
   ended_ = false;
-  reader_->seek(from_);
+  ahead_.clear();
+  faults_.clear();
+  reader_->seek(t);
+}
+
+/// The reader's next events; ahead_ has those after them.
+bool EventStream::next_chunk(std::vector<Event>& events) {
+  check_interruption();
+  if (ahead_.empty() && !reader_->read(ahead_)) return false;
+  std::swap(events, ahead_);
+  reader_->read(ahead_);
+  return true;
 }
 
 bool EventStream::read(std::vector<Event>& events) {
-  while (!ended_ && reader_->read(events)) {
-    check_interruption();
+  while (!ended_ && next_chunk(events)) {
     check(events);
     if (!events.empty()) return true;
   }
@@ -87,7 +94,7 @@ bool EventStream::read(std::vector<Event>& events) {
 void EventStream::check(std::vector<Event>& events) {
   if (events.empty()) return;
   const int width = info().width > 0 ? info().width : 1 << 16, height = info().height > 0 ? info().height : 1 << 16;
-  if (events.back().t >= end_ || !are_fine(events, std::max(newest_, from_), width, height)) {
+  if (events.back().t >= end_ || overlaps_next(events) || !are_fine(events, std::max(newest_, from_), width, height)) {
     leave_out_outside(events, width, height);
     leave_out_disorder(events);
     if (!events.empty()) newest_ = events.back().t;
@@ -101,6 +108,10 @@ void EventStream::check(std::vector<Event>& events) {
   }
   if (zero_ == 0) return;
   for (Event& event : events) event.t -= zero_;
+}
+
+bool EventStream::overlaps_next(std::span<const Event> events) const {
+  return !ahead_.empty() && !events.empty() && ahead_.front().t < events.back().t;
 }
 
 // Faults are told once a chunk: a recording may be nothing but faults.
@@ -129,30 +140,33 @@ void EventStream::leave_out_outside(std::vector<Event>& events, int width, int h
 void EventStream::leave_out_disorder(std::vector<Event>& events) {
   const std::size_t all = events.size();
   std::optional<std::int64_t> first_wrong;
-  const auto tell = [&](const Event& event) {
+  const auto leave_out = [&](const Event& event) {
     if (!first_wrong) first_wrong = event.t;
+    return true;
   };
-  std::erase_if(events, [&](const Event& event) { return event.t < newest_ && (tell(event), true); });
+  const auto too_early = [&](const Event& event) { return event.t < newest_; };
+  std::erase_if(events, [&](const Event& event) { return too_early(event) && leave_out(event); });
+  // With the events behind them, as it may be the last ones that are wrong.
+  const std::size_t count = events.size();
+  if (overlaps_next(events)) std::ranges::remove_copy_if(ahead_, std::back_inserter(events), too_early);
   const std::vector<std::uint32_t> kept = longest_in_order(events);
-  for (std::size_t i = 0, next = 0; i < events.size(); ++i) {
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < count; ++i) {
     if (next == kept.size() || kept[next] != i) {
-      tell(events[i]);
+      leave_out(events[i]);
     } else {
       events[next++] = events[i];
     }
   }
-  events.resize(kept.size());
-  if (events.size() == all) return;
+  events.resize(next);
+  if (next == all) return;
   faults_.add("events out of the order of time", fmt::format("{} us", *first_wrong),
-              static_cast<std::int64_t>(all - events.size()));
+              static_cast<std::int64_t>(all - next));
 }
 
 std::vector<std::pair<std::string, Faults::Fault>> EventStream::faults() const {
-  std::vector<std::pair<std::string, Faults::Fault>> all;
-  for (auto [kind, fault] : reader_->faults().all()) {
-    if (const auto twice = rehearsed_.find(kind); twice != rehearsed_.end()) fault.count -= twice->second;
-    if (fault.count > 0) all.emplace_back(kind, fault);
-  }
+  std::vector<std::pair<std::string, Faults::Fault>> all(reader_->faults().all().begin(),
+                                                         reader_->faults().all().end());
   all.insert(all.end(), faults_.all().begin(), faults_.all().end());
   return all;
 }

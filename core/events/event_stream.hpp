@@ -1,9 +1,9 @@
 #pragma once
 
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,8 +24,9 @@ struct StreamOptions {
 void check_sensor_size(const std::string& path, int width, int height);
 
 /// A recording's events in time order, within the sensor, in a time range: what everybody but the readers uses. Events
-/// out of order, outside the sensor or beyond ±2^61 µs are left out and counted as faults (errors in strict mode): as
-/// few as possible of each chunk, after none of an earlier chunk. Reading can be interrupted (interruption.hpp).
+/// out of order, outside the sensor or beyond ±2^61 µs are left out and counted as faults (errors in strict mode); of
+/// those out of order as few as possible, in view of two chunks of the reader. Reading can be interrupted
+/// (interruption.hpp).
 class EventStream {
  public:
   /// Throws InputError for what is no recording and by check_sensor_size().
@@ -43,7 +44,7 @@ class EventStream {
   const StreamInfo& info() const { return reader_->info(); }
   EventReader& reader() { return *reader_; }
 
-  /// The reader's and this stream's.
+  /// The reader's and this stream's, since the beginning or the last seek.
   std::vector<std::pair<std::string, Faults::Fault>> faults() const;
 
  private:
@@ -51,6 +52,9 @@ class EventStream {
   static constexpr std::int64_t kEnd = std::numeric_limits<std::int64_t>::max();
 
   void find_zero();
+  void seek_reader(std::int64_t t);
+  bool next_chunk(std::vector<Event>& events);
+  bool overlaps_next(std::span<const Event> events) const;
   void check(std::vector<Event>& events);
   void leave_out_outside(std::vector<Event>& events, int width, int height);
   void leave_out_disorder(std::vector<Event>& events);
@@ -58,7 +62,7 @@ class EventStream {
   std::string path_;
   std::unique_ptr<EventReader> reader_;
   Faults faults_;
-  std::map<std::string, std::int64_t> rehearsed_;  ///< the reader's faults that it tells twice, as zero was looked for
+  std::vector<Event> ahead_;  ///< the reader's next ones
   std::int64_t zero_ = 0;
   std::int64_t from_ = kBeginning, end_ = kEnd;  ///< the file's time
   std::int64_t newest_ = kBeginning;             ///< likewise

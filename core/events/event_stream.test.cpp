@@ -3,20 +3,19 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
-#include <map>
 
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
+#include "core/testing/data.hpp"
 
 using namespace evbench;
 
 namespace {
 
-/// Gives events three at a time, with `holes` faults before each three.
+/// Gives events three at a time.
 class ListReader : public EventReader {
  public:
-  explicit ListReader(std::vector<Event> events, std::int64_t holes = 0)
-      : events_(std::move(events)), faults_("list", false), holes_(holes) {
+  explicit ListReader(std::vector<Event> events) : events_(std::move(events)), faults_("list", false) {
     info_.width = info_.height = 10;
   }
   const StreamInfo& info() const override { return info_; }
@@ -25,7 +24,6 @@ class ListReader : public EventReader {
     events.assign(events_.begin() + static_cast<std::ptrdiff_t>(next_),
                   events_.begin() + static_cast<std::ptrdiff_t>(last));
     next_ = last;
-    if (holes_ > 0 && !events.empty()) faults_.add("holes", "somewhere", holes_);
     return !events.empty();
   }
   void seek(std::int64_t) override { next_ = 0; }
@@ -35,7 +33,6 @@ class ListReader : public EventReader {
   std::vector<Event> events_;
   StreamInfo info_;
   Faults faults_;
-  std::int64_t holes_;
   std::size_t next_ = 0;
 };
 
@@ -81,19 +78,32 @@ TEST_CASE("Times that would overflow are left out and counted") {
   CHECK(stream.faults()[0].second.count == 2);
 }
 
-TEST_CASE("Zero is the first event that is given, and what is wrong before it is told once") {
+TEST_CASE("A time that is far too late at the end of what a reader gives at once costs no more") {
   auto events = kFive;
-  events[0].x = 10;
-  EventStream stream(std::make_unique<ListReader>(events, 2), "list", {.rebase = true});
-  std::vector<Event> chunk;
-  REQUIRE(stream.read(chunk));
-  CHECK(chunk.front().t == 0);
-  CHECK(stream.zero() == 110);
-  while (stream.read(chunk)) {
+  events[2].t = 1'000'000;  // the last of the first three
+  CHECK(times(events, {}) == std::vector<std::int64_t>{100, 110, 130, 150});
+  CHECK(times(events, {.to = 140}) == std::vector<std::int64_t>{100, 110, 130});
+  events = kFive;
+  events[3].t = 1'000'000;  // the first of the next
+  CHECK(times(events, {}) == std::vector<std::int64_t>{100, 110, 110, 150});
+}
+
+TEST_CASE("Zero is the first event that is given, and what is wrong before it is told once") {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.write("a.txt", "240 180\n10 240 1 1\nno event\n20 1 1 1\n30 2 2 0\n");
+  for (const bool rebase : {false, true}) {
+    CAPTURE(rebase);
+    EventStream stream(path, {.rebase = rebase});
+    std::vector<Event> all;
+    for (std::vector<Event> chunk; stream.read(chunk);) all.insert(all.end(), chunk.begin(), chunk.end());
+    REQUIRE(all.size() == 2);
+    CHECK(all.front().t == (rebase ? 0 : 20));
+    CHECK(stream.zero() == (rebase ? 20 : 0));
+    const auto faults = stream.faults();
+    REQUIRE(faults.size() == 2);
+    CHECK(faults[0].second.count == 1);
+    CHECK(faults[1].second.count == 1);
   }
-  std::map<std::string, std::int64_t> counts;
-  for (const auto& [kind, fault] : stream.faults()) counts[kind] = fault.count;
-  CHECK(counts == std::map<std::string, std::int64_t>{{"events outside the sensor of 10x10 pixels", 1}, {"holes", 4}});
 }
 
 TEST_CASE("Events outside the sensor or out of order are left out and counted, or refused") {

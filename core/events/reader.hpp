@@ -49,7 +49,7 @@ class EventReader {
   /// reading from the beginning elsewhere.
   virtual void seek(std::int64_t t) = 0;
 
-  /// So far.
+  /// Found when it was opened, and since the beginning or the last seek.
   virtual const Faults& faults() const = 0;
 
   /// Where the recording has them; poses are T_world_camera, or of another body where the metadata says so, times in

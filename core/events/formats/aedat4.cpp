@@ -37,11 +37,12 @@ std::string attribute(std::string_view tag, const std::string& name) {
 }  // namespace
 
 Aedat4Reader::Aedat4Reader(std::unique_ptr<ByteSource> file, const ReadOptions& options)
-    : file_(std::move(file)), faults_(file_->name(), options.strict) {
+    : file_(std::move(file)), faults_(file_->name(), options.strict), opening_faults_(faults_) {
   read_header();
   choose_stream(options.topic);
   describe(options);
   at_ = begin_;
+  opening_faults_ = faults_;
 }
 
 void Aedat4Reader::read_header() {
@@ -235,6 +236,7 @@ bool Aedat4Reader::decode(std::vector<Event>& events) {
 }
 
 void Aedat4Reader::seek(std::int64_t t) {
+  faults_ = opening_faults_;
   at_ = begin_;
   const auto packets = packets_.find(stream_);
   if (packets == packets_.end() || t <= starts_[stream_]) return;

@@ -44,7 +44,7 @@ class Aedat4Reader : public EventReader {
   bool decode(std::vector<Event>& events);
 
   std::unique_ptr<ByteSource> file_;
-  Faults faults_;
+  Faults faults_, opening_faults_;
   StreamInfo info_;
   Compression compression_ = Compression::none;
   std::map<std::int32_t, Stream> streams_;

@@ -46,14 +46,14 @@ class Hdf5Reader : public EventReader {
     std::uint64_t begin = 0, end = 0;
   } loaded_;  ///< some rows
   StreamInfo info_;
-  Faults faults_;
+  Faults faults_, opening_faults_;
   std::int64_t offset_ = 0;   ///< added to all times [µs]
   std::uint64_t length_ = 0;  ///< events
   std::uint64_t next_ = 0;    ///< row
 };
 
 Hdf5Reader::Hdf5Reader(const std::string& path, const ReadOptions& options)
-    : file_(path), layout_(choose_events(file_, options.topic)), faults_(path, options.strict) {
+    : file_(path), layout_(choose_events(file_, options.topic)), faults_(path, options.strict), opening_faults_(faults_) {
   open_columns();
   if (!layout_.offset.empty()) {
     const double offset = file_.dataset(layout_.offset).first(0);
@@ -61,6 +61,7 @@ Hdf5Reader::Hdf5Reader(const std::string& path, const ReadOptions& options)
     offset_ = std::llround(offset);
   }
   describe(options);
+  opening_faults_ = faults_;
 }
 
 void Hdf5Reader::open_columns() {
@@ -191,6 +192,7 @@ void Hdf5Reader::drop_broken(std::uint64_t row, std::vector<Event>& events) {
 
 /// By the index of milliseconds where it agrees with the times, by bisection of the times elsewhere.
 void Hdf5Reader::seek(std::int64_t t) {
+  faults_ = opening_faults_;
   const auto may_start_at = [&](std::uint64_t row) { return row == 0 || (row <= length_ && time(row - 1) < t); };
   next_ = 0;
   if (length_ == 0 || t <= time(0)) return;

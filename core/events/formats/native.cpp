@@ -25,12 +25,14 @@ NativeReader::NativeReader(std::unique_ptr<FileMapping> mapping, std::span<const
     : mapping_(std::move(mapping)),
       bytes_(mapping_ ? mapping_->bytes() : bytes),
       name_(name),
-      faults_(name, options.strict) {
+      faults_(name, options.strict),
+      opening_faults_(faults_) {
   read_header();
   if (info_.width == 0) info_.width = options.width;
   if (info_.height == 0) info_.height = options.height;
   read_index();
   read_metadata();
+  opening_faults_ = faults_;
 }
 
 void NativeReader::fail(const std::string& message) const { throw InputError(fmt::format("{}: {}", name_, message)); }
@@ -152,6 +154,7 @@ bool NativeReader::read(std::vector<Event>& events) {
 }
 
 void NativeReader::seek(std::int64_t t) {
+  faults_ = opening_faults_;
   const auto found = std::ranges::partition_point(chunks_, [&](const Chunk& chunk) { return chunk.end < t; });
   next_ = static_cast<std::size_t>(found - chunks_.begin());
 }

@@ -54,7 +54,7 @@ class NativeReader : public EventReader {
   StreamInfo info_;
   std::optional<Camera> calibration_;
   std::optional<PoseTrajectory> ground_truth_;
-  Faults faults_;
+  Faults faults_, opening_faults_;
 };
 
 /// Writes it. Times must not go back.
