@@ -50,10 +50,10 @@ function(evbench_tests name)
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:")
 endfunction()
 
-# evbench_fuzz_targets(LINKS ... [CORPUS_ONLY ...]): each fuzz/NAME.fuzz.cpp of a folder as a libFuzzer program fuzz_NAME, built by the
-# target fuzz_targets. Its test runs fuzz/corpus/NAME, then new inputs for EVBENCH_FUZZ_SECONDS in bounded memory. In the
-# build folder, fuzz/corpus/NAME keeps the new inputs that reach more code, fuzz/findings/NAME-... those that fail.
-# The tests of CORPUS_ONLY try no new inputs: where a library has bugs of its own, each finding would be one of them.
+# evbench_fuzz_targets(LINKS ... [CORPUS_ONLY ...]): each fuzz/NAME.fuzz.cpp of a folder as a libFuzzer program fuzz_NAME,
+# built by the target fuzz_targets. Its test runs fuzz/corpus/NAME, then new inputs for EVBENCH_FUZZ_SECONDS in bounded
+# memory. In the build folder, fuzz/corpus/NAME keeps the new inputs that reach more code, fuzz/findings/NAME-... those
+# that fail. The tests of CORPUS_ONLY try no new inputs: where a library has bugs of its own, each finding would be one.
 function(evbench_fuzz_targets)
   if(NOT EVBENCH_FUZZ)
     return()
@@ -62,7 +62,7 @@ function(evbench_fuzz_targets)
   if(NOT TARGET fuzz_targets)
     add_custom_target(fuzz_targets)
   endif()
-  math(EXPR most_seconds "${EVBENCH_FUZZ_SECONDS} + 120")
+  math(EXPR most_seconds "${EVBENCH_FUZZ_SECONDS} + 600")
   file(GLOB sources CONFIGURE_DEPENDS fuzz/*.fuzz.cpp)
   foreach(source IN LISTS sources)
     get_filename_component(name ${source} NAME)
@@ -78,7 +78,7 @@ function(evbench_fuzz_targets)
       set(extent -runs=0)
     endif()
     add_test(NAME "fuzz: ${name}"
-             COMMAND fuzz_${name} ${extent} -timeout=30 -rss_limit_mb=1500
+             COMMAND fuzz_${name} ${extent} -seed=1 -timeout=60 -rss_limit_mb=1500
                      -malloc_limit_mb=700 -print_final_stats=1
                      -artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/findings/${name}-
                      ${found} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus/${name})

@@ -395,6 +395,19 @@ TEST_CASE("What was fetched of a dataset stays until all of it is there; a damag
   CHECK(names_in(folder.path()) == std::set<std::string>{"b.zip", "set"});
 }
 
+TEST_CASE("What an earlier call left is fetched again when the checksum tells that it is another file") {
+  const TemporaryFolder folder;
+  Server server("");
+  server.more = {{"a.h5", noise(1000)}};
+  Dataset dataset;
+  dataset.limit_gib = 1.0;
+  dataset.files = {{server.url("more/a.h5"), "a.h5", sha256(noise(1000)), false}};
+  std::filesystem::create_directory(folder.file("set.download"));
+  folder.write("set.download/a.h5", noise(999));
+  fetch_dataset(dataset, folder.file("set"), quick(), [](const std::string&) {});
+  CHECK(read_file(folder.file("set/a.h5")) == noise(1000));
+}
+
 TEST_CASE("dataset get fetches and unpacks by name, once; dataset list marks what is there") {
   const TemporaryFolder folder;
   make_archive(folder.file("sequence.zip"),

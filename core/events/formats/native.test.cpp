@@ -182,6 +182,10 @@ TEST_CASE("A damaged chunk of a native file is left out and counted; the others 
   CHECK_THAT(kind, Contains("checksum"));
   CHECK_THAT(fault.first, Contains("chunk 1 at byte "));
   CHECK(fault.count == native::kChunkEvents);
+  reader.seek(0);
+  CHECK(reader.faults().empty());
+  CHECK(read_all(reader) == read);
+  CHECK(reader.faults().all().begin()->second.count == native::kChunkEvents);
 }
 
 TEST_CASE("A native file whose header lies, with checksums that agree, is refused") {
