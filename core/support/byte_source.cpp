@@ -39,6 +39,16 @@ std::size_t FileBytes::read(std::uint64_t offset, std::span<std::byte> out) {
   return done;
 }
 
+std::string read_small_file(const std::string& path, std::uint64_t most, const std::string& what) {
+  FileBytes file(path);
+  if (file.size() > most) {
+    throw InputError(fmt::format("{}: has {} bytes; expected {} of at most {}", path, file.size(), what, most));
+  }
+  std::string text(static_cast<std::size_t>(file.size()), '\0');
+  text.resize(file.read(0, std::as_writable_bytes(std::span(text))));
+  return text;
+}
+
 std::size_t MemoryBytes::read(std::uint64_t offset, std::span<std::byte> out) {
   if (offset >= bytes_.size()) return 0;
   const std::size_t count = std::min<std::size_t>(out.size(), bytes_.size() - static_cast<std::size_t>(offset));

@@ -36,6 +36,9 @@ class FileBytes : public ByteSource {
   std::uint64_t size_ = 0;
 };
 
+/// A whole file. Throws InputError for one of more than `most` bytes, and says what was expected, e.g. "a calibration".
+std::string read_small_file(const std::string& path, std::uint64_t most, const std::string& what);
+
 /// Bytes that somebody else keeps.
 class MemoryBytes : public ByteSource {
  public:

@@ -16,13 +16,7 @@ using Json = nlohmann::json;
 
 std::string read_text(const std::string& path) {
   constexpr std::uint64_t kMost = 1 << 20;
-  FileBytes file(path);
-  if (file.size() > kMost) {
-    throw InputError(fmt::format("{}: has {} bytes; expected a calibration of at most {}", path, file.size(), kMost));
-  }
-  std::string text(static_cast<std::size_t>(file.size()), '\0');
-  text.resize(file.read(0, std::as_writable_bytes(std::span(text))));
-  return text;
+  return read_small_file(path, kMost, "a calibration");
 }
 
 /// A scalar is a number where it looks like one. Aliases are written out: `most` values in all, and 100 levels.

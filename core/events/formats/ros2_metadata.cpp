@@ -13,16 +13,6 @@ namespace {
 
 constexpr std::uint64_t kMostBytes = 2 << 20;  ///< in memory it is some hundred times as large at worst
 
-std::string read_text(const std::string& path) {
-  FileBytes file(path);
-  if (file.size() > kMostBytes) {
-    throw InputError(fmt::format("{}: has {} bytes; expected at most {}", path, file.size(), kMostBytes));
-  }
-  std::string text(static_cast<std::size_t>(file.size()), '\0');
-  text.resize(file.read(0, std::as_writable_bytes(std::span(text))));
-  return text;
-}
-
 std::optional<std::int64_t> end_of(const YAML::Node& file) {
   const YAML::Node start = file["starting_time"], duration = file["duration"], count = file["message_count"];
   if (!start || !duration || !count || count.as<std::int64_t>() <= 0) return std::nullopt;
@@ -64,7 +54,7 @@ Ros2Metadata parse(const YAML::Node& recording, const std::string& folder) {
 Ros2Metadata read_ros2_metadata(const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / "metadata.yaml").string();
   try {
-    const YAML::Node recording = YAML::Load(read_text(path))["rosbag2_bagfile_information"];
+    const YAML::Node recording = YAML::Load(read_small_file(path, kMostBytes, "a description"))["rosbag2_bagfile_information"];
     if (!recording || !recording["relative_file_paths"] || recording["relative_file_paths"].size() == 0) {
       throw InputError(fmt::format("{}: names no files; expected rosbag2_bagfile_information with some", path));
     }
