@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <filesystem>
 #include <string_view>
 
@@ -36,12 +35,20 @@ std::string folder_of(const std::string& file) {
   return slash == std::string::npos ? "" : file.substr(0, slash + 1);
 }
 
+/// Cuts this last part of a folder's path off; false, and nothing is cut, where the last part is another.
+bool leave(std::string& folder, const std::string& last) {
+  const std::string end = last + "/";
+  if (folder != end && !folder.ends_with("/" + end)) return false;
+  folder.resize(folder.size() - end.size());
+  return true;
+}
+
 /// The folder of the recording that a file of events belongs to, with the slash: that of the file but for
-/// events/left/events.h5.
+/// events/left/events.h5 and left/events.h5.
 std::string recording_of(const std::string& file) {
   std::string folder = folder_of(file);
-  for (const char* side : {"events/left/", "events/right/"}) {
-    if (file.ends_with(std::string(side) + "events.h5")) folder.resize(folder.size() - std::strlen(side));
+  if (file.substr(folder.size()) == "events.h5" && (leave(folder, "left") || leave(folder, "right"))) {
+    leave(folder, "events");
   }
   return folder;
 }

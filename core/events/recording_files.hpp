@@ -17,7 +17,8 @@ namespace evbench {
 class RecordingFiles {
  public:
   /// `path`: a folder, a .zip with an events.txt, or a file of events of any name. The folder of DSEC's
-  /// events/left/events.h5 is that with events/ in it. Throws InputError for a .zip without an events.txt.
+  /// events/left/events.h5 is that with events/ in it, that of left/events.h5 the one with left/ in it. Throws
+  /// InputError for a .zip without an events.txt.
   explicit RecordingFiles(const std::string& path);
 
   /// Path of the events, or of the .zip that has them; empty: a folder without. In a folder the first of events.evb (a
