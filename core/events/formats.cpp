@@ -51,7 +51,7 @@ std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOpti
     if (!options.topic.empty() && reader->info().topics.empty()) {
       throw InputError(fmt::format("{}: has no topics or groups, of which {} would be one", events, options.topic));
     }
-    return format->has_companions ? with_companions(std::move(reader), files, options.topic) : std::move(reader);
+    return format->has_companions ? with_companions(std::move(reader), files, options) : std::move(reader);
   }
   if (std::filesystem::is_directory(path) && events == path) {
     throw InputError(

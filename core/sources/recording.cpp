@@ -103,7 +103,7 @@ Recording::Own Recording::find_own(const Options& options, const std::string& fo
   read_options.height = options.height;
   const auto reader = holds_events(path) ? open_events(path, read_options)
                                          : with_companions(std::make_unique<NoEvents>(read_options),
-                                                           std::make_shared<const RecordingFiles>(path), "");
+                                                           std::make_shared<const RecordingFiles>(path), read_options);
   if (find_camera) own.camera = reader->calibration();
   if (find_truth) own.ground_truth = reader->ground_truth();
   const StreamInfo& info = reader->info();

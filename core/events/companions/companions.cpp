@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -19,7 +20,7 @@ constexpr auto kDataSets = {ecd_companions,  dsec_companions, tumvie_companions,
 class AccompaniedReader : public EventReader {
  public:
   AccompaniedReader(std::unique_ptr<EventReader> reader, Companions companions,
-                    std::shared_ptr<const RecordingFiles> files);
+                    std::shared_ptr<const RecordingFiles> files, const ReadOptions& options);
 
   const StreamInfo& info() const override { return info_; }
   bool read(std::vector<Event>& events) override { return reader_->read(events); }
@@ -30,7 +31,7 @@ class AccompaniedReader : public EventReader {
   std::vector<std::string> files_beside() const override { return {files_beside_.begin(), files_beside_.end()}; }
 
  private:
-  void find_sensor();
+  void find_sensor(const ReadOptions& options);
   std::unique_ptr<EventReader> reader_;
   Companions companions_;  ///< those that stand in for what the reader doesn't have
   std::shared_ptr<const RecordingFiles> files_;
@@ -39,11 +40,19 @@ class AccompaniedReader : public EventReader {
 };
 
 AccompaniedReader::AccompaniedReader(std::unique_ptr<EventReader> reader, Companions companions,
-                                     std::shared_ptr<const RecordingFiles> files)
+                                     std::shared_ptr<const RecordingFiles> files, const ReadOptions& options)
     : reader_(std::move(reader)), companions_(std::move(companions)), files_(std::move(files)), info_(reader_->info()) {
-  if (companions_.calibration && reader_->calibration()) companions_.calibration.reset();
-  if (companions_.ground_truth && reader_->ground_truth()) companions_.ground_truth.reset();
-  if (info_.size_assumed || info_.width <= 0 || info_.height <= 0) find_sensor();
+  const auto has_own = [](const auto& get) {
+    try {
+      return get().has_value();
+    } catch (const InputError&) {
+      return true;  // what is wrong with it is told to whoever asks for it
+    }
+  };
+  if (companions_.calibration && has_own([&] { return reader_->calibration(); })) companions_.calibration.reset();
+  if (companions_.ground_truth && has_own([&] { return reader_->ground_truth(); })) companions_.ground_truth.reset();
+  const bool said = options.width > 0 && options.height > 0;
+  if (!said && (info_.size_assumed || info_.width <= 0 || info_.height <= 0)) find_sensor(options);
   const auto tell = [&](const char* what, const auto& found) {
     if (found) info_.metadata.emplace_back(what, fmt::format("{} ({})", fmt::join(found->names, ", "), found->whose));
   };
@@ -66,8 +75,8 @@ std::optional<PoseTrajectory> AccompaniedReader::ground_truth() {
   return companions_.ground_truth->read();
 }
 
-/// A size that the calibration says is better than one that was assumed.
-void AccompaniedReader::find_sensor() {
+/// A size that the calibration says is better than one that was assumed, but not than what an option says.
+void AccompaniedReader::find_sensor(const ReadOptions& options) {
   int width = 0, height = 0;
   std::string whose = "the calibration's";
   try {
@@ -85,15 +94,31 @@ void AccompaniedReader::find_sensor() {
     whose = companions_.sensor->whose;
   }
   if (width <= 0) return;
-  info_.width = width;
-  info_.height = height;
+  info_.width = options.width > 0 ? options.width : width;
+  info_.height = options.height > 0 ? options.height : height;
   std::erase_if(info_.metadata, [](const auto& entry) { return entry.first == "sensor size"; });
   info_.metadata.emplace_back("sensor size", whose);
 }
 
+/// "left" or "right", whichever comes last as a whole word; "" without one.
+std::string side_in(const std::string& name) {
+  constexpr const char* kDelimiters = "_-./ ";
+  std::string side;
+  for (std::size_t begin = 0; begin < name.size();) {
+    const std::size_t end = std::min(name.find_first_of(kDelimiters, begin), name.size());
+    const std::string word = name.substr(begin, end - begin);
+    if (word == "left" || word == "right") side = word;
+    begin = end + 1;
+  }
+  return side;
+}
+
+/// As the topic says; where it says nothing the file's name, and then its folder.
 bool is_right(const std::filesystem::path& events, const std::string& topic) {
-  return topic.find("right") != std::string::npos || events.filename().string().find("right") != std::string::npos ||
-         events.parent_path().filename() == "right";
+  for (const std::string& name : {topic, events.filename().string(), events.parent_path().filename().string()}) {
+    if (const std::string side = side_in(name); !side.empty()) return side == "right";
+  }
+  return false;
 }
 
 }  // namespace
@@ -101,6 +126,12 @@ bool is_right(const std::filesystem::path& events, const std::string& topic) {
 std::string EventsPlace::name_before(const std::string& end) const {
   const std::string name = std::filesystem::path(path).filename().string();
   return name.ends_with(end) ? name.substr(0, name.size() - end.size()) : "";
+}
+
+std::string only(const RecordingFiles& files, const std::vector<std::string>& names) {
+  if (names.size() == 1) return names.front();
+  throw InputError(fmt::format("{}: lies beside {}; expected the sequence's own alone", files.path(names.back()),
+                               fmt::join(names.begin(), names.end() - 1, ", ")));
 }
 
 std::string partner(const EventsPlace& place, const std::string& end, const std::string& partners_end) {
@@ -125,10 +156,10 @@ Companions find_companions(const std::shared_ptr<const RecordingFiles>& files, c
 
 std::unique_ptr<EventReader> with_companions(std::unique_ptr<EventReader> reader,
                                              const std::shared_ptr<const RecordingFiles>& files,
-                                             const std::string& topic) {
-  Companions companions = find_companions(files, topic);
+                                             const ReadOptions& options) {
+  Companions companions = find_companions(files, options.topic);
   if (!companions.calibration && !companions.ground_truth && !companions.sensor) return reader;
-  return std::make_unique<AccompaniedReader>(std::move(reader), std::move(companions), files);
+  return std::make_unique<AccompaniedReader>(std::move(reader), std::move(companions), files, options);
 }
 
 }  // namespace evbench

@@ -118,6 +118,19 @@ TEST_CASE("M3ED's poses are turned round, and led to the right camera where its 
   const auto right = open_events(folder.file("m3ed/falcon"), {.topic = "prophesee/right"});
   CHECK(right->calibration()->pinhole.fx == 1040.0);
   CHECK(right->ground_truth()->poses()[1].T.p.isApprox(Vector3(1, 2.1, 3)));
+  CHECK(metadata(*right, "remark").empty());
+
+  const std::string copy = folder.write("m3ed/falcon/right.txt", "1 2 3 1\n2 2 3 1\n");
+  const auto text = open_events(copy);
+  REQUIRE(text->ground_truth());
+  CHECK(text->ground_truth()->poses()[1].T.p.isApprox(Vector3(1, 2.1, 3)));
+  CHECK(text->files_beside().size() == 2);
+  fs::rename(folder.file("m3ed/falcon/falcon_data.h5"), folder.file("m3ed/other.h5"));
+  const auto alone = open_events(copy);
+  CHECK(alone->ground_truth()->poses()[1].T.p.isApprox(Vector3(1, 2, 3)));
+  CHECK_THAT(metadata(*alone, "remark"), Contains("left event camera: no falcon_data.h5 leads"));
+  folder.write("m3ed/falcon/falcon_data.h5", "no HDF5");
+  CHECK_THROWS_WITH(open_events(copy)->ground_truth(), Contains("falcon_data.h5"));
 }
 
 TEST_CASE("MVSEC's poses and Kalibr's calibration are found beside its events") {
@@ -137,6 +150,87 @@ TEST_CASE("MVSEC's poses and Kalibr's calibration are found beside its events") 
   CHECK(alone->info().width == 346);
   CHECK_THAT(metadata(*alone, "sensor size"), Contains("MVSEC's"));
   CHECK_THAT(metadata(*alone, "remark"), Contains("left camera"));
+}
+
+TEST_CASE("Of several of Kalibr's calibrations the scenario's own is taken, and none where that is not to be told") {
+  const TemporaryFolder folder;
+  if (!testing::write_data_sets(folder)) return;
+  const std::string flying = folder.file("mvsec/flying1/camchain-imucam-flying.yaml"),
+                    driving = folder.file("mvsec/flying1/camchain-imucam-driving.yaml"),
+                    own = testing::read_file(flying);
+  testing::write_file(driving, replaced(own, "[220, ", "[300, "));
+  CHECK(open_events(folder.file("mvsec/flying1"))->calibration()->pinhole.fx == 220.0);
+  fs::rename(flying, folder.file("mvsec/flying1/camchain-imucam-walking.yaml"));
+  const auto reader = open_events(folder.file("mvsec/flying1"), {.topic = "davis/right"});
+  CHECK_THROWS_WITH(reader->calibration(), Contains("walking.yaml: lies beside camchain-imucam-driving.yaml"));
+  CHECK_THROWS_WITH(reader->ground_truth(), Contains("walking.yaml: lies beside camchain-imucam-driving.yaml"));
+  CHECK(reader->info().width == 346);
+  CHECK(read_all(*reader).size() == 100);
+
+  testing::write_file(folder.file("eds/peanuts/camchain-other.yaml"),
+                      testing::read_file(folder.file("eds/peanuts/camchain-calib.yaml")));
+  const auto eds = open_events(folder.file("eds/peanuts"));
+  CHECK_THROWS_WITH(eds->calibration(), Contains("camchain-other.yaml: lies beside camchain-calib.yaml"));
+  CHECK(eds->info().width == 640);
+}
+
+TEST_CASE("The topic says which camera it is, otherwise a whole word of the file's name or its folder's") {
+  const TemporaryFolder folder;
+  if (!testing::write_data_sets(folder)) return;
+  const std::string content = testing::read_file(folder.file("dsec/seq/events.h5"));
+  const auto fx = [&](const std::string& name, const std::string& topic = "") {
+    CAPTURE(name, topic);
+    const std::string path = folder.file("dsec/seq/" + name);
+    fs::create_directories(fs::path(path).parent_path());
+    testing::write_file(path, content);
+    testing::write_file((fs::path(path).parent_path() / "cam_to_cam.yaml").string(),
+                        testing::read_file(folder.file("dsec/seq/cam_to_cam.yaml")));
+    return open_events(path, {.topic = topic})->calibration()->pinhole.fx;
+  };
+  for (const char* name : {"bright_events.h5", "copyright.h5", "left_events.h5", "right/events_left.h5"}) {
+    CHECK(fx(name) == 500.0);
+  }
+  for (const char* name : {"events_right.h5", "a-right.h5", "right.events.h5", "right/some.h5"}) {
+    CHECK(fx(name) == 503.0);
+  }
+  const auto right = [](const std::string& path, const std::string& topic) {
+    return find_companions(std::make_shared<const RecordingFiles>(path), topic).calibration->whose;
+  };
+  CHECK_THAT(right(folder.file("dsec/seq/events_right.h5"), "/davis/left/events"), Contains("cam0"));
+  CHECK_THAT(right(folder.file("dsec/seq/left_events.h5"), "/davis/right/events"), Contains("cam3"));
+  CHECK_THAT(right(folder.file("dsec/seq/events_right.h5"), "/bright/events"), Contains("cam3"));
+}
+
+TEST_CASE("A file in left/ belongs to the folder above, one in a folder of another name to its own") {
+  const TemporaryFolder folder;
+  if (!testing::write_data_sets(folder)) return;
+  fs::create_directories(folder.file("halves"));
+  fs::copy(folder.file("dsec/nested/events/left"), folder.file("halves/left"));
+  fs::copy(folder.file("dsec/seq/cam_to_cam.yaml"), folder.file("halves/cam_to_cam.yaml"));
+  CHECK(open_events(folder.file("halves"))->calibration());
+  CHECK(open_events(folder.file("halves/left/events.h5"))->calibration());
+  fs::rename(folder.file("halves"), folder.file("my_events"));
+  CHECK(open_events(folder.file("my_events/left/events.h5"))->files_beside().empty());
+  CHECK(open_events(folder.file("my_events/left/events.h5"))->calibration());
+  fs::rename(folder.file("my_events/left"), folder.file("my_events/bleft"));
+  CHECK_FALSE(open_events(folder.file("my_events/bleft/events.h5"))->calibration());
+}
+
+TEST_CASE("A sensor's size that an option says goes before that of what lies beside the events") {
+  const TemporaryFolder folder;
+  if (!testing::write_data_sets(folder)) return;
+  const auto both = open_events(folder.file("dsec/seq"), {.width = 1280, .height = 720});
+  CHECK(both->info().width == 1280);
+  CHECK(both->info().height == 720);
+  CHECK(metadata(*both, "sensor size").empty());
+  CHECK(both->calibration()->width == 640);
+  const auto one = open_events(folder.file("dsec/seq"), {.width = 1280});
+  CHECK(one->info().width == 1280);
+  CHECK(one->info().height == 480);
+  const auto eds = open_events(folder.file("eds/peanuts"), {.width = 700, .height = 500});
+  CHECK(eds->info().width == 700);
+  const auto own = open_events(folder.file("m3ed/falcon"), {.width = 700, .height = 500});
+  CHECK(own->info().width == 1280);  // the file says it
 }
 
 TEST_CASE("EDS has its event camera second in Kalibr's calibration, and its sensor's size without one") {

@@ -22,6 +22,9 @@ struct EventsPlace {
 /// name does not end so (a native copy), the only one with that end. "" when there is none.
 std::string partner(const EventsPlace& place, const std::string& end, const std::string& partners_end);
 
+/// The only one of several files of a kind, of which a sequence has one. Throws InputError that names them all.
+std::string only(const RecordingFiles& files, const std::vector<std::string>& names);
+
 /// calib.txt (fx fy cx cy k1 k2 p1 p2 k3) and groundtruth.txt (TUM), both of the camera. Mueggler et al., IJRR 2017.
 Companions ecd_companions(const EventsPlace& place);
 
@@ -35,11 +38,11 @@ Companions dsec_companions(const EventsPlace& place);
 Companions tumvie_companions(const EventsPlace& place);
 
 /// NAME_pose_gt.h5: Cn_T_C0, of the left event camera, at ts [µs]; T_world_camera = Cn_T_C0⁻¹, for the right one
-/// followed by its calib/T_to_prophesee_left. The calibration is in NAME_data.h5 itself. Chaney et al., CVPRW 2023.
+/// followed by its calib/T_to_prophesee_left in NAME_data.h5, where that is there. The calibration is in it, too. Chaney et al., CVPRW 2023.
 Companions m3ed_companions(const EventsPlace& place);
 
-/// NAME_gt.hdf5: davis/left/pose, T_world_camera at davis/left/pose_ts [s]; camchain-imucam-*.yaml of Kalibr: cam0
-/// (left), cam1 (right), whose T_cn_cnm1 gives the right camera's poses. Zhu et al., RA-L 2018.
+/// NAME_gt.hdf5: davis/left/pose, T_world_camera at davis/left/pose_ts [s]; camchain-imucam-*.yaml of Kalibr, of
+/// several the one whose name NAME begins with: cam0 (left), cam1 (right), whose T_cn_cnm1 gives the right camera's poses. Zhu et al., RA-L 2018.
 Companions mvsec_companions(const EventsPlace& place);
 
 /// stamped_groundtruth.txt (TUM), of the event camera (the authors have applied their hand-eye calibration); a

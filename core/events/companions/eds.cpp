@@ -12,10 +12,10 @@ Companions eds_companions(const EventsPlace& place) {
   found.sensor = {640, 480, "EDS's (Prophesee Gen3.1)"};
   const auto chains = files->matching("camchain*.yaml");
   if (!chains.empty()) {
-    const auto read = [files, name = chains.front()](int, int) {
-      return files->get(name, [](const std::string& path) { return kalibr_camera(Field::read_yaml(path).at("cam1")); });
+    const auto read = [files, chains](int, int) {
+      return files->get(only(*files, chains), [](const std::string& path) { return kalibr_camera(Field::read_yaml(path).at("cam1")); });
     };
-    found.calibration = {{chains.front()}, "cam1, EDS's event camera", read};
+    found.calibration = {chains, "cam1, EDS's event camera", read};
   }
   if (files->has(truth)) {
     const auto read = [files, truth] {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/events/companions/calibration_fields.hpp"
+#include "core/events/formats/hdf5_file.hpp"
 #include "core/support/error.hpp"
 #include "core/support/trial.hpp"
 
@@ -33,25 +34,35 @@ std::vector<StampedPose> read_untried(const std::string& path, const std::string
   return poses;
 }
 
-}  // namespace
+SE3 read_untried(const std::string& path, const std::string& matrix) {
+  const std::vector<double> T = read_numbers(File(path), matrix);
+  if (T.size() != 16) {
+    throw InputError(fmt::format("{}: /{}: has {} numbers; expected a 4x4 matrix", path, matrix, T.size()));
+  }
+  return checked_pose(fmt::format("{}: /{}", path, matrix), T.data());
+}
 
-std::vector<StampedPose> read_poses(const std::string& path, const std::string& matrices, const std::string& times,
-                                    double unit) {
+/// Calls it, after a trial.
+template <class F>
+auto tried(const std::string& path, F read) {
   constexpr unsigned kMostSeconds = 10;
-  const std::string end = trial([&] { read_untried(path, matrices, times, unit); }, kMostSeconds);
+  const std::string end = trial([&] { read(); }, kMostSeconds);
   if (!end.empty()) {
     throw InputError(
         fmt::format("{}: is broken in a way that the HDF5 library cannot read; it ended with: {}", path, end));
   }
-  return read_untried(path, matrices, times, unit);
+  return read();
 }
 
-SE3 read_pose(const File& file, const std::string& matrix) {
-  const std::vector<double> T = read_numbers(file, matrix);
-  if (T.size() != 16) {
-    throw InputError(fmt::format("{}: /{}: has {} numbers; expected a 4x4 matrix", file.path(), matrix, T.size()));
-  }
-  return checked_pose(fmt::format("{}: /{}", file.path(), matrix), T.data());
+}  // namespace
+
+std::vector<StampedPose> read_poses(const std::string& path, const std::string& matrices, const std::string& times,
+                                    double unit) {
+  return tried(path, [&] { return read_untried(path, matrices, times, unit); });
+}
+
+SE3 read_pose(const std::string& path, const std::string& matrix) {
+  return tried(path, [&] { return read_untried(path, matrix); });
 }
 
 }  // namespace evbench::hdf5

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "core/events/formats/hdf5_file.hpp"
 #include "core/motion/pose_trajectory.hpp"
 
 namespace evbench::hdf5 {
@@ -13,7 +12,7 @@ namespace evbench::hdf5 {
 std::vector<StampedPose> read_poses(const std::string& path, const std::string& matrices, const std::string& times,
                                     double unit);
 
-/// One such matrix.
-SE3 read_pose(const File& file, const std::string& matrix);
+/// One such matrix, likewise.
+SE3 read_pose(const std::string& path, const std::string& matrix);
 
 }  // namespace evbench::hdf5

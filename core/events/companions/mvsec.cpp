@@ -3,18 +3,34 @@
 #include "core/events/companions/hdf5_poses.hpp"
 
 namespace evbench {
+namespace {
+
+/// Kalibr's calibrations; where some are of the events' scenario, only those: outdoor_day of outdoor_day1_data.hdf5.
+std::vector<std::string> find_chains(const EventsPlace& place) {
+  const std::string before = "camchain-imucam-", end = ".yaml", sequence = place.name_before("_data.hdf5");
+  const auto all = place.files->matching("camchain-imucam*.yaml");
+  std::vector<std::string> own;
+  for (const std::string& name : all) {
+    if (!name.starts_with(before)) continue;
+    const std::string scenario = name.substr(before.size(), name.size() - before.size() - end.size());
+    if (!scenario.empty() && sequence.starts_with(scenario)) own.push_back(name);
+  }
+  return own.empty() ? all : own;
+}
+
+}  // namespace
 
 Companions mvsec_companions(const EventsPlace& place) {
   Companions found;
   const auto files = place.files;
   const std::string camera = place.right ? "cam1" : "cam0";
-  const auto chains = files->matching("camchain-imucam*.yaml");
+  const auto chains = find_chains(place);
   const auto read_chain = [=] {
-    return files->get(chains.front(), [](const std::string& path) { return Field::read_yaml(path); });
+    return files->get(only(*files, chains), [](const std::string& path) { return Field::read_yaml(path); });
   };
   if (!chains.empty()) {
     const auto read = [=](int, int) { return kalibr_camera(read_chain().at(camera)); };
-    found.calibration = {{chains.front()}, camera + " of a Kalibr calibration", read};
+    found.calibration = {chains, camera + " of a Kalibr calibration", read};
   }
   const std::string name = partner(place, "_data.hdf5", "_gt.hdf5");
   if (name.empty()) return found;
@@ -30,7 +46,9 @@ Companions mvsec_companions(const EventsPlace& place) {
       for (StampedPose& pose : poses) pose.T = pose.T * T_left_right;
       return PoseTrajectory(std::move(poses), files->path(name));
     };
-    found.ground_truth = {{name, chains.front()}, "the right camera", read};
+    std::vector<std::string> names = chains;
+    names.insert(names.begin(), name);
+    found.ground_truth = {std::move(names), "the right camera", read};
   } else {
     const auto read = [=] { return PoseTrajectory(read_left(), files->path(name)); };
     found.ground_truth = {{name}, "the left camera", read};

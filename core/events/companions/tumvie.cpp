@@ -1,20 +1,11 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "core/data/tum.hpp"
 #include "core/events/companions/calibration_fields.hpp"
 #include "core/events/companions/data_sets.hpp"
-#include "core/support/error.hpp"
 
 namespace evbench {
 namespace {
-
-/// Of the calibrations A and B, of which each sequence has one.
-std::string only(const RecordingFiles& files, const std::vector<std::string>& names) {
-  if (names.size() == 1) return names.front();
-  throw InputError(fmt::format("{}: lies beside {}; expected the sequence's own alone", files.path(names.back()),
-                               fmt::join(names.begin(), names.end() - 1, ", ")));
-}
 
 /// Basalt's.
 SE3 read_pose(const Field& pose) {
@@ -37,6 +28,7 @@ Camera read_camera(const Field& calibration, std::size_t index) {
                         several({"k1", "k2", "k3", "k4"}), calibration.at("resolution").at(index).numbers(2));
 }
 
+/// Of the calibrations A and B each sequence has one.
 Field read_calibration(const RecordingFiles& files, const std::vector<std::string>& names) {
   return files.get(only(files, names), [](const std::string& path) { return Field::read_json(path).at("value0"); });
 }

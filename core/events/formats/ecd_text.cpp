@@ -85,10 +85,11 @@ std::optional<std::pair<int, int>> picture_size(const RecordingFiles& files) {
 
 /// Where neither the text nor an option says it.
 void find_sensor(const RecordingFiles& files, StreamInfo& info) {
+  if (info.width > 0 || info.height > 0) return;
   if (const auto size = picture_size(files)) {
     std::tie(info.width, info.height) = *size;
     info.metadata.emplace_back("sensor size", "that of the pictures beside the events");
-  } else if (info.width == 0 && info.height == 0 && may_be_davis240(files)) {
+  } else if (may_be_davis240(files)) {
     info.width = 240;
     info.height = 180;
     info.metadata.emplace_back("sensor size", "the Event-Camera Dataset's (DAVIS 240C), as calib.txt fits it");

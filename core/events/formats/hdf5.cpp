@@ -119,7 +119,13 @@ void Hdf5Reader::describe(const ReadOptions& options) {
 /// From the calibration or an attribute of the file; otherwise what the user says, or the data set is known to have.
 void Hdf5Reader::find_sensor(const ReadOptions& options) {
   const std::string group = layout_.is_rows() ? "" : layout_.group;
-  if (const auto camera = calibration()) {
+  std::optional<Camera> camera;
+  try {
+    camera = calibration();
+  } catch (const InputError&) {
+    // Told to whoever asks for the calibration.
+  }
+  if (camera) {
     info_.width = camera->width;
     info_.height = camera->height;
   } else if (const auto size = hdf5::find_sensor_size(file_, group)) {
