@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <fstream>
 
 #include "core/events/formats.hpp"
 #include "core/events/formats/native.hpp"
@@ -35,6 +36,11 @@ std::string with_file(const TemporaryFolder& folder, const std::string& set, con
   fs::copy(folder.file(set), path, fs::copy_options::recursive);
   folder.write("changed/" + name, content);
   return path.string();
+}
+
+void write_file(const fs::path& path, const std::string& content) {
+  fs::create_directories(path.parent_path());
+  std::ofstream(path) << content;
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -158,7 +164,7 @@ TEST_CASE("Of several of Kalibr's calibrations the scenario's own is taken, and 
   const std::string flying = folder.file("mvsec/flying1/camchain-imucam-flying.yaml"),
                     driving = folder.file("mvsec/flying1/camchain-imucam-driving.yaml"),
                     own = testing::read_file(flying);
-  testing::write_file(driving, replaced(own, "[220, ", "[300, "));
+  write_file(driving, replaced(own, "[220, ", "[300, "));
   CHECK(open_events(folder.file("mvsec/flying1"))->calibration()->pinhole.fx == 220.0);
   fs::rename(flying, folder.file("mvsec/flying1/camchain-imucam-walking.yaml"));
   const auto reader = open_events(folder.file("mvsec/flying1"), {.topic = "davis/right"});
@@ -167,7 +173,7 @@ TEST_CASE("Of several of Kalibr's calibrations the scenario's own is taken, and 
   CHECK(reader->info().width == 346);
   CHECK(read_all(*reader).size() == 100);
 
-  testing::write_file(folder.file("eds/peanuts/camchain-other.yaml"),
+  write_file(folder.file("eds/peanuts/camchain-other.yaml"),
                       testing::read_file(folder.file("eds/peanuts/camchain-calib.yaml")));
   const auto eds = open_events(folder.file("eds/peanuts"));
   CHECK_THROWS_WITH(eds->calibration(), Contains("camchain-other.yaml: lies beside camchain-calib.yaml"));
@@ -178,14 +184,13 @@ TEST_CASE("The topic says which camera it is, otherwise a whole word of the file
   const TemporaryFolder folder;
   if (!testing::write_data_sets(folder)) return;
   const std::string content = testing::read_file(folder.file("dsec/seq/events.h5"));
-  const auto fx = [&](const std::string& name, const std::string& topic = "") {
-    CAPTURE(name, topic);
-    const std::string path = folder.file("dsec/seq/" + name);
-    fs::create_directories(fs::path(path).parent_path());
-    testing::write_file(path, content);
-    testing::write_file((fs::path(path).parent_path() / "cam_to_cam.yaml").string(),
-                        testing::read_file(folder.file("dsec/seq/cam_to_cam.yaml")));
-    return open_events(path, {.topic = topic})->calibration()->pinhole.fx;
+  const std::string yaml = testing::read_file(folder.file("dsec/seq/cam_to_cam.yaml"));
+  const auto fx = [&](const std::string& name) {
+    CAPTURE(name);
+    const fs::path path = folder.file("dsec/seq/" + name);
+    write_file(path, content);
+    write_file(path.parent_path() / "cam_to_cam.yaml", yaml);
+    return open_events(path.string())->calibration()->pinhole.fx;
   };
   for (const char* name : {"bright_events.h5", "copyright.h5", "left_events.h5", "right/events_left.h5"}) {
     CHECK(fx(name) == 500.0);
@@ -193,12 +198,12 @@ TEST_CASE("The topic says which camera it is, otherwise a whole word of the file
   for (const char* name : {"events_right.h5", "a-right.h5", "right.events.h5", "right/some.h5"}) {
     CHECK(fx(name) == 503.0);
   }
-  const auto right = [](const std::string& path, const std::string& topic) {
+  const auto whose = [](const std::string& path, const std::string& topic) {
     return find_companions(std::make_shared<const RecordingFiles>(path), topic).calibration->whose;
   };
-  CHECK_THAT(right(folder.file("dsec/seq/events_right.h5"), "/davis/left/events"), Contains("cam0"));
-  CHECK_THAT(right(folder.file("dsec/seq/left_events.h5"), "/davis/right/events"), Contains("cam3"));
-  CHECK_THAT(right(folder.file("dsec/seq/events_right.h5"), "/bright/events"), Contains("cam3"));
+  CHECK_THAT(whose(folder.file("dsec/seq/events_right.h5"), "/davis/left/events"), Contains("cam0"));
+  CHECK_THAT(whose(folder.file("dsec/seq/left_events.h5"), "/davis/right/events"), Contains("cam3"));
+  CHECK_THAT(whose(folder.file("dsec/seq/events_right.h5"), "/bright/events"), Contains("cam3"));
 }
 
 TEST_CASE("A file in left/ belongs to the folder above, one in a folder of another name to its own") {

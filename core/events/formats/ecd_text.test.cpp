@@ -167,6 +167,17 @@ TEST_CASE("Without pictures a calibration that fits the Event-Camera Dataset's s
   CHECK(width("no numbers\n") == 0);
 }
 
+TEST_CASE("A sensor's size that an option says goes before that of the pictures") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.file("images"));
+  for (const auto& [name, content] : kRecording) folder.write(name, content);
+  CHECK(open_events(folder.file("events.txt"))->info().width == 240);
+  const auto reader = open_events(folder.file("events.txt"), {.width = 346, .height = 260});
+  CHECK(reader->info().width == 346);
+  CHECK(reader->info().height == 260);
+  CHECK(metadata(*reader, "sensor size").empty());
+}
+
 TEST_CASE("The pictures' times beside the events are told") {
   const TemporaryFolder folder;
   folder.write("events.txt", kRecording[0].second);

@@ -242,6 +242,23 @@ TEST_CASE("M3ED's cameras are chosen by name and bring their calibration") {
   check_recording(read_all(*right));
 }
 
+TEST_CASE("Events beside a calibration that cannot be used are read; it is refused when it is asked for") {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.file("spot.h5");
+  {
+    Writer file(path);
+    write_columns(file, "prophesee/left/");
+    file.add("prophesee/left/calib/intrinsics", std::vector<double>{0, 1001, 640, 360});
+    file.add("prophesee/left/calib/distortion_coeffs", std::vector<double>{-0.1, 0.2, 0.001, 0.002});
+    file.add("prophesee/left/calib/resolution", std::vector<std::int64_t>{1280, 719});
+  }
+  folder.write("cam_to_cam.yaml", "intrinsics: {}\n");
+  const auto reader = open_events(path);
+  check_recording(read_all(*reader));
+  CHECK(reader->info().height == 720);  // M3ED's
+  CHECK_THROWS_WITH(reader->calibration(), Catch::Contains("calib/: has fx fy cx cy 0 1001"));
+}
+
 TEST_CASE("Columns at the root are read in chunks, as they are and through deflate, blosc and lz4") {
 #if defined(__SANITIZE_ADDRESS__)
   const __lsan::ScopedDisabler unwatched;  // HDF5's blosc plugin never frees its buffers, and is unloaded with them
