@@ -79,10 +79,11 @@ AtomicFolder::AtomicFolder(const std::string& path)
   if (lock_ < 0) {
     throw InputError(fmt::format("{}: another run is writing to this folder; wait for it, or write elsewhere", path));
   }
-  fs::remove_all(part_, error);  // what a killed run left
+  std::error_code removal;
+  fs::remove_all(part_, removal);  // what a killed run left
   if (!fs::exists(target_, error)) fs::rename(old_, target_, error);
   if (!fs::create_directory(part_, error)) {
-    const std::string message = fmt::format("{}: can't be made: {}", path, error.message());
+    const std::string message = fmt::format("{}: can't be made: {}", path, (error ? error : removal).message());
     ::unlink(lock_path_.c_str());
     ::close(lock_);
     throw InputError(message);

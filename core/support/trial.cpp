@@ -10,6 +10,8 @@
 #include <cstring>
 #include <exception>
 
+#include "core/support/interruption.hpp"
+
 namespace evbench {
 namespace {
 
@@ -44,7 +46,10 @@ std::string trial(const std::function<void()>& work, unsigned most_seconds) {
   int status = 0;
   while (::waitpid(copy, &status, 0) < 0) {
     if (errno != EINTR) return "";
+    if (Interruption::is_requested()) ::kill(copy, SIGKILL);
   }
+  check_interruption();
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) return "Time limit exceeded";
   for (const int crash : kCrashes) {
     if (WIFSIGNALED(status) && WTERMSIG(status) == crash) return ::strsignal(crash);
   }

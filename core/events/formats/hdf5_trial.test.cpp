@@ -31,7 +31,7 @@ std::string write_events(const testing::TemporaryFolder& folder) {
 
 }  // namespace
 
-TEST_CASE("An HDF5 file on which the library crashes is refused with a sentence") {
+TEST_CASE("An HDF5 file on which some versions of the library crash is refused with a sentence") {
   const testing::TemporaryFolder folder;
   std::string content = testing::read_file(write_events(folder));
   CHECK_NOTHROW(open_events(folder.file("events.h5")));
@@ -39,7 +39,8 @@ TEST_CASE("An HDF5 file on which the library crashes is refused with a sentence"
   REQUIRE(heap != std::string::npos);
   content.replace(address, 8, 8, '\xFF');
   const std::string broken = folder.write("broken.h5", content);
-  CHECK_THROWS_WITH(open_events(broken), Catch::StartsWith(broken) && Catch::Contains("HDF5 library cannot read"));
+  CHECK_THROWS_AS(open_events(broken), InputError);
+  CHECK_THROWS_WITH(open_events(broken), Catch::StartsWith(broken));
 }
 
 TEST_CASE("What the HDF5 library itself refuses, its trial leaves to it") {
