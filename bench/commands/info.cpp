@@ -35,7 +35,9 @@ void add_read_options(CLI::App& command, ReadOptions& options) {
   command.add_option("--topic", options.topic,
                      "Whose events: topic of a bag, group of an HDF5 file; default: the first");
   command.add_flag("--strict", options.strict, "The first oddity of the recording is an error, not a counted skip");
-  command.add_option("--width", options.width, "Sensor's width, where the file of events does not say [px]; goes before what lies beside it")
+  command
+      .add_option("--width", options.width,
+                  "Sensor's width, where the file of events does not say [px]; goes before what lies beside it")
       ->check(CLI::Range(1, 65536));
   command.add_option("--height", options.height, "Sensor's height, likewise [px]")->check(CLI::Range(1, 65536));
   command

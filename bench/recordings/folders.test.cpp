@@ -26,3 +26,18 @@ TEST_CASE("Folders of public data sets are described, converted and drawn, and c
   CHECK(named.exit_code == 0);
   CHECK_THAT(named.out, Contains("calibration   fx "));
 }
+
+TEST_CASE("A recording whose calibration or ground truth cannot be used is described all the same, but not strictly") {
+  const testing::TemporaryFolder folder;
+  folder.write("events.txt", "0.1 5 6 1\n0.2 7 8 0\n");
+  folder.write("calib.txt", "no numbers\n");
+  folder.write("groundtruth.txt", "no poses\n");
+  const testing::Outcome info = testing::evbench(folder, "info --quiet .");
+  CHECK(info.exit_code == 0);
+  CHECK_THAT(info.out, Contains("events        2: 1 on, 1 off"));
+  CHECK_THAT(info.out, Contains("calibration that cannot be used: ./calib.txt:1: has 2 columns"));
+  CHECK_THAT(info.out, Contains("ground truth that cannot be used: ./groundtruth.txt:1: has 2 columns"));
+  const testing::Outcome strict = testing::evbench(folder, "info --quiet --strict .");
+  CHECK(strict.exit_code == 2);
+  CHECK_THAT(strict.err, Contains("./calib.txt:1: has 2 columns"));
+}

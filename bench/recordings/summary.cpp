@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/support/error.hpp"
+
 namespace evbench {
 namespace {
 
@@ -61,8 +63,16 @@ RecordingSummary summarise(const std::string& path, const ReadOptions& options,
     if (progress) progress(s.events, s.end);
   }
   s.info = stream.info();
-  s.calibration = stream.reader().calibration();
-  s.ground_truth = stream.reader().ground_truth().value_or(PoseTrajectory());
+  const auto ask = [&](const char* what, const auto& read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      if (options.strict) throw;
+      s.info.metadata.emplace_back(fmt::format("{} that cannot be used", what), error.what());
+    }
+  };
+  ask("calibration", [&] { s.calibration = stream.reader().calibration(); });
+  ask("ground truth", [&] { s.ground_truth = stream.reader().ground_truth().value_or(PoseTrajectory()); });
   s.faults = stream.faults();
   return s;
 }

@@ -38,7 +38,8 @@ struct Companions {
 Companions find_companions(const std::shared_ptr<const RecordingFiles>& files, const std::string& topic);
 
 /// The reader with what lies beside its events where it has no calibration or ground truth itself; their poses, and the
-/// sensor's size where it was only assumed and no option says it. Metadata says what is from where: "calibration", "ground truth", "remark".
+/// sensor's size where it was only assumed and no option says it. Metadata says what is from where: "calibration",
+/// "ground truth", "remark".
 std::unique_ptr<EventReader> with_companions(std::unique_ptr<EventReader> reader,
                                              const std::shared_ptr<const RecordingFiles>& files,
                                              const ReadOptions& options);

@@ -174,7 +174,7 @@ TEST_CASE("Of several of Kalibr's calibrations the scenario's own is taken, and 
   CHECK(read_all(*reader).size() == 100);
 
   write_file(folder.file("eds/peanuts/camchain-other.yaml"),
-                      testing::read_file(folder.file("eds/peanuts/camchain-calib.yaml")));
+             testing::read_file(folder.file("eds/peanuts/camchain-calib.yaml")));
   const auto eds = open_events(folder.file("eds/peanuts"));
   CHECK_THROWS_WITH(eds->calibration(), Contains("camchain-other.yaml: lies beside camchain-calib.yaml"));
   CHECK(eds->info().width == 640);

@@ -38,11 +38,13 @@ Companions dsec_companions(const EventsPlace& place);
 Companions tumvie_companions(const EventsPlace& place);
 
 /// NAME_pose_gt.h5: Cn_T_C0, of the left event camera, at ts [µs]; T_world_camera = Cn_T_C0⁻¹, for the right one
-/// followed by its calib/T_to_prophesee_left in NAME_data.h5, where that is there. The calibration is in it, too. Chaney et al., CVPRW 2023.
+/// followed by its calib/T_to_prophesee_left in NAME_data.h5, where that is there. The calibration is in it, too.
+/// Chaney et al., CVPRW 2023.
 Companions m3ed_companions(const EventsPlace& place);
 
 /// NAME_gt.hdf5: davis/left/pose, T_world_camera at davis/left/pose_ts [s]; camchain-imucam-*.yaml of Kalibr, of
-/// several the one whose name NAME begins with: cam0 (left), cam1 (right), whose T_cn_cnm1 gives the right camera's poses. Zhu et al., RA-L 2018.
+/// several the one whose name NAME begins with: cam0 (left), cam1 (right), whose T_cn_cnm1 gives the right camera's
+/// poses. Zhu et al., RA-L 2018.
 Companions mvsec_companions(const EventsPlace& place);
 
 /// stamped_groundtruth.txt (TUM), of the event camera (the authors have applied their hand-eye calibration); a

@@ -13,7 +13,8 @@ Companions eds_companions(const EventsPlace& place) {
   const auto chains = files->matching("camchain*.yaml");
   if (!chains.empty()) {
     const auto read = [files, chains](int, int) {
-      return files->get(only(*files, chains), [](const std::string& path) { return kalibr_camera(Field::read_yaml(path).at("cam1")); });
+      return files->get(only(*files, chains),
+                        [](const std::string& path) { return kalibr_camera(Field::read_yaml(path).at("cam1")); });
     };
     found.calibration = {chains, "cam1, EDS's event camera", read};
   }

@@ -54,7 +54,8 @@ Ros2Metadata parse(const YAML::Node& recording, const std::string& folder) {
 Ros2Metadata read_ros2_metadata(const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / "metadata.yaml").string();
   try {
-    const YAML::Node recording = YAML::Load(read_small_file(path, kMostBytes, "a description"))["rosbag2_bagfile_information"];
+    const YAML::Node recording =
+        YAML::Load(read_small_file(path, kMostBytes, "a description"))["rosbag2_bagfile_information"];
     if (!recording || !recording["relative_file_paths"] || recording["relative_file_paths"].size() == 0) {
       throw InputError(fmt::format("{}: names no files; expected rosbag2_bagfile_information with some", path));
     }
