@@ -1,5 +1,6 @@
 #include "core/events/codecs/unpacked_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 #include <zstd.h>
@@ -13,6 +14,7 @@
 
 #include "core/support/byte_source.hpp"
 #include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
@@ -39,6 +41,7 @@ void unpack(FileBytes& file, int descriptor, const std::string& path) {
     at += source.size;
     bool full = true;  // more may come without further input
     while (source.pos < source.size || full) {
+      check_interruption();
       ZSTD_outBuffer target{out.data(), out.size(), 0};
       missing = ZSTD_decompressStream(context.get(), &target, &source);
       made += target.pos;
@@ -61,7 +64,7 @@ void unpack(FileBytes& file, int descriptor, const std::string& path) {
 UnpackedFile::UnpackedFile(const std::string& packed) {
   FileBytes file(packed);
   path_ = (std::filesystem::temp_directory_path() / "evbench-XXXXXX").string();
-  const int descriptor = ::mkstemp(path_.data());
+  const int descriptor = ::mkostemp(path_.data(), O_CLOEXEC);
   if (descriptor < 0) throw InputError(fmt::format("{}: can't be written: {}", path_, std::strerror(errno)));
   try {
     unpack(file, descriptor, path_);

@@ -6,11 +6,11 @@
 namespace evbench {
 
 /// What a file compressed by zstd holds, as a file in the folder for temporary files that disappears with the object:
-/// for libraries that read by path.
+/// for libraries that read by path. Once one has opened it, the object is no longer needed.
 class UnpackedFile {
  public:
   /// Throws InputError when the file can't be read, is broken or cut short, or holds more than kMostRatio times its
-  /// size (a bomb), and when there is no room for it.
+  /// size (a bomb), when there is no room for it, and when the program is asked to end.
   explicit UnpackedFile(const std::string& packed);
   ~UnpackedFile();
   UnpackedFile(const UnpackedFile&) = delete;

@@ -10,6 +10,7 @@
 #include "core/events/codecs/decompress.hpp"
 #include "core/events/formats/all.hpp"
 #include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
@@ -144,6 +145,7 @@ std::optional<ros::Message> McapBag::next() {
 /// The next message of whatever topic, in a chunk or between them.
 std::optional<ros::Message> McapBag::next_of_all() {
   while (true) {
+    check_interruption();
     while (used_ < chunk_.size()) {
       ByteCursor cursor(chunk_.subspan(used_));
       const auto op = static_cast<Op>(cursor.get<std::uint8_t>());

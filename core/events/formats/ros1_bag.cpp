@@ -8,6 +8,7 @@
 #include "core/events/codecs/decompress.hpp"
 #include "core/events/formats/all.hpp"
 #include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
@@ -143,6 +144,7 @@ void RosBag::count(std::uint32_t connection, std::uint64_t messages) {
 bool RosBag::next_chunk() {
   BagRecord record;
   while (at_ < end_) {
+    check_interruption();
     if (!read_record(at_, record)) {
       faults_.add("broken or cut records, where reading ends", place());
       at_ = end_;

@@ -12,6 +12,7 @@
 #include "core/events/formats/ros2_metadata.hpp"
 #include "core/events/formats/ros2_sqlite.hpp"
 #include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
@@ -32,29 +33,17 @@ bool is_zstd(std::span<const std::byte> head) {
   return head.size() >= 4 && load<std::uint32_t>(head.data()) == 0xFD2FB528u;
 }
 
-/// One file of a recording, unpacked if need be.
-class RecordedFile {
- public:
-  RecordedFile(std::string path, Faults& faults) {
-    if (is_zstd(head_of(path))) {
-      unpacked_.emplace(path);
-      path = unpacked_->path();
-    }
-    const auto head = head_of(path);
-    if (is_sqlite(head)) {
-      messages_ = open_sqlite_bag(path, faults, false);
-    } else if (McapBag::is_mcap(head)) {
-      messages_ = std::make_unique<McapBag>(std::make_unique<FileBytes>(path), faults);
-    } else {
-      throw InputError(fmt::format("{}: is neither SQLite nor MCAP", path));
-    }
-  }
-  MessageSource& messages() { return *messages_; }
-
- private:
-  std::optional<UnpackedFile> unpacked_;
-  std::unique_ptr<MessageSource> messages_;
-};
+/// One file of a recording, unpacked if need be: what is open needs no name, so that it goes with the program, however
+/// that ends.
+std::unique_ptr<MessageSource> open_file(const std::string& recorded, Faults& faults) {
+  std::optional<UnpackedFile> unpacked;
+  if (is_zstd(head_of(recorded))) unpacked.emplace(recorded);
+  const std::string path = unpacked ? unpacked->path() : recorded;
+  const auto head = head_of(path);
+  if (is_sqlite(head)) return open_sqlite_bag(path, faults, false);
+  if (McapBag::is_mcap(head)) return std::make_unique<McapBag>(std::make_unique<FileBytes>(path), faults);
+  throw InputError(fmt::format("{}: is neither SQLite nor MCAP", recorded));
+}
 
 /// A ROS 2 recording of one or several files, read one after the other as metadata.yaml lists them. Topics are what it
 /// says, too; each file has its own ids for them.
@@ -74,18 +63,22 @@ class Ros2Folder : public MessageSource {
   void go_to(std::size_t file) {
     file_ = file;
     from_.reset();
-    open_.reset();
+    reading_ = false;
   }
   bool open_next();
+  void open(std::size_t file);
   void select_in(MessageSource& messages);
   bool unpack(Message& message);
 
   Faults& faults_;
   Ros2Metadata metadata_;
   std::set<std::uint32_t> selected_;
-  std::size_t file_ = 0;              ///< next one to be opened
-  std::optional<std::int64_t> from_;  ///< time sought [ns]
-  std::optional<RecordedFile> open_;
+  std::size_t file_ = 0;                 ///< next one to be opened
+  std::optional<std::int64_t> from_;     ///< time sought [ns]
+  std::unique_ptr<MessageSource> open_;  ///< stays so until another one is opened: unpacking takes a while
+  std::size_t open_file_ = 0;
+  std::map<std::string, Faults::Fault> opening_;     ///< what was found when it was opened
+  bool reading_ = false;                             ///< the open file
   std::map<std::uint32_t, std::uint32_t> topic_of_;  ///< by the open file's id
   std::vector<std::byte> unpacked_;
 };
@@ -106,19 +99,37 @@ Ros2Folder::Ros2Folder(const std::string& folder, Faults& faults)
 /// False at the end of the recording.
 bool Ros2Folder::open_next() {
   while (file_ < metadata_.files.size()) {
-    const std::string& path = metadata_.files[file_++].path;
-    open_.reset();
+    const std::size_t file = file_++;
     try {
-      open_.emplace(path, faults_);
-      select_in(open_->messages());
-      if (from_) open_->messages().seek(*from_);
+      if (!open_ || open_file_ != file) open(file);
+      for (const auto& [kind, fault] : opening_) faults_.add(kind, fault.first, fault.count);
+      select_in(*open_);
+      if (from_) open_->seek(*from_);
+      reading_ = true;
       return true;
     } catch (const InputError& error) {
+      check_interruption();
       open_.reset();
       faults_.add("files of the recording that can't be read", error.what());
     }
   }
   return false;
+}
+
+/// What is found is kept apart: it is to be told as often as the file is begun.
+void Ros2Folder::open(std::size_t file) {
+  const Faults before = faults_;
+  open_.reset();
+  faults_.clear();
+  try {
+    open_ = open_file(metadata_.files[file].path, faults_);
+  } catch (const InputError&) {
+    faults_ = before;
+    throw;
+  }
+  open_file_ = file;
+  opening_ = faults_.all();
+  faults_ = before;
 }
 
 void Ros2Folder::select_in(MessageSource& messages) {
@@ -140,12 +151,12 @@ void Ros2Folder::select_in(MessageSource& messages) {
 }
 
 std::optional<Message> Ros2Folder::next() {
-  while (open_ || open_next()) {
-    while (auto message = open_->messages().next()) {
+  while (reading_ || open_next()) {
+    while (auto message = open_->next()) {
       message->topic = topic_of_.at(message->topic);
       if (unpack(*message)) return message;
     }
-    open_.reset();
+    reading_ = false;
   }
   return std::nullopt;
 }

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 
 #include "core/events/testing/mcap_writer.hpp"
 #include "core/events/testing/recordings.hpp"
+#include "core/support/interruption.hpp"
 
 using namespace evbench;
 using namespace evbench::testing::mcap_writer;
@@ -110,6 +112,18 @@ void write_recording(const testing::TemporaryFolder& folder) {
   folder.write("a_1.mcap", mcap_of(kPackets / 2, kPackets));
 }
 
+/// While one lives, temporary files are made in a folder.
+class TemporaryFilesIn {
+ public:
+  explicit TemporaryFilesIn(const std::string& folder) : before_(std::filesystem::temp_directory_path()) {
+    ::setenv("TMPDIR", folder.c_str(), 1);
+  }
+  ~TemporaryFilesIn() { ::setenv("TMPDIR", before_.c_str(), 1); }
+
+ private:
+  std::string before_;
+};
+
 }  // namespace
 
 TEST_CASE("A ROS 2 recording of several files is read, sought and described as one, whatever its files") {
@@ -143,6 +157,50 @@ TEST_CASE("A ROS 2 recording of several files is read, sought and described as o
     reader->seek(7'000'000 + 50'000 * 45);
     CHECK(testing::read_all(*reader).size() < 20);  // the files before the third aren't read
   }
+}
+
+TEST_CASE("A compressed file of a ROS 2 recording is unpacked once, and leaves nothing in the temporary folder") {
+  const bool sqlite = GENERATE(false, true);
+  const testing::TemporaryFolder folder, others;
+  const TemporaryFilesIn temporary(others.path());
+  const std::string content = sqlite ? sqlite_of(folder, 0, kPackets, false) : mcap_of(0, kPackets);
+  const std::string path = folder.write("a_0.zstd", compressed(content));
+  folder.write("metadata.yaml", metadata({"a_0.zstd"}, "FILE"));
+  const auto reader = open_events(folder.path());
+  CHECK(std::filesystem::is_empty(others.path()));
+  std::filesystem::remove(path);
+  check_events(*reader);
+  reader->seek(0);
+  check_events(*reader);
+}
+
+TEST_CASE("Faults found when a file of a ROS 2 recording is opened are told each time it is read") {
+  const testing::TemporaryFolder folder;
+  folder.write("a_0.mcap", mcap_of(0, kPackets));  // without a summary
+  folder.write("metadata.yaml", metadata({"a_0.mcap"}));
+  const auto reader = open_events(folder.path());
+  for (int i = 0; i < 2; ++i) {
+    reader->seek(0);
+    check_events(*reader);
+    REQUIRE(reader->faults().all().size() == 1);
+    CHECK(reader->faults().all().begin()->second.count == 1);
+    CHECK_THAT(reader->faults().all().begin()->first, Catch::StartsWith("no summary"));
+  }
+}
+
+TEST_CASE("Reading a ROS 2 recording is interrupted, also while a file is unpacked") {
+  const std::string kind = GENERATE("sqlite", "mcap", "mcap, compressed");
+  CAPTURE(kind);
+  const testing::TemporaryFolder folder, others;
+  const TemporaryFilesIn temporary(others.path());
+  const std::string content = kind == "sqlite" ? sqlite_of(folder, 0, kPackets, false) : mcap_of(0, kPackets);
+  const bool packed = kind.ends_with("compressed");
+  folder.write("a_0", packed ? compressed(content) : content);
+  folder.write("metadata.yaml", metadata({"a_0"}, packed ? "FILE" : ""));
+  const Interruption interruption("interrupted");
+  std::raise(SIGTERM);
+  CHECK_THROWS_WITH(testing::read_all(folder.path()), "interrupted");
+  CHECK(std::filesystem::is_empty(others.path()));
 }
 
 TEST_CASE("A ROS 2 recording lacking one of its files is read without it and says so; lacking all it is refused") {

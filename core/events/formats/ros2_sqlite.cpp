@@ -9,6 +9,7 @@
 
 #include "core/events/formats/all.hpp"
 #include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
@@ -59,8 +60,8 @@ class SqliteBag : public MessageSource {
 /// SQLite's URI of a file that is only read. Without a journal beside it nothing is locked, so that folders that cannot
 /// be written will do.
 std::string uri(const std::string& path) {
-  std::string result = "file:";
-  for (const char c : path) {
+  std::string result = "file://";  // no host
+  for (const char c : std::filesystem::absolute(path).string()) {
     if (c == '%' || c == '?' || c == '#') {
       result += fmt::format("%{:02X}", static_cast<unsigned>(c));
     } else {
@@ -73,11 +74,14 @@ std::string uri(const std::string& path) {
 
 SqliteBag::SqliteBag(const std::string& path, Faults& faults, bool count) : path_(path), faults_(faults) {
   constexpr int kMostBytes = 256 << 20;  // of a message
+  constexpr int kSteps = 10'000;         // of SQLite's machine between two looks for an interruption
   sqlite3* database = nullptr;
   const int result = sqlite3_open_v2(uri(path).c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
   database_.reset(database);
   if (result != SQLITE_OK) throw InputError(fmt::format("{}: SQLite cannot open it: {}", path, sqlite3_errstr(result)));
   sqlite3_limit(database, SQLITE_LIMIT_LENGTH, kMostBytes);
+  sqlite3_progress_handler(
+      database, kSteps, [](void*) { return Interruption::is_requested() ? 1 : 0; }, nullptr);
   sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   const Statement tables =
@@ -100,6 +104,7 @@ Statement SqliteBag::prepare(const std::string& query) {
 /// False at the end, and where the file is broken: a fault.
 bool SqliteBag::step(sqlite3_stmt* statement) {
   const int result = sqlite3_step(statement);
+  check_interruption();
   if (result == SQLITE_ROW) return true;
   if (result != SQLITE_DONE) {
     faults_.add("broken or cut pages, where reading ends", sqlite3_errmsg(database_.get()));

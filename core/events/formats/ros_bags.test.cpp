@@ -113,6 +113,18 @@ TEST_CASE("A ROS 2 bag in SQLite that is cut short is refused or gives the begin
   CHECK_THROWS_AS(open_events(folder.write("other.db3", std::string("SQLite format 3\0", 16) + "?")), InputError);
 }
 
+TEST_CASE("A ROS 2 bag in SQLite is read whatever the characters of its path") {
+  const auto path = testing::data_file(kTrigger);
+  if (!path) return;
+  const testing::TemporaryFolder folder;
+  const std::string name = "100 %41?mode=rw#a.db3";
+  std::filesystem::copy_file(*path, folder.file(name));
+  const std::size_t events = testing::read_all(*path).size();
+  for (const std::string before : {"", "/", "//"}) {
+    CHECK(testing::read_all(before + folder.file(name)).size() == events);
+  }
+}
+
 TEST_CASE("MCAP without a summary is read, in chunks of each compression and without chunks") {
   const std::string compression = GENERATE("", "lz4", "zstd", "unchunked");
   CAPTURE(compression);

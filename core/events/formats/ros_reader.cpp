@@ -8,6 +8,7 @@
 #include "core/events/codecs/event_packet.hpp"
 #include "core/events/formats/message_source.hpp"
 #include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench::ros {
 namespace {
@@ -127,6 +128,7 @@ void BagReader::restart() {
 
 /// Appends a message's events and returns the number of them; none at the end.
 std::optional<std::int64_t> BagReader::next_message(std::vector<Event>& events) {
+  check_interruption();  // messages without events may be many
   const auto message = source_->next();
   if (!message) return std::nullopt;
   const std::size_t before = events.size();
