@@ -243,8 +243,8 @@ TEST_CASE("A signal ends a conversion with an error that says so") {
   write_native(folder.file("a.evb"), walking_events(100000), davis_header());
   // A pipe that nobody reads holds the program: it is there when the signal comes. Its handler is set by then.
   const Outcome outcome = testing::shell(folder,
-                                         "mkfifo b.txt; \"$evbench\" convert a.evb b.txt & exec 3< b.txt; "
-                                         "head -c 1 <&3 > /dev/null; kill -TERM $!; wait $!");
+                                         "mkfifo b.txt; \"$evbench\" convert a.evb b.txt & exec 3<> b.txt; "
+                                         "timeout 60 head -c 1 <&3 > /dev/null; kill -TERM $!; wait $!");
   CHECK(outcome.exit_code == 2);
   CHECK_THAT(outcome.err, Contains("b.txt: interrupted; nothing was written"));
 }

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "core/simulation/random.hpp"
 
@@ -88,6 +89,13 @@ TEST_CASE("A pattern that is much finer than the pixels is an even grey, whichev
   for (double x = 0.0; x < 0.05; x += 0.004) {
     renderer.render({Eigen::Quaterniond(Eigen::AngleAxisd(x, Vector3::UnitZ())), {x, 0.3 * x, x}}, 1, frame);
     for (const float L : frame.log_intensity) REQUIRE(std::abs(L - std::log(texture.mean())) < 0.02);
+  }
+}
+
+TEST_CASE("A texture averaged over all of its surface is its mean") {
+  const Texture texture = checkers(64);
+  for (const double variance : {1e6, 1e300, std::numeric_limits<double>::infinity()}) {
+    CHECK(texture.sample({0.3, 0.7}, variance) == texture.mean());
   }
 }
 

@@ -69,7 +69,7 @@ float Texture::sample(const Vector2& place, double variance) const {
   double quarters = 4.0 * variance * per_texel_square_;
   if (!(quarters > 1.0)) return pyramid_[0].at(place);
   std::size_t fine = 0;
-  for (; quarters >= 4.0; quarters *= 0.25) ++fine;
+  for (; quarters >= 4.0 && fine + 1 < pyramid_.size(); quarters *= 0.25) ++fine;
   if (fine + 1 >= pyramid_.size()) return mean_;
   const auto coarser = static_cast<float>((quarters - 1.0) / 3.0);
   const float value = pyramid_[fine].at(place);
