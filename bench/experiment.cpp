@@ -47,7 +47,7 @@ Json parse_file(const std::string& path) {
   text << file.rdbuf();
   try {
     return Json::parse(text.str(), nullptr, true, true);  // comments allowed
-  } catch (const Json::exception& error) {  // also for numbers out of range
+  } catch (const Json::exception& error) {                // also for numbers out of range
     throw InputError(fmt::format("{}: is not JSON: {}", path, error.what()));
   }
 }

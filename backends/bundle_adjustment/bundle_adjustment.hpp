@@ -64,7 +64,7 @@ class BundleAdjustment : public BackEnd {
   std::optional<double> failing_since_;
   std::vector<DegradedSpan> degraded_;
   std::optional<double> lost_;
-  double advanced_to_ = 0.0;          ///< [s]
+  double advanced_to_ = 0.0;  ///< [s]
   std::set<TrackId> removed_;
   std::vector<TrackId> new_outliers_;
 

@@ -57,7 +57,8 @@ void add_info(CLI::App& app) {
   command->add_flag("--quiet", arguments->quiet, "Show no progress");
   add_read_options(*command, arguments->options);
   command->footer(
-      "Oddities are events that were left out: out of the order of time, outside the sensor, in damaged parts of the file.");
+      "Oddities are events that were left out: out of the order of time, outside the sensor, in damaged parts of the "
+      "file.");
   command->callback([arguments] { execute(*arguments); });
 }
 

@@ -66,7 +66,8 @@ TEST_CASE("An interrupted video leaves nothing") {
   write_recording_of_events(folder);
   for (const char* signal : {"INT", "KILL"}) {
     // Minutes of film: the signal comes first.
-    shell(folder, std::string("timeout -s ") + signal + " 1 \"$evbench\" render a.evb a.mp4 --speed 0.00002 --scale 32");
+    shell(folder,
+          std::string("timeout -s ") + signal + " 1 \"$evbench\" render a.evb a.mp4 --speed 0.00002 --scale 32");
     CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb"});
   }
 }

@@ -11,8 +11,8 @@
 namespace evbench {
 
 struct InitialiserOptions {
-  int min_tracks = 15;   ///< seen at both times
-  double window = 0.1;   ///< [s], of the line through a track's observations that gives its place at a time
+  int min_tracks = 15;  ///< seen at both times
+  double window = 0.1;  ///< [s], of the line through a track's observations that gives its place at a time
   TwoViewOptions two_view;
 
   void declare(OptionSet& set);
@@ -30,9 +30,9 @@ struct InitialGuess {
 /// Initialisation of monocular odometry from two views (Liu et al. 2022, Algorithm 1, lines 7-9).
 ///
 /// The first view is at a reference time: the first with enough tracks; it moves on when too few of its tracks are
-/// left. Each attempt matches the tracks' places then and now. A planar scene leaves two candidates, and each comes with
-/// its depth reversal (depth_reversal.hpp): refine each over all observations between t0 and t1 and keep the cheapest,
-/// or wait when two different ones cost about the same.
+/// left. Each attempt matches the tracks' places then and now. A planar scene leaves two candidates, and each comes
+/// with its depth reversal (depth_reversal.hpp): refine each over all observations between t0 and t1 and keep the
+/// cheapest, or wait when two different ones cost about the same.
 class Initialiser {
  public:
   Initialiser(const InitialiserOptions& options, const PinholeCamera& camera) : options_(options), camera_(camera) {}

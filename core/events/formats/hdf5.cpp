@@ -53,7 +53,10 @@ class Hdf5Reader : public EventReader {
 };
 
 Hdf5Reader::Hdf5Reader(const std::string& path, const ReadOptions& options)
-    : file_(path), layout_(choose_events(file_, options.topic)), faults_(path, options.strict), opening_faults_(faults_) {
+    : file_(path),
+      layout_(choose_events(file_, options.topic)),
+      faults_(path, options.strict),
+      opening_faults_(faults_) {
   open_columns();
   if (!layout_.offset.empty()) {
     const double offset = file_.dataset(layout_.offset).first(0);

@@ -32,11 +32,12 @@ struct BagRecord {
   unsigned op() const { return number<std::uint8_t>("op"); }
 };
 
-/// ROS's bag format 2.0 (http://wiki.ros.org/Bags/Format/2.0). Read by ourselves, as librosbag_storage 1.15 refuses bags
-/// that are cut short or were not closed, reads where the index and the lengths within headers point to without
+/// ROS's bag format 2.0 (http://wiki.ros.org/Bags/Format/2.0). Read by ourselves, as librosbag_storage 1.15 refuses
+/// bags that are cut short or were not closed, reads where the index and the lengths within headers point to without
 /// comparing that with what there is, and allocates what a length says: of 20,000 copies of a bag of 15 kB with one to
 /// four bytes changed, 396 ended the program with SIGSEGV and 145 made it allocate more than 256 MiB. To guard it, one
-/// would have to parse every record before; this reader is no more than that, and as fast (bench/micro/bag_reading.cpp).
+/// would have to parse every record before; this reader is no more than that, and as fast
+/// (bench/micro/bag_reading.cpp).
 class RosBag : public ros::MessageSource {
  public:
   RosBag(std::unique_ptr<ByteSource> file, Faults& faults);
