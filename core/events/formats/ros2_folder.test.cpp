@@ -85,7 +85,7 @@ std::string metadata(const std::vector<std::string>& names, const std::string& c
     files += fmt::format(
         "    - path: {}\n      starting_time:\n        nanoseconds_since_epoch: {}\n      duration:\n"
         "        nanoseconds: {}\n      message_count: {}\n",
-        names[i], recorded(static_cast<int>(i) * each), 50'000'000 * (each - 1), each);
+        names[i], recorded(static_cast<int>(i) * each), std::int64_t{50'000'000} * (each - 1), each);
   }
   return fmt::format(
       "rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: sqlite3\n  message_count: {}\n"
