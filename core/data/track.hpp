@@ -17,4 +17,10 @@ struct TrackObservation {
   double sigma = 1.0;               ///< isotropic standard deviation [px]
 };
 
+/// A track has ended: no observation of it follows.
+struct TrackEnd {
+  TrackId track = 0;
+  double t = 0.0;  ///< [s], sequence time; not before the track's last observation
+};
+
 }  // namespace evbench

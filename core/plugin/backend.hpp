@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "core/data/landmark.hpp"
 #include "core/data/problem.hpp"
-#include "core/data/track.hpp"
 #include "core/geometry/camera.hpp"
-#include "core/motion/gp_interval.hpp"
 #include "core/motion/pose_trajectory.hpp"
+#include "core/plugin/exchange.hpp"
 #include "core/plugin/status.hpp"
 
 namespace evbench {
@@ -20,12 +20,14 @@ namespace evbench {
 struct BackEndContext {
   PinholeCamera camera;    ///< of the undistorted pixels that it will observe
   std::uint64_t seed = 0;  ///< for whatever it draws
+  /// [s] How long a motion model alone may carry the estimate: then the back-end is lost. The same for all back-ends of
+  /// a comparison; TrackingMonitor (tracking_monitor.hpp) has the rule.
+  double patience = 1.0;
+  std::string folder;             ///< what relative paths in options refer to
+  std::string place = "backend";  ///< where the options stand, for messages: "config.json: backend"
+  /// Takes each pose of the causal estimate as it is first made, times strictly increasing: told once, never changed.
+  std::function<void(const StampedPose&)> online = [](const StampedPose&) {};
   std::function<void(const std::string&)> log = [](const std::string&) {};  ///< a line for the run's log.txt
-};
-
-struct Landmark {
-  TrackId track = 0;
-  Vector3 position = Vector3::Zero();  ///< world frame, up to the back-end's scale
 };
 
 /// What one update cost and did: a line of timing.csv.
@@ -39,37 +41,28 @@ struct UpdateRecord {
   std::optional<double> cost;  ///< ½ Σ ρ(‖whitened residual‖²) of the whole problem, where the update computed it
 };
 
-/// What a back-end tells the front-end, which may use it or not.
-struct Feedback {
-  std::optional<ControlState> newest;  ///< newest pose and velocity: extrapolate to predict where features go
-  std::vector<TrackId> outliers;       ///< tracks dropped as outliers since the last feedback
-};
-
 /// A back-end of visual odometry: track observations in, trajectory and map out.
 ///
-/// Calls come in this order: observe and advance, any number of times, with times that never decrease; finish, once;
-/// afterwards queries of the final estimate. An estimate's world frame and scale are the back-end's own.
+/// Calls come in this order: advance, any number of times, each maybe followed by feedback; finish, once; afterwards
+/// queries of the final estimate. An estimate's world frame and scale are the back-end's own. One that is lost is given
+/// nothing more: the run goes on with another one made anew, and the trajectory is then in pieces.
 class BackEnd {
  public:
   virtual ~BackEnd() = default;
 
-  /// Takes observations in time order, undistorted.
-  virtual void observe(std::span<const TrackObservation> observations) = 0;
+  /// Takes a batch, undistorted pixels, and brings the estimate up to batch.until.
+  virtual void advance(const TrackBatch& batch) = 0;
 
-  /// All observations up to t have been given: bring the estimate up to there.
-  virtual void advance(double t) = 0;
+  /// What it knows at batch.until of the last batch. May be called after any advance, or never.
+  virtual Feedback feedback(const FeedbackNeeds& needs) = 0;
 
   /// No more data: make the final estimate.
   virtual void finish() = 0;
 
   virtual Status status() const = 0;
-  virtual Feedback feedback() { return {}; }
 
   /// The estimate's own poses: control states, frames. Empty before initialisation.
   virtual PoseTrajectory trajectory() const = 0;
-
-  /// The causal estimate: each pose as it was the moment it was first estimated, never touched later.
-  virtual PoseTrajectory online() const = 0;
 
   /// Pose at any time that the trajectory covers: by the back-end's own continuous model where it has one.
   virtual std::optional<SE3> pose(double t) const { return trajectory().pose(t); }
@@ -77,15 +70,16 @@ class BackEnd {
   /// Body velocity (ω, ν), for back-ends with a continuous model.
   virtual std::optional<Vector6> velocity(double /*t*/) const { return std::nullopt; }
 
-  /// Covariance of (δpose, δvelocity) at t, T ← T Exp(δpose), in the gauge of the back-end's anchor.
-  virtual std::optional<Matrix12> covariance(double /*t*/) const { return std::nullopt; }
+  /// Covariance of (δpose, δvelocity) at t, T ← T Exp(δpose), in the gauge of the back-end's anchor. Not const: it may
+  /// have to factorise what has changed; the estimate stays as it is.
+  virtual std::optional<Matrix12> covariance(double /*t*/) { return std::nullopt; }
 
   virtual std::vector<Landmark> map() const = 0;
 
   /// The estimation problem that the run ended with, for back-ends whose problem has that form.
   virtual std::optional<Problem> problem() const { return std::nullopt; }
 
-  virtual std::span<const UpdateRecord> updates() const = 0;
+  virtual std::span<const UpdateRecord> updates() const { return {}; }
 };
 
 }  // namespace evbench

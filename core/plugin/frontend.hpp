@@ -1,29 +1,44 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "core/data/track.hpp"
-#include "core/plugin/backend.hpp"
+#include "core/plugin/exchange.hpp"
 #include "core/plugin/source.hpp"
 
 namespace evbench {
 
-/// A front-end: makes track observations from a source. One run owns one front-end; several back-ends of a comparison
-/// get the identical observations only from front-ends that ignore feedback.
+/// What makes a front-end, besides its options.
+struct FrontEndContext {
+  const Source& source;  ///< outlives the front-end
+  std::uint64_t seed = 0;
+  std::string folder;              ///< what relative paths in options refer to
+  std::string place = "frontend";  ///< where the options stand, for messages: "config.json: frontend"
+};
+
+/// A front-end: makes track observations from a source. One run owns one front-end.
 class FrontEnd {
  public:
   virtual ~FrontEnd() = default;
 
-  /// Appends the next observations with time ≤ until [s], in time order, raw pixels. False when none are left
-  /// at any time.
-  virtual bool advance(double until, std::vector<TrackObservation>& observations) = 0;
+  /// How far one exchange goes.
+  struct Horizon {
+    double t = 0.0;                  ///< [s] no farther than this time
+    std::size_t observations = 0;    ///< not beyond the time of this many observations; 0: no matter how many
+  };
 
-  /// What the back-end knows: predicted motion, outlier tracks. May be ignored.
+  /// Replaces `batch` by what happened since the last call, raw pixels, up to the horizon: batch.until is the horizon's
+  /// time, or the time of the observation with which its number was reached (others of that same time belong to the
+  /// batch). Returns false when nothing more will come at any time; the run then goes on without observations.
+  virtual bool advance(const Horizon& horizon, TrackBatch& batch) = 0;
+
+  /// What of the feedback is made use of.
+  virtual FeedbackNeeds needs() const { return {}; }
+
+  /// What the back-end knows, raw pixels: called between two calls of advance(), in the order of feedback.t, each once
+  /// the run's latency has passed in data time.
   virtual void receive(const Feedback& /*feedback*/) {}
-
-  /// Files that were read beside the source's: they are hashed into the run's manifest.
-  virtual std::vector<std::string> files() const { return {}; }
 
   /// What a user should know of the tracks: counts, oddities, what was left out. For the run's log.
   virtual std::vector<std::string> remarks() const { return {}; }

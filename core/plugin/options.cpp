@@ -228,6 +228,27 @@ Json OptionSet::write() const {
   return result;
 }
 
+Json OptionSet::write_without_paths() const {
+  Json result = Json::object();
+  for (const Option& option : options_) {
+    if (!option.path_) result[option.name_] = option.value();
+  }
+  for (const Group& group : groups_) result[group.name] = group.set.write_without_paths();
+  return result;
+}
+
+std::vector<std::string> OptionSet::paths() const {
+  std::vector<std::string> result;
+  for (const Option& option : options_) {
+    const auto* const* path = std::get_if<std::string*>(&option.target_);
+    if (option.path_ && path != nullptr && !(*path)->empty()) result.push_back(**path);
+  }
+  for (const Group& group : groups_) {
+    for (std::string& path : group.set.paths()) result.push_back(std::move(path));
+  }
+  return result;
+}
+
 Json OptionSet::schema() const {
   Json properties = Json::object();
   Json required = Json::array();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -7,20 +8,28 @@
 #include <vector>
 
 #include "core/data/track.hpp"
-#include "core/events/reader.hpp"
+#include "core/events/event_stream.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/pose_trajectory.hpp"
 
 namespace evbench {
 
-/// A sequence: a recording or a simulation. Sequence time starts at its own zero.
+/// What makes a source, besides its options.
+struct SourceContext {
+  std::uint64_t seed = 0;
+  std::string folder;            ///< what relative paths in options refer to
+  std::string place = "source";  ///< where the options stand, for messages: "config.json: source"
+};
+
+/// A sequence: a recording or a simulation. Everything of it is in sequence time, whose zero is the source's own; a run
+/// uses time_range() of it.
 class Source {
  public:
   virtual ~Source() = default;
 
   virtual const Camera& camera() const = 0;
 
-  /// The time of the sequence that a run uses, [s].
+  /// The time of the sequence that a run uses, [s]: its clock goes from the one to the other, whatever is seen.
   struct TimeRange {
     double from = 0.0, to = 0.0;
   };
@@ -29,15 +38,19 @@ class Source {
   /// T_world_camera; empty when unknown.
   virtual const PoseTrajectory& ground_truth() const = 0;
 
-  /// A new reader of the sequence's events, in sequence time [µs]; it may outlive the source. nullptr where there are
-  /// none: a source of tracks.
-  virtual std::unique_ptr<EventReader> events() const { return nullptr; }
+  /// The events that a front-end gets: in time order, within the sensor, from ≤ t ≤ to of the time range, from its
+  /// beginning. nullptr where there are none: a source of tracks. The source must outlive it.
+  std::unique_ptr<EventStream> events() const;
+
+  /// The sequence's events as they come, in sequence time [µs], from its own beginning to its end; events() is made of
+  /// it. nullptr where there are none.
+  virtual std::unique_ptr<EventReader> all_events() const { return nullptr; }
 
   /// Track observations with known association (raw pixels, time order), for sources that know it: simulators.
   /// None where the source does not.
   virtual std::optional<std::span<const TrackObservation>> true_tracks() const { return std::nullopt; }
 
-  /// Files that were read: they are hashed into the run's manifest.
+  /// Files that the sequence is made of, events included: their content is part of a run's identity.
   virtual std::vector<std::string> files() const { return {}; }
 
   /// What a user should know of the data: counts, oddities. For the run's log.

@@ -1,5 +1,7 @@
 #include "core/plugin/status.hpp"
 
+#include "core/plugin/exchange.hpp"
+
 namespace evbench {
 
 std::string to_string(RunState state) {
@@ -10,6 +12,17 @@ std::string to_string(RunState state) {
     case RunState::failed: break;
   }
   return "failed";
+}
+
+std::string to_string(TrackingState state) {
+  switch (state) {
+    case TrackingState::no_map: return "no map yet";
+    case TrackingState::tracking: return "tracking";
+    case TrackingState::standing_still: return "standing still";
+    case TrackingState::degraded: return "degraded";
+    case TrackingState::lost: break;
+  }
+  return "lost";
 }
 
 }  // namespace evbench

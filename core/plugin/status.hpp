@@ -8,8 +8,8 @@ namespace evbench {
 /// How a run went. Worse is larger.
 enum class RunState {
   ok,        ///< an estimate for the whole time
-  degraded,  ///< as ok, but for some spans the data did not suffice and the prior carried the estimate
-  lost,      ///< the estimate ended before the data did; what there was is kept
+  degraded,  ///< as ok, but for some spans the data did not suffice and a motion model carried the estimate
+  lost,      ///< the estimate ended before the data did, or is in pieces; what there was is kept
   failed,    ///< no estimate
 };
 

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/pipeline/options.hpp"
+#include "core/plugin/backend.hpp"
+#include "core/plugin/frontend.hpp"
+#include "core/plugin/source.hpp"
+
+namespace evbench {
+
+/// A part of the estimate in one world frame and scale, made by one back-end: until it was lost, or the run ended.
+struct Piece {
+  PoseTrajectory final_trajectory;   ///< after the fact, at the rate asked for
+  PoseTrajectory online_trajectory;  ///< causal, the back-end's own times
+  std::vector<Landmark> map;
+  std::optional<Problem> problem;  ///< that the back-end ended with, where it has one
+};
+
+/// A span in which the camera stood still [s].
+struct StillSpan {
+  double from = 0.0, to = 0.0;
+};
+
+/// Where the time of a run went [s], wall clock.
+struct RunTimes {
+  double frontend = 0.0;  ///< making observations
+  double backend = 0.0;   ///< estimating
+  double waiting = 0.0;   ///< the back-end's thread, for the front-end's
+  double harness = 0.0;   ///< the rest of the loop: exchanges, undistortion, hashing, sampling
+  double total = 0.0;     ///< of the loop, from the first exchange to the last estimate
+};
+
+/// What a run of front-end and back-end ended with.
+struct RunResult {
+  Status status;              ///< of the whole run
+  std::vector<Piece> pieces;  ///< in time order; none when the run failed
+  std::size_t longest = 0;    ///< of the pieces, by time: the one that is scored
+  std::vector<StillSpan> still;
+  std::vector<UpdateRecord> updates;
+  RunTimes times;
+  double data_s = 0.0;        ///< [s] from the first to the last observation that the front-end gave
+  double peak_rss_mib = 0.0;  ///< of the process during the run, source and tracks included
+  std::string tracks_sha256;  ///< of all that the back-end was given: equal for runs that can be compared
+  std::size_t observations = 0;
+  std::vector<std::string> log;
+};
+
+/// Called now and then with the sequence time that has been reached and the range's end [s].
+using Progress = std::function<void(double t, double end)>;
+
+/// Makes a back-end; called again after a loss.
+using MakeBackEnd = std::function<std::unique_ptr<BackEnd>(const BackEndContext&)>;
+
+/// Front-end and back-end from the beginning of the source's time range to its end. `context` has the camera's pinhole,
+/// patience, sink and log set here. `trajectory_rate`: of the final trajectories [Hz]; 0: the back-end's own poses.
+RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackEnd& make_backend,
+                       BackEndContext context, const PipelineOptions& options, double trajectory_rate,
+                       const Progress& progress = {});
+
+}  // namespace evbench

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "core/data/track.hpp"
+
+namespace evbench {
+
+/// A point of a map, with the track that showed it.
+struct Landmark {
+  TrackId track = 0;
+  Vector3 position = Vector3::Zero();  ///< world frame, up to the back-end's scale
+};
+
+}  // namespace evbench

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/data/track.hpp"
+#include "core/motion/gp_interval.hpp"
+
+namespace evbench {
+
+// What front-end and back-end tell one another. Both only ever see these two values, so that they may run in one thread
+// or in two.
+
+/// What a front-end hands over at one exchange: everything that happened to its tracks since the one before.
+struct TrackBatch {
+  std::vector<TrackObservation> observations;  ///< in time order, later than the last batch's `until`
+  /// In time order. A track that is neither observed nor ended is where it was: nothing moved enough to be seen.
+  std::vector<TrackEnd> ended;
+  /// [s] Everything up to here has been seen: this batch holds nothing later, the next one nothing that is not later.
+  double until = 0.0;
+};
+
+/// Where the estimate stands at an exchange. Worse is larger.
+enum class TrackingState {
+  no_map,          ///< not enough has been seen for a first map
+  tracking,        ///< observations determine the motion
+  standing_still,  ///< tracks are alive and nothing moves: an event camera at rest sees nothing
+  degraded,        ///< too little is seen: a motion model carries the estimate
+  lost,            ///< it was carried for longer than the patience, or can't go on; observations are no longer used
+};
+std::string to_string(TrackingState state);
+
+/// Where the image of a landmark is expected.
+struct ExpectedFeature {
+  TrackId track = 0;
+  Vector3 position = Vector3::Zero();         ///< of the landmark, world frame: to predict it at other poses
+  Vector2 pixel = Vector2::Zero();            ///< [px], raw for a front-end, undistorted from a back-end
+  Matrix2 covariance = Matrix2::Identity();   ///< of the prediction [px²], an observation's own noise not included
+};
+
+/// What a back-end hands back.
+struct Feedback {
+  double t = 0.0;  ///< [s], the time it stands for: what was observed up to here is in it, nothing later
+  TrackingState state = TrackingState::no_map;
+  std::optional<ControlState> newest;     ///< pose and velocity at newest->t ≤ t: extrapolate to predict
+  std::optional<Matrix12> covariance;     ///< of (δpose, δvelocity) of `newest`, T ← T Exp(δpose)
+  std::vector<TrackId> outliers;          ///< tracks dropped as outliers since the last feedback
+  std::vector<ExpectedFeature> expected;  ///< landmarks of live tracks in view, predicted at t
+};
+
+/// What of the feedback a front-end makes use of: the rest is not computed. None: the back-end is not asked at all, and
+/// every back-end gets the identical tracks.
+struct FeedbackNeeds {
+  bool any = false;         ///< state, newest, outliers
+  bool covariance = false;  ///< with any
+  bool expected = false;    ///< with any
+};
+
+}  // namespace evbench
