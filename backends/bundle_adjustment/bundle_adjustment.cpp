@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "backends/bundle_adjustment/pose_refinement.hpp"
-#include "core/plugin/registry.hpp"
+#include "core/plugin/registration.hpp"
 #include "core/structure/depth_reversal.hpp"
 #include "core/support/median.hpp"
 
@@ -22,7 +23,7 @@ constexpr double longest_prediction = 0.5;  // [s]; farther, constant velocity s
 constexpr double clearly_cheaper = 1.1;     // ratio of two initial guesses' errors that decides between them
 constexpr double parallax_to_decide = 3.0;  // times the least parallax: then the cheaper guess is taken anyway
 constexpr int held_windows = 3;             // windows before the optimised one whose sightings hold landmarks in place
-constexpr double shortest_silence = 0.2;    // [s] without observations that is told as degraded
+constexpr double shortest_silence = 0.2;    // [s] without observations: from then on the estimate is carried
 constexpr int global_rounds = 2;            // of solving and removing outliers
 constexpr double smallest_step = 1e-6;      // [s] between frames of observations with one and the same time
 
@@ -45,7 +46,8 @@ BundleAdjustment::BundleAdjustment(const Options& options, const BackEndContext&
       context_(context),
       frames_({options.frame_duration, options.frame_observations, options.common_noise_px}),
       initialiser_(initialiser_options(), context.camera),
-      waiting_for_("no observations") {
+      waiting_for_("no observations"),
+      monitor_(context.patience) {
   FLAGS_minloglevel = google::GLOG_ERROR;  // what Ceres warns of is in its summaries, and no news for a console
 }
 
@@ -67,17 +69,31 @@ SolverOptions BundleAdjustment::solver_options(int iterations) const {
   return {options_.loss, options_.loss_width, iterations};
 }
 
-void BundleAdjustment::observe(std::span<const TrackObservation> observations) {
-  for (Frame& frame : frames_.add(observations)) process(std::move(frame));
+void BundleAdjustment::advance(const TrackBatch& batch) {
+  until_ = batch.until;
+  for (const TrackObservation& z : batch.observations) live_.insert(z.track);
+  for (const TrackEnd& end : batch.ended) live_.erase(end.track);
+  for (std::span<const TrackObservation> rest(batch.observations); !rest.empty();) {
+    const auto last =
+        std::ranges::adjacent_find(rest, [](const auto& a, const auto& b) { return b.t - a.t > shortest_silence; });
+    const auto part = rest.first(last == rest.end() ? rest.size() : static_cast<std::size_t>(last - rest.begin()) + 1);
+    if (part.front().t - last_observation_ > shortest_silence) pass_time(part.front().t);
+    for (Frame& frame : frames_.add(part)) process(std::move(frame));
+    last_observation_ = part.back().t;
+    rest = rest.subspan(part.size());
+  }
+  pass_time(until_);
 }
 
-void BundleAdjustment::advance(double t) {
-  advanced_to_ = t;
+/// Without observations there are no frames, but a motion model carries the estimate, and not for ever.
+void BundleAdjustment::pass_time(double t) {
   for (Frame& frame : frames_.advance(t)) process(std::move(frame));
+  if (segments_.empty() || t - last_observation_ <= shortest_silence) return;
+  monitor_.observe(last_observation_, t, TrackingMonitor::Support::none, "no observations");
 }
 
 void BundleAdjustment::process(Frame frame) {
-  if (lost_) return;
+  if (monitor_.lost()) return;
   const auto start = std::chrono::steady_clock::now();
   std::erase_if(frame.keypoints, [&](const Keypoint& keypoint) { return removed_.contains(keypoint.track); });
   if (!map_.views.empty()) frame.t = std::max(frame.t, map_.views.back().t + smallest_step);
@@ -85,7 +101,7 @@ void BundleAdjustment::process(Frame frame) {
   if (segments_.empty()) remember(view);
   const SolveReport report = segments_.empty() ? initialise(view) : track(view);
   // Of the first map's views only the newest one: the older ones were not known at their times.
-  if (!segments_.empty()) online_.push_back({map_.views[at(view)].t, map_.views[at(view)].T});
+  if (!segments_.empty()) context_.online({map_.views[at(view)].t, map_.views[at(view)].T});
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   updates_.push_back(
       {frame.t, elapsed.count(), report.poses, report.landmarks, report.observations, report.iterations, report.cost});
@@ -166,7 +182,7 @@ void BundleAdjustment::accept(Trial trial, int view) {
                   "mean error {:.3f} px",
                   map_.views[at(view)].t, map_.views[at(trial.segment.first)].t, map_.views[at(view)].t,
                   trial.parallax_deg, trial.good, trial.error));
-  recovered(map_.views[at(trial.segment.first)].t);
+  failing_ = false;
   remove_outliers(trial.segment.first);
   map_.triangulate_new(context_.camera, triangulation_options(), {options_.min_track_frames, options_.min_track_time});
   update_motion(view);
@@ -181,12 +197,11 @@ SolveReport BundleAdjustment::track(int view) {
   View& now = map_.views[at(view)];
   now.T = predict(now.t, view - 1);
   const std::string failure = locate(view);
+  const double before = map_.views[at(view - 1)].t, t = now.t;
   SolveReport report;
   if (failure.empty()) {
-    if (!failing_since_ && silent_before(view)) {
-      degraded_.push_back({map_.views[at(view - 1)].t, now.t, "no observations"});
-    }
-    recovered(now.t);
+    failing_ = false;
+    monitor_.observe(before, t, TrackingMonitor::Support::full);
     map_.triangulate_new(context_.camera, triangulation_options(),
                          {options_.min_track_frames, options_.min_track_time});
     report = solve_window(view);
@@ -194,9 +209,10 @@ SolveReport BundleAdjustment::track(int view) {
     update_motion(view);
   } else {
     now.state = View::State::predicted;
-    failing(view, failure);
+    if (!failing_) start_over();
+    remember(view);
     report = initialise(view);
-    if (failing_since_ && map_.views[at(view)].t - *failing_since_ > options_.lost_after) lost_ = failing_since_;
+    monitor_.observe(before, t, failing_ ? TrackingMonitor::Support::none : TrackingMonitor::Support::weak, failure);
   }
   return report;
 }
@@ -218,14 +234,6 @@ std::string BundleAdjustment::locate(int view) {
   return "";
 }
 
-/// Is the time since the view before much longer than between frames before?
-bool BundleAdjustment::silent_before(int view) const {
-  if (view < 2) return false;
-  const double gap = map_.views[at(view)].t - map_.views[at(view - 1)].t;
-  const double usual = map_.views[at(view - 1)].t - map_.views[at(view - 2)].t;
-  return gap > shortest_silence && gap > 3.0 * usual;
-}
-
 void BundleAdjustment::remember(int view) {
   const View& now = map_.views[at(view)];
   for (const Keypoint& z : now.keypoints) {
@@ -234,22 +242,11 @@ void BundleAdjustment::remember(int view) {
   }
 }
 
-void BundleAdjustment::failing(int view, const std::string& reason) {
-  const double t = map_.views[at(view)].t;
-  if (!failing_since_) {
-    failing_since_ = t;
-    degraded_.push_back({map_.views[at(view - 1)].t, t, reason});
-    means_ = TrackBuffer();
-    initialiser_ = Initialiser(initialiser_options(), context_.camera);
-  }
-  degraded_.back().to = t;
-  remember(view);
-}
-
-void BundleAdjustment::recovered(double t) {
-  if (!failing_since_) return;
-  degraded_.back().to = std::max(degraded_.back().from, t);
-  failing_since_.reset();
+/// The map can't be followed any more: another one is looked for in what is seen from here on.
+void BundleAdjustment::start_over() {
+  failing_ = true;
+  means_ = TrackBuffer();
+  initialiser_ = Initialiser(initialiser_options(), context_.camera);
 }
 
 SolveReport BundleAdjustment::solve_window(int view) {
@@ -288,10 +285,9 @@ void BundleAdjustment::update_motion(int view) {
 
 void BundleAdjustment::finish() {
   if (std::optional<Frame> frame = frames_.rest()) process(std::move(*frame));
-  if (!segments_.empty() && !lost_ && advanced_to_ - map_.views.back().t > options_.lost_after) {
-    const double newest = map_.views.back().t;
-    degraded_.push_back({newest, advanced_to_, "no observations"});
-    lost_ = newest + smallest_step;
+  if (segments_.empty()) {
+    monitor_.fail(map_.views.empty() ? 0.0 : map_.views.back().t, "never initialised: " + waiting_for_);
+    return;
   }
   if (options_.global_solve) {
     for (std::size_t i = 0; i < segments_.size(); ++i) {
@@ -338,46 +334,36 @@ void BundleAdjustment::fill_predicted() {
   }
 }
 
-Status BundleAdjustment::status() const {
-  Status status;
-  status.degraded = degraded_;
-  if (segments_.empty()) {
-    status.state = RunState::failed;
-    status.reason = "never initialised: " + waiting_for_;
-    status.time = map_.views.empty() ? 0.0 : map_.views.back().t;
-  } else if (lost_) {
-    status.state = RunState::lost;
-    status.reason = degraded_.back().reason;
-    status.time = *lost_;
-  } else if (!degraded_.empty()) {
-    status.state = RunState::degraded;
-    status.reason = degraded_.front().reason;
-    status.time = degraded_.front().from;
-  }
-  return status;
+Feedback BundleAdjustment::feedback(const FeedbackNeeds& needs) {
+  Feedback result{until_, monitor_.state(), {}, {}, std::exchange(new_outliers_, {}), {}};
+  if (segments_.empty() || monitor_.lost()) return result;
+  result.newest = ControlState{map_.views.back().t, map_.views.back().T, velocity_};
+  if (needs.expected) result.expected = expected_features();
+  return result;
 }
 
-Feedback BundleAdjustment::feedback() {
-  Feedback result;
-  if (!segments_.empty()) result.newest = ControlState{map_.views.back().t, map_.views.back().T, velocity_};
-  result.outliers = std::move(new_outliers_);
-  new_outliers_.clear();
+/// Landmarks of live tracks, where constant velocity predicts them; how well is not estimated: within outlier_px.
+std::vector<ExpectedFeature> BundleAdjustment::expected_features() const {
+  const SE3 T_camera_world = predict(until_, static_cast<int>(map_.views.size()) - 1).inverse();
+  std::vector<ExpectedFeature> result;
+  for (const TrackId id : live_) {
+    const auto track = map_.tracks.find(id);
+    if (track == map_.tracks.end() || !track->second.position) continue;
+    const Vector3 point = T_camera_world * *track->second.position;
+    if (point.z() <= 0.0) continue;
+    result.push_back({id, *track->second.position, context_.camera.project(point),
+                      options_.outlier_px * options_.outlier_px * Matrix2::Identity()});
+  }
   return result;
 }
 
 PoseTrajectory BundleAdjustment::trajectory() const {
   std::vector<StampedPose> poses;
   for (const View& view : map_.views) {
-    if (view.state == View::State::unknown || (lost_ && view.t >= *lost_)) continue;
+    if (view.state == View::State::unknown || (monitor_.lost() && view.t > monitor_.status().time)) continue;
     poses.push_back({view.t, view.T});
   }
   return PoseTrajectory(std::move(poses), "estimated trajectory");
-}
-
-PoseTrajectory BundleAdjustment::online() const {
-  std::vector<StampedPose> poses = online_;
-  if (lost_) std::erase_if(poses, [&](const StampedPose& pose) { return pose.t >= *lost_; });
-  return PoseTrajectory(std::move(poses), "online trajectory");
 }
 
 std::vector<Landmark> BundleAdjustment::map() const {

@@ -10,6 +10,7 @@
 #include "backends/bundle_adjustment/options.hpp"
 #include "backends/bundle_adjustment/reconstruction.hpp"
 #include "core/plugin/backend.hpp"
+#include "core/plugin/tracking_monitor.hpp"
 
 namespace evbench::bundle_adjustment {
 
@@ -22,22 +23,20 @@ namespace evbench::bundle_adjustment {
 /// of the first landmarks.
 ///
 /// With too few landmarks in sight a pose is predicted (`degraded`), and the map starts afresh from two new views,
-/// placed at the predicted pose and scaled so that the median depth stays what it was. Without success for
-/// `lost_after` seconds the run is `lost`, and nothing follows the last estimated pose.
+/// placed at the predicted pose and scaled so that the median depth stays what it was. Without success for the
+/// context's patience it is `lost`, and nothing follows the last estimated pose.
 class BundleAdjustment : public BackEnd {
  public:
   using Options = bundle_adjustment::Options;
 
   BundleAdjustment(const Options& options, const BackEndContext& context);
 
-  void observe(std::span<const TrackObservation> observations) override;
-  void advance(double t) override;
+  void advance(const TrackBatch& batch) override;
+  Feedback feedback(const FeedbackNeeds& needs) override;
   void finish() override;
 
-  Status status() const override;
-  Feedback feedback() override;
+  Status status() const override { return monitor_.status(); }
   PoseTrajectory trajectory() const override;
-  PoseTrajectory online() const override;
   std::vector<Landmark> map() const override;
   std::span<const UpdateRecord> updates() const override { return updates_; }
 
@@ -52,7 +51,6 @@ class BundleAdjustment : public BackEnd {
   FrameBuilder frames_;
   Reconstruction map_;
   std::vector<Segment> segments_;
-  std::vector<StampedPose> online_;
   std::vector<UpdateRecord> updates_;
 
   TrackBuffer means_;  ///< frame means since the last initialisation was needed
@@ -61,10 +59,10 @@ class BundleAdjustment : public BackEnd {
 
   Vector6 velocity_ = Vector6::Zero();
   double median_depth_ = 1.0;  ///< of the landmarks in the last estimated view
-  std::optional<double> failing_since_;
-  std::vector<DegradedSpan> degraded_;
-  std::optional<double> lost_;
-  double advanced_to_ = 0.0;  ///< [s]
+  bool failing_ = false;       ///< the newest views' poses are predicted
+  TrackingMonitor monitor_;
+  double until_ = 0.0, last_observation_ = 0.0;  ///< [s]
+  std::set<TrackId> live_;                       ///< tracks that have been observed and have not ended
   std::set<TrackId> removed_;
   std::vector<TrackId> new_outliers_;
 
@@ -81,10 +79,10 @@ class BundleAdjustment : public BackEnd {
   void accept(Trial trial, int view);
   SolveReport track(int view);
   std::string locate(int view);
-  bool silent_before(int view) const;
   void remember(int view);
-  void failing(int view, const std::string& reason);
-  void recovered(double t);
+  void start_over();
+  void pass_time(double t);
+  std::vector<ExpectedFeature> expected_features() const;
   SolveReport solve_window(int view);
   bool remove_outliers(int first);
   void update_motion(int view);

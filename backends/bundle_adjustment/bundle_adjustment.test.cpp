@@ -62,18 +62,24 @@ std::vector<TrackObservation> simulate(const Simulation& simulation) {
   return result;
 }
 
-BundleAdjustment make(const PinholeCamera& camera = davis(), const Options& options = {}) {
+/// `online`: takes the causal poses.
+BundleAdjustment make(const PinholeCamera& camera = davis(), const Options& options = {},
+                      std::vector<StampedPose>* online = nullptr) {
   BackEndContext context;
   context.camera = camera;
+  if (online != nullptr) context.online = [online](const StampedPose& pose) { online->push_back(pose); };
   return BundleAdjustment(options, context);
 }
 
 void feed(BundleAdjustment& backend, const std::vector<TrackObservation>& observations) {
+  TrackBatch batch;
   for (std::size_t begin = 0, end = 0; begin < observations.size(); begin = end) {
     const double t = observations[begin].t + 0.01;
     while (end < observations.size() && observations[end].t <= t) ++end;
-    backend.observe(std::span(observations).subspan(begin, end - begin));
-    backend.advance(t);
+    const auto part = std::span(observations).subspan(begin, end - begin);
+    batch.observations.assign(part.begin(), part.end());
+    batch.until = t;
+    backend.advance(batch);
   }
   backend.finish();
 }
@@ -104,13 +110,14 @@ TEST_CASE("a simulated motion is recovered, in a volume and before a plane") {
   for (const Scene scene : {Scene::volume, Scene::plane}) {
     Simulation simulation;
     simulation.scene = scene;
-    BundleAdjustment backend = make();
+    std::vector<StampedPose> online;
+    BundleAdjustment backend = make(davis(), {}, &online);
     feed(backend, simulate(simulation));
     CHECK(backend.status().state == RunState::ok);
     CHECK(backend.trajectory().start() < 0.1);
     CHECK(backend.trajectory().end() > 3.9);
     CHECK(ate(backend.trajectory(), simulation.motion) < 0.01);
-    CHECK(ate(backend.online(), simulation.motion) < 0.03);
+    CHECK(ate(PoseTrajectory(online), simulation.motion) < 0.03);
     CHECK(backend.map().size() == 50);
     CHECK(backend.updates().size() >= 80);
   }
@@ -156,12 +163,13 @@ TEST_CASE("no observations, one track, and few tracks end as failed with a reaso
     if (z.track < 7) few.push_back(z);
   }
   for (const auto& observations : {std::vector<TrackObservation>{}, one, few}) {
-    BundleAdjustment backend = make();
+    std::vector<StampedPose> online;
+    BundleAdjustment backend = make(davis(), {}, &online);
     feed(backend, observations);
     CHECK(backend.status().state == RunState::failed);
     CHECK_FALSE(backend.status().reason.empty());
     CHECK(backend.trajectory().empty());
-    CHECK(backend.online().empty());
+    CHECK(online.empty());
     CHECK(backend.map().empty());
   }
 }
@@ -225,10 +233,11 @@ TEST_CASE("wild observations never make a pose that is not finite") {
     if (observations[i].track % 3 == 0) observations[i].pixel *= 1e6;
     if (observations[i].t > 2.0) observations[i].pixel = Vector2(120, 90);
   }
-  BundleAdjustment backend = make();
+  std::vector<StampedPose> online;
+  BundleAdjustment backend = make(davis(), {}, &online);
   feed(backend, observations);
   CHECK(finite(backend.trajectory()));
-  CHECK(finite(backend.online()));
+  CHECK(finite(PoseTrajectory(online)));
 }
 
 TEST_CASE("on the real tracks of poster_translation frames of 50 and 100 ms stay below 8 mm") {

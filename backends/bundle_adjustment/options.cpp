@@ -25,7 +25,6 @@ void Options::declare(OptionSet& set) {
   set.add("global_solve", global_solve, "optimise all frames and landmarks at the end");
   set.add("global_iterations", global_iterations, "iterations of the solve at the end, at most").range(1);
   set.add("min_landmarks", min_landmarks, "landmarks in a frame; with fewer, its pose is predicted").range(4);
-  set.add("lost_after", lost_after, "time with too few landmarks after which the run is lost [s]").above(0.0);
 }
 
 }  // namespace evbench::bundle_adjustment

@@ -25,8 +25,7 @@ struct Options {
   bool global_solve = true;  ///< of everything, at the end
   int global_iterations = 25;
   // Degenerate stretches.
-  int min_landmarks = 6;    ///< in a frame; with fewer, the pose is predicted and the frame degraded
-  double lost_after = 1.0;  ///< [s] without min_landmarks
+  int min_landmarks = 6;  ///< in a frame; with fewer, the pose is predicted and the frame degraded
 
   void declare(OptionSet& set);
 };

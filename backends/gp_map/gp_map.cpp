@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "backends/gp_map/problem_graph.hpp"
+#include "core/geometry/so3.hpp"
 #include "core/motion/gp_trajectory.hpp"
-#include "core/plugin/registry.hpp"
+#include "core/motion/wnoa.hpp"
+#include "core/plugin/registration.hpp"
 #include "core/support/median.hpp"
 
 namespace evbench::gp_map {
@@ -18,10 +20,6 @@ namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
                                                 "asynchronous MAP estimation under a GP prior (Liu et al. 2022)");
-
-constexpr double kInView = 0.05;  ///< [s] since its last observation
-constexpr double kAlive = 0.1;    ///< [s] after its last observation a track may still become a landmark
-constexpr double kForget = 1.0;   ///< [s] after its last observation a track that became none is forgotten
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -34,20 +32,19 @@ GpMap::GpMap(const Options& options, const BackEndContext& context)
       context_(context),
       placement_(options.placement),
       first_map_(options, context.camera),
-      health_(options.health) {}
+      monitor_(context.patience) {}
 
-void GpMap::observe(std::span<const TrackObservation> observations) {
-  for (const TrackObservation& z : observations) placement_.observe(z);
-  pending_.insert(pending_.end(), observations.begin(), observations.end());
-}
-
-void GpMap::advance(double t) {
-  while (const std::optional<double> next = placement_.next(t)) step(*next);
-  if (options_.per_observation) follow(t);
+void GpMap::advance(const TrackBatch& batch) {
+  for (const TrackObservation& z : batch.observations) placement_.observe(z);
+  pending_.insert(pending_.end(), batch.observations.begin(), batch.observations.end());
+  ending_.insert(ending_.end(), batch.ended.begin(), batch.ended.end());
+  until_ = batch.until;
+  while (const std::optional<double> next = placement_.next(until_)) step(*next);
+  if (options_.per_observation) follow(until_);
 }
 
 void GpMap::step(double t) {
-  if (health_.lost()) return;
+  if (monitor_.lost()) return;
   const auto start = std::chrono::steady_clock::now();
   take_observations(t);
   if (!engine_) {
@@ -59,14 +56,15 @@ void GpMap::step(double t) {
     add_landmarks();
     optimise();
     remove_outliers();
-    check_health();
+    check_support();
   }
+  forget_ended_tracks();
   record(t, std::exchange(seconds_since_step_, 0.0) + seconds_since(start));
 }
 
 /// Per-observation mode: the newest state stands ahead of the data, and it and the one before follow each observation.
 void GpMap::follow(double t) {
-  if (!engine_ || health_.lost()) return;
+  if (!engine_ || monitor_.lost()) return;
   const auto start = std::chrono::steady_clock::now();
   take_observations(t);
   if (!recent_.empty()) extrapolate_state(placement_.upcoming());
@@ -112,9 +110,22 @@ void GpMap::take_observations(double t) {
   recent_.assign(pending_.begin(), later);
   pending_.erase(pending_.begin(), later);
   for (const TrackObservation& z : recent_) {
+    live_.insert(z.track);
     if (!landmark_of_.contains(z.track)) tracks_.add({&z, 1});
   }
-  tracks_.forget_ended_before(t - kForget);
+  for (; !ending_.empty() && ending_.front().t <= t; ending_.pop_front()) {
+    live_.erase(ending_.front().track);
+    ended_.insert(ending_.front().track);
+  }
+}
+
+/// They had their last chance to become landmarks in the step that saw their end.
+void GpMap::forget_ended_tracks() {
+  for (const TrackId track : ended_) {
+    tracks_.forget(track);
+    tried_with_.erase(track);
+  }
+  ended_.clear();
 }
 
 /// Those of tracks that are landmarks; the others wait in the track buffer until theirs are located.
@@ -129,28 +140,21 @@ void GpMap::add_observations() {
     } else if (options_.per_observation) {
       engine_->observe(landmark->second, observation);
       followed_.push_back(z);
-      record_online(z.t);
+      tell_online(z.t);
     } else {
       engine_->add_observation(landmark->second, observation);
     }
   }
 }
 
-/// Landmarks observed of late: intervals may be shorter than a track's time between two observations.
+/// Those whose tracks are alive: one that has not been observed of late is where it was.
 int GpMap::landmarks_in_view() const {
-  std::set<int> seen;
-  const double since = graph().states.back().t - kInView;
-  for (std::size_t k = graph().intervals.size(); k-- > 1;) {
-    for (const auto& group : graph().intervals[k].groups()) seen.insert(group.landmark);
-    if (graph().states[k - 1].t <= since) break;
-  }
-  return static_cast<int>(seen.size());
+  return static_cast<int>(std::ranges::count_if(live_, [&](TrackId track) { return landmark_of_.contains(track); }));
 }
 
 void GpMap::add_landmarks() {
-  const double newest = graph().states.back().t;
   const bool scarce = landmarks_in_view() < 2 * options_.health.min_landmarks;
-  for (const TrackId track : tracks_.alive(newest, kAlive)) {
+  for (const TrackId track : tracks_.ids()) {
     const auto count = static_cast<int>(tracks_.observations(track).size());
     if (count < options_.map.min_observations) continue;
     int& tried_with = tried_with_[track];
@@ -242,31 +246,39 @@ void GpMap::hold_scale_without(int leaving) {
   engine_->anchor_scale(graph().anchor.origin, {anchors.begin(), anchors.end()});
 }
 
-void GpMap::check_health() {
+void GpMap::check_support() {
+  using Support = TrackingMonitor::Support;
   const std::size_t n = graph().states.size();
+  const double from = graph().states[n - 2].t, to = graph().states[n - 1].t;
+  const int seen = landmarks_in_view(), enough = options_.health.min_landmarks, few = options_.health.lost_landmarks;
   if (last_update_.rejected && !last_update_.reason.empty()) {
-    health_.lose(graph().states[n - 1].t, last_update_.reason);
+    monitor_.lose(to, last_update_.reason);
+  } else if (seen < few) {
+    monitor_.observe(from, to, Support::none, fmt::format("fewer than {} landmarks in view", few));
   } else {
-    health_.observe(graph().states[n - 2].t, graph().states[n - 1].t, landmarks_in_view());
+    monitor_.observe(from, to, seen < enough ? Support::weak : Support::full,
+                     fmt::format("fewer than {} landmarks in view: the motion prior carries", enough));
   }
-  if (!health_.lost()) return;
-  context_.log(fmt::format("{:.3f} s: lost: {}", health_.status().time, health_.status().reason));
+  if (!monitor_.lost()) return;
+  context_.log(fmt::format("{:.3f} s: lost: {}", monitor_.status().time, monitor_.status().reason));
   // What the data never saw is not kept.
-  const auto unseen = [&](double t) { return t > health_.status().time; };
   const auto oldest = static_cast<std::size_t>(engine_->first_state());  // with a lag, what is older is settled
-  while (graph().states.size() > oldest + 2 && unseen(graph().states.back().t)) engine_->remove_newest_state();
-  std::erase_if(online_, [&](const StampedPose& pose) { return unseen(pose.t); });
+  while (graph().states.size() > oldest + 2 && graph().states.back().t > monitor_.status().time) {
+    engine_->remove_newest_state();
+  }
 }
 
 void GpMap::record(double t, double seconds) {
-  if (engine_ && graph().states.back().t == t) record_online(t);
+  if (engine_ && graph().states.back().t == t) tell_online(t);
   add_record(t, seconds, 1, {});
 }
 
-void GpMap::record_online(double t) {
-  if (online_.empty() || online_.back().t < t) {
-    if (const auto T = pose(t)) online_.push_back({t, *T});
-  }
+void GpMap::tell_online(double t) {
+  if (t <= online_) return;
+  const std::optional<SE3> T = pose(t);
+  if (!T) return;
+  context_.online({t, *T});
+  online_ = t;
 }
 
 void GpMap::add_record(double t, double seconds, int iterations, std::optional<double> cost) {
@@ -282,8 +294,8 @@ void GpMap::add_record(double t, double seconds, int iterations, std::optional<d
 void GpMap::finish() {
   if (const std::optional<double> last = placement_.last()) step(*last);
   if (!engine_) {
-    health_.fail(first_map_.newest(),
-                 first_map_.reason().empty() ? "no observations" : "no first map: " + first_map_.reason());
+    monitor_.fail(first_map_.newest(),
+                  first_map_.reason().empty() ? "no observations" : "no first map: " + first_map_.reason());
     return;
   }
   if (options_.final_iterations == 0 || options_.lag > 0.0) return;
@@ -296,11 +308,49 @@ void GpMap::finish() {
   add_record(graph().states.back().t, seconds_since(start), summary.iterations, summary.final_cost);
 }
 
-Feedback GpMap::feedback() {
-  Feedback feedback;
-  if (engine_) feedback.newest = graph().states.back();
-  feedback.outliers.swap(new_outliers_);
+Feedback GpMap::feedback(const FeedbackNeeds& needs) {
+  Feedback feedback{until_, monitor_.state(), {}, {}, std::exchange(new_outliers_, {}), {}};
+  if (!engine_ || monitor_.lost()) return feedback;
+  feedback.newest = newest_seen();
+  if (needs.covariance) feedback.covariance = covariance(feedback.newest->t);
+  if (needs.expected) feedback.expected = expected_features();
   return feedback;
+}
+
+/// The newest state, or, where that stands ahead of the data (per-observation mode), the estimate at their end.
+ControlState GpMap::newest_seen() const {
+  const ControlState& newest = graph().states.back();
+  if (newest.t <= until_) return newest;
+  return {until_, *pose(until_), *velocity(until_)};
+}
+
+/// Landmarks of live tracks, predicted with constant velocity.
+std::vector<ExpectedFeature> GpMap::expected_features() {
+  constexpr double kNear = 1e-3;  // [units] before the camera: nearer has no image
+  const ControlState& newest = graph().states.back();
+  const double dt = until_ - newest.t;
+  const SE3 motion = se3::exp(dt * newest.velocity), T_camera_world = (newest.T * motion).inverse();
+  Eigen::Matrix<double, 6, 12> J_pose;  // of the predicted pose's increment
+  J_pose << se3::adjoint(motion.inverse()), dt * se3::right_jacobian(dt * newest.velocity);
+  const Matrix6 drift = wnoa::process_covariance(std::abs(dt), graph().qc).topLeftCorner<6, 6>();
+  std::vector<ExpectedFeature> result;
+  for (const TrackId track : live_) {
+    const auto found = landmark_of_.find(track);
+    if (found == landmark_of_.end()) continue;
+    const Vector3 position = graph().landmarks[static_cast<std::size_t>(found->second)].position;
+    const Vector3 point = T_camera_world * position;
+    if (point.z() < kNear) continue;
+    const Matrix23 J_point = context_.camera.project_jacobian(point);
+    Eigen::Matrix<double, 3, 6> point_of_pose;  // T ← T Exp(δ): Rᵀ(l − p) changes by [q]× δφ − δρ
+    point_of_pose << so3::hat(point), -Matrix3::Identity();
+    const Matrix26 J_image = J_point * point_of_pose;
+    const auto covariance =
+        engine_->predicted_covariance(found->second, J_image * J_pose, J_point * T_camera_world.R());
+    if (!covariance) continue;
+    result.push_back(
+        {track, position, context_.camera.project(point), *covariance + J_image * drift * J_image.transpose()});
+  }
+  return result;
 }
 
 PoseTrajectory GpMap::trajectory() const {
@@ -324,7 +374,7 @@ std::optional<Vector6> GpMap::velocity(double t) const {
   return GpInterval(graph().states[index - 1], graph().states[index]).velocity(t);
 }
 
-std::optional<Matrix12> GpMap::covariance(double t) const { return engine_ ? engine_->covariance(t) : std::nullopt; }
+std::optional<Matrix12> GpMap::covariance(double t) { return engine_ ? engine_->covariance(t) : std::nullopt; }
 
 std::vector<Landmark> GpMap::map() const {
   std::vector<Landmark> result;

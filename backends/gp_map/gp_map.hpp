@@ -1,17 +1,20 @@
 #pragma once
 
+#include <deque>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/first_map.hpp"
-#include "backends/gp_map/health.hpp"
 #include "backends/gp_map/options.hpp"
 #include "backends/gp_map/state_placement.hpp"
 #include "core/plugin/backend.hpp"
+#include "core/plugin/tracking_monitor.hpp"
 #include "core/structure/track_buffer.hpp"
 
 namespace evbench::gp_map {
@@ -26,17 +29,15 @@ class GpMap : public BackEnd {
 
   GpMap(const Options& options, const BackEndContext& context);
 
-  void observe(std::span<const TrackObservation> observations) override;
-  void advance(double t) override;
+  void advance(const TrackBatch& batch) override;
+  Feedback feedback(const FeedbackNeeds& needs) override;
   void finish() override;
 
-  Status status() const override { return health_.status(); }
-  Feedback feedback() override;
+  Status status() const override { return monitor_.status(); }
   PoseTrajectory trajectory() const override;
-  PoseTrajectory online() const override { return PoseTrajectory(online_); }
   std::optional<SE3> pose(double t) const override;
   std::optional<Vector6> velocity(double t) const override;
-  std::optional<Matrix12> covariance(double t) const override;
+  std::optional<Matrix12> covariance(double t) override;
   std::vector<Landmark> map() const override;
   std::optional<Problem> problem() const override;
   std::span<const UpdateRecord> updates() const override { return updates_; }
@@ -54,11 +55,12 @@ class GpMap : public BackEnd {
   void add_landmarks();
   void optimise();
   void remove_outliers();
-  void check_health();
+  void check_support();
+  void forget_ended_tracks();
   void record(double t, double seconds);
 
   void follow(double t);
-  void record_online(double t);
+  void tell_online(double t);
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
   void start_from(FirstMap map);
   void remove_if_outlier(int landmark);
@@ -66,6 +68,8 @@ class GpMap : public BackEnd {
   void become_landmark(TrackId track, int landmark);
   std::optional<std::pair<Vector3, LandmarkPrior>> locate(TrackId track, bool scarce) const;
   double median_depth() const;
+  ControlState newest_seen() const;
+  std::vector<ExpectedFeature> expected_features();
   int landmarks_in_view() const;
 
   Options options_;
@@ -73,18 +77,22 @@ class GpMap : public BackEnd {
   StatePlacement placement_;
   FirstMapFinder first_map_;
   TrackBuffer tracks_;                      ///< those that are no landmarks (yet)
-  mutable std::optional<Engine> engine_;    ///< from the first map on; mutable: covariances are made when asked for
+  std::optional<Engine> engine_;            ///< from the first map on
   std::map<TrackId, int> landmark_of_;      ///< tracks that are landmarks
   std::map<TrackId, int> tried_with_;       ///< observations at the last vain attempt to locate a track
   std::vector<TrackId> track_of_;           ///< by landmark
+  std::set<TrackId> live_;                  ///< tracks that have been observed and have not ended
+  std::deque<TrackEnd> ending_;             ///< told, but later than the newest state
+  std::set<TrackId> ended_;                 ///< since the last step
   std::vector<TrackObservation> recent_;    ///< between the two newest states
   std::vector<TrackObservation> pending_;   ///< later than the newest state
   std::vector<TrackObservation> followed_;  ///< added one by one since the last step
   std::vector<TrackId> new_outliers_;
   UpdateSummary last_update_;
   double seconds_since_step_ = 0.0;  ///< spent between two steps, in per-observation mode
-  Health health_;
-  std::vector<StampedPose> online_;
+  TrackingMonitor monitor_;
+  double until_ = 0.0;                                        ///< [s] of the last batch
+  double online_ = -std::numeric_limits<double>::infinity();  ///< [s], time of the last pose told
   std::vector<UpdateRecord> updates_;
 };
 

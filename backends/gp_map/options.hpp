@@ -60,13 +60,12 @@ struct MapOptions {
 struct HealthOptions {
   int min_landmarks = 6;
   int lost_landmarks = 3;
-  double patience = 1.0;
 
   void declare(OptionSet& set) {
-    set.add("min_landmarks", min_landmarks, "fewer landmarks seen in an interval: the prior carries, degraded")
-        .range(3);
-    set.add("lost_landmarks", lost_landmarks, "fewer than these for longer than patience: lost").range(1);
-    set.add("patience", patience, "how long the prior may carry alone [s]").above(0.0);
+    set.add("min_landmarks", min_landmarks, "with fewer landmarks of live tracks the estimate is degraded").range(3);
+    set.add("lost_landmarks", lost_landmarks,
+            "with fewer than these the prior carries alone; for longer than the pipeline's patience: lost")
+        .range(1);
   }
 };
 

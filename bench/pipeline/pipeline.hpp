@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/pipeline/options.hpp"
+#include "bench/pipeline/standstill.hpp"
 #include "core/plugin/backend.hpp"
 #include "core/plugin/frontend.hpp"
 #include "core/plugin/source.hpp"
@@ -19,11 +20,6 @@ struct Piece {
   PoseTrajectory online_trajectory;  ///< causal, the back-end's own times
   std::vector<Landmark> map;
   std::optional<Problem> problem;  ///< that the back-end ended with, where it has one
-};
-
-/// A span in which the camera stood still [s].
-struct StillSpan {
-  double from = 0.0, to = 0.0;
 };
 
 /// Where the time of a run went [s], wall clock.

@@ -7,7 +7,6 @@
 #include <limits>
 #include <span>
 
-#include "core/events/formats.hpp"
 #include "core/events/longest_in_order.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
@@ -39,9 +38,6 @@ void check_sensor_size(const std::string& path, int width, int height) {
   throw InputError(fmt::format("{}: a sensor of {}x{} pixels; expected {} million pixels at most", path, width, height,
                                kMost / 1'000'000));
 }
-
-EventStream::EventStream(const std::string& path, const StreamOptions& options)
-    : EventStream(open_events(path, options.read), path, options) {}
 
 EventStream::EventStream(std::unique_ptr<EventReader> reader, std::string path, const StreamOptions& options)
     : path_(std::move(path)), reader_(std::move(reader)), faults_(path_, options.read.strict) {

@@ -29,7 +29,7 @@ void check_sensor_size(const std::string& path, int width, int height);
 /// (interruption.hpp).
 class EventStream {
  public:
-  /// Throws InputError for what is no recording and by check_sensor_size().
+  /// Throws InputError for what is no recording and by check_sensor_size(). Of the target evbench_events.
   EventStream(const std::string& path, const StreamOptions& options = {});
   EventStream(std::unique_ptr<EventReader> reader, std::string path, const StreamOptions& options = {});
 

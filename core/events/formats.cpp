@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "core/events/companions/companions.hpp"
+#include "core/events/event_stream.hpp"
 #include "core/events/formats/all.hpp"
 #include "core/support/byte_source.hpp"
 #include "core/support/error.hpp"
@@ -69,8 +71,24 @@ bool holds_events(const std::string& path) {
   return !RecordingFiles(path).events().empty() || find_format(path, {}) != nullptr;
 }
 
+std::vector<std::string> files_of_events(const std::string& path) {
+  if (!std::filesystem::is_directory(path)) return {path};
+  const std::string events = RecordingFiles(path).events();
+  if (!events.empty()) return {events};
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(path)) {
+    if (entry.is_regular_file()) files.push_back(entry.path().string());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
 const std::vector<EventFormat>& event_formats() { return all_formats(); }
 
 void add_event_format(EventFormat format) { all_formats().insert(all_formats().begin(), std::move(format)); }
+
+// Here and not beside its class, which core needs without any format.
+EventStream::EventStream(const std::string& path, const StreamOptions& options)
+    : EventStream(open_events(path, options.read), path, options) {}
 
 }  // namespace evbench

@@ -34,4 +34,7 @@ std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOpti
 /// Is there a file of events at the path, or in the folder?
 bool holds_events(const std::string& path);
 
+/// The files that hold the events of such a path, sorted: one, but for formats that are folders.
+std::vector<std::string> files_of_events(const std::string& path);
+
 }  // namespace evbench

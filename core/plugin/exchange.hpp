@@ -34,9 +34,9 @@ std::string to_string(TrackingState state);
 /// Where the image of a landmark is expected.
 struct ExpectedFeature {
   TrackId track = 0;
-  Vector3 position = Vector3::Zero();         ///< of the landmark, world frame: to predict it at other poses
-  Vector2 pixel = Vector2::Zero();            ///< [px], raw for a front-end, undistorted from a back-end
-  Matrix2 covariance = Matrix2::Identity();   ///< of the prediction [px²], an observation's own noise not included
+  Vector3 position = Vector3::Zero();        ///< of the landmark, world frame: to predict it at other poses
+  Vector2 pixel = Vector2::Zero();           ///< [px], raw for a front-end, undistorted from a back-end
+  Matrix2 covariance = Matrix2::Identity();  ///< of the prediction [px²], an observation's own noise not included
 };
 
 /// What a back-end hands back.

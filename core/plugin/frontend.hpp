@@ -24,8 +24,8 @@ class FrontEnd {
 
   /// How far one exchange goes.
   struct Horizon {
-    double t = 0.0;                  ///< [s] no farther than this time
-    std::size_t observations = 0;    ///< not beyond the time of this many observations; 0: no matter how many
+    double t = 0.0;                ///< [s] no farther than this time
+    std::size_t observations = 0;  ///< not beyond the time of this many observations; 0: no matter how many
   };
 
   /// Replaces `batch` by what happened since the last call, raw pixels, up to the horizon: batch.until is the horizon's

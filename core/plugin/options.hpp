@@ -87,11 +87,11 @@ class OptionSet {
   /// Takes relative paths among the options from `folder`, so that they mean the same wherever they are written.
   void anchor_paths(const std::string& folder);
 
-  Json write() const;                ///< every option with its present value
-  Json write_without_paths() const;  ///< likewise, options that name files or folders being left out
+  Json write() const;                      ///< every option with its present value
+  Json write_without_paths() const;        ///< likewise, options that name files or folders being left out
   std::vector<std::string> paths() const;  ///< what options that name files or folders name, groups included
-  Json schema() const;           ///< JSON Schema (2020-12) of the object
-  std::string describe() const;  ///< a table for people: name, type, default, range, text
+  Json schema() const;                     ///< JSON Schema (2020-12) of the object
+  std::string describe() const;            ///< a table for people: name, type, default, range, text
 
  private:
   struct Group;

@@ -1,15 +1,12 @@
 #pragma once
 
-#include <fmt/format.h>
-
+#include <concepts>
 #include <functional>
 #include <memory>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "core/plugin/registry.hpp"
-#include "core/support/error.hpp"
 
 namespace evbench {
 
@@ -28,6 +25,11 @@ concept NamesFiles = requires(const Options& options) {
   { options.files() } -> std::same_as<std::vector<std::string>>;
 };
 
+template <class Plugin>
+concept SaysWhetherItReadsEvents = requires {
+  Plugin::reads_events;
+};
+
 }  // namespace detail
 
 /// A plugin names itself with one line in its own .cpp, built in or in a shared library alike:
@@ -37,7 +39,8 @@ concept NamesFiles = requires(const Options& options) {
 /// GpMap has `using Options = ...` (see OptionSet) and a constructor (Options, const Context&), Context being
 /// PluginKind<...>::Context. `version` is raised when the same options come to give other results: runs of the old
 /// version are then not taken for the new one's. Files that path() options name are part of a run's identity; Options
-/// may have `std::vector<std::string> files() const` for others.
+/// may have `std::vector<std::string> files() const` for others. A front-end that leaves the source's events alone says
+/// `static constexpr bool reads_events = false;`.
 /// A program's plugins are CMake OBJECT libraries, so that the linker keeps their registration.
 template <class Interface, class Plugin>
 class Registration {
@@ -68,6 +71,7 @@ class Registration {
   static typename Registry<Interface>::Entry entry() {
     using Context = typename PluginKind<Interface>::Context;
     typename Registry<Interface>::Entry entry;
+    if constexpr (detail::SaysWhetherItReadsEvents<Plugin>) entry.reads_events = Plugin::reads_events;
     entry.describe = [] {
       Options options;
       OptionSet set;

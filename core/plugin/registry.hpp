@@ -43,6 +43,7 @@ class Registry {
     std::string text;                       ///< one line for `evbench list`
     std::string origin;                     ///< "built in", or the library's path
     int version = 1;                        ///< of what it computes: raised when the same options give other results
+    bool reads_events = true;               ///< front-ends: the content of the source's events counts for a run
     std::function<std::string()> describe;  ///< table of its options
     std::function<Json()> schema;           ///< JSON Schema of its options
     /// (options, place, folder): checked, completed with defaults, relative paths taken from the folder.

@@ -50,8 +50,10 @@ class Source {
   /// None where the source does not.
   virtual std::optional<std::span<const TrackObservation>> true_tracks() const { return std::nullopt; }
 
-  /// Files that the sequence is made of, events included: their content is part of a run's identity.
+  /// Files that the sequence is made of, but for its events: their content is part of a run's identity.
   virtual std::vector<std::string> files() const { return {}; }
+  /// The files of the events: likewise, where the front-end reads them.
+  virtual std::vector<std::string> event_files() const { return {}; }
 
   /// What a user should know of the data: counts, oddities. For the run's log.
   virtual std::vector<std::string> remarks() const { return {}; }

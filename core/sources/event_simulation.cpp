@@ -1,5 +1,9 @@
 #include "core/sources/event_simulation.hpp"
 
+#include <fmt/format.h>
+
+#include "core/plugin/registration.hpp"
+#include "core/support/error.hpp"
 #include "core/support/path.hpp"
 
 namespace evbench {
@@ -44,7 +48,7 @@ EventSimulation::EventSimulation(const Options& options, const SourceContext& co
   simulate_tracks_of(features, options.tracks, context.place + ".tracks");
 }
 
-std::unique_ptr<EventReader> EventSimulation::events() const {
+std::unique_ptr<EventReader> EventSimulation::all_events() const {
   auto brightness = std::make_unique<SceneBrightness>(camera(), scene_, motion(), rendering_, simulator_.threads);
   return std::make_unique<EventSimulator>(std::move(brightness), simulator_, duration(), random(Part::sensor).next());
 }

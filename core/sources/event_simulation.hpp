@@ -24,7 +24,7 @@ class EventSimulation : public SimulatedSequence {
 
   EventSimulation(const Options& options, const SourceContext& context);
 
-  std::unique_ptr<EventReader> events() const override;
+  std::unique_ptr<EventReader> all_events() const override;
   std::vector<std::string> remarks() const override;
 
   /// Depth at any pixel and time, and the true track of any point.

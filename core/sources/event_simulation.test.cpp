@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "core/plugin/registration.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
@@ -16,7 +17,7 @@ EventSimulation simulation(const std::string& json, std::uint64_t seed = 1, cons
 
 std::vector<Event> events_of(const Source& source) {
   std::vector<Event> all;
-  const std::unique_ptr<EventReader> reader = source.events();
+  const std::unique_ptr<EventStream> reader = source.events();
   for (std::vector<Event> chunk; reader->read(chunk);) all.insert(all.end(), chunk.begin(), chunk.end());
   return all;
 }
@@ -26,8 +27,9 @@ const std::string kSmall = R"("duration": 0.1, "camera": {"width": 96, "height":
 }  // namespace
 
 TEST_CASE("A simulated recording is registered, and gives events, its camera, ground truth and tracks") {
-  const auto& entry = Registry<Source>::instance().find("event_simulation", "test");
-  const auto source = entry.make(Json::parse("{" + kSmall + "}"), "config.source", {7, ""});
+  const Plugins plugins = registered_plugins();
+  const auto& entry = plugins.of<Source>().find("event_simulation", "test");
+  const auto source = entry.make(Json::parse("{" + kSmall + "}"), {7, "", "config.source"});
   CHECK(source->camera().width == 96);
   CHECK(source->ground_truth().size() == 21);
   CHECK(source->true_tracks()->size() > 100);
@@ -39,8 +41,9 @@ TEST_CASE("A simulated recording is registered, and gives events, its camera, gr
 }
 
 TEST_CASE("A source of tracks has no events") {
-  const auto& entry = Registry<Source>::instance().find("simulation", "test");
-  CHECK(entry.make(Json::parse(R"({"duration": 1})"), "config.source", {7, ""})->events() == nullptr);
+  const Plugins plugins = registered_plugins();
+  const auto& entry = plugins.of<Source>().find("simulation", "test");
+  CHECK(entry.make(Json::parse(R"({"duration": 1})"), {7, "", "config.source"})->events() == nullptr);
 }
 
 TEST_CASE("Every scene gives the same events with any number of threads, and others with another seed") {

@@ -1,5 +1,7 @@
 #include "core/sources/recording.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "core/data/calib.hpp"
@@ -8,6 +10,8 @@
 #include "core/data/tum.hpp"
 #include "core/events/companions/companions.hpp"
 #include "core/events/formats.hpp"
+#include "core/plugin/registration.hpp"
+#include "core/support/error.hpp"
 #include "core/support/path.hpp"
 
 namespace evbench {
@@ -83,12 +87,17 @@ Recording::Recording(const Options& options, const SourceContext& context) : pla
   set_time_range(options.time_range, own);
 }
 
-std::unique_ptr<EventReader> Recording::events() const {
+std::unique_ptr<EventReader> Recording::all_events() const {
   if (events_.empty()) return nullptr;
   ReadOptions options;
   options.width = camera_.width;
   options.height = camera_.height;
   return open_events(events_, options);
+}
+
+std::vector<std::string> Recording::event_files() const {
+  if (events_.empty() || !holds_events(events_)) return {};
+  return files_of_events(events_);
 }
 
 /// Of the folder, or where there is none, of the file of events; nothing where all is named.

@@ -2,7 +2,8 @@
 
 #include <optional>
 
-#include "core/plugin/registry.hpp"
+#include "core/plugin/options.hpp"
+#include "core/plugin/source.hpp"
 
 namespace evbench {
 
@@ -32,10 +33,11 @@ class Recording : public Source {
   const Camera& camera() const override { return camera_; }
   TimeRange time_range() const override { return range_; }
   const PoseTrajectory& ground_truth() const override { return ground_truth_; }
-  /// All of them: times are the file's own, which are the sequence's. Throws InputError for a file that is missing or
-  /// of no known format.
-  std::unique_ptr<EventReader> events() const override;
+  /// Times are the file's own, which are the sequence's. Throws InputError for a file that is missing or of no known
+  /// format.
+  std::unique_ptr<EventReader> all_events() const override;
   std::vector<std::string> files() const override { return files_; }
+  std::vector<std::string> event_files() const override;
   std::vector<std::string> remarks() const override { return remarks_; }
 
  private:

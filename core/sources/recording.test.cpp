@@ -95,6 +95,7 @@ TEST_CASE("A recording is found by the name of a dataset, and gives its events")
   const auto reader = source.events();
   REQUIRE(reader);
   CHECK(reader->info().width == 240);
+  CHECK(source.event_files() == std::vector<std::string>{folder.file("ecd/dynamic_6dof/events.evb")});
   std::vector<Event> events;
   REQUIRE(reader->read(events));
   CHECK(events == std::vector<Event>{{1500000, 239, 1, true}});
@@ -172,4 +173,19 @@ TEST_CASE("The real poster_translation opens with its ground truth") {
   const Recording source = open(R"({"folder": "${EVBENCH_DATA}/poster_translation", "time_range": [0, 3.05]})", "");
   CHECK(source.ground_truth().size() == 11768);
   CHECK(source.camera().pinhole.fx == Approx(199.092366542));
+}
+
+TEST_CASE("A front-end gets a recording's events in order, within the sensor, and within the time range alone") {
+  const testing::TemporaryFolder folder;
+  folder.write("calib.txt", kCalibration);
+  folder.write("events.txt",
+               "0.1 1 1 1\n0.2 2 2 1\n0.35 3 3 1\n0.3 4 4 1\n0.31 5 5 0\n0.4 400 6 1\n0.5 7 7 1\n0.6 8 8 0\n");
+  const Recording source =
+      open(R"({"calibration": "calib.txt", "events": "events.txt", "time_range": [0.2, 0.5]})", folder.path());
+  std::vector<std::int64_t> times;
+  const auto stream = source.events();
+  for (std::vector<Event> events; stream->read(events);) {
+    for (const Event& event : events) times.push_back(event.t);
+  }
+  CHECK(times == std::vector<std::int64_t>{200'000, 300'000, 310'000, 500'000});
 }

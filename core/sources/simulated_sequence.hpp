@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/plugin/registry.hpp"
+#include "core/plugin/options.hpp"
+#include "core/plugin/source.hpp"
 #include "core/simulation/motion.hpp"
 #include "core/simulation/random.hpp"
 #include "core/simulation/scene.hpp"

@@ -1,6 +1,10 @@
 #include "core/sources/simulation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "core/plugin/registration.hpp"
 
 namespace evbench {
 namespace {

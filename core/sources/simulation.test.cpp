@@ -5,6 +5,7 @@
 
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
+#include "core/plugin/registration.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
@@ -19,8 +20,9 @@ Simulation simulate(const std::string& json, std::uint64_t seed = 1, const std::
 }  // namespace
 
 TEST_CASE("A simulated sequence is registered, and gives its camera, ground truth and tracks") {
-  const auto& entry = Registry<Source>::instance().find("simulation", "test");
-  const auto source = entry.make(Json::parse(R"({"duration": 2})"), "config.source", {7, ""});
+  const Plugins plugins = registered_plugins();
+  const auto& entry = plugins.of<Source>().find("simulation", "test");
+  const auto source = entry.make(Json::parse(R"({"duration": 2})"), {7, "", "config.source"});
   CHECK(source->camera().width == 240);
   CHECK(source->time_range().to == 2.0);
   CHECK(source->ground_truth().size() == 401);

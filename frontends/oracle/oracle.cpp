@@ -1,6 +1,9 @@
 #include "frontends/oracle/oracle.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
+#include "core/plugin/registration.hpp"
+#include "core/support/error.hpp"
 
 namespace evbench {
 namespace {
@@ -17,14 +20,7 @@ Oracle::Oracle(const Options&, const FrontEndContext& context) {
                     "(recorded) for this one",
                     context.place));
   }
-  left_ = *tracks;
-}
-
-bool Oracle::advance(double until, std::vector<TrackObservation>& observations) {
-  const auto end = std::ranges::upper_bound(left_, until, {}, &TrackObservation::t);
-  observations.insert(observations.end(), left_.begin(), end);
-  left_ = {end, left_.end()};
-  return !left_.empty();
+  player_ = TrackPlayer(*tracks);
 }
 
 }  // namespace evbench

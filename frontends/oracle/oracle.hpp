@@ -1,8 +1,7 @@
 #pragma once
 
-#include <span>
-
-#include "core/plugin/registry.hpp"
+#include "core/plugin/options.hpp"
+#include "core/plugin/track_player.hpp"
 
 namespace evbench {
 
@@ -10,16 +9,18 @@ namespace evbench {
 /// knows none, such as a recording.
 class Oracle : public FrontEnd {
  public:
+  static constexpr bool reads_events = false;
+
   struct Options {
     void declare(OptionSet&) {}
   };
 
   Oracle(const Options& options, const FrontEndContext& context);
 
-  bool advance(double until, std::vector<TrackObservation>& observations) override;
+  bool advance(const Horizon& horizon, TrackBatch& batch) override { return player_.advance(horizon, batch); }
 
  private:
-  std::span<const TrackObservation> left_;
+  TrackPlayer player_;
 };
 
 }  // namespace evbench

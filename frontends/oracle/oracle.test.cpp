@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/plugin/registration.hpp"
+
 using namespace evbench;
 
 namespace {
@@ -29,24 +31,24 @@ TEST_CASE("The oracle hands on the source's tracks up to the time asked for, eac
   FakeSource source;
   source.tracks = {{0, 0.1, {1, 1}, 1.0}, {1, 0.2, {2, 2}, 1.0}, {0, 0.3, {3, 3}, 1.0}};
   const auto oracle =
-      Registry<FrontEnd>::instance().find("oracle", "test").make(Json::object(), "test", {source, 0, ""});
-  std::vector<TrackObservation> observations;
-  CHECK(oracle->advance(0.2, observations));
-  CHECK(observations.size() == 2);
-  CHECK(oracle->advance(0.25, observations));
-  CHECK(observations.size() == 2);
-  CHECK_FALSE(oracle->advance(1.0, observations));
-  REQUIRE(observations.size() == 3);
-  CHECK(observations[2].t == 0.3);
+      registered_plugins().of<FrontEnd>().find("oracle", "test").make(Json::object(), {source, 0, "", "test"});
+  TrackBatch batch;
+  CHECK(oracle->advance({0.2}, batch));
+  CHECK(batch.observations.size() == 2);
+  CHECK(oracle->advance({0.25}, batch));
+  CHECK(batch.observations.empty());
+  CHECK_FALSE(oracle->advance({1.0}, batch));
+  REQUIRE(batch.observations.size() == 1);
+  CHECK(batch.observations[0].t == 0.3);
 }
 
 TEST_CASE("The oracle of a source without tracks has nothing to give") {
   FakeSource source;
   source.tracks.emplace();
   Oracle oracle({}, {source, 0, ""});
-  std::vector<TrackObservation> observations;
-  CHECK_FALSE(oracle.advance(1.0, observations));
-  CHECK(observations.empty());
+  TrackBatch batch;
+  CHECK_FALSE(oracle.advance({1.0}, batch));
+  CHECK(batch.observations.empty());
 }
 
 TEST_CASE("The oracle refuses a source that knows no true tracks and names one that does") {

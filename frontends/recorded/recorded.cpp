@@ -1,8 +1,13 @@
 #include "frontends/recorded/recorded.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <map>
 
 #include "core/data/tracks.hpp"
+#include "core/plugin/registration.hpp"
+#include "core/support/error.hpp"
 #include "core/support/path.hpp"
 
 namespace evbench {
@@ -50,6 +55,7 @@ Recorded::Recorded(const Options& options, const FrontEndContext& context)
                     "range",
                     path_, range.from, range.to));
   }
+  player_ = TrackPlayer(observations_);
 }
 
 void Recorded::drop_short_tracks(int min_length) {
@@ -60,15 +66,6 @@ void Recorded::drop_short_tracks(int min_length) {
   std::erase_if(observations_, [&](const TrackObservation& o) { return lengths[o.track] < min_length; });
   remarks_.push_back(
       fmt::format("{}: {} tracks with fewer than {} observations (left out)", path_, tracks, min_length));
-}
-
-bool Recorded::advance(double until, std::vector<TrackObservation>& observations) {
-  const auto begin = observations_.begin() + static_cast<std::ptrdiff_t>(next_);
-  const auto end = std::upper_bound(begin, observations_.end(), until,
-                                    [](double time, const TrackObservation& o) { return time < o.t; });
-  observations.insert(observations.end(), begin, end);
-  next_ = static_cast<std::size_t>(end - observations_.begin());
-  return next_ < observations_.size();
 }
 
 }  // namespace evbench

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/plugin/registry.hpp"
+#include "core/plugin/options.hpp"
+#include "core/plugin/track_player.hpp"
 
 namespace evbench {
 
@@ -9,6 +10,8 @@ namespace evbench {
 /// observation. Throws InputError for a file that is missing or damaged and when no observation is left.
 class Recorded : public FrontEnd {
  public:
+  static constexpr bool reads_events = false;
+
   struct Options {
     std::string tracks;
     double sigma = 1.0;
@@ -20,14 +23,13 @@ class Recorded : public FrontEnd {
 
   Recorded(const Options& options, const FrontEndContext& context);
 
-  bool advance(double until, std::vector<TrackObservation>& observations) override;
-  std::vector<std::string> files() const override { return {path_}; }
+  bool advance(const Horizon& horizon, TrackBatch& batch) override { return player_.advance(horizon, batch); }
   std::vector<std::string> remarks() const override { return remarks_; }
 
  private:
   std::string path_;
   std::vector<TrackObservation> observations_;
-  std::size_t next_ = 0;
+  TrackPlayer player_;
   std::vector<std::string> remarks_;
 
   void drop_short_tracks(int min_length);

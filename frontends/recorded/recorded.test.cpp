@@ -26,9 +26,9 @@ class FakeSource : public Source {
 };
 
 std::vector<TrackObservation> all(FrontEnd& frontend) {
-  std::vector<TrackObservation> observations;
-  frontend.advance(1e9, observations);
-  return observations;
+  TrackBatch batch;
+  frontend.advance({1e9}, batch);
+  return batch.observations;
 }
 
 // Track 1: unordered and with a duplicate; track 2: a single observation; track 3: leaves the image, and goes on after
@@ -60,7 +60,6 @@ TEST_CASE("Recorded tracks come in time order within the source's time range, an
                           Contains("1 observations outside the image (dropped)") &&
                           Contains("1 tracks with a single observation") &&
                           Contains("1 observations outside 0 to 1 s"));
-  CHECK(frontend.files() == std::vector<std::string>{folder.file("tracks.txt")});
 }
 
 TEST_CASE("Recorded tracks are given up to the time asked for, each once") {
@@ -68,11 +67,15 @@ TEST_CASE("Recorded tracks are given up to the time asked for, each once") {
   folder.write("tracks.txt", kTracks);
   const FakeSource source({0.0, 2.0});
   Recorded frontend = open(R"({"tracks": "tracks.txt"})", folder, source);
-  std::vector<TrackObservation> observations;
-  CHECK(frontend.advance(0.3, observations));
-  CHECK(observations.size() == 3);
-  CHECK_FALSE(frontend.advance(2.0, observations));
-  CHECK(observations.size() == 6);
+  TrackBatch batch;
+  CHECK(frontend.advance({0.3}, batch));
+  CHECK(batch.observations.size() == 3);
+  REQUIRE(batch.ended.size() == 2);  // 2, seen once, and 1
+  CHECK(batch.ended[0].track == 2);
+  CHECK(batch.ended[1].track == 1);
+  CHECK_FALSE(frontend.advance({2.0}, batch));
+  CHECK(batch.observations.size() == 3);
+  CHECK(batch.ended.at(0).track == 3);
 }
 
 TEST_CASE("Observations outside the image are kept on request, short tracks are left out") {

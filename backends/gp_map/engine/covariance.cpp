@@ -70,6 +70,18 @@ Eigen::MatrixXd Factorisation::marginal(int stage, std::span<const int> rows) co
   return 0.5 * (result + result.transpose());
 }
 
+Eigen::MatrixXd Factorisation::image_in_root(std::span<const int> rows, const Eigen::MatrixXd& J) const {
+  Eigen::MatrixXd solved(static_cast<Eigen::Index>(rows.size()), J.rows());
+  Buffer x(at(root_.stride()));
+  for (Eigen::Index i = 0; i < J.rows(); ++i) {
+    std::ranges::fill(x, 0.0);
+    for (std::size_t k = 0; k < rows.size(); ++k) x[at(rows[k])] = J(i, static_cast<Eigen::Index>(k));
+    solve_with_root_factor(x.data());
+    for (std::size_t k = 0; k < rows.size(); ++k) solved(static_cast<Eigen::Index>(k), i) = x[at(rows[k])];
+  }
+  return J * solved;
+}
+
 /// Factorises what has changed or was damped, as it is at the present linearisation points.
 bool Engine::factorise_undamped() {
   if (restart_ < static_cast<int>(graph_.states.size()) || damped_) {
@@ -111,6 +123,29 @@ std::optional<Matrix3> Engine::landmark_covariance(int landmark) {
   const Matrix3 result = factorisation_.marginal(stage, rows);
   if (!result.allFinite()) return std::nullopt;
   return result;
+}
+
+std::optional<Matrix2> Engine::predicted_covariance(int landmark, const Eigen::Matrix<double, 2, 12>& J_state,
+                                                    const Matrix23& J_landmark) {
+  if (!factorise_undamped()) return std::nullopt;
+  const std::optional<std::pair<int, int>> place = factorisation_.find_landmark(landmark);
+  const bool in_root = place && place->first == static_cast<int>(graph_.states.size());
+  std::vector<int> rows;
+  for (int i = 0; i < 12; ++i) rows.push_back(Root::row_of_state(static_cast<int>(graph_.states.size()) - 1) + i);
+  Eigen::MatrixXd J = J_state;
+  if (in_root) {
+    for (int i = 0; i < 3; ++i) rows.push_back(place->second + i);
+    J.conservativeResize(2, 15);
+    J.rightCols<3>() = J_landmark;
+  }
+  Matrix2 result = factorisation_.image_in_root(rows, J);
+  if (!in_root) {
+    const std::optional<Matrix3> own = landmark_covariance(landmark);
+    if (!own) return std::nullopt;
+    result += J_landmark * *own * J_landmark.transpose();
+  }
+  if (!result.allFinite()) return std::nullopt;
+  return Matrix2(0.5 * (result + result.transpose()));
 }
 
 }  // namespace evbench::gp_map

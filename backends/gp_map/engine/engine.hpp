@@ -121,6 +121,10 @@ class Engine {
   /// Of pose and velocity at any time within the states' span.
   std::optional<Matrix12> covariance(double t);
   std::optional<Matrix3> landmark_covariance(int landmark);
+  /// Of J_state δ_newest + J_landmark δ_landmark, e.g. of where a landmark's image is predicted. A landmark that has
+  /// left the root counts as independent of the newest state.
+  std::optional<Matrix2> predicted_covariance(int landmark, const Eigen::Matrix<double, 2, 12>& J_state,
+                                              const Matrix23& J_landmark);
 
  private:
   /// A variable's increment before a solve, to undo it.

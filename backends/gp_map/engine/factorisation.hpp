@@ -73,6 +73,9 @@ class Factorisation {
   /// Covariance of rows in the layout that the root had before stage `stage` eliminated them (or later ones).
   Eigen::MatrixXd marginal(int stage, std::span<const int> rows) const;
 
+  /// Covariance of J x for x in these rows of the root as it is now.
+  Eigen::MatrixXd image_in_root(std::span<const int> rows, const Eigen::MatrixXd& J) const;
+
   /// The stage that eliminates a landmark (the one after the last done while it is in the root) and its row there.
   std::optional<std::pair<int, int>> find_landmark(int j) const;
 

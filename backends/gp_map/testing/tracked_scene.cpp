@@ -34,17 +34,19 @@ TrackedScene::TrackedScene(double duration, const char* options, std::uint64_t s
 Run run(const TrackedScene& scene, const RunOptions& options) {
   BackEndContext context;
   context.camera = scene.camera();
+  std::vector<StampedPose> online;
+  context.online = [&](const StampedPose& pose) { online.push_back(pose); };
   Run result;
   result.backend = std::make_unique<GpMap>(read_options<Options>(Json::parse(options.backend), "backend"), context);
-  const auto& all = scene.observations();
-  auto begin = all.begin();
-  for (double t = options.chunk; begin != all.end(); t += options.chunk) {
-    const auto end = std::find_if(begin, all.end(), [&](const TrackObservation& z) { return z.t > t; });
-    result.backend->observe({begin, end});
-    result.backend->advance(t);
-    begin = end;
+  TrackPlayer player(scene.observations());
+  TrackBatch batch;
+  bool more = true;
+  for (double t = options.chunk; more; t += options.chunk) {
+    more = player.advance({t}, batch);
+    result.backend->advance(batch);
   }
   result.backend->finish();
+  result.online = PoseTrajectory(std::move(online));
   const PoseTrajectory own = result.backend->trajectory();
   if (own.empty()) return result;
   std::vector<StampedPose> poses;

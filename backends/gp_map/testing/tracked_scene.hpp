@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "backends/gp_map/gp_map.hpp"
+#include "core/plugin/track_player.hpp"
 #include "core/simulation/track_simulator.hpp"
 #include "eval/scores.hpp"
 
@@ -36,6 +37,7 @@ struct RunOptions {
 
 struct Run {
   std::unique_ptr<GpMap> backend;
+  PoseTrajectory online;
   Scores scores;  ///< of the final trajectory at 100 Hz; empty when there is none
 };
 

@@ -1,0 +1,154 @@
+#include "bench/pipeline/back_side.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace evbench {
+namespace {
+
+PoseTrajectory sample(const BackEnd& backend, double rate) {
+  const PoseTrajectory own = backend.trajectory();
+  if (rate == 0.0 || own.empty()) return own;
+  std::vector<StampedPose> poses;
+  const auto first = static_cast<std::int64_t>(std::ceil(own.start() * rate - 1e-9));
+  for (std::int64_t k = first; static_cast<double>(k) / rate <= own.end(); ++k) {
+    const double t = static_cast<double>(k) / rate;
+    if (const std::optional<SE3> T = backend.pose(t)) poses.push_back({t, *T});
+  }
+  return PoseTrajectory(std::move(poses), "the back-end's trajectory");
+}
+
+bool is_finite(const StampedPose& pose) { return pose.T.p.allFinite() && pose.T.q.coeffs().allFinite(); }
+
+double length(const Piece& piece) { return piece.final_trajectory.end() - piece.final_trajectory.start(); }
+
+}  // namespace
+
+BackSide::BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera, double from,
+                   const PipelineOptions& options)
+    : make_(make), context_(std::move(context)), camera_(camera), standstill_(options.still_after), until_(from) {
+  context_.camera = camera.pinhole;
+  context_.patience = options.patience;
+  begin(from);
+}
+
+void BackSide::begin(double from) {
+  auto estimator = std::make_unique<Estimator>();
+  estimator->from = from;
+  BackEndContext context = context_;
+  context.online = [&online = estimator->online](const StampedPose& pose) {
+    if (!is_finite(pose))
+      throw std::runtime_error(fmt::format("the back-end's pose at {:.6f} s is not finite", pose.t));
+    if (!online.empty() && pose.t <= online.back().t) {
+      throw std::runtime_error(
+          fmt::format("the back-end told its online pose at {:.6f} s after that at {:.6f} s", pose.t, online.back().t));
+    }
+    online.push_back(pose);
+  };
+  estimator->backend = watch_.time([&] { return make_(context); });
+  estimators_.push_back(std::move(estimator));
+}
+
+void BackSide::take(TrackBatch batch) {
+  observations_ += batch.observations.size();
+  undistort(batch);
+  standstill_.apply(batch);
+  digest(batch);
+  if (estimators_.back()->backend->status().state == RunState::lost) {
+    context_.log(fmt::format("{:.3f} s: another back-end starts, in a world frame of its own", until_));
+    begin(until_);
+  }
+  until_ = batch.until;
+  watch_.time([&] { estimators_.back()->backend->advance(batch); });
+}
+
+Feedback BackSide::feedback(const FeedbackNeeds& needs) {
+  Feedback feedback = watch_.time([&] { return estimators_.back()->backend->feedback(needs); });
+  feedback.t = until_;
+  if (standstill_.holds() && feedback.state == TrackingState::tracking) feedback.state = TrackingState::standing_still;
+  for (ExpectedFeature& feature : feedback.expected) {
+    feature.pixel = camera_.project(camera_.pinhole.ray(feature.pixel));
+  }
+  return feedback;
+}
+
+/// Pixels of the ideal pinhole; observations that have none are left out and counted.
+void BackSide::undistort(TrackBatch& batch) {
+  left_out_ += std::erase_if(batch.observations, [&](TrackObservation& z) {
+    const std::optional<Vector2> pixel = camera_.undistort(z.pixel);
+    if (pixel) z.pixel = *pixel;
+    return !pixel;
+  });
+}
+
+void BackSide::digest(const TrackBatch& batch) {
+  for (const TrackObservation& z : batch.observations) {
+    hash_.add_value(z.track);
+    hash_.add_value(z.t);
+    hash_.add_value(z.pixel.x());
+    hash_.add_value(z.pixel.y());
+    hash_.add_value(z.sigma);
+  }
+}
+
+void BackSide::finish(double rate, double end, RunResult& result) {
+  std::vector<bool> has_piece;
+  for (const auto& estimator : estimators_) {
+    watch_.time([&] { estimator->backend->finish(); });
+    const std::size_t before = result.pieces.size();
+    add_piece(*estimator, rate, result);
+    has_piece.push_back(result.pieces.size() > before);
+  }
+  result.status = merged_status(has_piece, end);
+  for (std::size_t i = 1; i < result.pieces.size(); ++i) {
+    if (length(result.pieces[i]) > length(result.pieces[result.longest])) result.longest = i;
+  }
+  result.still = standstill_.spans();
+  result.observations = observations_;
+  result.tracks_sha256 = hash_.hex();
+  if (left_out_ > 0) {
+    result.log.push_back(fmt::format("{} observations left out: the lens model has no inverse there", left_out_));
+  }
+}
+
+/// The estimator's piece, where it has one, and its updates.
+void BackSide::add_piece(Estimator& estimator, double rate, RunResult& result) const {
+  BackEnd& backend = *estimator.backend;
+  result.updates.insert(result.updates.end(), backend.updates().begin(), backend.updates().end());
+  Piece piece{sample(backend, rate), PoseTrajectory(std::move(estimator.online), "the online trajectory"),
+              backend.map(), backend.problem()};
+  if (!std::ranges::all_of(piece.final_trajectory.poses(), is_finite)) {
+    throw std::runtime_error("the back-end's trajectory is not finite");
+  }
+  const Status status = backend.status();
+  if (piece.final_trajectory.empty() || status.state == RunState::failed) return;
+  // What was told after the data had ended is no estimate from data.
+  if (status.state == RunState::lost && !piece.online_trajectory.empty()) {
+    piece.online_trajectory = piece.online_trajectory.cut(piece.online_trajectory.start(), status.time);
+  }
+  result.pieces.push_back(std::move(piece));
+}
+
+/// One back-end's status is the run's; with several, the run was lost when the first was, and parts are missing.
+Status BackSide::merged_status(const std::vector<bool>& has_piece, double end) const {
+  Status merged = estimators_.front()->backend->status();
+  for (std::size_t i = 0; i + 1 < estimators_.size(); ++i) {
+    const Status lost = estimators_[i]->backend->status();
+    const Status next = estimators_[i + 1]->backend->status();
+    const bool anew = has_piece[i + 1];
+    merged.degraded.push_back(
+        {lost.time, anew ? estimators_[i + 1]->backend->trajectory().start() : end, "lost: " + lost.reason});
+    merged.degraded.insert(merged.degraded.end(), next.degraded.begin(), next.degraded.end());
+  }
+  if (std::ranges::none_of(has_piece, std::identity{})) {
+    merged.state = RunState::failed;
+    if (merged.reason.empty()) merged.reason = "no trajectory";
+  }
+  return merged;
+}
+
+}  // namespace evbench

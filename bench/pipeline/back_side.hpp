@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/pipeline/pipeline.hpp"
+#include "bench/pipeline/standstill.hpp"
+#include "bench/pipeline/stopwatch.hpp"
+#include "core/support/sha256.hpp"
+
+namespace evbench {
+
+/// The back-end's side of a run: undistorts what the front-end saw, holds tracks while the camera stands still, and
+/// gives a back-end that is lost a successor. Pixels are raw on the front-end's side of it, undistorted on the other.
+class BackSide {
+ public:
+  /// `from` [s]: beginning of the time range.
+  BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera, double from,
+           const PipelineOptions& options);
+
+  /// Brings the estimate up to the batch's end.
+  void take(TrackBatch batch);
+
+  /// What it then knows.
+  Feedback feedback(const FeedbackNeeds& needs);
+
+  /// Makes the final estimates and writes all of it into the result, but for what the front-end's side knows. `rate`:
+  /// of the final trajectories [Hz]; 0: the back-end's own poses. `end` [s] of the time range.
+  void finish(double rate, double end, RunResult& result);
+
+  double seconds() const { return watch_.seconds(); }  ///< in the back-ends
+
+ private:
+  /// A back-end and what it told.
+  struct Estimator {
+    std::unique_ptr<BackEnd> backend;
+    std::vector<StampedPose> online;
+    double from = 0.0;  ///< [s] when it began: the end of the last batch that it was not given
+  };
+
+  void begin(double from);
+  void undistort(TrackBatch& batch);
+  void digest(const TrackBatch& batch);
+  void add_piece(Estimator& estimator, double rate, RunResult& result) const;
+  Status merged_status(const std::vector<bool>& has_piece, double end) const;
+
+  const MakeBackEnd& make_;
+  BackEndContext context_;
+  const Camera& camera_;
+  Standstill standstill_;
+  std::vector<std::unique_ptr<Estimator>> estimators_;  ///< the last one is at work
+  double until_;                                        ///< [s] of the last batch
+  Sha256 hash_;
+  std::size_t observations_ = 0, left_out_ = 0;
+  Stopwatch watch_;
+};
+
+}  // namespace evbench

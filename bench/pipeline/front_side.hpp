@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <set>
+
+#include "bench/pipeline/feedback_line.hpp"
+#include "bench/pipeline/options.hpp"
+#include "bench/pipeline/stopwatch.hpp"
+#include "core/plugin/frontend.hpp"
+
+namespace evbench {
+
+/// The front-end's side of a run: makes a batch an exchange, from the beginning of the time range to its end, also
+/// where the front-end has nothing more to give: time passes all the same.
+class FrontSide {
+ public:
+  FrontSide(FrontEnd& frontend, const Source::TimeRange& range, const PipelineOptions& options, FeedbackLine& feedback);
+
+  /// The next batch, raw pixels; hands over what feedback is due before. None at the end of the range. Throws
+  /// std::runtime_error for a front-end that breaks its contract (frontend.hpp), saying how.
+  std::optional<TrackBatch> next();
+
+  double seconds() const { return watch_.seconds(); }  ///< in the front-end
+
+  /// [s] between the first and the last observation that it gave.
+  double data_s() const { return first_ ? last_ - *first_ : 0.0; }
+
+ private:
+  double next_time();
+  void check(const TrackBatch& batch, double horizon) const;
+  void count(TrackBatch& batch);
+
+  FrontEnd& frontend_;
+  Source::TimeRange range_;
+  const PipelineOptions& options_;
+  FeedbackLine& feedback_;
+  FeedbackNeeds needs_;
+  bool more_ = true;
+  double now_;
+  bool begun_ = false;
+  std::int64_t exchanges_ = 0;  ///< whole intervals since the beginning of the range
+  std::set<TrackId> live_;
+  std::optional<double> first_;
+  double last_ = 0.0;
+  Stopwatch watch_;
+};
+
+}  // namespace evbench

@@ -1,0 +1,346 @@
+#include "bench/pipeline/pipeline.hpp"
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+
+#include "core/plugin/track_player.hpp"
+#include "core/plugin/tracking_monitor.hpp"
+
+using namespace evbench;
+using Catch::Matchers::Contains;
+
+namespace {
+
+class EmptySource : public Source {
+ public:
+  explicit EmptySource(double to) : range_{0.0, to} {
+    camera_.width = 240;
+    camera_.height = 180;
+    camera_.pinhole = {200.0, 200.0, 119.5, 89.5};
+    camera_.distortion = DistortionModel::radial_tangential;
+    camera_.coefficients << -0.3, 0.1, 0.001, 0.002, 0.0;
+  }
+  const Camera& camera() const override { return camera_; }
+  TimeRange time_range() const override { return range_; }
+  const PoseTrajectory& ground_truth() const override { return truth_; }
+
+ private:
+  Camera camera_;
+  TimeRange range_;
+  PoseTrajectory truth_;
+};
+
+/// Ten tracks at 100 Hz in each span [from, to].
+std::vector<TrackObservation> tracks(const std::vector<std::pair<double, double>>& spans) {
+  std::vector<TrackObservation> result;
+  TrackId first = 0;
+  for (const auto& [from, to] : spans) {
+    for (int i = 0; from + 0.001 * i <= to; ++i) {
+      result.push_back({first + i % 10, from + 0.001 * i, Vector2(60.0 + i % 100, 80.0), 1.0});
+    }
+    first += 10;
+  }
+  return result;
+}
+
+/// Known tracks, and a note of the feedback that it got. What it hears shifts what it sees.
+class Listener : public FrontEnd {
+ public:
+  Listener(std::vector<TrackObservation> observations, FeedbackNeeds needs)
+      : observations_(std::move(observations)), player_(observations_), needs_(needs) {}
+
+  bool advance(const Horizon& horizon, TrackBatch& batch) override {
+    const bool more = player_.advance(horizon, batch);
+    for (TrackObservation& z : batch.observations) z.pixel.x() += shift_;
+    until_ = batch.until;
+    ++exchanges;
+    return more;
+  }
+  FeedbackNeeds needs() const override { return needs_; }
+  void receive(const Feedback& feedback) override {
+    heard.push_back({feedback.t, until_});
+    states.push_back(feedback.state);
+    if (feedback.newest) shift_ = 0.1 * std::sin(1000.0 * feedback.newest->T.p.x());
+  }
+
+  int exchanges = 0;
+  std::vector<std::pair<double, double>> heard;  ///< time of the feedback, data time at which it came
+  std::vector<TrackingState> states;
+
+ private:
+  std::vector<TrackObservation> observations_;
+  TrackPlayer player_;
+  FeedbackNeeds needs_;
+  double shift_ = 0.0, until_ = 0.0;
+};
+
+/// Goes where the mean of what it sees is; lost after the patience without any.
+class Mean : public BackEnd {
+ public:
+  explicit Mean(const BackEndContext& context) : context_(context), monitor_(context.patience) {}
+
+  void advance(const TrackBatch& batch) override {
+    for (const TrackObservation& z : batch.observations) {
+      sum_ = 0.99 * sum_ + 0.01 * z.pixel;
+      live_ = true;
+    }
+    if (!batch.observations.empty()) {
+      poses_.push_back({batch.observations.back().t, {Eigen::Quaterniond::Identity(), {sum_.x(), sum_.y(), 0.0}}});
+      context_.online(poses_.back());
+      silent_since_ = batch.until;
+    }
+    using Support = TrackingMonitor::Support;
+    const bool seen = batch.until - silent_since_ < 0.05;
+    if (live_) monitor_.observe(until_, batch.until, seen ? Support::full : Support::none, "nothing is seen");
+    until_ = batch.until;
+  }
+  Feedback feedback(const FeedbackNeeds& needs) override {
+    Feedback result{until_, monitor_.state(), {}, {}, {}, {}};
+    if (!poses_.empty()) result.newest = ControlState{poses_.back().t, poses_.back().T, Vector6::Zero()};
+    if (needs.expected) result.expected.push_back({7, {0, 0, 1}, sum_, Matrix2::Identity()});
+    return result;
+  }
+  void finish() override {
+    if (!live_) monitor_.fail(until_, "nothing was seen");
+  }
+  Status status() const override { return monitor_.status(); }
+  PoseTrajectory trajectory() const override {
+    std::vector<StampedPose> seen = poses_;
+    return PoseTrajectory(std::move(seen));
+  }
+  std::vector<Landmark> map() const override { return {}; }
+
+ private:
+  BackEndContext context_;
+  TrackingMonitor monitor_;
+  std::vector<StampedPose> poses_;
+  Vector2 sum_ = Vector2::Zero();
+  bool live_ = false;
+  double until_ = 0.0, silent_since_ = 0.0;
+};
+
+const MakeBackEnd kMean = [](const BackEndContext& context) { return std::make_unique<Mean>(context); };
+
+RunResult run(FrontEnd& frontend, double to, const PipelineOptions& options = {}, const MakeBackEnd& make = kMean) {
+  return run_pipeline(EmptySource(to), frontend, make, {}, options, 0.0);
+}
+
+bool same(const PoseTrajectory& a, const PoseTrajectory& b) {
+  return std::ranges::equal(a.poses(), b.poses(), [](const StampedPose& x, const StampedPose& y) {
+    return x.t == y.t && x.T.p == y.T.p && x.T.q.coeffs() == y.T.q.coeffs();
+  });
+}
+
+}  // namespace
+
+TEST_CASE("A run goes to the end of its range, is lost there without tracks, and counts the time of the data alone") {
+  Listener frontend(tracks({{0.0, 3.0}}), {});
+  const RunResult result = run(frontend, 30.0);
+  CHECK(result.status.state == RunState::lost);
+  CHECK(result.status.time == Approx(3.0).margin(0.1));
+  CHECK(result.data_s == Approx(3.0).margin(0.01));
+  REQUIRE(result.pieces.size() == 1);
+  CHECK(result.pieces[0].final_trajectory.end() == Approx(3.0).margin(0.01));
+  CHECK(result.times.frontend > 0.0);
+  CHECK(result.times.backend > 0.0);
+  CHECK(result.times.total >= result.times.frontend + result.times.backend);
+}
+
+TEST_CASE("Sequential and concurrent runs give the same bytes, whatever the feedback does") {
+  for (const double latency : {0.0, 0.01, 0.035}) {
+    for (const int observations : {0, 7}) {
+      CAPTURE(latency, observations);
+      PipelineOptions options;
+      options.latency = latency;
+      options.observations = observations;
+      Listener one(tracks({{0.0, 2.0}}), {true, true, true}), two(tracks({{0.0, 2.0}}), {true, true, true});
+      const RunResult sequential = run(one, 2.5, options);
+      options.mode = "concurrent";
+      const RunResult concurrent = run(two, 2.5, options);
+      CHECK(sequential.tracks_sha256 == concurrent.tracks_sha256);
+      CHECK(same(sequential.pieces.at(0).final_trajectory, concurrent.pieces.at(0).final_trajectory));
+      CHECK(same(sequential.pieces.at(0).online_trajectory, concurrent.pieces.at(0).online_trajectory));
+      CHECK(one.heard == two.heard);
+      CHECK(one.heard.size() > 100);
+    }
+  }
+}
+
+TEST_CASE("Feedback reaches the front-end after the latency in data time, in order, each once") {
+  PipelineOptions options;
+  options.latency = 0.025;
+  Listener frontend(tracks({{0.0, 1.0}}), {true, false, false});
+  run(frontend, 1.0, options);
+  double before = 0.0;
+  for (const auto& [t, now] : frontend.heard) {
+    CHECK(t > before);
+    CHECK(now >= t + 0.025 - 1e-9);
+    CHECK(now < t + 0.025 + 0.01 + 1e-9);
+    before = t;
+  }
+  CHECK(frontend.heard.size() == 96);  // the last exchange begins at 0.99 s: what was known up to 0.96 s
+}
+
+TEST_CASE("A front-end that needs no feedback is told nothing, and gives every back-end the same tracks") {
+  Listener frontend(tracks({{0.0, 1.0}}), {});
+  run(frontend, 1.0);
+  CHECK(frontend.heard.empty());
+}
+
+TEST_CASE("Feedback is of raw pixels, and says where the estimate stands") {
+  class Sees : public Listener {
+   public:
+    using Listener::Listener;
+    void receive(const Feedback& feedback) override {
+      Listener::receive(feedback);
+      if (!feedback.expected.empty()) pixel = feedback.expected.back().pixel;
+    }
+    Vector2 pixel;
+  };
+  std::vector<TrackObservation> one;
+  for (int i = 0; i < 3000; ++i) one.push_back({i % 10, 0.001 * i, Vector2(30.0, 40.0), 1.0});
+  Sees frontend(one, {true, false, true});
+  run(frontend, 3.0);
+  CHECK(frontend.pixel.x() == Approx(30.0).margin(0.2));  // shifted by 0.1 px at most
+  CHECK(frontend.pixel.y() == Approx(40.0).margin(0.1));
+  CHECK(frontend.states.front() == TrackingState::tracking);
+}
+
+TEST_CASE("Exchanges after a number of observations come sooner where more is seen") {
+  PipelineOptions options;
+  options.interval = 0.1;
+  options.observations = 20;
+  Listener frontend(tracks({{0.0, 1.0}}), {});
+  run(frontend, 2.0, options);
+  CHECK(frontend.exchanges == Approx(50).margin(11));  // 1,001 observations, and intervals' ends
+}
+
+TEST_CASE("A camera that stands still for ten seconds is not lost, and its stand is told") {
+  for (const char* mode : {"sequential", "concurrent"}) {
+    PipelineOptions options;
+    options.mode = mode;
+    std::vector<TrackObservation> before = tracks({{0.0, 2.0}});
+    for (const TrackObservation& z : tracks({{12.0, 13.0}})) before.push_back(z);  // the same tracks
+    Listener frontend(before, {true, false, false});
+    const RunResult result = run(frontend, 13.0, options);
+    CHECK(result.status.state != RunState::lost);
+    REQUIRE(result.still.size() == 1);
+    CHECK(result.still[0].from == Approx(2.0).margin(0.01));
+    CHECK(result.still[0].to == Approx(12.0).margin(0.1));
+    CHECK(std::ranges::count(frontend.states, TrackingState::standing_still) > 900);
+  }
+}
+
+TEST_CASE("After a loss another back-end starts, the trajectory is in pieces, and the longest one is told") {
+  Listener frontend(tracks({{0.0, 1.0}, {4.0, 7.0}}), {true, false, false});
+  const RunResult result = run(frontend, 7.0);
+  CHECK(result.status.state == RunState::lost);
+  CHECK(result.status.time == Approx(1.0).margin(0.1));
+  REQUIRE(result.pieces.size() == 2);
+  CHECK(result.longest == 1);
+  CHECK(result.pieces[0].final_trajectory.end() < 1.1);
+  CHECK(result.pieces[1].final_trajectory.start() == Approx(4.0).margin(0.02));
+  CHECK(result.pieces[1].final_trajectory.end() == Approx(7.0).margin(0.02));
+  REQUIRE_FALSE(result.status.degraded.empty());
+  CHECK(std::ranges::count(frontend.states, TrackingState::lost) == 1);
+}
+
+TEST_CASE("A gap within the patience is carried by one and the same back-end") {
+  Listener frontend(tracks({{0.0, 1.0}, {1.5, 3.0}}), {});
+  const RunResult result = run(frontend, 3.0);
+  CHECK(result.status.state == RunState::degraded);
+  CHECK(result.pieces.size() == 1);
+}
+
+TEST_CASE("A run without any observation fails with a reason, after its whole range") {
+  Listener frontend({}, {});
+  const RunResult result = run(frontend, 3.0);
+  CHECK(result.status.state == RunState::failed);
+  CHECK_FALSE(result.status.reason.empty());
+  CHECK(result.pieces.empty());
+  CHECK(result.data_s == 0.0);
+}
+
+TEST_CASE("A front-end that breaks its contract ends the run with a sentence") {
+  class Broken : public FrontEnd {
+   public:
+    explicit Broken(TrackBatch batch) : batch_(std::move(batch)) {}
+    bool advance(const Horizon& horizon, TrackBatch& batch) override {
+      if (horizon.t > 0.995) batch = batch_;
+      batch.until = horizon.t > 0.995 ? batch_.until : horizon.t;
+      return true;
+    }
+
+   private:
+    TrackBatch batch_;
+  };
+  const TrackObservation early{1, 0.5, {1, 1}, 1}, late{1, 1.5, {1, 1}, 1}, a{1, 0.999, {1, 1}, 1},
+      b{1, 0.998, {1, 1}, 1};
+  const std::pair<TrackBatch, const char*> cases[] = {
+      {{{early}, {}, 1.0}, "has an observation at 0.5"}, {{{late}, {}, 1.0}, "has an observation at 1.5"},
+      {{{a, b}, {}, 1.0}, "out of time order"},          {{{}, {{1, 1.2}}, 1.0}, "ends a track at 1.2"},
+      {{{}, {}, 2.0}, "ends at a wrong time"},           {{{}, {}, 0.99}, "ends at a wrong time"},
+      {{{}, {}, std::nan("")}, "ends at a wrong time"},
+  };
+  for (const auto& [batch, message] : cases) {
+    for (const char* mode : {"sequential", "concurrent", "free"}) {
+      PipelineOptions options;
+      options.mode = mode;
+      Broken frontend(batch);
+      CHECK_THROWS_WITH(run(frontend, 2.0, options), Contains(message));
+    }
+  }
+}
+
+TEST_CASE("An error in the back-end ends a run in two threads, too") {
+  class Throws : public Mean {
+   public:
+    using Mean::Mean;
+    void advance(const TrackBatch& batch) override {
+      if (batch.until > 0.5) throw std::runtime_error("the back-end broke");
+      Mean::advance(batch);
+    }
+  };
+  for (const char* mode : {"sequential", "concurrent", "free"}) {
+    PipelineOptions options;
+    options.mode = mode;
+    options.queue = 1;
+    Listener frontend(tracks({{0.0, 2.0}}), {true, false, false});
+    const auto make = [](const BackEndContext& context) { return std::make_unique<Throws>(context); };
+    CHECK_THROWS_WITH(run(frontend, 2.0, options, make), "the back-end broke");
+  }
+}
+
+TEST_CASE("Online poses that are not finite or go back in time are an error") {
+  class Tells : public Mean {
+   public:
+    Tells(const BackEndContext& context, StampedPose pose) : Mean(context), online_(context.online), pose_(pose) {}
+    void advance(const TrackBatch& batch) override {
+      if (batch.until > 0.5) online_(pose_);
+    }
+
+   private:
+    std::function<void(const StampedPose&)> online_;
+    StampedPose pose_;
+  };
+  Listener frontend(tracks({{0.0, 2.0}}), {});
+  const auto telling = [](StampedPose pose) {
+    return [pose](const BackEndContext& context) { return std::make_unique<Tells>(context, pose); };
+  };
+  CHECK_THROWS_WITH(run(frontend, 2.0, {}, telling({0.5, {}})), Contains("after that at"));
+  CHECK_THROWS_WITH(run(frontend, 2.0, {}, telling({0.5, {Eigen::Quaterniond::Identity(), {0, std::nan(""), 0}}})),
+                    Contains("not finite"));
+}
+
+TEST_CASE("Free-running, feedback comes as soon as it is there, and the log says that the run can't be repeated") {
+  PipelineOptions options;
+  options.mode = "free";
+  options.latency = 5.0;
+  Listener frontend(tracks({{0.0, 2.0}}), {true, false, false});
+  const RunResult result = run(frontend, 2.0, options);
+  CHECK_FALSE(frontend.heard.empty());
+  CHECK_THAT(result.log.back(), Contains("not reproducible"));
+}

@@ -1,0 +1,61 @@
+#include "bench/pipeline/standstill.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace evbench {
+namespace {
+
+constexpr std::size_t kEnough = 6;  ///< tracks: fewer say little of the camera
+constexpr double kInterval = 0.05;  ///< [s] between two times at which the tracks are held
+constexpr double kSigma = 0.5;      ///< [px] at least: a tracker's next step may be about to come
+constexpr double kStep = 1.5;       ///< [px] that a tracker may have moved when it tells that there is motion again
+constexpr double kLong = 4.0;       ///< times the usual time between observations: a silence
+constexpr double kMemory = 1.0;     ///< [s] in which what is usual is forgotten
+
+}  // namespace
+
+void Standstill::apply(TrackBatch& batch) {
+  if (after_ == 0.0) return;
+  const std::vector<TrackObservation> seen = std::move(batch.observations);
+  batch.observations.clear();
+  for (const TrackObservation& z : seen) {  // silence within a long batch, too
+    hold(z.t, batch.observations);
+    batch.observations.push_back(z);
+    remember(z);
+  }
+  for (const TrackEnd& end : batch.ended) live_.erase(end.track);
+  hold(batch.until, batch.observations);
+}
+
+void Standstill::remember(const TrackObservation& z) {
+  const double gap = z.t - last_;
+  const auto known = live_.find(z.track);
+  const bool jumped = known != live_.end() && (z.pixel - known->second.pixel).norm() > kStep;
+  // What moved on unseen did not stand still: the tracker is a slow one.
+  if (!live_.empty() && (!still_ || jumped)) usual_ = std::max(gap, usual_ * std::exp(-gap / kMemory));
+  live_[z.track] = z;
+  last_ = z.t;
+  held_ = 0;
+  still_ = false;
+}
+
+/// Adds what the silence from the last observation up to `until` says.
+void Standstill::hold(double until, std::vector<TrackObservation>& observations) {
+  if (live_.size() < kEnough) {
+    still_ = false;
+    return;
+  }
+  const double first = last_ + std::max(after_, kLong * usual_);
+  for (double t = 0.0; (t = first + kInterval * static_cast<double>(held_)) <= until; ++held_) {
+    if (!still_) spans_.push_back({last_, t});
+    still_ = true;
+    spans_.back().to = t;
+    for (const auto& [track, z] : live_) {
+      observations.push_back({track, t, z.pixel, std::max(z.sigma, kSigma)});
+    }
+  }
+}
+
+}  // namespace evbench

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "core/plugin/exchange.hpp"
+
+namespace evbench {
+
+/// A span of sequence time [s].
+struct StillSpan {
+  double from = 0.0, to = 0.0;
+};
+
+/// What an event camera's silence says. A pixel that sees no change makes no event, so that a front-end has nothing to
+/// tell of a camera at rest; but a track that is neither observed nor ended is still where it was, to within the step
+/// of a tracker. When for a while no track has been observed and enough are alive, each is therefore observed again at
+/// its last place: every back-end then holds its estimate, with whatever model it has, and none is lost. A silence is
+/// one that is long beside the usual time between observations, so that tracks of slow frames are not taken for it.
+class Standstill {
+ public:
+  /// `after` [s] without any observation; 0: never.
+  explicit Standstill(double after) : after_(after) {}
+
+  /// Takes a batch in undistorted pixels, and adds the observations that silence stands for.
+  void apply(TrackBatch& batch);
+
+  /// The camera stands still at the last batch's end.
+  bool holds() const { return still_; }
+  const std::vector<StillSpan>& spans() const { return spans_; }
+
+ private:
+  void hold(double until, std::vector<TrackObservation>& observations);
+  void remember(const TrackObservation& z);
+
+  double after_;
+  std::map<TrackId, TrackObservation> live_;  ///< the last observation of each track that has not ended
+  double last_ = 0.0;                         ///< [s] of the last observation of any
+  double usual_ = 0.0;                        ///< [s], longest time between two observations of late
+  std::int64_t held_ = 0;                     ///< times that the tracks were held since
+  bool still_ = false;
+  std::vector<StillSpan> spans_;
+};
+
+}  // namespace evbench

@@ -1,0 +1,110 @@
+#include "bench/pipeline/standstill.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace evbench;
+
+namespace {
+
+/// Ten tracks that move, each observed every 20 ms with a phase of its own, in batches of 10 ms.
+TrackBatch moving(double until) {
+  TrackBatch batch;
+  batch.until = until;
+  for (TrackId track = 0; track < 10; ++track) {
+    const double t = until - 0.009 + 0.0009 * static_cast<double>(track);
+    if ((static_cast<int>(std::lround(100.0 * until)) + track) % 2 == 0) {
+      batch.observations.push_back({track, t, Vector2(10.0 + 50.0 * t, 20.0), 0.2});
+    }
+  }
+  return batch;
+}
+
+TrackBatch silent(double until) {
+  TrackBatch batch;
+  batch.until = until;
+  return batch;
+}
+
+}  // namespace
+
+TEST_CASE("While a camera moves, nothing is added to what is seen of it") {
+  Standstill standstill(0.1);
+  for (int i = 1; i <= 100; ++i) {
+    TrackBatch batch = moving(0.01 * i);
+    const std::size_t seen = batch.observations.size();
+    standstill.apply(batch);
+    CHECK(batch.observations.size() == seen);
+    CHECK_FALSE(standstill.holds());
+  }
+  CHECK(standstill.spans().empty());
+}
+
+TEST_CASE("When live tracks fall silent they are held where they were, until they move again") {
+  Standstill standstill(0.1);
+  TrackBatch batch;
+  for (int i = 1; i <= 100; ++i) standstill.apply(batch = moving(0.01 * i));
+  std::size_t held = 0;
+  double before = 1.0;
+  for (int i = 101; i <= 300; ++i) {
+    standstill.apply(batch = silent(0.01 * i));
+    for (const TrackObservation& z : batch.observations) {
+      CHECK(z.t > before - 1e-12);
+      CHECK(z.t <= batch.until);
+      CHECK(z.pixel.x() == Approx(10.0 + 50.0).margin(1.5));
+      CHECK(z.sigma == 0.5);
+    }
+    if (!batch.observations.empty()) before = batch.observations.back().t;
+    held += batch.observations.size();
+  }
+  CHECK(held == Approx(10.0 * 20.0 * 1.9).epsilon(0.05));  // at 20 Hz from 0.1 s on
+  CHECK(standstill.holds());
+  standstill.apply(batch = moving(3.01));
+  CHECK_FALSE(standstill.holds());
+  REQUIRE(standstill.spans().size() == 1);
+  CHECK(standstill.spans()[0].from == Approx(1.0).margin(0.01));
+  CHECK(standstill.spans()[0].to == Approx(3.0).margin(0.06));
+}
+
+TEST_CASE("Tracks that have ended are not held, and few tracks say nothing of the camera") {
+  Standstill standstill(0.1);
+  TrackBatch batch;
+  for (int i = 1; i <= 100; ++i) standstill.apply(batch = moving(0.01 * i));
+  batch = silent(1.005);
+  for (TrackId track = 0; track < 5; ++track) batch.ended.push_back({track, 1.001});
+  standstill.apply(batch);
+  for (int i = 101; i <= 200; ++i) {
+    standstill.apply(batch = silent(0.01 * i));
+    CHECK(batch.observations.empty());
+  }
+  CHECK_FALSE(standstill.holds());
+}
+
+TEST_CASE("The time between the frames of a slow tracker is no standstill") {
+  Standstill standstill(0.1);
+  for (int i = 1; i <= 500; ++i) {
+    TrackBatch batch = silent(0.01 * i);
+    if (i % 25 == 0) {
+      for (TrackId track = 0; track < 10; ++track)
+        batch.observations.push_back({track, batch.until, {1.0 * i, 2.0}, 1});
+    }
+    const std::size_t seen = batch.observations.size();
+    standstill.apply(batch);
+    if (i > 100) CHECK(batch.observations.size() == seen);
+  }
+}
+
+TEST_CASE("One long batch is held like many short ones") {
+  TrackBatch whole;
+  Standstill once(0.1), often(0.1);
+  std::vector<TrackObservation> parts;
+  for (int i = 1; i <= 300; ++i) {
+    TrackBatch batch = i <= 100 || i > 200 ? moving(0.01 * i) : silent(0.01 * i);
+    whole.observations.insert(whole.observations.end(), batch.observations.begin(), batch.observations.end());
+    often.apply(batch);
+    parts.insert(parts.end(), batch.observations.begin(), batch.observations.end());
+  }
+  whole.until = 3.0;
+  once.apply(whole);
+  REQUIRE(whole.observations.size() == parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) CHECK(whole.observations[i].t == parts[i].t);
+}

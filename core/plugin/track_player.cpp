@@ -1,0 +1,29 @@
+#include "core/plugin/track_player.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace evbench {
+
+TrackPlayer::TrackPlayer(std::span<const TrackObservation> observations) : observations_(observations) {
+  std::map<TrackId, double> last;
+  for (const TrackObservation& z : observations) last[z.track] = z.t;
+  for (const auto& [track, t] : last) ends_.push_back({track, t});
+  std::ranges::stable_sort(ends_, {}, &TrackEnd::t);
+}
+
+bool TrackPlayer::advance(const FrontEnd::Horizon& horizon, TrackBatch& batch) {
+  batch.until = horizon.t;
+  if (horizon.observations > 0 && next_ + horizon.observations <= observations_.size()) {
+    batch.until = std::min(batch.until, observations_[next_ + horizon.observations - 1].t);
+  }
+  const auto left = observations_.subspan(next_);
+  const auto last = std::ranges::upper_bound(left, batch.until, {}, &TrackObservation::t);
+  batch.observations.assign(left.begin(), last);
+  next_ += batch.observations.size();
+  batch.ended.clear();
+  while (next_end_ < ends_.size() && ends_[next_end_].t <= batch.until) batch.ended.push_back(ends_[next_end_++]);
+  return next_ < observations_.size();
+}
+
+}  // namespace evbench

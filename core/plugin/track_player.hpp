@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/plugin/frontend.hpp"
+
+namespace evbench {
+
+/// For front-ends whose tracks are known beforehand: plays each observation once, and the end of each track with its
+/// last one.
+class TrackPlayer {
+ public:
+  TrackPlayer() = default;
+
+  /// The observations in time order; they must outlive the player.
+  explicit TrackPlayer(std::span<const TrackObservation> observations);
+
+  /// As FrontEnd::advance().
+  bool advance(const FrontEnd::Horizon& horizon, TrackBatch& batch);
+
+ private:
+  std::span<const TrackObservation> observations_;
+  std::vector<TrackEnd> ends_;  ///< in time order
+  std::size_t next_ = 0, next_end_ = 0;
+};
+
+}  // namespace evbench

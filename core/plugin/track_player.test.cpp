@@ -1,0 +1,51 @@
+#include "core/plugin/track_player.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace evbench;
+
+namespace {
+
+TrackObservation seen(TrackId track, double t) { return {track, t, Vector2(1, 2), 1.0}; }
+
+}  // namespace
+
+TEST_CASE("Known tracks are played once, up to the time asked for, and end with their last observation") {
+  const std::vector<TrackObservation> all = {seen(1, 0.1), seen(2, 0.2), seen(1, 0.3), seen(2, 0.3), seen(2, 0.9)};
+  TrackPlayer player(all);
+  TrackBatch batch;
+  CHECK(player.advance({0.3}, batch));
+  CHECK(batch.until == 0.3);
+  CHECK(batch.observations.size() == 4);
+  REQUIRE(batch.ended.size() == 1);
+  CHECK(batch.ended[0].track == 1);
+  CHECK(batch.ended[0].t == 0.3);
+  CHECK(player.advance({0.8}, batch));
+  CHECK(batch.observations.empty());
+  CHECK(batch.ended.empty());
+  CHECK_FALSE(player.advance({2.0}, batch));
+  CHECK(batch.until == 2.0);
+  CHECK(batch.observations.size() == 1);
+  CHECK(batch.ended.at(0).track == 2);
+  CHECK_FALSE(player.advance({3.0}, batch));
+  CHECK(batch.observations.empty());
+}
+
+TEST_CASE("A number of observations ends at the time of the last of them, with others of that time") {
+  const std::vector<TrackObservation> all = {seen(1, 0.1), seen(2, 0.2), seen(3, 0.2), seen(4, 0.3)};
+  TrackPlayer player(all);
+  TrackBatch batch;
+  CHECK(player.advance({1.0, 2}, batch));
+  CHECK(batch.until == 0.2);
+  CHECK(batch.observations.size() == 3);
+  CHECK_FALSE(player.advance({1.0, 2}, batch));
+  CHECK(batch.until == 1.0);
+  CHECK(batch.observations.size() == 1);
+}
+
+TEST_CASE("Without tracks there is nothing to play") {
+  TrackPlayer player;
+  TrackBatch batch;
+  CHECK_FALSE(player.advance({1.0}, batch));
+  CHECK(batch.until == 1.0);
+}
