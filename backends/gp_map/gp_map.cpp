@@ -147,9 +147,10 @@ void GpMap::add_observations() {
   }
 }
 
-/// Those whose tracks are alive: one that has not been observed of late is where it was.
+/// Those whose tracks have been alive since the last step: one that has not been observed of late is where it was.
 int GpMap::landmarks_in_view() const {
-  return static_cast<int>(std::ranges::count_if(live_, [&](TrackId track) { return landmark_of_.contains(track); }));
+  const auto is_landmark = [&](TrackId track) { return landmark_of_.contains(track); };
+  return static_cast<int>(std::ranges::count_if(live_, is_landmark) + std::ranges::count_if(ended_, is_landmark));
 }
 
 void GpMap::add_landmarks() {

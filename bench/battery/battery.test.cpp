@@ -1,0 +1,114 @@
+#include "bench/battery/battery.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/plugin/registration.hpp"
+#include "core/plugin/tracking_monitor.hpp"
+
+using namespace evbench;
+using namespace evbench::battery;
+
+namespace {
+
+/// The sentence of each check that fails.
+std::vector<std::string> failures(const std::vector<Check>& checks) {
+  std::vector<std::string> result;
+  for (const Check& check : checks) {
+    try {
+      check.run();
+    } catch (const std::exception& error) {
+      result.push_back(check.name + ": " + error.what());
+    }
+  }
+  return result;
+}
+
+std::string joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += sentence + "\n";
+  return text;
+}
+
+/// What a careless author might write: a map at once, online poses in the future, another result each time.
+class Careless : public BackEnd {
+ public:
+  struct Options {
+    void declare(OptionSet&) {}
+  };
+  Careless(const Options&, const BackEndContext& context) : context_(context) {}
+
+  void advance(const TrackBatch& batch) override {
+    const double x = static_cast<double>(++advances_);
+    poses_.push_back({batch.until, {Eigen::Quaterniond::Identity(), {x, 0, 0}}});
+    context_.online(poses_.back());
+  }
+  Feedback feedback(const FeedbackNeeds&) override {
+    Feedback feedback;
+    feedback.newest = ControlState{poses_.back().t + 1.0, poses_.back().T, Vector6::Zero()};
+    return feedback;
+  }
+  void finish() override {}
+  Status status() const override { return {}; }
+  PoseTrajectory trajectory() const override {
+    std::vector<StampedPose> poses = poses_;
+    return PoseTrajectory(std::move(poses));
+  }
+  std::vector<Landmark> map() const override { return {}; }
+
+ private:
+  static inline int advances_ = 0;
+  BackEndContext context_;
+  std::vector<StampedPose> poses_;
+};
+
+}  // namespace
+
+TEST_CASE("Every built-in back-end passes the battery, check by check") {
+  const Plugins plugins = registered_plugins();
+  for (const char* name : {"gp_map", "bundle_adjustment"}) {
+    for (const Check& check : backend_checks(plugins, name)) {
+      INFO(name << " " << check.name);
+      CHECK_NOTHROW(check.run());
+    }
+  }
+}
+
+TEST_CASE("gp_map passes the battery with a lag, and per observation") {
+  const Plugins plugins = registered_plugins();
+  for (const char* options :
+       {R"({"lag": 2})", R"({"per_observation": true})", R"({"placement": {"rule": "motion"}})"}) {
+    INFO(options);
+    CHECK(joined(failures(backend_checks(plugins, "gp_map", Json::parse(options)))) == "");
+  }
+}
+
+TEST_CASE("The battery finds what is wrong with a careless back-end, in words") {
+  Plugins plugins;
+  Registry<BackEnd>::Entry entry;
+  entry.resolve = [](const Json& json, const std::string&, const std::string&) { return json; };
+  entry.make = [](const Json&, const BackEndContext& context) {
+    return std::make_unique<Careless>(Careless::Options{}, context);
+  };
+  plugins.of<BackEnd>().add("careless", entry);
+  const std::vector<std::string> found = failures(backend_checks(plugins, "careless"));
+  INFO(joined(found));
+  CHECK(found.size() >= 8);
+  CHECK_THAT(joined(found), Catch::Contains("without observations it is ok") &&
+                                Catch::Contains("its map has 0 landmarks, where 50 tracks are seen") &&
+                                Catch::Contains("is ok, though nothing was seen from 1.8 to 2.1 s") &&
+                                Catch::Contains("final trajectories differ"));
+}
+
+TEST_CASE("The oracle and simulated sources pass the battery") {
+  const Plugins plugins = registered_plugins();
+  CHECK(joined(failures(frontend_checks(plugins, "oracle", Json::object(), usual_source()))) == "");
+  CHECK(joined(failures(source_checks(plugins, "simulation", Json::parse(R"({"duration": 2})")))) == "");
+  const Json events = Json::parse(
+      R"({"duration": 0.2, "camera": {"width": 96, "height": 72, "focal_length": 80}, "tracks": {"alive": 10}})");
+  CHECK(joined(failures(source_checks(plugins, "event_simulation", events))) == "");
+}
+
+TEST_CASE("An unknown plugin is refused before any check") {
+  const Plugins plugins = registered_plugins();
+  CHECK_THROWS_WITH(backend_checks(plugins, "gp_mop"), Catch::Contains("gp_map"));
+}

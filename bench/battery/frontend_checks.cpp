@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "bench/battery/battery.hpp"
+#include "bench/battery/track_source.hpp"
+
+namespace evbench::battery {
+namespace {
+
+/// A front-end as a config would make it, on one source.
+class Candidate {
+ public:
+  Candidate(const Plugins& plugins, const std::string& name, const Json& options, const Source& source,
+            const std::string& folder)
+      : entry_(plugins.of<FrontEnd>().find(name, "battery")),
+        options_(entry_.resolve(options, name, folder)),
+        source_(source),
+        folder_(folder),
+        name_(name) {}
+
+  std::unique_ptr<FrontEnd> make() const { return entry_.make(options_, {source_, 1, folder_, name_}); }
+  const Source& source() const { return source_; }
+
+  /// All that it tells, in exchanges of `interval` [s] and at most `most` observations. Checks each batch.
+  TrackBatch all(double interval, std::size_t most = 0) const;
+
+ private:
+  const Registry<FrontEnd>::Entry& entry_;
+  Json options_;
+  const Source& source_;
+  std::string folder_, name_;
+};
+
+void check_batch(const TrackBatch& batch, double before, bool first, const FrontEnd::Horizon& horizon) {
+  require(batch.until <= horizon.t && (batch.until > before || (first && batch.until == before)),
+          "asked for up to {} s, from {} s on, it tells up to {} s", horizon.t, before, batch.until);
+  double t = before;
+  for (const TrackObservation& z : batch.observations) {
+    require(z.t >= t, "its observation at {} s comes after one at {} s", z.t, t);
+    require(z.t > before || first, "its observation at {} s belongs to the batch before, up to {} s", z.t, before);
+    require(z.t <= batch.until, "its observation at {} s is later than its batch, up to {} s", z.t, batch.until);
+    require(z.pixel.allFinite() && std::isfinite(z.sigma) && z.sigma > 0.0,
+            "its observation of track {} at {} s is not finite, or its sigma is not above 0", z.track, z.t);
+    t = z.t;
+  }
+  for (const TrackEnd& end : batch.ended) {
+    require(end.t <= batch.until, "the end of track {} at {} s is later than its batch", end.track, end.t);
+  }
+}
+
+TrackBatch Candidate::all(double interval, std::size_t most) const {
+  const auto frontend = make();
+  const Source::TimeRange range = source_.time_range();
+  TrackBatch everything, batch;
+  double now = range.from;
+  bool more = true;
+  for (std::int64_t k = 1; more && now < range.to;) {
+    const double t = std::min(range.to, range.from + static_cast<double>(k) * interval);
+    more = frontend->advance({t, most}, batch);
+    check_batch(batch, now, now == range.from, {t, most});
+    everything.observations.insert(everything.observations.end(), batch.observations.begin(), batch.observations.end());
+    everything.ended.insert(everything.ended.end(), batch.ended.begin(), batch.ended.end());
+    now = batch.until;
+    if (now >= t) ++k;
+  }
+  everything.until = now;
+  return everything;
+}
+
+bool same(const TrackBatch& a, const TrackBatch& b) {
+  const auto equal = [](const TrackObservation& x, const TrackObservation& y) {
+    return x.track == y.track && x.t == y.t && x.pixel == y.pixel && x.sigma == y.sigma;
+  };
+  const auto ends = [](const TrackEnd& x, const TrackEnd& y) { return x.track == y.track && x.t == y.t; };
+  return std::ranges::equal(a.observations, b.observations, equal) && std::ranges::equal(a.ended, b.ended, ends);
+}
+
+void tells_tracks_in_order(const Candidate& candidate) {
+  const TrackBatch all = candidate.all(0.01);
+  require(!all.observations.empty(), "it tells no observation of the whole source");
+}
+
+void ends_each_track_once(const Candidate& candidate) {
+  const TrackBatch all = candidate.all(0.01);
+  std::map<TrackId, double> last, ended;
+  for (const TrackObservation& z : all.observations) last[z.track] = z.t;
+  for (const TrackEnd& end : all.ended) {
+    require(ended.emplace(end.track, end.t).second, "track {} ends twice", end.track);
+    const auto seen = last.find(end.track);
+    require(seen == last.end() || seen->second <= end.t, "track {} ended at {} s and is observed at {} s", end.track,
+            end.t, seen == last.end() ? 0.0 : seen->second);
+  }
+}
+
+void repeats_itself(const Candidate& candidate) {
+  require(same(candidate.all(0.01), candidate.all(0.01)), "made twice, it tells other tracks");
+}
+
+/// Whoever uses feedback may tell other tracks when it comes at other times; here there is none.
+void is_the_same_however_it_is_asked(const Candidate& candidate) {
+  const TrackBatch usual = candidate.all(0.01);
+  require(same(usual, candidate.all(0.1)), "asked every 0.1 s instead of 0.01 s, it tells other tracks");
+  require(same(usual, candidate.all(0.01, 3)), "asked for three observations at a time, it tells other tracks");
+}
+
+void bears_any_feedback(const Candidate& candidate) {
+  const auto frontend = candidate.make();
+  const Source::TimeRange range = candidate.source().time_range();
+  TrackBatch batch;
+  double now = range.from;
+  for (int k = 1; k <= 100 && now < range.to; ++k) {
+    const double t = std::min(range.to, range.from + 0.01 * k);
+    const bool more = frontend->advance({t}, batch);
+    check_batch(batch, now, k == 1, {t});
+    now = batch.until;
+    Feedback feedback;
+    feedback.t = now;
+    feedback.state = static_cast<TrackingState>(k % 5);
+    if (k % 3 == 0) feedback.newest = ControlState{now, {Eigen::Quaterniond::Identity(), {1e9, 0, 0}}, Vector6::Ones()};
+    if (!batch.observations.empty()) {
+      feedback.outliers = {batch.observations.front().track, -17};
+      feedback.expected.push_back(
+          {batch.observations.back().track, {0, 0, 1e-9}, {-1e9, 1e9}, 1e12 * Matrix2::Identity()});
+      feedback.expected.push_back({4711, {0, 0, 1}, {10, 10}, Matrix2::Zero()});
+    }
+    frontend->receive(feedback);
+    if (!more) break;
+  }
+}
+
+}  // namespace
+
+std::vector<Check> frontend_checks(const Plugins& plugins, const std::string& name, const Json& options,
+                                   const Source& source, const std::string& folder) {
+  const Candidate candidate(plugins, name, options, source, folder);
+  const auto check = [&](const char* text, void (*run)(const Candidate&)) {
+    return Check{text, [=] { run(candidate); }};
+  };
+  return {
+      check("tells observations in time order, within what it was asked for", tells_tracks_in_order),
+      check("ends a track once, and observes it no more", ends_each_track_once),
+      check("tells the same tracks when it is made twice", repeats_itself),
+      check("tells the same tracks however it is asked", is_the_same_however_it_is_asked),
+      check("bears any feedback", bears_any_feedback),
+  };
+}
+
+const Source& usual_source() {
+  static const TrackSource source({});
+  return source;
+}
+
+}  // namespace evbench::battery
