@@ -8,8 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "core/plugin/registry.hpp"
-#include "core/support/sha256.hpp"
+#include "core/support/path.hpp"
 
 namespace evbench {
 namespace {
@@ -20,7 +19,9 @@ struct ExperimentOptions {
   std::string description;
   std::int64_t seed = 1;
   double trajectory_rate = 100.0;
+  Json plugins = Json::array();
   Json source, frontend, backend, backends;
+  PipelineOptions pipeline;
   ScoreOptions evaluation;
 
   void declare(OptionSet& set) {
@@ -30,10 +31,12 @@ struct ExperimentOptions {
     set.add("trajectory_rate", trajectory_rate,
             "rate at which final trajectories are sampled for scoring and writing [Hz]; 0: the back-end's own poses")
         .range(0.0, 1e5);
+    set.add("plugins", plugins, "libraries that plugins come from: a list of paths");
     set.add("source", source, "the sequence: {\"type\": NAME, options}; see evbench list").required();
     set.add("frontend", frontend, "what makes the tracks: {\"type\": NAME, options}").required();
     set.add("backend", backend, "one run: {\"type\": NAME, \"label\": TEXT, options}");
     set.add("backends", backends, "a comparison on identical observations: a list of back-ends");
+    set.group("pipeline", pipeline, "how front-end and back-end work together");
     set.group("evaluation", evaluation, "how trajectories are scored");
   }
 };
@@ -80,9 +83,28 @@ void set_value(Json& config, const std::string& assignment) {
   *target = value.is_discarded() ? Json(text) : value;
 }
 
+Json parse_config(const std::string& path, const std::vector<std::string>& overrides) {
+  Json json = parse_file(path);
+  for (const std::string& assignment : overrides) set_value(json, assignment);
+  return json;
+}
+
+std::string folder_of(const std::string& path) { return std::filesystem::absolute(path).parent_path().string(); }
+
+/// The key "plugins", relative paths taken from the config's folder.
+std::vector<std::string> plugin_paths(const Json& list, const std::string& path) {
+  const auto is_path = [](const Json& item) { return item.is_string() && !item.get<std::string>().empty(); };
+  if (!list.is_array() || !std::ranges::all_of(list, is_path)) {
+    throw InputError(fmt::format("{}: plugins: expected a list of paths, found {}", path, list.dump()));
+  }
+  std::vector<std::string> paths;
+  for (const Json& item : list) paths.push_back(anchored_path(item.get<std::string>(), folder_of(path)));
+  return paths;
+}
+
 /// Takes "type" out of a plugin's object and checks the rest with the plugin's own options.
 template <class Interface>
-PluginConfig plugin(Json json, const std::string& place, const std::string& folder) {
+PluginConfig plugin(Json json, const std::string& place, const std::string& folder, const Plugins& plugins) {
   if (!json.is_object() || !json.contains("type") || !json["type"].is_string()) {
     throw InputError(
         fmt::format("{}: expected an object with \"type\": the name of a {}", place, PluginKind<Interface>::name));
@@ -91,13 +113,13 @@ PluginConfig plugin(Json json, const std::string& place, const std::string& fold
   result.type = json["type"].get<std::string>();
   result.place = place;
   json.erase("type");
-  result.options = Registry<Interface>::instance().find(result.type, place + ".type").resolve(json, place, folder);
+  result.options = plugins.of<Interface>().find(result.type, place + ".type").resolve(json, place, folder);
   return result;
 }
 
 /// The back-ends with their labels taken out.
 std::vector<std::pair<std::string, PluginConfig>> backends(const ExperimentOptions& options, const std::string& path,
-                                                           const std::string& folder) {
+                                                           const Plugins& plugins) {
   if (options.backend.is_null() == options.backends.is_null()) {
     throw InputError(fmt::format("{}: expected either \"backend\" (one run) or \"backends\" (a comparison)", path));
   }
@@ -118,7 +140,7 @@ std::vector<std::pair<std::string, PluginConfig>> backends(const ExperimentOptio
       label = json["label"].get<std::string>();
       json.erase("label");
     }
-    PluginConfig config = plugin<BackEnd>(std::move(json), place, folder);
+    PluginConfig config = plugin<BackEnd>(std::move(json), place, folder_of(path), plugins);
     result.emplace_back(label.empty() ? config.type : label, std::move(config));
   }
   return result;
@@ -134,42 +156,24 @@ void check_name(const std::string& name, const std::string& path) {
   }
 }
 
-Json with_type(const PluginConfig& plugin) {
-  Json json = {{"type", plugin.type}};
-  json.update(plugin.options);
-  return json;
-}
-
 }  // namespace
 
 Json RunConfig::resolved() const {
-  Json labelled = with_type(backend);
+  Json labelled = job.backend.with_type();
   labelled["label"] = label;
   return {{"name", experiment},
-          {"seed", seed},
-          {"trajectory_rate", trajectory_rate},
-          {"source", with_type(source)},
-          {"frontend", with_type(frontend)},
+          {"seed", job.seed},
+          {"trajectory_rate", job.trajectory_rate},
+          {"plugins", plugins},
+          {"source", job.source.with_type()},
+          {"frontend", job.frontend.with_type()},
           {"backend", labelled},
+          {"pipeline", write_options(job.pipeline)},
           {"evaluation", write_options(evaluation)}};
 }
 
-std::string RunConfig::key() const {
-  std::string readable;
-  for (const char c : label) {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
-      readable += c;
-    } else if (!readable.empty() && readable.back() != '-') {
-      readable += '-';
-    }
-  }
-  return fmt::format("{}-{}", readable.empty() ? backend.type : readable, sha256(resolved().dump()).substr(0, 10));
-}
-
-Experiment read_experiment(const std::string& path, const std::vector<std::string>& overrides) {
-  Json json = parse_file(path);
-  for (const std::string& assignment : overrides) set_value(json, assignment);
-  const auto options = read_options<ExperimentOptions>(json, path);
+Experiment read_experiment(const std::string& path, const std::vector<std::string>& overrides, const Plugins& plugins) {
+  const auto options = read_options<ExperimentOptions>(parse_config(path, overrides), path);
   Experiment experiment;
   experiment.name = options.name.empty() ? std::filesystem::path(path).stem().string() : options.name;
   experiment.description = options.description;
@@ -177,15 +181,17 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
 
   RunConfig run;
   run.experiment = experiment.name;
-  run.seed = static_cast<std::uint64_t>(options.seed);
-  run.folder = std::filesystem::absolute(path).parent_path().string();
-  run.trajectory_rate = options.trajectory_rate;
   run.evaluation = options.evaluation;
-  run.source = plugin<Source>(options.source, path + ": source", run.folder);
-  run.frontend = plugin<FrontEnd>(options.frontend, path + ": frontend", run.folder);
-  for (auto& [label, backend] : backends(options, path, run.folder)) {
+  run.plugins = plugin_paths(options.plugins, path);
+  run.job.seed = static_cast<std::uint64_t>(options.seed);
+  run.job.trajectory_rate = options.trajectory_rate;
+  run.job.pipeline = options.pipeline;
+  run.job.folder = folder_of(path);
+  run.job.source = plugin<Source>(options.source, path + ": source", run.job.folder, plugins);
+  run.job.frontend = plugin<FrontEnd>(options.frontend, path + ": frontend", run.job.folder, plugins);
+  for (auto& [label, backend] : backends(options, path, plugins)) {
     run.label = label;
-    run.backend = std::move(backend);
+    run.job.backend = std::move(backend);
     for (const RunConfig& other : experiment.runs) {
       if (other.label == run.label) {
         throw InputError(
@@ -197,19 +203,45 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
   return experiment;
 }
 
-std::unique_ptr<Source> read_source(const std::string& path) {
+std::vector<std::string> read_plugin_paths(const std::string& path, const std::vector<std::string>& overrides) {
+  const Json json = parse_config(path, overrides);
+  if (!json.is_object() || !json.contains("plugins")) return {};
+  std::vector<std::string> paths = plugin_paths(json["plugins"], path);
+  for (std::string& library : paths) library = resolve_path(library, folder_of(path));
+  return paths;
+}
+
+ScoreOptions read_evaluation(const std::string& path, const Json& otherwise, const std::vector<std::string>& overrides,
+                             const std::string& place) {
+  Json json = {{"evaluation", otherwise}};
+  if (!path.empty()) {
+    const Json file = parse_file(path);
+    if (!file.is_object()) throw InputError(fmt::format("{}: expected a config with an \"evaluation\"", path));
+    json["evaluation"] = file.value("evaluation", Json::object());
+  }
+  for (const std::string& assignment : overrides) {
+    if (!assignment.starts_with("evaluation.") && !assignment.starts_with("evaluation=")) {
+      throw InputError(
+          fmt::format("--set {}: expected evaluation.KEY=VALUE: scoring again changes nothing else", assignment));
+    }
+    set_value(json, assignment);
+  }
+  return read_options<ScoreOptions>(json["evaluation"], (path.empty() ? place : path) + ": evaluation");
+}
+
+std::unique_ptr<Source> read_source(const std::string& path, const Plugins& plugins) {
   const Json json = parse_file(path);
   if (!json.is_object() || !json.contains("source")) {
     throw InputError(fmt::format("{}: expected a config with a \"source\"", path));
   }
-  const std::string folder = std::filesystem::absolute(path).parent_path().string();
-  const PluginConfig config = plugin<Source>(json["source"], path + ": source", folder);
   const Json seed = json.value("seed", Json(1));
   if (!seed.is_number_integer() || seed < 0)
     throw InputError(fmt::format("{}: seed: expected a whole number from 0 on", path));
-  return Registry<Source>::instance()
-      .find(config.type, config.place)
-      .make(config.options, config.place, {seed.get<std::uint64_t>(), folder, config.place});
+  Job job;
+  job.folder = folder_of(path);
+  job.seed = seed.get<std::uint64_t>();
+  job.source = plugin<Source>(json["source"], path + ": source", job.folder, plugins);
+  return make_source(job, plugins);
 }
 
 std::string describe_experiment() {
@@ -219,7 +251,7 @@ std::string describe_experiment() {
   return set.describe();
 }
 
-Json experiment_schema() {
+Json experiment_schema(const Plugins& plugins) {
   const auto choices = []<class Interface>(const Registry<Interface>& registry, bool labelled) {
     Json any = Json::array();
     for (const auto& [name, entry] : registry.entries()) {
@@ -240,10 +272,12 @@ Json experiment_schema() {
   Json schema = set.schema();
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = "evbench config";
-  schema["properties"]["source"] = choices(Registry<Source>::instance(), false);
-  schema["properties"]["frontend"] = choices(Registry<FrontEnd>::instance(), false);
-  schema["properties"]["backend"] = choices(Registry<BackEnd>::instance(), true);
-  schema["properties"]["backends"] = {{"type", "array"}, {"items", choices(Registry<BackEnd>::instance(), true)}};
+  schema["properties"]["plugins"]["type"] = "array";
+  schema["properties"]["plugins"]["items"] = {{"type", "string"}};
+  schema["properties"]["source"] = choices(plugins.of<Source>(), false);
+  schema["properties"]["frontend"] = choices(plugins.of<FrontEnd>(), false);
+  schema["properties"]["backend"] = choices(plugins.of<BackEnd>(), true);
+  schema["properties"]["backends"] = {{"type", "array"}, {"items", choices(plugins.of<BackEnd>(), true)}};
   return schema;
 }
 

@@ -2,37 +2,26 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "bench/job.hpp"
 #include "core/plugin/options.hpp"
 #include "core/plugin/source.hpp"
 #include "eval/scores.hpp"
 
 namespace evbench {
 
-/// A plugin as a config names it: {"type": NAME, options...}.
-struct PluginConfig {
-  std::string type;
-  Json options = Json::object();  ///< complete, checked
-  std::string place;              ///< where it stands, for messages
-};
-
-/// One run: one back-end on one front-end's tracks of one source.
+/// One run: a job, what it is called, and how it is scored.
 struct RunConfig {
   std::string experiment;
   std::string label;
-  std::uint64_t seed = 1;
-  std::string folder;  ///< of the config: relative paths refer to it
-  PluginConfig source, frontend, backend;
-  double trajectory_rate = 100.0;
+  Job job;
   ScoreOptions evaluation;
+  std::vector<std::string> plugins;  ///< paths of the libraries that plugins come from
 
-  /// Everything that determines the result, complete with defaults: config.json of the run. It can be run again from
-  /// anywhere: relative paths are taken from the config's folder.
+  /// All of it, complete with defaults: config.json of the run. It can be run again from anywhere: relative paths are
+  /// taken from the config's folder.
   Json resolved() const;
-  /// The name of the run's folder: a readable part and a hash of resolved().
-  std::string key() const;
 };
 
 /// A config file: one run ("backend") or a comparison of several back-ends on the identical observations ("backends").
@@ -45,13 +34,22 @@ struct Experiment {
 /// Reads a config file. `overrides` are "key=value" with the key a path of names and list positions
 /// ("backends.0.frame_duration=0.1") and the value JSON, or text where it is not JSON.
 /// Throws InputError with the place for anything that is not as expected; nothing has been run or written then.
-Experiment read_experiment(const std::string& path, const std::vector<std::string>& overrides);
+Experiment read_experiment(const std::string& path, const std::vector<std::string>& overrides, const Plugins& plugins);
+
+/// The libraries that a config's key "plugins" names, to be loaded before it is read: paths taken from its folder,
+/// environment variables replaced.
+std::vector<std::string> read_plugin_paths(const std::string& path, const std::vector<std::string>& overrides);
+
+/// The protocol of a config file or, where `path` is empty, `otherwise`, with overrides "evaluation.KEY=VALUE". `place`
+/// stands for the config in messages when there is no file.
+ScoreOptions read_evaluation(const std::string& path, const Json& otherwise, const std::vector<std::string>& overrides,
+                             const std::string& place);
 
 /// A config file's source alone; nothing else of the file is looked at but its seed.
-std::unique_ptr<Source> read_source(const std::string& path);
+std::unique_ptr<Source> read_source(const std::string& path, const Plugins& plugins);
 
-/// A config file's top level: for people, and as a JSON Schema with all registered plugins' options, for editors.
+/// A config file's top level: for people, and as a JSON Schema with all known plugins' options, for editors.
 std::string describe_experiment();
-Json experiment_schema();
+Json experiment_schema(const Plugins& plugins);
 
 }  // namespace evbench

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "bench/testing/keys.hpp"
 #include "bench/testing/program.hpp"
 #include "core/support/error.hpp"
 
@@ -15,12 +16,12 @@ namespace {
 
 Experiment read(const Json& config, const std::vector<std::string>& overrides = {}) {
   const TemporaryFolder folder;
-  return read_experiment(folder.write("c.json", config.dump()), overrides);
+  return read_experiment(folder.write("c.json", config.dump()), overrides, known_plugins());
 }
 
 Experiment read_text(const std::string& text) {
   const TemporaryFolder folder;
-  return read_experiment(folder.write("c.json", text), {});
+  return read_experiment(folder.write("c.json", text), {}, known_plugins());
 }
 
 }  // namespace
@@ -32,8 +33,8 @@ TEST_CASE("A config holds one run or a comparison whose runs share source, front
   const Experiment two = read(short_comparison());
   REQUIRE(two.runs.size() == 2);
   CHECK(two.runs[0].label == "asynchronous");
-  CHECK(two.runs[0].source.options == two.runs[1].source.options);
-  CHECK(two.runs[0].key() != two.runs[1].key());
+  CHECK(two.runs[0].job.source.options == two.runs[1].job.source.options);
+  CHECK(key_of(two.runs[0]) != key_of(two.runs[1]));
 }
 
 TEST_CASE("An experiment without a name is called as its file") {
@@ -43,14 +44,22 @@ TEST_CASE("An experiment without a name is called as its file") {
 }
 
 TEST_CASE("A run's key depends on what determines the result and not on how it is written down") {
-  const std::string key = read(short_config()).runs[0].key();
-  CHECK_THAT(key, Catch::Matchers::StartsWith("bundle-adjustment-"));
+  const std::string key = key_of(read(short_config()).runs[0]);
+  CHECK_THAT(key, Catch::Matchers::StartsWith("bundle_adjustment-"));
   Json same = short_config();
   same["description"] = "in other words";
   same["source"]["duration"] = 3.0;
-  CHECK(read(same).runs[0].key() == key);
-  CHECK(read(short_config(), {"seed=2"}).runs[0].key() != key);
-  CHECK(read(short_config(), {"backend.frame_duration=0.07"}).runs[0].key() != key);
+  CHECK(key_of(read(same).runs[0]) == key);
+  for (const char* other : {"seed=2", "trajectory_rate=50", "pipeline.interval=0.02", "source.duration=2.5",
+                            "backend.frame_duration=0.07"}) {
+    INFO(other);
+    CHECK(key_of(read(short_config(), {other}).runs[0]) != key);
+  }
+  for (const char* same_job :
+       {"name=other", "backend.label=mine", "evaluation.alignment=se3", "description=x", "pipeline.latency=0.02"}) {
+    INFO(same_job);
+    CHECK(key_of(read(short_config(), {same_job}).runs[0]) == key);
+  }
 }
 
 TEST_CASE("A resolved config is complete, and read again it is the same run") {
@@ -59,7 +68,7 @@ TEST_CASE("A resolved config is complete, and read again it is the same run") {
     const Experiment again = read(run.resolved());
     REQUIRE(again.runs.size() == 1);
     CHECK(again.runs[0].label == run.label);
-    CHECK(again.runs[0].key() == run.key());
+    CHECK(key_of(again.runs[0]) == key_of(run));
     CHECK(again.runs[0].resolved() == run.resolved());
   }
 }
@@ -68,7 +77,8 @@ TEST_CASE("Relative paths are taken from the config's folder, variables stay for
   const TemporaryFolder folder;
   write_recording(folder);
   const std::string path = folder.file("recording.json");
-  const Json config = read_experiment(path, {"source.ground_truth=${EVBENCH_DATA}/x.txt"}).runs[0].resolved();
+  const Json config =
+      read_experiment(path, {"source.ground_truth=${EVBENCH_DATA}/x.txt"}, known_plugins()).runs[0].resolved();
   CHECK(config["frontend"]["tracks"] == folder.file("tracks.txt"));
   CHECK(config["source"]["ground_truth"] == "${EVBENCH_DATA}/x.txt");
   CHECK(config["source"]["calibration"] == "");
@@ -78,11 +88,11 @@ TEST_CASE("Overrides reach values, list items and whole objects") {
   const Experiment experiment =
       read(short_comparison(), {"seed=7", "backends.1.frame_duration=0.2", "backends.1.label=200 ms",
                                 "evaluation.time_range=[0, 1]", "source.motion={\"kind\": \"robot_arm\"}"});
-  CHECK(experiment.runs[0].seed == 7);
+  CHECK(experiment.runs[0].job.seed == 7);
   CHECK(experiment.runs[1].label == "200 ms");
-  CHECK(experiment.runs[1].backend.options["frame_duration"] == 0.2);
+  CHECK(experiment.runs[1].job.backend.options["frame_duration"] == 0.2);
   CHECK(experiment.runs[0].evaluation.time_range == std::vector<double>{0.0, 1.0});
-  CHECK(experiment.runs[0].source.options["motion"]["kind"] == "robot_arm");
+  CHECK(experiment.runs[0].job.source.options["motion"]["kind"] == "robot_arm");
 }
 
 TEST_CASE("An override that can't be meant is refused") {
@@ -97,8 +107,8 @@ TEST_CASE("An override that can't be meant is refused") {
 }
 
 TEST_CASE("A config that is not as expected is refused with the place and the nearest name") {
-  CHECK_THROWS_WITH(read_experiment("/no/such.json", {}), Contains("/no/such.json: can't be read"));
-  CHECK_THROWS_WITH(read_experiment("/", {}), Contains("can't be read"));
+  CHECK_THROWS_WITH(read_experiment("/no/such.json", {}, known_plugins()), Contains("/no/such.json: can't be read"));
+  CHECK_THROWS_WITH(read_experiment("/", {}, known_plugins()), Contains("can't be read"));
   CHECK_THROWS_WITH(read_text(""), Contains("c.json: is not JSON"));
   CHECK_THROWS_WITH(read_text("{\"name\": "), Contains("c.json: is not JSON") && Contains("line 1"));
   CHECK_THROWS_WITH(read_text("[]"), Contains("expected an object"));
@@ -126,6 +136,20 @@ TEST_CASE("A config that is not as expected is refused with the place and the ne
   }
 }
 
+TEST_CASE("The libraries that a config names are taken from its folder, and are part of the config that a run writes") {
+  const TemporaryFolder folder;
+  Json config = short_config();
+  config["plugins"] = {"lib/libmine.so", "/opt/libother.so"};
+  const std::string path = folder.write("c.json", config.dump());
+  const std::vector<std::string> expected = {folder.file("lib/libmine.so"), "/opt/libother.so"};
+  CHECK(read_plugin_paths(path, {}) == expected);
+  CHECK(read_experiment(path, {}, known_plugins()).runs[0].resolved().at("plugins") == Json(expected));
+  CHECK(read_plugin_paths(path, {"plugins=[]"}).empty());
+  CHECK_THROWS_WITH(read_plugin_paths(path, {"plugins=libmine.so"}),
+                    Contains("c.json: plugins: expected a list of paths, found \"libmine.so\""));
+  CHECK_THROWS_WITH(read_plugin_paths(path, {"plugins.0=3"}), Contains("expected a list of paths"));
+}
+
 TEST_CASE("Runs of a comparison that would write to the same folder are refused") {
   CHECK_THROWS_WITH(read(short_comparison(), {"backends.1.label=asynchronous"}),
                     Contains("two back-ends are labelled \"asynchronous\""));
@@ -140,17 +164,18 @@ TEST_CASE("Every config that comes with evbench can be read, and each of its run
     if (entry.path().extension() != ".json" || entry.path().filename() == "datasets.json") continue;  // the catalogue
     INFO(entry.path());
     ++count;
-    for (const RunConfig& run : read_experiment(entry.path().string(), {}).runs) {
-      CHECK(read(run.resolved()).runs.at(0).key() == run.key());
+    for (const RunConfig& run : read_experiment(entry.path().string(), {}, known_plugins()).runs) {
+      CHECK(read(run.resolved()).runs.at(0).resolved() == run.resolved());
     }
   }
   CHECK(count >= 2);
 }
 
 TEST_CASE("The schema of a config knows every plugin and its options") {
-  const Json schema = experiment_schema();
+  const Json schema = experiment_schema(known_plugins());
   const Json& backends = schema.at("properties").at("backend").at("anyOf");
   CHECK(backends.size() == 2);
   for (const Json& backend : backends) CHECK(backend.at("properties").contains("type"));
-  CHECK_THAT(describe_experiment(), Contains("evaluation.alignment") && Contains("trajectory_rate"));
+  CHECK_THAT(describe_experiment(),
+             Contains("evaluation.alignment") && Contains("trajectory_rate") && Contains("pipeline.latency"));
 }

@@ -10,6 +10,8 @@
 #include "bench/commands/commands.hpp"
 #include "bench/recordings/config_events.hpp"
 #include "bench/version.hpp"
+#include "core/plugin/registration.hpp"
+#include "core/support/interruption.hpp"
 
 namespace {
 
@@ -19,13 +21,16 @@ int run_program(int argc, char** argv) {
   app.set_version_flag("--version", evbench::version_text());
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "Print this help and that of every command");
-  evbench::add_event_format(evbench::config_format());
+  evbench::Plugins plugins;
+  evbench::add_registered_plugins(plugins, "built in");
+  evbench::add_event_format(evbench::config_format(plugins));
   int exit_code = 0;
-  evbench::add_run(app, exit_code);
+  evbench::add_run(app, plugins, exit_code);
   evbench::add_eval(app);
+  evbench::add_score(app);
   evbench::add_table(app);
-  evbench::add_list(app);
-  evbench::add_describe(app);
+  evbench::add_list(app, plugins);
+  evbench::add_describe(app, plugins);
   evbench::add_solve(app);
   evbench::add_info(app);
   evbench::add_convert(app);
@@ -35,6 +40,9 @@ int run_program(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  } catch (const evbench::Interrupted& interrupted) {
+    fmt::print(stderr, "evbench: {}\n", interrupted.what());
+    return 128 + interrupted.signal();                        // as a shell says it
   } catch (const std::filesystem::filesystem_error& error) {  // a folder that can't be read, links in a circle
     fmt::print(stderr, "evbench: {}: {}\n", error.path1().string(), error.code().message());
     return 2;

@@ -29,7 +29,7 @@ std::vector<std::string> listed(const std::string& text, const std::string& kind
 TEST_CASE("Every command has help, and the program a version") {
   const TemporaryFolder folder;
   for (const char* command :
-       {"", "run", "eval", "table", "list", "describe", "solve", "info", "convert", "dataset", "render"}) {
+       {"", "run", "eval", "score", "table", "list", "describe", "solve", "info", "convert", "dataset", "render"}) {
     const Outcome help = testing::evbench(folder, std::string(command) + " --help");
     INFO(command);
     CHECK(help.exit_code == 0);

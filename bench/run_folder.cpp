@@ -4,26 +4,23 @@
 #include <unistd.h>
 
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
 #include "bench/version.hpp"
 #include "core/data/tum.hpp"
 #include "core/support/sha256.hpp"
+#include "eval/score_run.hpp"
 
 namespace evbench {
+namespace fs = std::filesystem;
 namespace {
 
-Json status_json(const Status& status) {
-  Json json = {{"state", to_string(status.state)}};
-  json["reason"] = status.reason;
-  json["time"] = status.state == RunState::ok ? Json() : Json(status.time);
-  json["degraded"] = Json::array();
-  for (const DegradedSpan& span : status.degraded) {
-    json["degraded"].push_back({{"from", span.from}, {"to", span.to}, {"reason", span.reason}});
-  }
-  return json;
-}
+/// Ground truth is kept beyond the time range, for a protocol with another offset of time [s].
+constexpr double kGroundTruthMargin = 1.0;
+
+std::string pretty(const Json& json) { return json.dump(2) + "\n"; }
 
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
@@ -33,15 +30,16 @@ std::string processor() {
   return "unknown";
 }
 
-Json manifest_json(const RunConfig& config, const RunResult& result) {
+Json manifest_json(const RunConfig& config, const JobIdentity& identity, const RunResult& result) {
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);
   Json inputs = Json::object();
-  for (const std::string& file : result.files) inputs[file] = sha256_file(file);
+  for (const auto& [path, digest] : identity.files) inputs[path] = digest;
   return {{"program", {{"version", kVersion}, {"commit", kCommit}, {"build", kBuild}}},
           {"host", {{"name", host.data()}, {"processor", processor()}, {"cores", std::thread::hardware_concurrency()}}},
-          {"seed", config.seed},
-          {"config_sha256", sha256(config.resolved().dump())},
+          {"seed", config.job.seed},
+          {"key", identity.key},
+          {"config_sha256", sha256(pretty(config.resolved()))},
           {"inputs_sha256", inputs},
           {"tracks_sha256", result.tracks_sha256},
           {"observations", result.observations}};
@@ -73,37 +71,95 @@ std::string log_text(const RunConfig& config, const RunResult& result) {
   return text + fmt::format("status: {} {}\n", to_string(result.status.state), result.status.reason);
 }
 
-}  // namespace
-
-Json metrics_json(const RunConfig& config, const RunResult& result) {
-  Json json = {{"experiment", config.experiment}, {"label", config.label}};
-  json["final"] = result.final_scores ? to_json(*result.final_scores) : Json();
-  json["online"] = result.online_scores ? to_json(*result.online_scores) : Json();
-  if (!result.final_scores) json["final_unscored"] = result.final_unscored;
-  if (!result.online_scores) json["online_unscored"] = result.online_unscored;
-  json["runtime_s"] = result.runtime_s;
-  json["realtime_factor"] = result.runtime_s > 0.0 ? Json(result.data_s / result.runtime_s) : Json();
-  json["peak_rss_mib"] = result.peak_rss_mib;
-  json["status"] = status_json(result.status);
-  return json;
+RunStatus status_of(const Execution& execution) {
+  const RunResult& result = execution.result;
+  RunStatus status;
+  status.status = result.status;
+  status.complete = execution.complete;
+  for (const StillSpan& span : result.still) status.still.push_back({span.from, span.to});
+  for (const Piece& piece : result.pieces) {
+    const PoseTrajectory& poses = piece.final_trajectory.empty() ? piece.online_trajectory : piece.final_trajectory;
+    status.pieces.push_back({poses.empty() ? 0.0 : poses.start(), poses.empty() ? 0.0 : poses.end(),
+                             piece.final_trajectory.size(), piece.map.size()});
+  }
+  if (!result.pieces.empty()) status.scored = result.longest + 1;
+  return status;
 }
 
-RunFolder::RunFolder(const std::string& out, const RunConfig& config)
-    : path_(out + "/" + config.experiment + "/" + config.key()), folder_(path_) {}
+/// All but the scores.
+RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const Source& source,
+                    const Execution& execution) {
+  const RunResult& result = execution.result;
+  const RunTimes& times = result.times;
+  RunRecord record;
+  record.experiment = config.experiment;
+  record.label = config.label;
+  record.seed = config.job.seed;
+  record.key = identity.key;
+  record.range = {source.time_range().from, source.time_range().to};
+  record.status = status_of(execution);
+  if (!execution.complete) return record;
+  record.data_s = result.data_s;
+  record.runtime_s = times.frontend + times.backend;
+  if (*record.runtime_s > 0.0) record.realtime_factor = *record.data_s / *record.runtime_s;
+  record.times = {times.frontend, times.backend, times.waiting, times.harness, times.total};
+  record.peak_rss_mib = result.peak_rss_mib;
+  return record;
+}
 
-void RunFolder::write(const RunConfig& config, const RunResult& result, bool problem) {
-  const auto pretty = [](const Json& json) { return json.dump(2) + "\n"; };
+void write_piece(const AtomicFolder& folder, const Piece& piece, const std::string& suffix) {
+  folder.write("final" + suffix + ".tum", format_tum(piece.final_trajectory));
+  folder.write("online" + suffix + ".tum", format_tum(piece.online_trajectory));
+  folder.write("map" + suffix + ".ply", map_ply(piece.map));
+}
+
+void write_pieces(const AtomicFolder& folder, const RunResult& result) {
+  for (std::size_t i = 0; i < result.pieces.size(); ++i) {
+    write_piece(folder, result.pieces[i], i == result.longest ? "" : fmt::format(".piece{}", i + 1));
+  }
+  if (result.pieces.empty()) write_piece(folder, {}, "");
+}
+
+}  // namespace
+
+EmptyFolders::EmptyFolders(const std::string& path) {
+  std::error_code error;
+  for (fs::path at = path; !at.empty() && !fs::exists(at, error); at = at.parent_path()) made_.push_back(at.string());
+}
+
+EmptyFolders::~EmptyFolders() {
+  std::error_code ignored;
+  for (const std::string& path : made_) fs::remove(path, ignored);  // fails for one that is not empty
+}
+
+std::string ground_truth_tum(const Source& source) {
+  const Source::TimeRange range = source.time_range();
+  return format_tum(source.ground_truth().cut(range.from - kGroundTruthMargin, range.to + kGroundTruthMargin));
+}
+
+RunFolder::RunFolder(const std::string& out, const std::string& experiment, const std::string& key)
+    : path_(out + "/" + experiment + "/" + key), made_(out + "/" + experiment), folder_(path_) {}
+
+RunRecord RunFolder::write(const RunConfig& config, const JobIdentity& identity, const Source& source,
+                           const std::string& ground_truth, const Execution& execution, bool problem) {
+  const RunResult& result = execution.result;
   folder_.write("config.json", pretty(config.resolved()));
-  folder_.write("manifest.json", pretty(manifest_json(config, result)));
-  folder_.write("final.tum", format_tum(result.final_trajectory));
-  folder_.write("online.tum", format_tum(result.online_trajectory));
-  folder_.write("map.ply", map_ply(result.map));
-  folder_.write("metrics.json", pretty(metrics_json(config, result)));
+  folder_.write("job.json", identity.text);
+  folder_.write("manifest.json", pretty(manifest_json(config, identity, result)));
+  write_pieces(folder_, result);
+  if (!ground_truth.empty()) folder_.write("groundtruth.tum", ground_truth);
   folder_.write("timing.csv", timing_csv(result.updates));
   folder_.write("log.txt", log_text(config, result));
-  folder_.write("status.json", pretty(status_json(result.status)));
-  if (problem && result.problem) folder_.write("problem.txt", format_problem(*result.problem));
+  if (problem && !result.pieces.empty() && result.pieces[result.longest].problem) {
+    folder_.write("problem.txt", format_problem(*result.pieces[result.longest].problem));
+  }
+  RunRecord record = record_of(config, identity, source, execution);
+  score_run(folder_.part(), config.evaluation, record);
+  folder_.write("status.json", pretty(to_json(*record.status)));
+  folder_.write("metrics.json", pretty(to_json(record)));
   folder_.commit();
+  record.folder = path_;
+  return record;
 }
 
 }  // namespace evbench

@@ -1,30 +1,70 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "bench/experiment.hpp"
 #include "bench/runner.hpp"
 #include "core/support/atomic_file.hpp"
+#include "eval/run_record.hpp"
 
 namespace evbench {
 
-/// Writes a run's folder `out`/EXPERIMENT/KEY and returns its path: config.json (resolved, complete), manifest.json
-/// (program, host, seed, SHA-256 of inputs and tracks), final.tum, online.tum, map.ply, metrics.json, timing.csv (a
-/// line per update), log.txt, status.json. Appears complete or not at all; an older run of the same key is replaced.
+/// Removes the folders of a path that it did not find and that are empty at its end.
+class EmptyFolders {
+ public:
+  explicit EmptyFolders(const std::string& path);
+  ~EmptyFolders();
+  EmptyFolders(const EmptyFolders&) = delete;
+  EmptyFolders& operator=(const EmptyFolders&) = delete;
+
+ private:
+  std::vector<std::string> made_;  ///< the innermost first
+};
+
+/// A run's folder, OUT/EXPERIMENT/KEY:
+///
+///   config.json      resolved, complete: can be run again from anywhere
+///   job.json         what determines the trajectory: its SHA-256 begins with the key's digits
+///   manifest.json    program, host, seed, SHA-256 of config.json, of each input and of the tracks
+///   final.tum, online.tum, map.ply   the estimate: after the fact, causal, landmarks
+///   groundtruth.tum  the source's, in the time range of the run (and 1 s around it), where there is one
+///   metrics.json, status.json        eval/metrics.md
+///   timing.csv       a line an update
+///   log.txt
+///
+/// Where the estimate is in pieces, these are of the longest one; the others are final.piece2.tum, online.piece2.tum,
+/// map.piece2.ply, numbered in time order from 1 (status.json lists all). The folder appears complete or not at all; an
+/// older run of the same key is replaced.
 class RunFolder {
  public:
   /// Takes the folder: throws InputError when it can't be made or another run is writing to it, before any work.
-  RunFolder(const std::string& out, const RunConfig& config);
+  RunFolder(const std::string& out, const std::string& experiment, const std::string& key);
 
-  /// With `problem`, also problem.txt, the estimation problem that the run ended with, where the back-end has one.
-  void write(const RunConfig& config, const RunResult& result, bool problem = false);
+  /// Writes a run, scored by its config. `ground_truth` is what ground_truth_tum() gives. With `problem`, also
+  /// problem.txt, the estimation problem that the run ended with, where the back-end has one.
+  RunRecord write(const RunConfig& config, const JobIdentity& identity, const Source& source,
+                  const std::string& ground_truth, const Execution& execution, bool problem = false);
   const std::string& path() const { return path_; }
 
  private:
   std::string path_;
+  EmptyFolders made_;  // before the folder: it must be gone by then
   AtomicFolder folder_;
 };
 
-/// The contents of metrics.json (eval/metrics.md).
-Json metrics_json(const RunConfig& config, const RunResult& result);
+/// The text of groundtruth.tum; empty where there is no ground truth.
+std::string ground_truth_tum(const Source& source);
+
+/// Where a complete run of this job lies below `out`: of this experiment or, where there is none, of another one.
+std::optional<std::string> find_complete_run(const std::string& out, const std::string& experiment,
+                                             const JobIdentity& identity);
+
+/// Makes a run that lies in the folder `from` one of this config in `to`, which may be the same folder: copied, renamed
+/// and scored again, as far as that is needed. Both have the same job.
+RunRecord adopt_run(const std::string& from, const std::string& to, const RunConfig& config);
+
+/// Scores a run's folder again by this protocol, and rewrites metrics.json, and config.json where it is another one.
+RunRecord score_again(const std::string& folder, const ScoreOptions& options);
 
 }  // namespace evbench

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 
+#include "bench/testing/keys.hpp"
 #include "bench/testing/program.hpp"
 #include "core/support/error.hpp"
 #include "core/support/sha256.hpp"
@@ -14,8 +15,9 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const std::set<std::string> kFiles = {"config.json",  "manifest.json", "final.tum", "online.tum", "map.ply",
-                                      "metrics.json", "timing.csv",    "log.txt",   "status.json"};
+const std::set<std::string> kFiles = {"config.json", "job.json",        "manifest.json", "final.tum",
+                                      "online.tum",  "groundtruth.tum", "map.ply",       "metrics.json",
+                                      "timing.csv",  "log.txt",         "status.json"};
 
 /// The runs of a config by label.
 std::map<std::string, std::string> run_folders(const TemporaryFolder& folder, const std::string& out) {
@@ -76,7 +78,7 @@ TEST_CASE("A run's folder holds the documented files") {
     CHECK(names_in(path) == kFiles);
     CHECK(json_file(path, "status.json").at("state").is_string());
     const Json manifest = json_file(path, "manifest.json");
-    for (const char* key : {"program", "host", "seed", "config_sha256", "inputs_sha256", "observations"}) {
+    for (const char* key : {"program", "host", "seed", "key", "config_sha256", "inputs_sha256", "observations"}) {
       CHECK(manifest.contains(key));
     }
     CHECK_THAT(read_file(path + "/timing.csv"), Contains("t_s,update_ms,"));
@@ -91,7 +93,8 @@ TEST_CASE("The same config twice gives the same bytes, but for measured times") 
     INFO(label);
     const std::string& other = runs.second.at(label);
     CHECK(std::filesystem::path(path).filename() == std::filesystem::path(other).filename());
-    for (const char* name : {"config.json", "manifest.json", "final.tum", "online.tum", "map.ply", "status.json"}) {
+    for (const char* name : {"config.json", "job.json", "manifest.json", "final.tum", "online.tum", "groundtruth.tum",
+                             "map.ply", "status.json"}) {
       CHECK(read_file(path + "/" + name) == read_file(other + "/" + name));
     }
     const Json a = json_file(path, "metrics.json"), b = json_file(other, "metrics.json");
@@ -124,6 +127,12 @@ TEST_CASE("Metrics of a run have the documented keys, the same as those of evben
   for (const char* key : {"experiment", "label", "runtime_s", "realtime_factor", "peak_rss_mib", "status"}) {
     CHECK(metrics.contains(key));
   }
+  CHECK(metrics.at("seed") == 1);
+  CHECK(metrics.at("key") == std::filesystem::path(path).filename().string());
+  for (const char* part : {"frontend_s", "backend_s", "waiting_s", "harness_s", "total_s"}) {
+    CHECK(metrics.at("times").at(part).is_number());
+  }
+  CHECK(metrics.at("status") == json_file(path, "status.json"));
   for (const char* trajectory : {"final", "online"}) {
     for (const char* key : {"/ate/trans_m/rmse", "/ate/rot_deg/rmse", "/ate/trans_percent", "/rpe/trans_m/rmse",
                             "/rpe/rot_deg/median", "/rpe/pairs", "/coverage", "/pairs", "/scale", "/path_m"}) {
@@ -181,18 +190,20 @@ TEST_CASE("A run without an estimate fails with exit code 3, a status with the r
 
 TEST_CASE("Two runs do not write to the same folder at the same time") {
   const TemporaryFolder folder;
-  const RunConfig config = read_experiment(folder.write("c.json", short_config().dump()), {}).runs[0];
+  const std::string path = folder.write("c.json", short_config().dump());
+  const std::string key = key_of(read_experiment(path, {}, known_plugins()).runs[0]);
   {
-    const RunFolder taken(folder.file("results"), config);
-    CHECK_THROWS_WITH(RunFolder(folder.file("results"), config), Contains("another run is writing to this folder"));
+    const RunFolder taken(folder.file("results"), "short", key);
+    CHECK_THROWS_WITH(RunFolder(folder.file("results"), "short", key),
+                      Contains("another run is writing to this folder"));
     const Outcome other = testing::evbench(folder, "run c.json");
     CHECK(other.exit_code == 2);
-    CHECK_THAT(other.err, Contains(config.key()) && Contains("another run is writing to this folder"));
+    CHECK_THAT(other.err, Contains(key) && Contains("another run is writing to this folder"));
     CHECK(testing::evbench(folder, "run c.json --out elsewhere --quiet").exit_code == 0);
   }
   CHECK(names_in(folder.file("results/short")).empty());
   CHECK(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
-  CHECK(names_in(folder.file("results/short")) == std::set<std::string>{config.key()});
+  CHECK(names_in(folder.file("results/short")) == std::set<std::string>{key});
 }
 
 TEST_CASE("Of many processes that run the same config at once, each is done or refused, and one result is whole") {

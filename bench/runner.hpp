@@ -1,43 +1,25 @@
 #pragma once
 
-#include <functional>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "bench/experiment.hpp"
-#include "core/plugin/backend.hpp"
-#include "core/plugin/source.hpp"
+#include "bench/job.hpp"
+#include "bench/pipeline/pipeline.hpp"
 
 namespace evbench {
 
-/// What a run ended with.
-struct RunResult {
-  Status status;
-  PoseTrajectory final_trajectory;   ///< sampled at the config's trajectory rate
-  PoseTrajectory online_trajectory;  ///< causal, the back-end's own times
-  std::vector<Landmark> map;
-  std::optional<Problem> problem;  ///< that the back-end ended with, where it has one
-  std::vector<UpdateRecord> updates;
-  std::optional<Scores> final_scores, online_scores;
-  std::string final_unscored, online_unscored;  ///< why there are no scores
-  double runtime_s = 0.0;                       ///< wall time in the back-end
-  double data_s = 0.0;                          ///< time of the sequence that it was given
-  double peak_rss_mib = 0.0;                    ///< of the process during the run, source and tracks included
-  std::string tracks_sha256;                    ///< of all observations: equal for runs that can be compared
-  std::size_t observations = 0;
-  std::vector<std::string> files;  ///< that were read
-  std::vector<std::string> log;
+/// What became of a job.
+struct Execution {
+  RunResult result;
+  /// False: it broke off; the result then has nothing but a status, failed, with the reason.
+  bool complete = true;
 };
 
-/// Called now and then with the sequence time that has been reached and the sequence's end [s].
-using Progress = std::function<void(double t, double end)>;
+/// Does a job: makes front-end and back-end and lets them work together (bench/pipeline/pipeline.hpp). `source` is the
+/// job's. What a plugin throws while it works makes the run failed and is no error here. Throws InputError for what can
+/// be told before any work, a front-end or back-end that can't be made of its options and files, and Interrupted.
+///
+/// The one place where runs are done: a run that is to have a process of its own gets it here.
+Execution execute(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress);
 
-/// Makes the source of an experiment; its runs share it.
-std::unique_ptr<Source> make_source(const RunConfig& config);
-
-/// Source → front-end → back-end → scores. Throws InputError for bad input only.
-RunResult run(const RunConfig& config, const Source& source, const Progress& progress);
+/// Throws InputError where execute() would do so before any work.
+void check_job(const Job& job, const Source& source, const Plugins& plugins);
 
 }  // namespace evbench

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "eval/names.hpp"
-#include "eval/run_metrics.hpp"
+#include "eval/run_record.hpp"
 
 namespace evbench {
 
@@ -15,19 +15,20 @@ inline constexpr NameList<4> table_format_names = {"text", "markdown", "csv", "l
 struct TableOptions {
   TableFormat format = TableFormat::text;
   bool online = false;  ///< the scores of the estimates at the moment they were made, instead of the final ones
-  /// Columns: paths into metrics.json ("realtime_factor") or into its scores ("rpe.trans_m.median"); empty: the default
-  /// columns.
+  /// Columns: paths into metrics.json ("realtime_factor", "times.waiting_s") or into its scores ("rpe.trans_m.median");
+  /// empty: the default columns.
   std::vector<std::string> metrics = {};
 };
 
-/// A table of runs, a row each, in the order given; the experiment is a column when there are several.
+/// A table of runs, a row each, in the order given. What tells them apart are columns: the label, the experiment and
+/// the seed where they vary, the key where these do not suffice; in CSV all of them, and the folder.
 ///
 /// The protocol stands below (LaTeX: in the caption; CSV: in columns); runs of different protocols are marked with its
 /// number. Pairs, coverage and scale are columns, or, where `metrics` leaves them out, ranges below.
 /// The best value of a column, among runs of the same experiment and protocol, is bold in Markdown and LaTeX and marked
 /// with * in text; runs that were lost or failed do not compete. A value that a run does not have is "-" (CSV: empty).
-/// Throws InputError when no run has a column's value at all, with the nearest known name, and when no run has online
-/// scores but they are asked for.
-std::string make_table(std::span<const RunMetrics> runs, const TableOptions& options);
+/// Why runs have no scores stands below. Throws InputError when there is no run, when no run has a column's value at
+/// all, with the nearest known name, and when no run has online scores but they are asked for.
+std::string make_table(std::span<const RunRecord> runs, const TableOptions& options);
 
 }  // namespace evbench

@@ -25,10 +25,20 @@ Json scores_with(double ate, const std::string& alignment = "sim3") {
 
 Json run(const std::string& experiment, const std::string& label, const Json& final_scores,
          const std::string& state = "ok") {
-  return {{"experiment", experiment}, {"label", label},
-          {"final", final_scores},    {"online", nullptr},
-          {"runtime_s", 2.0},         {"realtime_factor", 1.5},
-          {"peak_rss_mib", 30.0},     {"status", {{"state", state}, {"reason", ""}, {"time", 3.25}}}};
+  RunRecord record;
+  record.experiment = experiment;
+  record.label = label;
+  record.seed = 7;
+  record.key = "mine-0123456789";
+  record.final_scores = final_scores;
+  record.runtime_s = 2.0;
+  record.data_s = 3.0;
+  record.realtime_factor = 1.5;
+  record.times = {0.25, 1.75, 0.5, 0.125, 2.5};
+  record.peak_rss_mib = 30.0;
+  Json json = to_json(record);
+  json["status"] = {{"state", state}, {"reason", ""}, {"time", 3.25}};
+  return json;
 }
 
 /// Runs below a folder of results, as `evbench run` leaves them.
@@ -39,7 +49,7 @@ struct Results {
     folder.write(name + "/metrics.json", content);
   }
   void add(const std::string& name, const Json& metrics) const { add(name, metrics.dump()); }
-  std::vector<RunMetrics> find() const { return find_runs(std::vector{folder.path()}); }
+  std::vector<RunRecord> find() const { return find_runs(std::vector{folder.path()}); }
   std::string table(const TableOptions& options) const { return make_table(find(), options); }
 };
 
@@ -135,7 +145,7 @@ TEST_CASE("Runs that could not be scored still make a table") {
   Results results;
   results.add("a", run("arm", "no ground truth", nullptr));
   CHECK_THAT(line_with(results.table({}), "no ground truth"), Contains("1.50") && Contains("ok"));
-  CHECK_THAT(results.table({}), Contains("No run has scores"));
+  CHECK_THAT(results.table({}), Contains("No run has scores") && Contains("no ground truth: not known"));
 }
 
 TEST_CASE("Columns can be chosen; pairs, coverage and scale then stand below") {
@@ -149,12 +159,53 @@ TEST_CASE("Columns can be chosen; pairs, coverage and scale then stand below") {
                     Contains("no run has the metric \"rpe.trans_m.meddian\"") && Contains("rpe.trans_m.median"));
 }
 
+TEST_CASE("Runs that differ in their seed, or in nothing but their options, can be told apart") {
+  Results results;
+  const auto add = [&](const std::string& name, int seed, const std::string& key) {
+    Json json = run("arm", "mine", scores_with(0.02));
+    json["seed"] = seed;
+    json["key"] = key;
+    results.add(name, json);
+  };
+  add("a", 1, "mine-aa");
+  CHECK_THAT(results.table({}), !Contains("seed") && !Contains("mine-aa"));
+  add("b", 2, "mine-bb");
+  CHECK_THAT(results.table({}), Contains("seed") && !Contains("mine-aa"));
+  add("c", 2, "mine-cc");
+  CHECK_THAT(results.table({}), Contains("key") && Contains("mine-bb") && Contains("mine-cc"));
+}
+
+TEST_CASE("Front-end and back-end have a time each, and every time can be a column") {
+  Results results;
+  results.add("a", run("arm", "one", scores_with(0.020)));
+  CHECK_THAT(line_with(results.table({}), "ATE [m]"), Contains("front-end [s]") && Contains("back-end [s]"));
+  CHECK_THAT(line_with(results.table({}), "one"), Contains(" 0.250") && Contains(" 1.75"));
+  CHECK_THAT(line_with(results.table({.metrics = {"times.waiting_s", "times.harness_s", "data_s"}}), "one"),
+             Contains("0.500") && Contains("0.125") && Contains("3.00"));
+  CHECK_THROWS_WITH(results.table({.metrics = {"times.waitng_s"}}), Contains("times.waiting_s"));
+}
+
+TEST_CASE("Below a table stands why runs have no scores") {
+  Results results;
+  results.add("a", run("arm", "good", scores_with(0.020)));
+  Json bad = run("arm", "bad", nullptr, "failed");
+  bad["status"]["reason"] = "2 tracks at 3.051 s, 15 needed";
+  results.add("b", bad);
+  Json unscored = run("arm", "unscored", nullptr);
+  unscored["final_unscored"] = "only 2 of the estimate's poses have ground truth";
+  results.add("c", unscored);
+  CHECK_THAT(results.table({}), Contains("Without scores: bad: 2 tracks at 3.051 s, 15 needed.") &&
+                                    Contains("Without scores: unscored: only 2 of the estimate's poses"));
+}
+
 TEST_CASE("CSV has the exact numbers under the keys of metrics.json") {
   Results results;
   results.add("a", run("arm, left", "say \"one\"", scores_with(0.0123456789)));
   const std::string csv = results.table({.format = TableFormat::csv, .metrics = {"ate.trans_m.rmse"}});
-  CHECK(csv.substr(0, csv.find('\n')) == "experiment,label,ate.trans_m.rmse,pairs,coverage,scale,status,protocol");
-  CHECK_THAT(csv, Contains("\n\"arm, left\",\"say \"\"one\"\"\",0.0123456789,100,1,"));
+  CHECK(csv.substr(0, csv.find('\n')) ==
+        "experiment,label,seed,key,folder,ate.trans_m.rmse,pairs,coverage,scale,status,protocol");
+  CHECK_THAT(csv, Contains("\n\"arm, left\",\"say \"\"one\"\"\",7,mine-0123456789," + results.folder.file("a") +
+                           ",0.0123456789,100,1,"));
 }
 
 TEST_CASE("Characters with a meaning in LaTeX and Markdown are escaped") {

@@ -2,21 +2,26 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/plugin/registry.hpp"
+
 namespace evbench {
 
-/// Each adds a subcommand of `evbench`; its callback throws InputError, which `main` catches.
+/// Each adds a subcommand of `evbench`; its callback throws InputError, which `main` catches. `plugins` must outlive
+/// the program's parsing.
 void add_eval(CLI::App& app);
 void add_table(CLI::App& app);
-void add_list(CLI::App& app);
-void add_describe(CLI::App& app);
+void add_score(CLI::App& app);
+void add_list(CLI::App& app, const Plugins& plugins);
+void add_describe(CLI::App& app, const Plugins& plugins);
 void add_solve(CLI::App& app);
 void add_info(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_dataset(CLI::App& app);
 void add_render(CLI::App& app);
 
-/// `exit_code` is set to what the program returns: 0, or 3 when a run failed.
-void add_run(CLI::App& app, int& exit_code);
+/// `exit_code` is set to what the program returns: 0, or 3 when a run failed. A config may name libraries with more
+/// plugins: they are added.
+void add_run(CLI::App& app, Plugins& plugins, int& exit_code);
 
 /// The options of commands that read events.
 struct ReadOptions;

@@ -10,6 +10,7 @@
 #include "core/support/atomic_file.hpp"
 #include "core/support/text_reader.hpp"
 #include "eval/protocol.hpp"
+#include "eval/run_record.hpp"
 
 namespace evbench {
 namespace {
@@ -73,21 +74,20 @@ Scores score_files(const PoseTrajectory& ground_truth, const PoseTrajectory& est
   }
 }
 
-/// The structure of a run's metrics.json; what only a run knows is null.
-Json metrics_of(const EvalArguments& arguments, const Scores& scores) {
-  Json metrics;
-  metrics["experiment"] = arguments.ground_truth;
-  metrics["label"] = arguments.estimate;
-  metrics["final"] = to_json(scores);
-  for (const char* key : {"online", "runtime_s", "realtime_factor", "peak_rss_mib", "status"}) metrics[key] = nullptr;
-  return metrics;
+/// What only a run knows is left open.
+RunRecord record_of(const EvalArguments& arguments, const Scores& scores) {
+  RunRecord record;
+  record.experiment = arguments.ground_truth;
+  record.label = arguments.estimate;
+  record.final_scores = to_json(scores);
+  return record;
 }
 
 void execute(const EvalArguments& arguments) {
   const PoseTrajectory ground_truth = read_trajectory(arguments.ground_truth, arguments.format);
   const PoseTrajectory estimate = read_trajectory(arguments.estimate, arguments.format);
   const Scores scores = score_files(ground_truth, estimate, arguments);
-  if (!arguments.json.empty()) write_file(arguments.json, metrics_of(arguments, scores).dump(2) + "\n");
+  if (!arguments.json.empty()) write_file(arguments.json, to_json(record_of(arguments, scores)).dump(2) + "\n");
   if (arguments.json == "/dev/stdout") return;
   fmt::print("ground truth {}\nestimate     {}\n{}", arguments.ground_truth, arguments.estimate, describe(scores));
 }

@@ -12,17 +12,17 @@ namespace evbench {
 namespace {
 
 template <class Interface>
-void list() {
+void list(const Plugins& plugins) {
   fmt::print("{}:\n", PluginKind<Interface>::name);
-  for (const auto& [name, entry] : Registry<Interface>::instance().entries()) {
+  for (const auto& [name, entry] : plugins.of<Interface>().entries()) {
     fmt::print("  {:<20} {}\n", name, entry.text);
   }
 }
 
 template <class Interface>
-bool describe(const std::string& kind, const std::string& name, bool schema) {
+bool describe(const Plugins& plugins, const std::string& kind, const std::string& name, bool schema) {
   if (kind != PluginKind<Interface>::name) return false;
-  const auto& entry = Registry<Interface>::instance().find(name, "describe " + kind);
+  const auto& entry = plugins.of<Interface>().find(name, "describe " + kind);
   if (schema) {
     fmt::print("{}\n", entry.schema().dump(2));
   } else {
@@ -33,18 +33,18 @@ bool describe(const std::string& kind, const std::string& name, bool schema) {
 
 }  // namespace
 
-void add_list(CLI::App& app) {
+void add_list(CLI::App& app, const Plugins& plugins) {
   CLI::App* command = app.add_subcommand("list", "List sources, front-ends, back-ends and formats of events");
-  command->callback([] {
-    list<Source>();
-    list<FrontEnd>();
-    list<BackEnd>();
+  command->callback([&plugins] {
+    list<Source>(plugins);
+    list<FrontEnd>(plugins);
+    list<BackEnd>(plugins);
     fmt::print("formats of events:\n");
     for (const EventFormat& format : event_formats()) fmt::print("  {:<20} {}\n", format.name, format.description);
   });
 }
 
-void add_describe(CLI::App& app) {
+void add_describe(CLI::App& app, const Plugins& plugins) {
   struct Arguments {
     std::string kind, name;
     bool schema = false;
@@ -56,16 +56,16 @@ void add_describe(CLI::App& app) {
       ->check(CLI::IsMember({"source", "frontend", "backend", "config"}));
   command->add_option("name", arguments->name, "Name of the plugin (evbench list)");
   command->add_flag("--schema", arguments->schema, "Print a JSON Schema, for editors");
-  command->callback([arguments] {
+  command->callback([arguments, &plugins] {
     const auto& [kind, name, schema] = *arguments;
     if (kind == "config") {
-      fmt::print("{}\n", schema ? experiment_schema().dump(2) : describe_experiment());
+      fmt::print("{}\n", schema ? experiment_schema(plugins).dump(2) : describe_experiment());
       return;
     }
     if (name.empty())
       throw InputError(fmt::format("describe {}: expected the name of a {}; see evbench list", kind, kind));
-    describe<Source>(kind, name, schema) || describe<FrontEnd>(kind, name, schema) ||
-        describe<BackEnd>(kind, name, schema);
+    describe<Source>(plugins, kind, name, schema) || describe<FrontEnd>(plugins, kind, name, schema) ||
+        describe<BackEnd>(plugins, kind, name, schema);
   });
 }
 

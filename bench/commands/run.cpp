@@ -11,6 +11,7 @@
 #include "bench/commands/progress_line.hpp"
 #include "bench/run_folder.hpp"
 #include "bench/runner.hpp"
+#include "core/support/interruption.hpp"
 #include "eval/table.hpp"
 
 namespace evbench {
@@ -25,39 +26,127 @@ struct RunArguments {
   bool quiet = false;
   bool check = false;
   bool problem = false;
+  bool force = false;
 };
 
-int execute(const RunArguments& arguments) {
-  const Experiment experiment = read_experiment(arguments.config, arguments.overrides);
-  if (arguments.check) {
-    fmt::print("{}: fine, {} run{}\n", arguments.config, experiment.runs.size(),
-               experiment.runs.size() == 1 ? "" : "s");
-    return 0;
-  }
-  const std::unique_ptr<Source> source = make_source(experiment.runs.front());
-  std::vector<std::string> folders;
-  bool failed = false;
+/// A run of the config, and what determines its result.
+struct PlannedRun {
+  RunConfig config;
+  JobIdentity identity;
+  std::string folder;
+};
+
+/// All runs in the config's order. Two that would do the same work are a mistake in the config.
+std::vector<PlannedRun> plan(const Experiment& experiment, const Source& source, const Plugins& plugins,
+                             const RunArguments& arguments) {
+  Digests digests;
+  std::vector<PlannedRun> planned;
   for (const RunConfig& config : experiment.runs) {
-    RunFolder folder(arguments.out, config);
-    ProgressLine line(fmt::format("[{}/{}] {}", folders.size() + 1, experiment.runs.size(), config.label),
-                      arguments.quiet);
-    const RunResult result = run(config, *source, [&](double t, double end) {
+    JobIdentity identity = identify(config.job, source, plugins, digests);
+    for (const PlannedRun& other : planned) {
+      if (other.identity.key != identity.key) continue;
+      throw InputError(fmt::format("{}: the back-ends \"{}\" and \"{}\" are the same: type and options are equal",
+                                   arguments.config, other.config.label, config.label));
+    }
+    std::string folder = fmt::format("{}/{}/{}", arguments.out, experiment.name, identity.key);
+    planned.push_back({config, std::move(identity), std::move(folder)});
+  }
+  return planned;
+}
+
+/// The runs of an experiment one after the other: those that are complete already are taken, the others done.
+class Runs {
+ public:
+  Runs(const RunArguments& arguments, const Plugins& plugins, const Experiment& experiment, const Source& source)
+      : arguments_(arguments),
+        plugins_(plugins),
+        source_(source),
+        runs_(plan(experiment, source, plugins, arguments)),
+        ground_truth_(ground_truth_tum(source)) {}
+
+  void tell_complete() const {
+    const auto complete = std::ranges::count_if(runs_, [&](const PlannedRun& run) { return complete_run(run); });
+    if (complete == 0 || arguments_.quiet) return;
+    fmt::print("complete already: {} of {} (--force does them again)\n", complete, runs_.size());
+    std::fflush(stdout);
+  }
+
+  void run_all() {
+    for (const PlannedRun& run : runs_) {
+      check_interruption();
+      const auto complete = complete_run(run);
+      records_.push_back(complete ? adopt_run(*complete, run.folder, run.config) : do_run(run));
+    }
+  }
+
+  const std::vector<RunRecord>& records() const { return records_; }
+  std::size_t size() const { return runs_.size(); }
+
+ private:
+  std::optional<std::string> complete_run(const PlannedRun& run) const {
+    if (arguments_.force) return std::nullopt;
+    auto folder = find_complete_run(arguments_.out, run.config.experiment, run.identity);
+    const bool enough = !folder || !arguments_.problem || std::filesystem::exists(*folder + "/problem.txt");
+    return enough ? folder : std::nullopt;
+  }
+
+  RunRecord do_run(const PlannedRun& run) const {
+    RunFolder folder(arguments_.out, run.config.experiment, run.identity.key);
+    ProgressLine line(fmt::format("[{}/{}] {}", records_.size() + 1, runs_.size(), run.config.label), arguments_.quiet);
+    const Execution execution = execute(run.config.job, source_, plugins_, [&](double t, double end) {
       line.update(fmt::format("{:.2f} of {:.2f} s", std::min(t, end), end));
     });
-    folder.write(config, result, arguments.problem);
-    folders.push_back(folder.path());
-    failed = failed || result.status.state == RunState::failed;
+    return folder.write(run.config, run.identity, source_, ground_truth_, execution, arguments_.problem);
   }
-  if (!arguments.quiet) {
-    fmt::print("{}", make_table(find_runs(folders), {}));
-    fmt::print("\nwritten: {}\n", (std::filesystem::path(arguments.out) / experiment.name).string());
+
+  const RunArguments& arguments_;
+  const Plugins& plugins_;
+  const Source& source_;
+  std::vector<PlannedRun> runs_;
+  std::string ground_truth_;
+  std::vector<RunRecord> records_;
+};
+
+void print_table(const Runs& runs, const RunArguments& arguments, const std::string& experiment) {
+  if (arguments.quiet || runs.records().empty()) return;
+  fmt::print("{}", make_table(runs.records(), {}));
+  fmt::print("\nwritten: {}\n", (std::filesystem::path(arguments.out) / experiment).string());
+  std::fflush(stdout);
+}
+
+void check(const RunArguments& arguments, const Experiment& experiment, const Plugins& plugins) {
+  const std::unique_ptr<Source> source = make_source(experiment.runs.front().job, plugins);
+  for (const RunConfig& config : experiment.runs) check_job(config.job, *source, plugins);
+  fmt::print("{}: fine, {} run{}\n", arguments.config, experiment.runs.size(), experiment.runs.size() == 1 ? "" : "s");
+}
+
+int execute(const RunArguments& arguments, Plugins& plugins) {
+  const Interruption interruption(arguments.config + ": interrupted; no run was begun");
+  const Experiment experiment = read_experiment(arguments.config, arguments.overrides, plugins);
+  if (arguments.check) {
+    check(arguments, experiment, plugins);
+    return 0;
   }
+  const std::unique_ptr<Source> source = make_source(experiment.runs.front().job, plugins);
+  Runs runs(arguments, plugins, experiment, *source);
+  runs.tell_complete();
+  try {
+    runs.run_all();
+  } catch (const Interrupted& interrupted) {
+    print_table(runs, arguments, experiment.name);
+    throw Interrupted(fmt::format("{}: interrupted; {} of {} runs are complete, the same command goes on from there",
+                                  arguments.config, runs.records().size(), runs.size()),
+                      interrupted.signal());
+  }
+  print_table(runs, arguments, experiment.name);
+  const bool failed = std::ranges::any_of(
+      runs.records(), [](const RunRecord& run) { return run.status && run.status->status.state == RunState::failed; });
   return failed ? kExitFailed : 0;
 }
 
 }  // namespace
 
-void add_run(CLI::App& app, int& exit_code) {
+void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
   auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "Run a config: one back-end, or a comparison on identical tracks");
   command->add_option("config", arguments->config, "JSON config")->required();
@@ -65,15 +154,19 @@ void add_run(CLI::App& app, int& exit_code) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(true);
   command->add_option("--out", arguments->out, "Folder for results")->capture_default_str();
+  command->add_flag("--force", arguments->force, "Do runs again that are complete already");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->add_flag("--problem", arguments->problem,
                     "Also write problem.txt: the problem that gp_map ended with, for evbench solve and other solvers");
-  command->add_flag("--check", arguments->check, "Check the config and stop");
+  command->add_flag("--check", arguments->check, "Check the config, and that its files can be read, and stop");
   command->footer(
-      "Each run writes OUT/EXPERIMENT/RUN: config.json, manifest.json, final.tum, online.tum, map.ply, metrics.json,\n"
-      "timing.csv, log.txt, status.json; a run of the same config before is replaced.\n"
-      "Exit codes: 0 done (also when a run is degraded or lost: see its status), 2 bad input, 3 a run failed.");
-  command->callback([arguments, &exit_code] { exit_code = execute(*arguments); });
+      "Each run writes OUT/EXPERIMENT/RUN: config.json, job.json, manifest.json, final.tum, online.tum,\n"
+      "groundtruth.tum, map.ply, metrics.json, timing.csv, log.txt, status.json. RUN names what determines the\n"
+      "trajectory (job.json). A run that is complete below OUT is not done again, but named and scored as the config\n"
+      "says; one that broke off with an error is.\n"
+      "Exit codes: 0 done (also when a run is degraded or lost: see its status), 2 bad input, 3 a run failed,\n"
+      "130 interrupted (Ctrl-C).");
+  command->callback([arguments, &plugins, &exit_code] { exit_code = execute(*arguments, plugins); });
 }
 
 }  // namespace evbench

@@ -13,8 +13,8 @@ namespace {
 
 class ConfigEvents : public EventReader {
  public:
-  ConfigEvents(const std::string& path, const ReadOptions& options)
-      : path_(path), strict_(options.strict), source_(read_source(path)), reader_(source_->events()) {
+  ConfigEvents(const std::string& path, const ReadOptions& options, const Plugins& plugins)
+      : path_(path), strict_(options.strict), source_(read_source(path, plugins)), reader_(source_->all_events()) {
     if (!reader_) throw InputError(fmt::format("{}: its source has no events", path));
     if (!options.topic.empty() || !options.columns.empty()) {
       throw InputError(fmt::format("{}: is a config, which has neither topics nor columns", path));
@@ -53,11 +53,12 @@ bool begins_like_json(const std::string&, std::span<const std::byte> head) {
 
 }  // namespace
 
-EventFormat config_format() {
-  return {
-      "config", "JSON config of evbench: the events of its source", begins_like_json,
-      [](const std::string& path, const ReadOptions& options) { return std::make_unique<ConfigEvents>(path, options); },
-      /*has_companions=*/false};
+EventFormat config_format(const Plugins& plugins) {
+  return {"config", "JSON config of evbench: the events of its source", begins_like_json,
+          [&plugins](const std::string& path, const ReadOptions& options) {
+            return std::make_unique<ConfigEvents>(path, options, plugins);
+          },
+          /*has_companions=*/false};
 }
 
 }  // namespace evbench

@@ -119,3 +119,9 @@ TEST_CASE("The real ground truth of poster_translation reads whole") {
   CHECK(poses.size() == 11768);
   CHECK(poses.start() == 0.036104394);
 }
+
+TEST_CASE("Times that are closer to one another than a nanosecond are written apart") {
+  const PoseTrajectory close({{0.25, {}}, {0.2500000001, {}}, {1.0 / 3.0, {}}, {0.5, {}}});
+  CHECK(worst_difference(tum(format_tum(close)), close) == 0.0);
+  CHECK_THAT(format_tum(close), Catch::Matchers::StartsWith("0.250000000 0.0000000000 "));
+}

@@ -2,10 +2,26 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+
 #include "core/data/pose_record.hpp"
 #include "core/support/atomic_file.hpp"
 
 namespace evbench {
+namespace {
+
+/// With nine decimals, or as many as it takes to read back the same time: stamps that differ must not become equal.
+void append_time(double t, fmt::memory_buffer& text) {
+  const std::size_t begin = text.size();
+  fmt::format_to(std::back_inserter(text), "{:.9f}", t);
+  double read = 0.0;
+  std::from_chars(text.data() + begin, text.data() + text.size(), read);
+  if (read == t) return;
+  text.resize(begin);
+  fmt::format_to(std::back_inserter(text), "{}", t);
+}
+
+}  // namespace
 
 PoseTrajectory read_tum(const std::string& path, double time_unit) {
   TextReader reader(path);
@@ -23,8 +39,9 @@ PoseTrajectory read_tum(const std::string& path, double time_unit) {
 std::string format_tum(const PoseTrajectory& trajectory) {
   fmt::memory_buffer text;
   for (const auto& [t, T] : trajectory.poses()) {
-    fmt::format_to(std::back_inserter(text), "{:.9f} {:.10f} {:.10f} {:.10f} {:.12f} {:.12f} {:.12f} {:.12f}\n", t,
-                   T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w());
+    append_time(t, text);
+    fmt::format_to(std::back_inserter(text), " {:.10f} {:.10f} {:.10f} {:.12f} {:.12f} {:.12f} {:.12f}\n", T.p.x(),
+                   T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w());
   }
   return fmt::to_string(text);
 }

@@ -14,7 +14,8 @@ namespace evbench {
 /// strictly increase, and a file without poses.
 PoseTrajectory read_tum(const std::string& path, double time_unit = 1.0);
 
-/// 9 decimals for time, 10 for positions, 12 for quaternions: read back, a pose differs by less than 1e-10.
+/// 9 decimals for time, more where it takes them to read back the same time; 10 for positions, 12 for quaternions: read
+/// back, a pose differs by less than 1e-10.
 std::string format_tum(const PoseTrajectory& trajectory);
 
 void write_tum(const std::string& path, const PoseTrajectory& trajectory);

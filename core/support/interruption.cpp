@@ -3,13 +3,11 @@
 #include <atomic>
 #include <utility>
 
-#include "core/support/error.hpp"
-
 namespace evbench {
 namespace {
 
-std::atomic<bool> requested = false;
-static_assert(std::atomic<bool>::is_always_lock_free);  // for a signal's handler
+std::atomic<int> requested = 0;                        // the signal that came
+static_assert(std::atomic<int>::is_always_lock_free);  // for a signal's handler
 
 std::string& current_message() {
   static std::string message;
@@ -24,7 +22,7 @@ Interruption::Interruption(std::string message) {
     ::sigaction(kSignals[i], nullptr, &before_[i]);
     if (before_[i].sa_handler == SIG_IGN) continue;
     struct sigaction action {};
-    action.sa_handler = [](int) { requested = true; };
+    action.sa_handler = [](int signal) { requested = signal; };
     action.sa_flags = static_cast<int>(SA_RESETHAND);  // without SA_RESTART: waiting for a pipe ends, too
     ::sigaction(kSignals[i], &action, nullptr);
   }
@@ -32,13 +30,13 @@ Interruption::Interruption(std::string message) {
 
 Interruption::~Interruption() {
   for (std::size_t i = 0; i < std::size(kSignals); ++i) ::sigaction(kSignals[i], &before_[i], nullptr);
-  requested = false;
+  requested = 0;
 }
 
-bool Interruption::is_requested() { return requested; }
+bool Interruption::is_requested() { return requested != 0; }
 
 void check_interruption() {
-  if (requested) throw InputError(current_message());
+  if (const int signal = requested; signal != 0) throw Interrupted(current_message(), signal);
 }
 
 }  // namespace evbench

@@ -3,7 +3,19 @@
 #include <csignal>
 #include <string>
 
+#include "core/support/error.hpp"
+
 namespace evbench {
+
+/// The program has been asked to end. Its exit code is then 128 + signal, as a shell has it: 130 after Ctrl-C.
+class Interrupted : public InputError {
+ public:
+  Interrupted(const std::string& message, int signal) : InputError(message), signal_(signal) {}
+  int signal() const { return signal_; }
+
+ private:
+  int signal_;
+};
 
 /// While one lives, a signal that asks the program to end (SIGINT by Ctrl-C, SIGTERM, SIGHUP) lets the next
 /// check_interruption() throw, so that what was begun is removed as after an error. The same signal once more ends the
@@ -24,8 +36,8 @@ class Interruption {
   struct sigaction before_[std::size(kSignals)] = {};
 };
 
-/// To be called in every loop that may last: throws InputError with the message of the Interruption that lives, once
-/// the program has been asked to end.
+/// To be called in every loop that may last: throws Interrupted with the message of the Interruption that lives, once
+/// the program has been asked to end. Who goes on after an InputError must not do so after this one.
 void check_interruption();
 
 }  // namespace evbench

@@ -17,6 +17,17 @@ TEST_CASE("A signal that asks to end makes the next check throw, until the inter
   CHECK_NOTHROW(check_interruption());
 }
 
+TEST_CASE("What is thrown then knows the signal, and is told from bad input") {
+  const Interruption interruption("a.txt: interrupted");
+  std::raise(SIGTERM);
+  try {
+    check_interruption();
+    FAIL("nothing was thrown");
+  } catch (const Interrupted& interrupted) {
+    CHECK(interrupted.signal() == SIGTERM);
+  }
+}
+
 TEST_CASE("A signal that was ignored stays so, also afterwards; the others are as before") {
   const auto before = std::signal(SIGHUP, SIG_IGN);
   const auto terminate = std::signal(SIGTERM, SIG_DFL);

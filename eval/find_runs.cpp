@@ -1,13 +1,11 @@
-#include "eval/run_metrics.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <set>
 
 #include "core/support/error.hpp"
+#include "eval/run_record.hpp"
 
 namespace evbench {
 namespace fs = std::filesystem;
@@ -21,35 +19,6 @@ std::string take_number(const std::string& text, std::size_t& at) {
   const std::size_t begin = at;
   while (at < text.size() && is_digit(text[at])) ++at;
   return text.substr(begin, at - begin);
-}
-
-/// A string member that must be there.
-std::string text_of(const Json& object, const char* key, const std::string& path) {
-  const auto found = object.find(key);
-  if (found == object.end() || !found->is_string()) {
-    throw InputError(fmt::format("{}: \"{}\" is missing or not text; expected the metrics of a run", path, key));
-  }
-  return found->get<std::string>();
-}
-
-RunMetrics read_run(const fs::path& path) {
-  const std::string name = path.string();
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: can't be opened", name));
-  Json metrics;
-  try {
-    metrics = Json::parse(file);
-  } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: is not JSON: {}", name, error.what()));
-  }
-  if (!metrics.is_object()) throw InputError(fmt::format("{}: expected a JSON object, the metrics of a run", name));
-  for (const char* part : {"final", "online"}) {
-    const auto found = metrics.find(part);
-    if (found == metrics.end() || !(found->is_object() || found->is_null())) {
-      throw InputError(fmt::format("{}: \"{}\" is missing; expected scores or null", name, part));
-    }
-  }
-  return {path.parent_path().string(), text_of(metrics, "experiment", name), text_of(metrics, "label", name), metrics};
 }
 
 /// Every metrics.json in and below a folder.
@@ -91,17 +60,18 @@ bool natural_less(const std::string& a, const std::string& b) {
   return a < b;  // equal but for leading zeros
 }
 
-std::vector<RunMetrics> find_runs(std::span<const std::string> folders) {
-  std::vector<RunMetrics> runs;
+std::vector<RunRecord> find_runs(std::span<const std::string> folders) {
+  std::vector<RunRecord> runs;
   std::set<fs::path> seen;
   for (const std::string& folder : folders) {
     for (const fs::path& file : find_files(folder)) {
-      if (seen.insert(fs::canonical(file)).second) runs.push_back(read_run(file));
+      if (seen.insert(fs::canonical(file)).second) runs.push_back(read_record(file.parent_path().string()));
     }
   }
-  std::ranges::sort(runs, [](const RunMetrics& a, const RunMetrics& b) {
+  std::ranges::sort(runs, [](const RunRecord& a, const RunRecord& b) {
     if (a.experiment != b.experiment) return natural_less(a.experiment, b.experiment);
     if (a.label != b.label) return natural_less(a.label, b.label);
+    if (a.seed != b.seed) return a.seed < b.seed;
     return a.folder < b.folder;
   });
   return runs;

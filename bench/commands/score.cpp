@@ -1,0 +1,78 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/commands/commands.hpp"
+#include "bench/run_folder.hpp"
+#include "core/support/interruption.hpp"
+#include "eval/table.hpp"
+
+namespace evbench {
+namespace {
+
+struct ScoreArguments {
+  std::vector<std::string> folders;
+  std::string config;
+  std::vector<std::string> overrides;
+  bool quiet = false;
+};
+
+/// The protocol that a run was scored by.
+Json own_protocol(const std::string& folder) {
+  const std::string path = folder + "/config.json";
+  std::ifstream file(path, std::ios::binary);
+  const Json config = Json::parse(file, nullptr, false);
+  if (!config.is_object() || !config.contains("evaluation")) {
+    throw InputError(fmt::format("{}: can't be read, or has no \"evaluation\"; expected the config of a run", path));
+  }
+  return config["evaluation"];
+}
+
+ScoreOptions protocol_of(const std::string& folder, const ScoreArguments& arguments) {
+  const Json own = arguments.config.empty() ? own_protocol(folder) : Json();
+  return read_evaluation(arguments.config, own, arguments.overrides, folder + "/config.json");
+}
+
+void execute(const ScoreArguments& arguments) {
+  const Interruption interruption("interrupted; the runs that were not scored again are as before");
+  std::vector<RunRecord> records = find_runs(arguments.folders);
+  std::vector<ScoreOptions> protocols;  // all of them first: what is wrong with one is told before any work
+  for (const RunRecord& run : records) protocols.push_back(protocol_of(run.folder, arguments));
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    check_interruption();
+    const std::string found_as = records[i].folder;
+    records[i] = score_again(std::filesystem::canonical(found_as).string(), protocols[i]);
+    records[i].folder = found_as;
+  }
+  if (!arguments.quiet) fmt::print("{}", make_table(records, {}));
+}
+
+}  // namespace
+
+void add_score(CLI::App& app) {
+  auto arguments = std::make_shared<ScoreArguments>();
+  CLI::App* command = app.add_subcommand("score", "Score runs again from their trajectories, without running them");
+  command->add_option("folders", arguments->folders, "Folders of runs, searched with all folders below")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--config", arguments->config, "Take the protocol from this config, not from each run's own")
+      ->type_name("FILE");
+  command
+      ->add_option("--set", arguments->overrides,
+                   "Override a value of the protocol: evaluation.KEY=VALUE, e.g. evaluation.alignment=se3")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  command->footer(
+      "Reads final.tum, online.tum and groundtruth.tum of each run, rewrites its metrics.json, and its config.json "
+      "with\n"
+      "the protocol. The same protocol gives the same bytes.");
+  command->callback([arguments] { execute(*arguments); });
+}
+
+}  // namespace evbench

@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "bench/run_folder.hpp"
+#include "core/support/sha256.hpp"
+#include "eval/score_run.hpp"
+
+// Runs that lie there already: found, copied, renamed, scored again.
+
+namespace evbench {
+namespace fs = std::filesystem;
+namespace {
+
+std::string pretty(const Json& json) { return json.dump(2) + "\n"; }
+
+/// A file's content; nothing when it can't be read.
+std::optional<std::string> content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::nullopt;
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// Does a complete run of this job lie there?
+bool is_complete(const std::string& folder, const JobIdentity& identity) {
+  if (content_of(folder + "/job.json") != identity.text) return false;
+  for (const char* name : {"config.json", "manifest.json", "final.tum", "online.tum", "map.ply", "log.txt"}) {
+    std::error_code error;
+    if (!fs::is_regular_file(folder + "/" + name, error)) return false;
+  }
+  try {
+    const RunRecord record = read_record(folder);
+    return record.key == identity.key && record.status && record.status->complete;
+  } catch (const InputError&) {  // damaged: it is done again
+    return false;
+  }
+}
+
+Json parse(const std::string& path) {
+  const std::optional<std::string> text = content_of(path);
+  if (!text) throw InputError(fmt::format("{}: can't be read", path));
+  const Json json = Json::parse(*text, nullptr, false);
+  if (!json.is_object()) throw InputError(fmt::format("{}: expected a JSON object", path));
+  return json;
+}
+
+/// Writes the run in `from` to `to` with this config and record (but for its scores), scored by `options`.
+RunRecord rewrite(const std::string& from, const std::string& to, const Json& config, RunRecord record,
+                  const ScoreOptions& options, const std::string& log) {
+  Json manifest = parse(from + "/manifest.json");
+  manifest["config_sha256"] = sha256(pretty(config));
+  score_run(from, options, record);
+  const EmptyFolders made(fs::path(to).parent_path().string());
+  AtomicFolder folder(to);
+  for (const auto& entry : fs::directory_iterator(from)) {
+    if (entry.is_regular_file()) fs::copy_file(entry.path(), fs::path(folder.part()) / entry.path().filename());
+  }
+  folder.write("config.json", pretty(config));
+  folder.write("manifest.json", pretty(manifest));
+  folder.write("metrics.json", pretty(to_json(record)));
+  if (!log.empty()) folder.write("log.txt", content_of(from + "/log.txt").value_or("") + log);
+  folder.commit();
+  record.folder = to;
+  return record;
+}
+
+}  // namespace
+
+std::optional<std::string> find_complete_run(const std::string& out, const std::string& experiment,
+                                             const JobIdentity& identity) {
+  const std::string own = fmt::format("{}/{}/{}", out, experiment, identity.key);
+  if (is_complete(own, identity)) return own;
+  std::error_code error;
+  std::vector<std::string> others;
+  for (auto entry = fs::directory_iterator(out, error); entry != fs::directory_iterator(); entry.increment(error)) {
+    const fs::path folder = entry->path() / identity.key;
+    if (fs::is_directory(folder, error)) others.push_back(folder.string());
+  }
+  std::ranges::sort(others);
+  const auto found = std::ranges::find_if(others, [&](const auto& folder) { return is_complete(folder, identity); });
+  return found == others.end() ? std::nullopt : std::optional(*found);
+}
+
+RunRecord adopt_run(const std::string& from, const std::string& to, const RunConfig& config) {
+  RunRecord record = read_record(from);
+  const Json resolved = config.resolved();
+  if (from == to && content_of(from + "/config.json") == pretty(resolved)) return record;
+  std::string log;
+  if (record.experiment != config.experiment || record.label != config.label) {
+    log = fmt::format("not run again, but called {}: {}\n", config.experiment, config.label);
+  }
+  record.experiment = config.experiment;
+  record.label = config.label;
+  return rewrite(from, to, resolved, std::move(record), config.evaluation, log);
+}
+
+RunRecord score_again(const std::string& folder, const ScoreOptions& options) {
+  Json config = parse(folder + "/config.json");
+  config["evaluation"] = write_options(options);
+  return rewrite(folder, folder, config, read_record(folder), options, "");
+}
+
+}  // namespace evbench

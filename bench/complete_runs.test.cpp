@@ -1,0 +1,232 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <stdexcept>
+
+#include "bench/commands/commands.hpp"
+#include "bench/run_folder.hpp"
+#include "bench/testing/keys.hpp"
+#include "bench/testing/program.hpp"
+#include "core/support/error.hpp"
+#include "core/support/sha256.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// A folder with the config c.json of the short comparison, and what became of running it.
+struct Comparison {
+  TemporaryFolder folder;
+  Json config = short_comparison();
+
+  Comparison() { write(); }
+  void write() const { folder.write("c.json", config.dump()); }
+  Outcome run(const std::string& arguments) const { return testing::evbench(folder, "run c.json " + arguments); }
+
+  /// The run of this label below results/EXPERIMENT.
+  std::string path(const std::string& label, const std::string& experiment = "short") const {
+    for (const auto& run : std::filesystem::directory_iterator(folder.file("results/" + experiment))) {
+      const std::string path = run.path().string();
+      if (Json::parse(read_file(path + "/metrics.json")).at("label") == label) return path;
+    }
+    FAIL("no run is labelled " << label);
+    return "";
+  }
+  std::string content(const std::string& label, const std::string& name,
+                      const std::string& experiment = "short") const {
+    return read_file(path(label, experiment) + "/" + name);
+  }
+  Json metrics(const std::string& label, const std::string& experiment = "short") const {
+    return Json::parse(content(label, "metrics.json", experiment));
+  }
+  std::string sums() const {
+    return testing::shell(folder, "cd results && find . -type f | sort | xargs sha256sum").out;
+  }
+};
+
+/// Throws when it is given its first observations.
+class Breaking : public BackEnd {
+ public:
+  void advance(const TrackBatch& batch) override {
+    if (!batch.observations.empty()) throw std::runtime_error("the matrix is singular");
+  }
+  Feedback feedback(const FeedbackNeeds&) override { return {}; }
+  void finish() override {}
+  Status status() const override { return {}; }
+  PoseTrajectory trajectory() const override { return {}; }
+  std::vector<Landmark> map() const override { return {}; }
+};
+
+/// The built-in plugins and one that breaks off as long as `breaks` says so, and is bundle adjustment afterwards.
+Plugins plugins_with_breaking(const bool& breaks) {
+  Plugins plugins = registered_plugins();
+  Registry<BackEnd>::Entry entry = plugins.of<BackEnd>().find("bundle_adjustment", "test");
+  const auto make = entry.make;
+  entry.make = [&breaks, make](const Json& options, const BackEndContext& context) -> std::unique_ptr<BackEnd> {
+    return breaks ? std::make_unique<Breaking>() : make(options, context);
+  };
+  plugins.of<BackEnd>().add("breaking", entry);
+  return plugins;
+}
+
+/// `evbench run` in this process. Returns the exit code.
+int run_here(Plugins& plugins, const std::string& arguments) {
+  CLI::App app;
+  int exit_code = 0;
+  add_run(app, plugins, exit_code);
+  app.parse("run " + arguments);
+  return exit_code;
+}
+
+}  // namespace
+
+TEST_CASE("Runs that are complete are not done again, unless that is asked for, and stand in the table all the same") {
+  const Comparison comparison;
+  const Outcome first = comparison.run("");
+  REQUIRE(first.exit_code == 0);
+  CHECK_THAT(first.out, !Contains("complete already"));
+  const std::string before = comparison.sums();
+  const Outcome second = comparison.run("");
+  CHECK(second.exit_code == 0);
+  CHECK_THAT(second.out, Contains("complete already: 2 of 2 (--force does them again)"));
+  CHECK_THAT(second.out, Contains("asynchronous") && Contains("frames of 50 ms") && Contains("ATE [m]"));
+  CHECK(comparison.sums() == before);
+  const Outcome forced = comparison.run("--force");
+  CHECK_THAT(forced.out, !Contains("complete already"));
+  CHECK(comparison.sums() != before);  // measured times
+}
+
+TEST_CASE("A back-end that is added to a comparison is the only one that is run") {
+  Comparison comparison;
+  REQUIRE(comparison.run("--quiet").exit_code == 0);
+  const std::string timing = comparison.content("asynchronous", "timing.csv");
+  comparison.config["backends"].push_back(
+      {{"type", "bundle_adjustment"}, {"frame_duration", 0.1}, {"label", "100 ms"}});
+  comparison.write();
+  const Outcome more = comparison.run("");
+  CHECK_THAT(more.out, Contains("complete already: 2 of 3") && Contains("100 ms"));
+  CHECK(comparison.content("asynchronous", "timing.csv") == timing);
+}
+
+TEST_CASE("Another label or protocol is a matter of names and scores: nothing is run") {
+  Comparison comparison;
+  REQUIRE(comparison.run("--quiet").exit_code == 0);
+  const std::string path = comparison.path("asynchronous");
+  const std::string timing = read_file(path + "/timing.csv"), trajectory = read_file(path + "/final.tum");
+  comparison.config["backends"][0]["label"] = "mine";
+  comparison.config["evaluation"]["alignment"] = "se3";
+  comparison.write();
+  const Outcome again = comparison.run("");
+  CHECK_THAT(again.out, Contains("complete already: 2 of 2") && Contains("mine") && Contains("SE(3) alignment"));
+  CHECK(comparison.path("mine") == path);
+  CHECK(read_file(path + "/timing.csv") == timing);
+  CHECK(read_file(path + "/final.tum") == trajectory);
+  CHECK_THAT(read_file(path + "/log.txt"), Contains("called short: mine"));
+  const Json manifest = Json::parse(read_file(path + "/manifest.json"));
+  CHECK(manifest.at("config_sha256") == sha256_file(path + "/config.json"));
+  // As if it had been run that way at once.
+  REQUIRE(comparison.run("--force --quiet").exit_code == 0);
+  const Json fresh = comparison.metrics("mine");
+  REQUIRE(comparison.run("--quiet --set evaluation.alignment=sim3").exit_code == 0);
+  REQUIRE(comparison.run("--quiet").exit_code == 0);
+  CHECK(comparison.metrics("mine").dump() == fresh.dump());
+}
+
+TEST_CASE("A job that is complete in another experiment below the same folder is copied") {
+  const Comparison comparison;
+  REQUIRE(comparison.run("--quiet").exit_code == 0);
+  const std::string before = comparison.content("asynchronous", "metrics.json");
+  const Outcome other = comparison.run("--set name=other --set evaluation.alignment=se3");
+  CHECK_THAT(other.out, Contains("complete already: 2 of 2") && Contains("Experiment: other."));
+  CHECK(comparison.content("asynchronous", "timing.csv", "other") == comparison.content("asynchronous", "timing.csv"));
+  const Json metrics = comparison.metrics("asynchronous", "other");
+  CHECK(metrics.at("experiment") == "other");
+  CHECK(metrics.at("final").at("alignment").at("method") == "se3");
+  CHECK(comparison.content("asynchronous", "metrics.json") == before);
+}
+
+TEST_CASE("A run whose folder is damaged or of other data is done again") {
+  const Comparison comparison;
+  REQUIRE(comparison.run("--quiet").exit_code == 0);
+  const std::string path = comparison.path("asynchronous");
+  for (const char* name : {"job.json", "metrics.json", "final.tum"}) {
+    INFO(name);
+    std::filesystem::remove(path + "/" + name);
+    CHECK_THAT(comparison.run("").out, Contains("complete already: 1 of 2"));
+    CHECK(std::filesystem::exists(path + "/" + name));
+  }
+}
+
+TEST_CASE("The problem that is asked for afterwards is written, by running again") {
+  const Comparison comparison;
+  REQUIRE(comparison.run("--quiet").exit_code == 0);
+  REQUIRE(comparison.run("--quiet --problem").exit_code == 0);
+  CHECK(std::filesystem::exists(comparison.path("asynchronous") + "/problem.txt"));
+}
+
+TEST_CASE("Two back-ends that are the same job are refused with both labels, before anything is run") {
+  Comparison comparison;
+  comparison.config["backends"].push_back({{"type", "gp_map"}, {"label", "the same again"}});
+  comparison.write();
+  const Outcome outcome = comparison.run("");
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("c.json: the back-ends \"asynchronous\" and \"the same again\" are the same"));
+  CHECK(names_in(comparison.folder.path()) == std::set<std::string>{"c.json"});
+}
+
+TEST_CASE("A back-end that throws makes its run failed with the reason; the others go on, and it is tried again") {
+  const TemporaryFolder folder;
+  Json config = short_comparison();
+  config["backends"][0] = {{"type", "breaking"}, {"label", "mine"}};
+  const std::string arguments = folder.write("c.json", config.dump()) + " --quiet --out " + folder.file("results");
+  bool breaks = true;
+  Plugins plugins = plugins_with_breaking(breaks);
+  CHECK(run_here(plugins, arguments) == 3);
+  const auto records = find_runs(std::vector{folder.file("results")});
+  REQUIRE(records.size() == 2);
+  CHECK(records[0].label == "frames of 50 ms");
+  CHECK(records[0].final_scores.is_object());
+  const RunRecord& mine = records[1];
+  REQUIRE(mine.status);
+  CHECK(mine.status->status.state == RunState::failed);
+  CHECK(mine.status->status.reason == "error: the matrix is singular");
+  CHECK_FALSE(mine.status->complete);
+  CHECK(Json::parse(read_file(mine.folder + "/status.json")).at("complete") == false);
+  CHECK_THAT(read_file(mine.folder + "/log.txt"), Contains("error: the matrix is singular"));
+  CHECK(mine.final_unscored == "no trajectory: error: the matrix is singular");
+  CHECK(testing::evbench(folder, "score results --quiet").exit_code == 0);
+
+  const std::string other = read_file(records[0].folder + "/timing.csv");
+  breaks = false;
+  CHECK(run_here(plugins, arguments) == 0);
+  CHECK(read_record(mine.folder).status->complete);
+  CHECK(read_file(records[0].folder + "/timing.csv") == other);
+}
+
+TEST_CASE("Ctrl-C leaves nothing of a run that is not complete") {
+  const TemporaryFolder folder;
+  Json config = short_config("gp_map");
+  config["source"]["duration"] = 3000;
+  folder.write("c.json", config.dump());
+  const Outcome outcome = testing::shell(folder, "timeout --preserve-status -s INT 2 \"$evbench\" run c.json");
+  CHECK(outcome.exit_code == 130);
+  CHECK(outcome.out.empty());
+  CHECK(names_in(folder.path()) == std::set<std::string>{"c.json"});
+}
+
+TEST_CASE("A run that is ended leaves what is complete, prints its table, and goes on from there") {
+  const TemporaryFolder folder;
+  Json config = short_comparison();
+  config["source"]["duration"] = 60;
+  config["backends"][0] = {{"type", "bundle_adjustment"}, {"label", "quick"}, {"frame_duration", 0.4}};
+  config["backends"][1] = {{"type", "gp_map"}, {"label", "slow"}, {"placement", {{"rate", 400}}}};
+  folder.write("c.json", config.dump());
+  const Outcome outcome = testing::shell(folder, R"(
+    "$evbench" run c.json & until ls results/short/*/metrics.json > /dev/null 2>&1; do sleep 0.05; done
+    kill -TERM $!; wait $!)");
+  CHECK(outcome.exit_code == 143);
+  CHECK_THAT(outcome.err, Contains("c.json: interrupted; 1 of 2 runs are complete"));
+  CHECK_THAT(outcome.out, Contains("quick") && !Contains("slow") && Contains("written: results/short"));
+  CHECK(names_in(folder.file("results/short")).size() == 1);
+}

@@ -1,0 +1,124 @@
+#include "bench/job.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include "core/support/error.hpp"
+#include "core/support/path.hpp"
+#include "core/support/sha256.hpp"
+
+namespace evbench {
+namespace fs = std::filesystem;
+namespace {
+
+/// Raised when the pipeline itself comes to give other results for the same job (which exchanges there are, when
+/// feedback is handed over, how a run starts anew, how trajectories are sampled): older runs are then done again.
+constexpr int kPipelineVersion = 1;
+
+std::string digest_of_folder(const std::string& path) {
+  std::vector<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(path)) {
+    if (entry.is_regular_file()) files.push_back(entry.path().string());
+  }
+  std::ranges::sort(files);  // a folder has no order of its own
+  std::string list;
+  for (const std::string& file : files) {
+    list += fmt::format("{}  {}\n", sha256_file(file), fs::path(file).lexically_relative(path).generic_string());
+  }
+  return sha256(list);
+}
+
+/// What a source reads: events only where the front-end does.
+std::vector<std::string> source_files(const Job& job, const Source& source, const Plugins& plugins) {
+  std::vector<std::string> files = source.files();
+  if (plugins.of<FrontEnd>().find(job.frontend.type, job.frontend.place + ".type").reads_events) {
+    std::ranges::move(source.event_files(), std::back_inserter(files));
+  }
+  return files;
+}
+
+/// Gathers the parts of an identity, and the files on the way.
+class Identifier {
+ public:
+  Identifier(const Job& job, const Plugins& plugins, Digests& digests)
+      : job_(job), plugins_(plugins), digests_(digests) {}
+
+  /// `files`: that the plugin reads.
+  template <class Interface>
+  Json part(const PluginConfig& config, const std::vector<std::string>& files) {
+    const auto& entry = plugins_.of<Interface>().find(config.type, config.place + ".type");
+    Json part = {{"type", config.type}, {"version", entry.version}, {"options", entry.identity(config.options)}};
+    part["files"] = Json::array();
+    for (const std::string& file : files) part["files"].push_back(digest(file));
+    if (entry.origin != "built in") part["library"] = digest(entry.origin);
+    return part;
+  }
+
+  /// The files that a plugin's options name.
+  template <class Interface>
+  std::vector<std::string> named_files(const PluginConfig& config) const {
+    const auto& entry = plugins_.of<Interface>().find(config.type, config.place + ".type");
+    std::vector<std::string> files;
+    for (const std::string& file : entry.files(config.options)) files.push_back(resolve_path(file, job_.folder));
+    return files;
+  }
+
+  std::vector<std::pair<std::string, std::string>> take_files() { return std::move(files_); }
+
+ private:
+  std::string digest(const std::string& path) {
+    const std::string& digest = digests_.of(path);
+    if (std::ranges::find(files_, path, &std::pair<std::string, std::string>::first) == files_.end()) {
+      files_.emplace_back(path, digest);
+    }
+    return digest;
+  }
+
+  const Job& job_;
+  const Plugins& plugins_;
+  Digests& digests_;
+  std::vector<std::pair<std::string, std::string>> files_;
+};
+
+}  // namespace
+
+Json PluginConfig::with_type() const {
+  Json json = {{"type", type}};
+  json.update(options);
+  return json;
+}
+
+const std::string& Digests::of(const std::string& path) {
+  const auto found = known_.find(path);
+  if (found != known_.end()) return found->second;
+  std::error_code error;
+  if (!fs::exists(path, error)) throw InputError(fmt::format("{}: no such file", path));
+  const std::string digest = fs::is_directory(path, error) ? digest_of_folder(path) : sha256_file(path);
+  return known_.emplace(path, digest).first->second;
+}
+
+JobIdentity identify(const Job& job, const Source& source, const Plugins& plugins, Digests& digests) {
+  Identifier identifier(job, plugins, digests);
+  Json json = {{"pipeline_version", kPipelineVersion},
+               {"seed", job.seed},
+               {"trajectory_rate", job.trajectory_rate},
+               {"pipeline", write_options(job.pipeline)}};
+  json["source"] = identifier.part<Source>(job.source, source_files(job, source, plugins));
+  json["frontend"] = identifier.part<FrontEnd>(job.frontend, identifier.named_files<FrontEnd>(job.frontend));
+  json["backend"] = identifier.part<BackEnd>(job.backend, identifier.named_files<BackEnd>(job.backend));
+  JobIdentity identity;
+  identity.text = json.dump(2) + "\n";
+  identity.key = fmt::format("{}-{}", job.backend.type, sha256(identity.text).substr(0, 10));
+  identity.files = identifier.take_files();
+  return identity;
+}
+
+std::unique_ptr<Source> make_source(const Job& job, const Plugins& plugins) {
+  const auto& entry = plugins.of<Source>().find(job.source.type, job.source.place + ".type");
+  return entry.make(job.source.options, {job.seed, job.folder, job.source.place});
+}
+
+}  // namespace evbench

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/pipeline/options.hpp"
+#include "core/plugin/options.hpp"
+#include "core/plugin/registry.hpp"
+
+namespace evbench {
+
+/// A plugin as a config names it: {"type": NAME, options...}.
+struct PluginConfig {
+  std::string type;
+  Json options = Json::object();  ///< complete, checked
+  std::string place;              ///< where it stands, for messages
+
+  Json with_type() const;  ///< {"type": NAME, options...}
+};
+
+/// What a run computes, as its config says it: one back-end on one front-end's tracks of one source.
+struct Job {
+  PluginConfig source, frontend, backend;
+  std::uint64_t seed = 1;
+  double trajectory_rate = 100.0;  ///< [Hz] at which final trajectories are sampled; 0: the back-end's own poses
+  PipelineOptions pipeline;
+  std::string folder;  ///< of the config: relative paths refer to it
+};
+
+/// SHA-256 of files, each read once. For as long as they do not change: of one call of the program.
+class Digests {
+ public:
+  /// Of a file's bytes; of a folder: of the names and digests of all files in and below it. Throws InputError when
+  /// there is no such file or it can't be read.
+  const std::string& of(const std::string& path);
+
+ private:
+  std::map<std::string, std::string> known_;
+};
+
+/// All that determines a job's trajectory. Not part of it: name, label, how it is scored, and where files lie.
+struct JobIdentity {
+  /// JSON: version of the pipeline, seed, rate, pipeline options, and of source, front-end and back-end the type, the
+  /// version that it registered with, the options without paths, the SHA-256 of every file that it reads, in order,
+  /// and, for plugins from outside, of their library. What is written as job.json: `sha256sum job.json` begins with the
+  /// key's digits.
+  std::string text;
+  /// The name of the run's folder: the back-end's type and the first ten digits of the text's SHA-256.
+  std::string key;
+  std::vector<std::pair<std::string, std::string>> files;  ///< path and SHA-256 of what is read, each once
+};
+
+/// Throws InputError for a file that is missing. `source` is the job's.
+JobIdentity identify(const Job& job, const Source& source, const Plugins& plugins, Digests& digests);
+
+/// Makes the source of a job; the jobs of an experiment share it.
+std::unique_ptr<Source> make_source(const Job& job, const Plugins& plugins);
+
+}  // namespace evbench

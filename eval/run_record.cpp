@@ -1,0 +1,150 @@
+#include "eval/run_record.hpp"
+
+#include <array>
+#include <cmath>
+#include <fstream>
+
+#include "eval/record_reader.hpp"
+
+namespace evbench {
+namespace {
+
+constexpr std::array kStates = {RunState::ok, RunState::degraded, RunState::lost, RunState::failed};
+
+Json or_null(const std::optional<double>& value) { return value && std::isfinite(*value) ? Json(*value) : Json(); }
+
+Json to_json(const TimeRange& span) { return {{"from", span.from}, {"to", span.to}}; }
+
+Json to_json(const RecordedTimes& times) {
+  return {{"frontend_s", times.frontend},
+          {"backend_s", times.backend},
+          {"waiting_s", times.waiting},
+          {"harness_s", times.harness},
+          {"total_s", times.total}};
+}
+
+RunState read_state(const RecordReader& status) {
+  const std::string name = status.text("state");
+  for (const RunState state : kStates) {
+    if (name == to_string(state)) return state;
+  }
+  status.fail("state", "ok, degraded, lost or failed");
+}
+
+RunStatus read_status(const RecordReader& json) {
+  RunStatus result;
+  result.status.state = read_state(json);
+  result.status.reason = json.text_or("reason", "");
+  result.status.time = json.number_or_null("time").value_or(0.0);
+  for (const RecordReader& span : json.list("degraded")) {
+    result.status.degraded.push_back({span.number("from"), span.number("to"), span.text_or("reason", "")});
+  }
+  for (const RecordReader& span : json.list("still")) {
+    result.still.push_back({span.number("from"), span.number("to")});
+  }
+  for (const RecordReader& piece : json.list("pieces")) {
+    result.pieces.push_back({piece.number("from"), piece.number("to"), piece.count_or_null("poses").value_or(0),
+                             piece.count_or_null("landmarks").value_or(0)});
+  }
+  result.scored = json.count_or_null("scored_piece").value_or(0);
+  result.complete = json.flag_or("complete", true);
+  return result;
+}
+
+std::optional<TimeRange> read_range(const RecordReader& json) {
+  const Json& range = json.at("range_s");
+  if (range.is_null()) return std::nullopt;
+  if (!range.is_array() || range.size() != 2 || !range[0].is_number() || !range[1].is_number()) {
+    json.fail("range_s", "two times in seconds");
+  }
+  return TimeRange{range[0].get<double>(), range[1].get<double>()};
+}
+
+}  // namespace
+
+Json to_json(const RunStatus& run) {
+  const Status& status = run.status;
+  Json json = {{"state", to_string(status.state)}};
+  json["reason"] = status.reason;
+  json["time"] = status.state == RunState::ok ? Json() : or_null(status.time);
+  json["complete"] = run.complete;
+  json["degraded"] = Json::array();
+  for (const DegradedSpan& span : status.degraded) {
+    json["degraded"].push_back({{"from", span.from}, {"to", span.to}, {"reason", span.reason}});
+  }
+  json["still"] = Json::array();
+  for (const TimeRange& span : run.still) json["still"].push_back(to_json(span));
+  json["pieces"] = Json::array();
+  for (const RunPiece& piece : run.pieces) {
+    json["pieces"].push_back(
+        {{"from", piece.from}, {"to", piece.to}, {"poses", piece.poses}, {"landmarks", piece.landmarks}});
+  }
+  json["scored_piece"] = run.scored > 0 ? Json(run.scored) : Json();
+  return json;
+}
+
+Json to_json(const RunRecord& record) {
+  Json json = {{"experiment", record.experiment}, {"label", record.label}};
+  json["seed"] = record.seed ? Json(*record.seed) : Json();
+  json["key"] = record.key.empty() ? Json() : Json(record.key);
+  json["final"] = record.final_scores;
+  json["online"] = record.online_scores;
+  if (!record.final_unscored.empty()) json["final_unscored"] = record.final_unscored;
+  if (!record.online_unscored.empty()) json["online_unscored"] = record.online_unscored;
+  json["range_s"] = record.range ? Json{record.range->from, record.range->to} : Json();
+  json["runtime_s"] = or_null(record.runtime_s);
+  json["data_s"] = or_null(record.data_s);
+  json["realtime_factor"] = or_null(record.realtime_factor);
+  json["times"] = record.times ? to_json(*record.times) : Json();
+  json["peak_rss_mib"] = or_null(record.peak_rss_mib);
+  json["status"] = record.status ? to_json(*record.status) : Json();
+  return json;
+}
+
+RunRecord read_record(const Json& metrics, const std::string& place) {
+  const RecordReader json(metrics, place);
+  RunRecord record;
+  for (const auto& [key, scores] : {std::pair{"final", &record.final_scores}, {"online", &record.online_scores}}) {
+    if (!metrics.contains(key) || !(json.at(key).is_object() || json.at(key).is_null())) {
+      throw InputError(fmt::format("{}: \"{}\" is missing; expected scores or null", place, key));
+    }
+    *scores = json.at(key);
+  }
+  record.experiment = json.text("experiment");
+  record.label = json.text("label");
+  record.seed = json.count_or_null("seed");
+  record.key = json.text_or("key", "");
+  record.final_unscored = json.text_or("final_unscored", "");
+  record.online_unscored = json.text_or("online_unscored", "");
+  record.range = read_range(json);
+  record.runtime_s = json.number_or_null("runtime_s");
+  record.data_s = json.number_or_null("data_s");
+  record.realtime_factor = json.number_or_null("realtime_factor");
+  if (const Json& times = json.at("times"); !times.is_null()) {
+    const RecordReader reader(times, place + ": times");
+    record.times = {reader.number("frontend_s"), reader.number("backend_s"), reader.number("waiting_s"),
+                    reader.number("harness_s"), reader.number("total_s")};
+  }
+  record.peak_rss_mib = json.number_or_null("peak_rss_mib");
+  if (const Json& status = json.at("status"); !status.is_null()) {
+    record.status = read_status(RecordReader(status, place + ": status"));
+  }
+  return record;
+}
+
+RunRecord read_record(const std::string& folder) {
+  const std::string path = folder + "/metrics.json";
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(fmt::format("{}: can't be opened", path));
+  Json metrics;
+  try {
+    metrics = Json::parse(file);
+  } catch (const Json::exception& error) {
+    throw InputError(fmt::format("{}: is not JSON: {}", path, error.what()));
+  }
+  RunRecord record = read_record(metrics, path);
+  record.folder = folder;
+  return record;
+}
+
+}  // namespace evbench

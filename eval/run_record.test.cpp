@@ -1,0 +1,129 @@
+#include "eval/run_record.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "core/data/tum.hpp"
+#include "core/support/error.hpp"
+#include "core/testing/data.hpp"
+#include "eval/score_run.hpp"
+#include "eval/testing/trajectories.hpp"
+
+namespace evbench {
+namespace {
+
+using namespace testing;
+using Catch::Matchers::Contains;
+
+/// With everything that a record can have.
+RunRecord full_record() {
+  RunRecord record;
+  record.experiment = "arm";
+  record.label = "mine, 25 ms";
+  record.seed = 18446744073709551615U;
+  record.key = "mine-0123456789";
+  record.final_unscored = "no ground truth";
+  record.online_scores = {{"pairs", 3}, {"coverage", 1.0 / 3.0}};
+  record.range = {0.1, 30.0};
+  record.runtime_s = 1.0 / 7.0;
+  record.data_s = 29.9;
+  record.realtime_factor = *record.data_s / *record.runtime_s;
+  record.times = {0.1, 0.2, 0.3, 0.4, 1.0};
+  record.peak_rss_mib = 31.25;
+  RunStatus status;
+  status.status = {RunState::lost, "2 tracks, 15 needed", 3.051, {{1.0, 1.5, "8 tracks"}}};
+  status.still = {{2.0, 2.5}};
+  status.pieces = {{0.2, 3.0, 281, 40}, {4.0, 30.0, 2601, 77}};
+  status.scored = 2;
+  status.complete = false;
+  record.status = status;
+  return record;
+}
+
+std::string message_of(const Json& metrics) {
+  try {
+    read_record(metrics, "m.json");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("A record that was read is written again with the same bytes") {
+  for (const RunRecord& record : {full_record(), RunRecord{}}) {
+    const std::string text = to_json(record).dump(2);
+    CHECK(to_json(read_record(Json::parse(text), "m.json")).dump(2) == text);
+  }
+  const RunRecord read = read_record(to_json(full_record()), "m.json");
+  CHECK(read.seed == 18446744073709551615U);
+  CHECK(read.key == "mine-0123456789");
+  CHECK(read.times->waiting == 0.3);
+  REQUIRE(read.status);
+  CHECK(read.status->status.state == RunState::lost);
+  CHECK(read.status->status.time == 3.051);
+  CHECK(read.status->pieces.at(1).landmarks == 77);
+  CHECK(read.status->scored == 2);
+  CHECK_FALSE(read.status->complete);
+}
+
+TEST_CASE("What an older version did not write yet is not known, and keys of a newer one are passed over") {
+  const RunRecord read = read_record(
+      {{"experiment", "e"}, {"label", "l"}, {"final", nullptr}, {"online", nullptr}, {"brand_new", 1}}, "m.json");
+  CHECK_FALSE(read.seed);
+  CHECK(read.key.empty());
+  CHECK_FALSE(read.times);
+  CHECK_FALSE(read.status);
+}
+
+TEST_CASE("A damaged metrics.json is refused with the file and the key") {
+  const auto with = [](const char* pointer, const Json& value) {
+    Json json = to_json(full_record());
+    json[Json::json_pointer(pointer)] = value;
+    return json;
+  };
+  CHECK(message_of(to_json(full_record())).empty());
+  CHECK_THAT(message_of(with("/seed", -1)), Contains("m.json: \"seed\" is -1; expected a whole number from 0 on"));
+  CHECK_THAT(message_of(with("/key", 3)), Contains("m.json: \"key\""));
+  CHECK_THAT(message_of(with("/runtime_s", "long")), Contains("m.json: \"runtime_s\" is \"long\"; expected a number"));
+  CHECK_THAT(message_of(with("/times/backend_s", nullptr)), Contains("m.json: times: \"backend_s\" is missing"));
+  CHECK_THAT(message_of(with("/range_s", {1})), Contains("m.json: \"range_s\" is [1]; expected two times"));
+  CHECK_THAT(message_of(with("/status", 3)), Contains("m.json: status: expected a JSON object"));
+  CHECK_THAT(message_of(with("/status/state", "fine")), Contains("\"state\" is \"fine\"; expected ok, degraded"));
+  CHECK_THAT(message_of(with("/status/pieces/1/from", "x")), Contains("m.json: status: pieces.1: \"from\""));
+  CHECK_THAT(message_of(with("/status/complete", "yes")), Contains("\"complete\" is \"yes\"; expected true or false"));
+  CHECK_THAT(message_of(with("/final", 3)), Contains("\"final\" is missing; expected scores or null"));
+}
+
+TEST_CASE("A run's folder is scored from its files, within the run's range, and says why where it can't be") {
+  const TemporaryFolder folder;
+  const PoseTrajectory truth = sample(wavy_pose, 400, 0.01);
+  folder.write("online.tum", "");
+  write_tum(folder.file("final.tum"), disturbed(truth));
+  RunRecord record = full_record();
+  record.range = {1.0, 3.0};
+  score_run(folder.path(), {}, record);
+  CHECK(record.final_unscored == "no ground truth");
+
+  write_tum(folder.file("groundtruth.tum"), truth);
+  score_run(folder.path(), {}, record);
+  CHECK(record.final_unscored.empty());
+  CHECK(record.final_scores.at("association").at("time_range_s") == Json{1.0, 3.0});
+  CHECK(record.final_scores.at("pairs") == 201);
+  CHECK(record.online_scores.is_null());
+  CHECK(record.online_unscored == "no trajectory: 2 tracks, 15 needed");
+
+  score_run(folder.path(), {.alignment = "se3", .time_range = {2.0, 9.0}}, record);
+  CHECK(record.final_scores.at("alignment").at("method") == "se3");
+  CHECK(record.final_scores.at("association").at("time_range_s") == Json{2.0, 3.0});
+  score_run(folder.path(), {.time_range = {5.0, 9.0}}, record);
+  CHECK_THAT(record.final_unscored, Contains("5 to 9 s, is outside of the run's, 1 to 3 s"));
+
+  folder.write("final.tum", "1 2 3\n");
+  CHECK_THROWS_WITH(score_run(folder.path(), {}, record), Contains("final.tum:1: has 3 columns"));
+  std::filesystem::remove(folder.file("final.tum"));
+  CHECK_THROWS_WITH(score_run(folder.path(), {}, record), Contains("final.tum: no such file"));
+}
+
+}  // namespace evbench

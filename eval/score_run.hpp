@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "eval/run_record.hpp"
+#include "eval/scores.hpp"
+
+namespace evbench {
+
+/// Scores what lies in a run's folder, final.tum and online.tum against groundtruth.tum: sets the record's scores, or
+/// why there are none (no groundtruth.tum, no trajectory, too few poses to compare). Ground truth outside of the
+/// record's range is not used. So the scores of a run are of what it wrote, and come out the same, digit by digit, when
+/// it is scored again. Throws InputError for files that are missing or damaged.
+void score_run(const std::string& folder, const ScoreOptions& options, RunRecord& record);
+
+}  // namespace evbench
