@@ -141,7 +141,6 @@ void ProcessBackEnd::take_final(const Json& answer) {
   if (const Json* const found = find(answer, "map")) map_ = landmarks(*found);
   const double end = updates_.empty() ? 0.0 : updates_.back().t;
   if (trajectory_.empty()) monitor_.fail(end, "the process has given no trajectory");
-  status_ = monitor_.status();
   const Json* const told = find(answer, "status");
   if (told != nullptr && !trajectory_.empty()) take_status(*told);
 }
@@ -152,7 +151,7 @@ void ProcessBackEnd::take_status(const Json& told) {
   check_keys(told, {"state", "reason", "time", "degraded"});
   Status result;
   result.state = run_state(require(told, "state"));
-  if (result.state < RunState::lost && status_.state == RunState::lost) {
+  if (result.state < RunState::lost && monitor_.status().state == RunState::lost) {
     throw MessageError("status.state: expected \"lost\" or \"failed\" of a process that has said that it is lost");
   }
   if (const Json* const found = find(told, "degraded")) result.degraded = degraded_spans(*found);
@@ -160,7 +159,7 @@ void ProcessBackEnd::take_status(const Json& told) {
     result.reason = text(require(told, "reason"), {"status.reason"});
     result.time = number(require(told, "time"), {"status.time"});
   }
-  status_ = std::move(result);
+  final_status_ = std::move(result);
 }
 
 }  // namespace evbench::process

@@ -22,7 +22,7 @@ class ProcessBackEnd : public BackEnd {
   Feedback feedback(const FeedbackNeeds& needs) override;
   void finish() override;
 
-  Status status() const override { return status_; }
+  Status status() const override { return final_status_.value_or(monitor_.status()); }
   PoseTrajectory trajectory() const override { return trajectory_; }
   std::vector<Landmark> map() const override { return map_; }
   std::span<const UpdateRecord> updates() const override { return updates_; }
@@ -39,7 +39,7 @@ class ProcessBackEnd : public BackEnd {
   TrackingMonitor monitor_;
   Feedback feedback_;                  ///< at the last batch's end; outliers since the last call of feedback()
   std::optional<StampedPose> online_;  ///< the last pose of the causal estimate
-  Status status_;
+  std::optional<Status> final_status_;
   PoseTrajectory trajectory_;
   std::vector<Landmark> map_;
   std::vector<UpdateRecord> updates_;

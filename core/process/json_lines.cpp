@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/process/line_tail.hpp"
 #include "core/support/nearest.hpp"
@@ -32,6 +33,28 @@ auto each(const Json& value, const char* key, Read read) {
   result.reserve(list(value, {key}).size());
   for (std::size_t i = 0; i < value.size(); ++i) result.push_back(read(value[i], Place{key, i}));
   return result;
+}
+
+/// The protocol's own names, which stay whatever people are shown.
+template <class Value>
+using Names = std::vector<std::pair<std::string, Value>>;
+
+const Names<TrackingState> kTrackingStates = {{"no_map", TrackingState::no_map},
+                                              {"tracking", TrackingState::tracking},
+                                              {"standing_still", TrackingState::standing_still},
+                                              {"degraded", TrackingState::degraded},
+                                              {"lost", TrackingState::lost}};
+
+template <class Value>
+Value named(const Json& value, const Place& place, const Names<Value>& names) {
+  const std::string name = text(value, place);
+  std::vector<std::string> known;
+  for (const auto& [candidate, meaning] : names) {
+    if (candidate == name) return meaning;
+    known.push_back(candidate);
+  }
+  throw MessageError(
+      fmt::format("{}: unknown state \"{}\"{}", place.text(), printable(name, 60), suggestion(name, known)));
 }
 
 void check_order(double before, double t, const Place& place) {
@@ -149,25 +172,18 @@ NewestPose newest(const Json& value) {
   return {pose(first, place), Vector6(v.data() + 8)};
 }
 
-TrackingState tracking_state(const Json& value) {
-  const std::string name = text(value, {"state"});
-  std::vector<std::string> names;
-  for (const auto state : {TrackingState::no_map, TrackingState::tracking, TrackingState::standing_still,
-                           TrackingState::degraded, TrackingState::lost}) {
-    names.push_back(to_string(state));
-    if (names.back() == name) return state;
-  }
-  throw MessageError(fmt::format("state: unknown state \"{}\"{}", printable(name, 60), suggestion(name, names)));
-}
+TrackingState tracking_state(const Json& value) { return named(value, {"state"}, kTrackingStates); }
 
 RunState run_state(const Json& value) {
-  const std::string name = text(value, {"status.state"});
-  std::vector<std::string> names;
-  for (const auto state : {RunState::ok, RunState::degraded, RunState::lost, RunState::failed}) {
-    names.push_back(to_string(state));
-    if (names.back() == name) return state;
-  }
-  throw MessageError(fmt::format("status.state: unknown state \"{}\"{}", printable(name, 60), suggestion(name, names)));
+  static const Names<RunState> names = {{"ok", RunState::ok},
+                                        {"degraded", RunState::degraded},
+                                        {"lost", RunState::lost},
+                                        {"failed", RunState::failed}};
+  return named(value, {"status.state"}, names);
+}
+
+std::string name_of(TrackingState state) {
+  return std::ranges::find(kTrackingStates, state, &Names<TrackingState>::value_type::second)->first;
 }
 
 Matrix12 covariance(const Json& value) {

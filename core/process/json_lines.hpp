@@ -84,6 +84,7 @@ NewestPose newest(const Json& value);
 
 TrackingState tracking_state(const Json& value);
 RunState run_state(const Json& value);
+std::string name_of(TrackingState state);
 Matrix12 covariance(const Json& value);                                    ///< 144 numbers, symmetric
 std::vector<ExpectedFeature> expected_features(const Json& value);        ///< [[track, x, y, z, u, v, Σuu, Σuv, Σvv]]
 std::vector<TrackObservation> observations(const Json& value);            ///< [[track, t, u, v, sigma]], time order

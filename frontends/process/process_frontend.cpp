@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/plugin/registration.hpp"
+#include "core/support/error.hpp"
 
 namespace evbench::process {
 namespace {
