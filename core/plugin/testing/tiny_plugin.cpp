@@ -1,5 +1,6 @@
 // A plugin of its own library, for library.test.cpp: back-ends that estimate nothing.
 #include "core/plugin/registration.hpp"
+#include "core/support/error.hpp"
 
 namespace {
 
