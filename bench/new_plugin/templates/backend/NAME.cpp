@@ -27,6 +27,7 @@ class ClassName : public evbench::BackEnd {
  public:
   struct Options {
     double period = 0.05, window = 0.06, huber_px = 1.5, outlier_px = 5.0;
+    double clear_parallax_deg = 8.0;
     int views = 30, min_landmarks = 8;
     InitialiserOptions initialiser;
 
@@ -35,6 +36,9 @@ class ClassName : public evbench::BackEnd {
       set.add("window", window, "time over which a track's observations give its place [s]").range(0.001, 1.0);
       set.add("huber_px", huber_px, "error from which on an observation counts less [px]").above(0.0);
       set.add("outlier_px", outlier_px, "error from which on a track is dropped [px]").above(0.0);
+      set.add("clear_parallax_deg", clear_parallax_deg,
+              "parallax with which the better of two first maps is taken [deg]")
+          .range(0.0);
       set.add("views", views, "views that landmarks are triangulated from").range(2);
       set.add("min_landmarks", min_landmarks, "landmarks in sight that a pose needs").range(4);
       set.group("initialiser", initialiser, "the first map");
@@ -213,7 +217,11 @@ class ClassName : public evbench::BackEnd {
       if (!known) trials.push_back(std::move(trial));
     }
     std::ranges::sort(trials, {}, &Trial::error);
-    if (trials.empty() || (trials.size() > 1 && trials[1].error < 1.1 * trials[0].error)) {
+    // A scene that is flat or far has two motions that explain it about as well; many views decide between them.
+    const bool clear =
+        trials.size() == 1 || (trials.size() > 1 && trials[1].error > 1.1 * trials[0].error) ||
+        (!trials.empty() && attempt.candidates.front().median_parallax_deg > options_.clear_parallax_deg);
+    if (!clear) {
       if (!attempt.candidates.empty()) waiting_for_ = "no motion explains the first views better than all others";
       return false;
     }
