@@ -8,7 +8,8 @@
 # conformance battery (bench/battery/). Left out, with a line that says so, where Catch2 or evbench's part for it is not.
 #
 # The plugin has a copy of its own of all of evbench that it uses, and shows nothing of it, so that it and the program
-# don't mix. It has the flags on which the layout of exchanged objects depends: those that evbench was built with.
+# don't mix: state that the program keeps (further formats of events, a request to end) is not the copy's. It is built
+# with the flags on which the layout of exchanged objects depends: those that evbench was built with.
 function(evbench_add_plugin name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "FOLDER" "SOURCES;LINKS;TESTS")
   if(ARG_UNPARSED_ARGUMENTS)

@@ -5,7 +5,7 @@
 
 using namespace evbench;
 
-TEST_CASE("NAME does what every frontend must do") {
+TEST_CASE("NAME does what every front-end must do") {
   const Plugins plugins = registered_plugins();
   for (const Check& check : frontend_checks(plugins, "NAME", Json::object())) {
     INFO(check.name);
