@@ -5,6 +5,7 @@
 
 #include "core/plugin/abi.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/support/error.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
