@@ -25,8 +25,8 @@ Json greeting(const ProcessOptions& options, const BackEndContext& context) {
 
 void check_not_later(double t, double until, const Place& place) {
   if (t > until) {
-    throw MessageError(fmt::format("{}: time {} s is later than what has been seen; expected at most {} s", place.text(),
-                                   t, until));
+    throw MessageError(
+        fmt::format("{}: time {} s is later than what has been seen; expected at most {} s", place.text(), t, until));
   }
 }
 

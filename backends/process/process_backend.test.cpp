@@ -97,8 +97,9 @@ TEST_CASE("A back-end process is told camera, observations and ended tracks, and
   Session session(kStraight);
   session.go();
   CHECK_THAT(session.log, Contains("back-end process: straight on"));
-  CHECK_THAT(session.log, Contains(R"("kind": "backend", "seed": 18446744073709551615, "patience": 1.0, "camera": )"
-                                   R"({"fx": 500.0, "fy": 510.0, "cx": 320.0, "cy": 240.0}, "options": {"a": [1, null]}})"));
+  CHECK_THAT(session.log,
+             Contains(R"("kind": "backend", "seed": 18446744073709551615, "patience": 1.0, "camera": )"
+                      R"({"fx": 500.0, "fy": 510.0, "cx": 320.0, "cy": 240.0}, "options": {"a": [1, null]}})"));
   CHECK_THAT(session.log, Contains(R"({"until": 0.1, "observations": [[1, 0.05, 1.5, 2.5, 0.7]], "ended": [[1, 0.09)"));
   REQUIRE(session.online.size() == 3);
   CHECK(session.online[2].t == 0.1 * 3);  // to the last bit
@@ -159,7 +160,8 @@ TEST_CASE("The status of a run follows from the states that a process answers") 
 }
 
 TEST_CASE("A back-end process that is lost says so before the end") {
-  Session session("say({'evbench': 1})\nhear()\nsay({'state': 'lost', 'reason': 'fog'})\nhear()\nsay({'trajectory': []})");
+  Session session(
+      "say({'evbench': 1})\nhear()\nsay({'state': 'lost', 'reason': 'fog'})\nhear()\nsay({'trajectory': []})");
   session.backend->advance({{}, {}, 0.1});
   CHECK(session.backend->status().state == RunState::lost);
   CHECK(session.backend->status().reason == "fog");
@@ -167,27 +169,33 @@ TEST_CASE("A back-end process that is lost says so before the end") {
 
 TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence") {
   CHECK(failure("{'state': 'tracking', 'online': [pose(t, 0)]}").empty());
-  CHECK_THAT(failure("{'state': 'tracking', 'online': [pose(float('nan'), 0)]}"),
-             Contains("config.json: backend: the process \"/usr/bin/python3 backend.py\" answered wrongly: expected one "
-                      "JSON object a line, found {\"state\": \"tracking\", \"online\": [[NaN") &&
-                 Contains("JSON has no NaN") && Contains("it had been told the batch until 0.1 s") &&
-                 Contains("it wrote nothing to its standard error"));
+  CHECK_THAT(
+      failure("{'state': 'tracking', 'online': [pose(float('nan'), 0)]}"),
+      Contains("config.json: backend: the process \"/usr/bin/python3 backend.py\" answered wrongly: expected one "
+               "JSON object a line, found {\"state\": \"tracking\", \"online\": [[NaN") &&
+          Contains("JSON has no NaN") && Contains("it had been told the batch until 0.1 s") &&
+          Contains("it wrote nothing to its standard error"));
   CHECK_THAT(failure("{}"), Contains("\"state\" is missing"));
   CHECK_THAT(failure("7"), Contains("expected a JSON object, found 7"));
   CHECK_THAT(failure("{'state': 'fine'}"), Contains("unknown state \"fine\""));
   CHECK_THAT(failure("{'state': 'tracking', 'outlier': []}"), Contains("unknown key \"outlier\"; did you mean"));
   CHECK_THAT(failure("{'state': 'tracking', 'online': [pose(t + 0.1, 0)]}"), Contains("later than what has been seen"));
-  CHECK_THAT(failure("{'state': 'tracking', 'online': [pose(0, 0)]}"), Contains("not after that of the last pose told"));
-  CHECK_THAT(failure("{'state': 'tracking', 'online': [[t, 0, 0, 0, 0, 0, 0, 2]]}"), Contains("quaternion's norm is 2"));
+  CHECK_THAT(failure("{'state': 'tracking', 'online': [pose(0, 0)]}"),
+             Contains("not after that of the last pose told"));
+  CHECK_THAT(failure("{'state': 'tracking', 'online': [[t, 0, 0, 0, 0, 0, 0, 2]]}"),
+             Contains("quaternion's norm is 2"));
   CHECK_THAT(failure("{'state': 'tracking', 'online': [[t, 0, 0, 0, 0, 0, 1]]}"), Contains("expected 8 numbers"));
   CHECK_THAT(failure("{'state': 'tracking', 'covariance': [0] * 144}"), Contains("expected \"newest\" with it"));
   CHECK_THAT(failure("{'state': 'tracking' if t < 0.15 else 'no_map'}"), Contains("expected \"lost\""));
   CHECK_THAT(failure("{'error': 'I can not see'}"), Contains("says: I can not see; it had been told the batch"));
   const std::string good = "{'state': 'tracking'}";
-  CHECK_THAT(failure(good, "{}"), Contains("\"trajectory\" is missing") && Contains("had been told that this is the end"));
+  CHECK_THAT(failure(good, "{}"),
+             Contains("\"trajectory\" is missing") && Contains("had been told that this is the end"));
   CHECK_THAT(failure(good, "{'trajectory': [pose(1, 0), pose(1, 0)]}"), Contains("strictly increasing"));
-  CHECK_THAT(failure(good, "{'trajectory': [], 'map': [[1, 2]]}"), Contains("map[0]: expected 4 numbers (track x y z)"));
-  CHECK_THAT(failure(good, "{'trajectory': [pose(0, 0)], 'status': {'state': 'lost'}}"), Contains("\"reason\" is missing"));
+  CHECK_THAT(failure(good, "{'trajectory': [], 'map': [[1, 2]]}"),
+             Contains("map[0]: expected 4 numbers (track x y z)"));
+  CHECK_THAT(failure(good, "{'trajectory': [pose(0, 0)], 'status': {'state': 'lost'}}"),
+             Contains("\"reason\" is missing"));
 }
 
 TEST_CASE("A back-end process of another version, or of none, is refused") {
@@ -203,13 +211,16 @@ TEST_CASE("A back-end process that crashes, ends or keeps silent fails with the 
                  Contains("\n  ValueError: an odd track"));
   CHECK_THAT(failure_of("say({'evbench': 1})\nhear()\nimport os; os.kill(os.getpid(), 11)"),
              Contains("was ended by signal 11 (Segmentation fault)"));
-  CHECK_THAT(failure_of("say({'evbench': 1})\nhear()\nprint('hm', file=sys.stderr, flush=True)\nimport time; time.sleep(60)",
-                        R"(, "timeout": 0.3)"),
-             Contains("did not answer within 0.3 s (is each of its lines flushed?)") && Contains("\n  hm"));
-  CHECK_THAT(failure_of("say({'evbench': 1})\nfor i in range(100000): print('line', i, file=sys.stderr)\nhear()\nsay(1)"),
-             Contains("(99980 lines before these)\n  line 99980\n") && Contains("line 99999"));
-  CHECK_THAT(failure_of("say({'evbench': 1})\nsay({'state': 'tracking'})\nimport time; time.sleep(0.1)\nhear(); hear()"),
-             Contains("before it was asked") || Contains("ended"));
+  CHECK_THAT(
+      failure_of("say({'evbench': 1})\nhear()\nprint('hm', file=sys.stderr, flush=True)\nimport time; time.sleep(60)",
+                 R"(, "timeout": 0.3)"),
+      Contains("did not answer within 0.3 s (is each of its lines flushed?)") && Contains("\n  hm"));
+  CHECK_THAT(
+      failure_of("say({'evbench': 1})\nfor i in range(100000): print('line', i, file=sys.stderr)\nhear()\nsay(1)"),
+      Contains("(99980 lines before these)\n  line 99980\n") && Contains("line 99999"));
+  CHECK_THAT(
+      failure_of("say({'evbench': 1})\nsay({'state': 'tracking'})\nimport time; time.sleep(0.1)\nhear(); hear()"),
+      Contains("before it was asked") || Contains("ended"));
 }
 
 TEST_CASE("A back-end process that has failed stays failed") {

@@ -204,9 +204,8 @@ void ChildProcess::read_errors() {
 /// Waits until one of the pipes can be served, and serves it.
 void ChildProcess::serve(std::string_view& unsent, int milliseconds) {
   // poll() leaves out what has a negative number: what is closed, and the input when there is nothing to be written.
-  pollfd pipes[3] = {{output_.number(), POLLIN, 0},
-                     {error_.number(), POLLIN, 0},
-                     {unsent.empty() ? -1 : input_.number(), POLLOUT, 0}};
+  pollfd pipes[3] = {
+      {output_.number(), POLLIN, 0}, {error_.number(), POLLIN, 0}, {unsent.empty() ? -1 : input_.number(), POLLOUT, 0}};
   if (::poll(pipes, std::size(pipes), milliseconds) <= 0) return;
   if (pipes[0].revents != 0) read_answer();
   if (pipes[1].revents != 0) read_errors();
@@ -217,8 +216,8 @@ std::optional<std::string> ChildProcess::take_line(std::size_t longest) {
   const std::size_t end = received_.find('\n', searched_);
   searched_ = std::min(end, received_.size());
   if (searched_ > longest) {
-    throw ProcessError(fmt::format("wrote a line of more than {} bytes, which begins with: {}", longest,
-                                   printable(received_, 100)));
+    throw ProcessError(
+        fmt::format("wrote a line of more than {} bytes, which begins with: {}", longest, printable(received_, 100)));
   }
   if (end == std::string::npos) return std::nullopt;
   std::string line = received_.substr(0, end);

@@ -126,9 +126,7 @@ TEST_CASE("All processes that a child has started end with it") {
   }
   // Whoever adopts it reaps it; a zombie has no command line.
   const std::string command_line = "/proc/" + std::to_string(grandchild) + "/cmdline";
-  CHECK(comes_true([&] {
-    return !std::filesystem::exists(command_line) || testing::read_file(command_line).empty();
-  }));
+  CHECK(comes_true([&] { return !std::filesystem::exists(command_line) || testing::read_file(command_line).empty(); }));
 }
 
 TEST_CASE("Children do not inherit one another's pipes, nor files that are open") {

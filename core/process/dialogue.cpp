@@ -36,8 +36,8 @@ void Dialogue::fail(const std::string& what, const std::string& about) {
   if (failure_.empty()) {
     failure_ = fmt::format("{}: the process \"{}\" {}; it had been told {}", place_, command_, what, about);
     const std::string last = errors();
-    failure_ += last.empty() ? "; it wrote nothing to its standard error"
-                             : "; the last lines of its standard error:" + last;
+    failure_ +=
+        last.empty() ? "; it wrote nothing to its standard error" : "; the last lines of its standard error:" + last;
     process_->kill();
   }
   throw ProcessError(failure_);
@@ -52,8 +52,8 @@ Json Dialogue::open(Json greeting, std::initializer_list<std::string> keys) {
   return ask(line, "what it takes part in", [&](const Json& answer) {
     const Json& version = require(answer, "evbench");
     if (version != kVersion) {
-      throw MessageError(
-          fmt::format("evbench: it speaks version {} of the protocol; expected {}", printable(version.dump(), 40), kVersion));
+      throw MessageError(fmt::format("evbench: it speaks version {} of the protocol; expected {}",
+                                     printable(version.dump(), 40), kVersion));
     }
     std::vector<std::string> known = {"evbench", "name"};
     known.insert(known.end(), keys);
@@ -63,8 +63,6 @@ Json Dialogue::open(Json greeting, std::initializer_list<std::string> keys) {
   });
 }
 
-std::string Dialogue::errors() const {
-  return process_->errors().empty() ? "" : process_->errors().text("  ");
-}
+std::string Dialogue::errors() const { return process_->errors().empty() ? "" : process_->errors().text("  "); }
 
 }  // namespace evbench::process

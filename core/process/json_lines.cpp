@@ -115,8 +115,8 @@ std::int64_t integer(const Json& value, const Place& place) {
     }
     return static_cast<std::int64_t>(result);
   }
-  const bool too_large =
-      value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()};
+  const bool too_large = value.is_number_unsigned() &&
+                         value.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()};
   if (!value.is_number() || too_large) unexpected(value, "an integer of 64 bits with sign", place);
   return value.get<std::int64_t>();
 }
@@ -156,9 +156,10 @@ std::vector<StampedPose> poses(const Json& value, const char* key) {
   std::vector<StampedPose> result = each(value, key, pose);
   for (std::size_t i = 1; i < result.size(); ++i) {
     if (result[i - 1].t < result[i].t) continue;
-    throw MessageError(fmt::format("{}[{}]: time {} s is not after that of the one before it, {} s; expected strictly "
-                                   "increasing times",
-                                   key, i, result[i].t, result[i - 1].t));
+    throw MessageError(
+        fmt::format("{}[{}]: time {} s is not after that of the one before it, {} s; expected strictly "
+                    "increasing times",
+                    key, i, result[i].t, result[i - 1].t));
   }
   return result;
 }
@@ -175,10 +176,8 @@ NewestPose newest(const Json& value) {
 TrackingState tracking_state(const Json& value) { return named(value, {"state"}, kTrackingStates); }
 
 RunState run_state(const Json& value) {
-  static const Names<RunState> names = {{"ok", RunState::ok},
-                                        {"degraded", RunState::degraded},
-                                        {"lost", RunState::lost},
-                                        {"failed", RunState::failed}};
+  static const Names<RunState> names = {
+      {"ok", RunState::ok}, {"degraded", RunState::degraded}, {"lost", RunState::lost}, {"failed", RunState::failed}};
   return named(value, {"status.state"}, names);
 }
 

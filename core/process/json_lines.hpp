@@ -85,11 +85,11 @@ NewestPose newest(const Json& value);
 TrackingState tracking_state(const Json& value);
 RunState run_state(const Json& value);
 std::string name_of(TrackingState state);
-Matrix12 covariance(const Json& value);                                    ///< 144 numbers, symmetric
-std::vector<ExpectedFeature> expected_features(const Json& value);        ///< [[track, x, y, z, u, v, Σuu, Σuv, Σvv]]
-std::vector<TrackObservation> observations(const Json& value);            ///< [[track, t, u, v, sigma]], time order
-std::vector<TrackEnd> track_ends(const Json& value);                      ///< [[track, t]], time order
-std::vector<Landmark> landmarks(const Json& value);                       ///< [[track, x, y, z]]
-std::vector<DegradedSpan> degraded_spans(const Json& value);              ///< [[from, to, reason]]
+Matrix12 covariance(const Json& value);                             ///< 144 numbers, symmetric
+std::vector<ExpectedFeature> expected_features(const Json& value);  ///< [[track, x, y, z, u, v, Σuu, Σuv, Σvv]]
+std::vector<TrackObservation> observations(const Json& value);      ///< [[track, t, u, v, sigma]], time order
+std::vector<TrackEnd> track_ends(const Json& value);                ///< [[track, t]], time order
+std::vector<Landmark> landmarks(const Json& value);                 ///< [[track, x, y, z]]
+std::vector<DegradedSpan> degraded_spans(const Json& value);        ///< [[from, to, reason]]
 
 }  // namespace evbench::process

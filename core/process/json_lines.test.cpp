@@ -31,8 +31,10 @@ TEST_CASE("Observations read as the same numbers that were written") {
   double t = 0.0;
   for (int i = 0; i < 1000; ++i) {
     t += std::exp(5.0 * normal(random) - 8.0);
-    batch.observations.push_back({static_cast<TrackId>(random() >> 1U), t,
-                                  {1e3 * normal(random), std::exp(30.0 * normal(random))}, std::exp(normal(random))});
+    batch.observations.push_back({static_cast<TrackId>(random() >> 1U),
+                                  t,
+                                  {1e3 * normal(random), std::exp(30.0 * normal(random))},
+                                  std::exp(normal(random))});
     batch.ended.push_back({i, t});
   }
   batch.until = t;

@@ -27,7 +27,8 @@ std::vector<std::string> possible_names(const Json& command) {
   } else if (is_text(command)) {
     std::string plain = command.get<std::string>();
     std::erase_if(plain, [](char c) { return c == '"' || c == '\''; });
-    std::ranges::replace_if(plain, [](char c) { return std::string_view(";|&<>()").find(c) != std::string::npos; }, ' ');
+    std::ranges::replace_if(
+        plain, [](char c) { return std::string_view(";|&<>()").find(c) != std::string::npos; }, ' ');
     std::istringstream words(plain);
     for (std::string word; words >> word;) names.push_back(word);
   }
@@ -76,9 +77,10 @@ std::vector<std::string> command_words(const Json& command, const std::string& p
   const bool words = command.is_array() && !command.empty() && std::ranges::all_of(command, is_text) &&
                      !command[0].get_ref<const std::string&>().empty();
   if (!words) {
-    throw InputError(fmt::format("{}.command: expected a list of texts (a program and its arguments) or one text for "
-                                 "the shell, found {}",
-                                 place, printable(command.dump(), 60)));
+    throw InputError(
+        fmt::format("{}.command: expected a list of texts (a program and its arguments) or one text for "
+                    "the shell, found {}",
+                    place, printable(command.dump(), 60)));
   }
   return command.get<std::vector<std::string>>();
 }

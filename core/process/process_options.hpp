@@ -9,11 +9,11 @@ namespace evbench::process {
 
 /// The options that plugins which are processes have in common.
 struct ProcessOptions {
-  Json command;                    ///< a list of words, or one text for the shell
-  std::string folder = ".";        ///< where it runs
+  Json command;                     ///< a list of words, or one text for the shell
+  std::string folder = ".";         ///< where it runs
   Json more_files = Json::array();  ///< "files"
-  double timeout = 60.0;           ///< [s]
-  Json options = Json::object();   ///< told to the process as they are
+  double timeout = 60.0;            ///< [s]
+  Json options = Json::object();    ///< told to the process as they are
 
   void declare(OptionSet& set);
 

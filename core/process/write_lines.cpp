@@ -45,9 +45,8 @@ void put_newest(Line& line, const ControlState& state) {
 
 void write_events(Line& line, std::span<const Event> events) {
   // Divided, not multiplied by 1e-6: so that 12345 µs read as 0.012345 s.
-  put_list(line, events, [&](const Event& e) {
-    put(line, "[{},{},{},{}]", static_cast<double>(e.t) / 1e6, e.x, e.y, e.on ? 1 : 0);
-  });
+  put_list(line, events,
+           [&](const Event& e) { put(line, "[{},{},{},{}]", static_cast<double>(e.t) / 1e6, e.x, e.y, e.on ? 1 : 0); });
 }
 
 int write_batch(Line& line, const TrackBatch& batch) {

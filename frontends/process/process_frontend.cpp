@@ -44,8 +44,8 @@ FeedbackNeeds read_needs(const Json& value) {
   for (std::size_t i = 0; i < list(value, {"needs"}).size(); ++i) {
     const std::string name = text(value[i], {"needs", i});
     if (name != "feedback" && name != "covariance" && name != "expected") {
-      throw MessageError(fmt::format("needs[{}]: expected \"feedback\", \"covariance\" or \"expected\", found \"{}\"", i,
-                                     printable(name, 60)));
+      throw MessageError(fmt::format("needs[{}]: expected \"feedback\", \"covariance\" or \"expected\", found \"{}\"",
+                                     i, printable(name, 60)));
     }
     needs.any = true;
     needs.covariance = needs.covariance || name == "covariance";
@@ -68,9 +68,10 @@ ProcessFrontEnd::ProcessFrontEnd(const Options& options, const FrontEndContext& 
       stream_(context.source.events()),
       seen_(range_.from) {
   if (!stream_) {
-    throw InputError(fmt::format("{}: process needs a source with events; expected another front-end (oracle, recorded) "
-                                 "for this one, which has tracks alone",
-                                 context.place));
+    throw InputError(
+        fmt::format("{}: process needs a source with events; expected another front-end (oracle, recorded) "
+                    "for this one, which has tracks alone",
+                    context.place));
   }
   open(options, context);
 }
@@ -131,7 +132,8 @@ void ProcessFrontEnd::tell_chunk(double until) {
   fmt::format_to(std::back_inserter(line), "{{\"until\":{},\"events\":", until);
   write_events(line, std::span(events_).subspan(told_, end - told_));
   if (needs_.any) {
-    fmt::format_to(std::back_inserter(line), ",\"feedback\":[{}]", std::string_view(feedback_.data(), feedback_.size()));
+    fmt::format_to(std::back_inserter(line), ",\"feedback\":[{}]",
+                   std::string_view(feedback_.data(), feedback_.size()));
     feedback_.clear();
   }
   line.push_back('}');

@@ -48,12 +48,12 @@ class ProcessFrontEnd : public FrontEnd {
   std::unique_ptr<EventStream> stream_;  ///< nullptr at its end
   std::vector<Event> events_;            ///< read, from told_ on not yet told
   std::size_t told_ = 0;
-  double seen_;                       ///< [s] the process has answered up to here
-  bool seen_any_ = false;             ///< before, even what is of the time seen_ is new
+  double seen_;            ///< [s] the process has answered up to here
+  bool seen_any_ = false;  ///< before, even what is of the time seen_ is new
   bool finished_ = false;
 
-  std::deque<TrackObservation> observations_;  ///< answered, not yet handed over
-  std::deque<TrackEnd> ends_;                  ///< likewise
+  std::deque<TrackObservation> observations_;   ///< answered, not yet handed over
+  std::deque<TrackEnd> ends_;                   ///< likewise
   std::unordered_map<TrackId, double> newest_;  ///< [s] last observation of each live track
   std::unordered_set<TrackId> dead_;
   std::vector<std::string> remarks_;

@@ -95,8 +95,8 @@ class Session {
     options.command = {"/usr/bin/python3", "frontend.py"};
     options.chunk = chunk;
     options.timeout = 20.0;
-    frontend = std::make_unique<ProcessFrontEnd>(
-        options, FrontEndContext{source_, 7, folder_.path(), "config.json: frontend"});
+    frontend = std::make_unique<ProcessFrontEnd>(options,
+                                                 FrontEndContext{source_, 7, folder_.path(), "config.json: frontend"});
   }
 
   struct Result {
@@ -215,7 +215,8 @@ TEST_CASE("Each way in which a front-end process can answer wrongly is a sentenc
   CHECK_THAT(failure("{'observations': [], 'end': []}"), Contains("unknown key \"end\"; did you mean \"ended\"?"));
   CHECK_THAT(failure("{'observations': [[1, t + 0.1, 5, 5, 1]]}"),
              Contains("observations[0]: track 1 at 0.35 s: expected a time from 0 s and up to 0.25 s"));
-  CHECK_THAT(failure("{'observations': [[1, 0.25, 5, 5, 1]]}"), Contains("expected a time after 0.25 s and up to 0.5 s"));
+  CHECK_THAT(failure("{'observations': [[1, 0.25, 5, 5, 1]]}"),
+             Contains("expected a time after 0.25 s and up to 0.5 s"));
   CHECK_THAT(failure("{'observations': [[1, t, 5, 5, 1], [1, t, 6, 6, 1]]}"),
              Contains("observations[1]: track 1 at 0.25 s: expected a time after the track's last, 0.25 s"));
   CHECK_THAT(failure("{'observations': [[1, t, 5, 5, 1]], 'ended': [[1, t]]}"),
