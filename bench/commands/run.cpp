@@ -65,7 +65,8 @@ class Runs {
         ground_truth_(ground_truth_tum(source)) {}
 
   void tell_complete() const {
-    const auto complete = std::ranges::count_if(runs_, [&](const PlannedRun& run) { return complete_run(run); });
+    const auto complete =
+        std::ranges::count_if(runs_, [&](const PlannedRun& run) { return complete_run(run).has_value(); });
     if (complete == 0 || arguments_.quiet) return;
     fmt::print("complete already: {} of {} (--force does them again)\n", complete, runs_.size());
     std::fflush(stdout);
