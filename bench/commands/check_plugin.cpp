@@ -21,7 +21,6 @@ namespace {
 using namespace battery;
 
 constexpr int kExitFailed = 3;
-constexpr const char* kBuiltIn = "built in";
 
 /// A kind of plugin: the names that there are, with their origins, and its battery.
 struct Kind {
