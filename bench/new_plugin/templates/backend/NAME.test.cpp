@@ -7,7 +7,7 @@ using namespace evbench;
 
 TEST_CASE("NAME does what every back-end must do") {
   const Plugins plugins = registered_plugins();
-  for (const Check& check : backend_checks(plugins, "NAME", Json::object())) {
+  for (const battery::Check& check : battery::backend_checks(plugins, "NAME")) {
     INFO(check.name);
     CHECK_NOTHROW(check.run());
   }

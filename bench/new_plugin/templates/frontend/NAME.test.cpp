@@ -7,7 +7,8 @@ using namespace evbench;
 
 TEST_CASE("NAME does what every front-end must do") {
   const Plugins plugins = registered_plugins();
-  for (const Check& check : frontend_checks(plugins, "NAME", Json::object())) {
+  for (const battery::Check& check :
+       battery::frontend_checks(plugins, "NAME", Json::object(), battery::usual_source())) {
     INFO(check.name);
     CHECK_NOTHROW(check.run());
   }

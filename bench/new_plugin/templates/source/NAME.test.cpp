@@ -7,7 +7,7 @@ using namespace evbench;
 
 TEST_CASE("NAME does what every source must do") {
   const Plugins plugins = registered_plugins();
-  for (const Check& check : source_checks(plugins, "NAME", Json::object())) {
+  for (const battery::Check& check : battery::source_checks(plugins, "NAME", Json::object())) {
     INFO(check.name);
     CHECK_NOTHROW(check.run());
   }
