@@ -87,8 +87,9 @@ std::optional<FirstMap> FirstMapFinder::refine(const TrackBuffer& tracks, const 
   }
   const double baseline = (map.spline.pose(guess.t1).p - map.spline.pose(guess.t0).p).norm();
   map.gauge = {map.spline.pose(map.spline.start()), guess.t0, guess.t1, baseline};
-  const SolveReport report = solve(map.spline, map.landmarks, camera_, map.gauge, {0, map.spline.start()},
-                                   options_.solver(refine_iterations, 1e-6));
+  const SolveReport report =
+      solve(map.spline, map.landmarks, options_.densities(map.spline, map.spline.start()), camera_, map.gauge,
+            {0, map.spline.start()}, options_.solver(refine_iterations, 1e-6));
   if (!report.usable || report.observations == 0) return std::nullopt;
   std::vector<double> errors;
   for (const auto& [id, landmark] : map.landmarks) errors.push_back(mean_error(landmark, map.spline, camera_));

@@ -8,9 +8,11 @@ namespace spline_map {
 
 struct Options {
   // Trajectory.
-  double knot_spacing = 0.1;         ///< [s]
+  double knot_spacing = 0.05;        ///< [s]
   double rotation_density = 1.0;     ///< [rad²/s³]
   double translation_density = 1.0;  ///< [units²/s³]
+  double density_weight = 1.0;       ///< [knots]
+  double density_radius = 0.75;      ///< [s]
   // Running.
   double update_period = 0.05;  ///< [s]
   double window = 1.5;          ///< [s]
@@ -33,18 +35,26 @@ struct Options {
   int lost_landmarks = 3;
 
   SolverOptions solver(int most_iterations, double tolerance) const {
-    return {rotation_density, translation_density, loss, loss_width, most_iterations, tolerance};
+    return {loss, loss_width, most_iterations, tolerance};
+  }
+  /// Of a spline that is an estimate up to t_end.
+  std::vector<MotionDensity> densities(const Spline& spline, double t_end) const {
+    return learn_densities(spline, t_end, density_radius, {rotation_density, translation_density}, density_weight);
   }
 
   void declare(evbench::OptionSet& set) {
     set.add("knot_spacing", knot_spacing, "time between two knots of the spline [s]").range(0.005, 2.0);
     set.add("rotation_density", rotation_density,
-            "power spectral density of the white noise that angular accelerations are taken for: smaller is smoother "
-            "[rad^2/s^3]")
+            "power spectral density of the white noise that angular accelerations are taken for, before any is seen: "
+            "smaller is smoother [rad^2/s^3]")
         .above(0.0);
     set.add("translation_density", translation_density,
             "the same of linear accelerations; a unit is the median depth of the first map [units^2/s^3]")
         .above(0.0);
+    set.add("density_weight", density_weight,
+            "the densities are learnt from the estimated motion; those expected count like this many knots")
+        .above(0.0);
+    set.add("density_radius", density_radius, "learnt from knots this far to both sides [s]").above(0.0);
     set.add("update_period", update_period, "time between two estimates while running [s]").range(0.005, 1.0);
     set.add("window", window, "knots of the newest seconds are optimised while running, older ones held [s]")
         .above(0.0);

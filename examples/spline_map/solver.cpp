@@ -44,11 +44,10 @@ class Solve {
         options_(options),
         first_segment_(scope.first_knot < segment_knots ? 0 : scope.first_knot - segment_knots + 1),
         loss_(make_loss(options)),
-        acceleration_(options.rotation_density, options.translation_density, spline.spacing()),
         segments_(spline, first_segment_),
         problem_(problem_options(&segments_)) {}
 
-  void add_knots();
+  void add_knots(const std::vector<MotionDensity>& densities);
   void add_gauge(const Gauge& gauge);
   void add_landmarks(const Landmarks& landmarks);
   SolveReport run(Landmarks& landmarks);
@@ -64,7 +63,7 @@ class Solve {
   std::size_t first_segment_;  ///< the first that depends on a variable knot
   std::unique_ptr<ceres::LossFunction> loss_;
   KnotManifold manifold_;
-  AccelerationCost acceleration_;
+  std::deque<AccelerationCost> accelerations_;
   std::unique_ptr<PoseAnchorCost> pose_anchor_;
   std::unique_ptr<BaselineCost> baseline_;
   std::deque<ReprojectionCost> costs_;  // deques: what they hold stays where it is
@@ -75,7 +74,7 @@ class Solve {
   SolveReport report_;
 };
 
-void Solve::add_knots() {
+void Solve::add_knots(const std::vector<MotionDensity>& densities) {
   const std::size_t count = spline_.knots().size();
   for (std::size_t k = first_segment_; k < count; ++k) {
     problem_.AddParameterBlock(knot(k), 7, &manifold_);
@@ -83,7 +82,8 @@ void Solve::add_knots() {
   }
   for (std::size_t k = std::max<std::size_t>(first_segment_, 1); k + 1 < count; ++k) {
     if (k + 1 < scope_.first_knot) continue;
-    problem_.AddResidualBlock(&acceleration_, nullptr, knot(k - 1), knot(k), knot(k + 1));
+    accelerations_.emplace_back(densities[k].rotation, densities[k].translation, spline_.spacing());
+    problem_.AddResidualBlock(&accelerations_.back(), nullptr, knot(k - 1), knot(k), knot(k + 1));
   }
   report_.knots = static_cast<int>(count - scope_.first_knot);
 }
@@ -168,10 +168,11 @@ SolveReport Solve::run(Landmarks& landmarks) {
 
 }  // namespace
 
-SolveReport solve(Spline& spline, Landmarks& landmarks, const evbench::PinholeCamera& camera, const Gauge& gauge,
-                  const SolveScope& scope, const SolverOptions& options) {
+SolveReport solve(Spline& spline, Landmarks& landmarks, const std::vector<MotionDensity>& densities,
+                  const evbench::PinholeCamera& camera, const Gauge& gauge, const SolveScope& scope,
+                  const SolverOptions& options) {
   Solve problem(spline, camera, scope, options);
-  problem.add_knots();
+  problem.add_knots(densities);
   problem.add_gauge(gauge);
   problem.add_landmarks(landmarks);
   return problem.run(landmarks);

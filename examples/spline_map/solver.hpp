@@ -3,6 +3,7 @@
 #include <string>
 
 #include "landmarks.hpp"
+#include "motion_prior.hpp"
 
 namespace spline_map {
 
@@ -15,8 +16,6 @@ struct Gauge {
 };
 
 struct SolverOptions {
-  double rotation_density = 1.0;     ///< of the white noise that accelerations are taken for [rad²/s³]
-  double translation_density = 1.0;  ///< [units²/s³]
   std::string loss = "cauchy";
   double loss_width = 2.0;  ///< whitened reprojection error where the loss turns from quadratic [sigmas]
   int iterations = 10;
@@ -36,10 +35,11 @@ struct SolveReport {
 };
 
 /// Least squares over the knots from scope.first_knot on and all landmarks that these see: every observation at its own
-/// time under a robust loss, a penalty on accelerations, the gauge where the first knots are variable. Observations
-/// from held knots hold their landmarks in place. Ceres: Levenberg-Marquardt on the Schur complement, one thread, so
-/// that it is deterministic.
-SolveReport solve(Spline& spline, Landmarks& landmarks, const evbench::PinholeCamera& camera, const Gauge& gauge,
-                  const SolveScope& scope, const SolverOptions& options);
+/// time under a robust loss, a penalty on the acceleration at each knot by its density, the gauge where the first knots
+/// are variable. Observations from held knots hold their landmarks in place. Ceres: Levenberg-Marquardt on the Schur
+/// complement, one thread, so that it is deterministic. `densities` has one for each knot.
+SolveReport solve(Spline& spline, Landmarks& landmarks, const std::vector<MotionDensity>& densities,
+                  const evbench::PinholeCamera& camera, const Gauge& gauge, const SolveScope& scope,
+                  const SolverOptions& options);
 
 }  // namespace spline_map

@@ -21,11 +21,11 @@ using Support = evbench::TrackingMonitor::Support;
 const evbench::Registration<evbench::BackEnd, SplineMap> registration(
     "spline_map", "continuous time with a cubic B-spline over a sliding window (Mueggler et al. 2018)");
 
-constexpr double seen_lately = 0.05;    // [s] since its last observation a landmark is in view
-constexpr double alive = 0.1;           // [s] after its last observation a track may still become a landmark
-constexpr double between_tries = 0.1;   // [s] between two attempts to locate a track
-constexpr int final_rounds = 3;         // of solving and removing outliers
-constexpr double smallest_step = 1e-6;  // [s]
+constexpr double longest_silence = 0.2;  // [s] without observations: from then on the estimate is carried
+constexpr double alive = 0.1;            // [s] after its last observation a track may still become a landmark
+constexpr double between_tries = 0.1;    // [s] between two attempts to locate a track
+constexpr int final_rounds = 3;          // of solving and removing outliers
+constexpr double smallest_step = 1e-6;   // [s]
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -43,7 +43,7 @@ void SplineMap::advance(const evbench::TrackBatch& batch) {
     if (!first_update_) first_update_ = z.t;
     pending_.push_back(z);
   }
-  for (const evbench::TrackEnd& end : batch.ended) ended_.insert(end.track);
+  ending_.insert(ending_.end(), batch.ended.begin(), batch.ended.end());
   until_ = batch.until;
   while (first_update_ && !monitor_.lost()) {
     const double t = *first_update_ + static_cast<double>(updates_made_) * options_.update_period;
@@ -77,13 +77,16 @@ void SplineMap::update(double t) {
 void SplineMap::take_observations(double t) {
   for (; !pending_.empty() && pending_.front().t <= t; pending_.pop_front()) {
     const TrackObservation& z = pending_.front();
+    live_.insert(z.track);
     const auto landmark = landmarks_.find(z.track);
     if (landmark == landmarks_.end()) {
       tracks_.add({&z, 1});
     } else if (z.pixel.allFinite()) {
       landmark->second.observations.push_back(z);
+      observed_ = z.t;
     }
   }
+  for (; !ending_.empty() && ending_.front().t <= t; ending_.pop_front()) live_.erase(ending_.front().track);
 }
 
 void SplineMap::initialise(double t) {
@@ -93,7 +96,7 @@ void SplineMap::initialise(double t) {
   spline_ = std::move(first->spline);
   landmarks_ = std::move(first->landmarks);
   gauge_ = first->gauge;
-  newest_ = t;
+  observed_ = newest_ = t;
   for (const auto& [track, landmark] : landmarks_) tracks_.forget(track);
   context_.log(fmt::format("{:.3f} s: first map: {} landmarks, median parallax {:.1f} deg, from {:.3f} s", t,
                            landmarks_.size(), first->parallax_deg, spline_.start()));
@@ -110,16 +113,18 @@ SolveReport SplineMap::optimise(double t) {
   }
   if (spline_.knot_time(0) >= from) scope.first_knot = 0;
   scope.held_from = std::max(spline_.start(), from - options_.held_window);
-  const SolveReport report =
-      solve(spline_, landmarks_, context_.camera, gauge_, scope, options_.solver(options_.iterations, 1e-4));
+  const SolveReport report = solve(spline_, landmarks_, options_.densities(spline_, t - options_.update_period),
+                                   context_.camera, gauge_, scope, options_.solver(options_.iterations, 1e-4));
   return report;
 }
 
 void SplineMap::add_landmarks(double t) {
+  const auto known = std::ranges::count_if(live_, [&](TrackId track) { return landmarks_.contains(track); });
+  const double needed = known < 2 * options_.min_landmarks ? 0.0 : options_.min_track_time;
   for (const TrackId track : tracks_.alive(t, alive)) {
     const auto observations = tracks_.observations(track);
     if (std::ssize(observations) < options_.min_observations) continue;
-    if (observations.back().t - observations.front().t < options_.min_track_time) continue;
+    if (observations.back().t - observations.front().t < needed) continue;
     const auto tried = tried_at_.find(track);
     if (tried != tried_at_.end() && t - tried->second < between_tries) continue;
     const evbench::Triangulation result =
@@ -163,23 +168,29 @@ void SplineMap::remove_outliers(double since) {
   }
 }
 
-bool SplineMap::in_view(const MappedTrack& landmark, double t) const {
-  const double lately = std::max(seen_lately, options_.update_period);
-  return !landmark.observations.empty() && landmark.observations.back().t >= t - lately;
-}
-
+/// A live track that has not been observed of late is where it was; but silence of all of them tells nothing.
 void SplineMap::watch(double from, double t) {
-  const auto seen = std::ranges::count_if(landmarks_, [&](const auto& entry) { return in_view(entry.second, t); });
-  const Support support = seen >= options_.min_landmarks    ? Support::full
-                          : seen >= options_.lost_landmarks ? Support::weak
-                                                            : Support::none;
-  const int needed = support == Support::none ? options_.lost_landmarks : options_.min_landmarks;
-  monitor_.observe(from, t, support, fmt::format("fewer than {} landmarks in view", needed));
+  const auto seen = std::ranges::count_if(landmarks_, [&](const auto& entry) {
+    const auto& [track, landmark] = entry;
+    return live_.contains(track) || (!landmark.observations.empty() && landmark.observations.back().t > from);
+  });
+  if (t - observed_ > longest_silence) {
+    monitor_.observe(std::min(from, observed_), t, Support::none, "no observations");
+  } else if (seen < options_.lost_landmarks) {
+    monitor_.observe(from, t, Support::none, fmt::format("fewer than {} landmarks in view", options_.lost_landmarks));
+  } else {
+    monitor_.observe(from, t, seen < options_.min_landmarks ? Support::weak : Support::full,
+                     fmt::format("fewer than {} landmarks in view", options_.min_landmarks));
+  }
   const SE3 T = spline_.pose(t);
   if (!T.p.allFinite() || !T.q.coeffs().allFinite()) monitor_.lose(from, "the estimate is not finite");
-  if (!monitor_.lost()) return;
+  if (monitor_.lost()) lose();
+}
+
+/// What the data never saw is not kept.
+void SplineMap::lose() {
   context_.log(fmt::format("{:.3f} s: lost: {}", monitor_.status().time, monitor_.status().reason));
-  newest_ = std::max(spline_.start(), monitor_.status().time);  // what the data never saw is not kept
+  newest_ = std::clamp(monitor_.status().time, spline_.start(), newest_);
   spline_.cut(newest_);
   for (auto& [track, landmark] : landmarks_) {
     std::erase_if(landmark.observations, [&](const TrackObservation& z) { return z.t > newest_; });
@@ -212,8 +223,8 @@ void SplineMap::solve_everything() {
   SolveReport report;
   for (int round = 0; round < final_rounds; ++round) {
     if (round == 1) locate_the_rest();
-    report = solve(spline_, landmarks_, context_.camera, gauge_, {0, spline_.start()},
-                   options_.solver(options_.final_iterations, 1e-6));
+    report = solve(spline_, landmarks_, options_.densities(spline_, newest_), context_.camera, gauge_,
+                   {0, spline_.start()}, options_.solver(options_.final_iterations, 1e-6));
     remove_outliers(spline_.start());
   }
   context_.log(fmt::format("final estimate: cost {:.2f}, {} observations, {} landmarks, {} knots, {} iterations",
@@ -234,7 +245,7 @@ evbench::Feedback SplineMap::feedback(const evbench::FeedbackNeeds& needs) {
   const SE3 now = result.newest->T * evbench::se3::exp((until_ - newest_) * result.newest->velocity);
   for (const auto& [track, landmark] : landmarks_) {
     const Vector3 local = now.inverse() * landmark.position;
-    if (ended_.contains(track) || !(local.z() > 0.0)) continue;
+    if (!live_.contains(track) || !(local.z() > 0.0)) continue;
     result.expected.push_back(
         {track, landmark.position, context_.camera.project(local), prediction_covariance(landmark, now)});
   }

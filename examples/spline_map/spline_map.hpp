@@ -46,10 +46,10 @@ class SplineMap : public evbench::BackEnd {
   void add_landmark(evbench::TrackId track, const Vector3& position);
   void remove_outliers(double since);
   void watch(double from, double t);
+  void lose();
   void locate_the_rest();
   void solve_everything();
   bool covers(double t) const { return mapped_ && t >= spline_.start() && t <= newest_; }
-  bool in_view(const MappedTrack& landmark, double t) const;
   Eigen::Matrix2d prediction_covariance(const MappedTrack& landmark, const SE3& T) const;
 
   Options options_;
@@ -60,13 +60,15 @@ class SplineMap : public evbench::BackEnd {
   std::deque<evbench::TrackObservation> pending_;  ///< later than the newest estimate
   evbench::TrackBuffer tracks_;                    ///< those that are no landmarks (yet), and removed ones' ids
   std::map<evbench::TrackId, double> tried_at_;    ///< [s] the last vain attempt to locate a track
-  std::set<evbench::TrackId> ended_;
+  std::deque<evbench::TrackEnd> ending_;           ///< later than the newest estimate
+  std::set<evbench::TrackId> live_;                ///< tracks that have begun and not ended
   std::vector<evbench::TrackId> new_outliers_;
 
   bool mapped_ = false;  ///< there is a map: spline, gauge and landmarks are valid
   Spline spline_;
   Gauge gauge_;
   Landmarks landmarks_;
+  double observed_ = 0.0;               ///< [s] of the newest observation of a landmark
   double newest_ = 0.0;                 ///< [s] of the newest estimate
   std::optional<double> first_update_;  ///< [s]
   long updates_made_ = 0;               ///< updates are at first_update_ + updates_made_ · period
