@@ -29,6 +29,17 @@ Spline straight_motion(const InitialGuess& guess, double start, double spacing) 
   return spline;
 }
 
+/// Observations from a time on; of many, some at even distances: for a start they are enough.
+std::vector<evbench::TrackObservation> sample(std::span<const evbench::TrackObservation> all, double from) {
+  constexpr std::size_t most = 100;
+  const auto first = std::ranges::lower_bound(all, from, {}, &evbench::TrackObservation::t);
+  const std::span<const evbench::TrackObservation> usable(first, all.end());
+  const std::size_t count = std::min(most, usable.size());
+  std::vector<evbench::TrackObservation> result;
+  for (std::size_t i = 0; i < count; ++i) result.push_back(usable[i * usable.size() / count]);
+  return result;
+}
+
 double parallax_deg(const FirstMap& map, double t1) {
   const Vector3 first = map.spline.pose(map.spline.start()).p, last = map.spline.pose(t1).p;
   std::vector<double> angles;
@@ -81,9 +92,7 @@ std::optional<FirstMap> FirstMapFinder::refine(const TrackBuffer& tracks, const 
   for (const evbench::Landmark& landmark : guess.landmarks) {
     MappedTrack& mapped = map.landmarks[landmark.track];
     mapped.position = world * landmark.position;
-    for (const evbench::TrackObservation& z : tracks.observations(landmark.track)) {
-      if (z.t >= map.spline.start()) mapped.observations.push_back(z);
-    }
+    mapped.observations = sample(tracks.observations(landmark.track), map.spline.start());
   }
   const double baseline = (map.spline.pose(guess.t1).p - map.spline.pose(guess.t0).p).norm();
   map.gauge = {map.spline.pose(map.spline.start()), guess.t0, guess.t1, baseline};

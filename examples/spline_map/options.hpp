@@ -8,14 +8,14 @@ namespace spline_map {
 
 struct Options {
   // Trajectory.
-  double knot_spacing = 0.05;        ///< [s]
+  double knot_spacing = 0.1;         ///< [s]
   double rotation_density = 1.0;     ///< [rad²/s³]
   double translation_density = 1.0;  ///< [units²/s³]
   double density_weight = 1.0;       ///< [knots]
   double density_radius = 0.75;      ///< [s]
   // Running.
   double update_period = 0.05;  ///< [s]
-  double window = 1.5;          ///< [s]
+  double window = 2.0;          ///< [s]
   double held_window = 3.0;     ///< [s]
   int iterations = 6;
   int final_iterations = 30;

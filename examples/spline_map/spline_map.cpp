@@ -97,7 +97,10 @@ void SplineMap::initialise(double t) {
   landmarks_ = std::move(first->landmarks);
   gauge_ = first->gauge;
   observed_ = newest_ = t;
-  for (const auto& [track, landmark] : landmarks_) tracks_.forget(track);
+  for (auto& [track, landmark] : landmarks_) {
+    landmark.observations = observations_of(track);
+    tracks_.forget(track);
+  }
   context_.log(fmt::format("{:.3f} s: first map: {} landmarks, median parallax {:.1f} deg, from {:.3f} s", t,
                            landmarks_.size(), first->parallax_deg, spline_.start()));
   spline_.extend_to(t);
@@ -137,13 +140,14 @@ void SplineMap::add_landmarks(double t) {
   }
 }
 
+/// Those that the spline covers.
+std::vector<TrackObservation> SplineMap::observations_of(TrackId track) const {
+  const auto all = tracks_.observations(track);
+  return {std::ranges::lower_bound(all, spline_.start(), {}, &TrackObservation::t), all.end()};
+}
+
 void SplineMap::add_landmark(TrackId track, const Vector3& position) {
-  MappedTrack landmark;
-  landmark.position = position;
-  for (const TrackObservation& z : tracks_.observations(track)) {
-    if (z.t >= spline_.start()) landmark.observations.push_back(z);
-  }
-  landmarks_.emplace(track, std::move(landmark));
+  landmarks_.emplace(track, MappedTrack{position, observations_of(track)});
   tracks_.forget(track);
   tried_at_.erase(track);
 }

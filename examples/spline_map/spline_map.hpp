@@ -43,6 +43,7 @@ class SplineMap : public evbench::BackEnd {
   void initialise(double t);
   SolveReport optimise(double t);
   void add_landmarks(double t);
+  std::vector<evbench::TrackObservation> observations_of(evbench::TrackId track) const;
   void add_landmark(evbench::TrackId track, const Vector3& position);
   void remove_outliers(double since);
   void watch(double from, double t);
