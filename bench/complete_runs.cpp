@@ -58,7 +58,8 @@ RunRecord rewrite(const std::string& from, const std::string& to, const Json& co
   const EmptyFolders made(fs::path(to).parent_path().string());
   AtomicFolder folder(to);
   for (const auto& entry : fs::directory_iterator(from)) {
-    if (entry.is_regular_file()) fs::copy_file(entry.path(), fs::path(folder.part()) / entry.path().filename());
+    const std::string name = entry.path().filename().string();
+    if (entry.is_regular_file()) folder.write(name, content_of(entry.path().string()).value_or(""));
   }
   folder.write("config.json", pretty(config));
   folder.write("manifest.json", pretty(manifest));

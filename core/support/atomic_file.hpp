@@ -12,7 +12,8 @@ void write_file(const std::string& path, std::string_view content);
 /// A folder that appears under its name only when it is complete: files are written into a temporary folder beside it
 /// (name + ".evbench.part"), commit() renames it, replacing an older folder of that name, or the one that a symbolic
 /// link of that name leads to. Locked while it exists: a second writer of the same folder gets an InputError. Not
-/// committed, it disappears with the object; what a killed program left, the next writer removes.
+/// committed, it disappears with the object; what a killed program left, the next writer removes. After a power cut it
+/// is there whole or not at all.
 class AtomicFolder {
  public:
   explicit AtomicFolder(const std::string& path);
