@@ -1,5 +1,7 @@
 #include "core/sources/event_simulation.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <opencv2/imgcodecs.hpp>
 

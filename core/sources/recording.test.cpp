@@ -6,6 +6,7 @@
 
 #include "core/events/formats/native.hpp"
 #include "core/events/testing/data_sets.hpp"
+#include "core/support/error.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
