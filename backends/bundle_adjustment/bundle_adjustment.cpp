@@ -213,6 +213,7 @@ SolveReport BundleAdjustment::track(int view) {
     remember(view);
     report = initialise(view);
     monitor_.observe(before, t, failing_ ? TrackingMonitor::Support::none : TrackingMonitor::Support::weak, failure);
+    if (!failing_) monitor_.recovered(map_.views[at(segments_.back().first)].t);
   }
   return report;
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace evbench {
 
 void TrackingMonitor::observe(double from, double to, Support support, const std::string& reason) {
@@ -26,6 +28,12 @@ void TrackingMonitor::degrade(double from, double to, const std::string& reason)
   status_.state = RunState::degraded;
   status_.reason = reason;
   status_.time = from;
+}
+
+void TrackingMonitor::recovered(double since) {
+  if (in_degraded_) status_.degraded.back().to = std::max(status_.degraded.back().from, since);
+  in_degraded_ = false;
+  alone_since_.reset();
 }
 
 void TrackingMonitor::lose(double t, const std::string& reason) {

@@ -24,6 +24,9 @@ class TrackingMonitor {
   /// There is a map; what carried the estimate between two times. `reason` says what is missing, where it isn't full.
   void observe(double from, double to, Support support, const std::string& reason = {});
 
+  /// Another map, found just now, determines the motion from `since` on: the degraded span at hand ends there.
+  void recovered(double since);
+
   /// The estimate can't go on from t.
   void lose(double t, const std::string& reason);
 

@@ -1,0 +1,49 @@
+#include "core/plugin/tracking_monitor.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace evbench;
+using Support = TrackingMonitor::Support;
+
+TEST_CASE("Before there is a map nothing is lost, and with one and enough data all is well") {
+  TrackingMonitor monitor(1.0);
+  CHECK(monitor.state() == TrackingState::no_map);
+  monitor.observe(0.0, 0.1, Support::full);
+  CHECK(monitor.state() == TrackingState::tracking);
+  CHECK(monitor.status().state == RunState::ok);
+}
+
+TEST_CASE(
+    "Too little data is degraded as long as it lasts, and what carries alone for longer than the patience is lost") {
+  TrackingMonitor monitor(1.0);
+  monitor.observe(0.0, 0.1, Support::full);
+  for (int i = 1; i < 30; ++i) monitor.observe(0.1 * i, 0.1 * (i + 1), Support::weak, "few");
+  CHECK(monitor.state() == TrackingState::degraded);
+  monitor.observe(3.0, 3.1, Support::full);
+  CHECK(monitor.state() == TrackingState::tracking);
+  REQUIRE(monitor.status().degraded.size() == 1);
+  CHECK(monitor.status().degraded[0].from == Approx(0.1));
+  CHECK(monitor.status().degraded[0].to == Approx(3.0));
+  CHECK(monitor.status().reason == "few");
+  monitor.observe(3.1, 4.1, Support::none, "nothing");
+  CHECK(monitor.state() == TrackingState::degraded);
+  monitor.observe(4.1, 4.2, Support::none, "nothing");
+  CHECK(monitor.state() == TrackingState::lost);
+  CHECK(monitor.status().state == RunState::lost);
+  CHECK(monitor.status().time == Approx(3.1));
+  CHECK_THAT(monitor.status().reason, Catch::Contains("nothing for more than 1 s"));
+  monitor.observe(4.2, 4.3, Support::full);
+  CHECK(monitor.lost());  // for good
+}
+
+TEST_CASE("A map found late ends the degraded span where it begins, and the patience begins anew") {
+  TrackingMonitor monitor(1.0);
+  monitor.observe(0.0, 1.0, Support::full);
+  monitor.observe(1.0, 1.9, Support::none, "nothing");
+  monitor.recovered(1.4);
+  CHECK(monitor.state() == TrackingState::tracking);
+  CHECK(monitor.status().degraded.at(0).to == 1.4);
+  monitor.observe(1.9, 2.8, Support::none, "nothing");
+  CHECK_FALSE(monitor.lost());
+  CHECK(monitor.status().degraded.size() == 2);
+}
