@@ -53,7 +53,7 @@ class Identifier {
     Json part = {{"type", config.type}, {"version", entry.version}, {"options", entry.identity(config.options)}};
     part["files"] = Json::array();
     for (const std::string& file : files) part["files"].push_back(digest(file));
-    if (entry.origin != "built in") part["library"] = digest(entry.origin);
+    if (entry.origin != kBuiltIn) part["library"] = digest(entry.origin);
     return part;
   }
 

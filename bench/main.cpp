@@ -6,8 +6,11 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "bench/commands/commands.hpp"
+#include "bench/plugins.hpp"
 #include "bench/recordings/config_events.hpp"
 #include "bench/version.hpp"
 #include "core/plugin/registration.hpp"
@@ -21,8 +24,16 @@ int run_program(int argc, char** argv) {
   app.set_version_flag("--version", evbench::version_text());
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "Print this help and that of every command");
+  app.fallthrough();  // so that --plugin may stand after a command, too
   evbench::Plugins plugins;
-  evbench::add_registered_plugins(plugins, "built in");
+  evbench::add_registered_plugins(plugins, evbench::kBuiltIn);
+  std::vector<std::string> libraries;
+  app.add_option(
+         "--plugin", libraries,
+         "A library with plugins, or a folder of them; can be given often, and in EVBENCH_PLUGINS, between colons")
+      ->type_name("PATH")
+      ->allow_extra_args(false);
+  app.parse_complete_callback([&] { evbench::load_plugins(plugins, libraries); });  // before any command's
   evbench::add_event_format(evbench::config_format(plugins));
   int exit_code = 0;
   evbench::add_run(app, plugins, exit_code);
@@ -36,6 +47,8 @@ int run_program(int argc, char** argv) {
   evbench::add_convert(app);
   evbench::add_dataset(app);
   evbench::add_render(app);
+  evbench::add_new_plugin(app, plugins);
+  evbench::add_check_plugin(app, plugins, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -28,8 +28,8 @@ std::vector<std::string> listed(const std::string& text, const std::string& kind
 
 TEST_CASE("Every command has help, and the program a version") {
   const TemporaryFolder folder;
-  for (const char* command :
-       {"", "run", "eval", "score", "table", "list", "describe", "solve", "info", "convert", "dataset", "render"}) {
+  for (const char* command : {"", "run", "eval", "score", "table", "list", "describe", "solve", "info", "convert",
+                              "dataset", "render", "new-plugin", "check-plugin"}) {
     const Outcome help = testing::evbench(folder, std::string(command) + " --help");
     INFO(command);
     CHECK(help.exit_code == 0);

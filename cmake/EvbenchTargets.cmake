@@ -6,6 +6,8 @@ target_compile_options(evbench_flags INTERFACE
   -Wall -Wextra -Wconversion -Wshadow
   # GCC 12 sees ghosts in inlined Eigen code, in its own AVX-512 intrinsics and in std::string.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow>
+  # Position-independent, for plugins; but the program's functions are its own, and may be inlined.
+  -fno-semantic-interposition
   $<$<BOOL:${EVBENCH_WERROR}>:-Werror>
   $<$<BOOL:${EVBENCH_NATIVE}>:-march=native>)
 if(EVBENCH_FUZZ)
@@ -31,6 +33,7 @@ function(evbench_library name kind)
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>
                                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/evbench>)
   target_compile_features(${name} PUBLIC cxx_std_20)
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)  # plugins in shared libraries contain it
   target_link_libraries(${name} PUBLIC ${ARG_LINKS} PRIVATE $<BUILD_INTERFACE:evbench_flags>)
 endfunction()
 
@@ -42,8 +45,9 @@ function(evbench_tests name)
   endif()
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
   if(NOT TARGET evbench_test_support)
-    evbench_library(evbench_test_support STATIC SOURCES ${CMAKE_SOURCE_DIR}/core/testing/main.cpp
-                    ${CMAKE_SOURCE_DIR}/core/testing/data.cpp LINKS Catch2::Catch2 fmt::fmt)
+    evbench_library(evbench_test_main STATIC SOURCES ${CMAKE_SOURCE_DIR}/core/testing/main.cpp LINKS Catch2::Catch2)
+    evbench_library(evbench_test_support STATIC SOURCES ${CMAKE_SOURCE_DIR}/core/testing/data.cpp
+                    LINKS evbench_test_main fmt::fmt)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINKS} evbench_test_support evbench_flags)
@@ -86,22 +90,29 @@ function(evbench_fuzz_targets)
   endforeach()
 endfunction()
 
-# Headers, libraries and the package files that find_package(evbench) reads.
+# Headers, libraries and the package files that find_package(evbench) reads: all that a plugin of one's own may use.
 function(evbench_install_package)
   include(CMakePackageConfigHelpers)
-  install(TARGETS evbench_core evbench_eval EXPORT evbench_targets
-          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  set(libraries)
+  foreach(name core eval events event_simulation pipeline battery test_main)
+    if(TARGET evbench_${name})  # test_main is for builds with tests
+      set_target_properties(evbench_${name} PROPERTIES EXPORT_NAME ${name})
+      list(APPEND libraries evbench_${name})
+    endif()
+  endforeach()
+  install(TARGETS ${libraries} EXPORT evbench_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(TARGETS evbench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  foreach(folder core eval)
-    install(DIRECTORY ${CMAKE_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/evbench
-            FILES_MATCHING PATTERN "*.hpp" PATTERN "testing" EXCLUDE)
+  foreach(folder core eval bench/pipeline bench/battery)
+    install(DIRECTORY ${CMAKE_SOURCE_DIR}/${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/evbench/${folder}
+            FILES_MATCHING PATTERN "*.hpp" PATTERN "testing" EXCLUDE PATTERN "fuzz" EXCLUDE)
   endforeach()
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/configs DESTINATION ${CMAKE_INSTALL_DATADIR}/evbench)
-  install(EXPORT evbench_targets NAMESPACE evbench:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/evbench)
+  set(package ${CMAKE_INSTALL_LIBDIR}/cmake/evbench)
+  install(EXPORT evbench_targets NAMESPACE evbench:: DESTINATION ${package})
   configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/evbenchConfig.cmake.in
-                                ${CMAKE_BINARY_DIR}/evbenchConfig.cmake
-                                INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/evbench)
+                                ${CMAKE_BINARY_DIR}/evbenchConfig.cmake INSTALL_DESTINATION ${package})
   write_basic_package_version_file(${CMAKE_BINARY_DIR}/evbenchConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${CMAKE_BINARY_DIR}/evbenchConfig.cmake ${CMAKE_BINARY_DIR}/evbenchConfigVersion.cmake
-          DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/evbench)
+                ${CMAKE_SOURCE_DIR}/cmake/EvbenchPlugin.cmake ${CMAKE_SOURCE_DIR}/cmake/plugin_entry.cpp
+          DESTINATION ${package})
 endfunction()

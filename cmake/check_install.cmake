@@ -1,22 +1,50 @@
-# cmake -DBUILD=... -DWORK=... -DGENERATOR=... [-DFLAGS=...] -P check_install.cmake: installs to a temporary prefix and
-# builds and runs a project that finds evbench there.
+# cmake -DBUILD=... -DWORK=... -DGENERATOR=... [-DFLAGS=...] -P check_install.cmake: installs to a temporary prefix. As a
+# stranger would, outside the build tree, builds and runs a program that finds evbench there, and takes a new plugin of
+# each kind from `evbench new-plugin` to a table; then gives the program libraries that are no plugins of this evbench.
 cmake_minimum_required(VERSION 3.25)
 
 function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT result EQUAL 0)
-    list(JOIN ARGN " " command)
-    message(FATAL_ERROR "${command}\n${output}")
+  cmake_parse_arguments(ARG "" "OUTPUT;REFUSED" "COMMAND" ${ARGN})
+  execute_process(COMMAND ${ARG_COMMAND} WORKING_DIRECTORY ${WORK} RESULT_VARIABLE result
+                  OUTPUT_VARIABLE output ERROR_VARIABLE error)
+  list(JOIN ARG_COMMAND " " command)
+  if(ARG_REFUSED)
+    if(NOT result EQUAL 2 OR NOT error MATCHES "${ARG_REFUSED}")
+      message(FATAL_ERROR "${command}\n${output}${error}\nexpected exit code 2 (it is ${result}) and ${ARG_REFUSED}")
+    endif()
+  elseif(NOT result EQUAL 0)
+    message(FATAL_ERROR "${command}\n${output}${error}\nexit code ${result}")
+  elseif(ARG_OUTPUT AND NOT output MATCHES "${ARG_OUTPUT}")
+    message(FATAL_ERROR "${command}\n${output}${error}\nexpected to see ${ARG_OUTPUT}")
   endif()
 endfunction()
 
+set(evbench ${WORK}/prefix/bin/evbench)
+set(kinds backend frontend source)
+
 file(REMOVE_RECURSE ${WORK})
+file(MAKE_DIRECTORY ${WORK})
+run(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+run(COMMAND ${evbench} list)
+foreach(kind IN LISTS kinds)
+  run(COMMAND ${evbench} new-plugin ${kind} my_${kind} --out ${WORK}/project/my_${kind} OUTPUT "build/libmy_${kind}.so")
+endforeach()
+
+# All in one project, which is configured once.
 file(WRITE ${WORK}/project/CMakeLists.txt [[
 cmake_minimum_required(VERSION 3.25)
-project(user LANGUAGES CXX)
+project(stranger LANGUAGES CXX)
+enable_testing()
+foreach(kind backend frontend source)
+  add_subdirectory(my_${kind})
+endforeach()
 find_package(evbench 0.1 REQUIRED)
 add_executable(user user.cpp)
 target_link_libraries(user PRIVATE evbench::core evbench::eval)
+foreach(name no_plugin other_abi missing_symbol)
+  add_library(${name} MODULE ${name}.cpp)
+  set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/odd)
+endforeach()
 ]])
 file(WRITE ${WORK}/project/user.cpp [[
 #include "core/geometry/se3.hpp"
@@ -33,10 +61,34 @@ int main() {
   return evbench::score(trajectory, trajectory, {}).pairs == 50 ? 0 : 1;
 }
 ]])
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${WORK}/project -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix
-    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1 "-DCMAKE_CXX_FLAGS=${FLAGS}")
-run(${CMAKE_COMMAND} --build ${WORK}/build)
-run(${WORK}/build/user)
-run(${WORK}/prefix/bin/evbench list)
+file(WRITE ${WORK}/project/no_plugin.cpp "extern \"C\" int something() { return 1; }\n")
+file(WRITE ${WORK}/project/other_abi.cpp [[
+extern "C" const char* evbench_plugin_abi() { return "evbench plugin ABI: api 99; gcc 3"; }
+]])
+file(WRITE ${WORK}/project/missing_symbol.cpp "int nobody_has_this();\nextern \"C\" int something() { return nobody_has_this(); }\n")
+
+run(COMMAND ${CMAKE_COMMAND} -S ${WORK}/project -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix
+            -DCMAKE_CXX_FLAGS_RELEASE=-O1 "-DCMAKE_CXX_FLAGS=${FLAGS}")
+run(COMMAND ${CMAKE_COMMAND} --build ${WORK}/build)
+run(COMMAND ${WORK}/build/user)
+run(COMMAND ${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/build --output-on-failure OUTPUT "100% tests passed")
+
+foreach(kind IN LISTS kinds)
+  set(library ${WORK}/build/libmy_${kind}.so)
+  run(COMMAND ${evbench} --plugin ${library} list OUTPUT "my_${kind} [^\n]*libmy_${kind}.so")
+  run(COMMAND ${evbench} run ${WORK}/project/my_${kind}/config.json --out ${WORK}/results --plugin ${library}
+      OUTPUT "my_backend +[0-9]|gp_map +[0-9]")
+endforeach()
+run(COMMAND ${evbench} table ${WORK}/results/my_backend OUTPUT "my_backend +[0-9]")
+run(COMMAND ${CMAKE_COMMAND} -E env EVBENCH_PLUGINS=${WORK}/build ${evbench} check-plugin my_source OUTPUT "ok")
+
+file(WRITE ${WORK}/text.so "no library")
+file(COPY_FILE ${WORK}/build/libmy_source.so ${WORK}/twin.so)
+run(COMMAND ${evbench} --plugin ${WORK}/none.so list REFUSED "none.so: no such file")
+run(COMMAND ${evbench} --plugin ${WORK}/text.so list REFUSED "text.so: can't be loaded as a shared library")
+run(COMMAND ${evbench} --plugin ${WORK}/build/odd/libno_plugin.so list REFUSED "is no plugin of evbench")
+run(COMMAND ${evbench} --plugin ${WORK}/build/odd/libother_abi.so list REFUSED "it has api 99 instead of api ")
+run(COMMAND ${evbench} --plugin ${WORK}/build/odd/libmissing_symbol.so list REFUSED "undefined symbol: .*nobody_has_this")
+run(COMMAND ${evbench} --plugin ${WORK}/build --plugin ${WORK}/twin.so list
+    REFUSED "two sources are called \"my_source\".*libmy_source.so.*twin.so")
 file(REMOVE_RECURSE ${WORK})

@@ -18,10 +18,14 @@ void add_info(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_dataset(CLI::App& app);
 void add_render(CLI::App& app);
+void add_new_plugin(CLI::App& app, const Plugins& plugins);
 
 /// `exit_code` is set to what the program returns: 0, or 3 when a run failed. A config may name libraries with more
 /// plugins: they are added.
 void add_run(CLI::App& app, Plugins& plugins, int& exit_code);
+
+/// `exit_code` likewise: 3 when a check fails.
+void add_check_plugin(CLI::App& app, const Plugins& plugins, int& exit_code);
 
 /// The options of commands that read events.
 struct ReadOptions;

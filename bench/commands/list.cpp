@@ -15,7 +15,8 @@ template <class Interface>
 void list(const Plugins& plugins) {
   fmt::print("{}:\n", PluginKind<Interface>::name);
   for (const auto& [name, entry] : plugins.of<Interface>().entries()) {
-    fmt::print("  {:<20} {}\n", name, entry.text);
+    const std::string origin = entry.origin == kBuiltIn ? "" : fmt::format(" ({})", entry.origin);
+    fmt::print("  {:<20} {}{}\n", name, entry.text, origin);
   }
 }
 

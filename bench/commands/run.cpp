@@ -9,6 +9,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/progress_line.hpp"
+#include "bench/plugins.hpp"
 #include "bench/run_folder.hpp"
 #include "bench/runner.hpp"
 #include "core/support/interruption.hpp"
@@ -123,6 +124,7 @@ void check(const RunArguments& arguments, const Experiment& experiment, const Pl
 
 int execute(const RunArguments& arguments, Plugins& plugins) {
   const Interruption interruption(arguments.config + ": interrupted; no run was begun");
+  load_plugins_of(plugins, arguments.config, arguments.overrides);
   const Experiment experiment = read_experiment(arguments.config, arguments.overrides, plugins);
   if (arguments.check) {
     check(arguments, experiment, plugins);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 namespace evbench {
@@ -23,6 +25,12 @@ PoseTrajectory sample(const BackEnd& backend, double rate) {
 }
 
 bool is_finite(const StampedPose& pose) { return pose.T.p.allFinite() && pose.T.q.coeffs().allFinite(); }
+
+template <class Value>
+void append(std::string& bytes, const Value& value) {
+  static_assert(std::is_trivially_copyable_v<Value> && sizeof(TrackId) == sizeof(double));  // no padding
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
 
 double length(const Piece& piece) { return piece.final_trajectory.end() - piece.final_trajectory.start(); }
 
@@ -85,14 +93,22 @@ void BackSide::undistort(TrackBatch& batch) {
   });
 }
 
+/// All of a batch at once: a call of the hash for each value would cost more than the rest of an exchange.
 void BackSide::digest(const TrackBatch& batch) {
+  struct Seen {
+    TrackId track;
+    double t, u, v, sigma;
+  };
+  struct Ended {
+    TrackId track;
+    double t;
+  };
   for (const TrackObservation& z : batch.observations) {
-    hash_.add_value(z.track);
-    hash_.add_value(z.t);
-    hash_.add_value(z.pixel.x());
-    hash_.add_value(z.pixel.y());
-    hash_.add_value(z.sigma);
+    append(digested_, Seen{z.track, z.t, z.pixel.x(), z.pixel.y(), z.sigma});
   }
+  for (const TrackEnd& end : batch.ended) append(digested_, Ended{end.track, end.t});
+  hash_.add(digested_);
+  digested_.clear();
 }
 
 void BackSide::finish(double rate, double end, RunResult& result) {

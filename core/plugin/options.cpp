@@ -67,6 +67,11 @@ OptionSet::Option& OptionSet::Option::path() {
   return *this;
 }
 
+OptionSet::Option& OptionSet::Option::folder() {
+  path_ = folder_ = true;
+  return *this;
+}
+
 std::string OptionSet::Option::allowed() const {
   if (!choices_.empty()) return fmt::format("{}", fmt::join(choices_, " | "));
   const bool bounded_below = std::isfinite(minimum_);
@@ -241,7 +246,7 @@ std::vector<std::string> OptionSet::paths() const {
   std::vector<std::string> result;
   for (const Option& option : options_) {
     const auto* const* path = std::get_if<std::string*>(&option.target_);
-    if (option.path_ && path != nullptr && !(*path)->empty()) result.push_back(**path);
+    if (option.path_ && !option.folder_ && path != nullptr && !(*path)->empty()) result.push_back(**path);
   }
   for (const Group& group : groups_) {
     for (std::string& path : group.set.paths()) result.push_back(std::move(path));

@@ -41,6 +41,7 @@ class OptionSet {
     Option& size(std::size_t count);  ///< number of items of a list; none are fine too where that is the default
     Option& required();               ///< no default: must be given
     Option& path();                   ///< text that names a file or folder, relative to the config's folder
+    Option& folder();                 ///< likewise; what lies there is not part of a run's identity
 
    private:
     friend class OptionSet;
@@ -48,7 +49,7 @@ class OptionSet {
     Target target_;
     double minimum_ = -std::numeric_limits<double>::infinity();
     double maximum_ = std::numeric_limits<double>::infinity();
-    bool open_below_ = false, may_be_empty_ = false, required_ = false, path_ = false;
+    bool open_below_ = false, may_be_empty_ = false, required_ = false, path_ = false, folder_ = false;
     std::vector<std::string> choices_;
     std::optional<std::size_t> size_;
 
@@ -89,7 +90,7 @@ class OptionSet {
 
   Json write() const;                      ///< every option with its present value
   Json write_without_paths() const;        ///< likewise, options that name files or folders being left out
-  std::vector<std::string> paths() const;  ///< what options that name files or folders name, groups included
+  std::vector<std::string> paths() const;  ///< what path() options name, groups included
   Json schema() const;                     ///< JSON Schema (2020-12) of the object
   std::string describe() const;            ///< a table for people: name, type, default, range, text
 

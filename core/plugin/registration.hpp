@@ -118,7 +118,7 @@ __attribute__((visibility("hidden"))) inline void add_registered_plugins(Plugins
 /// The plugins of this program alone: for tests.
 __attribute__((visibility("hidden"))) inline Plugins registered_plugins() {
   Plugins plugins;
-  add_registered_plugins(plugins, "built in");
+  add_registered_plugins(plugins, kBuiltIn);
   return plugins;
 }
 

@@ -33,6 +33,9 @@ struct PluginKind<BackEnd> {
   static constexpr const char* name = "backend";
 };
 
+/// The origin of what the program itself registers.
+inline constexpr const char* kBuiltIn = "built in";
+
 /// The plugins of one kind by name.
 template <class Interface>
 class Registry {
@@ -41,7 +44,7 @@ class Registry {
 
   struct Entry {
     std::string text;                       ///< one line for `evbench list`
-    std::string origin;                     ///< "built in", or the library's path
+    std::string origin;                     ///< kBuiltIn, or the library's path
     int version = 1;                        ///< of what it computes: raised when the same options give other results
     bool reads_events = true;               ///< front-ends: the content of the source's events counts for a run
     std::function<std::string()> describe;  ///< table of its options

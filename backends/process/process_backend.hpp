@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/plugin/backend.hpp"
+#include "core/plugin/tracking_monitor.hpp"
+#include "core/process/dialogue.hpp"
+
+namespace evbench::process {
+
+/// A back-end in any language: a command that is given observations on its standard input and answers with poses on its
+/// standard output (core/process/protocol.md). Throws ProcessError, from its construction or any call, when the command
+/// can't be started, ends, is silent for too long or answers wrongly.
+class ProcessBackEnd : public BackEnd {
+ public:
+  using Options = ProcessOptions;
+
+  ProcessBackEnd(const Options& options, const BackEndContext& context);
+
+  void advance(const TrackBatch& batch) override;
+  Feedback feedback(const FeedbackNeeds& needs) override;
+  void finish() override;
+
+  Status status() const override { return final_status_.value_or(monitor_.status()); }
+  PoseTrajectory trajectory() const override { return trajectory_; }
+  std::vector<Landmark> map() const override { return map_; }
+  std::span<const UpdateRecord> updates() const override { return updates_; }
+
+ private:
+  void take_state(const Json& answer, double until);
+  void take_online(const Json& answer, double until);
+  void take_newest(const Json& answer, double until);
+  void take_final(const Json& answer);
+  void take_status(const Json& status);
+
+  BackEndContext context_;
+  Dialogue dialogue_;
+  TrackingMonitor monitor_;
+  Feedback feedback_;                  ///< at the last batch's end; outliers since the last call of feedback()
+  std::optional<StampedPose> online_;  ///< the last pose of the causal estimate
+  std::optional<Status> final_status_;
+  PoseTrajectory trajectory_;
+  std::vector<Landmark> map_;
+  std::vector<UpdateRecord> updates_;
+  int left_out_ = 0;  ///< observations that are not finite
+};
+
+}  // namespace evbench::process

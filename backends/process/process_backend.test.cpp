@@ -1,0 +1,294 @@
+#include "backends/process/process_backend.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/plugin/registration.hpp"
+#include "core/support/error.hpp"
+#include "core/testing/data.hpp"
+
+using namespace evbench;
+using namespace evbench::process;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// What each of the processes below begins with.
+const char* const kBegin = R"(
+import json, sys
+def hear(): return json.loads(sys.stdin.readline())
+def say(x): print(json.dumps(x), flush=True)
+def pose(t, x): return [t, x, 0, 0, 0, 0, 0, 1]
+hello = hear()
+)";
+
+/// Moves along x by a metre a second; tells what it was told on its standard error.
+const char* const kStraight = R"(
+say({"evbench": 1, "name": "straight on"})
+print(json.dumps(hello), file=sys.stderr)
+last = 0.0
+while "finish" not in (m := hear()):
+  print(json.dumps(m), file=sys.stderr)
+  last = m["until"]
+  say({"state": "tracking", "online": [pose(last, last)], "newest": pose(last, last), "outliers": [len(m["observations"])]})
+say({"trajectory": [pose(0, 0), pose(last, last)], "map": [[7, 1, 2, 3]]})
+)";
+
+class Session {
+ public:
+  explicit Session(const std::string& script, const std::string& more = "") {
+    folder_.write("backend.py", kBegin + script);
+    const auto options = read_options<ProcessOptions>(
+        Json::parse(R"({"command": ["/usr/bin/python3", "backend.py"], "options": {"a": [1, null]})" + more + "}"),
+        "config");
+    BackEndContext context;
+    context.camera = {500, 510, 320, 240};
+    context.seed = 18446744073709551615U;
+    context.folder = folder_.path();
+    context.place = "config.json: backend";
+    context.online = [this](const StampedPose& pose) { online.push_back(pose); };
+    context.log = [this](const std::string& line) { log += line + "\n"; };
+    backend = std::make_unique<ProcessBackEnd>(options, context);
+  }
+
+  /// Three batches of 0.1 s, and the end.
+  Session& go() {
+    for (int i = 1; i <= 3; ++i) {
+      const double t = 0.1 * i;
+      backend->advance({{{i, t - 0.05, {1.5, 2.5}, 0.7}}, {{i, t - 0.01}}, t});
+    }
+    backend->finish();
+    return *this;
+  }
+
+  std::vector<StampedPose> online;
+  std::string log;
+  std::unique_ptr<ProcessBackEnd> backend;
+
+ private:
+  testing::TemporaryFolder folder_;
+};
+
+/// Of a process that answers `answer`, Python, to its batches, and `final` to the end.
+std::string failure(const std::string& answer, const std::string& final = R"({"trajectory": [pose(0, 0)]})") {
+  try {
+    Session("say({'evbench': 1})\nwhile 'finish' not in (m := hear()):\n  t = m['until']\n  say(" + answer + ")\nsay(" +
+            final + ")\n")
+        .go();
+  } catch (const ProcessError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Of a process that is this script.
+std::string failure_of(const std::string& script, const std::string& more = "") {
+  try {
+    Session(script, more).go();
+  } catch (const ProcessError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("A back-end process is told camera, observations and ended tracks, and answers with poses") {
+  Session session(kStraight);
+  session.go();
+  CHECK_THAT(session.log, Contains("back-end process: straight on"));
+  CHECK_THAT(session.log,
+             Contains(R"("kind": "backend", "seed": 18446744073709551615, "patience": 1.0, "camera": )"
+                      R"({"fx": 500.0, "fy": 510.0, "cx": 320.0, "cy": 240.0}, "options": {"a": [1, null]}})"));
+  CHECK_THAT(session.log, Contains(R"({"until": 0.1, "observations": [[1, 0.05, 1.5, 2.5, 0.7]], "ended": [[1, 0.09)"));
+  REQUIRE(session.online.size() == 3);
+  CHECK(session.online[2].t == 0.1 * 3);  // to the last bit
+  CHECK(session.online[2].T.p == Vector3(0.1 * 3, 0, 0));
+  CHECK(session.backend->trajectory().size() == 2);
+  CHECK(session.backend->pose(0.15)->p.x() == Approx(0.15));
+  REQUIRE(session.backend->map().size() == 1);
+  CHECK(session.backend->map()[0].track == 7);
+  CHECK(session.backend->status().state == RunState::ok);
+  CHECK(session.backend->updates().size() == 3);
+}
+
+TEST_CASE("Feedback of a back-end process has outliers since the last one, and a velocity also where none was told") {
+  Session session(kStraight);
+  session.backend->advance({{}, {}, 0.5});
+  session.backend->advance({{{3, 0.6, {1, 1}, 1.0}}, {}, 1.0});
+  const Feedback feedback = session.backend->feedback({true, true, true});
+  CHECK(feedback.t == 1.0);
+  CHECK(feedback.state == TrackingState::tracking);
+  CHECK(feedback.outliers == std::vector<TrackId>{0, 1});
+  REQUIRE(feedback.newest);
+  CHECK((feedback.newest->velocity - (Vector6() << 0, 0, 0, 1, 0, 0).finished()).norm() < 1e-12);
+  CHECK_FALSE(feedback.covariance);
+  CHECK(session.backend->feedback({true, false, false}).outliers.empty());
+}
+
+TEST_CASE("The status of a run follows from the states that a process answers") {
+  const auto script = [](const std::string& states, const std::string& final) {
+    return "say({'evbench': 1})\nfor state in " + states +
+           ":\n  hear()\n  say({'state': state, 'reason': 'fog'})\nhear()\nsay(" + final + ")\n";
+  };
+  const std::string one_pose = "{'trajectory': [pose(0, 0)]}";
+  const auto status = [&](const std::string& states, const std::string& final) {
+    return Session(script(states, final)).go().backend->status();
+  };
+  CHECK(status("['no_map', 'tracking', 'standing_still']", one_pose).state == RunState::ok);
+  const Status degraded = status("['tracking', 'degraded', 'tracking']", one_pose);
+  CHECK(degraded.state == RunState::degraded);
+  REQUIRE(degraded.degraded.size() == 1);
+  CHECK(degraded.degraded[0].from == 0.1);
+  CHECK(degraded.degraded[0].to == 0.2);
+  CHECK(degraded.degraded[0].reason == "fog");
+  const Status lost = status("['tracking', 'degraded', 'lost']", one_pose);
+  CHECK(lost.state == RunState::lost);
+  CHECK(lost.time == 0.1);
+  CHECK(status("['tracking', 'tracking', 'lost']", one_pose).time == 0.2);
+  const Status none = status("['no_map'] * 3", "{'trajectory': []}");
+  CHECK(none.state == RunState::failed);
+  CHECK_THAT(none.reason, Contains("no trajectory"));
+  const Status told = status("['tracking'] * 3",
+                             "{'trajectory': [pose(0, 0)], 'status': {'state': 'lost', 'reason': 'dark', 'time': 0.25, "
+                             "'degraded': [[0.1, 0.2, 'dusk']]}}");
+  CHECK(told.state == RunState::lost);
+  CHECK(told.time == 0.25);
+  CHECK(told.degraded.at(0).reason == "dusk");
+  CHECK_THROWS_WITH(status("['tracking', 'lost', 'lost']", "{'trajectory': [pose(0, 0)], 'status': {'state': 'ok'}}"),
+                    Contains("expected \"lost\" or \"failed\" of a process that has said that it is lost"));
+}
+
+TEST_CASE("A back-end process that is lost says so before the end") {
+  Session session(
+      "say({'evbench': 1})\nhear()\nsay({'state': 'lost', 'reason': 'fog'})\nhear()\nsay({'trajectory': []})");
+  session.backend->advance({{}, {}, 0.1});
+  CHECK(session.backend->status().state == RunState::lost);
+  CHECK(session.backend->status().reason == "fog");
+}
+
+TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence") {
+  CHECK(failure("{'state': 'tracking', 'online': [pose(t, 0)]}").empty());
+  CHECK_THAT(
+      failure("{'state': 'tracking', 'online': [pose(float('nan'), 0)]}"),
+      Contains("config.json: backend: the process \"/usr/bin/python3 backend.py\" answered wrongly: expected one "
+               "JSON object a line, found {\"state\": \"tracking\", \"online\": [[NaN") &&
+          Contains("JSON has no NaN") && Contains("it had been told the batch until 0.1 s") &&
+          Contains("it wrote nothing to its standard error"));
+  CHECK_THAT(failure("{}"), Contains("\"state\" is missing"));
+  CHECK_THAT(failure("7"), Contains("expected a JSON object, found 7"));
+  CHECK_THAT(failure("{'state': 'fine'}"), Contains("unknown state \"fine\""));
+  CHECK_THAT(failure("{'state': 'tracking', 'outlier': []}"), Contains("unknown key \"outlier\"; did you mean"));
+  CHECK_THAT(failure("{'state': 'tracking', 'online': [pose(t + 0.1, 0)]}"), Contains("later than what has been seen"));
+  CHECK_THAT(failure("{'state': 'tracking', 'online': [pose(0, 0)]}"),
+             Contains("not after that of the last pose told"));
+  CHECK_THAT(failure("{'state': 'tracking', 'online': [[t, 0, 0, 0, 0, 0, 0, 2]]}"),
+             Contains("quaternion's norm is 2"));
+  CHECK_THAT(failure("{'state': 'tracking', 'online': [[t, 0, 0, 0, 0, 0, 1]]}"), Contains("expected 8 numbers"));
+  CHECK_THAT(failure("{'state': 'tracking', 'covariance': [0] * 144}"), Contains("expected \"newest\" with it"));
+  CHECK_THAT(failure("{'state': 'tracking' if t < 0.15 else 'no_map'}"), Contains("expected \"lost\""));
+  CHECK_THAT(failure("{'error': 'I can not see'}"), Contains("says: I can not see; it had been told the batch"));
+  const std::string good = "{'state': 'tracking'}";
+  CHECK_THAT(failure(good, "{}"),
+             Contains("\"trajectory\" is missing") && Contains("had been told that this is the end"));
+  CHECK_THAT(failure(good, "{'trajectory': [pose(1, 0), pose(1, 0)]}"), Contains("strictly increasing"));
+  CHECK_THAT(failure(good, "{'trajectory': [], 'map': [[1, 2]]}"),
+             Contains("map[0]: expected 4 numbers (track x y z)"));
+  CHECK_THAT(failure(good, "{'trajectory': [pose(0, 0)], 'status': {'state': 'lost'}}"),
+             Contains("\"reason\" is missing"));
+}
+
+TEST_CASE("A back-end process of another version, or of none, is refused") {
+  CHECK_THAT(failure_of("say({'evbench': 2})"), Contains("it speaks version 2 of the protocol; expected 1"));
+  CHECK_THAT(failure_of("say({'name': 'x'})"), Contains("\"evbench\" is missing") && Contains("had been told what it"));
+  CHECK_THAT(failure_of("print('Welcome!', flush=True)"), Contains("found Welcome!"));
+}
+
+TEST_CASE("A back-end process that crashes, ends or keeps silent fails with the last lines of its standard error") {
+  CHECK_THAT(failure_of("say({'evbench': 1})\nhear()\nraise ValueError('an odd track')"),
+             Contains("ended with exit code 1; it had been told the batch until 0.1 s; the last lines of its standard "
+                      "error:\n  Traceback") &&
+                 Contains("\n  ValueError: an odd track"));
+  CHECK_THAT(failure_of("say({'evbench': 1})\nhear()\nimport os; os.kill(os.getpid(), 11)"),
+             Contains("was ended by signal 11 (Segmentation fault)"));
+  CHECK_THAT(
+      failure_of("say({'evbench': 1})\nhear()\nprint('hm', file=sys.stderr, flush=True)\nimport time; time.sleep(60)",
+                 R"(, "timeout": 0.3)"),
+      Contains("did not answer within 0.3 s (is each of its lines flushed?)") && Contains("\n  hm"));
+  CHECK_THAT(
+      failure_of("say({'evbench': 1})\nfor i in range(100000): print('line', i, file=sys.stderr)\nhear()\nsay(1)"),
+      Contains("(99980 lines before these)\n  line 99980\n") && Contains("line 99999"));
+  CHECK_THAT(
+      failure_of("say({'evbench': 1})\nsay({'state': 'tracking'})\nimport time; time.sleep(0.1)\nhear(); hear()"),
+      Contains("before it was asked") || Contains("ended"));
+}
+
+TEST_CASE("A back-end process that has failed stays failed") {
+  Session session("say({'evbench': 1})");
+  std::string first, second;
+  for (std::string* const what : {&first, &second}) {
+    try {
+      session.backend->advance({{}, {}, 0.1});
+    } catch (const ProcessError& error) {
+      *what = error.what();
+    }
+  }
+  CHECK_THAT(first, Contains("ended with exit code 0"));
+  CHECK(first == second);
+}
+
+TEST_CASE("A command that makes no sense is said where it stands") {
+  BackEndContext context;
+  context.place = "config.json: backend";
+  const auto make = [&](const std::string& options) {
+    return std::make_unique<ProcessBackEnd>(read_options<ProcessOptions>(Json::parse(options), context.place), context);
+  };
+  CHECK_THROWS_WITH(make("{}"), Contains("\"command\" is missing"));
+  CHECK_THROWS_WITH(make(R"({"command": []})"), Contains("config.json: backend.command: expected a list of texts"));
+  CHECK_THROWS_WITH(make(R"({"command": 7})"), Contains("found 7"));
+  CHECK_THROWS_WITH(make(R"({"command": ["a", 7]})"), Contains("found [\"a\",7]"));
+  CHECK_THROWS_WITH(make(R"({"command": ["no_such_program_here"]})"),
+                    Contains("the process \"no_such_program_here\" can't be started: there is no such command"));
+  CHECK_THROWS_WITH(make(R"({"command": "no_such_program_here"})"), Contains("not found"));
+  CHECK_THROWS_WITH(make(R"({"command": ["cat"], "folder": "/no/folder"})"), Contains("in the folder /no/folder"));
+}
+
+TEST_CASE("The files that a command names are part of a run's identity, where they lie is not") {
+  const testing::TemporaryFolder folder;
+  folder.write("backend.py", "");
+  folder.write("weights", "");
+  Plugins plugins = registered_plugins();
+  const auto& entry = plugins.of<BackEnd>().find("process", "test");
+  const auto resolved = [&](const std::string& options) {
+    return entry.resolve(Json::parse(options), "config.json: backend", folder.path());
+  };
+  const Json list = resolved(R"({"command": ["python3", "backend.py", "none.py"], "files": ["weights"]})");
+  CHECK(entry.files(list) == std::vector<std::string>{folder.file("backend.py"), folder.file("weights")});
+  CHECK_FALSE(entry.identity(list).contains("folder"));
+  const Json text = resolved(R"({"command": "nice python3 'backend.py' | cat"})");
+  CHECK(entry.files(text) == std::vector<std::string>{folder.file("backend.py")});
+  CHECK_THROWS_WITH(entry.files(resolved(R"({"command": ["cat"], "files": ["none"]})")),
+                    Contains("/none: no such file; the option \"files\" names it"));
+}
+
+TEST_CASE("The time that an exchange takes besides the process' own") {
+  Session session(R"(
+say({"evbench": 1})
+for line in sys.stdin:
+  if line.startswith('{"finish'): break
+  print('{"state":"tracking"}', flush=True)
+say({"trajectory": [pose(0, 0)]})
+)");
+  TrackBatch batch;
+  double seconds = 0.0;
+  constexpr int kExchanges = 500;
+  for (int i = 1; i <= kExchanges; ++i) {
+    batch.until = 0.01 * i;
+    batch.observations.assign(50, {i, 0.01 * i, {320.12345678, 240.12345678}, 0.7});
+    session.backend->advance(batch);
+    seconds += session.backend->updates().back().seconds;
+  }
+  session.backend->finish();
+  WARN("an exchange of 50 observations: " << 1e6 * seconds / kExchanges << " us");
+  CHECK(seconds / kExchanges < 0.01);
+}

@@ -1,0 +1,68 @@
+#include "bench/new_plugin/new_plugin.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "bench/testing/program.hpp"
+#include "core/support/error.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+using Catch::Matchers::Contains;
+
+// That what is written builds, passes its tests and gives a table is a test of the installation: check_install.cmake.
+
+TEST_CASE("A new plugin has a source, a test, a config and a README with its name in place of the templates'") {
+  const TemporaryFolder folder;
+  const std::string kind = GENERATE("backend", "frontend", "source");
+  const std::string path = folder.file("deep/my_2nd_try");
+  write_new_plugin(kind, "my_2nd_try", path);
+  CHECK(names_in(path) == std::set<std::string>{".gitignore", "CMakeLists.txt", "README.md", "config.json",
+                                                "my_2nd_try.cpp", "my_2nd_try.test.cpp"});
+  CHECK(names_in(folder.file("deep")) == std::set<std::string>{"my_2nd_try"});
+  for (const std::string& name : names_in(path)) {
+    const std::string text = read_file(path + "/" + name);
+    INFO(name);
+    CHECK_THAT(text, !Contains("NAME") && !Contains("ClassName"));
+  }
+  CHECK_THAT(read_file(path + "/my_2nd_try.cpp"),
+             Contains("class My2ndTry : ") && Contains("registration(\"my_2nd_try\""));
+  CHECK_THAT(read_file(path + "/README.md"), Contains("evbench --plugin build/libmy_2nd_try.so run config.json"));
+  CHECK(Json::parse(read_file(path + "/config.json")).at("name") == "my_2nd_try");
+}
+
+TEST_CASE("The program says what to do with a new plugin, which may go into an empty folder") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.file("empty"));
+  const Outcome outcome = testing::evbench(folder, "new-plugin backend mine --out empty/");
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out, Contains("cd empty/\n") && Contains("evbench --plugin build/libmine.so run config.json"));
+  CHECK(names_in(folder.file("empty")).contains("mine.cpp"));
+  CHECK(testing::evbench(folder, "new-plugin source mine").exit_code == 0);
+  CHECK(names_in(folder.path()) == std::set<std::string>{"empty", "mine"});
+}
+
+TEST_CASE("A new plugin that can't be is refused with a sentence, and nothing is left behind") {
+  const TemporaryFolder folder;
+  folder.write("file", "");
+  std::filesystem::create_directory(folder.file("full"));
+  folder.write("full/thing", "");
+  const auto refused = [&](const std::string& arguments, const std::string& message) {
+    const Outcome outcome = testing::evbench(folder, "new-plugin " + arguments);
+    INFO(arguments);
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains(message));
+    CHECK(names_in(folder.path()) == std::set<std::string>{"file", "full"});
+  };
+  refused("backend Mine", "\"Mine\" can't name a plugin; expected a small letter");
+  refused("backend 2nd", "can't name a plugin");
+  refused("backend my-plugin", "can't name a plugin");
+  refused("backend ''", "can't name a plugin");
+  refused("backend test", "CMake keeps for itself");
+  refused("backend gp_map", "a backend is called \"gp_map\" already (built in)");
+  refused("tracker mine", "tracker");
+  refused("backend mine --out full", "full: is there already; expected a new folder");
+  refused("backend mine --out file", "file: is there already");
+  refused("backend mine --out file/mine", "file");
+  refused("backend mine --out /proc/mine", "/proc/mine");
+}

@@ -1,0 +1,20 @@
+#include <catch2/catch.hpp>
+
+#include "bench/battery/battery.hpp"
+#include "core/plugin/registration.hpp"
+
+using namespace evbench;
+
+TEST_CASE("NAME does what every back-end must do") {
+  const Plugins plugins = registered_plugins();
+  for (const battery::Check& check : battery::backend_checks(plugins, "NAME")) {
+    INFO(check.name);
+    CHECK_NOTHROW(check.run());
+  }
+}
+
+TEST_CASE("NAME tells what is wrong with its options") {
+  const Plugins plugins = registered_plugins();
+  const auto& entry = plugins.of<BackEnd>().find("NAME", "test");
+  CHECK_THROWS_WITH(entry.resolve({{"period", 0}}, "test", ""), Catch::Matchers::Contains("test.period"));
+}

@@ -1,0 +1,15 @@
+#include <catch2/catch.hpp>
+
+#include "bench/battery/battery.hpp"
+#include "core/plugin/registration.hpp"
+
+using namespace evbench;
+
+TEST_CASE("NAME does what every front-end must do") {
+  const Plugins plugins = registered_plugins();
+  for (const battery::Check& check :
+       battery::frontend_checks(plugins, "NAME", Json::object(), battery::usual_source())) {
+    INFO(check.name);
+    CHECK_NOTHROW(check.run());
+  }
+}

@@ -1,0 +1,14 @@
+#include <catch2/catch.hpp>
+
+#include "bench/battery/battery.hpp"
+#include "core/plugin/registration.hpp"
+
+using namespace evbench;
+
+TEST_CASE("NAME does what every source must do") {
+  const Plugins plugins = registered_plugins();
+  for (const battery::Check& check : battery::source_checks(plugins, "NAME", Json::object())) {
+    INFO(check.name);
+    CHECK_NOTHROW(check.run());
+  }
+}

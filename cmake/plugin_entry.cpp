@@ -1,0 +1,10 @@
+// What makes a shared library a plugin of evbench: evbench_add_plugin compiles it into each.
+#include "core/plugin/abi.hpp"
+#include "core/plugin/registration.hpp"
+
+extern "C" __attribute__((visibility("default"))) const char* evbench_plugin_abi() { return evbench::plugin_abi(); }
+
+extern "C" __attribute__((visibility("default"))) void evbench_plugin_add(evbench::Plugins& plugins,
+                                                                          const char* origin) {
+  evbench::add_registered_plugins(plugins, origin);
+}

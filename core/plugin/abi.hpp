@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+#include <version>
+
+// What a program and a plugin in a shared library must have in common to exchange C++ objects, as one text that the
+// preprocessor makes: it stands in the library's bytes, so that it can be compared before anything of the library runs.
+
+/// Raised with every change of what plugins include (core/plugin/, and what that includes) that a plugin built before
+/// would not survive: a virtual function, a member, a different meaning.
+#define EVBENCH_PLUGIN_API 1
+
+#define EVBENCH_ABI_TEXT_OF(value) #value
+#define EVBENCH_ABI_TEXT(value) EVBENCH_ABI_TEXT_OF(value)
+
+#ifdef __clang__
+#define EVBENCH_ABI_COMPILER "clang " EVBENCH_ABI_TEXT(__clang_major__)
+#else
+#define EVBENCH_ABI_COMPILER "gcc " EVBENCH_ABI_TEXT(__GNUC__)
+#endif
+
+#ifdef _LIBCPP_VERSION
+#define EVBENCH_ABI_LIBRARY "libc++ " EVBENCH_ABI_TEXT(_LIBCPP_VERSION)
+#elif defined(_GLIBCXX_DEBUG)
+#define EVBENCH_ABI_LIBRARY "libstdc++ with _GLIBCXX_DEBUG, cxx11 abi " EVBENCH_ABI_TEXT(_GLIBCXX_USE_CXX11_ABI)
+#else
+#define EVBENCH_ABI_LIBRARY "libstdc++, cxx11 abi " EVBENCH_ABI_TEXT(_GLIBCXX_USE_CXX11_ABI)
+#endif
+
+// Memory that Eigen has aligned for wider registers (-march) must be freed by code that knows so.
+#define EVBENCH_ABI_EIGEN                                                                                        \
+  "Eigen " EVBENCH_ABI_TEXT(EIGEN_WORLD_VERSION) "." EVBENCH_ABI_TEXT(EIGEN_MAJOR_VERSION) "." EVBENCH_ABI_TEXT( \
+      EIGEN_MINOR_VERSION) " aligned to " EVBENCH_ABI_TEXT(EIGEN_MAX_ALIGN_BYTES) " bytes, members "             \
+                                                                                  "to " EVBENCH_ABI_TEXT(EIGEN_MAX_STATIC_ALIGN_BYTES)
+
+#if defined(JSON_DIAGNOSTICS) && JSON_DIAGNOSTICS
+#define EVBENCH_ABI_JSON_DIAGNOSTICS " with diagnostics"
+#else
+#define EVBENCH_ABI_JSON_DIAGNOSTICS ""
+#endif
+#define EVBENCH_ABI_JSON                                                               \
+  "nlohmann json " EVBENCH_ABI_TEXT(NLOHMANN_JSON_VERSION_MAJOR) "." EVBENCH_ABI_TEXT( \
+      NLOHMANN_JSON_VERSION_MINOR) "." EVBENCH_ABI_TEXT(NLOHMANN_JSON_VERSION_PATCH) EVBENCH_ABI_JSON_DIAGNOSTICS
+
+#ifndef __has_feature
+#define EVBENCH_ABI_HAS_FEATURE(feature) 0
+#else
+#define EVBENCH_ABI_HAS_FEATURE(feature) __has_feature(feature)
+#endif
+#if defined(__SANITIZE_ADDRESS__) || EVBENCH_ABI_HAS_FEATURE(address_sanitizer)
+#define EVBENCH_ABI_SANITIZER "address sanitizer"
+#elif defined(__SANITIZE_THREAD__) || EVBENCH_ABI_HAS_FEATURE(thread_sanitizer)
+#define EVBENCH_ABI_SANITIZER "thread sanitizer"
+#else
+#define EVBENCH_ABI_SANITIZER "no sanitizer"
+#endif
+
+/// What the text begins with.
+#define EVBENCH_PLUGIN_ABI_MARK "evbench plugin ABI: "
+
+namespace evbench {
+
+/// The text of whatever is being compiled: the mark, then parts that "; " separates, in a fixed order.
+inline const char* plugin_abi() {
+  return EVBENCH_PLUGIN_ABI_MARK
+      "api " EVBENCH_ABI_TEXT(EVBENCH_PLUGIN_API) "; " EVBENCH_ABI_COMPILER "; " EVBENCH_ABI_LIBRARY
+                                                  "; " EVBENCH_ABI_EIGEN "; " EVBENCH_ABI_JSON
+                                                  "; " EVBENCH_ABI_SANITIZER;
+}
+
+}  // namespace evbench

@@ -1,0 +1,129 @@
+#include "core/plugin/library.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "core/plugin/abi.hpp"
+#include "core/plugin/registration.hpp"
+#include "core/support/error.hpp"
+#include "core/testing/data.hpp"
+
+using namespace evbench;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+/// The program's own plugin.
+class Own : public BackEnd {
+ public:
+  struct Options {
+    void declare(OptionSet&) {}
+  };
+  Own(const Options&, const BackEndContext&) {}
+  void advance(const TrackBatch&) override {}
+  Feedback feedback(const FeedbackNeeds&) override { return {}; }
+  void finish() override {}
+  Status status() const override { return {}; }
+  PoseTrajectory trajectory() const override { return {}; }
+  std::vector<Landmark> map() const override { return {}; }
+};
+
+const Registration<BackEnd, Own> registration("own", "of the test program");
+
+std::string library(const std::string& name) { return std::string(EVBENCH_TEST_LIBRARIES "/lib") + name + ".so"; }
+
+std::vector<std::string> names(const Plugins& plugins) {
+  std::vector<std::string> result;
+  for (const auto& [name, entry] : plugins.of<BackEnd>().entries()) result.push_back(name);
+  return result;
+}
+
+/// The sentence with which a path is refused; nothing has been added then.
+std::string refusal(const std::string& path, Plugins plugins = registered_plugins()) {
+  const std::vector<std::string> before = names(plugins);
+  std::string message;
+  try {
+    load_plugin_libraries(plugins, path);
+  } catch (const InputError& error) {
+    message = error.what();
+  }
+  CHECK(names(plugins) == before);
+  return message;
+}
+
+}  // namespace
+
+TEST_CASE("A library's plugin registers with the program's, and does not bring the program's own again") {
+  Plugins plugins = registered_plugins();
+  REQUIRE(names(plugins) == std::vector<std::string>{"own"});
+  load_plugin_libraries(plugins, library("tiny"));
+  CHECK(names(plugins) == std::vector<std::string>{"own", "tiny"});
+  CHECK(names(registered_plugins()) == std::vector<std::string>{"own"});
+
+  const auto& entry = plugins.of<BackEnd>().find("tiny", "test");
+  CHECK(entry.origin == std::filesystem::canonical(library("tiny")).string());
+  CHECK(plugins.of<BackEnd>().find("own", "test").origin == "built in");
+  const Json options = entry.resolve(Json{{"count", 7}}, "test", "");
+  CHECK(entry.make(options, {})->status().reason == "7");
+}
+
+TEST_CASE("An error of a library's plugin reaches the program as the error that it is") {
+  Plugins plugins;
+  load_plugin_libraries(plugins, library("tiny"));
+  const auto& entry = plugins.of<BackEnd>().find("tiny", "test");
+  CHECK_THROWS_AS(entry.make(Json{{"count", 0}}, {}), InputError);
+  CHECK_THROWS_AS(entry.resolve(Json{{"cuont", 1}}, "test", ""), InputError);
+}
+
+TEST_CASE("A library that is named twice is loaded once, by whatever path") {
+  const testing::TemporaryFolder folder;
+  std::filesystem::create_symlink(library("tiny"), folder.file("link.so"));
+  Plugins plugins;
+  load_plugin_libraries(plugins, library("tiny"));
+  load_plugin_libraries(plugins, folder.path());
+  CHECK(names(plugins) == std::vector<std::string>{"tiny"});
+}
+
+TEST_CASE("Of a folder all libraries are loaded, in the order of their names") {
+  const testing::TemporaryFolder folder;
+  folder.write("notes.txt", "no library");
+  std::filesystem::copy_file(library("tiny"), folder.file("libb.so"));
+  std::filesystem::copy_file(library("no_plugin"), folder.file("liba.so"));
+  CHECK_THAT(refusal(folder.path()), Contains("liba.so: is no plugin"));
+  std::filesystem::rename(folder.file("liba.so"), folder.file("liba.so.old"));
+  Plugins plugins;
+  load_plugin_libraries(plugins, folder.path());
+  CHECK(names(plugins) == std::vector<std::string>{"tiny"});
+}
+
+TEST_CASE("What is no library, or not there, is refused with a sentence") {
+  const testing::TemporaryFolder folder;
+  CHECK_THAT(refusal(folder.file("none.so")), StartsWith(folder.file("none.so") + ": no such file"));
+  CHECK_THAT(refusal(folder.path()), Contains("has no shared library"));
+  folder.write("text.so", "not a library");
+  CHECK_THAT(refusal(folder.file("text.so")), Contains("can't be loaded as a shared library: "));
+  CHECK_THAT(refusal(folder.path()), Contains("text.so"));
+  folder.write("empty.so", "");
+  CHECK_THAT(refusal(folder.file("empty.so")), Contains("can't be loaded as a shared library: "));
+}
+
+TEST_CASE("A library that is no plugin, or one with something missing, is refused with a sentence") {
+  CHECK_THAT(refusal(library("no_plugin")), Contains("is no plugin of evbench") && Contains("evbench_plugin_abi"));
+  CHECK_THAT(refusal(library("missing_symbol")), Contains("undefined symbol") && Contains("nobody_has_this"));
+  CHECK_THAT(refusal(library("registers_nothing")), Contains("registers no plugin"));
+  CHECK_THAT(refusal(library("throws")), Contains("registration failed: the licence server is down"));
+}
+
+TEST_CASE("A library of another ABI is refused before any of it runs, with both texts and what differs") {
+  const std::string message = refusal(library("other_abi"));
+  CHECK_THAT(message, Contains("api 99 instead of api " EVBENCH_ABI_TEXT(EVBENCH_PLUGIN_API)));
+  CHECK_THAT(message, Contains("api 99; gcc 3; no sanitizer") && Contains(plugin_abi()));
+}
+
+TEST_CASE("A name that is taken is refused with both origins, and nothing of the library stays") {
+  Plugins plugins;
+  load_plugin_libraries(plugins, library("tiny"));
+  const std::string message = refusal(library("twin"), plugins);
+  CHECK_THAT(message, Contains("two backends are called \"tiny\"") && Contains("libtiny.so") && Contains("libtwin.so"));
+}

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/data/landmark.hpp"
+#include "core/events/event.hpp"
+#include "core/motion/pose_trajectory.hpp"
+#include "core/plugin/exchange.hpp"
+#include "core/plugin/options.hpp"
+#include "core/plugin/status.hpp"
+
+// The messages of protocol.md, one JSON object a line. Numbers are written in the shortest form that reads as the same
+// number again.
+
+namespace evbench::process {
+
+/// A message that is not what it should be: what() says where in it, what was found and what was expected.
+class MessageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Written.
+
+using Line = fmt::memory_buffer;
+
+/// [[t, x, y, p], ...], t in seconds.
+void write_events(Line& line, std::span<const Event> events);
+
+/// "until": ..., "observations": ..., "ended": ...; what is not finite is left out, and counted in the result.
+int write_batch(Line& line, const TrackBatch& batch);
+
+/// One feedback, an object.
+void write_feedback(Line& line, const Feedback& feedback);
+
+// Read. Each throws MessageError.
+
+/// A line as a JSON object.
+Json parse_object(const std::string& line);
+
+/// Throws for a key that is not among the known ones, naming the nearest.
+void check_keys(const Json& object, const std::vector<std::string>& known);
+
+/// The value of a key; nullptr where there is none.
+const Json* find(const Json& object, const char* key);
+const Json& require(const Json& object, const char* key);
+
+/// Where a value stands: the key, and the place in its list.
+struct Place {
+  const char* key;
+  std::optional<std::size_t> index = {};
+  std::string text() const;
+};
+
+double number(const Json& value, const Place& place);  ///< finite
+std::int64_t integer(const Json& value, const Place& place);
+std::string text(const Json& value, const Place& place);
+const Json& list(const Json& value, const Place& place);
+
+/// A list of finite numbers, as many as `names` has words ("t px py pz qx qy qz qw").
+std::vector<double> numbers(const Json& value, const char* names, const Place& place);
+
+/// [t, px, py, pz, qx, qy, qz, qw], T_world_camera; the quaternion's norm may be off by a thousandth.
+StampedPose pose(const Json& value, const Place& place);
+
+/// A list of those, times strictly increasing.
+std::vector<StampedPose> poses(const Json& value, const char* key);
+
+/// [t, px ... qw] or [t, px ... qw, ωx, ωy, ωz, νx, νy, νz]: the velocity is none for the former.
+struct NewestPose {
+  StampedPose pose;
+  std::optional<Vector6> velocity;
+};
+NewestPose newest(const Json& value);
+
+TrackingState tracking_state(const Json& value);
+RunState run_state(const Json& value);
+std::string name_of(TrackingState state);
+Matrix12 covariance(const Json& value);                             ///< 144 numbers, symmetric
+std::vector<ExpectedFeature> expected_features(const Json& value);  ///< [[track, x, y, z, u, v, Σuu, Σuv, Σvv]]
+std::vector<TrackObservation> observations(const Json& value);      ///< [[track, t, u, v, sigma]], time order
+std::vector<TrackEnd> track_ends(const Json& value);                ///< [[track, t]], time order
+std::vector<Landmark> landmarks(const Json& value);                 ///< [[track, x, y, z]]
+std::vector<DegradedSpan> degraded_spans(const Json& value);        ///< [[from, to, reason]]
+
+}  // namespace evbench::process

@@ -1,0 +1,143 @@
+#include "core/process/json_lines.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+using namespace evbench;
+using namespace evbench::process;
+using Catch::Matchers::Contains;
+
+namespace {
+
+std::string text_of(const Line& line) { return {line.data(), line.size()}; }
+
+template <class Read>
+std::string refusal(const std::string& json, Read read) {
+  try {
+    read(Json::parse(json));
+  } catch (const MessageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("Observations read as the same numbers that were written") {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  TrackBatch batch;
+  double t = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    t += std::exp(5.0 * normal(random) - 8.0);
+    batch.observations.push_back({static_cast<TrackId>(random() >> 1U),
+                                  t,
+                                  {1e3 * normal(random), std::exp(30.0 * normal(random))},
+                                  std::exp(normal(random))});
+    batch.ended.push_back({i, t});
+  }
+  batch.until = t;
+  Line line;
+  line.push_back('{');
+  CHECK(write_batch(line, batch) == 0);
+  line.push_back('}');
+  const Json message = parse_object(text_of(line));
+  CHECK(message.at("until").get<double>() == t);
+  const std::vector<TrackObservation> read = observations(message.at("observations"));
+  REQUIRE(read.size() == batch.observations.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    REQUIRE(read[i].track == batch.observations[i].track);
+    REQUIRE(read[i].t == batch.observations[i].t);
+    REQUIRE(read[i].pixel == batch.observations[i].pixel);
+    REQUIRE(read[i].sigma == batch.observations[i].sigma);
+  }
+  const std::vector<TrackEnd> ended = track_ends(message.at("ended"));
+  CHECK(ended.size() == 1000);
+  CHECK(ended.back().t == t);
+}
+
+TEST_CASE("Observations that are not finite are left out of a line and counted") {
+  TrackBatch batch;
+  batch.observations = {{1, 0.1, {1, 2}, 1.0}, {2, 0.1, {NAN, 2}, 1.0}, {3, 0.1, {1, INFINITY}, 1.0}};
+  batch.until = 0.5;
+  Line line;
+  CHECK(write_batch(line, batch) == 2);
+  CHECK(text_of(line) == R"("until":0.5,"observations":[[1,0.1,1,2,1]],"ended":[])");
+}
+
+TEST_CASE("Events are written in seconds that are exact to the microsecond") {
+  Line line;
+  const std::vector<Event> events = {{12345, 3, 4, true}, {1000000, 0, 65535, false}, {3000000017, 1, 1, true}};
+  write_events(line, events);
+  CHECK(text_of(line) == "[[0.012345,3,4,1],[1,0,65535,0],[3000.000017,1,1,1]]");
+  Line none;
+  write_events(none, {});
+  CHECK(text_of(none) == "[]");
+}
+
+TEST_CASE("Feedback that is written reads as what it was") {
+  Feedback feedback;
+  feedback.t = 0.25;
+  feedback.state = TrackingState::degraded;
+  feedback.outliers = {7, 9};
+  ControlState newest_state;
+  newest_state.t = 0.2;
+  newest_state.T = se3::exp((Vector6() << 0.1, 0.2, 0.3, 1, 2, 3).finished());
+  newest_state.velocity << 1, 2, 3, 4, 5, 0.1;
+  feedback.newest = newest_state;
+  feedback.covariance = Matrix12::Identity() * 0.1;
+  feedback.expected = {{4, {1, 2, 3}, {10.5, 20.25}, Matrix2::Identity()}};
+  Line line;
+  write_feedback(line, feedback);
+  const Json message = parse_object(text_of(line));
+  CHECK(tracking_state(message.at("state")) == TrackingState::degraded);
+  const NewestPose read = newest(message.at("newest"));
+  CHECK(read.pose.t == 0.2);
+  CHECK(read.pose.T.p == newest_state.T.p);
+  CHECK((read.pose.T.q.coeffs() - newest_state.T.q.coeffs()).norm() < 1e-15);
+  CHECK(read.velocity == newest_state.velocity);
+  CHECK(covariance(message.at("covariance")) == *feedback.covariance);
+  const std::vector<ExpectedFeature> expected = expected_features(message.at("expected"));
+  REQUIRE(expected.size() == 1);
+  CHECK(expected[0].pixel == Vector2(10.5, 20.25));
+  CHECK(message.at("outliers").dump() == "[7,9]");
+  feedback.newest->T.p.x() = NAN;
+  Line without;
+  write_feedback(without, feedback);
+  CHECK_FALSE(parse_object(text_of(without)).contains("newest"));
+}
+
+TEST_CASE("A message that is not what it should be is refused by a sentence that says where") {
+  CHECK_THROWS_WITH(parse_object("Hello"), Contains("expected one JSON object a line, found Hello"));
+  CHECK_THROWS_WITH(parse_object("{\"a\": NaN}"), Contains("JSON has no NaN"));
+  CHECK_THROWS_WITH(parse_object("[1]"), Contains("expected a JSON object, found [1]"));
+  CHECK_THROWS_WITH(parse_object(""), Contains("expected one JSON object"));
+  CHECK_THROWS_WITH(parse_object("{\"a\": 1e999}"), Contains("expected one JSON object"));
+  CHECK_THROWS_WITH(parse_object("{\"a\": \"\xff\"}"), Contains("expected one JSON object"));
+  CHECK_THROWS_WITH(check_keys(Json::parse(R"({"outlier": 1})"), {"state", "outliers"}),
+                    "unknown key \"outlier\"; did you mean \"outliers\"?");
+  CHECK_THROWS_WITH(require(Json::object(), "state"), "\"state\" is missing in {}");
+  CHECK(refusal("[[1,0.1,5,5]]", observations) ==
+        "observations[0]: expected 5 numbers (track t x y sigma), found [1,0.1,5,5]");
+  CHECK_THAT(refusal("[[1,0.1,5,5,0]]", observations), Contains("a sigma above 0"));
+  CHECK_THAT(refusal("[[1.5,0.1,5,5,1]]", observations), Contains("an integer"));
+  CHECK_THAT(refusal("[[18446744073709551615,0.1,5,5,1]]", observations), Contains("an integer of 64 bits"));
+  CHECK_THAT(refusal("[[1,\"0.1\",5,5,1]]", observations), Contains("found [1,\"0.1\",5,5,1]"));
+  CHECK_THAT(refusal("[[1,null,5,5,1]]", observations), Contains("found [1,null,5,5,1]"));
+  CHECK_THAT(refusal("[[1,0.2,5,5,1],[2,0.1,5,5,1]]", observations), Contains("observations[1]: time 0.1 s is before"));
+  CHECK_THAT(refusal("{}", observations), Contains("expected a list, found {}"));
+  CHECK_THAT(refusal("[[1]]", track_ends), Contains("ended[0]: expected 2 numbers (track t)"));
+  CHECK_THAT(refusal("\"lots\"", tracking_state), Contains("unknown state \"lots\"; did you mean \"lost\"?"));
+  CHECK_THAT(refusal("[1,2]", covariance), Contains("144 numbers"));
+  CHECK_THAT(refusal("[[0.2,0.1,\"x\"]]", degraded_spans), Contains("a span that ends after it begins"));
+  const auto online = [](const Json& value) { poses(value, "online"); };
+  CHECK_THAT(refusal("[[0,0,0,0,0,0,0,0.9]]", online), Contains("online[0]: the quaternion's norm is 0.9"));
+  CHECK_THAT(refusal("[[0,0,0,0,0,0,0,1],[0,0,0,0,0,0,0,1]]", online), Contains("online[1]: time 0 s is not after"));
+}
+
+TEST_CASE("A whole number with a decimal point is an integer, as numeric libraries write them") {
+  CHECK(integer(Json::parse("7.0"), {"track"}) == 7);
+  CHECK(integer(Json::parse("-7"), {"track"}) == -7);
+  CHECK(pose(Json::parse("[1,2,3,4,0,0,0,1.0005]"), {"online"}).T.q.norm() == Approx(1.0).epsilon(1e-15));
+}

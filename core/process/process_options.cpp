@@ -1,0 +1,98 @@
+#include "core/process/process_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+
+#include "core/process/line_tail.hpp"
+#include "core/support/error.hpp"
+#include "core/support/path.hpp"
+
+namespace evbench::process {
+namespace {
+
+bool is_text(const Json& value) {
+  return value.is_string() && value.get_ref<const std::string&>().find('\0') == std::string::npos;
+}
+
+/// What may name a file in a command: roughly, for the shell's; what does not exist is none anyway.
+std::vector<std::string> possible_names(const Json& command) {
+  std::vector<std::string> names;
+  if (command.is_array()) {
+    for (const Json& word : command) {
+      if (is_text(word)) names.push_back(word.get<std::string>());
+    }
+  } else if (is_text(command)) {
+    std::string plain = command.get<std::string>();
+    std::erase_if(plain, [](char c) { return c == '"' || c == '\''; });
+    std::ranges::replace_if(
+        plain, [](char c) { return std::string_view(";|&<>()").find(c) != std::string::npos; }, ' ');
+    std::istringstream words(plain);
+    for (std::string word; words >> word;) names.push_back(word);
+  }
+  return names;
+}
+
+}  // namespace
+
+void ProcessOptions::declare(OptionSet& set) {
+  set.add("command", command, "the program and its arguments, a list of texts, or one text for the shell").required();
+  set.add("folder", folder, "where it runs, relative to the config's folder").folder();
+  set.add("files", more_files, "further files that its result depends on (modules, weights), relative to `folder`");
+  set.add("timeout", timeout, "how long it may take for an answer [s]").range(0.001, 1e6);
+  set.add("options", options, "told to the process as they are");
+}
+
+std::vector<std::string> ProcessOptions::files() const {
+  const std::string from = resolve_path(folder, "");
+  const auto exists = [](const std::string& path) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(path, error);
+  };
+  std::vector<std::string> result;
+  const auto add = [&](const std::string& path) {
+    if (std::ranges::find(result, path) == result.end()) result.push_back(path);
+  };
+  for (const std::string& name : possible_names(command)) {
+    const std::string path = anchored_path(name, from);
+    if (exists(path)) add(path);
+  }
+  if (!more_files.is_array() || !std::ranges::all_of(more_files, is_text)) {
+    throw InputError(fmt::format("files: expected a list of texts, found {}", printable(more_files.dump(), 60)));
+  }
+  for (const Json& name : more_files) {
+    const std::string path = resolve_path(name.get<std::string>(), from);
+    if (!exists(path)) throw InputError(fmt::format("{}: no such file; the option \"files\" names it", path));
+    add(path);
+  }
+  return result;
+}
+
+std::vector<std::string> command_words(const Json& command, const std::string& place) {
+  if (is_text(command) && !command.get_ref<const std::string&>().empty()) {
+    return {"/bin/sh", "-c", command.get<std::string>()};
+  }
+  const bool words = command.is_array() && !command.empty() && std::ranges::all_of(command, is_text) &&
+                     !command[0].get_ref<const std::string&>().empty();
+  if (!words) {
+    throw InputError(
+        fmt::format("{}.command: expected a list of texts (a program and its arguments) or one text for "
+                    "the shell, found {}",
+                    place, printable(command.dump(), 60)));
+  }
+  return command.get<std::vector<std::string>>();
+}
+
+std::string command_text(const Json& command) {
+  std::string result;
+  if (command.is_string()) result = command.get<std::string>();
+  for (const Json& word : command.is_array() ? command : Json::array()) {
+    if (!result.empty()) result += ' ';
+    result += word.is_string() ? word.get<std::string>() : word.dump();
+  }
+  return printable(result, 200);
+}
+
+}  // namespace evbench::process

@@ -1,0 +1,62 @@
+"""A front-end for evbench (core/process/protocol.md): follows the centres of dots from window to window of events."""
+import json, sys
+import numpy as np
+
+def say(answer): print(json.dumps(answer), flush=True)
+
+hello = json.loads(sys.stdin.readline())
+size = np.array([hello["camera"]["width"], hello["camera"]["height"]])
+options = {"window": 0.01, "radius": 6.0, "sigma": 0.4, "most": 60, **hello["options"]}
+window, radius = options["window"], options["radius"]
+tracks, made = {}, 0  # number -> [centre, velocity in pixels a window, quiet windows]
+
+def centre_near(place, xy, on):  # of a dot: its leading edge and its trailing one make events of opposite polarity
+    for _ in range(2):
+        near = np.square(xy - place).sum(axis=1) < radius**2
+        bright, dark = near & on, near & ~on
+        if bright.sum() < 4 or dark.sum() < 4: return None, near
+        place = (xy[bright].mean(axis=0) + xy[dark].mean(axis=0)) / 2
+    return place, near
+
+def follow(t, xy, on):  # one window that ends at t: observations and ended tracks
+    global made
+    observations, ended, free = [], [], np.ones(len(xy), bool)
+    for number, (centre, velocity, quiet) in list(tracks.items()):
+        found, near = centre_near(centre + velocity, xy, on)
+        free &= ~near
+        crowded = any(k < number and np.abs(other[0] - centre).max() < radius for k, other in tracks.items())
+        outside = (np.minimum(centre, size - centre) < radius).any()
+        if crowded or outside or (found is None and quiet >= 5):
+            ended.append([number, t])
+            del tracks[number]
+        elif found is None and len(xy) > 50:  # fewer: the camera is at rest, and so are the tracks
+            tracks[number] = [centre + velocity, velocity, quiet + 1]
+        elif found is not None:
+            tracks[number] = [found, 0.5 * velocity + 0.5 * (found - centre) if quiet == 0 else velocity, 0]
+            # The centre is that of the middle of the window.
+            observations.append([number, t, *(found + velocity / 2), options["sigma"]])
+    counts = np.histogram2d(*xy[free].T, bins=size // 8, range=[[0, size[0]], [0, size[1]]])[0]
+    for cell in np.argsort(-counts, axis=None)[: options["most"] - len(tracks)]:
+        if counts.flat[cell] < 10: break
+        found, near = centre_near((np.array(np.unravel_index(cell, counts.shape)) + 0.5) * 8, xy[free], on[free])
+        if found is None or (np.minimum(found, size - found) < 2 * radius).any(): continue
+        if any(np.linalg.norm(other[0] - found) < 2 * radius for other in tracks.values()): continue
+        made += 1
+        tracks[made] = [found, np.zeros(2), 0]
+        observations.append([made, t, *found, options["sigma"]])
+    return observations, ended
+
+say({"evbench": 1, "name": "centres of dots"})
+events, end = [], hello["range"][0] + window
+for message in map(json.loads, sys.stdin):
+    if "finish" in message: break
+    events += message["events"]
+    observations, ended = [], []
+    while end <= message["until"]:
+        table = np.array(events).reshape(-1, 4)
+        count = np.searchsorted(table[:, 0], end, side="right")
+        new, gone = follow(end, table[:count, 1:3], table[:count, 3] > 0)
+        observations, ended, events = observations + new, ended + gone, events[count:]
+        end += window
+    say({"observations": observations, "ended": ended})
+say({"remarks": [f"{made} tracks"]})

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include "core/data/track.hpp"
+#include "core/geometry/camera.hpp"
+#include "core/structure/triangulation.hpp"
+#include "spline.hpp"
+
+namespace spline_map {
+
+/// A track that is a point of the map. Observations are in time order, none before the spline's start.
+struct MappedTrack {
+  Vector3 position = Vector3::Zero();  ///< world frame
+  std::vector<evbench::TrackObservation> observations;
+};
+
+/// By track, in the order of the ids: whatever goes over it is deterministic.
+using Landmarks = std::map<evbench::TrackId, MappedTrack>;
+
+/// Mean norm of a landmark's reprojection error over all its observations [px].
+double mean_error(const MappedTrack& landmark, const Spline& spline, const evbench::PinholeCamera& camera);
+
+/// The point of a track seen from the spline; observations before its start are left out, of many a sample is taken.
+evbench::Triangulation triangulate_track(std::span<const evbench::TrackObservation> observations, const Spline& spline,
+                                         const evbench::PinholeCamera& camera,
+                                         const evbench::TriangulationOptions& options);
+
+}  // namespace spline_map

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/plugin/backend.hpp"
+#include "core/plugin/tracking_monitor.hpp"
+#include "core/structure/track_buffer.hpp"
+#include "first_map.hpp"
+#include "options.hpp"
+
+namespace spline_map {
+
+/// Continuous-time structure from motion with a cubic B-spline (Mueggler et al., T-RO 2018): every observation counts
+/// at its own time.
+///
+/// While running, an estimate is made every update period: the spline is extended at constant velocity, the knots of
+/// the newest seconds and the landmarks that they see are optimised, older knots are held; then tracks become landmarks
+/// or are removed. finish() optimises everything. World frame and unit of length: first_map.hpp.
+class SplineMap : public evbench::BackEnd {
+ public:
+  using Options = spline_map::Options;
+
+  SplineMap(const Options& options, const evbench::BackEndContext& context);
+
+  void advance(const evbench::TrackBatch& batch) override;
+  evbench::Feedback feedback(const evbench::FeedbackNeeds& needs) override;
+  void finish() override;
+
+  evbench::Status status() const override { return monitor_.status(); }
+  evbench::PoseTrajectory trajectory() const override;
+  std::optional<SE3> pose(double t) const override;
+  std::optional<Vector6> velocity(double t) const override;
+  std::vector<evbench::Landmark> map() const override;
+  std::span<const evbench::UpdateRecord> updates() const override { return updates_; }
+
+ private:
+  void update(double t);
+  void take_observations(double t);
+  void initialise(double t);
+  SolveReport optimise(double t);
+  void add_landmarks(double t);
+  std::vector<evbench::TrackObservation> observations_of(evbench::TrackId track) const;
+  void add_landmark(evbench::TrackId track, const Vector3& position);
+  void remove_outliers(double since);
+  void watch(double from, double t);
+  void lose();
+  void locate_the_rest();
+  void solve_everything();
+  bool covers(double t) const { return mapped_ && t >= spline_.start() && t <= newest_; }
+  Eigen::Matrix2d prediction_covariance(const MappedTrack& landmark, const SE3& T) const;
+
+  Options options_;
+  evbench::BackEndContext context_;
+  FirstMapFinder first_map_;
+  evbench::TrackingMonitor monitor_;
+
+  std::deque<evbench::TrackObservation> pending_;  ///< later than the newest estimate
+  evbench::TrackBuffer tracks_;                    ///< those that are no landmarks (yet), and removed ones' ids
+  std::map<evbench::TrackId, double> tried_at_;    ///< [s] the last vain attempt to locate a track
+  std::deque<evbench::TrackEnd> ending_;           ///< later than the newest estimate
+  std::set<evbench::TrackId> live_;                ///< tracks that have begun and not ended
+  std::vector<evbench::TrackId> new_outliers_;
+
+  bool mapped_ = false;  ///< there is a map: spline, gauge and landmarks are valid
+  Spline spline_;
+  Gauge gauge_;
+  Landmarks landmarks_;
+  double observed_ = 0.0;               ///< [s] of the newest observation of a landmark
+  double newest_ = 0.0;                 ///< [s] of the newest estimate
+  std::optional<double> first_update_;  ///< [s]
+  long updates_made_ = 0;               ///< updates are at first_update_ + updates_made_ · period
+  double until_ = 0.0;                  ///< [s] of the last batch
+  std::vector<evbench::UpdateRecord> updates_;
+};
+
+}  // namespace spline_map
