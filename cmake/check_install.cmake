@@ -3,28 +3,9 @@
 # each kind from `evbench new-plugin` to a table; then gives the program libraries that are no plugins of this evbench.
 cmake_minimum_required(VERSION 3.25)
 
-function(run)
-  cmake_parse_arguments(ARG "" "OUTPUT;REFUSED" "COMMAND" ${ARGN})
-  execute_process(COMMAND ${ARG_COMMAND} WORKING_DIRECTORY ${WORK} RESULT_VARIABLE result
-                  OUTPUT_VARIABLE output ERROR_VARIABLE error)
-  list(JOIN ARG_COMMAND " " command)
-  if(ARG_REFUSED)
-    if(NOT result EQUAL 2 OR NOT error MATCHES "${ARG_REFUSED}")
-      message(FATAL_ERROR "${command}\n${output}${error}\nexpected exit code 2 (it is ${result}) and ${ARG_REFUSED}")
-    endif()
-  elseif(NOT result EQUAL 0)
-    message(FATAL_ERROR "${command}\n${output}${error}\nexit code ${result}")
-  elseif(ARG_OUTPUT AND NOT output MATCHES "${ARG_OUTPUT}")
-    message(FATAL_ERROR "${command}\n${output}${error}\nexpected to see ${ARG_OUTPUT}")
-  endif()
-endfunction()
-
-set(evbench ${WORK}/prefix/bin/evbench)
+include(${CMAKE_CURRENT_LIST_DIR}/as_stranger.cmake)
 set(kinds backend frontend source)
 
-file(REMOVE_RECURSE ${WORK})
-file(MAKE_DIRECTORY ${WORK})
-run(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 run(COMMAND ${evbench} list)
 foreach(kind IN LISTS kinds)
   run(COMMAND ${evbench} new-plugin ${kind} my_${kind} --out ${WORK}/project/my_${kind} OUTPUT "build/libmy_${kind}.so")

@@ -41,8 +41,9 @@ const std::vector<Metric>& known_metrics() {
       {"pairs", "pairs", Better::neither, 0},
       {"coverage", "covered [%]", Better::neither, 1, 100.0},
       {"scale", "scale", Better::neither, 4},
-      {"times.frontend_s", "front-end [s]"},
-      {"times.backend_s", "back-end [s]", Better::lower},
+      {"times.frontend_s", "front-end [s]", Better::neither, 3},
+      {"times.backend_s", "back-end [s]", Better::lower, 3},
+      {"times.waiting_s", "waiting [s]", Better::neither, 3},
       {"realtime_factor", "real-time factor", Better::higher},
   };
   return metrics;
@@ -108,7 +109,9 @@ std::vector<Metric> choose_metrics(const Rows& rows, const TableOptions& options
     if (!present(key)) fail_unknown(rows, key, options.online);
     metrics.push_back(metric_of(key));
   }
+  const auto waited = [](const Row& row) { return row.run->times && row.run->times->waiting > 0.0; };
   for (const Metric& metric : known_metrics()) {
+    if (metric.key == "times.waiting_s" && std::ranges::none_of(rows, waited)) continue;  // all ran in one thread
     const bool protocol_value = metric.key == "pairs" || metric.key == "coverage" || metric.key == "scale";
     const bool wanted =
         options.metrics.empty() || (options.format == TableFormat::csv && protocol_value &&

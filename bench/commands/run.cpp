@@ -66,6 +66,9 @@ class Runs {
         ground_truth_(ground_truth_tum(source)) {}
 
   void tell_complete() const {
+    if (runs_.front().config.job.pipeline.mode == "free" && !arguments_.quiet) {
+      fmt::print("pipeline.mode is free: not reproducible, the same config gives other results each time\n");
+    }
     const auto complete =
         std::ranges::count_if(runs_, [&](const PlannedRun& run) { return complete_run(run).has_value(); });
     if (complete == 0 || arguments_.quiet) return;

@@ -1,0 +1,15 @@
+#include "bench/battery/battery.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/plugin/registration.hpp"
+
+using namespace evbench;
+
+TEST_CASE("The back-end does what evbench asks of every back-end") {
+  const Plugins plugins = registered_plugins();
+  for (const battery::Check& check : battery::backend_checks(plugins, "spline_map")) {
+    INFO(check.name);
+    CHECK_NOTHROW(check.run());
+  }
+}
