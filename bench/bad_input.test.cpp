@@ -172,7 +172,7 @@ TEST_CASE("A run that can't be written whole leaves the run before as it was") {
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
   const std::string before = testing::shell(folder, "cd results/short && sha256sum */*").out;
   const Outcome outcome = testing::shell(
-      folder, "trap '' XFSZ; ulimit -f 8; \"$evbench\" run c.json; code=$?; ulimit -f unlimited; exit $code");
+      folder, "trap '' XFSZ; ulimit -f 8; \"$evbench\" run c.json --force; code=$?; ulimit -f unlimited; exit $code");
   CHECK(outcome.exit_code == 2);
   CHECK_THAT(outcome.err, Contains("can't be written: File too large") && !Contains(".part"));
   CHECK(testing::shell(folder, "cd results/short && sha256sum */*").out == before);

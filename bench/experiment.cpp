@@ -117,6 +117,13 @@ PluginConfig plugin(Json json, const std::string& place, const std::string& fold
   return result;
 }
 
+/// The libraries that a job's plugins come from, however they were loaded: a run's config names them.
+std::vector<std::string> libraries_of(const Job& job, const Plugins& plugins) {
+  return {plugins.of<Source>().find(job.source.type, job.source.place).origin,
+          plugins.of<FrontEnd>().find(job.frontend.type, job.frontend.place).origin,
+          plugins.of<BackEnd>().find(job.backend.type, job.backend.place).origin};
+}
+
 /// The back-ends with their labels taken out.
 std::vector<std::pair<std::string, PluginConfig>> backends(const ExperimentOptions& options, const std::string& path,
                                                            const Plugins& plugins) {
@@ -182,7 +189,6 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
   RunConfig run;
   run.experiment = experiment.name;
   run.evaluation = options.evaluation;
-  run.plugins = plugin_paths(options.plugins, path);
   run.job.seed = static_cast<std::uint64_t>(options.seed);
   run.job.trajectory_rate = options.trajectory_rate;
   run.job.pipeline = options.pipeline;
@@ -192,6 +198,11 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
   for (auto& [label, backend] : backends(options, path, plugins)) {
     run.label = label;
     run.job.backend = std::move(backend);
+    run.plugins = plugin_paths(options.plugins, path);
+    for (const std::string& library : libraries_of(run.job, plugins)) {
+      const bool named = std::ranges::find(run.plugins, library) != run.plugins.end();
+      if (library != kBuiltIn && !named) run.plugins.push_back(library);
+    }
     for (const RunConfig& other : experiment.runs) {
       if (other.label == run.label) {
         throw InputError(

@@ -17,7 +17,7 @@ struct RunConfig {
   std::string label;
   Job job;
   ScoreOptions evaluation;
-  std::vector<std::string> plugins;  ///< paths of the libraries that plugins come from
+  std::vector<std::string> plugins;  ///< libraries, or folders of them, that the config names or its plugins come from
 
   /// All of it, complete with defaults: config.json of the run. It can be run again from anywhere: relative paths are
   /// taken from the config's folder.

@@ -150,6 +150,18 @@ TEST_CASE("The libraries that a config names are taken from its folder, and are 
   CHECK_THROWS_WITH(read_plugin_paths(path, {"plugins.0=3"}), Contains("expected a list of paths"));
 }
 
+TEST_CASE("A library that the command line named is named in the config that a run writes") {
+  Plugins plugins = registered_plugins();
+  Registry<BackEnd>::Entry entry = plugins.of<BackEnd>().find("gp_map", "test");
+  entry.origin = "/opt/libmine.so";
+  plugins.of<BackEnd>().add("mine", entry);
+  const TemporaryFolder folder;
+  const std::string path = folder.write("c.json", short_config("mine").dump());
+  for (const std::vector<std::string>& overrides : {std::vector<std::string>{}, {"plugins=[\"/opt/libmine.so\"]"}}) {
+    CHECK(read_experiment(path, overrides, plugins).runs[0].resolved().at("plugins") == Json{"/opt/libmine.so"});
+  }
+}
+
 TEST_CASE("Runs of a comparison that would write to the same folder are refused") {
   CHECK_THROWS_WITH(read(short_comparison(), {"backends.1.label=asynchronous"}),
                     Contains("two back-ends are labelled \"asynchronous\""));

@@ -63,6 +63,7 @@ int run_program(int argc, char** argv) {
     fmt::print(stderr, "evbench: the memory is not enough\n");
     return 2;
   } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return 2;  // is told at the end
     fmt::print(stderr, "evbench: {}\n", error.what());
     return 2;
   }
@@ -74,7 +75,7 @@ int run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   const int exit_code = run_program(argc, argv);
   std::cout.flush();
-  if (std::fflush(stdout) == 0 && std::cout) return exit_code;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return exit_code;
   fmt::print(stderr, "evbench: what was to be printed can't be written to the standard output (disk full?)\n");
   return exit_code == 0 ? 2 : exit_code;
 }

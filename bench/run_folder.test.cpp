@@ -6,6 +6,7 @@
 
 #include "bench/testing/keys.hpp"
 #include "bench/testing/program.hpp"
+#include "core/data/tum.hpp"
 #include "core/support/error.hpp"
 #include "core/support/sha256.hpp"
 
@@ -186,6 +187,52 @@ TEST_CASE("A run without an estimate fails with exit code 3, a status with the r
   CHECK(status.at("state") == "failed");
   CHECK_FALSE(status.at("reason").get<std::string>().empty());
   CHECK(json_file(folders.begin()->second, "metrics.json").at("final").is_null());
+}
+
+TEST_CASE("Of an estimate in pieces the longest one is scored, and the others lie beside it") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("c.json", short_config().dump());
+  const RunConfig config = read_experiment(path, {}, known_plugins()).runs[0];
+  const auto source = make_source(config.job, known_plugins());
+  Execution execution;
+  for (const auto& [from, to] : {std::pair{0.1, 0.6}, {0.7, 2.9}, {2.95, 3.0}}) {
+    Piece piece;
+    piece.final_trajectory = source->ground_truth().cut(from, to);
+    piece.online_trajectory = source->ground_truth().cut(from + 0.01, to);
+    piece.map.resize(3);
+    execution.result.pieces.push_back(piece);
+  }
+  execution.result.longest = 1;
+  execution.result.status = {RunState::lost, "no observations", 0.6, {}};
+  RunRecord record;
+  {
+    RunFolder run(folder.file("out"), "short", "mine");
+    record = run.write(config, identity_of(config), *source, ground_truth_tum(*source), execution);
+  }
+  std::set<std::string> expected = kFiles;
+  for (const char* name : {"final.piece1.tum", "online.piece1.tum", "map.piece1.ply", "final.piece3.tum",
+                           "online.piece3.tum", "map.piece3.ply"}) {
+    expected.insert(name);
+  }
+  const std::string made = folder.file("out/short/mine");
+  CHECK(names_in(made) == expected);
+  const PoseTrajectory scored = read_tum(made + "/final.tum"), first = read_tum(made + "/final.piece1.tum");
+  CHECK(scored.start() == Approx(0.7).margin(0.01));
+  CHECK(first.end() == Approx(0.6).margin(0.01));
+  const Json status = json_file(made, "status.json");
+  CHECK(status.at("scored_piece") == 2);
+  REQUIRE(status.at("pieces").size() == 3);
+  CHECK(status.at("pieces")[1].at("poses") == scored.size());
+  CHECK(status.at("pieces")[1].at("landmarks") == 3);
+  CHECK(status.at("pieces")[0].at("to") == first.end());
+  const Json metrics = json_file(made, "metrics.json");
+  CHECK(metrics.at("final").at("pairs") == scored.size());
+  CHECK(metrics.at("final").at("ate").at("trans_m").at("rmse").get<double>() < 1e-6);
+  CHECK(to_json(record) == metrics);
+  const std::string before = read_file(made + "/metrics.json");
+  score_again(made, config.evaluation);
+  CHECK(read_file(made + "/metrics.json") == before);
+  CHECK(names_in(made) == expected);
 }
 
 TEST_CASE("Two runs do not write to the same folder at the same time") {

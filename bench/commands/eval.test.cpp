@@ -93,7 +93,7 @@ TEST_CASE("eval writes the structure of a run's metrics, which table reads") {
   CLI::App app;
   add_table(app);
   app.parse("table " + files.folder.path() + " --format csv --out " + files.folder.file("table.csv"));
-  CHECK_THAT(read_file(files.folder.file("table.csv")), Contains("experiment,label,ate.trans_m.rmse"));
+  CHECK_THAT(read_file(files.folder.file("table.csv")), Contains("experiment,label,seed,key,folder,ate.trans_m.rmse"));
   CHECK_THROWS_AS(app.parse("table " + files.folder.path() + " --metrics no.such"), InputError);
   CHECK_THROWS_AS(app.parse("table " + files.folder.path() + " --format html"), CLI::ParseError);
 }
