@@ -10,6 +10,8 @@
 # The plugin has a copy of its own of all of evbench that it uses, and shows nothing of it, so that it and the program
 # don't mix: state that the program keeps (further formats of events, a request to end) is not the copy's. It is built
 # with the flags on which the layout of exchanged objects depends: those that evbench was built with.
+enable_testing()  # here and not in a function, whose end would take it back
+
 function(evbench_add_plugin name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "FOLDER" "SOURCES;LINKS;TESTS")
   if(ARG_UNPARSED_ARGUMENTS)
@@ -69,7 +71,6 @@ function(evbench_plugin_tests name)
     message(STATUS "${name}: built without its tests, which need Catch2 and an evbench that was built with tests")
     return()
   endif()
-  enable_testing()
   add_executable(${name}_tests ${ARGN})
   target_link_libraries(${name}_tests PRIVATE ${name}_objects evbench::battery evbench::test_main)
   evbench_plugin_flags(${name}_tests)

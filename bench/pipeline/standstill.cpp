@@ -8,11 +8,12 @@ namespace evbench {
 namespace {
 
 constexpr std::size_t kEnough = 6;  ///< tracks: fewer say little of the camera
-constexpr double kInterval = 0.05;  ///< [s] between two times at which the tracks are held
-constexpr double kSigma = 0.5;      ///< [px] at least: a tracker's next step may be about to come
-constexpr double kStep = 1.5;       ///< [px] that a tracker may have moved when it tells that there is motion again
-constexpr double kLong = 4.0;       ///< times the usual time between observations: a silence
-constexpr double kMemory = 1.0;     ///< [s] in which what is usual is forgotten
+constexpr double kInterval =
+    0.02;                        ///< [s] between two times at which the tracks are held: as often as slow trackers tell
+constexpr double kSigma = 0.5;   ///< [px] at least: a tracker's next step may be about to come
+constexpr double kStep = 1.5;    ///< [px] that a tracker may have moved when it tells that there is motion again
+constexpr double kLong = 4.0;    ///< times the usual time between observations: a silence
+constexpr double kMemory = 1.0;  ///< [s] in which what is usual is forgotten
 
 }  // namespace
 

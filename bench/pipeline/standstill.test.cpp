@@ -56,7 +56,7 @@ TEST_CASE("When live tracks fall silent they are held where they were, until the
     if (!batch.observations.empty()) before = batch.observations.back().t;
     held += batch.observations.size();
   }
-  CHECK(held == Approx(10.0 * 20.0 * 1.9).epsilon(0.05));  // at 20 Hz from 0.1 s on
+  CHECK(held == Approx(10.0 * 50.0 * 1.9).epsilon(0.05));  // at 50 Hz from 0.1 s on
   CHECK(standstill.holds());
   standstill.apply(batch = moving(3.01));
   CHECK_FALSE(standstill.holds());

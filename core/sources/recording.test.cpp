@@ -175,18 +175,3 @@ TEST_CASE("The real poster_translation opens with its ground truth") {
   CHECK(source.ground_truth().size() == 11768);
   CHECK(source.camera().pinhole.fx == Approx(199.092366542));
 }
-
-TEST_CASE("A front-end gets a recording's events in order, within the sensor, and within the time range alone") {
-  const testing::TemporaryFolder folder;
-  folder.write("calib.txt", kCalibration);
-  folder.write("events.txt",
-               "0.1 1 1 1\n0.2 2 2 1\n0.35 3 3 1\n0.3 4 4 1\n0.31 5 5 0\n0.4 400 6 1\n0.5 7 7 1\n0.6 8 8 0\n");
-  const Recording source =
-      open(R"({"calibration": "calib.txt", "events": "events.txt", "time_range": [0.2, 0.5]})", folder.path());
-  std::vector<std::int64_t> times;
-  const auto stream = source.events();
-  for (std::vector<Event> events; stream->read(events);) {
-    for (const Event& event : events) times.push_back(event.t);
-  }
-  CHECK(times == std::vector<std::int64_t>{200'000, 300'000, 310'000, 500'000});
-}

@@ -16,5 +16,5 @@ TEST_CASE("NAME does what every back-end must do") {
 TEST_CASE("NAME tells what is wrong with its options") {
   const Plugins plugins = registered_plugins();
   const auto& entry = plugins.of<BackEnd>().find("NAME", "test");
-  CHECK_THROWS_WITH(entry.resolve({{"period", 0}}, "test", ""), Catch::Matchers::Contains("test.period"));
+  CHECK_THROWS_WITH(entry.resolve({{"period", 0}}, "test", ""), Catch::Matchers::Contains("period: 0 is out of range"));
 }
