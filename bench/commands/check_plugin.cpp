@@ -129,14 +129,16 @@ bool check_plugins(const Plugins& plugins, const Arguments& arguments) {
   Count total;
   for (const Kind& kind : kinds) {
     for (const auto& [name, origin] : kind.plugins) {
-      fmt::print("{} {} ({}):\n", kind.name, name, origin);
+      const std::string title = fmt::format("{} {} ({}):", kind.name, name, origin);
       try {
-        const Count count = try_plugin(kind.checks(name));
+        const std::vector<Check> checks = kind.checks(name);
+        fmt::print("{}\n", title);
+        const Count count = try_plugin(checks);
         total.good += count.good;
         total.all += count.all;
       } catch (const InputError& error) {
         if (!arguments.names.empty()) throw;
-        fmt::print("  left out: {}\n", error.what());
+        fmt::print("{} left out: {}\n", title, error.what());
       }
     }
   }
