@@ -193,7 +193,7 @@ TEST_CASE("a blackout that the tracks survive is told as degraded and costs noth
   feed(backend, simulate(simulation));
   CHECK(backend.trajectory().end() > 3.9);
   CHECK(ate(backend.trajectory(), simulation.motion) < 0.01);
-  CHECK(backend.pose(2.2));
+  CHECK(backend.trajectory().pose(2.2));
   CHECK(backend.status().state == RunState::degraded);
   REQUIRE(backend.status().degraded.size() == 1);
   CHECK(backend.status().degraded.front().from == Approx(2.0).margin(0.06));

@@ -19,7 +19,9 @@ PoseTrajectory sample(const BackEnd& backend, double rate) {
   const auto first = static_cast<std::int64_t>(std::ceil(own.start() * rate - 1e-9));
   for (std::int64_t k = first; static_cast<double>(k) / rate <= own.end(); ++k) {
     const double t = static_cast<double>(k) / rate;
-    if (const std::optional<SE3> T = backend.pose(t)) poses.push_back({t, *T});
+    std::optional<SE3> T = backend.pose(t);
+    if (!T) T = own.pose(t);
+    if (T) poses.push_back({t, *T});
   }
   return PoseTrajectory(std::move(poses), "the back-end's trajectory");
 }

@@ -64,8 +64,9 @@ class BackEnd {
   /// The estimate's own poses: control states, frames. Empty before initialisation.
   virtual PoseTrajectory trajectory() const = 0;
 
-  /// Pose at any time that the trajectory covers: by the back-end's own continuous model where it has one.
-  virtual std::optional<SE3> pose(double t) const { return trajectory().pose(t); }
+  /// Pose at any time that the trajectory covers, for back-ends with a continuous model; none for the others, between
+  /// whose poses whoever asks interpolates.
+  virtual std::optional<SE3> pose(double /*t*/) const { return std::nullopt; }
 
   /// Body velocity (ω, ν), for back-ends with a continuous model.
   virtual std::optional<Vector6> velocity(double /*t*/) const { return std::nullopt; }
