@@ -19,11 +19,12 @@ def triangulate(views):  # linear, of [(pose, ray), ...]
     return X[:3] / X[3]
 
 def two_views(a, b):  # eight points, RANSAC: the pose of b if a's is HOME, the points, and which are in front of both
-    rows, results = np.array([np.kron([*q, 1], [*p, 1]) for p, q in zip(a, b)]), []
+    N = np.diag([2, 2, 1])  # so that all columns are of about one magnitude
+    rows, results = np.array([np.kron(N @ [*q, 1], N @ [*p, 1]) for p, q in zip(a, b)]), []
     fits = [np.linalg.svd(rows[random.choice(len(a), 8, replace=False)])[2][8] for _ in range(100)]
     best = min(fits, key=lambda E: np.median(np.abs(rows @ E)))
     E = np.linalg.svd(rows[np.argsort(np.abs(rows @ best))[: int(0.8 * len(a))]])[2][8]
-    U, _, V = np.linalg.svd(E.reshape(3, 3))
+    U, _, V = np.linalg.svd(N @ E.reshape(3, 3) @ N)
     W = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
     for R, t in [(U @ w @ V, s * U[:, 2]) for w in (W, W.T) for s in (1, -1)]:
         pose = (R * np.linalg.det(R), t)
@@ -67,8 +68,12 @@ def start():  # a first map from the oldest frame and the newest, once their ima
     both = sorted(frames[0].keys() & frames[-1].keys())
     if len(both) < 15: del frames[:-1], times[:-1]
     a, b = (np.array([frame[k] for k in both]).reshape(-1, 2) for frame in (frames[0], frames[-1]))
-    if len(both) < 15 or np.median(np.linalg.norm(a - b, axis=1)) < 0.12: return
-    points.update((k, X) for k, X, front in zip(both, *two_views(a, b)[1:]) if front)
+    if len(both) < 15 or np.median(np.linalg.norm(a - b, axis=1)) < 0.1: return
+    pose, X, front = two_views(a, b)
+    to_b = X + pose[0].T @ pose[1]  # from the second camera
+    cosines = np.sum(X * to_b, axis=1) / np.linalg.norm(X, axis=1) / np.linalg.norm(to_b, axis=1)
+    if front.mean() < 0.8 or np.median(cosines) > np.cos(0.07): return
+    points.update((k, x) for k, x, ok in zip(both, X, front) if ok)
     poses.append(HOME)
     for frame in frames[1:]: poses.append(resect(frame, poses[-1]) or poses[-1])
     refine(10)
@@ -96,10 +101,12 @@ for message in map(json.loads, sys.stdin):
     if "finish" in message: break
     online, dropped = [], len(outliers)
     for track, t, u, v, _ in message["observations"]:
-        ray = (u - c["cx"]) / c["fx"], (v - c["cy"]) / c["fy"]
+        ray = t, (u - c["cx"]) / c["fx"], (v - c["cy"]) / c["fy"]
         sums.setdefault(int(t / width), {}).setdefault(track, []).append(ray)
     for i in [i for i in sorted(sums) if (i + 1) * width <= message["until"]]:
-        state = step((i + 0.5) * width, {k: np.mean(x, axis=0) for k, x in sums.pop(i).items()})
+        centre = (i + 0.5) * width
+        lines = {k: np.array(x) - [centre, 0, 0] for k, x in sums.pop(i).items()}  # where each track is at that time:
+        state = step(centre, {k: np.polyfit(x[:, 0], x[:, 1:], 1)[1] for k, x in lines.items() if x[0, 0] < 0 < x[-1, 0]})
         online += [stamped(times[-1], poses[-1])] if poses else []
     newest = {"newest": online[-1]} if online else {}
     say({"state": state, "online": online, "outliers": outliers[dropped:], **newest})
