@@ -37,7 +37,14 @@ Execution broken_off(double t, const std::string& error) {
 }  // namespace
 
 Execution execute(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress) {
-  const std::unique_ptr<FrontEnd> frontend = make_frontend(job, source, plugins);
+  std::unique_ptr<FrontEnd> frontend;
+  try {
+    frontend = make_frontend(job, source, plugins);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {  // e.g. a process that ends at once
+    return broken_off(source.time_range().from, error.what());
+  }
   std::exception_ptr bad_input;  // of the first back-end: nothing has been done by then
   bool made = false;
   const MakeBackEnd make = [&](const BackEndContext& context) {

@@ -105,7 +105,7 @@ TEST_CASE("A back-end process is told camera, observations and ended tracks, and
   CHECK(session.online[2].t == 0.1 * 3);  // to the last bit
   CHECK(session.online[2].T.p == Vector3(0.1 * 3, 0, 0));
   CHECK(session.backend->trajectory().size() == 2);
-  CHECK(session.backend->pose(0.15)->p.x() == Approx(0.15));
+  CHECK(session.backend->trajectory().pose(0.15)->p.x() == Approx(0.15));
   REQUIRE(session.backend->map().size() == 1);
   CHECK(session.backend->map()[0].track == 7);
   CHECK(session.backend->status().state == RunState::ok);
