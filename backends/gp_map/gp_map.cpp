@@ -21,6 +21,8 @@ namespace {
 const Registration<BackEnd, GpMap> registration("gp_map",
                                                 "asynchronous MAP estimation under a GP prior (Liu et al. 2022)");
 
+constexpr double kMemory = 1.0;  ///< [s] for which tracks are remembered that ended before there is a map
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -58,7 +60,7 @@ void GpMap::step(double t) {
     remove_outliers();
     check_support();
   }
-  forget_ended_tracks();
+  forget_ended_tracks(t);
   record(t, std::exchange(seconds_since_step_, 0.0) + seconds_since(start));
 }
 
@@ -119,8 +121,13 @@ void GpMap::take_observations(double t) {
   }
 }
 
-/// They had their last chance to become landmarks in the step that saw their end.
-void GpMap::forget_ended_tracks() {
+/// They had their last chance to become landmarks in the step that saw their end; before the first map, in the one that
+/// makes it, unless that is long after.
+void GpMap::forget_ended_tracks(double t) {
+  if (!engine_) {
+    tracks_.forget_ended_before(t - kMemory);
+    return;
+  }
   for (const TrackId track : ended_) {
     tracks_.forget(track);
     tried_with_.erase(track);

@@ -56,7 +56,7 @@ class GpMap : public BackEnd {
   void optimise();
   void remove_outliers();
   void check_support();
-  void forget_ended_tracks();
+  void forget_ended_tracks(double t);
   void record(double t, double seconds);
 
   void follow(double t);
