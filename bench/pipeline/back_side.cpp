@@ -43,12 +43,11 @@ BackSide::BackSide(const MakeBackEnd& make, BackEndContext context, const Camera
     : make_(make), context_(std::move(context)), camera_(camera), standstill_(options.still_after), until_(from) {
   context_.camera = camera.pinhole;
   context_.patience = options.patience;
-  begin(from);
+  begin();
 }
 
-void BackSide::begin(double from) {
+void BackSide::begin() {
   auto estimator = std::make_unique<Estimator>();
-  estimator->from = from;
   BackEndContext context = context_;
   context.online = [&online = estimator->online](const StampedPose& pose) {
     if (!is_finite(pose))
@@ -70,7 +69,7 @@ void BackSide::take(TrackBatch batch) {
   digest(batch);
   if (estimators_.back()->backend->status().state == RunState::lost) {
     context_.log(fmt::format("{:.3f} s: another back-end starts, in a world frame of its own", until_));
-    begin(until_);
+    begin();
   }
   until_ = batch.until;
   watch_.time([&] { estimators_.back()->backend->advance(batch); });

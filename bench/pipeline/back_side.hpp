@@ -37,10 +37,9 @@ class BackSide {
   struct Estimator {
     std::unique_ptr<BackEnd> backend;
     std::vector<StampedPose> online;
-    double from = 0.0;  ///< [s] when it began: the end of the last batch that it was not given
   };
 
-  void begin(double from);
+  void begin();
   void undistort(TrackBatch& batch);
   void digest(const TrackBatch& batch);
   void add_piece(Estimator& estimator, double rate, RunResult& result) const;
