@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "bench/run_folder.hpp"
-#include "core/support/sha256.hpp"
+#include "core/io/sha256.hpp"
 #include "eval/score_run.hpp"
 
 // Runs that lie there already: found, copied, renamed, scored again.

@@ -6,8 +6,8 @@
 #include "bench/run_folder.hpp"
 #include "bench/testing/keys.hpp"
 #include "bench/testing/program.hpp"
+#include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
-#include "core/support/sha256.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;

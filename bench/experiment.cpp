@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "core/support/path.hpp"
+#include "core/io/path.hpp"
 
 namespace evbench {
 namespace {

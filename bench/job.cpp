@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <iterator>
 
+#include "core/io/path.hpp"
+#include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
-#include "core/support/path.hpp"
-#include "core/support/sha256.hpp"
 
 namespace evbench {
 namespace fs = std::filesystem;

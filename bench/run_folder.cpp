@@ -10,7 +10,7 @@
 
 #include "bench/version.hpp"
 #include "core/data/tum.hpp"
-#include "core/support/sha256.hpp"
+#include "core/io/sha256.hpp"
 #include "eval/score_run.hpp"
 
 namespace evbench {

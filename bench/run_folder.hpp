@@ -5,7 +5,7 @@
 
 #include "bench/experiment.hpp"
 #include "bench/runner.hpp"
-#include "core/support/atomic_file.hpp"
+#include "core/io/atomic_file.hpp"
 #include "eval/run_record.hpp"
 
 namespace evbench {

@@ -7,7 +7,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/datasets/fetch.hpp"
-#include "core/data/datasets.hpp"
+#include "core/datasets/catalogue.hpp"
 #include "core/support/interruption.hpp"
 
 namespace evbench {

@@ -7,8 +7,8 @@
 #include "bench/commands/commands.hpp"
 #include "core/data/robotevt.hpp"
 #include "core/data/tum.hpp"
-#include "core/support/atomic_file.hpp"
-#include "core/support/text_reader.hpp"
+#include "core/io/atomic_file.hpp"
+#include "core/io/text_reader.hpp"
 #include "eval/protocol.hpp"
 #include "eval/run_record.hpp"
 

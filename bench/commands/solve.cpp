@@ -6,9 +6,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "backends/gp_map/problem_solver.hpp"
 #include "bench/commands/commands.hpp"
-#include "bench/problem_solver.hpp"
-#include "core/support/atomic_file.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
@@ -16,13 +16,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::map<std::string, SolveMode> kModes = {
-    {"incremental", SolveMode::incremental}, {"batch", SolveMode::batch}, {"fixed-lag", SolveMode::fixed_lag}};
+const std::map<std::string, gp_map::SolveMode> kModes = {{"incremental", gp_map::SolveMode::incremental},
+                                                         {"batch", gp_map::SolveMode::batch},
+                                                         {"fixed-lag", gp_map::SolveMode::fixed_lag}};
 
 struct SolveArguments {
   std::string problem, json, states, steps;
   bool check = false;
-  SolveOptions options;
+  gp_map::SolveOptions options;
 };
 
 /// The nearest-rank quantile.
@@ -33,7 +34,7 @@ double quantile(std::vector<double> values, double share) {
   return values[std::max<std::size_t>(rank, 1) - 1];
 }
 
-Json report(const SolveArguments& arguments, const SolveResult& result) {
+Json report(const SolveArguments& arguments, const gp_map::SolveResult& result) {
   const gp_map::Cost cost = evaluate(result.graph);
   if (!std::isfinite(cost.total())) throw InputError(arguments.problem + ": the solution's cost is not finite");
   Json json = {{"problem", arguments.problem},
@@ -63,7 +64,7 @@ std::string format_states(const gp_map::FactorGraph& graph) {
   return format_problem(problem);
 }
 
-std::string format_steps(const SolveResult& result) {
+std::string format_steps(const gp_map::SolveResult& result) {
   std::string text = "step,ms,first_stage,stages,solved_back,linearised,damping,rejected\n";
   for (std::size_t k = 0; k < result.updates.size(); ++k) {
     const gp_map::UpdateSummary& u = result.updates[k];
@@ -74,7 +75,7 @@ std::string format_steps(const SolveResult& result) {
 }
 
 void execute(const SolveArguments& arguments) {
-  const SolveResult result = solve_problem(read_problem(arguments.problem), arguments.options);
+  const gp_map::SolveResult result = gp_map::solve_problem(read_problem(arguments.problem), arguments.options);
   const Json json = report(arguments, result);
   fmt::print("{}\n", json.dump(2));
   if (!arguments.json.empty()) write_file(arguments.json, json.dump(2) + "\n");

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "bench/commands/commands.hpp"
-#include "core/support/atomic_file.hpp"
+#include "core/io/atomic_file.hpp"
 
 namespace evbench {
 namespace {

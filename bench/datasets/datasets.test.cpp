@@ -12,9 +12,9 @@
 #include "bench/datasets/fetch.hpp"
 #include "bench/datasets/unpack.hpp"
 #include "bench/testing/program.hpp"
+#include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
-#include "core/support/sha256.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;

@@ -13,10 +13,10 @@
 #include <string_view>
 #include <thread>
 
-#include "core/support/atomic_file.hpp"
+#include "core/io/atomic_file.hpp"
+#include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
-#include "core/support/sha256.hpp"
 
 namespace evbench {
 namespace {

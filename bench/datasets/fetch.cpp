@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "bench/datasets/unpack.hpp"
-#include "core/support/atomic_file.hpp"
+#include "core/io/atomic_file.hpp"
+#include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
-#include "core/support/sha256.hpp"
 
 namespace evbench {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bench/datasets/download.hpp"
-#include "core/data/datasets.hpp"
+#include "core/datasets/catalogue.hpp"
 
 namespace evbench {
 

@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
+#include "backends/gp_map/problem_solver.hpp"
 #include "bench/micro/track_problem.hpp"
-#include "bench/problem_solver.hpp"
 
 namespace {
 
@@ -102,7 +102,7 @@ double million_observations_linearised_a_second(const FactorGraph& graph) {
 
 void measure(const std::string& name, const TrackProblemOptions& options) {
   const Problem problem = make_track_problem(options);
-  const SolveResult result = solve_problem(problem, {});
+  const gp_map::SolveResult result = gp_map::solve_problem(problem, {});
   const Operations operations(result.graph);
   std::vector<double> stages, solved_back;
   double flops = 0.0;

@@ -11,11 +11,11 @@
 #include <cstring>
 
 #include "bench/micro/reading_speed.hpp"
-#include "bench/peak_memory.hpp"
 #include "core/events/event_stream.hpp"
 #include "core/events/formats.hpp"
 #include "core/events/formats/native.hpp"
-#include "core/support/part_file.hpp"
+#include "core/io/part_file.hpp"
+#include "core/support/peak_memory.hpp"
 
 namespace {
 

@@ -15,9 +15,9 @@
 #include <string>
 
 #include "bench/micro/reading_speed.hpp"
-#include "bench/peak_memory.hpp"
 #include "core/simulation/events/event_simulator.hpp"
 #include "core/simulation/events/scene_brightness.hpp"
+#include "core/support/peak_memory.hpp"
 
 namespace {
 

@@ -14,9 +14,9 @@
 #include <fstream>
 
 #include "bench/micro/reading_speed.hpp"
-#include "bench/peak_memory.hpp"
 #include "core/events/event_stream.hpp"
 #include "core/events/formats.hpp"
+#include "core/support/peak_memory.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "bench/new_plugin/templates.hpp"
-#include "core/support/atomic_file.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {

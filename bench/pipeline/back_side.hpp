@@ -8,7 +8,7 @@
 #include "bench/pipeline/pipeline.hpp"
 #include "bench/pipeline/standstill.hpp"
 #include "bench/pipeline/stopwatch.hpp"
-#include "core/support/sha256.hpp"
+#include "core/io/sha256.hpp"
 
 namespace evbench {
 

@@ -6,11 +6,11 @@
 #include <fstream>
 #include <thread>
 
-#include "bench/peak_memory.hpp"
 #include "bench/pipeline/back_side.hpp"
 #include "bench/pipeline/batch_queue.hpp"
 #include "bench/pipeline/feedback_line.hpp"
 #include "bench/pipeline/front_side.hpp"
+#include "core/support/peak_memory.hpp"
 
 namespace evbench {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "core/data/calib.hpp"
 #include "core/events/writer.hpp"
+#include "core/io/part_file.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 #include "core/support/nearest.hpp"
-#include "core/support/part_file.hpp"
 
 namespace evbench {
 namespace {

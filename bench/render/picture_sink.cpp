@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/render/video_sink.hpp"
-#include "core/support/atomic_file.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <opencv2/videoio.hpp>
 
+#include "core/io/part_file.hpp"
 #include "core/support/error.hpp"
-#include "core/support/part_file.hpp"
 
 namespace evbench {
 namespace fs = std::filesystem;

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/io/text_reader.hpp"
 #include "core/support/error.hpp"
-#include "core/support/text_reader.hpp"
 
 namespace evbench {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "core/io/text_reader.hpp"
 #include "core/motion/pose_trajectory.hpp"
-#include "core/support/text_reader.hpp"
 
 namespace evbench {
 

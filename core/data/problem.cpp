@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "core/data/pose_record.hpp"
-#include "core/support/atomic_file.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {

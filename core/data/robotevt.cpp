@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/data/pose_record.hpp"
-#include "core/support/atomic_file.hpp"
+#include "core/io/atomic_file.hpp"
 
 namespace evbench {
 

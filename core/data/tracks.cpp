@@ -7,9 +7,9 @@
 #include <tuple>
 
 #include "core/geometry/camera.hpp"
-#include "core/support/atomic_file.hpp"
+#include "core/io/atomic_file.hpp"
+#include "core/io/text_reader.hpp"
 #include "core/support/error.hpp"
-#include "core/support/text_reader.hpp"
 
 namespace evbench {
 namespace {

@@ -5,7 +5,7 @@
 #include <charconv>
 
 #include "core/data/pose_record.hpp"
-#include "core/support/atomic_file.hpp"
+#include "core/io/atomic_file.hpp"
 
 namespace evbench {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/events/companions/companions.hpp"
 #include "core/events/event_stream.hpp"
 #include "core/events/formats/all.hpp"
-#include "core/support/byte_source.hpp"
+#include "core/io/byte_source.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/events/formats/zip_archive.hpp"
-#include "core/support/byte_source.hpp"
+#include "core/io/byte_source.hpp"
 
 namespace evbench {
 

@@ -9,8 +9,8 @@
 
 #include "core/events/event.hpp"
 #include "core/geometry/camera.hpp"
+#include "core/io/part_file.hpp"
 #include "core/motion/pose_trajectory.hpp"
-#include "core/support/part_file.hpp"
 
 namespace evbench {
 

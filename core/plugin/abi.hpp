@@ -29,7 +29,7 @@
 #endif
 
 // Memory that Eigen has aligned for wider registers (-march) must be freed by code that knows so.
-#define EVBENCH_ABI_EIGEN                                                                                        \
+#define EVBENCH_ABI_EIGEN \
   "Eigen " EVBENCH_ABI_TEXT(EIGEN_WORLD_VERSION) "." EVBENCH_ABI_TEXT(EIGEN_MAJOR_VERSION) "." EVBENCH_ABI_TEXT( \
       EIGEN_MINOR_VERSION) " aligned to " EVBENCH_ABI_TEXT(EIGEN_MAX_ALIGN_BYTES) " bytes, members "             \
                                                                                   "to " EVBENCH_ABI_TEXT(EIGEN_MAX_STATIC_ALIGN_BYTES)

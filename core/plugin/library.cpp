@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/io/file_mapping.hpp"
 #include "core/plugin/abi.hpp"
 #include "core/support/error.hpp"
-#include "core/support/file_mapping.hpp"
 
 namespace evbench {
 namespace {

@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 
+#include "core/io/path.hpp"
 #include "core/support/error.hpp"
 #include "core/support/nearest.hpp"
-#include "core/support/path.hpp"
 
 namespace evbench {
 namespace {

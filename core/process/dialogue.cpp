@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/support/path.hpp"
+#include "core/io/path.hpp"
 
 namespace evbench::process {
 

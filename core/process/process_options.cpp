@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <sstream>
 
+#include "core/io/path.hpp"
 #include "core/process/line_tail.hpp"
 #include "core/support/error.hpp"
-#include "core/support/path.hpp"
 
 namespace evbench::process {
 namespace {

@@ -7,11 +7,11 @@
 
 #include "core/data/tum.hpp"
 #include "core/geometry/so3.hpp"
+#include "core/io/path.hpp"
 #include "core/motion/gp_trajectory.hpp"
 #include "core/simulation/random.hpp"
 #include "core/simulation/time_spans.hpp"
 #include "core/support/error.hpp"
-#include "core/support/path.hpp"
 
 namespace evbench {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "core/io/path.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/error.hpp"
-#include "core/support/path.hpp"
 
 namespace evbench {
 namespace {

@@ -5,14 +5,14 @@
 #include <filesystem>
 
 #include "core/data/calib.hpp"
-#include "core/data/datasets.hpp"
 #include "core/data/robotevt.hpp"
 #include "core/data/tum.hpp"
+#include "core/datasets/catalogue.hpp"
 #include "core/events/companions/companions.hpp"
 #include "core/events/formats.hpp"
+#include "core/io/path.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/error.hpp"
-#include "core/support/path.hpp"
 
 namespace evbench {
 namespace {

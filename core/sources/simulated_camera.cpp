@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "core/data/calib.hpp"
+#include "core/io/path.hpp"
 #include "core/support/error.hpp"
-#include "core/support/path.hpp"
 
 namespace evbench {
 

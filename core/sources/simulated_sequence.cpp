@@ -1,6 +1,6 @@
 #include "core/sources/simulated_sequence.hpp"
 
-#include "core/support/path.hpp"
+#include "core/io/path.hpp"
 
 namespace evbench {
 

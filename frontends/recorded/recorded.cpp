@@ -6,9 +6,9 @@
 #include <map>
 
 #include "core/data/tracks.hpp"
+#include "core/io/path.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/error.hpp"
-#include "core/support/path.hpp"
 
 namespace evbench {
 namespace {

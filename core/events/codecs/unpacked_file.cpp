@@ -12,7 +12,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/support/byte_source.hpp"
+#include "core/io/byte_source.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 

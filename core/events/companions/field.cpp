@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "core/support/byte_source.hpp"
+#include "core/io/byte_source.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/events/reader.hpp"
-#include "core/support/byte_source.hpp"
+#include "core/io/byte_source.hpp"
 
 namespace evbench {
 

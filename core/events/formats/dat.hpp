@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "core/events/reader.hpp"
-#include "core/support/byte_source.hpp"
+#include "core/io/byte_source.hpp"
 
 namespace evbench {
 

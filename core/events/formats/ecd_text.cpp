@@ -15,8 +15,8 @@
 #include "core/events/codecs/event_text.hpp"
 #include "core/events/formats/all.hpp"
 #include "core/events/recording_files.hpp"
+#include "core/io/text_reader.hpp"
 #include "core/support/error.hpp"
-#include "core/support/text_reader.hpp"
 
 namespace evbench {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/events/reader.hpp"
-#include "core/support/byte_source.hpp"
+#include "core/io/byte_source.hpp"
 
 namespace evbench {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/events/formats/message_source.hpp"
-#include "core/support/byte_source.hpp"
+#include "core/io/byte_source.hpp"
 
 namespace evbench {
 

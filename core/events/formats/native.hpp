@@ -9,7 +9,7 @@
 #include "core/events/formats/native_layout.hpp"
 #include "core/events/reader.hpp"
 #include "core/events/writer.hpp"
-#include "core/support/file_mapping.hpp"
+#include "core/io/file_mapping.hpp"
 
 namespace evbench {
 

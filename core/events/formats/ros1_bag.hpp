@@ -9,7 +9,7 @@
 
 #include "core/events/codecs/bytes.hpp"
 #include "core/events/formats/message_source.hpp"
-#include "core/support/byte_source.hpp"
+#include "core/io/byte_source.hpp"
 
 namespace evbench {
 

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "core/support/byte_source.hpp"
+#include "core/io/byte_source.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {

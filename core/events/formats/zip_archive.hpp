@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/support/byte_source.hpp"
+#include "core/io/byte_source.hpp"
 
 namespace evbench {
 

@@ -6,10 +6,10 @@
 #include <bit>
 #include <cmath>
 
+#include "core/io/path.hpp"
 #include "core/simulation/layout.hpp"
 #include "core/simulation/rendering/patterns.hpp"
 #include "core/support/error.hpp"
-#include "core/support/path.hpp"
 
 namespace evbench {
 namespace {

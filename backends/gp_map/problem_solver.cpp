@@ -1,16 +1,13 @@
-#include "bench/problem_solver.hpp"
+#include "backends/gp_map/problem_solver.hpp"
 
 #include <algorithm>
 #include <chrono>
 
 #include "backends/gp_map/problem_graph.hpp"
-#include "bench/peak_memory.hpp"
+#include "core/support/peak_memory.hpp"
 
-namespace evbench {
+namespace evbench::gp_map {
 namespace {
-
-using gp_map::Engine;
-using gp_map::FactorGraph;
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -21,7 +18,7 @@ class IncrementalRun {
  public:
   IncrementalRun(const Problem& problem, const SolveOptions& options)
       : problem_(problem),
-        engine_(problem.camera, problem.qc, gp_map::RobustLoss(), engine_options(options)),
+        engine_(problem.camera, problem.qc, RobustLoss(), engine_options(options)),
         number_(problem.landmarks.size(), -1),
         held_back_(problem.landmarks.size(), -1),
         priors_(problem.landmarks.size()) {
@@ -46,15 +43,15 @@ class IncrementalRun {
   }
 
  private:
-  static gp_map::EngineOptions engine_options(const SolveOptions& options) {
-    gp_map::EngineOptions engine = options.engine;
+  static EngineOptions engine_options(const SolveOptions& options) {
+    EngineOptions engine = options.engine;
     if (options.mode == SolveMode::fixed_lag) engine.lag = options.lag;
     return engine;
   }
 
   /// All factors with the final estimate: with a lag the engine has forgotten most of them.
   FactorGraph complete_graph() const {
-    FactorGraph graph = gp_map::to_graph(problem_);
+    FactorGraph graph = to_graph(problem_);
     graph.states = engine_.graph().states;
     for (std::size_t j = 0; j < number_.size(); ++j) {
       if (number_[j] < 0) continue;
@@ -104,13 +101,13 @@ class IncrementalRun {
   Engine engine_;
   std::vector<int> number_;              ///< of a problem's landmark in the engine, −1: not in yet
   std::vector<std::int64_t> held_back_;  ///< the only observation of a landmark so far
-  std::vector<gp_map::LandmarkPrior> priors_;
+  std::vector<LandmarkPrior> priors_;
   std::size_t next_ = 0;
 };
 
 SolveResult solve_at_once(const Problem& problem, const SolveOptions& options) {
   SolveResult result;
-  Engine engine(gp_map::to_graph(problem), options.engine);
+  Engine engine(to_graph(problem), options.engine);
   const auto start = std::chrono::steady_clock::now();
   const auto summary = engine.optimise(options.max_iterations, 1e-8);
   result.step_ms.push_back(milliseconds_since(start));
@@ -132,10 +129,10 @@ SolveResult solve_problem(const Problem& problem, const SolveOptions& options) {
 Check check_against_batch(const FactorGraph& estimate) {
   Check check{0.0, estimate};
   const double cost = evaluate(estimate).total();
-  gp_map::solve_batch(check.optimum, {50, 1e-13});
+  solve_batch(check.optimum, {50, 1e-13});
   const double optimum = evaluate(check.optimum).total();
   check.relative_excess = (cost - optimum) / optimum;
   return check;
 }
 
-}  // namespace evbench
+}  // namespace evbench::gp_map

@@ -1,4 +1,4 @@
-#include "core/support/file_mapping.hpp"
+#include "core/io/file_mapping.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "core/support/byte_source.hpp"
+#include "core/io/byte_source.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "core/support/sha256.hpp"
+#include "core/io/sha256.hpp"
 
 #include <fmt/format.h>
 #include <openssl/evp.h>

@@ -1,4 +1,4 @@
-#include "core/support/part_file.hpp"
+#include "core/io/part_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -10,8 +10,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "core/io/path.hpp"
 #include "core/support/error.hpp"
-#include "core/support/path.hpp"
 
 namespace evbench {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/support/text_reader.hpp"
+#include "core/io/text_reader.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>

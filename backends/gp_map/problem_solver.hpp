@@ -8,24 +8,24 @@
 #include "backends/gp_map/engine/engine.hpp"
 #include "core/data/problem.hpp"
 
-namespace evbench {
+namespace evbench::gp_map {
 
 enum class SolveMode { incremental, batch, fixed_lag };
 
 struct SolveOptions {
   SolveMode mode = SolveMode::incremental;
-  gp_map::EngineOptions engine;
+  EngineOptions engine;
   double lag = 2.0;         ///< [s], fixed-lag mode
   int max_iterations = 20;  ///< batch mode
 };
 
 struct SolveResult {
-  gp_map::FactorGraph graph;  ///< with the final estimate, complete
+  FactorGraph graph;  ///< with the final estimate, complete
   std::vector<double> step_ms;
-  std::vector<gp_map::UpdateSummary> updates;  ///< one a step; empty in batch mode
-  double total_s = 0.0;                        ///< of the steps
-  double peak_mib = 0.0;                       ///< of the process when the last step was done
-  std::string reason;                          ///< of the last step that had one
+  std::vector<UpdateSummary> updates;  ///< one a step; empty in batch mode
+  double total_s = 0.0;                ///< of the steps
+  double peak_mib = 0.0;               ///< of the process when the last step was done
+  std::string reason;                  ///< of the last step that had one
 };
 
 /// Solves a problem by the protocol of problem files: step 0 adds state 0 and its priors; step k ≥ 1 adds state k,
@@ -39,8 +39,8 @@ SolveResult solve_problem(const Problem& problem, const SolveOptions& options);
 /// comparison.
 struct Check {
   double relative_excess = 0.0;
-  gp_map::FactorGraph optimum;
+  FactorGraph optimum;
 };
-Check check_against_batch(const gp_map::FactorGraph& estimate);
+Check check_against_batch(const FactorGraph& estimate);
 
-}  // namespace evbench
+}  // namespace evbench::gp_map

@@ -1,4 +1,4 @@
-#include "core/data/datasets.hpp"
+#include "core/datasets/catalogue.hpp"
 
 #include <fmt/format.h>
 

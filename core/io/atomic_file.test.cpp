@@ -1,4 +1,4 @@
-#include "core/support/atomic_file.hpp"
+#include "core/io/atomic_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>

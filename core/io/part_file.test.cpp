@@ -1,4 +1,4 @@
-#include "core/support/part_file.hpp"
+#include "core/io/part_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>

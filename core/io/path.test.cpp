@@ -1,4 +1,4 @@
-#include "core/support/path.hpp"
+#include "core/io/path.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
