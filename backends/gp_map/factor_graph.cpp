@@ -24,33 +24,38 @@ void IntervalObservations::add(int landmark, const Observation& observation) {
   }
 }
 
-void IntervalObservations::remove(int landmark) {
-  const auto group =
-      std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) { return g.landmark == landmark; });
-  if (group == groups_.end()) return;
-  const int count = group->end - group->begin;
-  observations_.erase(observations_.begin() + group->begin, observations_.begin() + group->end);
-  for (auto later = groups_.erase(group); later != groups_.end(); ++later) {
+void IntervalObservations::remove(std::vector<Group>::iterator group, int begin, int count) {
+  observations_.erase(observations_.begin() + begin, observations_.begin() + begin + count);
+  group->end -= count;
+  for (auto later = group + 1; later != groups_.end(); ++later) {
     later->begin -= count;
     later->end -= count;
   }
+  if (group->begin == group->end) groups_.erase(group);
 }
 
-bool IntervalObservations::remove(int landmark, double t) {
-  const auto group =
-      std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) { return g.landmark == landmark; });
-  if (group == groups_.end()) return false;
-  const auto end = observations_.begin() + group->end;
-  const auto found = std::find_if(observations_.begin() + group->begin, end, [&](const auto& z) { return z.t == t; });
-  if (found == end) return false;
-  observations_.erase(found);
-  --group->end;
-  for (auto later = group + 1; later != groups_.end(); ++later) {
-    --later->begin;
-    --later->end;
-  }
-  if (group->begin == group->end) groups_.erase(group);
-  return true;
+int IntervalObservations::remove(int landmark) {
+  const auto group = std::ranges::find(groups_, landmark, &Group::landmark);
+  if (group == groups_.end()) return 0;
+  const int count = group->end - group->begin;
+  remove(group, group->begin, count);
+  return count;
+}
+
+int IntervalObservations::remove(int landmark, double t) {
+  const auto group = std::ranges::find(groups_, landmark, &Group::landmark);
+  if (group == groups_.end()) return 0;
+  const auto observations = of(*group);
+  const auto found = std::ranges::find(observations, t, &Observation::t);
+  if (found == observations.end()) return 0;
+  remove(group, group->begin + static_cast<int>(found - observations.begin()), 1);
+  return 1;
+}
+
+std::span<const Observation> IntervalObservations::of(int landmark) const {
+  const auto group = std::ranges::lower_bound(groups_, landmark, {}, &Group::landmark);
+  if (group == groups_.end() || group->landmark != landmark) return {};
+  return of(*group);
 }
 
 void FactorGraph::add_state(const ControlState& state) {
@@ -60,9 +65,7 @@ void FactorGraph::add_state(const ControlState& state) {
 
 void FactorGraph::remove_newest_state() {
   const int newest = static_cast<int>(states.size()) - 1;
-  for (const auto& group : intervals.back().groups()) {
-    std::erase(landmarks[static_cast<std::size_t>(group.landmark)].intervals, newest);
-  }
+  forget_interval(newest);
   intervals.pop_back();
   states.pop_back();
   const auto on_newest = [&](const auto& prior) { return prior.state == newest; };
@@ -76,8 +79,8 @@ int FactorGraph::add_landmark(const Vector3& position, const LandmarkPrior& prio
 }
 
 void FactorGraph::remove_landmark(int landmark) {
-  Landmark& removed = landmarks[static_cast<std::size_t>(landmark)];
-  for (const int k : removed.intervals) intervals[static_cast<std::size_t>(k)].remove(landmark);
+  Landmark& removed = landmarks[index(landmark)];
+  for (const int k : removed.intervals) observation_count_ -= intervals[index(k)].remove(landmark);
   removed.intervals.clear();
   removed.alive = false;
   if (std::erase(anchor.landmarks, landmark) > 0) anchor_scale(anchor.origin, anchor.landmarks);
@@ -99,8 +102,9 @@ int FactorGraph::interval_of(double t) const {
 bool FactorGraph::add_observation(int landmark, const Observation& observation) {
   const int k = interval_of(observation.t);
   if (k < 0) return false;
-  intervals[static_cast<std::size_t>(k)].add(landmark, observation);
-  std::vector<int>& seen = landmarks[static_cast<std::size_t>(landmark)].intervals;
+  intervals[index(k)].add(landmark, observation);
+  ++observation_count_;
+  std::vector<int>& seen = landmarks[index(landmark)].intervals;
   const auto at = std::lower_bound(seen.begin(), seen.end(), k);
   if (at == seen.end() || *at != k) seen.insert(at, k);
   return true;
@@ -108,71 +112,21 @@ bool FactorGraph::add_observation(int landmark, const Observation& observation) 
 
 bool FactorGraph::remove_observation(int landmark, double t) {
   const int k = interval_of(t);
-  if (k < 0 || !intervals[static_cast<std::size_t>(k)].remove(landmark, t)) return false;
-  const auto& groups = intervals[static_cast<std::size_t>(k)].groups();
-  if (std::ranges::find(groups, landmark, &IntervalObservations::Group::landmark) == groups.end()) {
-    std::erase(landmarks[static_cast<std::size_t>(landmark)].intervals, k);
-  }
+  if (k < 0 || intervals[index(k)].remove(landmark, t) == 0) return false;
+  --observation_count_;
+  if (intervals[index(k)].of(landmark).empty()) std::erase(landmarks[index(landmark)].intervals, k);
   return true;
 }
 
-int FactorGraph::observation_count() const {
-  std::size_t count = 0;
-  for (const IntervalObservations& interval : intervals) count += interval.all().size();
-  return static_cast<int>(count);
-}
-
-Cost evaluate(const FactorGraph& graph) {
-  Cost cost;
-  for (std::size_t k = 1; k < graph.states.size(); ++k) {
-    const GpInterval interval(graph.states[k - 1], graph.states[k]);
-    cost.motion_prior += motion_prior_cost(interval, graph.qc);
-    const IntervalObservations& observations = graph.intervals[k];
-    for (const auto& group : observations.groups()) {
-      const Vector3 landmark = graph.landmarks[static_cast<std::size_t>(group.landmark)].position;
-      for (int i = group.begin; i < group.end; ++i) {
-        const Observation& z = observations.all()[static_cast<std::size_t>(i)];
-        cost.measurements +=
-            0.5 * graph.loss.value(reprojection_residual(interval, landmark, z, graph.camera).squaredNorm());
-      }
-    }
+void FactorGraph::forget_interval(int k) {
+  IntervalObservations& interval = intervals[index(k)];
+  for (const auto& group : interval.groups()) {
+    std::vector<int>& seen = landmarks[index(group.landmark)].intervals;
+    std::erase(seen, k);
+    if (seen.empty()) seen.shrink_to_fit();
   }
-  for (const PosePrior& prior : graph.pose_priors) {
-    cost.priors += 0.5 * residual(prior, graph.states[static_cast<std::size_t>(prior.state)]).squaredNorm();
-  }
-  for (const VelocityPrior& prior : graph.velocity_priors) {
-    cost.priors += 0.5 * residual(prior, graph.states[static_cast<std::size_t>(prior.state)]).squaredNorm();
-  }
-  for (const FactorGraph::Landmark& landmark : graph.landmarks) {
-    if (landmark.alive) cost.priors += 0.5 * residual(landmark.prior, landmark.position).squaredNorm();
-  }
-  if (!graph.anchor.landmarks.empty()) {
-    const double e = (mean_log_distance(graph) - graph.anchor.mean_log_distance) / graph.anchor.sigma;
-    cost.priors += 0.5 * e * e;
-  }
-  return cost;
-}
-
-double reprojection_mean(const FactorGraph& graph, int landmark) {
-  const FactorGraph::Landmark& l = graph.landmarks[static_cast<std::size_t>(landmark)];
-  double sum = 0.0;
-  int count = 0;
-  for (const int k : l.intervals) {
-    const auto index = static_cast<std::size_t>(k);
-    const GpInterval interval(graph.states[index - 1], graph.states[index]);
-    const IntervalObservations& observations = graph.intervals[index];
-    for (const auto& group : observations.groups()) {
-      if (group.landmark != landmark) continue;
-      for (int i = group.begin; i < group.end; ++i) {
-        const Observation& z = observations.all()[static_cast<std::size_t>(i)];
-        const Vector3 q = interval.pose(z.t).inverse() * l.position;
-        if (!(q.z() > 0.0)) return std::numeric_limits<double>::infinity();
-        sum += (graph.camera.project(q) - z.pixel).norm();
-        ++count;
-      }
-    }
-  }
-  return count == 0 ? 0.0 : sum / count;
+  observation_count_ -= static_cast<int>(interval.all().size());
+  interval = IntervalObservations();
 }
 
 }  // namespace evbench::gp_map

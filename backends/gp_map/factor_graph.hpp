@@ -1,11 +1,13 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "backends/gp_map/robust_loss.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/gp_interval.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench::gp_map {
 
@@ -26,14 +28,20 @@ class IntervalObservations {
   };
 
   void add(int landmark, const Observation& observation);
-  void remove(int landmark);
-  /// One observation of that very time; false when there is none.
-  bool remove(int landmark, double t);
+  /// Those of a landmark, or its first one of that very time. Returns how many there were.
+  int remove(int landmark);
+  int remove(int landmark, double t);
 
   const std::vector<Observation>& all() const { return observations_; }
   const std::vector<Group>& groups() const { return groups_; }  ///< ordered by landmark
+  std::span<const Observation> of(const Group& group) const {
+    return std::span(observations_).subspan(index(group.begin), index(group.end - group.begin));
+  }
+  std::span<const Observation> of(int landmark) const;  ///< empty for one that is not observed
 
  private:
+  void remove(std::vector<Group>::iterator group, int begin, int count);
+
   std::vector<Observation> observations_;
   std::vector<Group> groups_;
 };
@@ -109,17 +117,13 @@ struct FactorGraph {
   /// Removes the observation of a landmark at exactly this time. False when there is none.
   bool remove_observation(int landmark, double t);
 
-  int observation_count() const;
-};
+  /// Drops the observations of an interval that is not estimated any more.
+  void forget_interval(int k);
 
-/// The problem's cost, ½ Σ ρ(‖whitened residual‖²), by parts.
-struct Cost {
-  double measurements = 0.0, motion_prior = 0.0, priors = 0.0;
-  double total() const { return measurements + motion_prior + priors; }
-};
-Cost evaluate(const FactorGraph& graph);
+  int observation_count() const { return observation_count_; }
 
-/// Mean reprojection error of a landmark over all its observations [px]; infinite when behind the camera.
-double reprojection_mean(const FactorGraph& graph, int landmark);
+ private:
+  int observation_count_ = 0;
+};
 
 }  // namespace evbench::gp_map

@@ -2,10 +2,74 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/motion/wnoa.hpp"
 
 namespace evbench::gp_map {
+namespace {
+
+/// ½ Σ ρ of the observations in an interval.
+double measurement_cost(const FactorGraph& graph, int k, const GpInterval& interval) {
+  const IntervalObservations& observations = graph.intervals[index(k)];
+  double cost = 0.0;
+  for (const auto& group : observations.groups()) {
+    const Vector3& landmark = graph.landmarks[index(group.landmark)].position;
+    for (const Observation& z : observations.of(group)) {
+      cost += 0.5 * graph.loss.value(reprojection_residual(interval, landmark, z, graph.camera).squaredNorm());
+    }
+  }
+  return cost;
+}
+
+/// Calls visit(interval, observation) for each of a landmark's observations.
+template <class Visit>
+void for_each_observation(const FactorGraph& graph, int landmark, Visit visit) {
+  for (const int k : graph.landmarks[index(landmark)].intervals) {
+    const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
+    for (const Observation& z : graph.intervals[index(k)].of(landmark)) visit(interval, z);
+  }
+}
+
+}  // namespace
+
+Cost evaluate(const FactorGraph& graph) {
+  Cost cost;
+  for (int k = 1; k < static_cast<int>(graph.states.size()); ++k) {
+    const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
+    cost.motion_prior += motion_prior_cost(interval, graph.qc);
+    cost.measurements += measurement_cost(graph, k, interval);
+  }
+  for (const PosePrior& prior : graph.pose_priors) {
+    cost.priors += 0.5 * residual(prior, graph.states[index(prior.state)]).squaredNorm();
+  }
+  for (const VelocityPrior& prior : graph.velocity_priors) {
+    cost.priors += 0.5 * residual(prior, graph.states[index(prior.state)]).squaredNorm();
+  }
+  for (const FactorGraph::Landmark& landmark : graph.landmarks) {
+    if (landmark.alive) cost.priors += 0.5 * residual(landmark.prior, landmark.position).squaredNorm();
+  }
+  const double e = residual(graph.anchor, graph);
+  cost.priors += 0.5 * e * e;
+  return cost;
+}
+
+double reprojection_error(const GpInterval& interval, const Vector3& landmark, const Observation& z,
+                          const PinholeCamera& camera) {
+  const Vector3 q = interval.pose(z.t).inverse() * landmark;
+  if (!(q.z() > 0.0)) return std::numeric_limits<double>::infinity();
+  return (camera.project(q) - z.pixel).norm();
+}
+
+double reprojection_mean(const FactorGraph& graph, int landmark) {
+  double sum = 0.0;
+  int count = 0;
+  for_each_observation(graph, landmark, [&](const GpInterval& interval, const Observation& z) {
+    sum += reprojection_error(interval, graph.landmarks[index(landmark)].position, z, graph.camera);
+    ++count;
+  });
+  return count == 0 ? 0.0 : sum / count;
+}
 
 Vector2 reprojection_residual(const GpInterval& interval, const Vector3& landmark, const Observation& z,
                               const PinholeCamera& camera) {
@@ -32,8 +96,12 @@ Vector3 residual(const LandmarkPrior& prior, const Vector3& position) {
   return (position - prior.position) / prior.sigma;
 }
 
+double residual(const ScaleAnchor& anchor, const FactorGraph& graph) {
+  return (mean_log_distance(graph) - anchor.mean_log_distance) / anchor.sigma;
+}
+
 void add_state_priors(const FactorGraph& graph, int state, Matrix12& H, Vector12& g) {
-  add_state_priors(graph, state, graph.states[static_cast<std::size_t>(state)], H, g);
+  add_state_priors(graph, state, graph.states[index(state)], H, g);
 }
 
 void add_state_priors(const FactorGraph& graph, int state, const ControlState& x, Matrix12& H, Vector12& g) {
@@ -53,22 +121,12 @@ void add_state_priors(const FactorGraph& graph, int state, const ControlState& x
 }
 
 double interval_cost(const FactorGraph& graph, int k) {
-  const auto index = static_cast<std::size_t>(k);
-  const GpInterval interval(graph.states[index - 1], graph.states[index]);
-  double cost = motion_prior_cost(interval, graph.qc);
-  const IntervalObservations& observations = graph.intervals[index];
-  for (const auto& group : observations.groups()) {
-    const Vector3 landmark = graph.landmarks[static_cast<std::size_t>(group.landmark)].position;
-    for (int i = group.begin; i < group.end; ++i) {
-      const Observation& z = observations.all()[static_cast<std::size_t>(i)];
-      cost += 0.5 * graph.loss.value(reprojection_residual(interval, landmark, z, graph.camera).squaredNorm());
-    }
-  }
-  return cost;
+  const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
+  return motion_prior_cost(interval, graph.qc) + measurement_cost(graph, k, interval);
 }
 
 double state_prior_cost(const FactorGraph& graph, int state) {
-  const ControlState& x = graph.states[static_cast<std::size_t>(state)];
+  const ControlState& x = graph.states[index(state)];
   double cost = 0.0;
   for (const PosePrior& prior : graph.pose_priors) {
     if (prior.state == state) cost += 0.5 * residual(prior, x).squaredNorm();
@@ -79,26 +137,8 @@ double state_prior_cost(const FactorGraph& graph, int state) {
   return cost;
 }
 
-namespace {
-
-/// Calls visit(interval, observation) for each of a landmark's observations.
-template <class Visit>
-void for_each_observation(const FactorGraph& graph, int landmark, Visit visit) {
-  for (const int k : graph.landmarks[static_cast<std::size_t>(landmark)].intervals) {
-    const auto index = static_cast<std::size_t>(k);
-    const GpInterval interval(graph.states[index - 1], graph.states[index]);
-    const auto& groups = graph.intervals[index].groups();
-    const auto group = std::ranges::lower_bound(groups, landmark, {}, &IntervalObservations::Group::landmark);
-    for (int i = group->begin; i < group->end; ++i) {
-      visit(interval, graph.intervals[index].all()[static_cast<std::size_t>(i)]);
-    }
-  }
-}
-
-}  // namespace
-
 double landmark_cost(const FactorGraph& graph, int landmark, const Vector3& position) {
-  const LandmarkPrior& prior = graph.landmarks[static_cast<std::size_t>(landmark)].prior;
+  const LandmarkPrior& prior = graph.landmarks[index(landmark)].prior;
   double cost = 0.5 * residual(prior, position).squaredNorm();
   for_each_observation(graph, landmark, [&](const GpInterval& interval, const Observation& z) {
     cost += 0.5 * graph.loss.value(reprojection_residual(interval, position, z, graph.camera).squaredNorm());
@@ -107,7 +147,7 @@ double landmark_cost(const FactorGraph& graph, int landmark, const Vector3& posi
 }
 
 LandmarkSystem linearise_landmark(const FactorGraph& graph, int landmark, const Vector3& position) {
-  const LandmarkPrior& prior = graph.landmarks[static_cast<std::size_t>(landmark)].prior;
+  const LandmarkPrior& prior = graph.landmarks[index(landmark)].prior;
   LandmarkSystem system;
   if (std::isfinite(prior.sigma)) {
     system.H.diagonal().setConstant(1.0 / (prior.sigma * prior.sigma));
@@ -130,7 +170,7 @@ double mean_log_distance(const FactorGraph& graph) {
   if (graph.anchor.landmarks.empty()) return 0.0;
   double sum = 0.0;
   for (const int j : graph.anchor.landmarks) {
-    sum += std::log((graph.landmarks[static_cast<std::size_t>(j)].position - graph.anchor.origin).norm());
+    sum += std::log((graph.landmarks[index(j)].position - graph.anchor.origin).norm());
   }
   return sum / static_cast<double>(graph.anchor.landmarks.size());
 }
@@ -138,10 +178,10 @@ double mean_log_distance(const FactorGraph& graph) {
 AnchorLinearisation linearise_anchor(const FactorGraph& graph) {
   AnchorLinearisation result;
   const ScaleAnchor& anchor = graph.anchor;
-  result.e = (mean_log_distance(graph) - anchor.mean_log_distance) / anchor.sigma;
+  result.e = residual(anchor, graph);
   const double share = 1.0 / (anchor.sigma * static_cast<double>(anchor.landmarks.size()));
   for (const int j : anchor.landmarks) {
-    const Vector3 from_origin = graph.landmarks[static_cast<std::size_t>(j)].position - anchor.origin;
+    const Vector3 from_origin = graph.landmarks[index(j)].position - anchor.origin;
     result.jacobian.push_back(share * from_origin / from_origin.squaredNorm());
   }
   return result;

@@ -7,6 +7,19 @@
 
 namespace evbench::gp_map {
 
+/// The problem's cost, ½ Σ ρ(‖whitened residual‖²), by parts.
+struct Cost {
+  double measurements = 0.0, motion_prior = 0.0, priors = 0.0;
+  double total() const { return measurements + motion_prior + priors; }
+};
+Cost evaluate(const FactorGraph& graph);
+
+/// Distance of a landmark's image from where it was observed [px]; infinite behind the camera.
+double reprojection_error(const GpInterval& interval, const Vector3& landmark, const Observation& z,
+                          const PinholeCamera& camera);
+/// Mean of a landmark's over all its observations.
+double reprojection_mean(const FactorGraph& graph, int landmark);
+
 /// Whitened residuals of the problem's factors (problems' README, section "Cost").
 /// Behind the camera both components are 2 fx/σ, constant.
 Vector2 reprojection_residual(const GpInterval& interval, const Vector3& landmark, const Observation& z,
@@ -15,6 +28,7 @@ double motion_prior_cost(const GpInterval& interval, const Vector6& qc);  ///< �
 Vector6 residual(const PosePrior& prior, const ControlState& state);
 Vector6 residual(const VelocityPrior& prior, const ControlState& state);
 Vector3 residual(const LandmarkPrior& prior, const Vector3& position);  ///< zero without a prior
+double residual(const ScaleAnchor& anchor, const FactorGraph& graph);   ///< zero without an anchor
 
 /// ½ Σ ρ of an interval's observations and motion prior, and of the priors on a state.
 double interval_cost(const FactorGraph& graph, int k);

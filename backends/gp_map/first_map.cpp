@@ -122,7 +122,7 @@ double FirstMapFinder::start_time(const TrackBuffer& tracks, const InitialGuess&
     const auto observations = tracks.observations(landmark.track);
     if (!observations.empty()) seen_from.push_back(observations.front().t);
   }
-  const auto enough = static_cast<std::size_t>(options_.health.min_landmarks);
+  const auto enough = index(options_.health.min_landmarks);
   if (seen_from.size() < enough) return guess.t0;
   std::ranges::sort(seen_from);
   return std::clamp(seen_from[enough - 1], 2.0 * guess.t0 - guess.t1, guess.t0);

@@ -3,15 +3,16 @@
 #include <deque>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/first_map.hpp"
+#include "backends/gp_map/observation_follower.hpp"
 #include "backends/gp_map/options.hpp"
+#include "backends/gp_map/reprojection_errors.hpp"
 #include "backends/gp_map/state_placement.hpp"
 #include "core/plugin/backend.hpp"
 #include "core/plugin/tracking_monitor.hpp"
@@ -46,50 +47,58 @@ class GpMap : public BackEnd {
   const FactorGraph& graph() const { return engine_->graph(); }
 
  private:
+  /// A track that waits until its landmark can be located, is a landmark, or was an outlier.
+  struct Track {
+    enum class Role { waiting, landmark, outlier } role = Role::waiting;
+    int landmark = -1;   ///< the engine's number
+    int tried_with = 0;  ///< observations at the last vain attempt to locate it
+    bool ended = false;
+  };
+
   // Algorithm 1, a line each.
   void step(double t);
   void take_observations(double t);
-  void initialise(double t);
+  bool initialise(double t);
+  void remove_outliers();
   void extrapolate_state(double t);
   void add_observations();
   void add_landmarks();
   void optimise();
-  void remove_outliers();
   void check_support();
   void forget_ended_tracks(double t);
-  void record(double t, double seconds);
 
-  void follow(double t);
-  void tell_online(double t);
-  void add_record(double t, double seconds, int iterations, std::optional<double> cost);
-  void start_from(FirstMap map);
-  void remove_if_outlier(int landmark);
-  void hold_scale_without(int leaving);
+  void follow_observations(double t, double ahead);
+  void take(const TrackObservation& z);
+  void end(TrackId track);
   void become_landmark(TrackId track, int landmark);
+  void become_outlier(int landmark);
+  void hold_scale_without(int leaving);
   std::optional<std::pair<Vector3, LandmarkPrior>> locate(TrackId track, bool scarce) const;
   double median_depth() const;
   ControlState newest_seen() const;
   std::vector<ExpectedFeature> expected_features();
   int landmarks_in_view() const;
+  void tell_online(double t);
+  void add_record(double t, double seconds, int iterations, std::optional<double> cost);
 
   Options options_;
   BackEndContext context_;
   StatePlacement placement_;
   FirstMapFinder first_map_;
-  TrackBuffer tracks_;                      ///< those that are no landmarks (yet)
-  std::optional<Engine> engine_;            ///< from the first map on
-  std::map<TrackId, int> landmark_of_;      ///< tracks that are landmarks
-  std::map<TrackId, int> tried_with_;       ///< observations at the last vain attempt to locate a track
-  std::vector<TrackId> track_of_;           ///< by landmark
-  std::set<TrackId> live_;                  ///< tracks that have been observed and have not ended
-  std::deque<TrackEnd> ending_;             ///< told, but later than the newest state
-  std::set<TrackId> ended_;                 ///< since the last step
-  std::vector<TrackObservation> recent_;    ///< between the two newest states
-  std::vector<TrackObservation> pending_;   ///< later than the newest state
-  std::vector<TrackObservation> followed_;  ///< added one by one since the last step
+  std::optional<Engine> engine_;  ///< from the first map on
+  ReprojectionErrors errors_;
+  ObservationFollower follower_;
+  std::map<TrackId, Track> tracks_;
+  TrackBuffer waiting_;                           ///< observations of waiting tracks
+  std::set<TrackId> live_;                        ///< tracks that are alive, or have ended since the last step
+  std::vector<TrackId> track_of_;                 ///< by landmark
+  int landmarks_ = 0;                             ///< tracks that are landmarks
+  std::vector<TrackObservation> pending_;         ///< later than the newest state
+  std::deque<TrackEnd> ending_;                   ///< likewise
+  std::vector<std::pair<int, Observation>> new_;  ///< of landmarks, not in the engine yet
   std::vector<TrackId> new_outliers_;
   UpdateSummary last_update_;
-  double seconds_since_step_ = 0.0;  ///< spent between two steps, in per-observation mode
+  double seconds_since_step_ = 0.0;  ///< spent on single observations
   TrackingMonitor monitor_;
   double until_ = 0.0;                                        ///< [s] of the last batch
   double online_ = -std::numeric_limits<double>::infinity();  ///< [s], time of the last pose told

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <string>
+#include <vector>
 
+#include "backends/gp_map/robust_loss.hpp"
 #include "core/plugin/options.hpp"
 #include "core/structure/initialiser.hpp"
 #include "core/structure/triangulation.hpp"
@@ -10,16 +11,15 @@ namespace evbench::gp_map {
 
 /// When a control state is placed.
 struct PlacementOptions {
-  std::string rule = "rate";
+  enum class Rule { rate, observations, motion } rule = Rule::rate;
   double rate = 20.0;
   int observations = 100;
   double motion = 2.0;
   double min_spacing = 0.01, max_spacing = 0.1;
 
   void declare(OptionSet& set) {
-    set.add("rule", rule,
-            "rate: evenly in time; observations: after a number of observations; motion: when the tracks have moved")
-        .choices({"rate", "observations", "motion"});
+    set.add("rule", rule, {"rate", "observations", "motion"},
+            "rate: evenly in time; observations: after a number of observations; motion: when the tracks have moved");
     set.add("rate", rate, "rule \"rate\": control states per second [Hz]").range(0.5, 1000.0);
     set.add("observations", observations, "rule \"observations\": observations between two control states").range(1);
     set.add("motion", motion,
@@ -73,7 +73,7 @@ struct Options {
   PlacementOptions placement;
   std::vector<double> qc = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
   double qc_scale = 1.0;
-  std::string loss = "cauchy";
+  RobustLoss::Kind loss = RobustLoss::Kind::cauchy;
   double loss_width = 2.0;
   double sigma_scale = 1.0;
   InitialiserOptions initialiser;
@@ -93,7 +93,7 @@ struct Options {
         .size(6)
         .above(0.0);
     set.add("qc_scale", qc_scale, "multiplies qc: above 1 is a weaker prior").above(0.0);
-    set.add("loss", loss, "robust loss of reprojection errors").choices({"none", "huber", "cauchy"});
+    set.add("loss", loss, {"none", "huber", "cauchy"}, "robust loss of reprojection errors");
     set.add("loss_width", loss_width, "residual where the loss turns from quadratic [sigmas]").above(0.0);
     set.add("sigma_scale", sigma_scale, "multiplies the observations' sigmas").above(0.0);
     set.group("initialiser", initialiser, "two-view initialisation");

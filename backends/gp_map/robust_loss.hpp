@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <string>
 
 namespace evbench::gp_map {
 
@@ -13,12 +12,6 @@ class RobustLoss {
   RobustLoss() = default;
   /// `width`: the residual norm [sigmas] where the loss turns from quadratic.
   RobustLoss(Kind kind, double width) : kind_(kind), width_(width) {}
-  /// "none", "huber" or "cauchy".
-  RobustLoss(const std::string& kind, double width)
-      : RobustLoss(kind == "huber"    ? Kind::huber
-                   : kind == "cauchy" ? Kind::cauchy
-                                      : Kind::none,
-                   width) {}
 
   bool is_quadratic() const { return kind_ == Kind::none; }
 

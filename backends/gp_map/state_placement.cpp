@@ -9,12 +9,12 @@ namespace evbench::gp_map {
 void StatePlacement::observe(const TrackObservation& observation) {
   if (!first_) first_ = observation.t;
   last_observation_ = observation.t;
-  if (options_.rule != "rate") later_.push_back(observation);
+  if (options_.rule != Rule::rate) later_.push_back(observation);
 }
 
 std::optional<double> StatePlacement::next(double now) {
   if (!first_) return std::nullopt;
-  const bool by_data = newest_ && options_.rule != "rate";
+  const bool by_data = newest_ && options_.rule != Rule::rate;
   const double t = by_data ? time_by_data() : upcoming();
   if (t > now) return std::nullopt;
   place(t);
@@ -23,7 +23,7 @@ std::optional<double> StatePlacement::next(double now) {
 
 double StatePlacement::upcoming() const {
   if (!newest_) return *first_;
-  return options_.rule == "rate" ? *first_ + static_cast<double>(placed_) / options_.rate : latest();
+  return options_.rule == Rule::rate ? *first_ + static_cast<double>(placed_) / options_.rate : latest();
 }
 
 double StatePlacement::time_by_data() {
@@ -37,14 +37,14 @@ double StatePlacement::time_by_data() {
 
 void StatePlacement::look_at(const TrackObservation& observation) {
   ++count_;
-  if (options_.rule != "motion") return;
+  if (options_.rule != Rule::motion) return;
   Displacement& track = displacements_.try_emplace(observation.track, Displacement{observation.pixel}).first->second;
   track.to = observation.pixel;
   track.t = observation.t;
 }
 
 bool StatePlacement::is_enough() const {
-  if (options_.rule == "observations") return count_ >= options_.observations;
+  if (options_.rule == Rule::observations) return count_ >= options_.observations;
   std::vector<double> distances;
   for (const auto& [id, track] : displacements_) distances.push_back((track.to - track.from).norm());
   return !distances.empty() && median(std::move(distances)) >= options_.motion;
@@ -62,7 +62,7 @@ void StatePlacement::place(double t) {
 
 std::optional<double> StatePlacement::last() {
   if (!newest_ || *newest_ >= *last_observation_) return std::nullopt;
-  const double t = options_.rule == "rate" ? upcoming() : std::max(*last_observation_, earliest());
+  const double t = options_.rule == Rule::rate ? upcoming() : std::max(*last_observation_, earliest());
   place(t);
   return t;
 }

@@ -37,6 +37,8 @@ class StatePlacement {
   std::optional<double> last();
 
  private:
+  using Rule = PlacementOptions::Rule;
+
   /// A track's distance from where it was seen last up to the newest state.
   struct Displacement {
     Vector2 from = Vector2::Zero(), to = Vector2::Zero();

@@ -6,6 +6,8 @@
 namespace evbench::gp_map {
 namespace {
 
+using Rule = PlacementOptions::Rule;
+
 /// One observation a millisecond; ten tracks that all move at `speed` [px/s], but for an outlier.
 std::vector<TrackObservation> moving(double speed, double until) {
   std::vector<TrackObservation> result;
@@ -44,7 +46,7 @@ TEST_CASE("By rate, control states stand evenly from the first observation past 
 
 TEST_CASE("By observations, a control state stands where their number is reached, within the spacings") {
   PlacementOptions options;
-  options.rule = "observations";
+  options.rule = Rule::observations;
   options.observations = 40;
   CHECK(placed(options, moving(0.0, 0.25), 0.01)[1] == Approx(0.04));
   options.observations = 4;
@@ -55,7 +57,7 @@ TEST_CASE("By observations, a control state stands where their number is reached
 
 TEST_CASE("By motion, the states' spacing follows the median speed in the image") {
   PlacementOptions options;
-  options.rule = "motion";
+  options.rule = Rule::motion;
   options.motion = 2.0;
   const auto spacing = [&](double speed) {
     const auto times = placed(options, moving(speed, 0.5), 0.01);
@@ -69,7 +71,7 @@ TEST_CASE("By motion, the states' spacing follows the median speed in the image"
 
 TEST_CASE("Placement does not depend on the pieces in which observations arrive") {
   PlacementOptions options;
-  for (const char* rule : {"rate", "observations", "motion"}) {
+  for (const auto rule : {Rule::rate, Rule::observations, Rule::motion}) {
     options.rule = rule;
     const auto observations = moving(70.0, 0.6);
     CHECK(placed(options, observations, 0.003) == placed(options, observations, 0.25));
@@ -77,7 +79,7 @@ TEST_CASE("Placement does not depend on the pieces in which observations arrive"
 }
 
 TEST_CASE("The next state will not stand later than announced") {
-  for (const char* rule : {"rate", "observations", "motion"}) {
+  for (const auto rule : {Rule::rate, Rule::observations, Rule::motion}) {
     PlacementOptions options;
     options.rule = rule;
     StatePlacement placement(options);

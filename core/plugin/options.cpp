@@ -9,6 +9,7 @@
 
 #include "core/io/path.hpp"
 #include "core/support/error.hpp"
+#include "core/support/index.hpp"
 #include "core/support/nearest.hpp"
 
 namespace evbench {
@@ -85,8 +86,8 @@ std::string OptionSet::Option::allowed() const {
 std::string OptionSet::Option::type_name() const {
   return std::visit(Overloaded{[](bool*) { return "true or false"; }, [](int*) { return "integer"; },
                                [](std::int64_t*) { return "integer"; }, [](double*) { return "number"; },
-                               [](std::string*) { return "text"; }, [](List*) { return "list of numbers"; },
-                               [](Json*) { return "any"; }},
+                               [](std::string*) { return "text"; }, [](const Enumerator&) { return "text"; },
+                               [](List*) { return "list of numbers"; }, [](Json*) { return "any"; }},
                     target_);
 }
 
@@ -95,6 +96,11 @@ void OptionSet::Option::check_number(double number, const std::string& place) co
   if (!std::isfinite(number) || too_low || number > maximum_) {
     throw InputError(fmt::format("{}: {} is out of range; expected {}", place, number, allowed()));
   }
+}
+
+void OptionSet::Option::check_choice(const std::string& value, const std::string& place) const {
+  if (choices_.empty() || std::ranges::find(choices_, value) != choices_.end()) return;
+  throw InputError(fmt::format("{}: \"{}\" is not one of {}{}", place, value, allowed(), suggestion(value, choices_)));
 }
 
 void OptionSet::Option::read(const Json& value, const std::string& place) {
@@ -127,11 +133,14 @@ void OptionSet::Option::read(const Json& value, const std::string& place) {
                  },
                  [&](std::string* target) {
                    if (!value.is_string()) throw wrong_type();
+                   check_choice(value.get<std::string>(), place);
                    *target = value.get<std::string>();
-                   if (!choices_.empty() && std::ranges::find(choices_, *target) == choices_.end()) {
-                     throw InputError(fmt::format("{}: \"{}\" is not one of {}{}", place, *target, allowed(),
-                                                  suggestion(*target, choices_)));
-                   }
+                 },
+                 [&](const Enumerator& target) {
+                   if (!value.is_string()) throw wrong_type();
+                   check_choice(value.get<std::string>(), place);
+                   const auto name = std::ranges::find(choices_, value.get<std::string>());
+                   target.set(target.member, static_cast<int>(name - choices_.begin()));
                  },
                  [&](List* target) {
                    if (!value.is_array()) throw wrong_type();
@@ -151,7 +160,10 @@ void OptionSet::Option::read(const Json& value, const std::string& place) {
 }
 
 Json OptionSet::Option::value() const {
-  return std::visit([](auto* target) { return Json(*target); }, target_);
+  return std::visit(
+      Overloaded{[](auto* target) { return Json(*target); },
+                 [&](const Enumerator& target) { return Json(choices_[index(target.get(target.member))]); }},
+      target_);
 }
 
 Json OptionSet::Option::schema() const {
@@ -168,9 +180,14 @@ Json OptionSet::Option::schema() const {
                           result["type"] = "string";
                           if (!choices_.empty()) result["enum"] = choices_;
                         },
+                        [&](const Enumerator&) { result["enum"] = choices_; },
                         [&](List*) {
                           result["type"] = "array";
                           result["items"] = number;
+                          if (!size_) return;
+                          const Json sized = {{"minItems", *size_}, {"maxItems", *size_}};
+                          if (may_be_empty_) result["anyOf"] = {sized, {{"maxItems", 0}}};
+                          if (!may_be_empty_) result.update(sized);
                         },
                         [&](Json*) {}},
              target_);

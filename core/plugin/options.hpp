@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -18,10 +19,10 @@ using Json = nlohmann::ordered_json;
 ///
 ///   struct MyOptions {
 ///     double rate = 20.0;
-///     std::string loss = "none";
+///     enum class Loss { none, huber } loss = Loss::none;
 ///     void declare(OptionSet& set) {
 ///       set.add("rate", rate, "control states per second [Hz]").range(0.1, 1000.0);
-///       set.add("loss", loss, "robust loss").choices({"none", "huber"});
+///       set.add("loss", loss, {"none", "huber"}, "robust loss");
 ///     }
 ///   };
 ///
@@ -30,7 +31,13 @@ using Json = nlohmann::ordered_json;
 class OptionSet {
  public:
   using List = std::vector<double>;
-  using Target = std::variant<bool*, int*, std::int64_t*, double*, std::string*, List*, Json*>;
+  /// A member of an enumeration type, as a number.
+  struct Enumerator {
+    void* member;
+    int (*get)(const void* member);
+    void (*set)(void* member, int value);
+  };
+  using Target = std::variant<bool*, int*, std::int64_t*, double*, std::string*, Enumerator, List*, Json*>;
 
   class Option {
    public:
@@ -57,6 +64,7 @@ class OptionSet {
     void check_number(double value, const std::string& place) const;
     std::string allowed() const;
     std::string type_name() const;
+    void check_choice(const std::string& value, const std::string& place) const;
     Json value() const;
     Json schema() const;
   };
@@ -70,6 +78,15 @@ class OptionSet {
   template <class T>
   Option& add(const std::string& name, T& member, const std::string& text) {
     return add(name, Target(&member), text);
+  }
+
+  /// An enumeration, written as text: the names of its values 0, 1, ...
+  template <class Enum>
+  requires std::is_enum_v<Enum> Option& add(const std::string& name, Enum& member, std::vector<std::string> names,
+                                            const std::string& text) {
+    const Enumerator target{&member, [](const void* from) { return static_cast<int>(*static_cast<const Enum*>(from)); },
+                            [](void* to, int value) { *static_cast<Enum*>(to) = static_cast<Enum>(value); }};
+    return add(name, Target(target), text).choices(std::move(names));
   }
 
   /// A nested object with options of its own.

@@ -167,14 +167,7 @@ void Engine::forget_old() {
   while (oldest < last && graph_.states[at(oldest)].t < from) ++oldest;
   const int before = factorisation_.base();
   const int base = factorisation_.marginalise(oldest);
-  for (int k = before + 1; k <= base; ++k) {
-    for (const auto& group : graph_.intervals[at(k)].groups()) {
-      std::vector<int>& seen = graph_.landmarks[at(group.landmark)].intervals;
-      std::erase(seen, k);
-      if (seen.empty()) seen.shrink_to_fit();
-    }
-    graph_.intervals[at(k)] = IntervalObservations();
-  }
+  for (int k = before + 1; k <= base; ++k) graph_.forget_interval(k);
   std::erase_if(candidates_, [&](const Variable& v) {
     return v.kind == Variable::Kind::state ? v.index < base : factorisation_.is_forgotten(v.index);
   });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -100,6 +101,14 @@ class Engine {
   /// The track has ended: the landmark leaves the root with the next update. Observations of it may still come.
   void end_landmark(int landmark);
 
+  /// A variable that the last update has changed.
+  struct Change {
+    Variable variable;
+    Vector12 before;  ///< its increment before; a landmark's: the first 3
+    double size;      ///< of the change, as EngineOptions::relinearise measures it [rad]
+  };
+  std::span<const Change> changes() const { return changes_; }
+
   /// One Gauss-Newton step over what the changes since the last update concern, damped if it would raise the cost.
   UpdateSummary update();
 
@@ -127,13 +136,6 @@ class Engine {
                                               const Matrix23& J_landmark);
 
  private:
-  /// A variable's increment before a solve, to undo it.
-  struct Change {
-    Variable variable;
-    Vector12 before;  ///< a landmark's: the first 3
-    double size;      ///< [rad]
-  };
-
   /// Stage `stage` and those after it are to be redone.
   void invalidate(int stage) { restart_ = std::min(restart_, std::max(stage, factorisation_.base() + 1)); }
   void touch(int stage) {

@@ -50,7 +50,7 @@ EngineOptions linear_options() {
 RandomSession::RandomSession(std::uint64_t seed, const SessionOptions& options)
     : random_(seed),
       options_(options),
-      engine_(kCamera, Vector6::Constant(0.2), chance(0.3) ? RobustLoss("cauchy", 2.0) : RobustLoss(), options.engine) {
+      engine_(kCamera, Vector6::Constant(0.2), chance(0.3) ? RobustLoss(RobustLoss::Kind::cauchy, 2.0) : RobustLoss(), options.engine) {
   if (options.full_twin) {
     EngineOptions full = options.engine;
     full.lag = 0.0;
