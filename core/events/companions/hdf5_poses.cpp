@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/events/companions/calibration_fields.hpp"
-#include "core/events/formats/hdf5_file.hpp"
+#include "core/events/hdf5/file.hpp"
 #include "core/support/error.hpp"
 #include "core/support/trial.hpp"
 
