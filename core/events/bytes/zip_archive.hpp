@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +9,7 @@
 namespace evbench {
 
 /// A .zip: its files by name. Nothing is unpacked but what is read, piece by piece; links and folders are no files.
-/// Throws InputError for a broken archive, and for one of more than 100,000 files.
+/// Throws BadArchive (core/io/archive.hpp).
 class ZipArchive {
  public:
   explicit ZipArchive(std::string path);

@@ -75,7 +75,8 @@ class Dataset {
   /// Rows first ... first + count - 1. Throws InputError when the file is broken there.
   void read(std::uint64_t first, std::uint64_t count, Values& values) const;
   /// All numbers of a small data set; throws InputError when there are more than `most`.
-  std::vector<double> read_all(std::uint64_t most) const;
+  std::vector<double> read_all(std::uint64_t most = kMostNumbers) const;
+  static constexpr std::uint64_t kMostNumbers = 1 << 26;
   double first(std::uint64_t row) const;  ///< first number of a row
 
  private:

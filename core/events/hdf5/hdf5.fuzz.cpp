@@ -1,6 +1,3 @@
-#include <pthread.h>
-#include <sanitizer/common_interface_defs.h>
-
 #include "core/events/hdf5/reader.hpp"
 #include "core/events/testing/fuzz_file.hpp"
 
@@ -10,11 +7,7 @@ extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
 /// It asks for what a broken file says, and copes with getting nothing.
 extern "C" const char* __asan_default_options() { return "allocator_may_return_null=1"; }
 
-extern "C" int LLVMFuzzerInitialize(int*, char***) {
-  // What kills the copy of the process in which a file is tried is no finding (trial.hpp).
-  return pthread_atfork(nullptr, nullptr, [] { __sanitizer_set_death_callback(nullptr); });
-}
-
+/// What kills the process that tries a file first (trial.hpp) is no finding.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return evbench::fuzz_file(data, size, evbench::hdf5_format());
 }

@@ -262,13 +262,16 @@ bool has_signature(std::span<const std::byte> head) {
 
 }  // namespace
 
+std::unique_ptr<EventReader> open_hdf5(const std::string& path, const ReadOptions& options) {
+  return std::make_unique<Hdf5Reader>(path, options);
+}
+
 EventFormat hdf5_format() {
   return {"hdf5", "HDF5 as in DSEC, MVSEC, TUM-VIE, M3ED, EDS",
           [](const std::string&, std::span<const std::byte> head) { return has_signature(head); },
           [](const std::string& path, const ReadOptions& options) {
-            const auto open = [&] { return std::make_unique<Hdf5Reader>(path, options); };
-            hdf5::refuse_crashes(path, open);
-            return open();
+            hdf5::try_events(path, options.topic);
+            return open_hdf5(path, options);
           }};
 }
 

@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 
 #include "core/events/formats.hpp"
-#include "core/support/error.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
@@ -39,8 +38,7 @@ TEST_CASE("An HDF5 file on which some versions of the library crash is refused w
   REQUIRE(heap != std::string::npos);
   content.replace(address, 8, 8, '\xFF');
   const std::string broken = folder.write("broken.h5", content);
-  CHECK_THROWS_AS(open_events(broken), InputError);
-  CHECK_THROWS_WITH(open_events(broken), Catch::StartsWith(broken));
+  CHECK_THROWS_WITH(open_events(broken), Catch::StartsWith(broken + ": HDF5 cannot read this"));
 }
 
 TEST_CASE("What the HDF5 library itself refuses, its trial leaves to it") {
