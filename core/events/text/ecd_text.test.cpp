@@ -105,39 +105,43 @@ TEST_CASE("Ground truth, calibration and the pictures' size are found beside rea
   CHECK(reader->ground_truth()->size() > 100);
 }
 
-TEST_CASE("Orders, separators, units, polarities and names of columns are found out and said") {
+TEST_CASE("Both orders, all separators, and names of columns are found out and said") {
   const struct {
     const char* content;
     const char* columns;
-    const char* separator;
     const char* unit;
-    const char* polarity;
   } cases[] = {
-      {"0.003811 96 133 0\n0.00382 127 171 1\n", "t x y p", "blank", "seconds", "0, 1"},
-      {"3811,96,133,0\r\n3820,127,171,1\r\n", "t x y p", ",", "microseconds", "0, 1"},
-      {"96,133,-1,3811\n127,171,1,3820\n", "x y p t", ",", "microseconds", "-1, 1"},
-      {"96;133;3811;0\n127;171;3820;1", "x y t p", ";", "microseconds", "0, 1"},
-      {"0\t96\t133\t0.003811\n1\t127\t171\t0.00382\n", "p x y t", "tab", "seconds", "0, 1"},
-      {"y,x,p,timestamp_ns\n133,96,0,3811000\n171,127,1,3820400\n", "y x p t (named in the file)", ",", "nanoseconds",
-       "0, 1"},
+      {"0.003811 96 133 0\n0.00382 127 171 1\n", "t x y p", "seconds"},
+      {"3811,96,133,0\r\n3820,127,171,1\r\n", "t x y p", "microseconds"},
+      {"96,133,-1,3811\n127,171,1,3820\n", "x y p t", "microseconds"},
+      {"96;133;0;3811\n127;171;1;3820", "x y p t", "microseconds"},
+      {"96\t133\t0\t0.003811\n127\t171\t1\t0.00382\n", "x y p t", "seconds"},
+      {"y,x,p,timestamp_ns\n133,96,0,3811000\n171,127,1,3820400\n", "y x p t (named in the file)", "nanoseconds"},
       {"\"t\",\"x\",\"y\",\"extra\",\"polarity\"\n3811,96,133,7,0\n3820,127,171,7,1\n", "t x y - p (named in the file)",
-       ",", "microseconds", "0, 1"},
-      {"# comment\n\n0.003811 96 133 0\n# another\n3.82e-3 127 171 1\n", "t x y p", "blank", "seconds", "0, 1"},
-      {"\xEF\xBB\xBFt,x,y,p\n3811,96,133,0\n3820,127,171,1\n", "t x y p (named in the file)", ",", "microseconds",
-       "0, 1"},
-      {"t[ms] x y p\n3.811 96 133 0\n3.8204 127 171 1\n", "t x y p (named in the file)", "blank", "milliseconds",
-       "0, 1"},
+       "microseconds"},
+      {"# comment\n\n0.003811 96 133 0\n# another\n3.82e-3 127 171 1\n", "t x y p", "seconds"},
+      {"\xEF\xBB\xBFt,x,y,p\n3811,96,133,0\n3820,127,171,1\n", "t x y p (named in the file)", "microseconds"},
+      {"t[ms] x y p\n3.811 96 133 0\n3.8204 127 171 1\n", "t x y p (named in the file)", "milliseconds"},
   };
-  for (const auto& [content, columns, separator, unit, polarity] : cases) {
+  for (const auto& [content, columns, unit] : cases) {
     CAPTURE(content);
     const auto reader = text(content);
     CHECK((read_all(*reader) == kTwo));
     CHECK(metadata(*reader, "columns") == columns);
-    CHECK(metadata(*reader, "separator") == separator);
     CHECK(metadata(*reader, "unit of time") == unit);
-    CHECK(metadata(*reader, "polarity") == polarity);
     CHECK(reader->faults().empty());
   }
+}
+
+TEST_CASE("Text that may be of either order, or of another one, asks for the columns") {
+  CHECK_THROWS_WITH(text("1 2 1 1\n0 3 0 0\n"),
+                    Catch::Contains("test:1: has lines like \"1 2 1 1\"") &&
+                        Catch::Contains("may be \"t x y p\" and \"x y p t\"; give --columns"));
+  for (const char* content :
+       {"127;171;3811;0\n96;133;3820;1", "0\t96\t133\t0.003811\n1\t127\t171\t0.00382\n", "2 3 4 5\n"}) {
+    CHECK_THROWS_WITH(text(content), Catch::Contains("are neither \"t x y p\" nor \"x y p t\"; give --columns"));
+  }
+  CHECK_THROWS_WITH(text("0.1 1 2 1 5\n"), Catch::Contains("has 5 columns") && Catch::Contains("give --columns"));
 }
 
 TEST_CASE("Columns that are asked for stand in place of those that are found, or named in the file") {
@@ -187,15 +191,10 @@ TEST_CASE("The pictures' times beside the events are told") {
   CHECK_THAT(metadata(*open_events(folder.file("events.txt")), "pictures"), Catch::Contains("expected"));
 }
 
-TEST_CASE("Nanoseconds without a name are told by their size or their rate") {
-  std::string small, unix_time;
-  for (int i = 0; i < 200; ++i) {
-    small += fmt::format("{} 1 2 1\n", 1'000'000 + i * 100'000);
-    unix_time += fmt::format("{} 1 2 1\n", 1'700'000'000'123'456'000 + i * 100'000);
-  }
-  CHECK(metadata(*text(small), "unit of time") == "nanoseconds");
-  CHECK(metadata(*text(unix_time), "unit of time") == "nanoseconds");
-  CHECK(events_of(unix_time).front().t == 1'700'000'000'123'456);
+TEST_CASE("Times too late for microseconds ask for their unit; times of day are read to the microsecond") {
+  const std::string nanoseconds = "1700000000123456789 1 2 1\n";
+  CHECK_THROWS_WITH(text(nanoseconds), Catch::Contains("too late for microseconds; give --columns with t_ns"));
+  CHECK(read_all(*text(nanoseconds, {.columns = "t_ns,x,y,p"})).front().t == 1'700'000'000'123'457);
   CHECK(events_of("1700000000.123456789 1 2 1\n").front().t == 1'700'000'000'123'457);
 }
 

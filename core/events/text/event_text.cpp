@@ -155,20 +155,19 @@ bool EventTextDecoder::parse_common(const char*& at, Event& event) const {
 
 /// Everything that is an event.
 bool EventTextDecoder::parse_any(std::string_view line, Event& event) const {
-  const auto texts = split_columns(line);
-  if (texts.size() != layout_.columns.size()) return false;
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    bool good = true;
-    switch (layout_.columns[i]) {
-      case Column::t: good = parse_time(texts[i], layout_.unit, event.t); break;
-      case Column::x: good = parse_coordinate(texts[i], event.x); break;
-      case Column::y: good = parse_coordinate(texts[i], event.y); break;
-      case Column::p: good = parse_polarity(texts[i], event.on); break;
+  for (const Column column : layout_.columns) {
+    const std::string_view text = next_column(line);
+    bool good = !text.empty();
+    switch (column) {
+      case Column::t: good = parse_time(text, layout_.unit, event.t); break;
+      case Column::x: good = parse_coordinate(text, event.x); break;
+      case Column::y: good = parse_coordinate(text, event.y); break;
+      case Column::p: good = parse_polarity(text, event.on); break;
       case Column::other: break;
     }
     if (!good) return false;
   }
-  return true;
+  return next_column(line).empty();
 }
 
 EventDecoder::Progress EventTextDecoder::decode(std::span<const std::byte> in, std::uint64_t, std::span<Event> out,
@@ -193,11 +192,9 @@ EventDecoder::Progress EventTextDecoder::decode(std::span<const std::byte> in, s
       break;
     }
     const std::string_view line(at, static_cast<std::size_t>(newline - at));
-    const auto first = line.find_first_not_of(" \t\r");
-    const bool empty = first == std::string_view::npos || line[first] == '#' || line[first] == '%';
     ++line_;
     at = newline + 1;
-    if (std::exchange(in_long_line_, false) || empty) continue;
+    if (std::exchange(in_long_line_, false) || is_passed_over(line)) continue;
     if (parse_any(line, out[count])) {
       ++count;
     } else {

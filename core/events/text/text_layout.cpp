@@ -1,78 +1,45 @@
 #include "core/events/text/text_layout.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <limits>
+#include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "core/support/error.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench {
 namespace {
 
 using Column = TextLayout::Column;
 using Unit = TextLayout::Unit;
-using Order = std::array<Column, 4>;
 
-constexpr std::string_view kSeparators = " \t,;\r";
 constexpr double kMostPixels = 65535.0;
-// In the order of preference. Swapped x and y cannot be told.
-constexpr Order kOrders[] = {{Column::t, Column::x, Column::y, Column::p},
-                             {Column::x, Column::y, Column::p, Column::t},
-                             {Column::x, Column::y, Column::t, Column::p},
-                             {Column::t, Column::p, Column::x, Column::y},
-                             {Column::p, Column::x, Column::y, Column::t}};
+const std::vector<Column> kTimeFirst{Column::t, Column::x, Column::y, Column::p};
+const std::vector<Column> kTimeLast{Column::x, Column::y, Column::p, Column::t};
 
-/// The lines of a text, one after the other.
-class Lines {
- public:
-  Lines(std::string_view text, bool whole) : text_(text), whole_(whole) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (text.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
-  }
-  bool next(std::string_view& line) {
-    const auto end = text_.find('\n', at_);
-    if (at_ >= text_.size() || (end == std::string_view::npos && !whole_)) return false;
-    line = text_.substr(at_, end == std::string_view::npos ? end : end - at_);
-    at_ = end == std::string_view::npos ? text_.size() : end + 1;
-    return true;
-  }
-  std::size_t position() const { return at_; }
-
- private:
-  std::string_view text_;
-  bool whole_;
-  std::size_t at_ = 0;
-};
-
-bool is_number(std::string_view text) {
-  double ignored = 0.0;
-  return parse_number(text, ignored);
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> columns;
+  for (auto column = next_column(line); !column.empty(); column = next_column(line)) columns.push_back(column);
+  return columns;
 }
 
-/// "240 180", or after "geometry" in a comment.
-void read_size(const std::vector<std::string_view>& columns, TextLayout& layout) {
-  double width = 0.0, height = 0.0;
-  if (columns.size() != 2 || !parse_number(columns[0], width) || !parse_number(columns[1], height)) return;
-  const auto fits = [](double side) { return side >= 1.0 && side <= kMostPixels && side == std::floor(side); };
-  if (!fits(width) || !fits(height)) return;
-  layout.width = static_cast<int>(width);
-  layout.height = static_cast<int>(height);
-}
-
-void read_comment(std::string_view line, TextLayout& layout) {
-  constexpr std::string_view kGeometry = "geometry";
-  const auto at = line.find(kGeometry);
-  if (at == std::string_view::npos) return;
-  std::string size(line.substr(at + kGeometry.size()));
-  std::replace_if(
-      size.begin(), size.end(), [](char c) { return c == ':' || c == '=' || c == 'x'; }, ' ');
-  read_size(split_columns(size), layout);
+/// "240 180", "%geometry:1280,720", "# geometry: 240x180".
+void read_size(std::string_view line, TextLayout& layout) {
+  int width = 0, height = 0;
+  if (std::sscanf(std::string(line).c_str(), "%*[^0-9]%d%*[ ,x\t]%d", &width, &height) != 2 &&
+      std::sscanf(std::string(line).c_str(), "%d%*[ ,x\t]%d", &width, &height) != 2) {
+    return;
+  }
+  if (std::min(width, height) < 1 || std::max(width, height) > kMostPixels) return;
+  layout.width = width;
+  layout.height = height;
 }
 
 /// "x", "Timestamp_us", "t[ns]", "polarity": what it begins with, and a unit behind.
@@ -94,117 +61,93 @@ Column read_name(std::string_view text, std::optional<Unit>& unit) {
   return Column::t;
 }
 
-void read_names(const std::vector<std::string_view>& names, TextLayout& layout, std::optional<Unit>& unit,
-                const std::string& place) {
+void read_names(std::string_view line, TextLayout& layout, std::optional<Unit>& unit, const std::string& place) {
+  const auto names = split(line);
   for (const std::string_view name : names) layout.columns.push_back(read_name(name, unit));
-  for (const Column wanted : kOrders[0]) {
-    if (std::count(layout.columns.begin(), layout.columns.end(), wanted) != 1) {
-      throw InputError(fmt::format("{}: names the columns \"{:.80}\"; expected time, x, y and polarity, once each",
-                                   place, fmt::to_string(fmt::join(names, ", "))));
-    }
+  for (const Column wanted : kTimeFirst) {
+    if (std::ranges::count(layout.columns, wanted) == 1) continue;
+    throw InputError(fmt::format("{}: names the columns \"{:.80}\"; expected time, x, y and polarity, once each", place,
+                                 fmt::to_string(fmt::join(names, ", "))));
   }
 }
 
 using Rows = std::vector<std::vector<double>>;
 
-std::size_t time_column(const Order& order) {
-  return static_cast<std::size_t>(std::find(order.begin(), order.end(), Column::t) - order.begin());
+/// Up to a thousand lines that are `columns` numbers each.
+Rows read_rows(std::string_view text, std::size_t columns) {
+  constexpr std::size_t kRows = 1000;
+  Rows rows;
+  while (!text.empty() && rows.size() < kRows) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    std::vector<double> row;
+    double number = 0.0;
+    for (const std::string_view column : split(line)) {
+      if (parse_number(column, number)) row.push_back(number);
+    }
+    if (row.size() == columns) rows.push_back(std::move(row));
+  }
+  return rows;
 }
 
-bool is_possible(const std::vector<double>& row, const Order& order) {
+bool fits(const std::vector<double>& row, const std::vector<Column>& order) {
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const double value = row[i];
-    if (order[i] == Column::p && value != 0.0 && std::abs(value) != 1.0) return false;
-    if ((order[i] == Column::x || order[i] == Column::y) &&
-        (value < 0.0 || value > kMostPixels || value != std::floor(value))) {
-      return false;
-    }
+    const bool is_pixel = row[i] >= 0.0 && row[i] <= kMostPixels && row[i] == std::floor(row[i]);
+    if ((order[i] == Column::x || order[i] == Column::y) && !is_pixel) return false;
+    if (order[i] == Column::p && row[i] != 0.0 && std::abs(row[i]) != 1.0) return false;
   }
   return true;
 }
 
-/// May these columns be time, x, y, polarity, but for one line in twenty?
-bool is_possible(const Rows& rows, const Order& order) {
-  const std::size_t time = time_column(order);
-  std::size_t wrong = 0;
-  double last = -std::numeric_limits<double>::infinity();
-  for (const auto& row : rows) {
-    if (!is_possible(row, order) || row[time] < last) ++wrong;
-    last = row[time];
-  }
-  return 20 * wrong <= rows.size();
+std::size_t time_column(const std::vector<Column>& order) {
+  return index(std::ranges::find(order, Column::t) - order.begin());
 }
 
-/// Of the possible orders the one with the latest time.
-void find_order(const Rows& rows, TextLayout& layout, const std::string& place) {
-  const Order* best = nullptr;
-  for (const Order& order : kOrders) {
-    if (!is_possible(rows, order)) continue;
-    if (best == nullptr || rows.back()[time_column(order)] > rows.back()[time_column(*best)]) best = &order;
-  }
-  if (best == nullptr) {
-    throw InputError(
-        fmt::format("{}: has lines like \"{}\"; expected time, x, y and polarity in some order, times that do "
-                    "not decrease, or to be told the columns",
-                    place, fmt::to_string(fmt::join(rows.front(), " "))));
-  }
-  layout.columns.assign(best->begin(), best->end());
+/// The order that the more lines fit, but for one in twenty; times do not decrease.
+std::vector<Column> find_order(const Rows& rows, const std::string& place) {
+  const auto fitting = [&](const std::vector<Column>& order) {
+    double last = rows.front()[time_column(order)];
+    return std::ranges::count_if(rows, [&](const auto& row) {
+      return fits(row, order) && row[time_column(order)] >= std::exchange(last, row[time_column(order)]);
+    });
+  };
+  const auto first = fitting(kTimeFirst), last = fitting(kTimeLast);
+  if (first != last && 20 * std::max(first, last) >= 19 * std::ssize(rows))
+    return first > last ? kTimeFirst : kTimeLast;
+  throw InputError(fmt::format("{}: has lines like \"{}\", which {} \"t x y p\" {} \"x y p t\"; give --columns", place,
+                               fmt::to_string(fmt::join(rows.front(), " ")),
+                               first == last && first > 0 ? "may be" : "are neither",
+                               first == last && first > 0 ? "and" : "nor"));
 }
 
-/// Seconds where there are fractions, otherwise microseconds, unless the events were too slow for an event camera.
-Unit find_unit(std::vector<double> times) {
-  constexpr double kSlow = 100.0, kModerate = 2e4;  // events a second
-  constexpr std::size_t kFew = 100;
-  constexpr double kUnixNanoseconds = 1e17;  // later than 1973 in ns, than the year 5000 in us
-  // Of the middle of them, as a few may be broken; a second, if times are seconds.
-  std::sort(times.begin(), times.end());
-  const std::size_t twentieth = times.size() / 20;
-  const double span = times[times.size() - 1 - twentieth] - times[twentieth];
-  const double rate = static_cast<double>(times.size() - 2 * twentieth) / std::max(span, 1e-12);
-  const bool has_fractions = std::any_of(times.begin(), times.end(), [](double t) { return t != std::floor(t); });
-  if (has_fractions) return rate < 0.1 && times.size() >= kFew ? Unit::microseconds : Unit::seconds;
-  if (times[times.size() / 2] > kUnixNanoseconds) return Unit::nanoseconds;
-  const bool in_thousands =
-      std::all_of(times.begin(), times.end(), [](double t) { return std::fmod(t, 1000.0) == 0.0; });
-  const bool slow = rate * 1e6 < (in_thousands ? kModerate : kSlow);
-  return times.size() >= kFew && slow ? Unit::nanoseconds : Unit::microseconds;
-}
-
-/// Up to a thousand lines of numbers, beginning with `line`.
-Rows read_rows(Lines& lines, std::string_view line, std::size_t columns) {
-  constexpr std::size_t kRows = 1000;
-  Rows rows;
-  do {
-    const auto texts = split_columns(line);
-    std::vector<double> row(texts.size());
-    bool good = texts.size() == columns;
-    for (std::size_t i = 0; i < texts.size() && good; ++i) good = parse_number(texts[i], row[i]);
-    if (good) rows.push_back(std::move(row));
-  } while (rows.size() < kRows && lines.next(line));
-  return rows;
-}
-
-void read_values(const Rows& rows, const std::optional<Unit>& unit, TextLayout& layout) {
-  std::vector<double> times;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (layout.columns[i] == Column::t) times.push_back(row[i]);
-      if (layout.columns[i] == Column::p && row[i] < 0.0) layout.signed_polarity = true;
-    }
-  }
-  layout.unit = unit ? *unit : find_unit(times);
+/// Without a name that says it.
+Unit find_unit(const Rows& rows, std::size_t time, const std::string& place) {
+  constexpr double kLatest = 1e17;  // [µs], the year 5000: in nanoseconds that is 1973
+  bool has_fractions = false;
+  for (const auto& row : rows) has_fractions |= row[time] != std::floor(row[time]);
+  if (has_fractions) return Unit::seconds;
+  if (rows.front()[time] < kLatest) return Unit::microseconds;
+  throw InputError(
+      fmt::format("{}: has the time {}, too late for microseconds; give --columns with t_ns, if it is that", place,
+                  rows.front()[time]));
 }
 
 }  // namespace
 
-std::vector<std::string_view> split_columns(std::string_view line) {
-  std::vector<std::string_view> columns;
-  for (std::size_t at = line.find_first_not_of(kSeparators); at != std::string_view::npos;) {
-    const auto end = line.find_first_of(kSeparators, at);
-    columns.push_back(line.substr(at, end == std::string_view::npos ? end : end - at));
-    at = end == std::string_view::npos ? end : line.find_first_not_of(kSeparators, end);
-  }
-  return columns;
+std::string_view next_column(std::string_view& line) {
+  const auto separates = [](char c) { return c == ' ' || c == ',' || c == '\t' || c == ';' || c == '\r'; };
+  const char* begin = line.data();
+  const char* const last = begin + line.size();
+  while (begin != last && separates(*begin)) ++begin;
+  const char* end = begin;
+  while (end != last && !separates(*end)) ++end;
+  line = {end, last};
+  return {begin, end};
+}
+
+bool is_passed_over(std::string_view line) {
+  const std::string_view first = next_column(line);
+  return first.empty() || first.starts_with('#') || first.starts_with('%');
 }
 
 bool parse_number(std::string_view text, double& number) {
@@ -214,45 +157,45 @@ bool parse_number(std::string_view text, double& number) {
 }
 
 TextLayout detect_text_layout(std::string_view head, bool whole, const std::string& name, const std::string& asked) {
-  using Origin = TextLayout::Origin;
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   TextLayout layout;
   std::optional<Unit> unit;
-  bool has_header = false;
   if (!asked.empty()) {
-    read_names(split_columns(asked), layout, unit, fmt::format("{}: what is asked for", name));
-    layout.origin = Origin::caller;
+    read_names(asked, layout, unit, fmt::format("{}: what is asked for", name));
+    layout.origin = " (as asked for)";
   }
-  Lines lines(head, whole);
-  layout.begin = lines.position();
-  std::string_view line;
-  for (; lines.next(line); ++layout.lines, layout.begin = lines.position()) {
+  if (!whole) head = head.substr(0, head.rfind('\n') + 1);
+  layout.begin = head.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  bool has_header = false;
+  for (; layout.begin < head.size(); ++layout.lines) {
+    const std::string_view line = head.substr(layout.begin, head.find('\n', layout.begin) - layout.begin);
     const std::string place = fmt::format("{}:{}", name, layout.lines + 1);
-    const auto columns = split_columns(line);
-    if (columns.empty()) continue;
-    if (columns[0].starts_with('#') || columns[0].starts_with('%')) {
-      read_comment(line, layout);
-    } else if (!is_number(columns[0]) && !has_header) {
+    const auto columns = split(line);
+    double number = 0.0;
+    if (is_passed_over(line)) {
+      if (line.find("geometry") != std::string_view::npos) read_size(line, layout);
+    } else if (!parse_number(columns[0], number) && !has_header) {
       has_header = true;
-      if (layout.origin == Origin::caller) continue;
-      read_names(columns, layout, unit, place);
-      layout.origin = Origin::header;
-    } else if (columns.size() == 2 && layout.width == 0) {
-      read_size(columns, layout);
-    } else {
-      const bool has_names = layout.origin != Origin::values;
-      if (columns.size() != (has_names ? layout.columns.size() : 4)) {
-        throw InputError(fmt::format(
-            "{}: has {} columns; expected {}", place, columns.size(),
-            has_names ? fmt::format("{}, as they are named", layout.columns.size()) : "time, x, y and polarity"));
+      if (asked.empty()) {
+        read_names(line, layout, unit, place);
+        layout.origin = " (named in the file)";
       }
-      const auto separator = line.find_first_of(",;\t");
-      layout.separator = separator == std::string_view::npos ? ' ' : line[separator];
-      const Rows rows = read_rows(lines, line, columns.size());
+    } else if (columns.size() == 2 && layout.width == 0) {
+      read_size(line, layout);
+    } else {
+      const std::size_t expected = layout.columns.empty() ? 4 : layout.columns.size();
+      if (columns.size() != expected) {
+        throw InputError(fmt::format("{}: has {} columns; expected {}", place, columns.size(),
+                                     layout.columns.empty() ? "time, x, y and polarity; otherwise give --columns"
+                                                            : fmt::format("{}, as they are named", expected)));
+      }
+      const Rows rows = read_rows(head.substr(layout.begin), expected);
       if (rows.empty()) throw InputError(fmt::format("{}: is \"{:.80}\"; expected numbers", place, line));
-      if (!has_names) find_order(rows, layout, place);
-      read_values(rows, unit, layout);
+      if (layout.columns.empty()) layout.columns = find_order(rows, place);
+      layout.unit = unit ? *unit : find_unit(rows, time_column(layout.columns), place);
       return layout;
     }
+    layout.begin = std::min(layout.begin + line.size() + 1, head.size());
   }
   throw InputError(fmt::format("{}: has no lines of events in its first {} bytes; expected time, x, y and polarity",
                                name, head.size()));
@@ -261,15 +204,10 @@ TextLayout detect_text_layout(std::string_view head, bool whole, const std::stri
 std::vector<std::pair<std::string, std::string>> TextLayout::description() const {
   constexpr const char* kColumns[] = {"t", "x", "y", "p", "-"};
   constexpr const char* kUnits[] = {"seconds", "milliseconds", "microseconds", "nanoseconds"};
-  constexpr const char* kOrigins[] = {"", " (named in the file)", " (as asked for)"};
   std::vector<std::string> order;
   for (const Column column : columns) order.push_back(kColumns[static_cast<std::size_t>(column)]);
-  return {{"columns", fmt::format("{}{}", fmt::join(order, " "), kOrigins[static_cast<std::size_t>(origin)])},
-          {"separator", separator == ' '    ? "blank"
-                        : separator == '\t' ? "tab"
-                                            : std::string(1, separator)},
-          {"unit of time", kUnits[static_cast<std::size_t>(unit)]},
-          {"polarity", signed_polarity ? "-1, 1" : "0, 1"}};
+  return {{"columns", fmt::to_string(fmt::join(order, " ")) + origin},
+          {"unit of time", kUnits[static_cast<std::size_t>(unit)]}};
 }
 
 }  // namespace evbench
