@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/progress_line.hpp"

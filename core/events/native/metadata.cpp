@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/support/error.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench::native {
 namespace {
@@ -24,8 +25,7 @@ Camera to_camera(const Json& json, int width, int height) {
   const Json& p = json.at("pinhole");
   camera.pinhole = {p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>(), p.at(3).get<double>()};
   camera.distortion = parse_distortion_model(json.at("distortion").get<std::string>());
-  for (int i = 0; i < 5; ++i)
-    camera.coefficients[i] = json.at("coefficients").at(static_cast<std::size_t>(i)).get<double>();
+  for (int i = 0; i < 5; ++i) camera.coefficients[i] = json.at("coefficients").at(index(i)).get<double>();
   camera.width = width;
   camera.height = height;
   return camera;

@@ -6,6 +6,7 @@
 
 #include "core/events/testing/mcap_writer.hpp"
 #include "core/events/testing/recordings.hpp"
+#include "core/support/index.hpp"
 #include "core/support/interruption.hpp"
 
 using namespace evbench;
@@ -101,7 +102,7 @@ void check_events(EventReader& reader, int first = 0) {
   const auto events = testing::read_all(reader);
   REQUIRE(static_cast<int>(events.size()) == kPackets - first);
   for (int i = first; i < kPackets; ++i) {
-    CHECK(events[static_cast<std::size_t>(i - first)] == Event{7'000'000 + 50'000 * i, 3, 4, true});
+    CHECK(events[index(i - first)] == Event{7'000'000 + 50'000 * i, 3, 4, true});
   }
 }
 
