@@ -11,7 +11,6 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/plugins.hpp"
-#include "bench/recordings/config_events.hpp"
 #include "bench/version.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/interruption.hpp"
@@ -34,7 +33,6 @@ int run_program(int argc, char** argv) {
       ->type_name("PATH")
       ->allow_extra_args(false);
   app.parse_complete_callback([&] { evbench::load_plugins(plugins, libraries); });  // before any command's
-  evbench::add_event_format(evbench::config_format(plugins));
   int exit_code = 0;
   evbench::add_run(app, plugins, exit_code);
   evbench::add_eval(app);
@@ -43,10 +41,10 @@ int run_program(int argc, char** argv) {
   evbench::add_list(app, plugins);
   evbench::add_describe(app, plugins);
   evbench::add_solve(app);
-  evbench::add_info(app);
-  evbench::add_convert(app);
+  evbench::add_info(app, plugins);
+  evbench::add_convert(app, plugins);
   evbench::add_dataset(app);
-  evbench::add_render(app);
+  evbench::add_render(app, plugins);
   evbench::add_new_plugin(app, plugins);
   evbench::add_check_plugin(app, plugins, exit_code);
   try {

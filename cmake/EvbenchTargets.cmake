@@ -54,20 +54,29 @@ function(evbench_tests name)
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:")
 endfunction()
 
-# evbench_fuzz_targets(LINKS ... [CORPUS_ONLY ...]): each fuzz/NAME.fuzz.cpp of a folder as a libFuzzer program fuzz_NAME,
-# built by the target fuzz_targets. Its test runs fuzz/corpus/NAME, then new inputs for EVBENCH_FUZZ_SECONDS in bounded
-# memory. In the build folder, fuzz/corpus/NAME keeps the new inputs that reach more code, fuzz/findings/NAME-... those
-# that fail. The tests of CORPUS_ONLY try no new inputs: where a library has bugs of its own, each finding would be one.
+# evbench_fuzz_targets(CORPUS archive LINKS ... [CORPUS_ONLY ...]): each NAME.fuzz.cpp in and below a folder as a
+# libFuzzer program fuzz_NAME, built by the target fuzz_targets. Its test runs the archive's NAME/, then new inputs for
+# EVBENCH_FUZZ_SECONDS in bounded memory. In the build folder, fuzz/corpus/NAME has what the archive has,
+# fuzz/new/NAME keeps the new inputs that reach more code, fuzz/findings/NAME-... those that fail. What is copied into
+# fuzz/corpus/NAME goes into the archive by the target fuzz_corpus. The tests of CORPUS_ONLY try no new inputs: where a
+# library has bugs of its own, each finding would be one.
 function(evbench_fuzz_targets)
   if(NOT EVBENCH_FUZZ)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "" "LINKS;CORPUS_ONLY" ${ARGN})
-  if(NOT TARGET fuzz_targets)
-    add_custom_target(fuzz_targets)
+  cmake_parse_arguments(ARG "" "CORPUS" "LINKS;CORPUS_ONLY" ${ARGN})
+  set(archive ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_CORPUS})
+  set(corpus ${CMAKE_BINARY_DIR}/fuzz/corpus)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${archive})
+  if(${archive} IS_NEWER_THAN ${corpus})
+    file(ARCHIVE_EXTRACT INPUT ${archive} DESTINATION ${corpus})
+    file(TOUCH_NOCREATE ${corpus})
   endif()
+  add_custom_target(fuzz_corpus COMMAND tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner -czf ${archive} -C
+                                            ${corpus} .)
+  add_custom_target(fuzz_targets)
   math(EXPR most_seconds "${EVBENCH_FUZZ_SECONDS} + 600")
-  file(GLOB sources CONFIGURE_DEPENDS fuzz/*.fuzz.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.fuzz.cpp)
   foreach(source IN LISTS sources)
     get_filename_component(name ${source} NAME)
     string(REPLACE ".fuzz.cpp" "" name ${name})
@@ -75,7 +84,7 @@ function(evbench_fuzz_targets)
     target_link_libraries(fuzz_${name} PRIVATE ${ARG_LINKS} evbench_flags)
     target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
     add_dependencies(fuzz_targets fuzz_${name})
-    set(found ${CMAKE_BINARY_DIR}/fuzz/corpus/${name})
+    set(found ${CMAKE_BINARY_DIR}/fuzz/new/${name})
     file(MAKE_DIRECTORY ${found} ${CMAKE_BINARY_DIR}/fuzz/findings)
     set(extent -max_total_time=${EVBENCH_FUZZ_SECONDS})
     if(name IN_LIST ARG_CORPUS_ONLY)
@@ -85,7 +94,7 @@ function(evbench_fuzz_targets)
              COMMAND fuzz_${name} ${extent} -seed=1 -timeout=60 -rss_limit_mb=1500
                      -malloc_limit_mb=700 -print_final_stats=1
                      -artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/findings/${name}-
-                     ${found} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus/${name})
+                     ${found} ${corpus}/${name})
     set_tests_properties("fuzz: ${name}" PROPERTIES TIMEOUT ${most_seconds})
   endforeach()
 endfunction()
@@ -104,7 +113,7 @@ function(evbench_install_package)
   install(TARGETS evbench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   foreach(folder core eval bench/pipeline bench/battery)
     install(DIRECTORY ${CMAKE_SOURCE_DIR}/${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/evbench/${folder}
-            FILES_MATCHING PATTERN "*.hpp" PATTERN "testing" EXCLUDE PATTERN "fuzz" EXCLUDE)
+            FILES_MATCHING PATTERN "*.hpp" PATTERN "testing" EXCLUDE)
   endforeach()
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/configs DESTINATION ${CMAKE_INSTALL_DATADIR}/evbench)
   set(package ${CMAKE_INSTALL_LIBDIR}/cmake/evbench)

@@ -14,10 +14,10 @@ void add_score(CLI::App& app);
 void add_list(CLI::App& app, const Plugins& plugins);
 void add_describe(CLI::App& app, const Plugins& plugins);
 void add_solve(CLI::App& app);
-void add_info(CLI::App& app);
-void add_convert(CLI::App& app);
+void add_info(CLI::App& app, const Plugins& plugins);
+void add_convert(CLI::App& app, const Plugins& plugins);
 void add_dataset(CLI::App& app);
-void add_render(CLI::App& app);
+void add_render(CLI::App& app, const Plugins& plugins);
 void add_new_plugin(CLI::App& app, const Plugins& plugins);
 
 /// `exit_code` is set to what the program returns: 0, or 3 when a run failed. A config may name libraries with more

@@ -6,6 +6,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/commands/time_range.hpp"
+#include "bench/recordings/config_events.hpp"
 #include "bench/recordings/conversion.hpp"
 #include "core/events/writer.hpp"
 #include "core/support/interruption.hpp"
@@ -53,8 +54,9 @@ std::string formats_text() {
 
 }  // namespace
 
-void add_convert(CLI::App& app) {
+void add_convert(CLI::App& app, const Plugins& plugins) {
   auto arguments = std::make_shared<ConvertArguments>();
+  arguments->options.stream.open = recordings_and_configs(plugins);
   CLI::App* command = app.add_subcommand("convert", "Convert a recording of events: native cache, text, HDF5");
   command->add_option("in", arguments->in, "File or folder, of any format that evbench reads")
       ->required()

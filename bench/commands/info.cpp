@@ -2,9 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/progress_line.hpp"
+#include "bench/recordings/config_events.hpp"
 #include "bench/recordings/summary.hpp"
 
 namespace evbench {
@@ -12,7 +14,7 @@ namespace {
 
 struct InfoArguments {
   std::string file;
-  ReadOptions options;
+  StreamOptions options;
   bool json = false, quiet = false;
 };
 
@@ -47,15 +49,16 @@ void add_read_options(CLI::App& command, ReadOptions& options) {
       ->type_name("t,x,y,p");
 }
 
-void add_info(CLI::App& app) {
+void add_info(CLI::App& app, const Plugins& plugins) {
   auto arguments = std::make_shared<InfoArguments>();
+  arguments->options.open = recordings_and_configs(plugins);
   CLI::App* command = app.add_subcommand("info", "Describe a recording of events: format, counts, rates, oddities");
   command->add_option("file", arguments->file, "File or folder, of any format that evbench reads")
       ->required()
       ->type_name("FILE");
   command->add_flag("--json", arguments->json, "Print JSON");
   command->add_flag("--quiet", arguments->quiet, "Show no progress");
-  add_read_options(*command, arguments->options);
+  add_read_options(*command, arguments->options.read);
   command->footer(
       "Oddities are events that were left out: out of the order of time, outside the sensor, in damaged parts of the "
       "file.");

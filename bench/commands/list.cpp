@@ -42,6 +42,7 @@ void add_list(CLI::App& app, const Plugins& plugins) {
     list<BackEnd>(plugins);
     fmt::print("formats of events:\n");
     for (const EventFormat& format : event_formats()) fmt::print("  {:<20} {}\n", format.name, format.description);
+    fmt::print("  {:<20} {}\n", "config", "JSON config of evbench: the events of its source");
   });
 }
 

@@ -8,6 +8,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/commands/time_range.hpp"
+#include "bench/recordings/config_events.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
@@ -121,8 +122,9 @@ void add_picture_options(CLI::App& command, RenderArguments& arguments) {
 
 }  // namespace
 
-void add_render(CLI::App& app) {
+void add_render(CLI::App& app, const Plugins& plugins) {
   auto arguments = std::make_shared<RenderArguments>();
+  arguments->options.stream.open = recordings_and_configs(plugins);
   CLI::App* command = app.add_subcommand("render", "Draw a recording of events: pictures (PNG) and video (MP4)");
   command->add_option("in", arguments->in, "File or folder, of any format that evbench reads")
       ->required()

@@ -3,6 +3,7 @@
 #include <curl/curl.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -10,7 +11,6 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <string_view>
 #include <thread>
 
 #include "core/io/atomic_file.hpp"
@@ -23,15 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr long kConnectSeconds = 30, kSilentSeconds = 60;
-constexpr long kPartialContent = 206, kRangeNotSatisfiable = 416;
-
-std::uint64_t size_of(const std::string& path) {
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(path, error);
-  return error ? 0 : size;
-}
-
 /// What tells one version of a file on the server from another, for If-Range: its entity tag, or else when it was
 /// changed. Empty where the server says neither, or nothing has been fetched.
 std::string version_path(const std::string& part) { return part + ".version"; }
@@ -41,70 +32,48 @@ std::string version_of(const std::string& part) {
   return version;
 }
 
-/// The value of a header line with this name (lower case).
-std::optional<std::string> header_value(std::string_view line, std::string_view name) {
-  const std::size_t colon = line.find(':');
-  if (colon != name.size()) return std::nullopt;
-  for (std::size_t i = 0; i < colon; ++i) {
-    if (std::tolower(static_cast<unsigned char>(line[i])) != name[i]) return std::nullopt;
-  }
-  const std::size_t first = line.find_first_not_of(" \t", colon + 1), last = line.find_last_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return "";
-  return std::string(line.substr(first, last + 1 - first));
+void remove_part(const std::string& part) {
+  std::error_code ignored;
+  fs::remove(part, ignored);
+  fs::remove(version_path(part), ignored);
 }
 
 /// One request, from where the part file ends.
 class Transfer {
  public:
-  Transfer(const std::string& url, const std::string& part, const DownloadOptions& options)
-      : url_(url), part_(part), options_(options), have_(size_of(part)), curl_(curl_easy_init(), curl_easy_cleanup) {}
+  Transfer(const std::string& url, const std::string& part, const DownloadOptions& options);
 
-  struct Result {
-    CURLcode code = CURLE_OK;
-    long status = 0;      ///< HTTP
-    std::string message;  ///< what went wrong
-    std::string type;     ///< of the content, as the server says
-    bool too_big = false;
-    bool restart = false;  ///< the part file doesn't fit what the server has
-  };
-  Result perform();
+  enum class End { complete, broken_off, other_file };  ///< other_file: the part file doesn't fit what the server has
+  /// Throws InputError for what another attempt would not change.
+  End perform();
+  std::string header(const char* name) const;  ///< of the last answer; empty: it has none
+  /// What went wrong.
+  const char* message() const { return error_[0] != '\0' ? error_ : curl_easy_strerror(code_); }
+  std::uint64_t bytes() const { return have_; }
 
  private:
-  static std::size_t on_header(char* data, std::size_t size, std::size_t count, void* self) {
-    static_cast<Transfer*>(self)->header(std::string_view(data, size * count));
-    return size * count;
-  }
-  static std::size_t on_body(char* data, std::size_t size, std::size_t count, void* self) {
-    auto* const transfer = static_cast<Transfer*>(self);
-    try {
-      return transfer->body(data, size * count) ? size * count : 0;
-    } catch (...) {  // must not pass through libcurl, which is C
-      transfer->failure_ = std::current_exception();
-      return 0;
-    }
-  }
-  /// Called about once a second, also while nothing comes. Ends the transfer unless 0.
-  static int on_progress(void*, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
-    return Interruption::is_requested() ? 1 : 0;
-  }
-  void set_up();
-  void header(std::string_view line);
-  bool body(const char* data, std::size_t size);
+  static std::size_t on_body(char* data, std::size_t size, std::size_t count, void* self);
   bool begin();
+  bool body(const char* data, std::size_t size);
+  long status() const;
 
-  std::string url_, part_, etag_, last_modified_, content_range_;
+  const std::string& url_;
+  const std::string& part_;
   const DownloadOptions& options_;
-  std::uint64_t have_;
+  std::uint64_t have_ = 0;  ///< [bytes]
   std::optional<std::uint64_t> total_;
-  std::unique_ptr<CURL, decltype(&curl_easy_cleanup)> curl_;
+  std::unique_ptr<CURL, decltype(&curl_easy_cleanup)> curl_{curl_easy_init(), curl_easy_cleanup};
   std::unique_ptr<curl_slist, decltype(&curl_slist_free_all)> headers_{nullptr, curl_slist_free_all};
   std::unique_ptr<std::FILE, decltype(&std::fclose)> file_{nullptr, std::fclose};
+  CURLcode code_ = CURLE_OK;
   char error_[CURL_ERROR_SIZE] = {};
   std::exception_ptr failure_;  ///< of a callback
-  Result result_;
+  bool fits_ = true;            ///< the answer, behind the part file
 };
 
-void Transfer::set_up() {
+Transfer::Transfer(const std::string& url, const std::string& part, const DownloadOptions& options)
+    : url_(url), part_(part), options_(options) {
+  constexpr long kConnectSeconds = 30, kSilentSeconds = 60;
   CURL* const curl = curl_.get();
   curl_easy_setopt(curl, CURLOPT_URL, url_.c_str());
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
@@ -117,141 +86,118 @@ void Transfer::set_up() {
   curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, kSilentSeconds);
   curl_easy_setopt(curl, CURLOPT_USERAGENT, "evbench");
   curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, error_);
-  curl_easy_setopt(curl, CURLOPT_HEADERFUNCTION, on_header);
-  curl_easy_setopt(curl, CURLOPT_HEADERDATA, this);
   curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, on_body);
   curl_easy_setopt(curl, CURLOPT_WRITEDATA, this);
-  curl_easy_setopt(curl, CURLOPT_XFERINFOFUNCTION, on_progress);
+  // Called about once a second, also while nothing comes. Ends the transfer unless 0.
+  curl_easy_setopt(
+      curl, CURLOPT_XFERINFOFUNCTION, +[](void*, curl_off_t, curl_off_t, curl_off_t, curl_off_t) -> int {
+        return Interruption::is_requested() ? 1 : 0;
+      });
   curl_easy_setopt(curl, CURLOPT_NOPROGRESS, 0L);
   const std::string version = version_of(part_);
-  if (version.empty()) have_ = 0;  // whether what the server has now is the same file can't be known
-  if (have_ == 0) return;
+  std::error_code none;
+  const std::uintmax_t size = fs::file_size(part_, none);
+  if (none || size == 0 || version.empty()) return;  // whether it would be the same file can't be known
+  have_ = size;
+  // Not RESUME_FROM: where the whole file comes instead of the rest, libcurl would refuse it.
   curl_easy_setopt(curl, CURLOPT_RANGE, fmt::format("{}-", have_).c_str());
   headers_.reset(curl_slist_append(nullptr, ("If-Range: " + version).c_str()));
   curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers_.get());
 }
 
-Transfer::Result Transfer::perform() {
-  set_up();
-  result_.code = curl_easy_perform(curl_.get());
-  if (failure_) std::rethrow_exception(failure_);
-  curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &result_.status);
-  const char* type = nullptr;
-  curl_easy_getinfo(curl_.get(), CURLINFO_CONTENT_TYPE, &type);
-  result_.type = type != nullptr ? type : "";
-  if (result_.code == CURLE_OK && !file_) begin();  // a file without bytes
-  if (file_ && std::fclose(file_.release()) != 0)
-    throw InputError(fmt::format("{}: can't be written (disk full?)", part_));
-  if (result_.status == kRangeNotSatisfiable) {  // nothing is missing, or the file is another one
-    if (content_range_ == fmt::format("bytes */{}", have_))
-      result_.code = CURLE_OK;
-    else
-      result_.restart = true;
-  }
-  result_.message = error_[0] != '\0' ? error_ : curl_easy_strerror(result_.code);
-  return result_;
+long Transfer::status() const {
+  long status = 0;
+  curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &status);
+  return status;
 }
 
-void Transfer::header(std::string_view line) {
-  if (line.starts_with("HTTP/")) etag_ = last_modified_ = content_range_ = "";  // a redirection's don't count
-  if (const auto tag = header_value(line, "etag")) etag_ = *tag;
-  if (const auto date = header_value(line, "last-modified")) last_modified_ = *date;
-  if (const auto range = header_value(line, "content-range")) content_range_ = *range;
+std::string Transfer::header(const char* name) const {
+  curl_header* found = nullptr;
+  return curl_easy_header(curl_.get(), name, 0, CURLH_HEADER, -1, &found) == CURLHE_OK ? found->value : "";
+}
+
+Transfer::End Transfer::perform() {
+  constexpr long kRangeNotSatisfiable = 416, kServerError = 500;
+  code_ = curl_easy_perform(curl_.get());
+  if (failure_) std::rethrow_exception(failure_);
+  check_interruption();
+  if (code_ == CURLE_OK && !file_) begin();  // a file without bytes
+  if (file_ && std::fclose(file_.release()) != 0) {
+    throw InputError(fmt::format("{}: can't be written (disk full?)", part_));
+  }
+  // Nothing is missing, or the file is another one.
+  if (status() == kRangeNotSatisfiable) fits_ = header("Content-Range") == fmt::format("bytes */{}", have_);
+  if (!fits_) return End::other_file;
+  if (code_ == CURLE_OK || status() == kRangeNotSatisfiable) return End::complete;
+  if (code_ == CURLE_HTTP_RETURNED_ERROR && status() < kServerError) {
+    throw InputError(fmt::format("{}: the server answers {}; has the file moved?", url_, status()));
+  }
+  return End::broken_off;
 }
 
 /// The answer's first byte: is it the file's first, or the one that is next?
 bool Transfer::begin() {
-  curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &result_.status);
-  if (result_.status == kPartialContent) {
-    if (!content_range_.starts_with(fmt::format("bytes {}-", have_))) {
-      result_.restart = true;
-      return false;
-    }
-  } else {
-    have_ = 0;
-  }
+  constexpr long kPartialContent = 206;
+  if (status() != kPartialContent) have_ = 0;
+  fits_ = have_ == 0 || header("Content-Range").starts_with(fmt::format("bytes {}-", have_));
+  if (!fits_) return false;
   curl_off_t left = -1;
   curl_easy_getinfo(curl_.get(), CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &left);
   if (left >= 0) total_ = have_ + static_cast<std::uint64_t>(left);
   file_.reset(std::fopen(part_.c_str(), have_ == 0 ? "wb" : "ab"));
   if (!file_) throw InputError(fmt::format("{}: can't be written: {}", part_, std::strerror(errno)));
   // After the old bytes are gone. A weak tag can't be used with If-Range (RFC 9110, 13.1.5).
-  const bool strong = !etag_.empty() && !etag_.starts_with("W/");
-  if (have_ == 0) write_file(version_path(part_), strong ? etag_ : last_modified_);
+  const std::string tag = header("ETag");
+  if (have_ == 0) write_file(version_path(part_), tag.empty() || tag.starts_with("W/") ? header("Last-Modified") : tag);
   return true;
 }
 
 bool Transfer::body(const char* data, std::size_t size) {
   if (!file_ && !begin()) return false;
-  result_.too_big = total_.value_or(0) > options_.limit || have_ + size > options_.limit;
-  if (result_.too_big || std::fwrite(data, 1, size, file_.get()) != size) return false;
+  if (total_.value_or(0) > options_.limit || have_ + size > options_.limit) {
+    remove_part(part_);
+    throw InputError(fmt::format("{}: is bigger than the catalogue allows; removed", url_));
+  }
+  if (std::fwrite(data, 1, size, file_.get()) != size) {
+    throw InputError(fmt::format("{}: can't be written (disk full?)", part_));
+  }
   have_ += size;
   if (options_.progress) options_.progress(have_, total_);
   return true;
 }
 
-bool may_be_tried_again(const Transfer::Result& result) {
-  switch (result.code) {
-    case CURLE_COULDNT_CONNECT:
-    case CURLE_PARTIAL_FILE:
-    case CURLE_OPERATION_TIMEDOUT:
-    case CURLE_GOT_NOTHING:
-    case CURLE_SEND_ERROR:
-    case CURLE_RECV_ERROR:
-    case CURLE_HTTP2_STREAM: return true;
-    case CURLE_HTTP_RETURNED_ERROR: return result.status >= 500;
-    default: return false;
+std::size_t Transfer::on_body(char* data, std::size_t size, std::size_t count, void* self) {
+  auto* const transfer = static_cast<Transfer*>(self);
+  try {
+    return transfer->body(data, size * count) ? size * count : 0;
+  } catch (...) {  // must not pass through libcurl, which is C
+    transfer->failure_ = std::current_exception();
+    return 0;
   }
 }
 
-void remove_part(const std::string& part) {
-  std::error_code ignored;
-  fs::remove(part, ignored);
-  fs::remove(version_path(part), ignored);
-}
-
-/// A page that says "not found", "log in" or "accept our terms" in the place of the file.
+/// A page that says "not found", "log in" or "accept our terms" in the place of the file. `type`: as the server says.
 bool is_web_page(const std::string& path, const std::string& type) {
   std::string head(256, '\0');
   std::ifstream file(path, std::ios::binary);
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(file.gcount()));
   head.erase(0, head.find_first_not_of(" \t\r\n"));
-  for (char& c : head) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::ranges::transform(head, head.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return head.starts_with("<!doctype html") || head.starts_with("<html") ||
          (head.starts_with("<") && type.starts_with("text/html"));
 }
 
 void check_content(const std::string& url, const std::string& part, const std::string& type,
                    const std::string& expected_sha256) {
-  if (is_web_page(part, type)) {
-    remove_part(part);
+  const bool is_page = is_web_page(part, type);
+  const std::string found = is_page || expected_sha256.empty() ? expected_sha256 : sha256_file(part);
+  if (!is_page && found == expected_sha256) return;
+  remove_part(part);
+  if (is_page) {
     throw InputError(fmt::format("{}: the server answers with a web page, not the file; has it moved?", url));
   }
-  if (expected_sha256.empty()) return;
-  const std::string found = sha256_file(part);
-  if (found == expected_sha256) return;
-  remove_part(part);
   throw InputError(fmt::format("{}: has the SHA-256 {}; expected {}: removed", url, found, expected_sha256));
-}
-
-/// Throws unless the download may go on.
-void explain(const Transfer::Result& result, const std::string& url, const std::string& part, bool last) {
-  check_interruption();
-  if (result.too_big) {
-    remove_part(part);
-    throw InputError(fmt::format("{}: is bigger than the catalogue allows; removed", url));
-  }
-  if (result.code == CURLE_WRITE_ERROR && !result.restart) {
-    throw InputError(fmt::format("{}: can't be written (disk full?)", part));
-  }
-  if (result.code == CURLE_HTTP_RETURNED_ERROR && !result.restart && result.status < 500) {
-    throw InputError(fmt::format("{}: the server answers {}; has the file moved?", url, result.status));
-  }
-  if (!last && (result.restart || may_be_tried_again(result))) return;
-  throw InputError(fmt::format(
-      "{}: the download broke off after {} bytes ({}); the same command {}", url, size_of(part), result.message,
-      version_of(part).empty() ? "begins anew, as the server doesn't say which version it has" : "goes on from there"));
 }
 
 }  // namespace
@@ -261,17 +207,21 @@ void download(const std::string& url, const std::string& path, const DownloadOpt
   if (initialised != CURLE_OK) throw InputError("libcurl can't be initialised");
   const std::string part = path + ".part";
   for (int attempt = 1;; ++attempt) {
-    const Transfer::Result result = Transfer(url, part, options).perform();
-    if (result.code == CURLE_OK && !result.restart) {
-      check_content(url, part, result.type, options.sha256);
+    Transfer transfer(url, part, options);
+    const Transfer::End end = transfer.perform();
+    if (end == Transfer::End::complete) {
+      check_content(url, part, transfer.header("Content-Type"), options.sha256);
       break;
     }
-    explain(result, url, part, attempt >= options.attempts);
-    if (result.restart) {
-      remove_part(part);
-    } else {
-      std::this_thread::sleep_for(options.pause);
+    if (end == Transfer::End::other_file) remove_part(part);
+    if (attempt >= options.attempts) {
+      throw InputError(fmt::format("{}: the download broke off after {} bytes ({}); the same command {}", url,
+                                   transfer.bytes(), transfer.message(),
+                                   version_of(part).empty()
+                                       ? "begins anew, as the server doesn't say which version it has"
+                                       : "goes on from there"));
     }
+    if (end == Transfer::End::broken_off) std::this_thread::sleep_for(options.pause);
   }
   std::error_code error;
   fs::rename(part, path, error);

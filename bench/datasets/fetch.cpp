@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "bench/datasets/unpack.hpp"
+#include "core/io/archive.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/io/sha256.hpp"
 #include "core/support/error.hpp"

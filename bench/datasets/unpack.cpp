@@ -1,17 +1,15 @@
 #include "bench/datasets/unpack.hpp"
 
-#include <archive.h>
-#include <archive_entry.h>
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <clocale>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 #include <vector>
 
+#include "core/io/archive.hpp"
 #include "core/support/interruption.hpp"
 
 namespace evbench {
@@ -19,101 +17,56 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kBlock = 1 << 20;  // [bytes]
-constexpr int kMaxEntries = 1000000;
-
-/// Names in archives are UTF-8, whatever the user's locale is: libarchive converts them by the thread's.
-class Utf8Locale {
- public:
-  Utf8Locale() : utf8_(::newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr)) {
-    if (utf8_ != nullptr) before_ = ::uselocale(utf8_);
-  }
-  ~Utf8Locale() {
-    if (utf8_ == nullptr) return;
-    ::uselocale(before_);
-    ::freelocale(utf8_);
-  }
-  Utf8Locale(const Utf8Locale&) = delete;
-  Utf8Locale& operator=(const Utf8Locale&) = delete;
-
- private:
-  locale_t utf8_, before_ = nullptr;
-};
-
 class Unpacker {
  public:
   Unpacker(const std::string& path, const std::string& folder, std::uint64_t limit)
-      : path_(path), folder_(folder), left_(limit), archive_(archive_read_new(), archive_read_free), block_(kBlock) {
-    archive_read_support_format_zip(archive_.get());
-    archive_read_support_format_tar(archive_.get());
-    archive_read_support_filter_gzip(archive_.get());
-    if (archive_read_open_filename(archive_.get(), path.c_str(), kBlock) != ARCHIVE_OK) fail(message());
-  }
+      : path_(path), folder_(folder), left_(limit), archive_(path) {}
 
   void run() {
-    archive_entry* entry = nullptr;
-    for (int count = 0;; ++count) {
-      const int result = archive_read_next_header(archive_.get(), &entry);
-      if (result == ARCHIVE_EOF) return;
-      if (result < ARCHIVE_WARN) fail(message());  // a warning is of a name that this locale has no characters for
-      if (count == kMaxEntries) fail(fmt::format("has more than {} entries", kMaxEntries));
-      extract(entry);
-    }
+    while (archive_.next()) extract();
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw BadArchive(fmt::format("{}: {}", path_, message)); }
-  [[noreturn]] void fail_writing(const std::string& name, int error) const {
-    throw InputError(fmt::format("{}: the entry \"{}\" can't be written: {}", path_, name, std::strerror(error)));
+  /// `what`: of the current entry.
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw BadArchive(fmt::format("{}: the entry \"{}\" {}", path_, archive_.name(), what));
   }
-  std::string message() const {
-    const char* const text = archive_error_string(archive_.get());
-    return fmt::format("is a damaged archive: {}", text != nullptr ? text : "unknown error");
-  }
-
-  std::string name_of(archive_entry* entry) const {
-    const char* name = archive_entry_pathname_utf8(entry);
-    if (name == nullptr) name = archive_entry_pathname(entry);
-    if (name == nullptr || *name == '\0') fail("has an entry without a name");
-    const fs::path path(name);
-    bool leads_out = path.is_absolute() || path.string().find('\\') != std::string::npos;
-    for (const fs::path& part : path) leads_out |= part == "..";
-    if (leads_out) fail(fmt::format("the entry \"{}\" leads out of the folder: refused", name));
-    return name;
+  [[noreturn]] void fail_writing(int error) const {
+    throw InputError(
+        fmt::format("{}: the entry \"{}\" can't be written: {}", path_, archive_.name(), std::strerror(error)));
   }
 
-  void extract(archive_entry* entry) {
-    const std::string name = name_of(entry);
-    const auto type = archive_entry_filetype(entry);
-    if ((type != AE_IFREG && type != AE_IFDIR) || archive_entry_hardlink(entry) != nullptr) {
-      fail(fmt::format("the entry \"{}\" is a link or device: refused", name));
-    }
+  void extract() {
+    const fs::path name(archive_.name());
+    bool leads_out = name.is_absolute() || archive_.name().find('\\') != std::string::npos;
+    for (const fs::path& part : name) leads_out |= part == "..";
+    if (leads_out) refuse("leads out of the folder: refused");
+    if (archive_.kind() == Archive::Kind::other) refuse("is a link or device: refused");
+    const bool is_folder = archive_.kind() == Archive::Kind::folder;
     const fs::path target = fs::path(folder_) / name;
     std::error_code error;
-    fs::create_directories(type == AE_IFDIR ? target : target.parent_path(), error);
-    if (error) fail_writing(name, error.value());
-    if (type == AE_IFREG) extract_file(name, target);
+    fs::create_directories(is_folder ? target : target.parent_path(), error);
+    if (error) fail_writing(error.value());
+    if (!is_folder) extract_file(target);
   }
 
-  void extract_file(const std::string& name, const fs::path& target) {
-    if (fs::exists(target)) fail(fmt::format("the entry \"{}\" is there twice", name));
+  void extract_file(const fs::path& target) {
+    if (fs::exists(target)) refuse("is there twice");
     const std::unique_ptr<std::FILE, decltype(&std::fclose)> file(std::fopen(target.c_str(), "wb"), std::fclose);
-    if (!file) fail_writing(name, errno);
-    while (const la_ssize_t got = archive_read_data(archive_.get(), block_.data(), block_.size())) {
-      if (got < 0) fail(fmt::format("{} (entry \"{}\")", message(), name));
-      const auto size = static_cast<std::size_t>(got);
-      if (size > left_) fail(fmt::format("unpacks to more than the catalogue allows, at entry \"{}\"", name));
+    if (!file) fail_writing(errno);
+    while (const std::size_t size = archive_.read(block_)) {
+      if (size > left_) refuse("unpacks to more than the catalogue allows");
       left_ -= size;
-      if (std::fwrite(block_.data(), 1, size, file.get()) != size) fail_writing(name, errno);
+      if (std::fwrite(block_.data(), 1, size, file.get()) != size) fail_writing(errno);
       check_interruption();
     }
-    if (std::fflush(file.get()) != 0) fail_writing(name, errno);
+    if (std::fflush(file.get()) != 0) fail_writing(errno);
   }
 
   std::string path_, folder_;
-  std::uint64_t left_;  // [bytes]
-  std::unique_ptr<archive, decltype(&archive_read_free)> archive_;
-  std::vector<char> block_;
+  std::uint64_t left_;  ///< [bytes]
+  Archive archive_;
+  std::vector<std::byte> block_ = std::vector<std::byte>(1 << 20);
 };
 
 /// Where the folder holds one folder and nothing else, that one's content takes its place.
@@ -129,7 +82,6 @@ void lift_single_folder(const std::string& folder) {
 }  // namespace
 
 void unpack(const std::string& archive, const std::string& folder, std::uint64_t limit) {
-  const Utf8Locale locale;
   Unpacker(archive, folder, limit).run();
   lift_single_folder(folder);
 }

@@ -3,22 +3,14 @@
 #include <cstdint>
 #include <string>
 
-#include "core/support/error.hpp"
-
 namespace evbench {
-
-/// What is wrong with an archive itself, not with the disk that it is unpacked to.
-class BadArchive : public InputError {
- public:
-  using InputError::InputError;
-};
 
 /// Unpacks an archive (zip, tar.gz) into a folder that is there and empty. An archive whose content is all in one
 /// folder gives that folder's content.
 ///
-/// Throws BadArchive, naming the archive and the entry, for a damaged archive, a name that leads out of the folder
-/// (absolute, ".."), a link or device, a name that is there twice, and for more than `limit` bytes in all; InputError
-/// for what can't be written and for an Interruption. What was unpacked until then stays.
+/// Throws BadArchive (core/io/archive.hpp), naming the archive and the entry, for a damaged archive, a name that leads
+/// out of the folder (absolute, ".."), a link or device, a name that is there twice, and for more than `limit` bytes in
+/// all; InputError for what can't be written and for an Interruption. What was unpacked until then stays.
 void unpack(const std::string& archive, const std::string& folder, std::uint64_t limit);
 
 }  // namespace evbench

@@ -20,11 +20,11 @@
 
 #include "bench/micro/bag_libraries.hpp"
 #include "bench/micro/reading_speed.hpp"
-#include "core/events/codecs/byte_cursor.hpp"
+#include "core/events/bytes/byte_cursor.hpp"
 #include "core/events/formats.hpp"
-#include "core/events/formats/mcap.hpp"
-#include "core/events/formats/ros1_bag.hpp"
-#include "core/events/formats/ros2_sqlite.hpp"
+#include "core/events/ros/mcap.hpp"
+#include "core/events/ros/ros1_bag.hpp"
+#include "core/events/ros/ros2_sqlite.hpp"
 #include "core/support/error.hpp"
 
 namespace {

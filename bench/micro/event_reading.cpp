@@ -13,7 +13,7 @@
 #include "bench/micro/reading_speed.hpp"
 #include "core/events/event_stream.hpp"
 #include "core/events/formats.hpp"
-#include "core/events/formats/native.hpp"
+#include "core/events/native/native.hpp"
 #include "core/io/part_file.hpp"
 #include "core/support/peak_memory.hpp"
 

@@ -20,8 +20,8 @@
 #include "bench/micro/reading_speed.hpp"
 #include "core/events/event_stream.hpp"
 #include "core/events/formats.hpp"
-#include "core/events/formats/hdf5_file.hpp"
-#include "core/events/formats/hdf5_filters.hpp"
+#include "core/events/hdf5/file.hpp"
+#include "core/events/hdf5/filters.hpp"
 
 namespace {
 

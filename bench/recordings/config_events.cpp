@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
+#include <filesystem>
+#include <fstream>
 
 #include "bench/experiment.hpp"
+#include "core/events/formats.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
@@ -45,20 +46,18 @@ class ConfigEvents : public EventReader {
   std::unique_ptr<EventReader> reader_;
 };
 
-bool begins_like_json(const std::string&, std::span<const std::byte> head) {
-  const auto first =
-      std::ranges::find_if(head, [](std::byte b) { return std::isspace(static_cast<unsigned char>(b)) == 0; });
-  return first != head.end() && *first == std::byte{'{'};
+bool begins_like_json(const std::string& path) {
+  return std::filesystem::is_regular_file(path) && (std::ifstream(path) >> std::ws).peek() == '{';
 }
 
 }  // namespace
 
-EventFormat config_format(const Plugins& plugins) {
-  return {"config", "JSON config of evbench: the events of its source", begins_like_json,
-          [&plugins](const std::string& path, const ReadOptions& options) {
-            return std::make_unique<ConfigEvents>(path, options, plugins);
-          },
-          /*has_companions=*/false};
+std::function<std::unique_ptr<EventReader>(const std::string&, const ReadOptions&)> recordings_and_configs(
+    const Plugins& plugins) {
+  return [&plugins](const std::string& path, const ReadOptions& options) -> std::unique_ptr<EventReader> {
+    if (begins_like_json(path)) return std::make_unique<ConfigEvents>(path, options, plugins);
+    return open_events(path, options);
+  };
 }
 
 }  // namespace evbench

@@ -1,13 +1,19 @@
 #pragma once
 
-#include "core/events/formats.hpp"
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core/events/reader.hpp"
 #include "core/plugin/registry.hpp"
 
 namespace evbench {
 
-/// A config file as a recording: the events of its source, with the source's camera and ground truth. So what a
-/// simulation would give can be described, converted and drawn like any recording. `plugins` must outlive
-/// the format.
-EventFormat config_format(const Plugins& plugins);
+/// Opens a recording, or a config file as one: the events of its source, with the source's camera and ground truth. So
+/// what a simulation would give can be described, converted and drawn like any recording. A source itself reads
+/// recordings alone, so a config cannot lead back to itself. `plugins` must outlive the function, which throws
+/// InputError as open_events() and read_source() do, and for a source without events.
+std::function<std::unique_ptr<EventReader>(const std::string& path, const ReadOptions& options)> recordings_and_configs(
+    const Plugins& plugins);
 
 }  // namespace evbench

@@ -9,7 +9,7 @@
 #include "bench/recordings/summary.hpp"
 #include "bench/testing/program.hpp"
 #include "core/events/formats.hpp"
-#include "core/events/formats/native.hpp"
+#include "core/events/native/native.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
@@ -321,4 +321,25 @@ TEST_CASE("A config is a recording of its source's events, with camera and groun
   const Outcome refused = testing::evbench(folder, "info a.json");
   CHECK(refused.exit_code == 2);
   CHECK_THAT(refused.err, Contains("its source has no events"));
+}
+
+TEST_CASE("A config that names itself, or one that names it, as its recording is refused with a sentence") {
+  const TemporaryFolder folder;
+  folder.write("calib.txt", "200 200 120 90 0 0 0 0 0\n");
+  const auto write_config = [&](const std::string& name, const std::string& named, const std::string& more) {
+    folder.write(name, R"({"source": {"type": "recording", "events": ")" + named + "\"" + more + R"(},
+                          "frontend": {"type": "oracle"}, "backend": {"type": "bundle_adjustment"}})");
+  };
+  const std::string named = GENERATE("a.json", "b.json");
+  // What the source has to ask its events for, or not.
+  const std::string more = GENERATE("", R"(, "calibration": "calib.txt", "time_range": [0, 1])");
+  write_config("a.json", named, more);
+  write_config("b.json", "a.json", more);
+  for (const std::string command : {"info a.json", "convert a.json a.evb", "render a.json a.png", "run a.json"}) {
+    if (command == "run a.json" && !more.empty()) continue;  // the oracle has no use for events
+    CAPTURE(command, named, more);
+    const Outcome refused = testing::evbench(folder, command);
+    CHECK(refused.exit_code == 2);
+    CHECK_THAT(refused.err, Contains(named + ": is of no known event format; known: native, "));
+  }
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "core/support/error.hpp"
 
@@ -44,11 +45,9 @@ std::string rates_text(const RecordingSummary& s) {
 
 }  // namespace
 
-RecordingSummary summarise(const std::string& path, const ReadOptions& options,
+RecordingSummary summarise(const std::string& path, const StreamOptions& options,
                            const std::function<void(std::int64_t, std::int64_t)>& progress) {
-  StreamOptions stream_options;
-  stream_options.read = options;
-  EventStream stream(path, stream_options);
+  EventStream stream(path, options);
   RecordingSummary s;
   for (std::vector<Event> events; stream.read(events);) {
     if (s.events == 0) s.start = events.front().t;
@@ -67,7 +66,7 @@ RecordingSummary summarise(const std::string& path, const ReadOptions& options,
     try {
       read();
     } catch (const InputError& error) {
-      if (options.strict) throw;
+      if (options.read.strict) throw;
       s.info.metadata.emplace_back(fmt::format("{} that cannot be used", what), error.what());
     }
   };

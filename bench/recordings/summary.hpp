@@ -1,7 +1,7 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -27,7 +27,7 @@ struct RecordingSummary {
 };
 
 /// `progress` is told how many events have been read, and the time reached [µs].
-RecordingSummary summarise(const std::string& path, const ReadOptions& options,
+RecordingSummary summarise(const std::string& path, const StreamOptions& options,
                            const std::function<void(std::int64_t, std::int64_t)>& progress = {});
 
 std::string format_summary(const std::string& path, const RecordingSummary& summary);

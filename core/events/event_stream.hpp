@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -17,6 +18,8 @@ struct StreamOptions {
   bool rebase = false;  ///< times from the first event on; otherwise the file's own
   /// [µs] after rebasing; the end is not included.
   std::optional<std::int64_t> from = {}, to = {};
+  /// Opens what a path names; empty: open_events() (formats.hpp), for recordings.
+  std::function<std::unique_ptr<EventReader>(const std::string& path, const ReadOptions& options)> open = {};
 };
 
 /// Throws InputError for a sensor beyond any that is made (64 million pixels): the tables and pictures of what a

@@ -7,20 +7,11 @@
 
 #include "core/events/companions/companions.hpp"
 #include "core/events/event_stream.hpp"
-#include "core/events/formats/all.hpp"
 #include "core/io/byte_source.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
 namespace {
-
-std::vector<EventFormat>& all_formats() {
-  static std::vector<EventFormat> formats = {
-      native_format(),      hdf5_format(), aedat4_format(),  ros1_bag_format(), ros2_folder_format(),
-      ros2_sqlite_format(), mcap_format(), evt2_format(),    evt21_format(),    evt3_format(),
-      dat_format(),         es_format(),   ecd_text_format()};
-  return formats;
-}
 
 /// Nothing for a folder.
 std::vector<std::byte> read_head(const std::string& path) {
@@ -53,7 +44,7 @@ std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOpti
     if (!options.topic.empty() && reader->info().topics.empty()) {
       throw InputError(fmt::format("{}: has no topics or groups, of which {} would be one", events, options.topic));
     }
-    return format->has_companions ? with_companions(std::move(reader), files, options) : std::move(reader);
+    return with_companions(std::move(reader), files, options);
   }
   if (std::filesystem::is_directory(path) && events == path) {
     throw InputError(
@@ -83,12 +74,8 @@ std::vector<std::string> files_of_events(const std::string& path) {
   return files;
 }
 
-const std::vector<EventFormat>& event_formats() { return all_formats(); }
-
-void add_event_format(EventFormat format) { all_formats().insert(all_formats().begin(), std::move(format)); }
-
 // Here and not beside its class, which core needs without any format.
 EventStream::EventStream(const std::string& path, const StreamOptions& options)
-    : EventStream(open_events(path, options.read), path, options) {}
+    : EventStream((options.open ? options.open : open_events)(path, options.read), path, options) {}
 
 }  // namespace evbench

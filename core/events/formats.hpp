@@ -11,21 +11,17 @@
 
 namespace evbench {
 
-/// A file format. One file in formats/ each.
+/// A file format; the folders beside this file have a family of them each.
 struct EventFormat {
   std::string name;         ///< e.g. "evt3"
   std::string description;  ///< a line
   /// By the beginning of the file (up to 64 KiB; empty for a folder), not by its name.
   std::function<bool(const std::string& path, std::span<const std::byte> head)> recognises;
   std::function<std::unique_ptr<EventReader>(const std::string& path, const ReadOptions& options)> open;
-  bool has_companions = true;  ///< what lies beside the file may belong to it (companions/)
 };
 
-/// All of them, in the order in which they are asked.
+/// All of them, in the order in which they are asked (all_formats.cpp).
 const std::vector<EventFormat>& event_formats();
-
-/// Another one, asked before those here: for what this folder may not know.
-void add_event_format(EventFormat format);
 
 /// Opens a recording, a file or a folder (recording_files.hpp), by what it contains, with the calibration and ground
 /// truth that lie beside it. Throws InputError when no format recognises it, or it is broken.

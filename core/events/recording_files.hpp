@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/events/formats/zip_archive.hpp"
+#include "core/events/bytes/zip_archive.hpp"
 #include "core/io/byte_source.hpp"
 
 namespace evbench {

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "core/events/formats/native.hpp"
+#include "core/events/native/native.hpp"
 #include "core/events/testing/data_sets.hpp"
 #include "core/support/error.hpp"
 #include "core/testing/data.hpp"

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "core/events/formats/native.hpp"
+#include "core/events/native/native.hpp"
 #include "core/testing/data.hpp"
 
 namespace evbench::testing {

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "core/events/formats.hpp"
-#include "core/events/formats/native.hpp"
+#include "core/events/native/native.hpp"
 #include "core/events/testing/data_sets.hpp"
 #include "core/events/testing/reading.hpp"
 #include "core/support/error.hpp"

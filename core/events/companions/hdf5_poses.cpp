@@ -5,21 +5,23 @@
 #include <cmath>
 
 #include "core/events/companions/calibration_fields.hpp"
-#include "core/events/formats/hdf5_file.hpp"
+#include "core/events/hdf5/file.hpp"
+#include "core/events/hdf5/trial.hpp"
 #include "core/support/error.hpp"
-#include "core/support/trial.hpp"
 
 namespace evbench::hdf5 {
 namespace {
 
 std::vector<double> read_numbers(const File& file, const std::string& name) {
-  constexpr std::uint64_t kMost = 1 << 26;
   if (!file.has_dataset(name)) throw InputError(fmt::format("{}: /{}: is missing; expected poses", file.path(), name));
-  return file.dataset(name).read_all(kMost);
+  return file.dataset(name).read_all();
 }
 
-std::vector<StampedPose> read_untried(const std::string& path, const std::string& matrices, const std::string& times,
-                                      double unit) {
+}  // namespace
+
+std::vector<StampedPose> read_poses(const std::string& path, const std::string& matrices, const std::string& times,
+                                    double unit) {
+  try_datasets(path, {matrices, times});
   const File file(path);
   const std::vector<double> T = read_numbers(file, matrices), t = read_numbers(file, times);
   if (t.empty() || T.size() != 16 * t.size()) {
@@ -34,35 +36,13 @@ std::vector<StampedPose> read_untried(const std::string& path, const std::string
   return poses;
 }
 
-SE3 read_untried(const std::string& path, const std::string& matrix) {
+SE3 read_pose(const std::string& path, const std::string& matrix) {
+  try_datasets(path, {matrix});
   const std::vector<double> T = read_numbers(File(path), matrix);
   if (T.size() != 16) {
     throw InputError(fmt::format("{}: /{}: has {} numbers; expected a 4x4 matrix", path, matrix, T.size()));
   }
   return checked_pose(fmt::format("{}: /{}", path, matrix), T.data());
-}
-
-/// Calls it, after a trial.
-template <class F>
-auto tried(const std::string& path, F read) {
-  constexpr unsigned kMostSeconds = 10;
-  const std::string end = trial([&] { read(); }, kMostSeconds);
-  if (!end.empty()) {
-    throw InputError(
-        fmt::format("{}: is broken in a way that the HDF5 library cannot read; it ended with: {}", path, end));
-  }
-  return read();
-}
-
-}  // namespace
-
-std::vector<StampedPose> read_poses(const std::string& path, const std::string& matrices, const std::string& times,
-                                    double unit) {
-  return tried(path, [&] { return read_untried(path, matrices, times, unit); });
-}
-
-SE3 read_pose(const std::string& path, const std::string& matrix) {
-  return tried(path, [&] { return read_untried(path, matrix); });
 }
 
 }  // namespace evbench::hdf5

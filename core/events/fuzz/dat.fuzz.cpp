@@ -1,7 +1,0 @@
-#include "core/events/formats/dat.hpp"
-
-#include "core/events/fuzz/fuzz_reader.hpp"
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return evbench::fuzz_reader(data, size, evbench::open_dat);
-}

@@ -1,8 +1,0 @@
-#include "core/events/formats/all.hpp"
-#include "core/events/fuzz/fuzz_file.hpp"
-
-/// Archives alone: ecd_text.fuzz.cpp is for the text.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0 || data[0] != 'P') return 0;
-  return evbench::fuzz_file(data, size, evbench::ecd_text_format());
-}

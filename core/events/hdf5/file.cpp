@@ -1,0 +1,296 @@
+#include "core/events/hdf5/file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <optional>
+
+#include "core/events/hdf5/filters.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench::hdf5 {
+namespace {
+
+static_assert(sizeof(hid_t) == sizeof(std::int64_t));
+
+constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 48;  // of a data set
+constexpr std::uint64_t kMostColumns = 1 << 20;                 // where single rows are read
+
+/// Innermost reason of the library's last error.
+std::string reason() {
+  std::string text = "unknown reason";
+  const auto visit = [](unsigned, const H5E_error2_t* error, void* data) -> herr_t {
+    if (error->desc != nullptr && *error->desc != '\0') *static_cast<std::string*>(data) = error->desc;
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, visit, &text);
+  return text;
+}
+
+hid_t checked(hid_t id, const std::string& what) {
+  if (id < 0) throw InputError(fmt::format("{}: HDF5 cannot read this: {}", what, reason()));
+  return id;
+}
+
+int close_file(std::int64_t id) { return H5Fclose(id); }
+int close_dataset(std::int64_t id) { return H5Dclose(id); }
+int close_space(std::int64_t id) { return H5Sclose(id); }
+int close_type(std::int64_t id) { return H5Tclose(id); }
+int close_properties(std::int64_t id) { return H5Pclose(id); }
+int close_attribute(std::int64_t id) { return H5Aclose(id); }
+
+std::optional<Values::Type> number_type(hid_t type) {
+  using Type = Values::Type;
+  const H5T_class_t kind = H5Tget_class(type);
+  const std::size_t size = H5Tget_size(type);
+  if (kind == H5T_FLOAT) {
+    if (size == 4) return Type::f32;
+    if (size == 8) return Type::f64;
+    return std::nullopt;
+  }
+  if (kind == H5T_ENUM && size == 1) return Type::i8;  // h5py's bool
+  if (kind != H5T_INTEGER) return std::nullopt;
+  const bool is_signed = H5Tget_sign(type) != H5T_SGN_NONE;
+  switch (size) {
+    case 1: return is_signed ? Type::i8 : Type::u8;
+    case 2: return is_signed ? Type::i16 : Type::u16;
+    case 4: return is_signed ? Type::i32 : Type::u32;
+    case 8: return is_signed ? Type::i64 : Type::u64;
+    default: return std::nullopt;
+  }
+}
+
+struct TypeFacts {
+  hid_t native;
+  std::size_t size;
+  const char* name;
+};
+
+TypeFacts facts(Values::Type type) {
+  using Type = Values::Type;
+  switch (type) {
+    case Type::u8: return {H5T_NATIVE_UINT8, 1, "uint8"};
+    case Type::i8: return {H5T_NATIVE_INT8, 1, "int8"};
+    case Type::u16: return {H5T_NATIVE_UINT16, 2, "uint16"};
+    case Type::i16: return {H5T_NATIVE_INT16, 2, "int16"};
+    case Type::u32: return {H5T_NATIVE_UINT32, 4, "uint32"};
+    case Type::i32: return {H5T_NATIVE_INT32, 4, "int32"};
+    case Type::u64: return {H5T_NATIVE_UINT64, 8, "uint64"};
+    case Type::i64: return {H5T_NATIVE_INT64, 8, "int64"};
+    case Type::f32: return {H5T_NATIVE_FLOAT, 4, "float32"};
+    case Type::f64: return {H5T_NATIVE_DOUBLE, 8, "float64"};
+  }
+  throw std::logic_error("no such type");
+}
+
+void check_filters(hid_t properties, const std::string& name) {
+  for (int i = 0; i < H5Pget_nfilters(properties); ++i) {
+    unsigned flags = 0, config = 0;
+    std::size_t values = 0;
+    const H5Z_filter_t filter =
+        H5Pget_filter2(properties, static_cast<unsigned>(i), &flags, &values, nullptr, 0, nullptr, &config);
+    if (filter < 0) throw InputError(fmt::format("{}: HDF5 cannot read its list of filters: {}", name, reason()));
+    if (H5Zfilter_avail(filter) <= 0) {
+      throw InputError(
+          fmt::format("{}: is compressed with HDF5 filter {} ({}), which is not installed; plugins are "
+                      "looked for in HDF5_PLUGIN_PATH",
+                      name, filter, filter_hint(filter)));
+    }
+  }
+}
+
+/// A chunk is decompressed as a whole: two fit in the cache, so that reading in parts decompresses it once. Without
+/// compression there is no cache: what passes through it is only copied once more.
+void set_cache(hid_t creation, hid_t access, std::size_t number_size, const std::string& name) {
+  constexpr std::uint64_t kMostBytes = 256u << 20;
+  if (H5Pget_layout(creation) != H5D_CHUNKED) return;
+  hsize_t sides[H5S_MAX_RANK];
+  const int rank = H5Pget_chunk(creation, H5S_MAX_RANK, sides);
+  std::uint64_t bytes = number_size;
+  for (int i = 0; i < rank; ++i) {
+    if (sides[i] > kMostBytes || bytes * sides[i] > kMostBytes) {
+      throw InputError(fmt::format("{}: has chunks above {} MiB; expected smaller ones", name, kMostBytes >> 20));
+    }
+    bytes *= sides[i];
+  }
+  const bool compressed = H5Pget_nfilters(creation) > 0;
+  H5Pset_chunk_cache(access, 521, compressed ? std::max<std::size_t>(1u << 20, 2 * bytes) : 0, 1.0);
+}
+
+herr_t add_object(hid_t, const char* name, const H5O_info_t* info, void* data) {
+  constexpr std::size_t kMost = 10'000;
+  auto& objects = *static_cast<std::vector<File::Object>*>(data);
+  if (std::strcmp(name, ".") == 0) return 0;
+  objects.push_back({name, info->type == H5O_TYPE_DATASET});
+  return objects.size() < kMost ? 0 : 1;
+}
+
+}  // namespace
+
+void start_library() {
+  static const bool left_alone = H5dont_atexit() >= 0;  // fails when another part of the program was first: so be it
+  static_cast<void>(left_alone);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Handle& Handle::operator=(Handle&& other) noexcept {
+  if (this != &other) {
+    reset();
+    id_ = other.id_;
+    close_ = other.close_;
+    other.id_ = -1;
+  }
+  return *this;
+}
+
+void Handle::reset() {
+  if (id_ >= 0 && close_ != nullptr) close_(id_);
+  id_ = -1;
+}
+
+std::vector<double> Values::doubles() const {
+  std::vector<double> result;
+  visit([&](auto numbers) {
+    result.reserve(numbers.size());
+    for (const auto number : numbers) result.push_back(static_cast<double>(number));
+  });
+  return result;
+}
+
+std::uint64_t Dataset::columns() const {
+  std::uint64_t product = 1;
+  for (std::size_t i = 1; i < shape_.size(); ++i) product *= shape_[i];
+  return product;
+}
+
+std::string Dataset::describe() const {
+  std::string text = facts(type_).name;
+  for (std::size_t i = 1; i < shape_.size(); ++i) text += fmt::format(" x {}", shape_[i]);
+  return text;
+}
+
+void Dataset::read(std::uint64_t first, std::uint64_t count, Values& values) const {
+  const TypeFacts type = facts(type_);
+  values.type = type_;
+  values.bytes.resize(count * columns() * type.size);
+  if (values.bytes.empty()) return;
+  std::vector<hsize_t> from(shape_.size(), 0), extent(shape_.begin(), shape_.end());
+  const Handle space(checked(H5Dget_space(id_.get()), name_), close_space);
+  if (!shape_.empty()) {
+    from[0] = first;
+    extent[0] = count;
+    checked(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, from.data(), nullptr, extent.data(), nullptr), name_);
+  }
+  const Handle memory(checked(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), name_),
+                      close_space);
+  if (H5Dread(id_.get(), type.native, memory.get(), space.get(), H5P_DEFAULT, values.bytes.data()) < 0) {
+    throw InputError(fmt::format("{}: rows {} to {} are broken: {}", name_, first, first + count - 1, reason()));
+  }
+}
+
+std::vector<double> Dataset::read_all(std::uint64_t most) const {
+  if (columns() > most || rows() > most / std::max<std::uint64_t>(columns(), 1)) {
+    throw InputError(
+        fmt::format("{}: has {} rows of {} numbers; expected up to {} numbers in all", name_, rows(), columns(), most));
+  }
+  Values values;
+  read(0, rows(), values);
+  return values.doubles();
+}
+
+double Dataset::first(std::uint64_t row) const {
+  if (columns() == 0 || columns() > kMostColumns) {
+    throw InputError(fmt::format("{}: has rows of {} numbers; expected 1 to {}", name_, columns(), kMostColumns));
+  }
+  Values values;
+  read(row, 1, values);
+  return values.doubles().at(0);
+}
+
+File::File(std::string path) : path_(std::move(path)) {
+  start_library();
+  register_filters();
+  id_ = Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), close_file);
+  checked(id_.get(), path_);
+  checked(H5Ovisit2(id_.get(), H5_INDEX_NAME, H5_ITER_INC, add_object, &objects_, H5O_INFO_BASIC), path_);
+  std::sort(objects_.begin(), objects_.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
+}
+
+bool File::has_dataset(const std::string& path) const {
+  return std::any_of(objects_.begin(), objects_.end(),
+                     [&](const Object& object) { return object.is_dataset && object.path == path; });
+}
+
+Dataset File::dataset(const std::string& path) const {
+  Dataset dataset;
+  dataset.name_ = fmt::format("{}: /{}", path_, path);
+  const std::string& name = dataset.name_;
+  Handle id(checked(H5Dopen2(id_.get(), path.c_str(), H5P_DEFAULT), name), close_dataset);
+  const Handle type(checked(H5Dget_type(id.get()), name), close_type);
+  const auto number = number_type(type.get());
+  if (!number) throw InputError(fmt::format("{}: has no numbers; expected integers or floating point", name));
+  dataset.type_ = *number;
+  const Handle space(checked(H5Dget_space(id.get()), name), close_space);
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  if (rank < 0) throw InputError(fmt::format("{}: has no shape: {}", name, reason()));
+  std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
+  H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
+  std::uint64_t numbers_left = kMostNumbers;
+  for (const hsize_t side : shape) {
+    if (side > numbers_left) throw InputError(fmt::format("{}: has a shape too large to be true", name));
+    numbers_left /= std::max<hsize_t>(side, 1);
+  }
+  dataset.shape_.assign(shape.begin(), shape.end());
+
+  const Handle creation(checked(H5Dget_create_plist(id.get()), name), close_properties);
+  check_filters(creation.get(), name);
+  const Handle access(checked(H5Pcreate(H5P_DATASET_ACCESS), name), close_properties);
+  set_cache(creation.get(), access.get(), facts(*number).size, name);
+  id = Handle();  // the cache's size only counts for the first that opens it
+  dataset.id_ = Handle(checked(H5Dopen2(id_.get(), path.c_str(), access.get()), name), close_dataset);
+  return dataset;
+}
+
+std::string File::text(const std::string& path) const {
+  constexpr std::size_t kMost = 4096;
+  const std::string name = fmt::format("{}: /{}", path_, path);
+  const Handle id(checked(H5Dopen2(id_.get(), path.c_str(), H5P_DEFAULT), name), close_dataset);
+  const Handle type(checked(H5Dget_type(id.get()), name), close_type);
+  const Handle space(checked(H5Dget_space(id.get()), name), close_space);
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Sget_simple_extent_npoints(space.get()) != 1) {
+    throw InputError(fmt::format("{}: is not a string; expected one", name));
+  }
+  if (H5Tis_variable_str(type.get()) > 0) {
+    char* text = nullptr;
+    checked(H5Dread(id.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &text), name);
+    std::string result = text == nullptr ? "" : text;
+    H5free_memory(text);
+    return result;
+  }
+  const std::size_t size = H5Tget_size(type.get());
+  if (size > kMost) throw InputError(fmt::format("{}: has {} bytes; expected up to {}", name, size, kMost));
+  std::string result(size, '\0');
+  checked(H5Dread(id.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, result.data()), name);
+  return result.c_str();  // up to the padding
+}
+
+std::vector<int> File::attribute(const std::string& group, const std::string& name) const {
+  constexpr hssize_t kMost = 16;
+  const std::string object = "/" + group;
+  if (H5Aexists_by_name(id_.get(), object.c_str(), name.c_str(), H5P_DEFAULT) <= 0) return {};
+  const Handle id(H5Aopen_by_name(id_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), close_attribute);
+  checked(id.get(), path_);
+  const Handle type(checked(H5Aget_type(id.get()), path_), close_type);
+  const Handle space(checked(H5Aget_space(id.get()), path_), close_space);
+  const hssize_t count = H5Sget_simple_extent_npoints(space.get());
+  if (H5Tget_class(type.get()) != H5T_INTEGER || count < 1 || count > kMost) return {};
+  std::vector<int> values(static_cast<std::size_t>(count));
+  checked(H5Aread(id.get(), H5T_NATIVE_INT, values.data()), path_);
+  return values;
+}
+
+}  // namespace evbench::hdf5

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace evbench::hdf5 {
+
+/// To be called before anything else is asked of the library; may be called again. The library keeps its errors to
+/// itself (they are put into our messages) and leaves alone, when the program ends, what could not be closed: after a
+/// full disk it would crash there.
+void start_library();
+
+/// An identifier of the HDF5 library and how to close it.
+class Handle {
+ public:
+  using Closer = int (*)(std::int64_t);
+  Handle() = default;
+  Handle(std::int64_t id, Closer close) : id_(id), close_(close) {}
+  ~Handle() { reset(); }
+  Handle(Handle&& other) noexcept : id_(other.id_), close_(other.close_) { other.id_ = -1; }
+  Handle& operator=(Handle&& other) noexcept;
+  std::int64_t get() const { return id_; }
+
+ private:
+  void reset();
+  std::int64_t id_ = -1;
+  Closer close_ = nullptr;
+};
+
+/// Numbers as the file has them (in this machine's byte order).
+class Values {
+ public:
+  enum class Type { u8, i8, u16, i16, u32, i32, u64, i64, f32, f64 };
+
+  /// Calls f with a span of the numbers in their own type.
+  template <class F>
+  void visit(F f) const {
+    switch (type) {
+      case Type::u8: return f(view<std::uint8_t>());
+      case Type::i8: return f(view<std::int8_t>());
+      case Type::u16: return f(view<std::uint16_t>());
+      case Type::i16: return f(view<std::int16_t>());
+      case Type::u32: return f(view<std::uint32_t>());
+      case Type::i32: return f(view<std::int32_t>());
+      case Type::u64: return f(view<std::uint64_t>());
+      case Type::i64: return f(view<std::int64_t>());
+      case Type::f32: return f(view<float>());
+      case Type::f64: return f(view<double>());
+    }
+  }
+  std::vector<double> doubles() const;
+
+  Type type = Type::u8;
+  std::vector<std::byte> bytes;
+
+ private:
+  template <class Number>
+  std::span<const Number> view() const {
+    return {reinterpret_cast<const Number*>(bytes.data()), bytes.size() / sizeof(Number)};
+  }
+};
+
+/// A data set of integers or floating-point numbers, read by rows: those of its first dimension. Moved, not copied.
+class Dataset {
+ public:
+  std::uint64_t rows() const { return shape_.empty() ? 1 : shape_[0]; }
+  std::uint64_t columns() const;  ///< numbers a row
+  const std::vector<std::uint64_t>& shape() const { return shape_; }
+  bool is_float() const { return type_ == Values::Type::f32 || type_ == Values::Type::f64; }
+  std::string describe() const;  ///< e.g. "uint16", "float64 x 4"
+
+  /// Rows first ... first + count - 1. Throws InputError when the file is broken there.
+  void read(std::uint64_t first, std::uint64_t count, Values& values) const;
+  /// All numbers of a small data set; throws InputError when there are more than `most`.
+  std::vector<double> read_all(std::uint64_t most = kMostNumbers) const;
+  static constexpr std::uint64_t kMostNumbers = 1 << 26;
+  double first(std::uint64_t row) const;  ///< first number of a row
+
+ private:
+  friend class File;
+  std::string name_;  ///< file and path, for messages
+  Handle id_;
+  std::vector<std::uint64_t> shape_;
+  Values::Type type_ = Values::Type::u8;
+};
+
+/// An HDF5 file. The library's errors become InputErrors; a filter (compression) that it lacks is named with the Debian
+/// package that has it. The library serialises its calls: readers of several threads wait for one another.
+class File {
+ public:
+  explicit File(std::string path);
+
+  struct Object {
+    std::string path;  ///< without a leading slash
+    bool is_dataset = false;
+  };
+  /// What is in the file, sorted; soft and external links are not followed.
+  const std::vector<Object>& objects() const { return objects_; }
+  bool has_dataset(const std::string& path) const;
+
+  Dataset dataset(const std::string& path) const;
+  std::string text(const std::string& path) const;  ///< of a data set that is one string
+  /// An attribute of a group ("" is the root) of up to 16 integers; none when there isn't such a one.
+  std::vector<int> attribute(const std::string& group, const std::string& name) const;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  Handle id_;
+  std::vector<Object> objects_;
+};
+
+}  // namespace evbench::hdf5

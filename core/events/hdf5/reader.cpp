@@ -1,0 +1,278 @@
+#include "core/events/hdf5/reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/events/companions/calibration_fields.hpp"
+#include "core/events/hdf5/columns.hpp"
+#include "core/events/hdf5/file.hpp"
+#include "core/events/hdf5/layout.hpp"
+#include "core/events/hdf5/trial.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+using hdf5::kBroken;
+
+constexpr double kMostOffset = 2e18;  ///< [µs]
+
+class Hdf5Reader : public EventReader {
+ public:
+  Hdf5Reader(const std::string& path, const ReadOptions& options);
+
+  const StreamInfo& info() const override { return info_; }
+  bool read(std::vector<Event>& events) override;
+  void seek(std::int64_t t) override;
+  const Faults& faults() const override { return faults_; }
+  std::optional<Camera> calibration() override;
+
+ private:
+  void open_columns();
+  void describe(const ReadOptions& options);
+  void find_sensor(const ReadOptions& options);
+  void load();
+  bool convert(std::uint64_t row, std::span<Event> events) const;
+  void drop_broken(std::uint64_t row, std::vector<Event>& events);
+  std::int64_t time(std::uint64_t row) const;
+
+  hdf5::File file_;
+  hdf5::EventLayout layout_;
+  hdf5::Dataset x_, y_, t_, p_, rows_, index_;
+  struct {
+    hdf5::Values x, y, t, p, rows;
+    std::uint64_t begin = 0, end = 0;
+  } loaded_;  ///< some rows
+  StreamInfo info_;
+  Faults faults_, opening_faults_;
+  std::int64_t offset_ = 0;   ///< added to all times [µs]
+  std::uint64_t length_ = 0;  ///< events
+  std::uint64_t next_ = 0;    ///< row
+};
+
+Hdf5Reader::Hdf5Reader(const std::string& path, const ReadOptions& options)
+    : file_(path),
+      layout_(choose_events(file_, options.topic)),
+      faults_(path, options.strict),
+      opening_faults_(faults_) {
+  open_columns();
+  if (!layout_.offset.empty()) {
+    const double offset = file_.dataset(layout_.offset).first(0);
+    if (!(std::abs(offset) < kMostOffset)) throw InputError(fmt::format("{}: /{}: is no time", path, layout_.offset));
+    offset_ = std::llround(offset);
+  }
+  describe(options);
+  opening_faults_ = faults_;
+}
+
+void Hdf5Reader::open_columns() {
+  if (layout_.is_rows()) {
+    rows_ = file_.dataset(layout_.group);
+    if (rows_.shape().size() != 2 || rows_.columns() != 4) {
+      throw InputError(fmt::format("{}: /{}: is {}; expected rows of 4 numbers x y t p", file_.path(), layout_.group,
+                                   rows_.describe()));
+    }
+    length_ = rows_.rows();
+    return;
+  }
+  x_ = file_.dataset(layout_.x);
+  y_ = file_.dataset(layout_.y);
+  t_ = file_.dataset(layout_.t);
+  p_ = file_.dataset(layout_.p);
+  length_ = std::min({x_.rows(), y_.rows(), t_.rows(), p_.rows()});
+  std::uint64_t longest = 0;
+  for (const hdf5::Dataset* column : {&x_, &y_, &t_, &p_}) {
+    if (column->shape().empty() || column->columns() != 1) {
+      throw InputError(fmt::format("{}: /{}: has a column that is {}; expected one number a row", file_.path(),
+                                   layout_.group, column->describe()));
+    }
+    longest = std::max(longest, column->rows());
+  }
+  if (longest != length_) {
+    faults_.add("columns of different length", fmt::format("row {}", length_),
+                static_cast<std::int64_t>(longest - length_));
+  }
+  if (!layout_.index.empty()) index_ = file_.dataset(layout_.index);
+}
+
+void Hdf5Reader::describe(const ReadOptions& options) {
+  info_.format = fmt::format("HDF5 ({})", layout_.name);
+  info_.count = static_cast<std::int64_t>(length_);
+  if (length_ > 0) {
+    const std::int64_t start = time(0), end = time(length_ - 1);
+    if (start != kBroken) info_.start = start;
+    if (end != kBroken) info_.end = end;
+  }
+  for (const auto& object : file_.objects()) {
+    if (!object.is_dataset) continue;
+    try {
+      const hdf5::Dataset dataset = file_.dataset(object.path);
+      info_.topics.push_back(fmt::format("/{} ({}), {} rows", object.path, dataset.describe(), dataset.rows()));
+    } catch (const InputError&) {
+      info_.topics.push_back(fmt::format("/{} (not numbers, or not readable)", object.path));
+    }
+  }
+  info_.metadata.emplace_back("events in", "/" + layout_.group);
+  if (offset_ != 0) info_.metadata.emplace_back("t_offset [us]", fmt::to_string(offset_));
+  find_sensor(options);
+}
+
+/// From the calibration or an attribute of the file; otherwise what the user says, or the data set is known to have.
+void Hdf5Reader::find_sensor(const ReadOptions& options) {
+  const std::string group = layout_.is_rows() ? "" : layout_.group;
+  std::optional<Camera> camera;
+  try {
+    camera = calibration();
+  } catch (const InputError&) {
+    // Told to whoever asks for the calibration.
+  }
+  if (camera) {
+    info_.width = camera->width;
+    info_.height = camera->height;
+  } else if (const auto size = hdf5::find_sensor_size(file_, group)) {
+    std::tie(info_.width, info_.height) = *size;
+  } else {
+    info_.size_assumed = true;
+    info_.width = options.width > 0 ? options.width : layout_.width;
+    info_.height = options.height > 0 ? options.height : layout_.height;
+    if (options.width <= 0 && layout_.width > 0) {
+      info_.metadata.emplace_back("sensor size", fmt::format("{}'s; the file does not say it", layout_.name));
+    }
+  }
+}
+
+std::int64_t Hdf5Reader::time(std::uint64_t row) const {
+  hdf5::Values values;
+  (layout_.is_rows() ? rows_ : t_).read(row, 1, values);
+  return hdf5::to_time({&values, layout_.is_rows() ? 2u : 0u}, 0, offset_);
+}
+
+bool Hdf5Reader::read(std::vector<Event>& events) {
+  constexpr std::uint64_t kEvents = 1 << 14;  // they stay in the second-level cache
+  while (next_ < length_) {
+    if (next_ < loaded_.begin || next_ >= loaded_.end) load();
+    events.resize(std::min(kEvents, loaded_.end - next_));
+    const std::uint64_t row = next_;
+    next_ += events.size();
+    if (!convert(row, events)) drop_broken(row, events);
+    if (!events.empty()) return true;
+  }
+  events.clear();
+  return false;
+}
+
+/// Some rows from the next on: so many that what a call of the library costs does not count.
+void Hdf5Reader::load() {
+  const std::uint64_t most = layout_.is_rows() ? 1 << 14 : 1 << 17;
+  const std::uint64_t end = std::min(length_, (next_ / most + 1) * most), count = end - next_;
+  loaded_.end = 0;  // nothing, should this fail
+  if (layout_.is_rows()) {
+    rows_.read(next_, count, loaded_.rows);
+  } else {
+    x_.read(next_, count, loaded_.x);
+    y_.read(next_, count, loaded_.y);
+    t_.read(next_, count, loaded_.t);
+    p_.read(next_, count, loaded_.p);
+  }
+  loaded_.begin = next_;
+  loaded_.end = end;
+}
+
+/// False when some are broken.
+bool Hdf5Reader::convert(std::uint64_t row, std::span<Event> events) const {
+  const std::size_t first = row - loaded_.begin;
+  if (!layout_.is_rows()) {
+    return hdf5::to_events({&loaded_.x, first}, {&loaded_.y, first}, {&loaded_.t, first}, {&loaded_.p, first}, offset_,
+                           events);
+  }
+  const auto column = [&](std::size_t number) { return hdf5::ColumnView{&loaded_.rows, 4 * first + number, 4}; };
+  return hdf5::to_events(column(0), column(1), column(2), column(3), offset_, events);
+}
+
+void Hdf5Reader::drop_broken(std::uint64_t row, std::vector<Event>& events) {
+  const auto is_broken = [](const Event& event) { return event.t == kBroken; };
+  row += static_cast<std::uint64_t>(std::ranges::find_if(events, is_broken) - events.begin());
+  const auto count = std::erase_if(events, is_broken);
+  faults_.add("events whose x, y or t is no pixel or no time", fmt::format("row {}", row),
+              static_cast<std::int64_t>(count));
+}
+
+/// By the index of milliseconds where it agrees with the times, by bisection of the times elsewhere.
+void Hdf5Reader::seek(std::int64_t t) {
+  faults_ = opening_faults_;
+  const auto may_start_at = [&](std::uint64_t row) { return row == 0 || (row <= length_ && time(row - 1) < t); };
+  next_ = 0;
+  if (length_ == 0 || t <= time(0)) return;
+  const std::uint64_t ms = (static_cast<std::uint64_t>(t) - static_cast<std::uint64_t>(offset_)) / 1000;
+  if (!layout_.index.empty() && t > offset_ && ms < index_.rows()) {
+    const double row = index_.first(ms);
+    if (row >= 0.0 && row <= static_cast<double>(length_) && may_start_at(static_cast<std::uint64_t>(row))) {
+      next_ = static_cast<std::uint64_t>(row);
+      return;
+    }
+  }
+  std::uint64_t before = 0, after = length_;  // time(before) < t ≤ time(after)
+  while (after - before > 1) {
+    const std::uint64_t middle = before + (after - before) / 2;
+    (time(middle) < t ? before : after) = middle;
+  }
+  next_ = after;
+}
+
+/// M3ED: group calib beside the columns.
+std::optional<Camera> Hdf5Reader::calibration() {
+  const std::string group = layout_.group + "/calib/";
+  const auto place = [&](const char* name) { return fmt::format("{}: /{}{}", file_.path(), group, name); };
+  const auto numbers = [&](const char* name, std::size_t count) {
+    const std::vector<double> values = file_.dataset(group + name).read_all(100);
+    if (values.size() != count) {
+      throw InputError(fmt::format("{}: has {} numbers; expected {}", place(name), values.size(), count));
+    }
+    return values;
+  };
+  for (const char* name : {"intrinsics", "distortion_coeffs", "resolution"}) {
+    if (!file_.has_dataset(group + name)) return std::nullopt;
+  }
+  if (file_.has_dataset(group + "camera_model") && file_.text(group + "camera_model") != "pinhole") {
+    throw InputError(
+        fmt::format("{}: is \"{}\"; expected pinhole", place("camera_model"), file_.text(group + "camera_model")));
+  }
+  DistortionModel distortion = DistortionModel::radial_tangential;
+  if (file_.has_dataset(group + "distortion_model")) {
+    distortion = kalibr_distortion(place("distortion_model"), file_.text(group + "distortion_model"));
+  }
+  return checked_camera(place(""), numbers("intrinsics", 4), distortion, numbers("distortion_coeffs", 4),
+                        numbers("resolution", 2));
+}
+
+/// The signature stands at the beginning, or after a user's block of 512, 1024, ... bytes.
+bool has_signature(std::span<const std::byte> head) {
+  constexpr unsigned char kSignature[] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1A, '\n'};
+  for (std::size_t at = 0; at + 8 <= head.size(); at = at == 0 ? 512 : 2 * at) {
+    if (std::equal(std::begin(kSignature), std::end(kSignature), head.begin() + static_cast<std::ptrdiff_t>(at),
+                   [](unsigned char a, std::byte b) { return std::byte{a} == b; })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+std::unique_ptr<EventReader> open_hdf5(const std::string& path, const ReadOptions& options) {
+  return std::make_unique<Hdf5Reader>(path, options);
+}
+
+EventFormat hdf5_format() {
+  return {"hdf5", "HDF5 as in DSEC, MVSEC, TUM-VIE, M3ED, EDS",
+          [](const std::string&, std::span<const std::byte> head) { return has_signature(head); },
+          [](const std::string& path, const ReadOptions& options) {
+            hdf5::try_events(path, options.topic);
+            return open_hdf5(path, options);
+          }};
+}
+
+}  // namespace evbench

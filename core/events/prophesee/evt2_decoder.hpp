@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/events/bytes/bytes.hpp"
+#include "core/events/bytes/event_decoder.hpp"
+
+namespace evbench {
+
+/// Prophesee's EVT 2.0: 32-bit words, an event each but for the high bits of time. Times count on over the end of their
+/// 34 bits (4.8 h). Events before the first time are faults; triggers and vendors' words are passed over.
+/// https://docs.prophesee.ai/stable/data/encoding_formats/evt2.html
+class Evt2Decoder final : public EventDecoder {
+ public:
+  Progress decode(std::span<const std::byte> in, std::uint64_t offset, std::span<Event> out, Faults& faults) override;
+  void reset() override { *this = {}; }
+
+ private:
+  WrappingCounter high_{28};
+  std::int64_t time_ = 0;  ///< of the high bits [µs]
+  bool has_time_ = false;
+};
+
+}  // namespace evbench

@@ -1,0 +1,83 @@
+#include "core/events/prophesee/evt_raw.hpp"
+
+#include <fmt/format.h>
+
+#include "core/events/bytes/decoded_reader.hpp"
+#include "core/events/prophesee/evt21_decoder.hpp"
+#include "core/events/prophesee/evt2_decoder.hpp"
+#include "core/events/prophesee/evt3_decoder.hpp"
+#include "core/events/prophesee/header.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+/// Of a RAW file: "2", "2.1" or "3", whatever it is in others; empty when the header names none.
+std::string encoding(const PropheseeHeader& header) {
+  const std::string format = header.value("format"), version = header.value("evt");
+  if (format == "EVT2" || version == "2.0" || version == "2") return "2";
+  if (format == "EVT21" || version == "2.1") return "2.1";
+  if (format == "EVT3" || version == "3.0" || version == "3") return "3";
+  return format.empty() ? version : format;
+}
+
+bool has_encoding(std::span<const std::byte> head, const std::string& expected) {
+  if (head.size() < 2 || head[0] != std::byte{'%'}) return false;
+  try {
+    return encoding(parse_prophesee_header(head, "")) == expected;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+PropheseeHeader read_header(ByteSource& source, const std::string& expected) {
+  PropheseeHeader header = read_prophesee_header(source);
+  const std::string found = encoding(header);
+  if (found != expected) {
+    throw InputError(
+        fmt::format("{}: has encoding \"{:.40}\" in its header; expected EVT {}", source.name(), found, expected));
+  }
+  return header;
+}
+
+std::unique_ptr<EventReader> make_reader(std::unique_ptr<ByteSource> source, const PropheseeHeader& header,
+                                         std::unique_ptr<EventDecoder> decoder, const std::string& version,
+                                         const ReadOptions& options) {
+  StreamInfo info = prophesee_info(header, "Prophesee EVT " + version, options, source->name());
+  return std::make_unique<DecodedReader>(std::move(source), header.size, std::move(decoder), std::move(info), options);
+}
+
+using Open = std::unique_ptr<EventReader> (*)(std::unique_ptr<ByteSource>, const ReadOptions&);
+
+EventFormat format(const std::string& name, const std::string& version, Open open) {
+  return {name, fmt::format("Prophesee RAW, EVT {}", version),
+          [version](const std::string&, std::span<const std::byte> head) { return has_encoding(head, version); },
+          [open](const std::string& path, const ReadOptions& options) {
+            return open(std::make_unique<FileBytes>(path), options);
+          }};
+}
+
+}  // namespace
+
+std::unique_ptr<EventReader> open_evt2(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
+  const PropheseeHeader header = read_header(*source, "2");
+  return make_reader(std::move(source), header, std::make_unique<Evt2Decoder>(), "2", options);
+}
+
+std::unique_ptr<EventReader> open_evt21(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
+  const PropheseeHeader header = read_header(*source, "2.1");
+  const auto order = header.value("endianness") == "legacy" ? Evt21Decoder::Order::high_half_first
+                                                            : Evt21Decoder::Order::low_half_first;
+  return make_reader(std::move(source), header, std::make_unique<Evt21Decoder>(order), "2.1", options);
+}
+
+std::unique_ptr<EventReader> open_evt3(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
+  const PropheseeHeader header = read_header(*source, "3");
+  return make_reader(std::move(source), header, std::make_unique<Evt3Decoder>(), "3", options);
+}
+
+EventFormat evt2_format() { return format("evt2", "2", open_evt2); }
+EventFormat evt21_format() { return format("evt21", "2.1", open_evt21); }
+EventFormat evt3_format() { return format("evt3", "3", open_evt3); }
+
+}  // namespace evbench

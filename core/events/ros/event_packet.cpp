@@ -1,0 +1,80 @@
+#include "core/events/ros/event_packet.hpp"
+
+#include <fmt/format.h>
+
+#include "core/events/bytes/bytes.hpp"
+
+namespace evbench {
+namespace {
+
+/// Words of polarity, valid bit and place, then of time: libcaer's polarity event.
+void decode_libcaer(std::span<const std::byte> bytes, std::int64_t base, const std::string& where,
+                    std::vector<Event>& events, Faults& faults) {
+  constexpr std::size_t kSize = 8;
+  std::int64_t wrapped = 0, last = 0, invalid = 0;
+  for (; bytes.size() >= kSize; bytes = bytes.subspan(kSize)) {
+    const auto word = load<std::uint32_t>(bytes.data());
+    const auto time = static_cast<std::int64_t>(load<std::uint32_t>(bytes.data() + 4) & 0x7FFF'FFFF);
+    if (last - time > (std::int64_t{1} << 30)) wrapped += std::int64_t{1} << 31;
+    last = time;
+    if ((word & 1) == 0) {
+      ++invalid;
+      continue;
+    }
+    events.push_back({base + wrapped + time, static_cast<std::uint16_t>(word >> 17),
+                      static_cast<std::uint16_t>((word >> 2) & 0x7FFF), (word & 2) != 0});
+  }
+  if (invalid > 0) faults.add("events that the camera marked as invalid", where, invalid);
+  if (!bytes.empty()) faults.add("packets that end within an event", where);
+}
+
+/// The high four bits of a word say what the others are.
+void decode_libcaer_cmp(std::span<const std::byte> bytes, std::int64_t base, const std::string& where,
+                        std::vector<Event>& events, Faults& faults) {
+  std::int64_t high = 0, low = 0, unknown = 0;
+  std::uint16_t x = 0, y = 0;
+  bool on = false;
+  for (; bytes.size() >= 2; bytes = bytes.subspan(2)) {
+    const auto word = load<std::uint16_t>(bytes.data());
+    switch (word >> 12) {
+      case 0: high = (word & 0xFFF) << 12; break;
+      case 1: low = word & 0xFFF; break;
+      case 2: x = word & 0x7FF; break;
+      case 3:
+        events.push_back({base + high + low, x, static_cast<std::uint16_t>(word & 0x7FF), (word & 0x800) != 0});
+        break;
+      case 4:
+        y = word & 0x7FF;
+        on = (word & 0x800) != 0;
+        break;
+      case 5:
+        for (int i = 0; i < 8; ++i) {
+          if ((word >> i & 1) != 0) events.push_back({base + high + low, x, static_cast<std::uint16_t>(y + i), on});
+        }
+        y = static_cast<std::uint16_t>(y + 8);
+        break;
+      default: ++unknown;
+    }
+  }
+  if (unknown > 0) faults.add("unknown words of libcaer_cmp", where, unknown);
+  if (!bytes.empty()) faults.add("packets that end within an event", where);
+}
+
+}  // namespace
+
+void EventPacketDecoder::decode(const Packet& packet, const std::string& where, std::vector<Event>& events,
+                                Faults& faults) {
+  const auto base = static_cast<std::int64_t>(packet.time_base / 1000);
+  if (packet.encoding == "evt3") {
+    decode_packet(evt3_, packet.bytes, events, faults);
+  } else if (packet.encoding == "libcaer") {
+    decode_libcaer(packet.bytes, base, where, events, faults);
+  } else if (packet.encoding == "libcaer_cmp") {
+    decode_libcaer_cmp(packet.bytes, base, where, events, faults);
+  } else {
+    faults.add(fmt::format("packets of encoding '{}', which evbench doesn't read", packet.encoding.substr(0, 32)),
+               where);
+  }
+}
+
+}  // namespace evbench

@@ -1,0 +1,25 @@
+#include "core/events/ros/event_packet.hpp"
+
+#include "core/events/ros/messages.hpp"
+
+using namespace evbench;
+
+/// The first byte says how the rest is serialised; the packet is decoded as what it says, and as each encoding.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const auto bytes = std::as_bytes(std::span(data, size)).subspan(1);
+  const ros::Wire wire = data[0] % 2 == 0 ? ros::Wire::ros1 : ros::Wire::cdr;
+  ros::EventArray array;
+  ros::parse_event_array(bytes, wire, array);
+  ros::parse_pose_stamped(bytes, wire);
+  ros::parse_camera_info(bytes, wire);
+  Faults faults("fuzz", false);
+  std::vector<Event> events;
+  EventPacketDecoder decoder;
+  if (const auto packet = ros::parse_event_packet(bytes, wire)) {
+    decoder.decode({packet->events, packet->encoding, packet->time_base}, "fuzz", events, faults);
+  }
+  for (const char* encoding : {"evt3", "libcaer", "libcaer_cmp"})
+    decoder.decode({bytes, encoding, 0}, "fuzz", events, faults);
+  return 0;
+}

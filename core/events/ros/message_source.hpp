@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/events/faults.hpp"
+#include "core/events/reader.hpp"
+#include "core/events/ros/messages.hpp"
+
+namespace evbench::ros {
+
+struct Topic {
+  std::uint32_t id = 0;
+  std::string name;
+  std::string type;                    ///< ROS 1's way, "geometry_msgs/PoseStamped"
+  std::optional<std::uint64_t> count;  ///< of messages
+  Wire wire = Wire::ros1;
+  bool readable = true;  ///< false: serialised in a way that evbench doesn't know
+};
+
+struct Message {
+  std::uint32_t topic = 0;
+  std::span<const std::byte> data;  ///< valid until the next call
+};
+
+/// The messages of a bag, whatever its container. Throws InputError for what is no such file; what is broken within is
+/// a fault and passed over, and a file that is cut short ends there.
+class MessageSource {
+ public:
+  virtual ~MessageSource() = default;
+  virtual const std::vector<Topic>& topics() const = 0;
+  /// Only these will be given, from the beginning on.
+  virtual void select(std::set<std::uint32_t> topics) = 0;
+  /// The next message, in the file's order; none at the end.
+  virtual std::optional<Message> next() = 0;
+  /// Goes on at or before the first message that was recorded at or after t [ns]: from the beginning without an index.
+  virtual void seek(std::int64_t t) = 0;
+};
+
+/// Opens a container; what is broken in it will be added to the faults, which outlive it.
+using OpenSource = std::function<std::unique_ptr<MessageSource>(Faults&)>;
+
+/// "geometry_msgs/msg/PoseStamped" is "geometry_msgs/PoseStamped".
+std::string plain_type(std::string type);
+
+/// The reader of events in a bag. `open` is called again for ground truth and for calibration.
+///
+/// Times of dvs_msgs, and of packets from iniVation's cameras, are ROS times; those of EVT 3 packets are the camera's
+/// own, and ground truth is then given in the camera's time, by the stamp of the first packet (good to the latency of
+/// the camera's driver, some ms).
+std::unique_ptr<EventReader> read_bag(const std::string& path, const std::string& format, const ReadOptions& options,
+                                      OpenSource open);
+
+}  // namespace evbench::ros

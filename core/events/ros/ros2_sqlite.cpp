@@ -1,0 +1,192 @@
+#include "core/events/ros/ros2_sqlite.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
+
+namespace evbench {
+namespace {
+
+using namespace ros;
+
+constexpr std::string_view kMagic = "SQLite format 3";
+
+struct CloseDatabase {
+  void operator()(sqlite3* database) const { sqlite3_close(database); }
+};
+struct CloseStatement {
+  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+};
+using Statement = std::unique_ptr<sqlite3_stmt, CloseStatement>;
+
+class SqliteBag : public MessageSource {
+ public:
+  SqliteBag(const std::string& path, Faults& faults, bool count);
+
+  const std::vector<Topic>& topics() const override { return topics_; }
+  void select(std::set<std::uint32_t> topics) override {
+    selected_ = std::move(topics);
+    query_.reset();
+    first_ = 0;
+    ended_ = false;
+  }
+  std::optional<Message> next() override;
+  void seek(std::int64_t t) override;
+
+ private:
+  Statement prepare(const std::string& query);
+  bool step(sqlite3_stmt* statement);
+  std::string text(sqlite3_stmt* statement, int column) const;
+  void read_topics();
+  void count_messages();
+
+  std::string path_;
+  Faults& faults_;
+  std::unique_ptr<sqlite3, CloseDatabase> database_;
+  std::vector<Topic> topics_;
+  std::set<std::uint32_t> selected_;
+  Statement query_;
+  std::int64_t first_ = 0;  ///< row to begin with
+  bool ended_ = false;
+};
+
+/// SQLite's URI of a file that is only read. Without a journal beside it nothing is locked, so that folders that cannot
+/// be written will do.
+std::string uri(const std::string& path) {
+  std::string result = "file://";  // no host
+  for (const char c : std::filesystem::absolute(path).string()) {
+    if (c == '%' || c == '?' || c == '#') {
+      result += fmt::format("%{:02X}", static_cast<unsigned>(c));
+    } else {
+      result += c;
+    }
+  }
+  const bool journal = std::filesystem::exists(path + "-wal") || std::filesystem::exists(path + "-journal");
+  return result + (journal ? "?mode=ro" : "?mode=ro&immutable=1");
+}
+
+SqliteBag::SqliteBag(const std::string& path, Faults& faults, bool count) : path_(path), faults_(faults) {
+  constexpr int kMostBytes = 256 << 20;  // of a message
+  constexpr int kSteps = 10'000;         // of SQLite's machine between two looks for an interruption
+  sqlite3* database = nullptr;
+  const int result = sqlite3_open_v2(uri(path).c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+  database_.reset(database);
+  if (result != SQLITE_OK) throw InputError(fmt::format("{}: SQLite cannot open it: {}", path, sqlite3_errstr(result)));
+  sqlite3_limit(database, SQLITE_LIMIT_LENGTH, kMostBytes);
+  sqlite3_progress_handler(
+      database, kSteps, [](void*) { return Interruption::is_requested() ? 1 : 0; }, nullptr);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  const Statement tables =
+      prepare("SELECT COUNT(*) FROM sqlite_schema WHERE type = 'table' AND name IN ('topics', 'messages')");
+  if (!step(tables.get()) || sqlite3_column_int(tables.get(), 0) != 2) {
+    throw InputError(fmt::format("{}: is no ROS 2 bag; expected the tables topics and messages", path));
+  }
+  read_topics();
+  if (count) count_messages();
+}
+
+Statement SqliteBag::prepare(const std::string& query) {
+  sqlite3_stmt* statement = nullptr;
+  if (sqlite3_prepare_v2(database_.get(), query.c_str(), -1, &statement, nullptr) != SQLITE_OK) {
+    throw InputError(fmt::format("{}: is broken or no ROS 2 bag: {}", path_, sqlite3_errmsg(database_.get())));
+  }
+  return Statement(statement);
+}
+
+/// False at the end, and where the file is broken: a fault.
+bool SqliteBag::step(sqlite3_stmt* statement) {
+  const int result = sqlite3_step(statement);
+  check_interruption();
+  if (result == SQLITE_ROW) return true;
+  if (result != SQLITE_DONE) {
+    faults_.add("broken or cut pages, where reading ends", sqlite3_errmsg(database_.get()));
+  }
+  return false;
+}
+
+std::string SqliteBag::text(sqlite3_stmt* statement, int column) const {
+  const auto* characters = reinterpret_cast<const char*>(sqlite3_column_text(statement, column));
+  return characters == nullptr ? "" : characters;
+}
+
+void SqliteBag::read_topics() {
+  const Statement topics = prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
+  while (step(topics.get())) {
+    topics_.push_back({static_cast<std::uint32_t>(sqlite3_column_int64(topics.get(), 0)),
+                       text(topics.get(), 1),
+                       plain_type(text(topics.get(), 2)),
+                       {},
+                       Wire::cdr,
+                       text(topics.get(), 3) == "cdr"});
+  }
+}
+
+/// Of several topics SQLite has to read half of the file for that; of one it has an index.
+void SqliteBag::count_messages() {
+  for (Topic& topic : topics_) topic.count = 0;
+  const Statement counts =
+      prepare(topics_.size() == 1 ? fmt::format("SELECT {}, COUNT(*) FROM messages", topics_.front().id)
+                                  : "SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id");
+  while (step(counts.get())) {
+    for (Topic& topic : topics_) {
+      if (topic.id == static_cast<std::uint32_t>(sqlite3_column_int64(counts.get(), 0))) {
+        topic.count = static_cast<std::uint64_t>(sqlite3_column_int64(counts.get(), 1));
+      }
+    }
+  }
+}
+
+std::optional<Message> SqliteBag::next() {
+  if (ended_) return std::nullopt;
+  if (!query_) {
+    query_ = prepare(fmt::format("SELECT topic_id, data FROM messages WHERE id >= {} AND topic_id IN ({}) ORDER BY id",
+                                 first_, fmt::join(selected_, ", ")));
+  }
+  if (!step(query_.get())) {
+    ended_ = true;
+    return std::nullopt;
+  }
+  const void* const data = sqlite3_column_blob(query_.get(), 1);
+  const auto size = static_cast<std::size_t>(sqlite3_column_bytes(query_.get(), 1));
+  return Message{static_cast<std::uint32_t>(sqlite3_column_int64(query_.get(), 0)),
+                 {static_cast<const std::byte*>(data), data == nullptr ? 0 : size}};
+}
+
+void SqliteBag::seek(std::int64_t t) {
+  query_.reset();
+  ended_ = false;
+  const Statement first = prepare(
+      fmt::format("SELECT id FROM messages WHERE timestamp >= {} AND topic_id IN ({}) ORDER BY timestamp, id LIMIT 1",
+                  t, fmt::join(selected_, ", ")));
+  ended_ = !step(first.get());
+  if (!ended_) first_ = sqlite3_column_int64(first.get(), 0);
+}
+
+}  // namespace
+
+std::unique_ptr<MessageSource> open_sqlite_bag(const std::string& path, Faults& faults, bool count) {
+  return std::make_unique<SqliteBag>(path, faults, count);
+}
+
+bool is_sqlite(std::span<const std::byte> head) {
+  return head.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), head.begin(),
+                                                    [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
+}
+
+EventFormat ros2_sqlite_format() {
+  return {"ros2-sqlite", "ROS 2 bag in SQLite (.db3) with event_camera_msgs",
+          [](const std::string&, std::span<const std::byte> head) { return is_sqlite(head); },
+          [](const std::string& path, const ReadOptions& options) {
+            return read_bag(path, "ROS 2 bag (SQLite)", options,
+                            [path](Faults& faults) { return open_sqlite_bag(path, faults, true); });
+          }};
+}
+
+}  // namespace evbench

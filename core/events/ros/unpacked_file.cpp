@@ -1,0 +1,81 @@
+#include "core/events/ros/unpacked_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+#include <zstd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "core/io/byte_source.hpp"
+#include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
+
+namespace evbench {
+namespace {
+
+void write_all(int descriptor, const std::string& path, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const auto count = ::write(descriptor, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) throw InputError(fmt::format("{}: can't be written: {}", path, std::strerror(errno)));
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+}
+
+void unpack(FileBytes& file, int descriptor, const std::string& path) {
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
+  ZSTD_DCtx_setParameter(context.get(), ZSTD_d_windowLogMax, 27);
+  std::vector<std::byte> in(1 << 20), out(1 << 20);
+  const std::uint64_t most = (1 << 20) + UnpackedFile::kMostRatio * file.size();
+  std::uint64_t at = 0, made = 0;
+  std::size_t missing = 1;  // 0 at the end of a frame
+  while (at < file.size()) {
+    ZSTD_inBuffer source{in.data(), file.read(at, in), 0};
+    if (source.size == 0) break;
+    at += source.size;
+    bool full = true;  // more may come without further input
+    while (source.pos < source.size || full) {
+      check_interruption();
+      ZSTD_outBuffer target{out.data(), out.size(), 0};
+      missing = ZSTD_decompressStream(context.get(), &target, &source);
+      made += target.pos;
+      if (ZSTD_isError(missing)) {
+        throw InputError(fmt::format("{}: is broken: {}", file.name(), ZSTD_getErrorName(missing)));
+      }
+      if (made > most) {
+        throw InputError(fmt::format("{}: holds more than {} bytes; expected at most {} times its size", file.name(),
+                                     most, UnpackedFile::kMostRatio));
+      }
+      write_all(descriptor, path, std::span(out).first(target.pos));
+      full = target.pos == target.size && missing != 0;
+    }
+  }
+  if (missing != 0) throw InputError(fmt::format("{}: is cut short", file.name()));
+}
+
+}  // namespace
+
+UnpackedFile::UnpackedFile(const std::string& packed) {
+  FileBytes file(packed);
+  path_ = (std::filesystem::temp_directory_path() / "evbench-XXXXXX").string();
+  const int descriptor = ::mkostemp(path_.data(), O_CLOEXEC);
+  if (descriptor < 0) throw InputError(fmt::format("{}: can't be written: {}", path_, std::strerror(errno)));
+  try {
+    unpack(file, descriptor, path_);
+  } catch (...) {
+    ::close(descriptor);
+    ::unlink(path_.c_str());
+    throw;
+  }
+  ::close(descriptor);
+}
+
+UnpackedFile::~UnpackedFile() { ::unlink(path_.c_str()); }
+
+}  // namespace evbench

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "core/events/bytes/event_decoder.hpp"
+#include "core/events/text/text_layout.hpp"
+
+namespace evbench {
+
+/// Lines of text, an event each. Times are rounded to microseconds. Blank lines and comments (# or %) are passed over;
+/// lines that are no event, or longer than 64 KiB, are faults.
+class EventTextDecoder final : public EventDecoder {
+ public:
+  explicit EventTextDecoder(TextLayout layout) : layout_(std::move(layout)), line_(layout_.lines) {}
+  Progress decode(std::span<const std::byte> in, std::uint64_t offset, std::span<Event> out, Faults& faults) override;
+  /// The last line may have no end.
+  std::size_t finish(std::span<const std::byte> in, std::uint64_t offset, std::span<Event> out,
+                     Faults& faults) override;
+  void reset() override;
+
+ private:
+  bool parse_common(const char*& at, Event& event) const;
+  bool parse_any(std::string_view line, Event& event) const;
+
+  TextLayout layout_;
+  std::int64_t line_;
+  bool in_long_line_ = false;
+};
+
+}  // namespace evbench

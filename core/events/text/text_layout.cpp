@@ -1,0 +1,213 @@
+#include "core/events/text/text_layout.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <utility>
+
+#include "core/support/error.hpp"
+#include "core/support/index.hpp"
+
+namespace evbench {
+namespace {
+
+using Column = TextLayout::Column;
+using Unit = TextLayout::Unit;
+
+constexpr double kMostPixels = 65535.0;
+const std::vector<Column> kTimeFirst{Column::t, Column::x, Column::y, Column::p};
+const std::vector<Column> kTimeLast{Column::x, Column::y, Column::p, Column::t};
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> columns;
+  for (auto column = next_column(line); !column.empty(); column = next_column(line)) columns.push_back(column);
+  return columns;
+}
+
+/// "240 180", "%geometry:1280,720", "# geometry: 240x180".
+void read_size(std::string_view line, TextLayout& layout) {
+  int width = 0, height = 0;
+  if (std::sscanf(std::string(line).c_str(), "%*[^0-9]%d%*[ ,x\t]%d", &width, &height) != 2 &&
+      std::sscanf(std::string(line).c_str(), "%d%*[ ,x\t]%d", &width, &height) != 2) {
+    return;
+  }
+  if (std::min(width, height) < 1 || std::max(width, height) > kMostPixels) return;
+  layout.width = width;
+  layout.height = height;
+}
+
+/// "x", "Timestamp_us", "t[ns]", "polarity": what it begins with, and a unit behind.
+Column read_name(std::string_view text, std::optional<Unit>& unit) {
+  std::string name;
+  for (const char c : text) {
+    if (c != '"' && c != '\'') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  if (name.starts_with('x')) return Column::x;
+  if (name.starts_with('y')) return Column::y;
+  if (name.starts_with('p') || name == "on") return Column::p;
+  if (!name.starts_with('t')) return Column::other;
+  const auto behind = name.find_first_of("_[(");
+  const std::string suffix = behind == std::string::npos ? "" : name.substr(behind + 1);
+  if (suffix.starts_with("ns") || suffix.starts_with("nano")) unit = Unit::nanoseconds;
+  if (suffix.starts_with("us") || suffix.starts_with("micro")) unit = Unit::microseconds;
+  if (suffix.starts_with("ms") || suffix.starts_with("milli")) unit = Unit::milliseconds;
+  if (suffix == "s" || suffix == "s]" || suffix == "s)" || suffix.starts_with("sec")) unit = Unit::seconds;
+  return Column::t;
+}
+
+void read_names(std::string_view line, TextLayout& layout, std::optional<Unit>& unit, const std::string& place) {
+  const auto names = split(line);
+  for (const std::string_view name : names) layout.columns.push_back(read_name(name, unit));
+  for (const Column wanted : kTimeFirst) {
+    if (std::ranges::count(layout.columns, wanted) == 1) continue;
+    throw InputError(fmt::format("{}: names the columns \"{:.80}\"; expected time, x, y and polarity, once each", place,
+                                 fmt::to_string(fmt::join(names, ", "))));
+  }
+}
+
+using Rows = std::vector<std::vector<double>>;
+
+/// Up to a thousand lines that are `columns` numbers each.
+Rows read_rows(std::string_view text, std::size_t columns) {
+  constexpr std::size_t kRows = 1000;
+  Rows rows;
+  while (!text.empty() && rows.size() < kRows) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    std::vector<double> row;
+    double number = 0.0;
+    for (const std::string_view column : split(line)) {
+      if (parse_number(column, number)) row.push_back(number);
+    }
+    if (row.size() == columns) rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+bool fits(const std::vector<double>& row, const std::vector<Column>& order) {
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool is_pixel = row[i] >= 0.0 && row[i] <= kMostPixels && row[i] == std::floor(row[i]);
+    if ((order[i] == Column::x || order[i] == Column::y) && !is_pixel) return false;
+    if (order[i] == Column::p && row[i] != 0.0 && std::abs(row[i]) != 1.0) return false;
+  }
+  return true;
+}
+
+std::size_t time_column(const std::vector<Column>& order) {
+  return index(std::ranges::find(order, Column::t) - order.begin());
+}
+
+/// The order that the more lines fit, but for one in twenty; times do not decrease.
+std::vector<Column> find_order(const Rows& rows, const std::string& place) {
+  const auto fitting = [&](const std::vector<Column>& order) {
+    double last = rows.front()[time_column(order)];
+    return std::ranges::count_if(rows, [&](const auto& row) {
+      return fits(row, order) && row[time_column(order)] >= std::exchange(last, row[time_column(order)]);
+    });
+  };
+  const auto first = fitting(kTimeFirst), last = fitting(kTimeLast);
+  if (first != last && 20 * std::max(first, last) >= 19 * std::ssize(rows))
+    return first > last ? kTimeFirst : kTimeLast;
+  throw InputError(fmt::format("{}: has lines like \"{}\", which {} \"t x y p\" {} \"x y p t\"; give --columns", place,
+                               fmt::to_string(fmt::join(rows.front(), " ")),
+                               first == last && first > 0 ? "may be" : "are neither",
+                               first == last && first > 0 ? "and" : "nor"));
+}
+
+/// Without a name that says it.
+Unit find_unit(const Rows& rows, std::size_t time, const std::string& place) {
+  constexpr double kLatest = 1e17;  // [µs], the year 5000: in nanoseconds that is 1973
+  bool has_fractions = false;
+  for (const auto& row : rows) has_fractions |= row[time] != std::floor(row[time]);
+  if (has_fractions) return Unit::seconds;
+  if (rows.front()[time] < kLatest) return Unit::microseconds;
+  throw InputError(
+      fmt::format("{}: has the time {}, too late for microseconds; give --columns with t_ns, if it is that", place,
+                  rows.front()[time]));
+}
+
+}  // namespace
+
+std::string_view next_column(std::string_view& line) {
+  const auto separates = [](char c) { return c == ' ' || c == ',' || c == '\t' || c == ';' || c == '\r'; };
+  const char* begin = line.data();
+  const char* const last = begin + line.size();
+  while (begin != last && separates(*begin)) ++begin;
+  const char* end = begin;
+  while (end != last && !separates(*end)) ++end;
+  line = {end, last};
+  return {begin, end};
+}
+
+bool is_passed_over(std::string_view line) {
+  const std::string_view first = next_column(line);
+  return first.empty() || first.starts_with('#') || first.starts_with('%');
+}
+
+bool parse_number(std::string_view text, double& number) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
+}
+
+TextLayout detect_text_layout(std::string_view head, bool whole, const std::string& name, const std::string& asked) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  TextLayout layout;
+  std::optional<Unit> unit;
+  if (!asked.empty()) {
+    read_names(asked, layout, unit, fmt::format("{}: what is asked for", name));
+    layout.origin = " (as asked for)";
+  }
+  if (!whole) head = head.substr(0, head.rfind('\n') + 1);
+  layout.begin = head.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  bool has_header = false;
+  for (; layout.begin < head.size(); ++layout.lines) {
+    const std::string_view line = head.substr(layout.begin, head.find('\n', layout.begin) - layout.begin);
+    const std::string place = fmt::format("{}:{}", name, layout.lines + 1);
+    const auto columns = split(line);
+    double number = 0.0;
+    if (is_passed_over(line)) {
+      if (line.find("geometry") != std::string_view::npos) read_size(line, layout);
+    } else if (!parse_number(columns[0], number) && !has_header) {
+      has_header = true;
+      if (asked.empty()) {
+        read_names(line, layout, unit, place);
+        layout.origin = " (named in the file)";
+      }
+    } else if (columns.size() == 2 && layout.width == 0) {
+      read_size(line, layout);
+    } else {
+      const std::size_t expected = layout.columns.empty() ? 4 : layout.columns.size();
+      if (columns.size() != expected) {
+        throw InputError(fmt::format("{}: has {} columns; expected {}", place, columns.size(),
+                                     layout.columns.empty() ? "time, x, y and polarity; otherwise give --columns"
+                                                            : fmt::format("{}, as they are named", expected)));
+      }
+      const Rows rows = read_rows(head.substr(layout.begin), expected);
+      if (rows.empty()) throw InputError(fmt::format("{}: is \"{:.80}\"; expected numbers", place, line));
+      if (layout.columns.empty()) layout.columns = find_order(rows, place);
+      layout.unit = unit ? *unit : find_unit(rows, time_column(layout.columns), place);
+      return layout;
+    }
+    layout.begin = std::min(layout.begin + line.size() + 1, head.size());
+  }
+  throw InputError(fmt::format("{}: has no lines of events in its first {} bytes; expected time, x, y and polarity",
+                               name, head.size()));
+}
+
+std::vector<std::pair<std::string, std::string>> TextLayout::description() const {
+  constexpr const char* kColumns[] = {"t", "x", "y", "p", "-"};
+  constexpr const char* kUnits[] = {"seconds", "milliseconds", "microseconds", "nanoseconds"};
+  std::vector<std::string> order;
+  for (const Column column : columns) order.push_back(kColumns[static_cast<std::size_t>(column)]);
+  return {{"columns", fmt::to_string(fmt::join(order, " ")) + origin},
+          {"unit of time", kUnits[static_cast<std::size_t>(unit)]}};
+}
+
+}  // namespace evbench
