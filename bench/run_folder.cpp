@@ -48,7 +48,7 @@ Json manifest_json(const RunConfig& config, const JobIdentity& identity, const R
 std::string map_ply(const std::vector<Landmark>& map) {
   std::string text = fmt::format(
       "ply\nformat ascii 1.0\ncomment landmarks in the back-end's world frame\nelement vertex {}\n"
-      "property double x\nproperty double y\nproperty double z\nproperty int track\nend_header\n",
+      "property double x\nproperty double y\nproperty double z\nproperty int64 track\nend_header\n",
       map.size());
   for (const Landmark& l : map) {
     text += fmt::format("{:.9g} {:.9g} {:.9g} {}\n", l.position.x(), l.position.y(), l.position.z(), l.track);

@@ -5,9 +5,11 @@ target_compile_features(evbench_flags INTERFACE cxx_std_20)
 target_compile_options(evbench_flags INTERFACE
   -Wall -Wextra -Wconversion -Wshadow
   # GCC 12 sees ghosts in inlined Eigen code, in its own AVX-512 intrinsics and in std::string.
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow>
-  # Position-independent, for plugins; but the program's functions are its own, and may be inlined.
-  -fno-semantic-interposition
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
+                           -Wno-stringop-overread>
+  # Position-independent, for plugins (and for tests, which read the same precompiled headers); but the program's
+  # functions are its own, and may be inlined.
+  -fPIC -fno-semantic-interposition
   $<$<BOOL:${EVBENCH_WERROR}>:-Werror>
   $<$<BOOL:${EVBENCH_NATIVE}>:-march=native>)
 if(EVBENCH_FUZZ)
@@ -25,16 +27,32 @@ if(EVBENCH_SANITIZE)
   target_link_options(evbench_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-# evbench_library(NAME [STATIC|OBJECT] SOURCES ... LINKS ...): a folder's target. Headers are included by their path from
+# evbench_precompile(TARGET HEADER): with EVBENCH_PRECOMPILE, all targets of one header read it precompiled by the first.
+function(evbench_precompile target header)
+  get_property(first GLOBAL PROPERTY evbench_precompiled_${header})
+  if(NOT EVBENCH_PRECOMPILE)
+    return()
+  elseif(first)
+    target_precompile_headers(${target} REUSE_FROM ${first})
+  else()
+    target_precompile_headers(${target} PRIVATE ${CMAKE_SOURCE_DIR}/cmake/${header}.hpp)
+    set_property(GLOBAL PROPERTY evbench_precompiled_${header} ${target})
+  endif()
+endfunction()
+
+# evbench_library(NAME [STATIC|OBJECT] SOURCES ... LINKS ... [PRECOMPILED HEADER]): a folder's target. Headers are included by their path from
 # the repository's root ("core/geometry/se3.hpp").
 function(evbench_library name kind)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "PRECOMPILED" "SOURCES;LINKS" ${ARGN})
   add_library(${name} ${kind} ${ARG_SOURCES})
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>
                                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/evbench>)
   target_compile_features(${name} PUBLIC cxx_std_20)
-  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)  # plugins in shared libraries contain it
   target_link_libraries(${name} PUBLIC ${ARG_LINKS} PRIVATE $<BUILD_INTERFACE:evbench_flags>)
+  if(NOT ARG_PRECOMPILED)
+    set(ARG_PRECOMPILED precompiled)
+  endif()
+  evbench_precompile(${name} ${ARG_PRECOMPILED})
 endfunction()
 
 # evbench_tests(NAME SOURCES ... LINKS ...): the *.test.cpp of a folder as one test program, each test case a ctest of its
@@ -45,12 +63,15 @@ function(evbench_tests name)
   endif()
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
   if(NOT TARGET evbench_test_support)
-    evbench_library(evbench_test_main STATIC SOURCES ${CMAKE_SOURCE_DIR}/core/testing/main.cpp LINKS Catch2::Catch2)
+    evbench_library(evbench_test_main STATIC SOURCES ${CMAKE_SOURCE_DIR}/core/testing/main.cpp
+                    LINKS Catch2::Catch2 evbench::core)
     evbench_library(evbench_test_support STATIC SOURCES ${CMAKE_SOURCE_DIR}/core/testing/data.cpp
-                    LINKS evbench_test_main fmt::fmt)
+                    LINKS evbench_test_main evbench::core)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINKS} evbench_test_support evbench_flags)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # what is tested is optimised fully: its libraries
+  evbench_precompile(${name} precompiled_test)
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:")
 endfunction()
 

