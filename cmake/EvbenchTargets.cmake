@@ -77,9 +77,9 @@ endfunction()
 
 # evbench_fuzz_targets(CORPUS archive LINKS ... [CORPUS_ONLY ...]): each NAME.fuzz.cpp in and below a folder as a
 # libFuzzer program fuzz_NAME, built by the target fuzz_targets. Its test runs the archive's NAME/, then new inputs for
-# EVBENCH_FUZZ_SECONDS in bounded memory. In the build folder, fuzz/corpus/NAME has what the archive has,
-# fuzz/new/NAME keeps the new inputs that reach more code, fuzz/findings/NAME-... those that fail. What is copied into
-# fuzz/corpus/NAME goes into the archive by the target fuzz_corpus. The tests of CORPUS_ONLY try no new inputs: where a
+# EVBENCH_FUZZ_SECONDS in bounded memory. In the build folder, fuzz/kept/NAME has what the archive has,
+# fuzz/corpus/NAME keeps the new inputs that reach more code, fuzz/findings/NAME-... those that fail. What is copied into
+# fuzz/kept/NAME goes into the archive by the target fuzz_corpus. The tests of CORPUS_ONLY try no new inputs: where a
 # library has bugs of its own, each finding would be one.
 function(evbench_fuzz_targets)
   if(NOT EVBENCH_FUZZ)
@@ -87,14 +87,14 @@ function(evbench_fuzz_targets)
   endif()
   cmake_parse_arguments(ARG "" "CORPUS" "LINKS;CORPUS_ONLY" ${ARGN})
   set(archive ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_CORPUS})
-  set(corpus ${CMAKE_BINARY_DIR}/fuzz/corpus)
+  set(kept ${CMAKE_BINARY_DIR}/fuzz/kept)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${archive})
-  if(${archive} IS_NEWER_THAN ${corpus})
-    file(ARCHIVE_EXTRACT INPUT ${archive} DESTINATION ${corpus})
-    file(TOUCH_NOCREATE ${corpus})
+  if(${archive} IS_NEWER_THAN ${kept})
+    file(ARCHIVE_EXTRACT INPUT ${archive} DESTINATION ${kept})
+    file(TOUCH_NOCREATE ${kept})
   endif()
   add_custom_target(fuzz_corpus COMMAND tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner -czf ${archive} -C
-                                            ${corpus} .)
+                                            ${kept} .)
   add_custom_target(fuzz_targets)
   math(EXPR most_seconds "${EVBENCH_FUZZ_SECONDS} + 600")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.fuzz.cpp)
@@ -105,7 +105,7 @@ function(evbench_fuzz_targets)
     target_link_libraries(fuzz_${name} PRIVATE ${ARG_LINKS} evbench_flags)
     target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
     add_dependencies(fuzz_targets fuzz_${name})
-    set(found ${CMAKE_BINARY_DIR}/fuzz/new/${name})
+    set(found ${CMAKE_BINARY_DIR}/fuzz/corpus/${name})
     file(MAKE_DIRECTORY ${found} ${CMAKE_BINARY_DIR}/fuzz/findings)
     set(extent -max_total_time=${EVBENCH_FUZZ_SECONDS})
     if(name IN_LIST ARG_CORPUS_ONLY)
@@ -115,7 +115,7 @@ function(evbench_fuzz_targets)
              COMMAND fuzz_${name} ${extent} -seed=1 -timeout=60 -rss_limit_mb=1500
                      -malloc_limit_mb=700 -print_final_stats=1
                      -artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/findings/${name}-
-                     ${found} ${corpus}/${name})
+                     ${found} ${kept}/${name})
     set_tests_properties("fuzz: ${name}" PROPERTIES TIMEOUT ${most_seconds})
   endforeach()
 endfunction()

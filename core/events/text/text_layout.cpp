@@ -111,13 +111,12 @@ std::vector<Column> find_order(const Rows& rows, const std::string& place) {
       return fits(row, order) && row[time_column(order)] >= std::exchange(last, row[time_column(order)]);
     });
   };
-  const auto first = fitting(kTimeFirst), last = fitting(kTimeLast);
-  if (first != last && 20 * std::max(first, last) >= 19 * std::ssize(rows))
-    return first > last ? kTimeFirst : kTimeLast;
+  const auto first = fitting(kTimeFirst), last = fitting(kTimeLast), most = std::max(first, last);
+  if (first != last && 20 * most >= 19 * std::ssize(rows)) return first > last ? kTimeFirst : kTimeLast;
+  const bool both = first == last && first > 0;
   throw InputError(fmt::format("{}: has lines like \"{}\", which {} \"t x y p\" {} \"x y p t\"; give --columns", place,
-                               fmt::to_string(fmt::join(rows.front(), " ")),
-                               first == last && first > 0 ? "may be" : "are neither",
-                               first == last && first > 0 ? "and" : "nor"));
+                               fmt::to_string(fmt::join(rows.front(), " ")), both ? "may be" : "are neither",
+                               both ? "and" : "nor"));
 }
 
 /// Without a name that says it.
