@@ -24,32 +24,16 @@ void IntervalObservations::add(int landmark, const Observation& observation) {
   }
 }
 
-void IntervalObservations::remove(std::vector<Group>::iterator group, int begin, int count) {
-  observations_.erase(observations_.begin() + begin, observations_.begin() + begin + count);
-  group->end -= count;
-  for (auto later = group + 1; later != groups_.end(); ++later) {
-    later->begin -= count;
-    later->end -= count;
-  }
-  if (group->begin == group->end) groups_.erase(group);
-}
-
 int IntervalObservations::remove(int landmark) {
   const auto group = std::ranges::find(groups_, landmark, &Group::landmark);
   if (group == groups_.end()) return 0;
   const int count = group->end - group->begin;
-  remove(group, group->begin, count);
+  observations_.erase(observations_.begin() + group->begin, observations_.begin() + group->end);
+  for (auto later = groups_.erase(group); later != groups_.end(); ++later) {
+    later->begin -= count;
+    later->end -= count;
+  }
   return count;
-}
-
-int IntervalObservations::remove(int landmark, double t) {
-  const auto group = std::ranges::find(groups_, landmark, &Group::landmark);
-  if (group == groups_.end()) return 0;
-  const auto observations = of(*group);
-  const auto found = std::ranges::find(observations, t, &Observation::t);
-  if (found == observations.end()) return 0;
-  remove(group, group->begin + static_cast<int>(found - observations.begin()), 1);
-  return 1;
 }
 
 std::span<const Observation> IntervalObservations::of(int landmark) const {
@@ -107,14 +91,6 @@ bool FactorGraph::add_observation(int landmark, const Observation& observation) 
   std::vector<int>& seen = landmarks[index(landmark)].intervals;
   const auto at = std::lower_bound(seen.begin(), seen.end(), k);
   if (at == seen.end() || *at != k) seen.insert(at, k);
-  return true;
-}
-
-bool FactorGraph::remove_observation(int landmark, double t) {
-  const int k = interval_of(t);
-  if (k < 0 || intervals[index(k)].remove(landmark, t) == 0) return false;
-  --observation_count_;
-  if (intervals[index(k)].of(landmark).empty()) std::erase(landmarks[index(landmark)].intervals, k);
   return true;
 }
 

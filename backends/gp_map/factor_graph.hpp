@@ -28,9 +28,7 @@ class IntervalObservations {
   };
 
   void add(int landmark, const Observation& observation);
-  /// Those of a landmark, or its first one of that very time. Returns how many there were.
-  int remove(int landmark);
-  int remove(int landmark, double t);
+  int remove(int landmark);  ///< returns how many there were
 
   const std::vector<Observation>& all() const { return observations_; }
   const std::vector<Group>& groups() const { return groups_; }  ///< ordered by landmark
@@ -40,8 +38,6 @@ class IntervalObservations {
   std::span<const Observation> of(int landmark) const;  ///< empty for one that is not observed
 
  private:
-  void remove(std::vector<Group>::iterator group, int begin, int count);
-
   std::vector<Observation> observations_;
   std::vector<Group> groups_;
 };
@@ -113,9 +109,6 @@ struct FactorGraph {
 
   /// False, and nothing added, when t lies outside the states' span.
   bool add_observation(int landmark, const Observation& observation);
-
-  /// Removes the observation of a landmark at exactly this time. False when there is none.
-  bool remove_observation(int landmark, double t);
 
   /// Drops the observations of an interval that is not estimated any more.
   void forget_interval(int k);

@@ -3,6 +3,7 @@
 // Prints the median of repeated runs of each.
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <chrono>
 #include <vector>
@@ -41,21 +42,70 @@ void linearisation(const FactorGraph& graph) {
              1e-6 * count / seconds);
 }
 
-/// What the machine does in a dense Cholesky factorisation, and the engine's stages beside it.
+/// A kernel of the engine beside the same by Eigen, on the same data, by turns.
+template <class Own, class ByEigen>
+void compare(const char* name, int n, int p, double flops, Own own, ByEigen by_eigen) {
+  std::vector<double> ratios, seconds;
+  for (int i = 0; i < 9; ++i) {
+    seconds.push_back(median_seconds(100, own));
+    ratios.push_back(median_seconds(100, by_eigen) / seconds.back());
+  }
+  std::ranges::sort(ratios);
+  std::ranges::sort(seconds);
+  fmt::print("{:28} {:4} x {:2}: {:7.2f} us, {:5.1f} GFlop/s, {:.2f} times as fast as Eigen\n", name, n, p,
+             1e6 * seconds[4], 1e-9 * flops / seconds[4], ratios[4]);
+}
+
 void kernels(int landmarks) {
-  const int n = padded(24 + 3 * landmarks), p = 20, stride = (n / 8 | 1) * 8;
-  Buffer C(static_cast<std::size_t>(stride * n), 0.1), A(static_cast<std::size_t>(n * p), 1e-6);
-  const double update = median_seconds(200, [&] { subtract_outer_product(C.data(), stride, A.data(), n, n, p); });
-  Buffer S(C.size());
-  const double factor = median_seconds(100, [&] {
-    std::ranges::fill(S, 0.1);
-    for (int i = 0; i < n; ++i) S[static_cast<std::size_t>(i * stride + i)] = 10.0 * n;
-    cholesky_blocked(S.data(), stride, n, 0.0);
-  });
-  const double N = n;
-  fmt::print(
-      "{:4} landmarks: rank-{} update of {} rows {:.1f} us, {:.1f} GFlop/s; Cholesky {:.1f} us, {:.1f} GFlop/s\n",
-      landmarks, p, n, 1e6 * update, 1e-9 * N * N * p / update, 1e6 * factor, 1e-9 * N * N * N / 3.0 / factor);
+  using Eigen::MatrixXd, Eigen::VectorXd, Eigen::Lower;
+  const int n = padded(24 + 3 * landmarks), p = 20;
+  const double N = n, P = p;
+  MatrixXd C = MatrixXd::Constant(n, n, 0.1);
+  const MatrixXd A = MatrixXd::Constant(n, p, 1e-6), start = A;
+  const MatrixXd L = MatrixXd::Identity(p, p) + MatrixXd::Constant(p, p, 0.01);
+  VectorXd x = VectorXd::Constant(p, 1e-3), y = VectorXd::Constant(n, 1e-3);
+  compare(
+      "rank update", n, p, N * N * P, [&] { subtract_outer_product(C.data(), n, A.data(), n, n, p); },
+      [&] { C.selfadjointView<Lower>().rankUpdate(A, -1.0); });
+  MatrixXd X = start;
+  compare(
+      "triangular solve, panel", n, p, N * P * P,
+      [&] { X = start, solve_right_transposed(X.data(), n, n, L.data(), p, p); },
+      [&] {
+        X = start;
+        L.triangularView<Lower>().transpose().solveInPlace<Eigen::OnTheRight>(X);
+      });
+  compare(
+      "matrix times vector", n, p, 2.0 * N * P, [&] { subtract_product(y.data(), A.data(), n, n, p, x.data()); },
+      [&] { y.noalias() -= A * x; });
+  compare(
+      "transposed times vector", n, p, 2.0 * N * P,
+      [&] { subtract_transposed_product(x.data(), A.data(), n, n, p, y.data()); },
+      [&] { x.noalias() -= A.transpose() * y; });
+  const MatrixXd spd = MatrixXd::Constant(n, n, 0.1) + 10.0 * N * MatrixXd::Identity(n, n);
+  MatrixXd S = spd;
+  compare(
+      "Cholesky", n, n, N * N * N / 3.0, [&] { S = spd, cholesky_blocked(S.data(), n, n, 0.0); },
+      [&] {
+        S = spd;
+        Eigen::LLT<Eigen::Ref<MatrixXd>> factor(S);
+      });
+  const MatrixXd small = spd.topLeftCorner(p, p);
+  MatrixXd s = small;
+  compare(
+      "Cholesky of a stage", p, p, P * P * P / 3.0, [&] { s = small, cholesky(s.data(), p, p, 0.0); },
+      [&] {
+        s = small;
+        Eigen::LLT<Eigen::Ref<MatrixXd>> factor(s);
+      });
+  VectorXd z = VectorXd::Ones(n);
+  compare(
+      "triangular solve", n, 1, N * N, [&] { z.setOnes(), solve_lower(S.data(), n, n, z.data()); },
+      [&] { z.setOnes(), S.triangularView<Lower>().solveInPlace(z); });
+  compare(
+      "transposed triangular solve", n, 1, N * N,
+      [&] { z.setOnes(), solve_lower_transposed(S.data(), n, n, z.data()); },
+      [&] { z.setOnes(), S.triangularView<Lower>().transpose().solveInPlace(z); });
 }
 
 void per_observation(const FactorGraph& all) {
@@ -98,6 +148,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: engine_micro PROBLEM\n");
     return 2;
   }
+  for (const int landmarks : {20, 60, 100, 200}) kernels(landmarks);
   const FactorGraph graph = to_graph(read_problem(argv[1]));
   linearisation(graph);
   for (const int landmarks : {20, 60, 100, 200}) kernels(landmarks);

@@ -8,8 +8,6 @@
 namespace evbench::gp_map {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// The share of `step` that lowers the landmark's own cost below `cost`, tried by halving; 0: none. Lowers `cost`.
 double descend(const FactorGraph& graph, int landmark, const Vector3& start, const Vector3& step, double share,
                double& cost) {
@@ -52,7 +50,7 @@ void Engine::set_landmark(int j, const double* delta, int slot) {
   const Vector3 now = Eigen::Map<const Vector3>(delta);
   const Vector3 before = points_.landmark_delta(j);
   const double size = size_of_landmark(j, now - before);
-  slot_change_[at(slot)] = size;
+  slot_change_[index(slot)] = size;
   Vector12 kept = Vector12::Zero();
   kept.head<3>() = before;
   changes_.push_back({{Variable::Kind::landmark, j}, kept, size});
@@ -65,7 +63,7 @@ void Engine::set_landmark(int j, const double* delta, int slot) {
 void Engine::solve_back(UpdateSummary& summary) {
   const Root& root = factorisation_.root();
   const int newest = factorisation_.done();
-  slot_change_.assign(at((root.stride() - Root::kStates) / 3 + 1), 0.0);
+  slot_change_.assign(index(Root::slot_of_row(root.stride()) + 1), 0.0);
   set_state(newest, delta_.data() + Root::row_of_state(newest));
   for (int slot = 0; slot < root.slots(); ++slot) {
     if (root.occupant(slot) >= 0) set_landmark(root.occupant(slot), delta_.data() + Root::row_of_slot(slot), slot);
@@ -80,19 +78,19 @@ void Engine::solve_back(UpdateSummary& summary) {
       conditional->back_substitute(delta_.data());
       for (std::size_t i = 0; i < conditional->landmarks.size(); ++i) {
         const int row = conditional->rows[i];
-        set_landmark(conditional->landmarks[i], delta_.data() + row, (row - Root::kStates) / 3);
+        set_landmark(conditional->landmarks[i], delta_.data() + row, Root::slot_of_row(row));
       }
       if (conditional->state >= 0) set_state(conditional->state, delta_.data() + conditional->rows.back());
     }
-    for (const int slot : stage.entered_slots) slot_change_[at(slot)] = 0.0;
+    for (const int slot : stage.entered_slots) slot_change_[index(slot)] = 0.0;
   }
 }
 
 /// The largest change among what stage k is solved from: state k and the landmarks alive after it.
 double Engine::separator_change(int k) const {
-  const int slots = (factorisation_.stage(k).conditionals.back().extent - Root::kStates) / 3;
+  const int slots = Root::slot_of_row(factorisation_.stage(k).conditionals.back().extent);
   double change = state_change_;
-  for (int slot = 0; slot < slots; ++slot) change = std::max(change, slot_change_[at(slot)]);
+  for (int slot = 0; slot < slots; ++slot) change = std::max(change, slot_change_[index(slot)]);
   return change;
 }
 
@@ -141,7 +139,7 @@ double Engine::concerned_cost(const std::vector<int>& intervals) const {
   for (const int k : intervals) cost += interval_cost(graph_, k);
   for (const Change& change : changes_) {
     if (change.variable.kind == Variable::Kind::landmark) {
-      const FactorGraph::Landmark& landmark = graph_.landmarks[at(change.variable.index)];
+      const FactorGraph::Landmark& landmark = graph_.landmarks[index(change.variable.index)];
       cost += 0.5 * residual(landmark.prior, landmark.position).squaredNorm();
     } else {
       cost += state_prior_cost(graph_, change.variable.index);

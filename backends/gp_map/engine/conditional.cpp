@@ -8,6 +8,14 @@ namespace {
 
 constexpr int kMaxPivots = 3 * kMaxPivotLandmarks + 12;
 
+/// Calls visit(first row in the root's layout, size) for each pivot variable.
+template <class Visit>
+void for_each_pivot(const Conditional& conditional, Visit visit) {
+  for (std::size_t i = 0; i < conditional.rows.size(); ++i) {
+    visit(conditional.rows[i], i < conditional.landmarks.size() ? 3 : 12);
+  }
+}
+
 /// Copies a symmetric matrix's columns `indices` into A and clears them there, rows and columns.
 void take_columns(Root& root, std::span<const int> indices, int n, double* A) {
   const std::ptrdiff_t stride = root.stride();
@@ -34,53 +42,63 @@ int eliminate(Root& root, std::span<const int> landmarks, int state, Conditional
   result.state = state;
   for (const int landmark : landmarks) {
     result.rows.push_back(Root::row_of_slot(root.slot_of(landmark)));
-    for (int i = 0; i < 3; ++i) indices[static_cast<std::size_t>(p++)] = result.rows.back() + i;
+    for (int i = 0; i < 3; ++i) indices[index(p++)] = result.rows.back() + i;
   }
   if (state >= 0) {
     result.rows.push_back(Root::row_of_state(state));
-    for (int i = 0; i < 12; ++i) indices[static_cast<std::size_t>(p++)] = result.rows.back() + i;
+    for (int i = 0; i < 12; ++i) indices[index(p++)] = result.rows.back() + i;
   }
   const int n = root.extent();
   result.pivots = p;
   result.extent = n;
-  result.A.resize(static_cast<std::size_t>(n * p));
-  result.L.resize(static_cast<std::size_t>(p * p));
-  result.y.resize(static_cast<std::size_t>(p));
+  result.A.resize(index(n * p));
+  result.L.resize(index(p * p));
+  result.y.resize(index(p));
   double* A = result.A.data();
   double* L = result.L.data();
   double* y = result.y.data();
-  take_columns(root, std::span(indices).first(static_cast<std::size_t>(p)), n, A);
+  take_columns(root, std::span(indices).first(index(p)), n, A);
   for (int c = 0; c < p; ++c) {
     for (int r = 0; r < p; ++r) {
-      double& value = A[c * n + indices[static_cast<std::size_t>(r)]];
+      double& value = A[c * n + indices[index(r)]];
       L[c * p + r] = value;
       value = 0.0;
     }
-    double& b = root.b()[indices[static_cast<std::size_t>(c)]];
+    double& b = root.b()[indices[index(c)]];
     y[c] = b;
     b = 0.0;
   }
   const int failed = cholesky(L, p, p, kPivotTolerance);
   if (failed >= 0) return std::min(failed / 3, static_cast<int>(landmarks.size()));
   solve_right_transposed(A, n, n, L, p, p);
-  solve_lower(L, p, p, y);
   subtract_outer_product(root.H(), root.stride(), A, n, n, p);
-  subtract_product(root.b(), A, n, n, p, y);
+  as_matrix(L, p, p, p).triangularView<Eigen::Lower>().solveInPlace(as_vector(y, p));
+  as_vector(root.b(), n).noalias() -= as_matrix(A, n, p, n) * as_vector(y, p);
   for (const int landmark : landmarks) root.leave(landmark);
   return -1;
 }
 
-void Conditional::back_substitute(double* delta) const {
-  std::array<double, kMaxPivots> x;
-  std::copy(y.begin(), y.begin() + pivots, x.begin());
-  subtract_transposed_product(x.data(), A.data(), extent, extent, pivots, delta);
-  solve_lower_transposed(L.data(), pivots, pivots, x.data());
-  const double* from = x.data();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const int size = i < landmarks.size() ? 3 : 12;
-    std::copy(from, from + size, delta + rows[i]);
+void Conditional::back_substitute(const double* z, double* delta) const {
+  std::array<double, kMaxPivots> values;
+  auto x = as_vector(values.data(), pivots);
+  x = as_vector(z, pivots);
+  x.noalias() -= as_matrix(A.data(), extent, pivots, extent).transpose() * as_vector(delta, extent);
+  as_matrix(L.data(), pivots, pivots, pivots).transpose().triangularView<Eigen::Upper>().solveInPlace(x);
+  const double* from = values.data();
+  for_each_pivot(*this, [&](int row, int size) {
+    std::copy(from, from + size, delta + row);
     from += size;
-  }
+  });
+}
+
+void Conditional::eliminate(double* r, double* z) const {
+  double* to = z;
+  for_each_pivot(*this, [&](int row, int size) {
+    to = std::copy(r + row, r + row + size, to);
+    std::fill(r + row, r + row + size, 0.0);
+  });
+  as_matrix(L.data(), pivots, pivots, pivots).triangularView<Eigen::Lower>().solveInPlace(as_vector(z, pivots));
+  as_vector(r, extent).noalias() -= as_matrix(A.data(), extent, pivots, extent) * as_vector(z, pivots);
 }
 
 }  // namespace evbench::gp_map

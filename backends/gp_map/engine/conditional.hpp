@@ -7,7 +7,7 @@
 
 namespace evbench::gp_map {
 
-/// Some variables given those that are left in the root: L Lᵀ δ_p + ... in the form
+/// Some variables given those that are left in the root,
 ///   Lᵀ δ_p = y − Aᵀ δ_r,
 /// with L (p × p, lower) and A (rows of the root × p); rows of A that belong to pivots or to nobody are zero.
 struct Conditional {
@@ -19,7 +19,11 @@ struct Conditional {
   Buffer A, L, y;
 
   /// δ_p from the increments in the root's layout, into their places there.
-  void back_substitute(double* delta) const;
+  void back_substitute(double* delta) const { back_substitute(y.data(), delta); }
+  /// The same for another right-hand side: δ_p = L⁻ᵀ (z − Aᵀ δ_r).
+  void back_substitute(const double* z, double* delta) const;
+  /// Eliminates from a right-hand side r in the root's layout: z = L⁻¹ r_p; r_p ← 0; r ← r − A z.
+  void eliminate(double* r, double* z) const;
 };
 
 /// Pivot columns of one conditional at most, so that a panel stays in the first-level cache.
@@ -28,8 +32,5 @@ inline constexpr int kMaxPivotLandmarks = 8;
 /// Takes landmarks and (unless −1) a state out of the root. Returns −1, or which pivot (0, 1, ... in the order of the
 /// conditional's variables) made the system singular; the root is then unusable.
 int eliminate(Root& root, std::span<const int> landmarks, int state, Conditional& result);
-
-/// Pivots must stand above this share of their diagonal element: what is left of it in double precision.
-inline constexpr double kPivotTolerance = 1e-13;
 
 }  // namespace evbench::gp_map

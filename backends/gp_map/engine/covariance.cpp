@@ -6,78 +6,64 @@
 // Marginal covariances by solving for unit right-hand sides through the factor: forward from the stage in which the
 // variable is eliminated (before that the right-hand side is zero) to the root, and back to that stage only.
 namespace evbench::gp_map {
-namespace {
+/// x ← H⁻¹ x for the root, both in its layout.
+void Factorisation::solve_with_root_factor(double* x) const {
+  Buffer y(index(factor_.size()), 0.0);
+  factor_.copy_from_root(x, y.data());
+  factor_.solve_forward(y.data());
+  factor_.solve_back(y.data());
+  factor_.copy_to_root(y.data(), x);
+}
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-/// Calls visit(first row in the root's layout, size) for each pivot variable.
-template <class Visit>
-void for_each_pivot(const Conditional& conditional, Visit visit) {
-  for (std::size_t i = 0; i < conditional.rows.size(); ++i) {
-    visit(conditional.rows[i], i < conditional.landmarks.size() ? 3 : 12);
+/// The stage that eliminates a landmark (the one after the last done while it is in the root) and its row there.
+std::optional<std::pair<int, int>> Factorisation::find_landmark(int j) const {
+  if (root_.slot_of(j) >= 0) return std::pair(done_ + 1, Root::row_of_slot(root_.slot_of(j)));
+  const std::optional<int> stage = eliminated_at(j);
+  if (!stage) return std::nullopt;
+  for (const Conditional& conditional : stages_[index(*stage)].conditionals) {
+    const auto found = std::ranges::find(conditional.landmarks, j);
+    if (found == conditional.landmarks.end()) continue;
+    return std::pair(*stage, conditional.rows[index(found - conditional.landmarks.begin())]);
   }
+  return std::nullopt;
 }
-
-/// z = L⁻¹ r_p; r_p ← 0; r_rest −= A z.
-void eliminate_right_side(const Conditional& c, double* r, double* z) {
-  double* to = z;
-  for_each_pivot(c, [&](int row, int size) {
-    to = std::copy(r + row, r + row + size, to);
-    std::fill(r + row, r + row + size, 0.0);
-  });
-  solve_lower(c.L.data(), c.pivots, c.pivots, z);
-  subtract_product(r, c.A.data(), c.extent, c.extent, c.pivots, z);
-}
-
-/// x_p = L⁻ᵀ (z − Aᵀ x).
-void solve_back_right_side(const Conditional& c, double* x, double* z) {
-  subtract_transposed_product(z, c.A.data(), c.extent, c.extent, c.pivots, x);
-  solve_lower_transposed(c.L.data(), c.pivots, c.pivots, z);
-  const double* from = z;
-  for_each_pivot(c, [&](int row, int size) {
-    std::copy(from, from + size, x + row);
-    from += size;
-  });
-}
-
-}  // namespace
 
 Eigen::MatrixXd Factorisation::marginal(int stage, std::span<const int> rows) const {
   const auto size = static_cast<Eigen::Index>(rows.size());
   Eigen::MatrixXd result(size, size);
-  Buffer x(at(root_.stride())), z;
+  Buffer x(index(root_.stride())), z;
   for (Eigen::Index column = 0; column < size; ++column) {
     std::ranges::fill(x, 0.0);
-    x[at(rows[static_cast<std::size_t>(column)])] = 1.0;
+    x[index(rows[index(column)])] = 1.0;
     z.clear();
     for (int k = stage; k <= done_; ++k) {
-      for (const Conditional& c : stages_[at(k)].conditionals) {
-        z.resize(z.size() + at(c.pivots));
-        eliminate_right_side(c, x.data(), z.data() + z.size() - c.pivots);
+      for (const Conditional& c : stages_[index(k)].conditionals) {
+        z.resize(z.size() + index(c.pivots));
+        c.eliminate(x.data(), z.data() + z.size() - c.pivots);
       }
     }
     solve_with_root_factor(x.data());
     double* end = z.data() + z.size();
     for (int k = done_; k >= stage; --k) {
-      const auto& conditionals = stages_[at(k)].conditionals;
+      const auto& conditionals = stages_[index(k)].conditionals;
       for (auto c = conditionals.rbegin(); c != conditionals.rend(); ++c) {
         end -= c->pivots;
-        solve_back_right_side(*c, x.data(), end);
+        c->back_substitute(end, x.data());
       }
     }
-    for (Eigen::Index row = 0; row < size; ++row) result(row, column) = x[at(rows[static_cast<std::size_t>(row)])];
+    for (Eigen::Index row = 0; row < size; ++row) result(row, column) = x[index(rows[index(row)])];
   }
   return 0.5 * (result + result.transpose());
 }
 
 Eigen::MatrixXd Factorisation::image_in_root(std::span<const int> rows, const Eigen::MatrixXd& J) const {
   Eigen::MatrixXd solved(static_cast<Eigen::Index>(rows.size()), J.rows());
-  Buffer x(at(root_.stride()));
+  Buffer x(index(root_.stride()));
   for (Eigen::Index i = 0; i < J.rows(); ++i) {
     std::ranges::fill(x, 0.0);
-    for (std::size_t k = 0; k < rows.size(); ++k) x[at(rows[k])] = J(i, static_cast<Eigen::Index>(k));
+    for (std::size_t k = 0; k < rows.size(); ++k) x[index(rows[k])] = J(i, static_cast<Eigen::Index>(k));
     solve_with_root_factor(x.data());
-    for (std::size_t k = 0; k < rows.size(); ++k) solved(static_cast<Eigen::Index>(k), i) = x[at(rows[k])];
+    for (std::size_t k = 0; k < rows.size(); ++k) solved(static_cast<Eigen::Index>(k), i) = x[index(rows[k])];
   }
   return J * solved;
 }
@@ -98,8 +84,8 @@ std::optional<Matrix24> Engine::neighbours(int k) {
     return std::nullopt;
   std::array<int, 24> rows;
   for (int i = 0; i < 12; ++i) {
-    rows[at(i)] = Root::row_of_state(k) + i;
-    rows[at(12 + i)] = Root::row_of_state(k + 1) + i;
+    rows[index(i)] = Root::row_of_state(k) + i;
+    rows[index(12 + i)] = Root::row_of_state(k + 1) + i;
   }
   const Matrix24 joint = factorisation_.marginal(k + 1, rows);
   if (!joint.allFinite()) return std::nullopt;
@@ -111,7 +97,7 @@ std::optional<Matrix12> Engine::covariance(double t) {
   if (k < 1) return std::nullopt;
   const std::optional<Matrix24> joint = neighbours(k - 1);
   if (!joint) return std::nullopt;
-  return GpInterval(graph_.states[at(k - 1)], graph_.states[at(k)]).covariance(t, *joint, graph_.qc);
+  return GpInterval(graph_.states[index(k - 1)], graph_.states[index(k)]).covariance(t, *joint, graph_.qc);
 }
 
 std::optional<Matrix3> Engine::landmark_covariance(int landmark) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "backends/gp_map/engine/lanes.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -49,17 +50,6 @@ void solve_right_rows(double* A, int lda, const double* L, int ldl, int p) {
   }
 }
 
-/// x −= Aᵀ y for a few columns of A.
-template <int Columns>
-void subtract_dots(double* x, const double* A, int lda, int n, const double* y) {
-  std::array<Lane, Columns> sums{};
-  for (int r = 0; r < n; r += kLanes) {
-    const Lane value = load(y + r);
-    for (int c = 0; c < Columns; ++c) sums[c] += load(A + c * lda + r) * value;
-  }
-  for (int c = 0; c < Columns; ++c) x[c] -= sum(sums[c]);
-}
-
 }  // namespace
 
 void subtract_outer_product(double* C, int ldc, const double* A, int lda, int n, int p) {
@@ -81,28 +71,23 @@ void solve_right_transposed(double* A, int lda, int n, const double* L, int ldl,
 }
 
 int cholesky(double* L, int ldl, int p, double tolerance) {
+  Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>> A(L, p, p, Eigen::OuterStride<>(ldl));
   for (int j = 0; j < p; ++j) {
-    double* column = L + j * ldl;
-    const double original = column[j];
-    double pivot = original;
-    for (int i = 0; i < j; ++i) pivot -= L[i * ldl + j] * L[i * ldl + j];
+    const int below = p - j - 1;
+    const double original = A(j, j), pivot = original - A.row(j).head(j).squaredNorm();
     if (!(pivot > tolerance * original) || !std::isfinite(pivot)) return j;
-    for (int i = 0; i < j; ++i) {
-      const double factor = L[i * ldl + j];
-      const double* other = L + i * ldl;
-      for (int r = j + 1; r < p; ++r) column[r] -= other[r] * factor;
-    }
-    column[j] = std::sqrt(pivot);
-    const double scale = 1.0 / column[j];
-    for (int r = j + 1; r < p; ++r) column[r] *= scale;
+    A(j, j) = std::sqrt(pivot);
+    auto column = A.col(j).tail(below);
+    column.noalias() -= A.bottomLeftCorner(below, j) * A.row(j).head(j).transpose();
+    column /= A(j, j);
   }
   return -1;
 }
 
 int cholesky_blocked(double* L, int ldl, int n, double tolerance) {
   // Pivots are judged against the diagonal before anything was eliminated.
-  Buffer original(static_cast<std::size_t>(n));
-  for (int i = 0; i < n; ++i) original[static_cast<std::size_t>(i)] = L[static_cast<std::ptrdiff_t>(i) * ldl + i];
+  Buffer original(index(n));
+  for (int i = 0; i < n; ++i) original[index(i)] = L[static_cast<std::ptrdiff_t>(i) * ldl + i];
   for (int j = 0; j < n; j += kBlock) {
     const int width = std::min(kBlock, n - j);
     const int below = n - j - width;
@@ -111,7 +96,7 @@ int cholesky_blocked(double* L, int ldl, int n, double tolerance) {
     if (failed >= 0) return j + failed;
     for (int i = 0; i < width; ++i) {
       const double pivot = diagonal[i * ldl + i] * diagonal[i * ldl + i];
-      if (!(pivot > tolerance * original[static_cast<std::size_t>(j + i)])) return j + i;
+      if (!(pivot > tolerance * original[index(j + i)])) return j + i;
     }
     if (below == 0) break;
     double* panel = diagonal + width;
@@ -119,44 +104,6 @@ int cholesky_blocked(double* L, int ldl, int n, double tolerance) {
     subtract_outer_product(diagonal + static_cast<std::ptrdiff_t>(width) * (ldl + 1), ldl, panel, ldl, below, width);
   }
   return -1;
-}
-
-void solve_lower(const double* L, int ldl, int n, double* x) {
-  for (int j = 0; j < n; ++j) {
-    const double* column = L + static_cast<std::ptrdiff_t>(j) * ldl;
-    x[j] /= column[j];
-    const double value = x[j];
-    for (int r = j + 1; r < n; ++r) x[r] -= column[r] * value;
-  }
-}
-
-void solve_lower_transposed(const double* L, int ldl, int n, double* x) {
-  for (int j = n - 1; j >= 0; --j) {
-    const double* column = L + static_cast<std::ptrdiff_t>(j) * ldl;
-    Lane sums{};
-    int r = j + 1;
-    for (; r + kLanes <= n; r += kLanes) sums += load(column + r) * load(x + r);
-    double value = x[j] - sum(sums);
-    for (; r < n; ++r) value -= column[r] * x[r];
-    x[j] = value / column[j];
-  }
-}
-
-void subtract_product(double* y, const double* A, int lda, int n, int p, const double* x) {
-  for (int r = 0; r < n; r += kLanes) {
-    Lane value = load(y + r);
-    const double* at = A + r;
-    for (int k = 0; k < p; ++k, at += lda) value -= load(at) * x[k];
-    store(y + r, value);
-  }
-}
-
-void subtract_transposed_product(double* x, const double* A, int lda, int n, int p, const double* y) {
-  constexpr int kTogether = 6;  // enough independent sums to hide an addition's latency
-  int k = 0;
-  for (; k + kTogether <= p; k += kTogether) subtract_dots<kTogether>(x + k, A + std::ptrdiff_t{k} * lda, lda, n, y);
-  for (; k + 3 <= p; k += 3) subtract_dots<3>(x + k, A + std::ptrdiff_t{k} * lda, lda, n, y);
-  for (; k < p; ++k) subtract_dots<1>(x + k, A + std::ptrdiff_t{k} * lda, lda, n, y);
 }
 
 }  // namespace evbench::gp_map

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdlib>
 #include <new>
 #include <vector>
@@ -24,6 +25,13 @@ using Buffer = std::vector<double, CacheLineAllocator<double>>;
 inline constexpr int kPadding = 8;
 inline int padded(int n) { return (n + kPadding - 1) / kPadding * kPadding; }
 
+/// Operands as Eigen sees them, for what Eigen does as fast as kernels of our own would (bench/micro/engine_micro.cpp).
+inline auto as_matrix(const double* A, int rows, int columns, int stride) {
+  return Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>(A, rows, columns, Eigen::OuterStride<>(stride));
+}
+inline auto as_vector(double* x, int size) { return Eigen::Map<Eigen::VectorXd>(x, size); }
+inline auto as_vector(const double* x, int size) { return Eigen::Map<const Eigen::VectorXd>(x, size); }
+
 // All matrices are stored by columns with a leading dimension; of symmetric ones the lower triangle is valid, and the
 // 8 × 8 blocks on the diagonal may hold anything above it.
 
@@ -40,12 +48,7 @@ int cholesky(double* L, int ldl, int p, double tolerance);
 /// The same, blocked, for n × n with n padded.
 int cholesky_blocked(double* L, int ldl, int n, double tolerance);
 
-/// x ← L⁻¹ x and x ← L⁻ᵀ x.
-void solve_lower(const double* L, int ldl, int n, double* x);
-void solve_lower_transposed(const double* L, int ldl, int n, double* x);
-
-/// y −= A x and x −= Aᵀ y: A n × p, n padded.
-void subtract_product(double* y, const double* A, int lda, int n, int p, const double* x);
-void subtract_transposed_product(double* x, const double* A, int lda, int n, int p, const double* y);
+/// Pivots must stand above this share of their diagonal element: what is left of it in double precision.
+inline constexpr double kPivotTolerance = 1e-13;
 
 }  // namespace evbench::gp_map

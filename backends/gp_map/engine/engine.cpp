@@ -4,12 +4,6 @@
 #include <cmath>
 
 namespace evbench::gp_map {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 Engine::Engine(const PinholeCamera& camera, const Vector6& qc, const RobustLoss& loss, const EngineOptions& options)
     : options_(options), points_(options.kept_intervals), factorisation_(options.grace) {
   graph_.camera = camera;
@@ -44,12 +38,12 @@ void Engine::add_velocity_prior(const VelocityPrior& prior) {
 
 void Engine::anchor_scale(const Vector3& origin, std::vector<int> landmarks) {
   for (const int j : graph_.anchor.landmarks) {
-    if (!graph_.landmarks[at(j)].intervals.empty()) touch(graph_.landmarks[at(j)].intervals.front());
+    if (!graph_.landmarks[index(j)].intervals.empty()) touch(graph_.landmarks[index(j)].intervals.front());
   }
   graph_.anchor_scale(origin, std::move(landmarks));
   factorisation_.renew_anchor();
   for (const int j : graph_.anchor.landmarks) {
-    if (!graph_.landmarks[at(j)].intervals.empty()) touch(graph_.landmarks[at(j)].intervals.front());
+    if (!graph_.landmarks[index(j)].intervals.empty()) touch(graph_.landmarks[index(j)].intervals.front());
   }
 }
 
@@ -66,22 +60,13 @@ bool Engine::add_observation(int landmark, const Observation& observation) {
 
 bool Engine::insert(int landmark, const Observation& observation) {
   const bool sound = std::isfinite(observation.t) && observation.pixel.allFinite() &&
-                     std::isfinite(observation.inverse_sigma) && graph_.landmarks[at(landmark)].alive;
+                     std::isfinite(observation.inverse_sigma) && graph_.landmarks[index(landmark)].alive;
   if (!sound || factorisation_.is_forgotten(landmark)) return false;
   const int k = graph_.interval_of(observation.t);
   if (k <= factorisation_.base() || !graph_.add_observation(landmark, observation)) return false;
   points_.invalidate(k);
   invalidate(k);
   if (const auto eliminated = factorisation_.eliminated_at(landmark)) invalidate(*eliminated);
-  factorisation_.resume_landmark(landmark);
-  return true;
-}
-
-bool Engine::remove_observation(int landmark, double t) {
-  if (!graph_.remove_observation(landmark, t)) return false;
-  const int k = graph_.interval_of(t);
-  points_.invalidate(k);
-  touch(k);
   return true;
 }
 
@@ -95,7 +80,7 @@ void Engine::remove_newest_state() {
 }
 
 void Engine::remove_landmark(int landmark) {
-  const auto& seen = graph_.landmarks[at(landmark)].intervals;
+  const auto& seen = graph_.landmarks[index(landmark)].intervals;
   if (!seen.empty()) touch(seen.front());
   for (const int k : seen) points_.invalidate(k);
   const auto& anchors = graph_.anchor.landmarks;
@@ -103,17 +88,15 @@ void Engine::remove_landmark(int landmark) {
     const std::vector<int> before = anchors;
     graph_.remove_landmark(landmark);
     for (const int j : before) {
-      if (!graph_.landmarks[at(j)].intervals.empty()) touch(graph_.landmarks[at(j)].intervals.front());
+      if (!graph_.landmarks[index(j)].intervals.empty()) touch(graph_.landmarks[index(j)].intervals.front());
     }
   } else {
     graph_.remove_landmark(landmark);
   }
 }
 
-void Engine::end_landmark(int landmark) { factorisation_.end_landmark(landmark); }
-
 double Engine::size_of_state(int i, const Vector12& delta) const {
-  const double dt = i > 0 ? graph_.states[at(i)].t - graph_.states[at(i - 1)].t : 0.0;
+  const double dt = i > 0 ? graph_.states[index(i)].t - graph_.states[index(i - 1)].t : 0.0;
   constexpr double kHermiteMaximum = 4.0 / 27.0;  // of s (1 − s)²
   const double rotation = delta.head<3>().norm() + kHermiteMaximum * dt * delta.segment<3>(6).norm();
   const double translation = delta.segment<3>(3).norm() + kHermiteMaximum * dt * delta.tail<3>().norm();
@@ -123,7 +106,7 @@ double Engine::size_of_state(int i, const Vector12& delta) const {
 /// √(|δ|/d · |δ⊥|/d), the largest of the first and the last camera that see it: the error of linear projection is of
 /// second order, a change of distance times a change of direction. Poses aren't known better than this parallax.
 double Engine::size_of_landmark(int j, const Vector3& delta) const {
-  const auto& seen = graph_.landmarks[at(j)].intervals;
+  const auto& seen = graph_.landmarks[index(j)].intervals;
   if (seen.empty()) return 0.0;
   constexpr double kParallax = 0.01, kNearest = 1e-9;
   const double square = delta.squaredNorm();
@@ -141,7 +124,7 @@ double Engine::size_of_landmark(int j, const Vector3& delta) const {
 int Engine::first_stage(const Variable& variable) const {
   if (factorisation_.in_base(variable)) return factorisation_.base() + 1;
   if (variable.kind == Variable::Kind::state) return variable.index;
-  const auto& seen = graph_.landmarks[at(variable.index)].intervals;
+  const auto& seen = graph_.landmarks[index(variable.index)].intervals;
   return seen.empty() ? restart_ : seen.front();
 }
 
@@ -164,7 +147,7 @@ void Engine::forget_old() {
   const int last = static_cast<int>(graph_.states.size()) - 2;  // the newest interval is always estimated
   int oldest = factorisation_.base() + 1;
   if (oldest > last) return;
-  while (oldest < last && graph_.states[at(oldest)].t < from) ++oldest;
+  while (oldest < last && graph_.states[index(oldest)].t < from) ++oldest;
   const int before = factorisation_.base();
   const int base = factorisation_.marginalise(oldest);
   for (int k = before + 1; k <= base; ++k) graph_.forget_interval(k);

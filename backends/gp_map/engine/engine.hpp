@@ -88,18 +88,12 @@ class Engine {
   /// the observation only added, for others. Microseconds.
   bool observe(int landmark, const Observation& observation);
 
-  /// Removes the observation of a landmark at exactly this time. False when there is none.
-  bool remove_observation(int landmark, double t);
-
   /// Takes the newest state back, with the observations in its interval and the priors on it. With a lag not
   /// first_state().
   void remove_newest_state();
 
   /// Removes a landmark with all its observations.
   void remove_landmark(int landmark);
-
-  /// The track has ended: the landmark leaves the root with the next update. Observations of it may still come.
-  void end_landmark(int landmark);
 
   /// A variable that the last update has changed.
   struct Change {

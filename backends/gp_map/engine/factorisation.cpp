@@ -18,8 +18,6 @@ int snapshot_spacing(int age) {
 }
 constexpr int kThinnedUpTo = 136;  ///< age beyond which spacing doesn't change any more
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 }  // namespace
 
 std::string Variable::name() const { return fmt::format("{} {}", kind == Kind::state ? "state" : "landmark", index); }
@@ -27,24 +25,24 @@ std::string Variable::name() const { return fmt::format("{} {}", kind == Kind::s
 void Factorisation::add_landmark() { landmarks_.emplace_back(); }
 
 std::optional<int> Factorisation::eliminated_at(int j) const {
-  const int stage = landmarks_[at(j)].eliminated_at;
+  const int stage = landmarks_[index(j)].eliminated_at;
   if (stage < 0 || stage > done_ || root_.slot_of(j) >= 0) return std::nullopt;
   return stage;
 }
 
 void Factorisation::hold(const Variable& variable) {
   if (variable.kind == Variable::Kind::landmark) {
-    landmarks_[at(variable.index)].held = true;
+    landmarks_[index(variable.index)].held = true;
   } else {
-    if (held_states_.size() <= at(variable.index)) held_states_.resize(at(variable.index) + 1, false);
-    held_states_[at(variable.index)] = true;
+    if (held_states_.size() <= index(variable.index)) held_states_.resize(index(variable.index) + 1, false);
+    held_states_[index(variable.index)] = true;
   }
 }
 
 bool Factorisation::is_held(const Variable& variable) const {
-  const auto index = at(variable.index);
-  if (variable.kind == Variable::Kind::landmark) return landmarks_[index].held;
-  return index < held_states_.size() && held_states_[index];
+  const std::size_t i = index(variable.index);
+  if (variable.kind == Variable::Kind::landmark) return landmarks_[i].held;
+  return i < held_states_.size() && held_states_[i];
 }
 
 std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph, LinearisationPoints& points,
@@ -75,7 +73,7 @@ int Factorisation::place_anchor(const FactorGraph& graph) {
   std::ranges::sort(anchors_);
   anchor_stage_ = -1;
   for (const int j : anchors_) {
-    const auto& seen = graph.landmarks[at(j)].intervals;
+    const auto& seen = graph.landmarks[index(j)].intervals;
     if (!seen.empty() && !anchor_in_base_) anchor_stage_ = std::max(anchor_stage_, seen.front());
   }
   if (anchor_stage_ == before) return done_ + 1;
@@ -127,8 +125,8 @@ void Factorisation::add_factors(int k, const FactorGraph& graph, LinearisationPo
 void Factorisation::enter(int j, const FactorGraph& graph, const LinearisationPoints& points, Stage& stage) {
   stage.entered_slots.push_back(root_.enter(j));
   stage.entered.push_back(j);
-  landmarks_[at(j)].eliminated_at = -1;
-  const LandmarkPrior& prior = graph.landmarks[at(j)].prior;
+  landmarks_[index(j)].eliminated_at = -1;
+  const LandmarkPrior& prior = graph.landmarks[index(j)].prior;
   if (!std::isfinite(prior.sigma)) return;
   const double information = 1.0 / (prior.sigma * prior.sigma);
   root_.add_landmark(j, information * Matrix3::Identity(), information * (prior.position - points.landmark(j)));
@@ -158,7 +156,7 @@ void Factorisation::find_finished(int k, const FactorGraph& graph) {
     const int j = root_.occupant(slot);
     if (j < 0) continue;
     const int last = last_interval(j, graph);
-    if (last > k || (newest - last < grace_ && !landmarks_[at(j)].ended)) continue;
+    if (last > k || newest - last < grace_) continue;
     if (k < anchor_stage_ && is_anchor(j)) continue;
     finished_.push_back(j);
   }
@@ -166,11 +164,11 @@ void Factorisation::find_finished(int k, const FactorGraph& graph) {
 
 std::optional<Variable> Factorisation::eliminate_finished(int k, const LinearisationPoints& points, double damping) {
   for (const int j : finished_) {
-    damp_landmark(j, points, damping);
-    landmarks_[at(j)].eliminated_at = k;
+    damp({Variable::Kind::landmark, j}, points, damping);
+    landmarks_[index(j)].eliminated_at = k;
   }
-  damp_state(k - 1, points, damping);
-  Stage& stage = stages_[at(k)];
+  damp({Variable::Kind::state, k - 1}, points, damping);
+  Stage& stage = stages_[index(k)];
   std::span<const int> rest = finished_;
   stage.conditionals.resize(rest.size() / kMaxPivotLandmarks + 1);  // not cleared: their memory is used again
   for (Conditional& conditional : stage.conditionals) {
@@ -179,19 +177,50 @@ std::optional<Variable> Factorisation::eliminate_finished(int k, const Linearisa
     rest = rest.subspan(chunk.size());
     const int failed = eliminate(root_, chunk, last ? k - 1 : -1, conditional);
     if (failed == static_cast<int>(chunk.size())) return Variable{Variable::Kind::state, k - 1};
-    if (failed >= 0) return Variable{Variable::Kind::landmark, chunk[at(failed)]};
+    if (failed >= 0) return Variable{Variable::Kind::landmark, chunk[index(failed)]};
   }
   return std::nullopt;
 }
 
-void Factorisation::damp_state(int k, const LinearisationPoints& points, double damping) {
-  const double lambda = is_held({Variable::Kind::state, k}) ? std::max(damping, kHoldDamping) : damping;
-  if (lambda > 0.0) root_.damp(Root::row_of_state(k), 12, lambda, points.state_delta(k).data());
+double Factorisation::damping_of(const Variable& variable, double damping) const {
+  return is_held(variable) ? std::max(damping, kHoldDamping) : damping;
 }
 
-void Factorisation::damp_landmark(int j, const LinearisationPoints& points, double damping) {
-  const double lambda = landmarks_[at(j)].held ? std::max(damping, kHoldDamping) : damping;
-  if (lambda > 0.0) root_.damp(Root::row_of_slot(root_.slot_of(j)), 3, lambda, points.landmark_delta(j).data());
+void Factorisation::damp(const Variable& variable, const LinearisationPoints& points, double damping) {
+  const double lambda = damping_of(variable, damping);
+  if (lambda == 0.0) return;
+  if (variable.kind == Variable::Kind::state) {
+    root_.damp(Root::row_of_state(variable.index), 12, lambda, points.state_delta(variable.index).data());
+  } else {
+    const int row = Root::row_of_slot(root_.slot_of(variable.index));
+    root_.damp(row, 3, lambda, points.landmark_delta(variable.index).data());
+  }
+}
+
+std::optional<Variable> Factorisation::factorise_root(const LinearisationPoints& points, double damping) {
+  factor_.load(root_, done_, 1);
+  const auto damp = [&](const Variable& variable, int row, int rows, const double* now) {
+    const double lambda = damping_of(variable, damping);
+    if (lambda > 0.0) factor_.damp(row, rows, lambda, now);
+  };
+  for (int slot = 0; slot < root_.slots(); ++slot) {
+    const int j = root_.occupant(slot);
+    if (j < 0) continue;
+    damp({Variable::Kind::landmark, j}, factor_.row_of_slot(slot), 3, points.landmark_delta(j).data());
+  }
+  const Variable state{Variable::Kind::state, done_};
+  damp(state, factor_.row_of_states(), 12, points.state_delta(done_).data());
+  const int failed = factor_.factorise();
+  if (failed >= factor_.row_of_states()) return state;
+  if (failed >= 0) return Variable{Variable::Kind::landmark, root_.occupant(failed / 3)};
+  return std::nullopt;
+}
+
+void Factorisation::solve_root(Buffer& delta) {
+  if (static_cast<int>(delta.size()) < root_.stride()) delta.resize(index(root_.stride()), 0.0);
+  factor_.solve_forward(factor_.b());
+  factor_.solve_back(factor_.b());
+  factor_.copy_to_root(factor_.b(), delta.data());
 }
 
 void Factorisation::keep_snapshot(int k, int newest) {
@@ -218,7 +247,7 @@ void Factorisation::thin_snapshots(int newest) {
 
 /// Those of a landmark in the base may all have been forgotten or removed.
 int Factorisation::last_interval(int j, const FactorGraph& graph) const {
-  const auto& seen = graph.landmarks[at(j)].intervals;
+  const auto& seen = graph.landmarks[index(j)].intervals;
   return seen.empty() ? base_ : seen.back();
 }
 
@@ -226,10 +255,10 @@ int Factorisation::marginalise(int stage) {
   auto snapshot = snapshots_.upper_bound(std::min(stage, done_));
   if (snapshot == snapshots_.begin() || (--snapshot)->first <= base_) return base_;
   for (int k = base_ + 1; k <= snapshot->first; ++k) {
-    for (const Conditional& conditional : stages_[at(k)].conditionals) {
-      for (const int j : conditional.landmarks) landmarks_[at(j)].forgotten = true;
+    for (const Conditional& conditional : stages_[index(k)].conditionals) {
+      for (const int j : conditional.landmarks) landmarks_[index(j)].forgotten = true;
     }
-    stages_[at(k)] = Stage();
+    stages_[index(k)] = Stage();
   }
   for (auto i = snapshots_.begin(); i != snapshot; ++i) spare_.push_back(std::move(i->second));
   snapshots_.erase(snapshots_.begin(), snapshot);

@@ -7,6 +7,7 @@
 
 #include "backends/gp_map/engine/conditional.hpp"
 #include "backends/gp_map/engine/linearisation_points.hpp"
+#include "backends/gp_map/engine/root_factor.hpp"
 
 namespace evbench::gp_map {
 
@@ -42,14 +43,11 @@ class Factorisation {
 
   /// The last stage that is done, −1: none.
   int done() const { return done_; }
-  Stage& stage(int k) { return stages_[static_cast<std::size_t>(k)]; }
-  const Stage& stage(int k) const { return stages_[static_cast<std::size_t>(k)]; }
+  Stage& stage(int k) { return stages_[index(k)]; }
+  const Stage& stage(int k) const { return stages_[index(k)]; }
   const Root& root() const { return root_; }
 
   void add_landmark();
-  void end_landmark(int j) { landmarks_[static_cast<std::size_t>(j)].ended = true; }
-  /// A new observation: an ended landmark lives on.
-  void resume_landmark(int j) { landmarks_[static_cast<std::size_t>(j)].ended = false; }
   /// The stage that eliminates it; none while it is in the root or before it has been seen.
   std::optional<int> eliminated_at(int j) const;
 
@@ -65,10 +63,7 @@ class Factorisation {
   std::optional<Variable> factorise_root(const LinearisationPoints& points, double damping);
 
   /// The increments of the root's variables, in the root's layout; `delta` grows to the root's extent.
-  void solve_root(Buffer& delta) const;
-
-  /// x ← H⁻¹ x for the root, both in its layout, by its factor.
-  void solve_with_root_factor(double* x) const;
+  void solve_root(Buffer& delta);
 
   /// Covariance of rows in the layout that the root had before stage `stage` eliminated them (or later ones).
   Eigen::MatrixXd marginal(int stage, std::span<const int> rows) const;
@@ -87,7 +82,7 @@ class Factorisation {
   int base() const { return base_; }
   bool in_base(const Variable& variable) const;
   /// A landmark that was eliminated before the base can't be observed any more.
-  bool is_forgotten(int j) const { return landmarks_[static_cast<std::size_t>(j)].forgotten; }
+  bool is_forgotten(int j) const { return landmarks_[index(j)].forgotten; }
   /// A variable of the base is linearised at a point that lies `shift` further (12 or 3).
   void shift_base(const Variable& variable, const double* shift);
   /// The graph has got another scale anchor: what one that has been marginalised says stays in the base.
@@ -98,8 +93,9 @@ class Factorisation {
  private:
   struct LandmarkStatus {
     int eliminated_at = -1;
-    bool ended = false, held = false, forgotten = false;
+    bool held = false, forgotten = false;
   };
+  void solve_with_root_factor(double* x) const;
   int place_anchor(const FactorGraph& graph);
   int go_back_to(int first);
   std::optional<Variable> do_stage(int k, const FactorGraph& graph, LinearisationPoints& points, double damping);
@@ -108,8 +104,8 @@ class Factorisation {
   void enter(int j, const FactorGraph& graph, const LinearisationPoints& points, Stage& stage);
   void find_finished(int k, const FactorGraph& graph);
   std::optional<Variable> eliminate_finished(int k, const LinearisationPoints& points, double damping);
-  void damp_state(int k, const LinearisationPoints& points, double damping);
-  void damp_landmark(int j, const LinearisationPoints& points, double damping);
+  double damping_of(const Variable& variable, double damping) const;
+  void damp(const Variable& variable, const LinearisationPoints& points, double damping);
   void keep_snapshot(int k, int newest);
   void thin_snapshots(int newest);
   bool is_anchor(int j) const;
@@ -129,8 +125,7 @@ class Factorisation {
   std::map<int, Root::Snapshot> snapshots_;  ///< the root after a stage
   std::vector<Root::Snapshot> spare_;        ///< their memory, to use again
   std::vector<int> finished_;                ///< landmarks to eliminate in the stage at hand
-  Buffer factor_, solution_;                 ///< of the root; landmarks first, the state last
-  int factor_size_ = 0, factor_slots_ = 0;
+  RootFactor factor_;
   std::int64_t stages_done_ = 0;
 };
 

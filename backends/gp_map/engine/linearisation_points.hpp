@@ -53,7 +53,6 @@ class LinearisationPoints {
     bool valid = false;
     IntervalLinearisation linear;
   };
-  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   Kept& place(int k) { return ring_[index(k) % ring_.size()]; }
 
   int kept_;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "backends/gp_map/engine/root.hpp"
+#include "backends/gp_map/engine/root_factor.hpp"
 
 namespace evbench::gp_map {
 
@@ -11,13 +11,13 @@ struct ObservationRows {
   Eigen::Matrix<double, 2, 24> states = Eigen::Matrix<double, 2, 24>::Zero();
 };
 
-/// The factor of what is alive while an interval (n, n+1) is open: the landmarks in the root after stage n, state n,
-/// state n+1, in this order, with the right-hand side as one more row. An observation changes it by two rotations of a
-/// vector through its columns, in O(rows²), and both newest states are solved from its last rows alone.
+/// The factor of what is alive while an interval (n, n+1) is open: the root after stage n with state n+1 besides, and
+/// the right-hand side as one more row. An observation changes it by two rotations of a vector through its columns, in
+/// O(rows²), and both newest states are solved from its last rows alone.
 class LiveFactor {
  public:
-  /// `motion`: the motion prior of the open interval and what else has been observed in it so far. False when singular.
-  bool build(const Root& root, int newest, const IntervalLinearisation& motion);
+  /// `open`: the motion prior of the open interval and what else has been observed in it so far. False when singular.
+  bool build(const Root& root, int newest, const IntervalLinearisation& open);
 
   /// Whether it is that of the interval that ends in this state.
   bool is_of(int newest) const { return newest_ == newest; }
@@ -30,12 +30,9 @@ class LiveFactor {
   Vector24 solve_states() const;
 
  private:
-  double* column(int c) { return L_.data() + static_cast<std::ptrdiff_t>(c) * stride_; }
-  const double* column(int c) const { return L_.data() + static_cast<std::ptrdiff_t>(c) * stride_; }
-
   int newest_ = -1;
-  int states_row_ = 0, size_ = 0, stride_ = 0;  ///< the right-hand side is row size_
-  Buffer L_, v_, w_;
+  RootFactor factor_;
+  Buffer v_, w_;
 };
 
 }  // namespace evbench::gp_map

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 namespace evbench::gp_map {
+
 int Root::enter(int landmark) {
   const auto free = std::find(occupant_.begin(), occupant_.begin() + top_, -1);
   const int slot = static_cast<int>(free - occupant_.begin());
@@ -11,17 +12,16 @@ int Root::enter(int landmark) {
     if (static_cast<int>(occupant_.size()) < top_) occupant_.push_back(-1);
     reserve(extent());
   }
-  occupant_[static_cast<std::size_t>(slot)] = landmark;
-  if (slot_of_.size() <= static_cast<std::size_t>(landmark))
-    slot_of_.resize(static_cast<std::size_t>(landmark) + 1, -1);
-  slot_of_[static_cast<std::size_t>(landmark)] = slot;
+  occupant_[index(slot)] = landmark;
+  if (slot_of_.size() <= index(landmark)) slot_of_.resize(index(landmark) + 1, -1);
+  slot_of_[index(landmark)] = slot;
   return slot;
 }
 
 void Root::leave(int landmark) {
-  occupant_[static_cast<std::size_t>(slot_of(landmark))] = -1;
-  slot_of_[static_cast<std::size_t>(landmark)] = -1;
-  while (top_ > 0 && occupant_[static_cast<std::size_t>(top_ - 1)] < 0) --top_;
+  occupant_[index(slot_of(landmark))] = -1;
+  slot_of_[index(landmark)] = -1;
+  while (top_ > 0 && occupant_[index(top_ - 1)] < 0) --top_;
 }
 
 void Root::add_state(int state, const Matrix12& H, const Vector12& b) {
@@ -29,7 +29,7 @@ void Root::add_state(int state, const Matrix12& H, const Vector12& b) {
   const int row = row_of_state(state);
   for (int c = 0; c < 12; ++c) {
     for (int r = c; r < 12; ++r) column(row + c)[row + r] += H(r, c);
-    b_[static_cast<std::size_t>(row + c)] += b(c);
+    b_[index(row + c)] += b(c);
   }
 }
 
@@ -37,7 +37,7 @@ void Root::add_landmark(int landmark, const Matrix3& H, const Vector3& b) {
   const int row = row_of_slot(slot_of(landmark));
   for (int c = 0; c < 3; ++c) {
     for (int r = c; r < 3; ++r) column(row + c)[row + r] += H(r, c);
-    b_[static_cast<std::size_t>(row + c)] += b(c);
+    b_[index(row + c)] += b(c);
   }
 }
 
@@ -47,7 +47,7 @@ void Root::add_interval(int k, const IntervalLinearisation& linear) {
   const auto place = [&](int i) { return i < 12 ? older + i : newer + i - 12; };
   for (int c = 0; c < 24; ++c) {
     const int at = place(c);
-    b_[static_cast<std::size_t>(at)] -= linear.gradient(c);
+    b_[index(at)] -= linear.gradient(c);
     for (int r = 0; r < 24; ++r) {
       if (place(r) >= at) column(at)[place(r)] += linear.states(r, c);
     }
@@ -68,7 +68,7 @@ void Root::add_interval(int k, const IntervalLinearisation& linear) {
 void Root::add_landmark_factor(std::span<const int> landmarks, const AnchorLinearisation& linear) {
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     const int row = row_of_slot(slot_of(landmarks[i]));
-    for (int r = 0; r < 3; ++r) b_[static_cast<std::size_t>(row + r)] -= linear.e * linear.jacobian[i](r);
+    for (int r = 0; r < 3; ++r) b_[index(row + r)] -= linear.e * linear.jacobian[i](r);
     for (std::size_t j = 0; j < landmarks.size(); ++j) {
       const int at = row_of_slot(slot_of(landmarks[j]));
       for (int c = 0; c < 3; ++c) {
@@ -92,11 +92,11 @@ void Root::save(Snapshot& to) const {
   to.top = top_;
   to.occupant.assign(occupant_.begin(), occupant_.begin() + top_);
   to.b.assign(b_.begin(), b_.begin() + n);
-  to.H.resize(static_cast<std::size_t>(n / kPadding * (n / kPadding + 1) / 2 * kPadding * kPadding));
+  to.H.resize(index(n / kPadding * (n / kPadding + 1) / 2 * kPadding * kPadding));
   double* at = to.H.data();
   for (int c = 0; c < n; ++c) {
     const int first = c / kPadding * kPadding;
-    const double* from = H() + static_cast<std::ptrdiff_t>(c) * stride_;
+    const double* from = column(c);
     at = std::copy(from + first, from + n, at);
   }
 }
@@ -109,8 +109,8 @@ void Root::Snapshot::shift(int row, int size, const double* shift) {
     const bool own = c >= row && c < row + size;
     for (int r = c; r < n; ++r) {
       const double value = column[r - first];
-      if (own) b[static_cast<std::size_t>(r)] -= value * shift[c - row];
-      if (r > c && r >= row && r < row + size) b[static_cast<std::size_t>(c)] -= value * shift[r - row];
+      if (own) b[index(r)] -= value * shift[c - row];
+      if (r > c && r >= row && r < row + size) b[index(c)] -= value * shift[r - row];
     }
     column += n - first;
   }
@@ -124,9 +124,9 @@ void Root::restore(const Snapshot& from) {
   reserve(n);
   if (occupant_.size() < from.occupant.size()) occupant_.resize(from.occupant.size(), -1);
   for (int slot = 0; slot < top_; ++slot) {
-    const int landmark = from.occupant[static_cast<std::size_t>(slot)];
-    occupant_[static_cast<std::size_t>(slot)] = landmark;
-    if (landmark >= 0) slot_of_[static_cast<std::size_t>(landmark)] = slot;
+    const int landmark = from.occupant[index(slot)];
+    occupant_[index(slot)] = landmark;
+    if (landmark >= 0) slot_of_[index(landmark)] = slot;
   }
   const double* at = from.H.data();
   for (int c = 0; c < std::max(n, used); ++c) {
@@ -146,18 +146,18 @@ void Root::reserve(int rows) {
   if (rows <= stride_) return;
   // An odd number of cache lines: columns then don't compete for the same cache sets.
   const int stride = (std::max(rows, stride_ + stride_ / 2) / kPadding | 1) * kPadding;
-  Buffer H(static_cast<std::size_t>(stride) * static_cast<std::size_t>(stride), 0.0);
+  Buffer H(index(stride) * index(stride), 0.0);
   for (int c = 0; c < stride_; ++c) std::copy(column(c) + c, column(c) + stride_, H.begin() + c * (stride + 1L));
   H_ = std::move(H);
-  b_.resize(static_cast<std::size_t>(stride), 0.0);
+  b_.resize(index(stride), 0.0);
   stride_ = stride;
 }
 
 void Root::forget_occupants() {
   for (int slot = 0; slot < top_; ++slot) {
-    const int landmark = occupant_[static_cast<std::size_t>(slot)];
-    if (landmark >= 0) slot_of_[static_cast<std::size_t>(landmark)] = -1;
-    occupant_[static_cast<std::size_t>(slot)] = -1;
+    const int landmark = occupant_[index(slot)];
+    if (landmark >= 0) slot_of_[index(landmark)] = -1;
+    occupant_[index(slot)] = -1;
   }
   top_ = 0;
 }

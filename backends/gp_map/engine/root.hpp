@@ -6,6 +6,7 @@
 
 #include "backends/gp_map/engine/dense_kernels.hpp"
 #include "backends/gp_map/factors.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench::gp_map {
 
@@ -33,24 +34,22 @@ inline void add_damping(double* H, std::ptrdiff_t stride, double* b, int row, in
 /// Invariant: rows and columns of a place that nothing occupies are zero.
 class Root {
  public:
-  static constexpr int kStates = 24;
   static int row_of_state(int state) { return 12 * (state % 2); }
-  static int row_of_slot(int slot) { return kStates + 3 * slot; }
+  static int row_of_slot(int slot) { return 24 + 3 * slot; }
+  static int slot_of_row(int row) { return (row - 24) / 3; }
 
   int extent() const { return padded(row_of_slot(top_)); }  ///< rows in use, padded
   int slots() const { return top_; }                        ///< slots in use, with holes
   int stride() const { return stride_; }
   double* H() { return H_.data(); }
   double* b() { return b_.data(); }
-  const double* H() const { return H_.data(); }
+  double* column(int c) { return H_.data() + static_cast<std::ptrdiff_t>(c) * stride_; }
+  const double* column(int c) const { return H_.data() + static_cast<std::ptrdiff_t>(c) * stride_; }
   const double* b() const { return b_.data(); }
 
   /// The landmark in a slot, −1: none. The slot of a landmark, −1: not in the root.
-  int occupant(int slot) const { return occupant_[static_cast<std::size_t>(slot)]; }
-  int slot_of(int landmark) const {
-    const auto index = static_cast<std::size_t>(landmark);
-    return index < slot_of_.size() ? slot_of_[index] : -1;
-  }
+  int occupant(int slot) const { return occupant_[index(slot)]; }
+  int slot_of(int landmark) const { return index(landmark) < slot_of_.size() ? slot_of_[index(landmark)] : -1; }
 
   /// Gives a landmark the lowest free slot.
   int enter(int landmark);
@@ -81,7 +80,6 @@ class Root {
   void restore(const Snapshot& from);
 
  private:
-  double* column(int c) { return H_.data() + static_cast<std::ptrdiff_t>(c) * stride_; }
   void reserve(int rows);
   void forget_occupants();
 

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "backends/gp_map/engine/root.hpp"
+
+namespace evbench::gp_map {
+
+/// The Cholesky factor of the root, H = L Lᵀ. Its rows are in another order than the root's: landmarks by their slots,
+/// 3 rows each (a unit diagonal for a slot that nobody has), then one or two states, 12 rows each, then padding. So
+/// what eliminating the landmarks leaves of the newest states stands in the last rows.
+class RootFactor {
+ public:
+  /// Takes H and b of the root's landmarks and of state `oldest`; of the states after it, zeros.
+  void load(const Root& root, int oldest, int states);
+
+  int row_of_slot(int slot) const { return 3 * slot; }
+  int row_of_states() const { return 3 * slots_; }
+  int size() const { return size_; }  ///< rows, padded; in each column there is room for kPadding more
+  double* column(int c) { return L_.data() + static_cast<std::ptrdiff_t>(c) * stride(); }
+  const double* column(int c) const { return L_.data() + static_cast<std::ptrdiff_t>(c) * stride(); }
+  int stride() const { return size_ + kPadding; }
+  double* b() { return b_.data(); }
+
+  void damp(int row, int rows, double lambda, const double* now) {
+    add_damping(L_.data(), stride(), b_.data(), row, rows, lambda, now);
+  }
+
+  /// L from H. Returns the first row that is not determined, −1: none.
+  int factorise();
+
+  /// x ← L⁻¹ x and x ← L⁻ᵀ x.
+  void solve_forward(double* x) const;
+  void solve_back(double* x) const;
+
+  /// What belongs to the landmarks and to state `oldest`, from one layout to the other.
+  void copy_from_root(const double* root, double* x) const;
+  void copy_to_root(const double* x, double* root) const;
+
+ private:
+  int slots_ = 0, size_ = 0, state_in_root_ = 0;
+  Buffer L_, b_;
+};
+
+}  // namespace evbench::gp_map
