@@ -66,7 +66,7 @@ function(evbench_tests name)
     evbench_library(evbench_test_main STATIC SOURCES ${CMAKE_SOURCE_DIR}/core/testing/main.cpp
                     LINKS Catch2::Catch2 evbench::core)
     evbench_library(evbench_test_support STATIC SOURCES ${CMAKE_SOURCE_DIR}/core/testing/data.cpp
-                    LINKS evbench_test_main evbench::core)
+                    LINKS evbench_test_main evbench::core PRECOMPILED precompiled_test)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINKS} evbench_test_support evbench_flags)
