@@ -47,6 +47,13 @@ using Matrix24 = Eigen::Matrix<double, 24, 24>;
 using Vector24 = Eigen::Matrix<double, 24, 1>;
 using Matrix3x24 = Eigen::Matrix<double, 3, 24>;
 
+/// Reprojection errors of some observations.
+struct ErrorSum {
+  double px = 0.0;  ///< of those before the camera
+  int count = 0;
+  int behind = 0;  ///< of these, so many have the landmark behind the camera
+};
+
 /// What one interval contributes to the normal equations H δ = −g, H = Σ JᵀJ, g = Σ Jᵀe: state columns are the
 /// increments (pose, velocity) of state k−1, then of state k.
 struct IntervalLinearisation {
@@ -55,6 +62,7 @@ struct IntervalLinearisation {
     Matrix3x24 landmark_states;  ///< H(landmark, states)
     Matrix3 landmark_landmark;   ///< H(landmark, landmark)
     Vector3 gradient;            ///< g(landmark)
+    ErrorSum error;
   };
   Matrix24 states;                  ///< H(states, states), symmetric, complete; with the motion prior
   Vector24 gradient;                ///< g(states)

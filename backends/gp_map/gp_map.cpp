@@ -94,7 +94,6 @@ bool GpMap::initialise(double t) {
   if (!map) return false;
   engine_.emplace(std::move(map->graph), EngineOptions{.lag = options_.lag});
   for (const TrackId track : map->tracks) become_landmark(track, static_cast<int>(track_of_.size()));
-  errors_.update(*engine_);
   context_.log(
       fmt::format("{:.3f} s: first map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s",
                   graph().states.back().t, graph().landmarks.size(), graph().observation_count(), map->parallax_deg,
@@ -107,7 +106,7 @@ bool GpMap::initialise(double t) {
 void GpMap::remove_outliers() {
   std::vector<int> outliers;
   for (const auto& group : graph().intervals.back().groups()) {
-    if (errors_.mean(group.landmark) > options_.map.outlier_threshold) outliers.push_back(group.landmark);
+    if (engine_->reprojection_mean(group.landmark) > options_.map.outlier_threshold) outliers.push_back(group.landmark);
   }
   for (const int landmark : outliers) become_outlier(landmark);
 }
@@ -142,10 +141,7 @@ void GpMap::add_landmarks() {
   }
 }
 
-void GpMap::optimise() {
-  last_update_ = engine_->update();
-  errors_.update(*engine_);
-}
+void GpMap::optimise() { last_update_ = engine_->update(); }
 
 void GpMap::check_support() {
   using Support = TrackingMonitor::Support;

@@ -12,7 +12,6 @@
 #include "backends/gp_map/first_map.hpp"
 #include "backends/gp_map/observation_follower.hpp"
 #include "backends/gp_map/options.hpp"
-#include "backends/gp_map/reprojection_errors.hpp"
 #include "backends/gp_map/state_placement.hpp"
 #include "core/plugin/backend.hpp"
 #include "core/plugin/tracking_monitor.hpp"
@@ -86,7 +85,6 @@ class GpMap : public BackEnd {
   StatePlacement placement_;
   FirstMapFinder first_map_;
   std::optional<Engine> engine_;  ///< from the first map on
-  ReprojectionErrors errors_;
   ObservationFollower follower_;
   std::map<TrackId, Track> tracks_;
   TrackBuffer waiting_;                           ///< observations of waiting tracks

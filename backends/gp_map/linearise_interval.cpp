@@ -156,6 +156,10 @@ void add_landmarks(const Shared& shared, const IntervalInput& in, const Matrix3&
         m);
     add_first_pose(landmark, mT, m, sums);
     write_couplings(landmark, mT, R0, map, couplings);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      if (couplings[i] == nullptr) continue;
+      couplings[i]->error = {landmark.error[i], count[i], static_cast<int>(landmark.behind[i])};
+    }
   }
 }
 

@@ -18,6 +18,7 @@ Engine::Engine(FactorGraph graph, const EngineOptions& options)
     points_.add_landmark(landmark.position);
     factorisation_.add_landmark();
   }
+  for (int k = 1; k < static_cast<int>(graph_.states.size()); ++k) points_.errors().take(graph_, k);
 }
 
 void Engine::add_state(const ControlState& guess) {
@@ -95,6 +96,14 @@ void Engine::remove_landmark(int landmark) {
   }
 }
 
+double Engine::reprojection_mean(int landmark) {
+  if (!newest_errors_taken_ && graph_.states.size() > 1) {
+    points_.errors().take(graph_, static_cast<int>(graph_.states.size()) - 1);
+  }
+  newest_errors_taken_ = true;
+  return points_.errors().mean(landmark);
+}
+
 double Engine::size_of_state(int i, const Vector12& delta) const {
   const double dt = i > 0 ? graph_.states[index(i)].t - graph_.states[index(i - 1)].t : 0.0;
   constexpr double kHermiteMaximum = 4.0 / 27.0;  // of s (1 − s)²
@@ -150,7 +159,10 @@ void Engine::forget_old() {
   while (oldest < last && graph_.states[index(oldest)].t < from) ++oldest;
   const int before = factorisation_.base();
   const int base = factorisation_.marginalise(oldest);
-  for (int k = before + 1; k <= base; ++k) graph_.forget_interval(k);
+  for (int k = before + 1; k <= base; ++k) {
+    graph_.forget_interval(k);
+    points_.errors().settle(k);
+  }
   std::erase_if(candidates_, [&](const Variable& v) {
     return v.kind == Variable::Kind::state ? v.index < base : factorisation_.is_forgotten(v.index);
   });
@@ -185,6 +197,7 @@ UpdateSummary Engine::update() {
     return summary;
   }
   live_.drop();
+  newest_errors_taken_ = false;
   const std::int64_t stages = factorisation_.stages_done();
   const std::int64_t linearised = points_.linearised_observations();
   choose_points();

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -69,6 +68,11 @@ class Engine {
   /// Whether a landmark has been marginalised: it takes no more observations.
   bool forgotten(int landmark) const { return factorisation_.is_forgotten(landmark); }
 
+  /// A landmark's mean reprojection error over all its observations, those that have been marginalised included [px]:
+  /// in the newest interval at the estimate, before at the linearisation points. Infinite behind the camera. Constant
+  /// time.
+  double reprojection_mean(int landmark);
+
   /// A state later than the newest one, with the motion prior between them.
   void add_state(const ControlState& guess);
   void add_pose_prior(const PosePrior& prior);
@@ -94,14 +98,6 @@ class Engine {
 
   /// Removes a landmark with all its observations.
   void remove_landmark(int landmark);
-
-  /// A variable that the last update has changed.
-  struct Change {
-    Variable variable;
-    Vector12 before;  ///< its increment before; a landmark's: the first 3
-    double size;      ///< of the change, as EngineOptions::relinearise measures it [rad]
-  };
-  std::span<const Change> changes() const { return changes_; }
 
   /// One Gauss-Newton step over what the changes since the last update concern, damped if it would raise the cost.
   UpdateSummary update();
@@ -130,6 +126,13 @@ class Engine {
                                               const Matrix23& J_landmark);
 
  private:
+  /// A variable's increment before a solve, to undo it.
+  struct Change {
+    Variable variable;
+    Vector12 before;  ///< a landmark's: the first 3
+    double size;      ///< [rad]
+  };
+
   /// Stage `stage` and those after it are to be redone.
   void invalidate(int stage) { restart_ = std::min(restart_, std::max(stage, factorisation_.base() + 1)); }
   void touch(int stage) {
@@ -164,6 +167,7 @@ class Engine {
   std::optional<GpInterval> live_interval_;  ///< at the linearisation points
   GpInterval::Derivatives live_derivatives_;
   bool damped_ = false;               ///< the factorisation at hand is
+  bool newest_errors_taken_ = false;  ///< since the last update
   int restart_ = 0;                   ///< the oldest stage that has changed
   Buffer delta_;                      ///< increments in the root's layout, while solving back
   std::vector<double> slot_change_;   ///< of the landmark in each slot, in the solve at hand

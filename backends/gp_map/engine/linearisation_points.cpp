@@ -13,6 +13,7 @@ void LinearisationPoints::add_state(const ControlState& state) {
 
 void LinearisationPoints::remove_newest_state() {
   invalidate(static_cast<int>(states_.size()) - 1);
+  errors_.remove(static_cast<int>(states_.size()) - 1);
   states_.pop_back();
   state_deltas_.pop_back();
   nearest_.pop_back();
@@ -67,6 +68,7 @@ const IntervalLinearisation& LinearisationPoints::interval(const FactorGraph& gr
       {graph.camera, graph.loss, graph.qc, states_[index(k - 1)], states_[index(k)], observations, positions_},
       kept.linear);
   linearised_observations_ += static_cast<std::int64_t>(observations.all().size());
+  errors_.set(k, kept.linear.couplings);
   kept.interval = k;
   kept.valid = true;
   return kept.linear;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "backends/gp_map/factors.hpp"
+#include "backends/gp_map/engine/reprojection_errors.hpp"
 
 namespace evbench::gp_map {
 
@@ -45,6 +45,9 @@ class LinearisationPoints {
     return index(i) + 1 < nearest_.size() ? std::min(nearest_[index(i)], nearest_[index(i) + 1]) : nearest_[index(i)];
   }
 
+  /// As of when each interval was linearised last.
+  ReprojectionErrors& errors() { return errors_; }
+
   std::int64_t linearised_observations() const { return linearised_observations_; }
 
  private:
@@ -63,6 +66,7 @@ class LinearisationPoints {
   std::vector<Kept> ring_;       ///< interval k at k mod kept; a miss overwrites
   std::vector<double> nearest_;  ///< by interval
   std::vector<Vector3> positions_;
+  ReprojectionErrors errors_;
   std::int64_t linearised_observations_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "backends/gp_map/engine/lanes.hpp"
 #include "backends/gp_map/factors.hpp"
@@ -96,6 +97,7 @@ struct LandmarkSums {
   std::array<std::array<Lane, 3>, 3> mm{};  ///< lower triangle
   std::array<Lane, 3> gradient{};
   std::array<std::array<Lane, 18>, 3> my{};
+  Lane error{}, behind{};  ///< [px] of reprojection; how many have the landmark behind the camera
 };
 
 /// A row of the Jacobians of (m, ξ) for one component of the residual.
@@ -186,6 +188,10 @@ void add_observation(const Shared& shared, const Lane3& m, const Measured& z, La
   const Lane e0 = in_front ? z.inverse_sigma * (shared.camera.fx * x + shared.camera.cx - z.u) : behind;
   const Lane e1 = in_front ? z.inverse_sigma * (shared.camera.fy * y + shared.camera.cy - z.v) : behind;
   const Lane square = e0 * e0 + e1 * e1;
+  for (int i = 0; i < kLanes; ++i) {
+    if (z.present[i] != 0.0 && in_front[i]) landmark.error[i] += std::sqrt(square[i]) / z.inverse_sigma[i];
+  }
+  landmark.behind += in_front ? Lane{} : z.present;
   Lane weight = z.present;
   if (shared.loss.is_quadratic()) {
     sums.cost += 0.5 * z.present * square;
