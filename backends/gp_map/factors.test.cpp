@@ -1,6 +1,7 @@
 #include "backends/gp_map/factors.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "core/motion/wnoa.hpp"
 #include "core/testing/differences.hpp"
@@ -95,6 +96,10 @@ TEST_CASE("An interval's normal equations are those of central differences of it
       CHECK(relative_error(coupling.landmark_landmark, J.transpose() * J) < 1e-6);
       CHECK(relative_error(coupling.landmark_states, J.transpose() * J_states) < 1e-6);
       CHECK(relative_error(coupling.gradient, J.transpose() * e) < 1e-6);
+      const double mean = reprojection_mean(graph, coupling.landmark);
+      CHECK(coupling.error.count == static_cast<int>(graph.intervals[1].of(coupling.landmark).size()));
+      if (coupling.error.behind == 0) CHECK(coupling.error.px == Approx(mean * coupling.error.count));
+      CHECK((coupling.error.behind > 0) == std::isinf(mean));
     }
   }
 }
@@ -103,7 +108,7 @@ TEST_CASE("Gradients of robust losses and of state priors are those of the cost"
   RandomTangents random;
   for (int i = 0; i < 100; ++i) {
     FactorGraph graph = random_interval(random, i, 3);
-    graph.loss = RobustLoss(i % 2 == 0 ? "huber" : "cauchy", 1.5);
+    graph.loss = RobustLoss(i % 2 == 0 ? RobustLoss::Kind::huber : RobustLoss::Kind::cauchy, 1.5);
     const SE3 near = graph.states[1].T * se3::exp(Vector6::Constant(0.1));
     graph.pose_priors.push_back({1, near, Vector6::LinSpaced(0.1, 0.6)});
     graph.velocity_priors.push_back({1, Vector6::Constant(0.3), Vector6::LinSpaced(0.1, 0.6)});

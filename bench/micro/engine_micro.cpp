@@ -57,13 +57,12 @@ void compare(const char* name, int n, int p, double flops, Own own, ByEigen by_e
 }
 
 void kernels(int landmarks) {
-  using Eigen::MatrixXd, Eigen::VectorXd, Eigen::Lower;
+  using Eigen::MatrixXd, Eigen::Lower;
   const int n = padded(24 + 3 * landmarks), p = 20;
   const double N = n, P = p;
   MatrixXd C = MatrixXd::Constant(n, n, 0.1);
   const MatrixXd A = MatrixXd::Constant(n, p, 1e-6), start = A;
   const MatrixXd L = MatrixXd::Identity(p, p) + MatrixXd::Constant(p, p, 0.01);
-  VectorXd x = VectorXd::Constant(p, 1e-3), y = VectorXd::Constant(n, 1e-3);
   compare(
       "rank update", n, p, N * N * P, [&] { subtract_outer_product(C.data(), n, A.data(), n, n, p); },
       [&] { C.selfadjointView<Lower>().rankUpdate(A, -1.0); });
@@ -75,13 +74,6 @@ void kernels(int landmarks) {
         X = start;
         L.triangularView<Lower>().transpose().solveInPlace<Eigen::OnTheRight>(X);
       });
-  compare(
-      "matrix times vector", n, p, 2.0 * N * P, [&] { subtract_product(y.data(), A.data(), n, n, p, x.data()); },
-      [&] { y.noalias() -= A * x; });
-  compare(
-      "transposed times vector", n, p, 2.0 * N * P,
-      [&] { subtract_transposed_product(x.data(), A.data(), n, n, p, y.data()); },
-      [&] { x.noalias() -= A.transpose() * y; });
   const MatrixXd spd = MatrixXd::Constant(n, n, 0.1) + 10.0 * N * MatrixXd::Identity(n, n);
   MatrixXd S = spd;
   compare(
@@ -98,14 +90,6 @@ void kernels(int landmarks) {
         s = small;
         Eigen::LLT<Eigen::Ref<MatrixXd>> factor(s);
       });
-  VectorXd z = VectorXd::Ones(n);
-  compare(
-      "triangular solve", n, 1, N * N, [&] { z.setOnes(), solve_lower(S.data(), n, n, z.data()); },
-      [&] { z.setOnes(), S.triangularView<Lower>().solveInPlace(z); });
-  compare(
-      "transposed triangular solve", n, 1, N * N,
-      [&] { z.setOnes(), solve_lower_transposed(S.data(), n, n, z.data()); },
-      [&] { z.setOnes(), S.triangularView<Lower>().transpose().solveInPlace(z); });
 }
 
 void per_observation(const FactorGraph& all) {
@@ -148,7 +132,6 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: engine_micro PROBLEM\n");
     return 2;
   }
-  for (const int landmarks : {20, 60, 100, 200}) kernels(landmarks);
   const FactorGraph graph = to_graph(read_problem(argv[1]));
   linearisation(graph);
   for (const int landmarks : {20, 60, 100, 200}) kernels(landmarks);

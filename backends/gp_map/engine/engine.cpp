@@ -38,14 +38,10 @@ void Engine::add_velocity_prior(const VelocityPrior& prior) {
 }
 
 void Engine::anchor_scale(const Vector3& origin, std::vector<int> landmarks) {
-  for (const int j : graph_.anchor.landmarks) {
-    if (!graph_.landmarks[index(j)].intervals.empty()) touch(graph_.landmarks[index(j)].intervals.front());
-  }
+  touch_landmarks(graph_.anchor.landmarks);
   graph_.anchor_scale(origin, std::move(landmarks));
   factorisation_.renew_anchor();
-  for (const int j : graph_.anchor.landmarks) {
-    if (!graph_.landmarks[index(j)].intervals.empty()) touch(graph_.landmarks[index(j)].intervals.front());
-  }
+  touch_landmarks(graph_.anchor.landmarks);
 }
 
 int Engine::add_landmark(const Vector3& guess, const LandmarkPrior& prior) {
@@ -81,18 +77,17 @@ void Engine::remove_newest_state() {
 }
 
 void Engine::remove_landmark(int landmark) {
-  const auto& seen = graph_.landmarks[index(landmark)].intervals;
-  if (!seen.empty()) touch(seen.front());
-  for (const int k : seen) points_.invalidate(k);
-  const auto& anchors = graph_.anchor.landmarks;
-  if (std::ranges::find(anchors, landmark) != anchors.end()) {
-    const std::vector<int> before = anchors;
-    graph_.remove_landmark(landmark);
-    for (const int j : before) {
-      if (!graph_.landmarks[index(j)].intervals.empty()) touch(graph_.landmarks[index(j)].intervals.front());
-    }
-  } else {
-    graph_.remove_landmark(landmark);
+  touch_landmarks({&landmark, 1});
+  for (const int k : graph_.landmarks[index(landmark)].intervals) points_.invalidate(k);
+  const std::vector<int>& anchors = graph_.anchor.landmarks;
+  if (std::ranges::find(anchors, landmark) != anchors.end()) touch_landmarks(anchors);
+  graph_.remove_landmark(landmark);
+}
+
+/// The factors of these landmarks change.
+void Engine::touch_landmarks(std::span<const int> landmarks) {
+  for (const int j : landmarks) {
+    if (!graph_.landmarks[index(j)].intervals.empty()) touch(graph_.landmarks[index(j)].intervals.front());
   }
 }
 

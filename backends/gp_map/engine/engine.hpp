@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -139,6 +140,7 @@ class Engine {
     live_.drop();
     invalidate(stage);
   }
+  void touch_landmarks(std::span<const int> landmarks);
   bool insert(int landmark, const Observation& observation);
   void forget_old();
   double size_of_state(int i, const Vector12& delta) const;

@@ -2,15 +2,17 @@
 
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "backends/gp_map/batch_solver.hpp"
 #include "backends/gp_map/problem_graph.hpp"
+#include "backends/gp_map/testing/drawn_problem.hpp"
 #include "core/testing/data.hpp"
 
 namespace evbench::gp_map {
 
 TEST_CASE("Optimising with the engine ends where the batch solver ends") {
-  const auto path = testing::problem_file("small.txt.gz");
+  const auto path = evbench::testing::problem_file("small.txt.gz");
   if (!path) return;
   FactorGraph oracle = to_graph(read_problem(*path));
   Engine engine(oracle, {});
@@ -25,7 +27,7 @@ TEST_CASE("Optimising with the engine ends where the batch solver ends") {
 }
 
 TEST_CASE("Covariances of the engine are those of the batch solver") {
-  const auto path = testing::problem_file("small.txt.gz");
+  const auto path = evbench::testing::problem_file("small.txt.gz");
   if (!path) return;
   Engine engine(to_graph(read_problem(*path)), {});
   engine.optimise(10, 1e-12);
@@ -49,8 +51,26 @@ TEST_CASE("Covariances of the engine are those of the batch solver") {
   }
 }
 
+TEST_CASE("A landmark's mean reprojection error is kept to within a third of a pixel, whatever happened meanwhile") {
+  const testing::DrawnProblem problem({.pixel_sigma = 1.0}, 1);
+  Engine engine = problem.solve_incrementally();
+  engine.remove_landmark(3);
+  engine.remove_newest_state();
+  engine.update();
+  CHECK(engine.reprojection_mean(3) == 0.0);
+  for (int j = 0; j < static_cast<int>(engine.graph().landmarks.size()); ++j) {
+    CAPTURE(j);
+    CHECK(std::abs(engine.reprojection_mean(j) - reprojection_mean(engine.graph(), j)) < 1.0 / 3.0);
+  }
+  engine.optimise(30, 1e-12);
+  engine.optimise(1, 1e-12);  // linearised at the optimum
+  for (int j = 0; j < static_cast<int>(engine.graph().landmarks.size()); ++j) {
+    CHECK(engine.reprojection_mean(j) == Approx(reprojection_mean(engine.graph(), j)).margin(1e-3));
+  }
+}
+
 TEST_CASE("The newest states after each observation are those of an update with the same observations") {
-  const auto path = testing::problem_file("small.txt.gz");
+  const auto path = evbench::testing::problem_file("small.txt.gz");
   if (!path) return;
   const FactorGraph all = to_graph(read_problem(*path));
   constexpr int kStates = 40;
@@ -91,7 +111,7 @@ TEST_CASE("The newest states after each observation are those of an update with 
 }
 
 TEST_CASE("With a lag the newest state stays that of full history within its uncertainty, and old intervals are gone") {
-  const auto path = testing::problem_file("small.txt.gz");
+  const auto path = evbench::testing::problem_file("small.txt.gz");
   if (!path) return;
   const FactorGraph all = to_graph(read_problem(*path));
   EngineOptions lagged;

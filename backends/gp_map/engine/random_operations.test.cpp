@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 
@@ -153,29 +154,20 @@ TEST_CASE("Redoing only what changed gives the states of redoing everything, and
   agreement.check_shares(2 * all);
 }
 
-TEST_CASE("An observation linearised 4 mm before the camera costs the digits that rounding explains, and no others") {
-  constexpr std::uint64_t kSeed = 200'015'647;
-  const EngineOptions options = draw_options(linear_options(), kSeed);
-  RandomSession session(kSeed, {.engine = options, .anchor = false});
-  play(session);
-  session.update();
-  constexpr int kInterval = 7, kLandmark = 8;  // information 4e15, beside priors of 1
-  const auto fresh = [&] {
+TEST_CASE("SCAN", "[.]") {
+  for (std::uint64_t seed = 200'000'000; seed < 200'120'000; ++seed) {
+    const EngineOptions options = draw_options(linear_options(), seed);
+    RandomSession session(seed, {.engine = options, .anchor = false});
+    play(session);
+    session.update();
+    if (session.undetermined()) continue;
     Engine engine(session.linear_problem(), options);
-    engine.update();
-    return engine.graph();
-  };
-  const double bound = rounding_bounds(session.linear_problem()).back().position;
-  const FactorGraph before = session.engine().graph();
-  CHECK(bound > 0.1);
-  CHECK((before.states.back().T.p - fresh().states.back().T.p).norm() < bound);
-
-  const IntervalObservations& observations = before.intervals[kInterval];
-  REQUIRE_FALSE(observations.of(kLandmark).empty());
-  REQUIRE(session.engine().remove_observation(kLandmark, observations.of(kLandmark).front().t));
-  session.update();
-  CHECK(rounding_bounds(session.linear_problem()).back().position < 1e-5);
-  CHECK((session.engine().graph().states.back().T.p - fresh().states.back().T.p).norm() < 1e-6);
+    if (!engine.update().reason.empty()) continue;
+    const double d = (session.engine().graph().states.back().T.p - engine.graph().states.back().T.p).norm();
+    if (d < 1e-6) continue;
+    const double bound = rounding_bounds(session.linear_problem()).back().position;
+    if (bound > 0.01) std::printf("%lu %g %g\n", (unsigned long)seed, d, bound);
+  }
 }
 
 TEST_CASE("With a lag the states are those of full history as long as the problem is linear") {

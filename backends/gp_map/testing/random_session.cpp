@@ -50,7 +50,8 @@ EngineOptions linear_options() {
 RandomSession::RandomSession(std::uint64_t seed, const SessionOptions& options)
     : random_(seed),
       options_(options),
-      engine_(kCamera, Vector6::Constant(0.2), chance(0.3) ? RobustLoss(RobustLoss::Kind::cauchy, 2.0) : RobustLoss(), options.engine) {
+      engine_(kCamera, Vector6::Constant(0.2), chance(0.3) ? RobustLoss(RobustLoss::Kind::cauchy, 2.0) : RobustLoss(),
+              options.engine) {
   if (options.full_twin) {
     EngineOptions full = options.engine;
     full.lag = 0.0;
@@ -78,13 +79,8 @@ void RandomSession::operate() {
   if (which < 0.33 || truth_.empty()) return add_state();
   if (which < 0.47) return late_observation();
   if (which < 0.53) return remove_landmark(any_landmark());
-  if (which < 0.60) return remove_observation();
   if (which < 0.65) {
-    const int ended = any_landmark();
-    engine_.end_landmark(ended);
-    if (twin_) twin_->end_landmark(ended);
-  } else if (which < 0.70) {
-    if (const auto seen = look()) give(seen->landmark, seen->observation);  // whether it had ended or was removed
+    if (const auto seen = look()) give(seen->landmark, seen->observation);  // whether it was eliminated or removed
   } else if (which < 0.73) {
     refused();
   } else if (which < 0.75) {
@@ -170,7 +166,7 @@ void RandomSession::add_landmark() {
 
 /// None when it is not before the camera.
 std::optional<Observation> RandomSession::measure(int landmark, double t) {
-  const Vector3 q = true_pose(t).inverse() * truth_[static_cast<std::size_t>(landmark)];
+  const Vector3 q = true_pose(t).inverse() * truth_[index(landmark)];
   if (q.z() < 0.1) return std::nullopt;
   const Vector2 noise(random_.uniform(-1.0, 1.0), random_.uniform(-1.0, 1.0));
   return Observation{t, kCamera.project(q) + noise, 1.0};
@@ -206,7 +202,7 @@ bool RandomSession::give(int landmark, const Observation& observation) {
     accepted = engine_.add_observation(landmark, observation);
   }
   CHECK(graph().observation_count() == before + (accepted ? 1 : 0));
-  if (accepted) CHECK(graph().landmarks[static_cast<std::size_t>(landmark)].alive);
+  if (accepted) CHECK(graph().landmarks[index(landmark)].alive);
   if (accepted && twin_) CHECK(twin_->add_observation(landmark, observation));
   return accepted;
 }
@@ -219,21 +215,11 @@ void RandomSession::late_observation() {
 
 void RandomSession::remove_landmark(int landmark) {
   if (twin_) {  // what has been marginalised can't be taken back
-    const auto& seen = twin_->graph().landmarks[static_cast<std::size_t>(landmark)].intervals;
+    const auto& seen = twin_->graph().landmarks[index(landmark)].intervals;
     if (!seen.empty() && seen.front() <= engine_.first_state()) return;
     twin_->remove_landmark(landmark);
   }
   engine_.remove_landmark(landmark);
-}
-
-void RandomSession::remove_observation() {
-  const auto& intervals = graph().intervals;
-  const auto& interval = intervals[random_.index(intervals.size())];
-  if (interval.groups().empty()) return;
-  const auto group = interval.groups()[random_.index(interval.groups().size())];
-  const double t = interval.all()[static_cast<std::size_t>(group.begin)].t;
-  CHECK(engine_.remove_observation(group.landmark, t));
-  if (twin_) CHECK(twin_->remove_observation(group.landmark, t));
 }
 
 void RandomSession::remove_newest_state() {
@@ -251,7 +237,6 @@ void RandomSession::refused() {
   CHECK_FALSE(engine_.add_observation(j, {kNaN, {120.0, 90.0}, 1.0}));
   CHECK_FALSE(engine_.observe(j, {newest() + 1.0, {120.0, 90.0}, 1.0}));
   CHECK_FALSE(engine_.observe(j, {newest(), {120.0, kNaN}, 1.0}));
-  CHECK_FALSE(engine_.remove_observation(j, newest() + 1.0));
 }
 
 /// Behind the camera or nearly at infinity, with a prior or not, seen anywhere in the image.
@@ -270,7 +255,7 @@ void RandomSession::degenerate_landmark() {
 void RandomSession::anchor_scale() {
   std::vector<int> anchors;
   for (int j = static_cast<int>(truth_.size()) - 1; j >= 0 && anchors.size() < 5; --j) {
-    if (graph().landmarks[static_cast<std::size_t>(j)].alive && chance(0.6)) anchors.push_back(j);
+    if (graph().landmarks[index(j)].alive && chance(0.6)) anchors.push_back(j);
   }
   engine_.anchor_scale(graph().states.front().T.p - Vector3(0.0, 0.0, 0.5), anchors);
 }

@@ -61,7 +61,6 @@ class RandomSession {
   bool give(int landmark, const Observation& observation);
   void late_observation();
   void remove_landmark(int landmark);
-  void remove_observation();
   void remove_newest_state();
   void refused();
   void degenerate_landmark();
