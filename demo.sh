@@ -3,7 +3,7 @@
 # hand (EVBENCH_DATA), on real tracks. Writes results/.
 set -euo pipefail
 cd "$(dirname "$0")"
-./setup.sh release
+./setup.sh release evbench
 evbench=build/release/bin/evbench
 
 echo "== Table I, simulated: 30 s of a robot arm in front of dots"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what evbench is built with (packages.txt, Debian 12) and builds a preset, release or another: ./setup.sh fuzz
+# Installs what evbench is built with (packages.txt, Debian 12) and builds a preset, release or another, all of it or one
+# target: ./setup.sh fuzz; ./setup.sh release evbench
 set -euo pipefail
 cd "$(dirname "$0")"
 preset=${1:-release}
@@ -21,4 +22,4 @@ fi
 
 echo "== building (preset $preset, in build/$preset)"
 cmake --preset "$preset" >/dev/null
-cmake --build --preset "$preset" -- --quiet
+cmake --build --preset "$preset" ${2:+--target "$2"} -- --quiet

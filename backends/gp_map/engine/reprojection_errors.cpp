@@ -47,7 +47,7 @@ void ReprojectionErrors::remove(int k) {
   parts(k).clear();
 }
 
-void ReprojectionErrors::settle(int k) { parts(k) = {}; }
+void ReprojectionErrors::settle(int k) { parts(k) = std::vector<Part>(); }
 
 double ReprojectionErrors::mean(int landmark) const {
   if (totals_.size() <= index(landmark) || totals_[index(landmark)].count == 0) return 0.0;
