@@ -3,10 +3,12 @@
 #include <Eigen/SVD>
 #include <cmath>
 
+#include "core/support/index.hpp"
+
 namespace evbench {
 namespace {
 
-constexpr double degenerate = 1e-12;  // relative to the product of the spreads: 1e-6 in each trajectory's size
+constexpr double kDegenerate = 1e-12;  // relative to the product of the spreads: 1e-6 in each trajectory's size
 
 /// First and second moments of the positions; orientations for what positions leave open.
 struct Moments {
@@ -71,7 +73,7 @@ Alignment align_yaw(const Moments& m) {
   const Vector3 z = Vector3::UnitZ();
   const Matrix3& C = m.covariance;
   const double determined = std::hypot(C(1, 0) - C(0, 1), C(0, 0) + C(1, 1));
-  const bool open = determined <= degenerate * std::sqrt(m.variance_truth * m.variance_estimate) ||
+  const bool open = determined <= kDegenerate * std::sqrt(m.variance_truth * m.variance_estimate) ||
                     stands_still(m.variance_truth, m.mean_truth) || stands_still(m.variance_estimate, m.mean_estimate);
   return {through_means(m, rotation_about(z, best_angle(z, open ? m.rotations : C)), 1.0),
           open ? "no horizontal motion: the yaw is from orientations" : ""};
@@ -91,7 +93,7 @@ Alignment align_umeyama(const Moments& m, AlignmentMethod method) {
   NearestRotation best = nearest_rotation(m.covariance);
   const double scale = method == AlignmentMethod::se3 ? 1.0 : best.trace / m.variance_estimate;
   if (method == AlignmentMethod::scale) return {{scale, SE3{}}, ""};
-  if (best.values[1] > degenerate * std::sqrt(m.variance_truth * m.variance_estimate)) {
+  if (best.values[1] > kDegenerate * std::sqrt(m.variance_truth * m.variance_estimate)) {
     return {through_means(m, best.R, scale), ""};
   }
   const Matrix3 R =
@@ -106,7 +108,7 @@ Alignment align(std::span<const PosePair> pairs, AlignmentMethod method) {
   const std::size_t needed = method == AlignmentMethod::origin ? 1 : 3;
   if (pairs.size() < needed) {
     throw InputError(fmt::format("{} pairs of poses to align on; {} alignment needs at least {}", pairs.size(),
-                                 alignment_names[static_cast<std::size_t>(method)], needed));
+                                 kAlignmentNames[index(method)], needed));
   }
   if (method == AlignmentMethod::origin) {
     return {{1.0, pairs.front().ground_truth * pairs.front().estimate.inverse()}, ""};

@@ -25,7 +25,7 @@ enum class AlignmentMethod {
   yaw,     ///< translation and a rotation about the ground truth's z axis, which must be the direction of gravity
   origin,  ///< rotation and translation that make the first poses equal
 };
-inline constexpr NameList<6> alignment_names = {"none", "se3", "sim3", "scale", "yaw", "origin"};
+inline constexpr NameList<6> kAlignmentNames = {"none", "se3", "sim3", "scale", "yaw", "origin"};
 
 struct Alignment {
   Similarity transform;  ///< ground truth ≈ transform * estimate

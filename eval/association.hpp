@@ -14,7 +14,7 @@ enum class AssociationMode {
   nearest,       ///< the pose that is nearest in time
   interpolated,  ///< the ground truth at the estimate's own time (position linear, rotation slerp)
 };
-inline constexpr NameList<2> association_names = {"nearest", "interpolated"};
+inline constexpr NameList<2> kAssociationNames = {"nearest", "interpolated"};
 
 struct TimeRange {
   double from = -std::numeric_limits<double>::infinity();  ///< [s], closed

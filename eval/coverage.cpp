@@ -7,9 +7,9 @@
 namespace evbench {
 namespace {
 
-constexpr double shortest_hole = 0.1;  // [s]
-constexpr double longest_step = 1.0;   // [s]
-constexpr double hole_factor = 3.0;    // times the median distance of stamps
+constexpr double kShortestHole = 0.1;  // [s]
+constexpr double kLongestStep = 1.0;   // [s]
+constexpr double kHoleFactor = 3.0;    // times the median distance of stamps
 
 struct Span {
   double from = 0.0, to = 0.0;
@@ -20,7 +20,7 @@ std::vector<Span> without_holes(std::span<const double> times) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
   if (steps.empty()) return {};
-  const double hole = std::clamp(hole_factor * median(steps), shortest_hole, longest_step);
+  const double hole = std::clamp(kHoleFactor * median(steps), kShortestHole, kLongestStep);
   std::vector<Span> spans = {{times.front(), times.front()}};
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i] > hole) spans.push_back({times[i + 1], times[i + 1]});

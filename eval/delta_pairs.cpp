@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/geometry/so3.hpp"
+#include "core/support/index.hpp"
 #include "eval/pose_error.hpp"
 
 namespace evbench {
@@ -14,7 +15,7 @@ using IndexPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 void check(const RelativeOptions& options) {
   const auto fail = [&](const char* expected) {
     throw InputError(fmt::format("the delta of the relative error is {} {}; expected {}", options.delta,
-                                 delta_unit_names[static_cast<std::size_t>(options.unit)], expected));
+                                 kDeltaUnitNames[index(options.unit)], expected));
   };
   if (!(options.delta > 0.0) || !std::isfinite(options.delta)) fail("a number above 0");
   if (options.unit == DeltaUnit::frames && options.delta != std::floor(options.delta)) fail("a whole number");

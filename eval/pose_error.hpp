@@ -25,17 +25,17 @@ enum class DeltaUnit {
   metres,   ///< length of the path between the two
   degrees,  ///< all pairs: angle between the two; consecutive: sum of the angles on the way
 };
-inline constexpr NameList<4> delta_unit_names = {"frames", "seconds", "metres", "degrees"};
+inline constexpr NameList<4> kDeltaUnitNames = {"frames", "seconds", "metres", "degrees"};
 
 enum class Pairing {
   all,          ///< from every pose to the one that is delta away (degrees: to all that are)
   consecutive,  ///< one chain: the next pair starts where the last ended
 };
-inline constexpr NameList<2> pairing_names = {"all", "consecutive"};
+inline constexpr NameList<2> kPairingNames = {"all", "consecutive"};
 
 /// Whose path and angles delta is measured on.
 enum class PairSource { estimate, ground_truth };
-inline constexpr NameList<2> pair_source_names = {"estimate", "ground_truth"};
+inline constexpr NameList<2> kPairSourceNames = {"estimate", "ground_truth"};
 
 struct RelativeOptions {
   double delta = 0.1;  ///< > 0; whole for frames; at most 180 degrees

@@ -14,7 +14,7 @@ TimeRange parse_range(const OptionSet::List& list, const char* name) {
 }
 
 AssociationOptions association_options(const ScoreOptions& options) {
-  return {.mode = parse_name<AssociationMode>(association_names, options.association, "association"),
+  return {.mode = parse_name<AssociationMode>(kAssociationNames, options.association, "association"),
           .tolerance = options.tolerance,
           .time_offset = options.time_offset,
           .range = parse_range(options.time_range, "time_range"),
@@ -23,10 +23,10 @@ AssociationOptions association_options(const ScoreOptions& options) {
 
 RelativeOptions relative_options(const ScoreOptions& options) {
   return {.delta = options.rpe_delta,
-          .unit = parse_name<DeltaUnit>(delta_unit_names, options.rpe_unit, "unit of the RPE delta"),
-          .pairing = parse_name<Pairing>(pairing_names, options.rpe_pairing, "RPE pairing"),
+          .unit = parse_name<DeltaUnit>(kDeltaUnitNames, options.rpe_unit, "unit of the RPE delta"),
+          .pairing = parse_name<Pairing>(kPairingNames, options.rpe_pairing, "RPE pairing"),
           .tolerance = options.rpe_tolerance,
-          .source = parse_name<PairSource>(pair_source_names, options.rpe_pairs_from, "source of RPE pairs")};
+          .source = parse_name<PairSource>(kPairSourceNames, options.rpe_pairs_from, "source of RPE pairs")};
 }
 
 /// The pairs that the alignment is computed on.
@@ -53,7 +53,7 @@ double path_length(const std::vector<PosePair>& pairs) {
 }  // namespace
 
 Scores score(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, const ScoreOptions& options) {
-  const auto method = parse_name<AlignmentMethod>(alignment_names, options.alignment, "alignment");
+  const auto method = parse_name<AlignmentMethod>(kAlignmentNames, options.alignment, "alignment");
   const RelativeOptions relative = relative_options(options);
   Association association = associate(ground_truth, estimate, association_options(options));
   std::vector<PosePair>& pairs = association.pairs;

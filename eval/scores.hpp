@@ -28,27 +28,27 @@ struct ScoreOptions {
 
   void declare(OptionSet& set) {
     set.add("alignment", alignment, "how the estimate is carried to the ground truth")
-        .choices(to_strings(alignment_names));
+        .choices(to_strings(kAlignmentNames));
     set.add("align_first", align_first, "align on this many first poses only; 0: on all").range(0);
     set.add("align_range", align_range, "align on the poses in this time range only [s]; empty: on all").size(2);
     set.add("association", association, "which ground truth a pose is compared with")
-        .choices(to_strings(association_names));
+        .choices(to_strings(kAssociationNames));
     set.add("tolerance", tolerance, "no ground truth this near in time to a pose: it is not compared [s]").range(0.0);
     set.add("time_offset", time_offset, "added to the estimate's times [s]");
     set.add("time_range", time_range, "evaluate in this time range of the ground truth only [s]; empty: all").size(2);
     set.add("min_pairs", min_pairs, "fewer compared poses are an error").range(3);
     set.add("rpe_delta", rpe_delta, "distance of the two poses of a relative error [rpe_unit]").above(0.0);
-    set.add("rpe_unit", rpe_unit, "what that distance is measured in").choices(to_strings(delta_unit_names));
-    set.add("rpe_pairing", rpe_pairing, "from every pose, or in one chain").choices(to_strings(pairing_names));
+    set.add("rpe_unit", rpe_unit, "what that distance is measured in").choices(to_strings(kDeltaUnitNames));
+    set.add("rpe_pairing", rpe_pairing, "from every pose, or in one chain").choices(to_strings(kPairingNames));
     set.add("rpe_tolerance", rpe_tolerance, "how far a pair may be from rpe_delta, relative to it").range(0.0);
     set.add("rpe_pairs_from", rpe_pairs_from, "whose path and angles the distance is measured on, metres and degrees")
-        .choices(to_strings(pair_source_names));
+        .choices(to_strings(kPairSourceNames));
   }
 };
 
 struct AbsoluteScores {
   Statistics trans_m, rot_deg;
-  double trans_percent = Statistics::undefined;  ///< trans_m.rmse in percent of path_m; undefined when path_m is 0
+  double trans_percent = Statistics::kUndefined;  ///< trans_m.rmse in percent of path_m; undefined when path_m is 0
 };
 
 struct RelativeScores {

@@ -11,16 +11,16 @@ namespace evbench {
 /// What is reported of a set of errors, in the errors' own unit. Of an empty set all but n and sse are NaN (null in
 /// JSON).
 struct Statistics {
-  static constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-  double rmse = undefined;    ///< root of the mean square
-  double mean = undefined;    ///<
-  double median = undefined;  ///< of an even number: the mean of the two in the middle
-  double std = undefined;     ///< of the population: divided by n, not n − 1
-  double min = undefined;     ///<
-  double max = undefined;     ///<
-  double sse = 0.0;           ///< sum of squares
-  std::size_t n = 0;          ///< number of errors
+  double rmse = kUndefined;    ///< root of the mean square
+  double mean = kUndefined;    ///<
+  double median = kUndefined;  ///< of an even number: the mean of the two in the middle
+  double std = kUndefined;     ///< of the population: divided by n, not n − 1
+  double min = kUndefined;     ///<
+  double max = kUndefined;     ///<
+  double sse = 0.0;            ///< sum of squares
+  std::size_t n = 0;           ///< number of errors
 };
 
 Statistics statistics(std::span<const double> errors);

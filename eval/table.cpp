@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/support/index.hpp"
 #include "eval/protocol.hpp"
 #include "eval/table_text.hpp"
 
@@ -350,7 +351,7 @@ std::string make_table(std::span<const RunRecord> runs, const TableOptions& opti
     for (const int number : protocols.of_run) {
       const std::string none = csv ? "" : "-";
       const std::string known = fmt::format("{}", number + 1);
-      cells.push_back({number < 0 ? none : csv ? protocols.texts[static_cast<std::size_t>(number)] : known});
+      cells.push_back({number < 0 ? none : csv ? protocols.texts[index(number)] : known});
     }
     add_column(table, "protocol", false, std::move(cells));
   }

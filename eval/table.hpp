@@ -10,7 +10,7 @@
 namespace evbench {
 
 enum class TableFormat { text, markdown, csv, latex };
-inline constexpr NameList<4> table_format_names = {"text", "markdown", "csv", "latex"};
+inline constexpr NameList<4> kTableFormatNames = {"text", "markdown", "csv", "latex"};
 
 struct TableOptions {
   TableFormat format = TableFormat::text;

@@ -19,13 +19,13 @@ namespace {
 const Registration<BackEnd, BundleAdjustment> registration(
     "bundle_adjustment", "bundle adjustment of frames of observations (the baseline of Liu et al. 2022)");
 
-constexpr double longest_prediction = 0.5;  // [s]; farther, constant velocity says nothing
-constexpr double clearly_cheaper = 1.1;     // ratio of two initial guesses' errors that decides between them
-constexpr double parallax_to_decide = 3.0;  // times the least parallax: then the cheaper guess is taken anyway
-constexpr int held_windows = 3;             // windows before the optimised one whose sightings hold landmarks in place
-constexpr double shortest_silence = 0.2;    // [s] without observations: from then on the estimate is carried
-constexpr int global_rounds = 2;            // of solving and removing outliers
-constexpr double smallest_step = 1e-6;      // [s] between frames of observations with one and the same time
+constexpr double kLongestPrediction = 0.5;  // [s]; farther, constant velocity says nothing
+constexpr double kClearlyCheaper = 1.1;     // ratio of two initial guesses' errors that decides between them
+constexpr double kParallaxToDecide = 3.0;   // times the least parallax: then the cheaper guess is taken anyway
+constexpr int kHeldWindows = 3;             // windows before the optimised one whose sightings hold landmarks in place
+constexpr double kShortestSilence = 0.2;    // [s] without observations: from then on the estimate is carried
+constexpr int kGlobalRounds = 2;            // of solving and removing outliers
+constexpr double kSmallestStep = 1e-6;      // [s] between frames of observations with one and the same time
 
 std::size_t at(int view) { return static_cast<std::size_t>(view); }
 
@@ -75,9 +75,9 @@ void BundleAdjustment::advance(const TrackBatch& batch) {
   for (const TrackEnd& end : batch.ended) live_.erase(end.track);
   for (std::span<const TrackObservation> rest(batch.observations); !rest.empty();) {
     const auto last =
-        std::ranges::adjacent_find(rest, [](const auto& a, const auto& b) { return b.t - a.t > shortest_silence; });
+        std::ranges::adjacent_find(rest, [](const auto& a, const auto& b) { return b.t - a.t > kShortestSilence; });
     const auto part = rest.first(last == rest.end() ? rest.size() : static_cast<std::size_t>(last - rest.begin()) + 1);
-    if (part.front().t - last_observation_ > shortest_silence) pass_time(part.front().t);
+    if (part.front().t - last_observation_ > kShortestSilence) pass_time(part.front().t);
     for (Frame& frame : frames_.add(part)) process(std::move(frame));
     last_observation_ = part.back().t;
     rest = rest.subspan(part.size());
@@ -88,7 +88,7 @@ void BundleAdjustment::advance(const TrackBatch& batch) {
 /// Without observations there are no frames, but a motion model carries the estimate, and not for ever.
 void BundleAdjustment::pass_time(double t) {
   for (Frame& frame : frames_.advance(t)) process(std::move(frame));
-  if (segments_.empty() || t - last_observation_ <= shortest_silence) return;
+  if (segments_.empty() || t - last_observation_ <= kShortestSilence) return;
   monitor_.observe(last_observation_, t, TrackingMonitor::Support::none, "no observations");
 }
 
@@ -96,7 +96,7 @@ void BundleAdjustment::process(Frame frame) {
   if (monitor_.lost()) return;
   const auto start = std::chrono::steady_clock::now();
   std::erase_if(frame.keypoints, [&](const Keypoint& keypoint) { return removed_.contains(keypoint.track); });
-  if (!map_.views.empty()) frame.t = std::max(frame.t, map_.views.back().t + smallest_step);
+  if (!map_.views.empty()) frame.t = std::max(frame.t, map_.views.back().t + kSmallestStep);
   const int view = map_.add(frame);
   if (segments_.empty()) remember(view);
   const SolveReport report = segments_.empty() ? initialise(view) : track(view);
@@ -162,8 +162,8 @@ SolveReport BundleAdjustment::initialise(int view) {
     if (!attempt.candidates.empty()) waiting_for_ = "bundle adjustment does not confirm the two-view pose";
     return {};
   }
-  const bool clear = trials.size() == 1 || trials[1].error > clearly_cheaper * trials[0].error ||
-                     trials[0].parallax_deg > parallax_to_decide * options_.initialiser.two_view.min_parallax_deg;
+  const bool clear = trials.size() == 1 || trials[1].error > kClearlyCheaper * trials[0].error ||
+                     trials[0].parallax_deg > kParallaxToDecide * options_.initialiser.two_view.min_parallax_deg;
   const SolveReport report = trials.front().report;
   if (clear) {
     accept(std::move(trials.front()), view);
@@ -190,7 +190,7 @@ void BundleAdjustment::accept(Trial trial, int view) {
 
 SE3 BundleAdjustment::predict(double t, int from) const {
   const View& view = map_.views[at(from)];
-  return view.T * se3::exp(std::min(t - view.t, longest_prediction) * velocity_);
+  return view.T * se3::exp(std::min(t - view.t, kLongestPrediction) * velocity_);
 }
 
 SolveReport BundleAdjustment::track(int view) {
@@ -253,7 +253,7 @@ void BundleAdjustment::start_over() {
 SolveReport BundleAdjustment::solve_window(int view) {
   const Segment& segment = segments_.back();
   const int first_variable = std::max(segment.first, view - options_.window + 1);
-  const int first_used = std::max(segment.first, first_variable - held_windows * options_.window);
+  const int first_used = std::max(segment.first, first_variable - kHeldWindows * options_.window);
   return solve(map_, context_.camera, {first_used, first_variable, view, segment.first, segment.scale},
                solver_options(options_.iterations));
 }
@@ -302,7 +302,7 @@ void BundleAdjustment::finish() {
 void BundleAdjustment::solve_segment(const Segment& segment, int last) {
   const auto start = std::chrono::steady_clock::now();
   SolveReport report;
-  for (int round = 0; round < global_rounds; ++round) {
+  for (int round = 0; round < kGlobalRounds; ++round) {
     report = solve(map_, context_.camera, {segment.first, segment.first, last, segment.first, segment.scale},
                    solver_options(options_.global_iterations));
     if (!remove_outliers(segment.first)) break;

@@ -8,6 +8,7 @@
 #include "core/data/calib.hpp"
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
+#include "core/support/index.hpp"
 #include "core/testing/data.hpp"
 #include "core/testing/point_scene.hpp"
 
@@ -90,7 +91,7 @@ double ate(const PoseTrajectory& estimate, const Truth& truth) {
   const auto n = static_cast<Eigen::Index>(estimate.size());
   Eigen::Matrix3Xd from(3, n), to(3, n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const StampedPose& pose = estimate.poses()[static_cast<std::size_t>(i)];
+    const StampedPose& pose = estimate.poses()[index(i)];
     from.col(i) = pose.T.p;
     to.col(i) = truth(pose.t).p;
   }

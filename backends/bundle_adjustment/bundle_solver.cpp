@@ -7,11 +7,12 @@
 #include <cmath>
 
 #include "backends/bundle_adjustment/reprojection.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench::bundle_adjustment {
 namespace {
 
-constexpr int most_dense_poses = 40;  // above, the reduced camera matrix is worth a sparse factorisation
+constexpr int kMostDensePoses = 40;  // above, the reduced camera matrix is worth a sparse factorisation
 
 /// The part of the map that a solve uses, in blocks that Ceres writes to.
 struct Blocks {
@@ -30,7 +31,7 @@ Blocks gather(const Reconstruction& map, const SolveScope& scope) {
     if (!track.position || track.sightings.back().view < scope.first_variable) continue;
     if (track.sightings.front().view > scope.last) continue;
     const auto counts = [&](const TrackSighting& z) {
-      return z.view >= scope.first_used && map.views[static_cast<std::size_t>(z.view)].estimated();
+      return z.view >= scope.first_used && map.views[index(z.view)].estimated();
     };
     if (std::count_if(track.sightings.begin(), track.sightings.end(), counts) >= 2) {
       blocks.landmarks.emplace_back(id, *track.position);
@@ -47,7 +48,7 @@ SolveReport solve(Reconstruction& map, const PinholeCamera& camera, const SolveS
   SolveReport report;
   const std::unique_ptr<ceres::LossFunction> loss = make_loss(options.loss, options.loss_width);
   PoseManifold pose_manifold;
-  FixedDistanceManifold scale_manifold(map.views[static_cast<std::size_t>(scope.origin)].T.p);
+  FixedDistanceManifold scale_manifold(map.views[index(scope.origin)].T.p);
 
   ceres::Problem::Options problem_options;
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -84,7 +85,7 @@ SolveReport solve(Reconstruction& map, const PinholeCamera& camera, const SolveS
   report.landmarks = static_cast<int>(blocks.landmarks.size());
   if (report.poses == 0) return report;
 
-  solver_options.linear_solver_type = report.poses <= most_dense_poses ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
+  solver_options.linear_solver_type = report.poses <= kMostDensePoses ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
   solver_options.num_threads = 1;
   solver_options.max_num_iterations = options.iterations;
   solver_options.function_tolerance = 1e-5;

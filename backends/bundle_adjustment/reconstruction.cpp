@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "backends/bundle_adjustment/reprojection.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench::bundle_adjustment {
 
@@ -19,7 +20,7 @@ void Reconstruction::remove(TrackId track) {
   const auto found = tracks.find(track);
   if (found == tracks.end()) return;
   for (const TrackSighting& sighting : found->second.sightings) {
-    std::erase_if(views[static_cast<std::size_t>(sighting.view)].keypoints,
+    std::erase_if(views[index(sighting.view)].keypoints,
                   [&](const Keypoint& keypoint) { return keypoint.track == track; });
   }
   tracks.erase(found);
@@ -35,7 +36,7 @@ void Reconstruction::cut_tracks(int view) {
 
 std::vector<Keypoint> Reconstruction::landmarks_in(int view) const {
   std::vector<Keypoint> result;
-  for (const Keypoint& keypoint : views[static_cast<std::size_t>(view)].keypoints) {
+  for (const Keypoint& keypoint : views[index(view)].keypoints) {
     if (tracks.at(keypoint.track).position) result.push_back(keypoint);
   }
   return result;
@@ -46,7 +47,7 @@ Triangulation Reconstruction::triangulate_track(const Track& track, const Pinhol
   std::vector<SE3> poses;
   std::vector<Vector2> pixels;
   for (const TrackSighting& sighting : track.sightings) {
-    const View& view = views[static_cast<std::size_t>(sighting.view)];
+    const View& view = views[index(sighting.view)];
     if (!view.estimated()) continue;
     poses.push_back(view.T);
     pixels.push_back(sighting.pixel);
@@ -59,7 +60,7 @@ void Reconstruction::triangulate_new(const PinholeCamera& camera, const Triangul
   for (const Keypoint& keypoint : views.back().keypoints) {
     Track& track = tracks.at(keypoint.track);
     if (track.position || static_cast<int>(track.sightings.size()) < needed.views) continue;
-    if (views.back().t - views[static_cast<std::size_t>(track.sightings.front().view)].t < needed.time) continue;
+    if (views.back().t - views[index(track.sightings.front().view)].t < needed.time) continue;
     const Triangulation result = triangulate_track(track, camera, options);
     if (result.ok()) track.position = result.point;
   }
@@ -68,7 +69,7 @@ void Reconstruction::triangulate_new(const PinholeCamera& camera, const Triangul
 double Reconstruction::mean_error(const Track& track, const PinholeCamera& camera) const {
   double sum = 0.0, count = 0.0;
   for (const TrackSighting& sighting : track.sightings) {
-    const View& view = views[static_cast<std::size_t>(sighting.view)];
+    const View& view = views[index(sighting.view)];
     if (!view.estimated()) continue;
     sum += reprojection_error(view.T, *track.position, sighting.pixel, camera).norm();
     count += 1.0;

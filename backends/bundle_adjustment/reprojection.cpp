@@ -5,7 +5,7 @@
 namespace evbench::bundle_adjustment {
 namespace {
 
-constexpr double nearest_depth = 1e-6;
+constexpr double kNearestDepth = 1e-6;
 
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 template <int Rows, int Columns>
@@ -29,7 +29,7 @@ SE3 PoseBlock::pose() const {
 
 Vector2 reprojection_error(const SE3& T, const Vector3& landmark, const Vector2& pixel, const PinholeCamera& camera) {
   const Vector3 local = T.q.conjugate() * (landmark - T.p);
-  if (!(local.z() > nearest_depth)) return Vector2::Constant(2.0 * camera.fx);
+  if (!(local.z() > kNearestDepth)) return Vector2::Constant(2.0 * camera.fx);
   return camera.project(local) - pixel;
 }
 
@@ -37,7 +37,7 @@ Vector2 reprojection_error(const SE3& T, const Vector3& landmark, const Vector2&
                            ReprojectionJacobians& J) {
   const Matrix3 Rt = T.R().transpose();
   const Vector3 local = Rt * (landmark - T.p);
-  if (!(local.z() > nearest_depth)) {
+  if (!(local.z() > kNearestDepth)) {
     J.pose.setZero();
     J.landmark.setZero();
     return Vector2::Constant(2.0 * camera.fx);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/support/index.hpp"
+
 namespace evbench::gp_map {
 namespace {
 
@@ -83,15 +85,14 @@ class NormalEquations {
   }
 
   void add_interval(int k, const IntervalLinearisation& linear) {
-    const auto index = static_cast<std::size_t>(k);
-    const int x0 = layout_.state_offset[index - 1], x1 = layout_.state_offset[index];
+    const int x0 = layout_.state_offset[index(k - 1)], x1 = layout_.state_offset[index(k)];
     add_block(x0, x0, Matrix12(linear.states.topLeftCorner<12, 12>()));
     add_block(x1, x0, Matrix12(linear.states.bottomLeftCorner<12, 12>()));
     add_block(x1, x1, Matrix12(linear.states.bottomRightCorner<12, 12>()));
     add_gradient(x0, linear.gradient.head<12>());
     add_gradient(x1, linear.gradient.tail<12>());
     for (const auto& coupling : linear.couplings) {
-      const int l = layout_.landmark_offset[static_cast<std::size_t>(coupling.landmark)];
+      const int l = layout_.landmark_offset[index(coupling.landmark)];
       using Matrix3x12 = Eigen::Matrix<double, 3, 12>;
       add_block(l, l, coupling.landmark_landmark);
       add_block(l, x0, Matrix3x12(coupling.landmark_states.leftCols<12>()));
@@ -124,10 +125,10 @@ class NormalEquations {
     const std::vector<int>& anchors = graph.anchor.landmarks;
     const AnchorLinearisation linear = linearise_anchor(graph);
     for (std::size_t a = 0; a < anchors.size(); ++a) {
-      const int row = layout_.landmark_offset[static_cast<std::size_t>(anchors[a])];
+      const int row = layout_.landmark_offset[index(anchors[a])];
       add_gradient(row, Vector3(linear.e * linear.jacobian[a]));
       for (std::size_t b = 0; b <= a; ++b) {
-        const int column = layout_.landmark_offset[static_cast<std::size_t>(anchors[b])];
+        const int column = layout_.landmark_offset[index(anchors[b])];
         add_block(row, column, Matrix3(linear.jacobian[a] * linear.jacobian[b].transpose()));
       }
     }
@@ -241,9 +242,9 @@ BatchCovariance::BatchCovariance(const FactorGraph& graph) : graph_(graph), fact
 BatchCovariance::~BatchCovariance() = default;
 
 std::optional<Matrix24> BatchCovariance::neighbours(int k) const {
-  const auto index = static_cast<std::size_t>(k);
-  if (!factor_->usable || k < 0 || index + 1 >= graph_.states.size()) return std::nullopt;
-  const Matrix24 joint = factor_->marginal(factor_->layout.state_offset[index], 24);  // neighbours stand side by side
+  if (!factor_->usable || k < 0 || index(k + 1) >= graph_.states.size()) return std::nullopt;
+  const Matrix24 joint =
+      factor_->marginal(factor_->layout.state_offset[index(k)], 24);  // neighbours stand side by side
   if (!joint.allFinite()) return std::nullopt;
   return joint;
 }
@@ -253,15 +254,13 @@ std::optional<Matrix12> BatchCovariance::at(double t) const {
   if (k < 1) return std::nullopt;
   const std::optional<Matrix24> joint = neighbours(k - 1);
   if (!joint) return std::nullopt;
-  const auto index = static_cast<std::size_t>(k);
-  const GpInterval interval(graph_.states[index - 1], graph_.states[index]);
+  const GpInterval interval(graph_.states[index(k - 1)], graph_.states[index(k)]);
   return interval.covariance(t, *joint, graph_.qc);
 }
 
 std::optional<Matrix3> BatchCovariance::landmark(int landmark) const {
-  const auto index = static_cast<std::size_t>(landmark);
-  if (!factor_->usable || factor_->layout.landmark_offset[index] < 0) return std::nullopt;
-  return Matrix3(factor_->marginal(factor_->layout.landmark_offset[index], 3));
+  if (!factor_->usable || factor_->layout.landmark_offset[index(landmark)] < 0) return std::nullopt;
+  return Matrix3(factor_->marginal(factor_->layout.landmark_offset[index(landmark)], 3));
 }
 
 }  // namespace evbench::gp_map

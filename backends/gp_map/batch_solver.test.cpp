@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "backends/gp_map/problem_graph.hpp"
+#include "core/support/index.hpp"
 #include "core/testing/data.hpp"
 #include "core/testing/differences.hpp"
 
@@ -32,8 +33,8 @@ FactorGraph flight(int states, double error) {
     const Vector3 point(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(2, 4));
     const int landmark = graph.add_landmark(point + error * Vector3::Random(), {point, 1.0});
     for (int i = 1; i < states; ++i) {
-      const double t = motion[static_cast<std::size_t>(i)].t - 0.02;
-      const SE3 T = GpInterval(motion[static_cast<std::size_t>(i) - 1], motion[static_cast<std::size_t>(i)]).pose(t);
+      const double t = motion[index(i)].t - 0.02;
+      const SE3 T = GpInterval(motion[index(i) - 1], motion[index(i)]).pose(t);
       const Vector2 noise(0.3 * random.direction().x(), 0.3 * random.direction().y());
       graph.add_observation(landmark, {t, graph.camera.project(T.inverse() * point) + noise, 2.0});
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/motion/wnoa.hpp"
+#include "core/support/index.hpp"
 #include "core/testing/differences.hpp"
 
 namespace evbench::gp_map {
@@ -49,11 +50,9 @@ Eigen::VectorXd residuals(const FactorGraph& graph, const Vector& states, const 
                             graph.states[1].retract(states.template tail<12>()));
   std::vector<double> values;
   for (const auto& group : graph.intervals[1].groups()) {
-    const Vector3 point =
-        graph.landmarks[static_cast<std::size_t>(group.landmark)].position + landmarks.segment<3>(3 * group.landmark);
+    const Vector3 point = graph.landmarks[index(group.landmark)].position + landmarks.segment<3>(3 * group.landmark);
     for (int i = group.begin; i < group.end; ++i) {
-      const Vector2 e =
-          reprojection_residual(interval, point, graph.intervals[1].all()[static_cast<std::size_t>(i)], graph.camera);
+      const Vector2 e = reprojection_residual(interval, point, graph.intervals[1].all()[index(i)], graph.camera);
       values.push_back(e.x());
       values.push_back(e.y());
     }

@@ -8,6 +8,7 @@
 
 #include "backends/gp_map/testing/tracked_scene.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -24,7 +25,7 @@ double anchored_scale(const TrackedScene& scene, const GpMap& backend) {
   int count = 0;
   for (const int j : anchor.landmarks) {
     for (const Landmark& landmark : backend.map()) {
-      if (landmark.position != backend.graph().landmarks[static_cast<std::size_t>(j)].position) continue;
+      if (landmark.position != backend.graph().landmarks[index(j)].position) continue;
       sum += std::log((scene.point(landmark.track) - origin).norm());
       ++count;
     }

@@ -6,6 +6,7 @@
 #include "backends/gp_map/engine/observation_sums.hpp"
 #include "backends/gp_map/factors.hpp"
 #include "core/motion/wnoa.hpp"
+#include "core/support/index.hpp"
 
 // Lanes run over landmarks: kLanes of them, with similar numbers of observations in the interval, are worked on
 // together, the i-th observation of each at once (weight 0 where one has fewer). What a landmark's observations share
@@ -47,7 +48,7 @@ void write_couplings(const LandmarkSums& landmark, const std::array<std::array<L
   };
   const auto scatter = [&](Lane value, auto member) {
     for (int i = 0; i < kLanes; ++i) {
-      if (couplings[static_cast<std::size_t>(i)] != nullptr) member(*couplings[static_cast<std::size_t>(i)]) = value[i];
+      if (couplings[index(i)] != nullptr) member(*couplings[index(i)]) = value[i];
     }
   };
   const auto& h = landmark.mm;
@@ -123,13 +124,13 @@ void add_landmarks(const Shared& shared, const IntervalInput& in, const Matrix3&
     Lane3 m;
     m.z += 1.0;
     for (std::size_t i = 0; i < kLanes && first + i < order.size(); ++i) {
-      const auto index = static_cast<std::size_t>(order[first + i]);
-      const auto& group = groups[index];
-      couplings[i] = &result.couplings[index];
+      const std::size_t g = index(order[first + i]);
+      const auto& group = groups[g];
+      couplings[i] = &result.couplings[g];
       couplings[i]->landmark = group.landmark;
       next[i] = all + group.begin;
       count[i] = group.end - group.begin;
-      const Vector3 local = R0.transpose() * (in.positions[index] - in.state0.T.p);
+      const Vector3 local = R0.transpose() * (in.positions[g] - in.state0.T.p);
       m.x[i] = local.x();
       m.y[i] = local.y();
       m.z[i] = local.z();
@@ -171,7 +172,7 @@ struct LocalSystem {
   explicit LocalSystem(const IntervalSums& sums) {
     std::size_t n = 0;
     for (Eigen::Index i = 0; i < 6; ++i) {
-      g(i) = sum(sums.gradient_T[static_cast<std::size_t>(i)]);
+      g(i) = sum(sums.gradient_T[index(i)]);
       for (Eigen::Index j = 0; j <= i; ++j, ++n) {
         H(i, j) = H(j, i) = sum(sums.TT[n]);
         std::size_t pair = 0;
@@ -187,7 +188,7 @@ struct LocalSystem {
     for (Eigen::Index i = 0; i < 18; ++i) {
       const auto at = static_cast<std::size_t>(i);
       g(6 + i) = sum(sums.gradient_y[at]);
-      for (Eigen::Index j = 0; j < 6; ++j) H(6 + i, j) = H(j, 6 + i) = sum(sums.yT[at][static_cast<std::size_t>(j)]);
+      for (Eigen::Index j = 0; j < 6; ++j) H(6 + i, j) = H(j, 6 + i) = sum(sums.yT[at][index(j)]);
     }
   }
 
@@ -250,8 +251,8 @@ void linearise_interval(const IntervalInput& in, IntervalLinearisation& result) 
   order.resize(groups.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, [&](int a, int b) {
-    const auto& ga = groups[static_cast<std::size_t>(a)];
-    const auto& gb = groups[static_cast<std::size_t>(b)];
+    const auto& ga = groups[index(a)];
+    const auto& gb = groups[index(b)];
     return ga.end - ga.begin > gb.end - gb.begin;
   });
   const Shared shared{in.loss,
@@ -276,15 +277,14 @@ void linearise_interval(const IntervalInput& in, IntervalLinearisation& result) 
 }
 
 void linearise_interval(const FactorGraph& graph, int k, IntervalLinearisation& result) {
-  const auto index = static_cast<std::size_t>(k);
-  const IntervalObservations& observations = graph.intervals[index];
+  const IntervalObservations& observations = graph.intervals[index(k)];
   thread_local std::vector<Vector3> positions;
   positions.clear();
   for (const auto& group : observations.groups()) {
-    positions.push_back(graph.landmarks[static_cast<std::size_t>(group.landmark)].position);
+    positions.push_back(graph.landmarks[index(group.landmark)].position);
   }
   linearise_interval(
-      {graph.camera, graph.loss, graph.qc, graph.states[index - 1], graph.states[index], observations, positions},
+      {graph.camera, graph.loss, graph.qc, graph.states[index(k - 1)], graph.states[index(k)], observations, positions},
       result);
 }
 

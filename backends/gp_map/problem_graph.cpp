@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/support/index.hpp"
+
 namespace evbench::gp_map {
 
 FactorGraph to_graph(const Problem& problem) {
@@ -13,7 +15,7 @@ FactorGraph to_graph(const Problem& problem) {
   for (const Vector3& position : usable.landmarks) graph.add_landmark(position);
   for (auto& landmark : graph.landmarks) landmark.alive = false;
   for (const auto& z : usable.observations) {
-    graph.landmarks[static_cast<std::size_t>(z.landmark)].alive = true;
+    graph.landmarks[index(z.landmark)].alive = true;
     graph.add_observation(z.landmark, {z.t, z.pixel, 1.0 / z.sigma});
   }
   for (const auto& prior : usable.pose_priors) graph.pose_priors.push_back({prior.state, prior.T, prior.sigma});
@@ -21,7 +23,7 @@ FactorGraph to_graph(const Problem& problem) {
     graph.velocity_priors.push_back({prior.state, prior.velocity, prior.sigma});
   }
   for (const auto& prior : usable.landmark_priors) {
-    graph.landmarks[static_cast<std::size_t>(prior.landmark)].prior = {prior.position, prior.sigma};
+    graph.landmarks[index(prior.landmark)].prior = {prior.position, prior.sigma};
   }
   return graph;
 }
@@ -43,16 +45,15 @@ Problem to_problem(const FactorGraph& graph) {
   }
   for (const int j : graph.anchor.landmarks) {
     constexpr double kShareOfDistance = 0.05;
-    const Vector3& position = graph.landmarks[static_cast<std::size_t>(j)].position;
+    const Vector3& position = graph.landmarks[index(j)].position;
     const double sigma = kShareOfDistance * (position - graph.anchor.origin).norm();
-    problem.landmark_priors.push_back({number[static_cast<std::size_t>(j)], position, sigma});
+    problem.landmark_priors.push_back({number[index(j)], position, sigma});
   }
   for (const IntervalObservations& interval : graph.intervals) {
     for (const auto& group : interval.groups()) {
       for (int i = group.begin; i < group.end; ++i) {
-        const Observation& z = interval.all()[static_cast<std::size_t>(i)];
-        problem.observations.push_back(
-            {z.t, number[static_cast<std::size_t>(group.landmark)], z.pixel, 1.0 / z.inverse_sigma});
+        const Observation& z = interval.all()[index(i)];
+        problem.observations.push_back({z.t, number[index(group.landmark)], z.pixel, 1.0 / z.inverse_sigma});
       }
     }
   }

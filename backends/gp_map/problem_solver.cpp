@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "backends/gp_map/problem_graph.hpp"
+#include "core/support/index.hpp"
 #include "core/support/peak_memory.hpp"
 
 namespace evbench::gp_map {
@@ -23,7 +24,7 @@ class IncrementalRun {
         held_back_(problem.landmarks.size(), -1),
         priors_(problem.landmarks.size()) {
     for (const auto& prior : problem.landmark_priors) {
-      priors_[static_cast<std::size_t>(prior.landmark)] = {prior.position, prior.sigma};
+      priors_[index(prior.landmark)] = {prior.position, prior.sigma};
     }
   }
 
@@ -55,7 +56,7 @@ class IncrementalRun {
     graph.states = engine_.graph().states;
     for (std::size_t j = 0; j < number_.size(); ++j) {
       if (number_[j] < 0) continue;
-      graph.landmarks[j].position = engine_.graph().landmarks[static_cast<std::size_t>(number_[j])].position;
+      graph.landmarks[j].position = engine_.graph().landmarks[index(number_[j])].position;
     }
     return graph;
   }
@@ -88,13 +89,13 @@ class IncrementalRun {
         return;
       }
       number_[landmark] = engine_.add_landmark(problem_.landmarks[landmark], priors_[landmark]);
-      observe(problem_.observations[static_cast<std::size_t>(held_back_[landmark])]);
+      observe(problem_.observations[index(held_back_[landmark])]);
     }
     observe(z);
   }
 
   void observe(const Problem::Observation& z) {
-    engine_.add_observation(number_[static_cast<std::size_t>(z.landmark)], {z.t, z.pixel, 1.0 / z.sigma});
+    engine_.add_observation(number_[index(z.landmark)], {z.t, z.pixel, 1.0 / z.sigma});
   }
 
   const Problem& problem_;

@@ -172,7 +172,7 @@ void stays_finite_with_wild_tracks(const Candidate& candidate) {
 constexpr double kLatency = 0.1;
 
 void tells_online_poses_in_time(const Candidate& candidate) {
-  constexpr double cut = 2.0;
+  constexpr double kCut = 2.0;
   const auto until = [&](double end) {
     SequenceOptions sequence;
     sequence.range = end;
@@ -180,10 +180,10 @@ void tells_online_poses_in_time(const Candidate& candidate) {
     const RunResult result = candidate.run(sequence);
     return result.pieces.empty() ? std::vector<StampedPose>{} : longest(result).online_trajectory.poses();
   };
-  const auto early = until(cut), all = until(3.0);
+  const auto early = until(kCut), all = until(3.0);
   require(!early.empty(), "it tells no online pose in 2 s");
   require(all.size() > early.size(), "it tells no more online poses in 3 s than in 2 s");
-  for (std::size_t i = 0; i < early.size() && early[i].t < cut - kLatency; ++i) {
+  for (std::size_t i = 0; i < early.size() && early[i].t < kCut - kLatency; ++i) {
     require(all[i].t == early[i].t && all[i].T.p == early[i].T.p,
             "its online pose at {} s depends on what is seen later", early[i].t);
   }

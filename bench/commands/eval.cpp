@@ -45,7 +45,7 @@ std::string alignment_name(const EvalArguments& arguments) {
 }
 
 std::string unit_name(const std::string& letter) {
-  for (const char* unit : delta_unit_names) {
+  for (const char* unit : kDeltaUnitNames) {
     if (letter[0] == unit[0]) return unit;
   }
   return letter;
@@ -99,7 +99,7 @@ void add_alignment_options(CLI::App& command, EvalArguments& arguments) {
   auto* origin = command.add_flag("--align_origin", arguments.align_origin, "Make the first poses equal");
   origin->excludes(align)->excludes(scale);
   command.add_option("--alignment", arguments.alignment, "The same by name, and yaw only (about z)")
-      ->check(CLI::IsMember(to_strings(alignment_names)))
+      ->check(CLI::IsMember(to_strings(kAlignmentNames)))
       ->excludes(align)
       ->excludes(scale)
       ->excludes(origin);

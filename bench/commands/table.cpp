@@ -19,7 +19,7 @@ struct TableArguments {
 
 void execute(const TableArguments& arguments) {
   TableOptions options = arguments.options;
-  options.format = parse_name<TableFormat>(table_format_names, arguments.format, "table format");
+  options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
   const std::string table = make_table(find_runs(arguments.folders), options);
   if (arguments.out.empty()) {
     fmt::print("{}", table);
@@ -37,7 +37,7 @@ void add_table(CLI::App& app) {
       ->required()
       ->type_name("DIR");
   command->add_option("--format", arguments->format, "Format")
-      ->check(CLI::IsMember(to_strings(table_format_names)))
+      ->check(CLI::IsMember(to_strings(kTableFormatNames)))
       ->capture_default_str();
   command->add_option("--out", arguments->out, "Write to this file instead of the terminal")->type_name("FILE");
   command

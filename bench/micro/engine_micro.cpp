@@ -10,6 +10,7 @@
 
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/problem_graph.hpp"
+#include "core/support/index.hpp"
 
 namespace {
 
@@ -108,7 +109,7 @@ void per_observation(const FactorGraph& all) {
     std::vector<std::pair<int, Observation>> sequence;
     for (const auto& group : all.intervals[k].groups()) {
       for (int i = group.begin; i < group.end; ++i) {
-        sequence.emplace_back(group.landmark, all.intervals[k].all()[static_cast<std::size_t>(i)]);
+        sequence.emplace_back(group.landmark, all.intervals[k].all()[index(i)]);
       }
     }
     std::ranges::stable_sort(sequence, {}, [](const auto& z) { return z.second.t; });

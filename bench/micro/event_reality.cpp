@@ -24,6 +24,7 @@
 #include "core/simulation/events/event_simulator.hpp"
 #include "core/simulation/events/scene_brightness.hpp"
 #include "core/support/error.hpp"
+#include "core/support/index.hpp"
 
 using namespace evbench;
 
@@ -89,9 +90,9 @@ class Stage {
 
   /// The threshold with which the first half has the real rate: bisection of its logarithm.
   double fit() const {
-    constexpr int steps = 8;
+    constexpr int kSteps = 8;
     double low = 0.05, high = 2.0;
-    for (int i = 0; i < steps; ++i) {
+    for (int i = 0; i < kSteps; ++i) {
       const double middle = std::sqrt(low * high);
       (first_half(middle).rate() > case_->first.rate() ? low : high) = middle;
     }
@@ -147,9 +148,7 @@ double variance(const Recording& recording, const Case& c, std::size_t count, do
     if (!c.camera.contains(pixel, 1.0)) continue;
     const auto x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
     const double fx = pixel.x() - x, fy = pixel.y() - y;
-    const auto at = [&](int column, int row) -> double& {
-      return image[static_cast<std::size_t>(row * c.camera.width + column)];
-    };
+    const auto at = [&](int column, int row) -> double& { return image[index(row * c.camera.width + column)]; };
     at(x, y) += (1 - fx) * (1 - fy);
     at(x + 1, y) += fx * (1 - fy);
     at(x, y + 1) += (1 - fx) * fy;
@@ -169,11 +168,11 @@ struct Sharpness {
   double depth = 0.0, gain = 0.0;
 };
 Sharpness sharpest(const Recording& recording, const Case& c) {
-  constexpr std::size_t count = 8000;
-  const double unmoved = variance(recording, c, count, 1.0, 0.0);
+  constexpr std::size_t kCount = 8000;
+  const double unmoved = variance(recording, c, kCount, 1.0, 0.0);
   Sharpness best;
   for (double depth = 0.2; depth < 3.0; depth *= 1.05) {
-    const double gain = variance(recording, c, count, depth, 1.0) / unmoved;
+    const double gain = variance(recording, c, kCount, depth, 1.0) / unmoved;
     if (gain > best.gain) best = {depth, gain};
     if (c.drive.velocity.isZero()) break;  // rotations: any depth
   }

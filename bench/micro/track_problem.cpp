@@ -5,6 +5,7 @@
 
 #include "core/simulation/motion.hpp"
 #include "core/simulation/random.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench {
 namespace {
@@ -56,7 +57,7 @@ class Generator {
     const double rate = random_.uniform(options_.slowest, options_.fastest);
     t += random_.uniform(0.0, 1.0 / rate);
     for (; t <= end; t += random_.uniform(0.4, 1.6) / rate) {
-      const Vector3 q = motion_(t).inverse() * truth_[static_cast<std::size_t>(landmark)];
+      const Vector3 q = motion_(t).inverse() * truth_[index(landmark)];
       if (!sees(q, kBorder)) break;
       const Vector2 noise(random_.normal(), random_.normal());
       problem_.observations.push_back(

@@ -26,10 +26,10 @@ void check_name(const std::string& name) {
     throw InputError(fmt::format(
         "new-plugin: \"{}\" can't name a plugin; expected a small letter, then small letters, digits and _", name));
   }
-  constexpr std::array<std::string_view, 10> reserved = {
+  constexpr std::array<std::string_view, 10> kReserved = {
       "all",        "clean",         "edit_cache", "help",           "install",
       "preinstall", "rebuild_cache", "package",    "package_source", "test"};
-  if (std::ranges::find(reserved, name) != reserved.end()) {
+  if (std::ranges::find(kReserved, name) != kReserved.end()) {
     throw InputError(fmt::format("new-plugin: \"{}\" is a name that CMake keeps for itself; expected another", name));
   }
 }

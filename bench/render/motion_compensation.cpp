@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/support/error.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench {
 namespace {
@@ -32,7 +33,7 @@ float count_quantile(const cv::Mat1f& total, double share) {
   if (counts.empty()) return 1.0F;
   const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(counts.size() - 1));
   std::nth_element(counts.begin(), counts.begin() + rank, counts.end());
-  return std::max(1.0F, counts[static_cast<std::size_t>(rank)]);
+  return std::max(1.0F, counts[index(rank)]);
 }
 
 }  // namespace
@@ -93,7 +94,7 @@ PolarityCounts MotionCompensation::accumulate(std::span<const Event> events, std
   for (const Event& event : events) {
     if (event.t != t) T_reference_event = T_reference_world * pose(event.t + zero);
     t = event.t;
-    const auto& ray = rays_[static_cast<std::size_t>(event.y * camera_.width + event.x)];
+    const auto& ray = rays_[index(event.y * camera_.width + event.x)];
     const std::optional<Vector2> pixel = ray ? project(T_reference_event, *ray) : std::nullopt;
     if (pixel) splat(event.on ? counts.on : counts.off, *pixel);
   }

@@ -9,6 +9,7 @@
 #include "core/data/pose_record.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench {
 namespace {
@@ -250,8 +251,8 @@ Problem prepare(Problem problem) {
   };
   std::erase_if(problem.observations, [&](const Problem::Observation& o) { return !covered(o); });
   std::vector<int> counts(problem.landmarks.size(), 0);
-  for (const Problem::Observation& o : problem.observations) ++counts[static_cast<std::size_t>(o.landmark)];
-  const auto unusable = [&](const auto& item) { return counts[static_cast<std::size_t>(item.landmark)] < 2; };
+  for (const Problem::Observation& o : problem.observations) ++counts[index(o.landmark)];
+  const auto unusable = [&](const auto& item) { return counts[index(item.landmark)] < 2; };
   std::erase_if(problem.observations, unusable);
   std::erase_if(problem.landmark_priors, unusable);
   std::ranges::stable_sort(problem.observations, {},

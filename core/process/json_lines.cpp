@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/process/line_tail.hpp"
+#include "core/support/index.hpp"
 #include "core/support/nearest.hpp"
 
 namespace evbench::process {
@@ -189,7 +190,7 @@ Matrix12 covariance(const Json& value) {
   const Place place{"covariance"};
   if (!value.is_array() || value.size() != 144) unexpected(value, "144 numbers, row by row", place);
   Matrix12 result;
-  for (Eigen::Index i = 0; i < 144; ++i) result(i / 12, i % 12) = number(value[static_cast<std::size_t>(i)], place);
+  for (Eigen::Index i = 0; i < 144; ++i) result(i / 12, i % 12) = number(value[index(i)], place);
   const double largest = result.cwiseAbs().maxCoeff();
   if ((result - result.transpose()).cwiseAbs().maxCoeff() > 1e-6 * largest || result.diagonal().minCoeff() < 0.0) {
     throw MessageError("covariance: expected a symmetric matrix without negative variances");

@@ -139,11 +139,11 @@ void MotionOptions::declare(OptionSet& set) {
 
 Motion make_motion(const MotionOptions& options, double duration, std::uint64_t seed, const std::string& folder,
                    const std::string& place) {
-  constexpr double gap = 2.0 * StoppingClock::ramp;
-  const std::vector<TimeSpan> hold = parse_time_spans(options.hold, place + ".hold", gap);
+  constexpr double kGap = 2.0 * StoppingClock::kRamp;
+  const std::vector<TimeSpan> hold = parse_time_spans(options.hold, place + ".hold", kGap);
   const std::vector<TimeSpan> no_translation =
-      merge_time_spans(hold, parse_time_spans(options.rotation_only, place + ".rotation_only", gap),
-                       place + ".hold and .rotation_only", gap);
+      merge_time_spans(hold, parse_time_spans(options.rotation_only, place + ".rotation_only", kGap),
+                       place + ".hold and .rotation_only", kGap);
   // The position rests in both kinds of spans, the rotation in the first only.
   const StoppingClock rotation_clock(hold), position_clock(no_translation);
   const Motion base = base_motion(options, duration, seed, folder, place);

@@ -32,16 +32,16 @@ void check_smooth(const Motion& motion, double duration, double largest_jump) {
 TEST_CASE("Uniform and normal numbers have the moments that they should have, streams differ, seeds repeat") {
   Random random(1);
   double sum = 0.0, squares = 0.0, uniform = 0.0;
-  constexpr int n = 200000;
-  for (int i = 0; i < n; ++i) {
+  constexpr int kN = 200000;
+  for (int i = 0; i < kN; ++i) {
     const double x = random.normal();
     sum += x;
     squares += x * x;
     uniform += random.uniform();
   }
-  CHECK(sum / n == Approx(0.0).margin(0.01));
-  CHECK(squares / n == Approx(1.0).margin(0.015));
-  CHECK(uniform / n == Approx(0.5).margin(0.005));
+  CHECK(sum / kN == Approx(0.0).margin(0.01));
+  CHECK(squares / kN == Approx(1.0).margin(0.015));
+  CHECK(uniform / kN == Approx(0.5).margin(0.005));
   CHECK(Random(1).next() == Random(1).next());
   CHECK(Random(1).next() != Random(2).next());
   CHECK(Random(1, 0).next() != Random(1, 1).next());

@@ -54,10 +54,10 @@ std::vector<TimeSpan> merge_time_spans(std::vector<TimeSpan> a, const std::vecto
 double StoppingClock::operator()(double t) const {
   double lost = 0.0;
   for (const auto& [from, to] : stops_) {
-    lost += ramp * step_integral((t - (from - ramp)) / ramp);  // slowing down
-    lost += std::clamp(t - from, 0.0, to - from);              // at rest
-    const double speeding_up = std::clamp(t - to, 0.0, ramp);
-    lost += speeding_up - ramp * step_integral(speeding_up / ramp);
+    lost += kRamp * step_integral((t - (from - kRamp)) / kRamp);  // slowing down
+    lost += std::clamp(t - from, 0.0, to - from);                 // at rest
+    const double speeding_up = std::clamp(t - to, 0.0, kRamp);
+    lost += speeding_up - kRamp * step_integral(speeding_up / kRamp);
   }
   return t - lost;
 }

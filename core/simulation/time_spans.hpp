@@ -22,7 +22,7 @@ std::vector<TimeSpan> merge_time_spans(std::vector<TimeSpan> a, const std::vecto
 /// to rest.
 class StoppingClock {
  public:
-  static constexpr double ramp = 0.2;
+  static constexpr double kRamp = 0.2;
 
   StoppingClock() = default;
   /// Spans in order and at least two ramps apart.

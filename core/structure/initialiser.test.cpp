@@ -15,7 +15,7 @@ using evbench::testing::Scene;
 
 namespace {
 
-constexpr double degrees = 180.0 / M_PI;
+constexpr double kDegrees = 180.0 / M_PI;
 
 /// Observations at 200 Hz, each track with a phase of its own, for 0 ≤ t ≤ duration, in time order.
 template <class Motion>
@@ -41,7 +41,7 @@ SE3 moving(double t) {
 SE3 rotating(double t) { return se3::exp((Vector6() << 0.1 * t, -0.2 * t, 0.1 * t, 0, 0, 0).finished()); }
 SE3 resting(double) { return {}; }
 
-double angle_deg(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)) * degrees; }
+double angle_deg(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)) * kDegrees; }
 
 }  // namespace
 
@@ -130,7 +130,7 @@ TEST_CASE("the real tracks of poster_translation start with the true direction o
       best = std::min(best, angle_deg(guess.T1.p, motion.p));
       UNSCOPED_INFO(t << ": " << guess.landmarks.size() << " landmarks, parallax " << guess.median_parallax_deg
                       << ", direction error " << angle_deg(guess.T1.p, motion.p) << " rotation error "
-                      << guess.T1.q.angularDistance(motion.q) * degrees);
+                      << guess.T1.q.angularDistance(motion.q) * kDegrees);
     }
     found = true;
     CHECK(best < 20.0);

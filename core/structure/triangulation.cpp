@@ -9,7 +9,7 @@
 namespace evbench {
 namespace {
 
-constexpr double degrees = 180.0 / M_PI;
+constexpr double kDegrees = 180.0 / M_PI;
 
 double angle(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
@@ -127,7 +127,7 @@ Triangulation triangulate(std::span<const SE3> T_world_camera, std::span<const V
   result.state = State::not_finite;
   if (!finite) return result;
 
-  result.parallax_deg = largest_angle(rays) * degrees;
+  result.parallax_deg = largest_angle(rays) * kDegrees;
   if (result.parallax_deg < options.min_parallax_deg) {
     result.state = State::low_parallax;
     return result;

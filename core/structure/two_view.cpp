@@ -17,8 +17,8 @@
 namespace evbench {
 namespace {
 
-constexpr double degrees = 180.0 / M_PI;
-constexpr std::size_t fewest_matches = 8;
+constexpr double kDegrees = 180.0 / M_PI;
+constexpr std::size_t kFewestMatches = 8;
 
 struct Matches {
   std::span<const Vector2> first, second;
@@ -127,8 +127,8 @@ bool better(const TwoViewCandidate& a, const TwoViewCandidate& b) {
 }
 
 bool same_pose(const SE3& a, const SE3& b) {
-  const double rotation = a.q.angularDistance(b.q) * degrees;
-  const double direction = std::atan2(a.p.cross(b.p).norm(), a.p.dot(b.p)) * degrees;
+  const double rotation = a.q.angularDistance(b.q) * kDegrees;
+  const double direction = std::atan2(a.p.cross(b.p).norm(), a.p.dot(b.p)) * kDegrees;
   return rotation < 1.0 && direction < 5.0;
 }
 
@@ -194,8 +194,8 @@ TwoViewResult relative_pose(std::span<const Vector2> first, std::span<const Vect
   if (!std::all_of(first.begin(), first.end(), finite) || !std::all_of(second.begin(), second.end(), finite)) {
     return {{}, "a matched pixel is not finite"};
   }
-  if (first.size() < fewest_matches || static_cast<int>(first.size()) < options.min_inliers) {
-    return {{}, fmt::format("{} matches, {} needed", first.size(), std::max<int>(fewest_matches, options.min_inliers))};
+  if (first.size() < kFewestMatches || static_cast<int>(first.size()) < options.min_inliers) {
+    return {{}, fmt::format("{} matches, {} needed", first.size(), std::max<int>(kFewestMatches, options.min_inliers))};
   }
 
   const int rotated = explained_by_rotation(matches);
@@ -206,7 +206,7 @@ TwoViewResult relative_pose(std::span<const Vector2> first, std::span<const Vect
   try {
     for (const Hypothesis& hypothesis : hypotheses(matches)) {
       TwoViewCandidate candidate = judge(hypothesis, matches);
-      if (candidate.inliers >= static_cast<int>(fewest_matches)) all.push_back(refined(std::move(candidate), matches));
+      if (candidate.inliers >= static_cast<int>(kFewestMatches)) all.push_back(refined(std::move(candidate), matches));
     }
   } catch (const cv::Exception& e) {
     return {{}, fmt::format("the two-view solver failed: {}", e.err)};

@@ -1,11 +1,13 @@
 #pragma once
 
-#include <concepts>
 #include <cstddef>
+#include <type_traits>
 
 namespace evbench {
 
-/// A count or number that is known not to be negative, as a container's index.
-constexpr std::size_t index(std::integral auto i) { return static_cast<std::size_t>(i); }
+/// A number that is known not to be negative, or an enumerator's, as a container's index.
+template <class Number>
+requires std::is_integral_v<Number> || std::is_enum_v<Number>
+constexpr std::size_t index(Number i) { return static_cast<std::size_t>(i); }
 
 }  // namespace evbench

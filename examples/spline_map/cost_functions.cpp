@@ -14,7 +14,7 @@ using evbench::Matrix23;
 template <int Rows, int Columns>
 using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
 
-constexpr double nearest_depth = 1e-6;
+constexpr double kNearestDepth = 1e-6;
 
 Knot read(const double* x) { return {Eigen::Quaterniond(x[3], x[0], x[1], x[2]), Vector3(x[4], x[5], x[6])}; }
 
@@ -56,7 +56,7 @@ bool KnotManifold::MinusJacobian(const double*, double* jacobian) const {
 Vector2 reprojection_error(const SE3& T, const Vector3& landmark, const Vector2& pixel,
                            const evbench::PinholeCamera& camera) {
   const Vector3 local = T.q.conjugate() * (landmark - T.p);
-  if (!(local.z() > nearest_depth)) return Vector2::Constant(2.0 * camera.fx);
+  if (!(local.z() > kNearestDepth)) return Vector2::Constant(2.0 * camera.fx);
   return camera.project(local) - pixel;
 }
 
@@ -71,7 +71,7 @@ bool ReprojectionCost::Evaluate(double const* const* parameters, double* residua
   const SE3 T = segment_.pose(u_, J);
   const Matrix3 Rt = T.R().transpose();
   const Vector3 local = Rt * (landmark - T.p);
-  const bool visible = local.z() > nearest_depth;
+  const bool visible = local.z() > kNearestDepth;
   residual =
       visible ? Vector2(weight_ * (camera_.project(local) - pixel_)) : Vector2::Constant(2.0 * weight_ * camera_.fx);
   const Matrix23 projection = visible ? Matrix23(weight_ * camera_.project_jacobian(local)) : Matrix23::Zero();
@@ -95,7 +95,7 @@ bool HeldReprojectionCost::Evaluate(double const* const* parameters, double* res
   const Matrix3 Rt = T_.R().transpose();
   const Vector3 local = Rt * (landmark - T_.p);
   J.setZero();
-  if (local.z() > nearest_depth) J = weight_ * camera_.project_jacobian(local) * Rt;
+  if (local.z() > kNearestDepth) J = weight_ * camera_.project_jacobian(local) * Rt;
   return true;
 }
 
@@ -113,13 +113,13 @@ bool AccelerationCost::Evaluate(double const* const* parameters, double* residua
   const std::array<Matrix3, 3> turns{so3::left_jacobian_inverse(d1),
                                      -so3::left_jacobian_inverse(d2) - so3::right_jacobian_inverse(d1),
                                      so3::right_jacobian_inverse(d2)};
-  constexpr std::array shifts{1.0, -2.0, 1.0};
+  constexpr std::array kShifts{1.0, -2.0, 1.0};
   for (std::size_t j = 0; j < 3; ++j) {
     if (jacobians[j] == nullptr) continue;
     Eigen::Map<RowMajor<6, 7>> J(jacobians[j]);
     J.setZero();
     J.topLeftCorner<3, 3>() = rotation_ * turns[j];
-    J.block<3, 3>(3, 3) = translation_ * shifts[j] * Matrix3::Identity();
+    J.block<3, 3>(3, 3) = translation_ * kShifts[j] * Matrix3::Identity();
   }
   return true;
 }

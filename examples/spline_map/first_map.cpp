@@ -15,8 +15,8 @@ using evbench::InitialGuess;
 using evbench::TrackBuffer;
 
 /// With this many times the parallax that is needed, the cheaper of two first maps is taken, however little cheaper.
-constexpr double decisive_parallax = 2.0;
-constexpr int refine_iterations = 30;
+constexpr double kDecisiveParallax = 2.0;
+constexpr int kRefineIterations = 30;
 
 /// The guess's motion, its velocity constant before, between and after its two views.
 Spline straight_motion(const InitialGuess& guess, double start, double spacing) {
@@ -31,10 +31,10 @@ Spline straight_motion(const InitialGuess& guess, double start, double spacing) 
 
 /// Observations from a time on; of many, some at even distances: for a start they are enough.
 std::vector<evbench::TrackObservation> sample(std::span<const evbench::TrackObservation> all, double from) {
-  constexpr std::size_t most = 100;
+  constexpr std::size_t kMost = 100;
   const auto first = std::ranges::lower_bound(all, from, {}, &evbench::TrackObservation::t);
   const std::span<const evbench::TrackObservation> usable(first, all.end());
-  const std::size_t count = std::min(most, usable.size());
+  const std::size_t count = std::min(kMost, usable.size());
   std::vector<evbench::TrackObservation> result;
   for (std::size_t i = 0; i < count; ++i) result.push_back(usable[i * usable.size() / count]);
   return result;
@@ -76,7 +76,7 @@ std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, doubl
     return std::nullopt;
   }
   if (refined.size() > 1 && refined[1].cost < options_.ambiguity_ratio * refined[0].cost &&
-      refined[0].parallax_deg < decisive_parallax * needed) {
+      refined[0].parallax_deg < kDecisiveParallax * needed) {
     reason_ = "two first maps explain the observations equally well";
     return std::nullopt;
   }
@@ -98,7 +98,7 @@ std::optional<FirstMap> FirstMapFinder::refine(const TrackBuffer& tracks, const 
   map.gauge = {map.spline.pose(map.spline.start()), guess.t0, guess.t1, baseline};
   const SolveReport report =
       solve(map.spline, map.landmarks, options_.densities(map.spline, map.spline.start()), camera_, map.gauge,
-            {0, map.spline.start()}, options_.solver(refine_iterations, 1e-6));
+            {0, map.spline.start()}, options_.solver(kRefineIterations, 1e-6));
   if (!report.usable || report.observations == 0) return std::nullopt;
   std::vector<double> errors;
   for (const auto& [id, landmark] : map.landmarks) errors.push_back(mean_error(landmark, map.spline, camera_));

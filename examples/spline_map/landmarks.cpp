@@ -23,10 +23,10 @@ double mean_error(const MappedTrack& landmark, const Spline& spline, const evben
 evbench::Triangulation triangulate_track(std::span<const evbench::TrackObservation> observations, const Spline& spline,
                                          const evbench::PinholeCamera& camera,
                                          const evbench::TriangulationOptions& options) {
-  constexpr std::size_t most = 24;
+  constexpr std::size_t kMost = 24;
   const auto first = std::ranges::lower_bound(observations, spline.start(), {}, &evbench::TrackObservation::t);
   const std::span<const evbench::TrackObservation> usable(first, observations.end());
-  const std::size_t views = std::min(most, usable.size());
+  const std::size_t views = std::min(kMost, usable.size());
   std::vector<SE3> poses;
   std::vector<Vector2> pixels;
   for (std::size_t i = 0; i < views; ++i) {

@@ -14,9 +14,9 @@
 namespace spline_map {
 namespace {
 
-constexpr double anchor_sigma = 1e-4;   // [rad, units, log] of the gauge: far below what data tell, well conditioned
-constexpr std::size_t most_dense = 60;  // knots; above, the reduced matrix is worth a sparse factorisation
-constexpr std::size_t segment_knots = 4;
+constexpr double kAnchorSigma = 1e-4;   // [rad, units, log] of the gauge: far below what data tell, well conditioned
+constexpr std::size_t kMostDense = 60;  // knots; above, the reduced matrix is worth a sparse factorisation
+constexpr std::size_t kSegmentKnots = 4;
 
 std::unique_ptr<ceres::LossFunction> make_loss(const SolverOptions& options) {
   if (options.loss == "huber") return std::make_unique<ceres::HuberLoss>(options.loss_width);
@@ -42,7 +42,7 @@ class Solve {
         camera_(camera),
         scope_(scope),
         options_(options),
-        first_segment_(scope.first_knot < segment_knots ? 0 : scope.first_knot - segment_knots + 1),
+        first_segment_(scope.first_knot < kSegmentKnots ? 0 : scope.first_knot - kSegmentKnots + 1),
         loss_(make_loss(options)),
         segments_(spline, first_segment_),
         problem_(problem_options(&segments_)) {}
@@ -90,13 +90,13 @@ void Solve::add_knots(const std::vector<MotionDensity>& densities) {
 
 void Solve::add_gauge(const Gauge& gauge) {
   if (scope_.first_knot > 0) return;
-  pose_anchor_ = std::make_unique<PoseAnchorCost>(gauge.first, anchor_sigma);
+  pose_anchor_ = std::make_unique<PoseAnchorCost>(gauge.first, kAnchorSigma);
   problem_.AddResidualBlock(pose_anchor_.get(), nullptr, knot(0), knot(1), knot(2), knot(3));
   std::map<std::size_t, double> weights;  // by knot; the two times may share knots
   const auto add = [&](double t, double sign) {
     const Spline::Place at = spline_.place(t);
     const BasisWeights basis(at.u);
-    for (std::size_t j = 0; j < segment_knots; ++j) weights[at.segment + j] += sign * basis.plain[j];
+    for (std::size_t j = 0; j < kSegmentKnots; ++j) weights[at.segment + j] += sign * basis.plain[j];
   };
   add(gauge.from, -1.0);
   add(gauge.to, 1.0);
@@ -106,7 +106,7 @@ void Solve::add_gauge(const Gauge& gauge) {
     blocks.push_back(knot(k));
     values.push_back(weight);
   }
-  baseline_ = std::make_unique<BaselineCost>(std::move(values), gauge.distance, anchor_sigma);
+  baseline_ = std::make_unique<BaselineCost>(std::move(values), gauge.distance, kAnchorSigma);
   problem_.AddResidualBlock(baseline_.get(), nullptr, blocks);
 }
 
@@ -146,7 +146,7 @@ SolveReport Solve::run(Landmarks& landmarks) {
   for (std::size_t k = first_segment_; k < spline_.knots().size(); ++k) ordering->AddElementToGroup(knot(k), 1);
   options.linear_solver_ordering = ordering;
   const std::size_t variable = spline_.knots().size() - scope_.first_knot;
-  options.linear_solver_type = variable <= most_dense ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
+  options.linear_solver_type = variable <= kMostDense ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
   options.num_threads = 1;
   options.max_num_iterations = options_.iterations;
   options.function_tolerance = options_.tolerance;

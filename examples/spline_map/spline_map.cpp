@@ -21,11 +21,11 @@ using Support = evbench::TrackingMonitor::Support;
 const evbench::Registration<evbench::BackEnd, SplineMap> registration(
     "spline_map", "continuous time with a cubic B-spline over a sliding window (Mueggler et al. 2018)");
 
-constexpr double longest_silence = 0.2;  // [s] without observations: from then on the estimate is carried
-constexpr double alive = 0.1;            // [s] after its last observation a track may still become a landmark
-constexpr double between_tries = 0.1;    // [s] between two attempts to locate a track
-constexpr int final_rounds = 3;          // of solving and removing outliers
-constexpr double smallest_step = 1e-6;   // [s]
+constexpr double kLongestSilence = 0.2;  // [s] without observations: from then on the estimate is carried
+constexpr double kAlive = 0.1;           // [s] after its last observation a track may still become a landmark
+constexpr double kBetweenTries = 0.1;    // [s] between two attempts to locate a track
+constexpr int kFinalRounds = 3;          // of solving and removing outliers
+constexpr double kSmallestStep = 1e-6;   // [s]
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -124,12 +124,12 @@ SolveReport SplineMap::optimise(double t) {
 void SplineMap::add_landmarks(double t) {
   const auto known = std::ranges::count_if(live_, [&](TrackId track) { return landmarks_.contains(track); });
   const double needed = known < 2 * options_.min_landmarks ? 0.0 : options_.min_track_time;
-  for (const TrackId track : tracks_.alive(t, alive)) {
+  for (const TrackId track : tracks_.alive(t, kAlive)) {
     const auto observations = tracks_.observations(track);
     if (std::ssize(observations) < options_.min_observations) continue;
     if (observations.back().t - observations.front().t < needed) continue;
     const auto tried = tried_at_.find(track);
-    if (tried != tried_at_.end() && t - tried->second < between_tries) continue;
+    if (tried != tried_at_.end() && t - tried->second < kBetweenTries) continue;
     const evbench::Triangulation result =
         triangulate_track(observations, spline_, context_.camera, options_.triangulation);
     if (result.ok()) {
@@ -178,7 +178,7 @@ void SplineMap::watch(double from, double t) {
     const auto& [track, landmark] = entry;
     return live_.contains(track) || (!landmark.observations.empty() && landmark.observations.back().t > from);
   });
-  if (t - observed_ > longest_silence) {
+  if (t - observed_ > kLongestSilence) {
     monitor_.observe(std::min(from, observed_), t, Support::none, "no observations");
   } else if (seen < options_.lost_landmarks) {
     monitor_.observe(from, t, Support::none, fmt::format("fewer than {} landmarks in view", options_.lost_landmarks));
@@ -225,7 +225,7 @@ void SplineMap::locate_the_rest() {
 void SplineMap::solve_everything() {
   const auto start = std::chrono::steady_clock::now();
   SolveReport report;
-  for (int round = 0; round < final_rounds; ++round) {
+  for (int round = 0; round < kFinalRounds; ++round) {
     if (round == 1) locate_the_rest();
     report = solve(spline_, landmarks_, options_.densities(spline_, newest_), context_.camera, gauge_,
                    {0, spline_.start()}, options_.solver(options_.final_iterations, 1e-6));
@@ -258,10 +258,10 @@ evbench::Feedback SplineMap::feedback(const evbench::FeedbackNeeds& needs) {
 
 /// Of the landmark's uncertainty alone, seen from T: poses held, and the newest observations of many.
 Eigen::Matrix2d SplineMap::prediction_covariance(const MappedTrack& landmark, const SE3& T) const {
-  constexpr std::size_t most = 50;
+  constexpr std::size_t kMost = 50;
   const auto& all = landmark.observations;
   Matrix3 information = 1e-9 * Matrix3::Identity();
-  for (std::size_t i = all.size() > most ? all.size() - most : 0; i < all.size(); ++i) {
+  for (std::size_t i = all.size() > kMost ? all.size() - kMost : 0; i < all.size(); ++i) {
     double jacobian[6], residual[2];
     double* blocks[] = {jacobian};
     const double* position = landmark.position.data();
@@ -280,7 +280,7 @@ evbench::PoseTrajectory SplineMap::trajectory() const {
   const double start = spline_.start();
   for (long k = 0;; ++k) {
     const double t = start + static_cast<double>(k) * options_.update_period;
-    if (t > newest_ - smallest_step) break;
+    if (t > newest_ - kSmallestStep) break;
     poses.push_back({t, spline_.pose(t)});
   }
   poses.push_back({newest_, spline_.pose(newest_)});

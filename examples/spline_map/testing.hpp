@@ -12,13 +12,13 @@ namespace spline_map::testing {
 template <int M, int N, class Function>
 Eigen::Matrix<double, M, N> differences(Function f) {
   using Input = Eigen::Matrix<double, N, 1>;
-  constexpr double h = 1e-3;
+  constexpr double kH = 1e-3;
   Eigen::Matrix<double, M, N> J;
   for (int column = 0; column < N; ++column) {
     const auto slope = [&](double step) -> Eigen::Matrix<double, M, 1> {
       return (f(Input(step * Input::Unit(column))) - f(Input(-step * Input::Unit(column)))) / (2.0 * step);
     };
-    J.col(column) = (4.0 * slope(0.5 * h) - slope(h)) / 3.0;
+    J.col(column) = (4.0 * slope(0.5 * kH) - slope(kH)) / 3.0;
   }
   return J;
 }

@@ -7,6 +7,7 @@
 #include "backends/gp_map/batch_solver.hpp"
 #include "backends/gp_map/problem_graph.hpp"
 #include "backends/gp_map/testing/drawn_problem.hpp"
+#include "core/support/index.hpp"
 #include "core/testing/data.hpp"
 
 namespace evbench::gp_map {
@@ -46,7 +47,7 @@ TEST_CASE("Covariances of the engine are those of the batch solver") {
   }
   const int landmarks = static_cast<int>(engine.graph().landmarks.size());
   for (const int j : {0, landmarks / 2, landmarks - 1}) {
-    if (!engine.graph().landmarks[static_cast<std::size_t>(j)].alive) continue;
+    if (!engine.graph().landmarks[index(j)].alive) continue;
     CHECK((*engine.landmark_covariance(j) - *oracle.landmark(j)).norm() < 1e-6 * oracle.landmark(j)->norm());
   }
 }
@@ -91,8 +92,8 @@ TEST_CASE("The newest states after each observation are those of an update with 
   const IntervalObservations& interval = all.intervals[kStates];
   for (const auto& group : interval.groups()) {
     for (int i = group.begin; i < group.end; ++i) {
-      const Observation& z = interval.all()[static_cast<std::size_t>(i)];
-      if (start.landmarks[static_cast<std::size_t>(group.landmark)].intervals.empty()) continue;
+      const Observation& z = interval.all()[index(i)];
+      if (start.landmarks[index(group.landmark)].intervals.empty()) continue;
       if (!one_by_one.observe(group.landmark, z)) continue;
       at_once.add_observation(group.landmark, z);
       ++live;
@@ -136,7 +137,7 @@ TEST_CASE("With a lag the newest state stays that of full history within its unc
       const IntervalObservations& interval = all.intervals[k];
       for (const auto& group : interval.groups()) {
         for (int i = group.begin; i < group.end; ++i) {
-          CHECK(engine->add_observation(group.landmark, interval.all()[static_cast<std::size_t>(i)]));
+          CHECK(engine->add_observation(group.landmark, interval.all()[index(i)]));
         }
       }
       engine->update();
@@ -144,9 +145,9 @@ TEST_CASE("With a lag the newest state stays that of full history within its unc
   }
   CHECK(full.first_state() == 0);
   const int first = lag.first_state();
-  CHECK(lag.graph().states.back().t - lag.graph().states[static_cast<std::size_t>(first)].t < 3.6);
+  CHECK(lag.graph().states.back().t - lag.graph().states[index(first)].t < 3.6);
   CHECK(first > 20);
-  for (int k = 1; k <= first; ++k) CHECK(lag.graph().intervals[static_cast<std::size_t>(k)].all().empty());
+  for (int k = 1; k <= first; ++k) CHECK(lag.graph().intervals[index(k)].all().empty());
   CHECK_FALSE(lag.add_observation(all.intervals[2].groups()[0].landmark, {all.states[2].t, {100.0, 100.0}, 1.0}));
 
   const Matrix24 joint = *full.neighbours(static_cast<int>(all.states.size()) - 2);

@@ -5,6 +5,7 @@
 
 #include "backends/gp_map/engine/engine.hpp"
 #include "core/simulation/random.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench::gp_map::testing {
 
@@ -37,7 +38,7 @@ class DrawnProblem {
   DrawnProblem(const DrawnOptions& options, std::uint64_t seed);
 
   /// The trajectory at i kStep, i ≤ (kStates − 1) kSteps.
-  const ControlState& truth(int i) const { return truth_[static_cast<std::size_t>(i)]; }
+  const ControlState& truth(int i) const { return truth_[index(i)]; }
 
   /// Feeds all of it, one update a control state. A landmark enters with its fifth observation.
   Engine solve_incrementally(const EngineOptions& options = {}) const;

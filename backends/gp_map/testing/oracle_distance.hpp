@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "backends/gp_map/batch_solver.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench::gp_map::testing {
 
@@ -34,8 +35,8 @@ inline OracleDistance distance_from_oracle(const FactorGraph& estimate, int ever
       if (!joint) return {kInfinite, kInfinite};
       own = k < newest ? joint->topLeftCorner<12, 12>() : joint->bottomRightCorner<12, 12>();
     }
-    const ControlState& a = optimum.states[static_cast<std::size_t>(k)];
-    const ControlState& b = estimate.states[static_cast<std::size_t>(k)];
+    const ControlState& a = optimum.states[index(k)];
+    const ControlState& b = estimate.states[index(k)];
     Vector12 apart;
     apart << se3::log(a.T.inverse() * b.T), b.velocity - a.velocity;
     distance.component =

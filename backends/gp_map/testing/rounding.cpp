@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "backends/gp_map/factors.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench::gp_map::testing {
 namespace {
@@ -55,7 +56,7 @@ struct DenseSystem {
     add(12 * (k - 1), 12 * (k - 1), linear.states);
     b.segment(12 * (k - 1), 24) -= linear.gradient.cast<Real>();
     for (const auto& coupling : linear.couplings) {
-      const int l = row[static_cast<std::size_t>(coupling.landmark)];
+      const int l = row[index(coupling.landmark)];
       add(l, l, coupling.landmark_landmark);
       add(l, 12 * (k - 1), coupling.landmark_states);
       b.segment(l, 3) -= coupling.gradient.cast<Real>();

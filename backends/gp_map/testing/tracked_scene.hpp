@@ -7,6 +7,7 @@
 #include "backends/gp_map/gp_map.hpp"
 #include "core/plugin/track_player.hpp"
 #include "core/simulation/track_simulator.hpp"
+#include "core/support/index.hpp"
 #include "eval/scores.hpp"
 
 namespace evbench::gp_map::testing {
@@ -21,7 +22,7 @@ class TrackedScene {
   double duration() const { return duration_; }
   const PoseTrajectory& ground_truth() const { return ground_truth_; }
   const std::vector<TrackObservation>& observations() const { return tracks_.observations; }
-  const Vector3& point(TrackId track) const { return tracks_.tracks[static_cast<std::size_t>(track)].point; }
+  const Vector3& point(TrackId track) const { return tracks_.tracks[index(track)].point; }
 
  private:
   double duration_;

@@ -8,6 +8,7 @@
 
 #include "core/events/bytes/bytes.hpp"
 #include "core/events/bytes/fault_count.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench {
 namespace {
@@ -106,7 +107,7 @@ bool parse_time(std::string_view text, Unit unit, std::int64_t& t) {
   constexpr double kMicroseconds[] = {1e6, 1e3, 1.0, 1e-3};
   double number = 0.0;
   if (!parse_number(text, number)) return false;
-  number *= kMicroseconds[static_cast<std::size_t>(unit)];
+  number *= kMicroseconds[index(unit)];
   if (std::abs(number) > kLatest) return false;
   t = std::llround(number);
   return true;

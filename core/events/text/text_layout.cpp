@@ -204,9 +204,8 @@ std::vector<std::pair<std::string, std::string>> TextLayout::description() const
   constexpr const char* kColumns[] = {"t", "x", "y", "p", "-"};
   constexpr const char* kUnits[] = {"seconds", "milliseconds", "microseconds", "nanoseconds"};
   std::vector<std::string> order;
-  for (const Column column : columns) order.push_back(kColumns[static_cast<std::size_t>(column)]);
-  return {{"columns", fmt::to_string(fmt::join(order, " ")) + origin},
-          {"unit of time", kUnits[static_cast<std::size_t>(unit)]}};
+  for (const Column column : columns) order.push_back(kColumns[index(column)]);
+  return {{"columns", fmt::to_string(fmt::join(order, " ")) + origin}, {"unit of time", kUnits[index(unit)]}};
 }
 
 }  // namespace evbench

@@ -9,7 +9,7 @@ namespace evbench {
 class Brightness {
  public:
   /// An interval is divided into so many parts, at whose ends single pixels can be asked for.
-  static constexpr int parts = 32;
+  static constexpr int kParts = 32;
 
   virtual ~Brightness() = default;
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <tuple>
 
+#include "core/support/index.hpp"
 #include "core/support/parallel.hpp"
 
 namespace evbench {
@@ -44,7 +45,7 @@ class Way {
   }
 
  private:
-  double time(int part) const { return from_ + length_ * part / Brightness::parts; }
+  double time(int part) const { return from_ + length_ * part / Brightness::kParts; }
 
   const Brightness& brightness_;
   const SimulatorOptions& options_;
@@ -122,20 +123,20 @@ void EventSimulator::step() {
 
 void EventSimulator::advance_row(int y) {
   const std::span<const float> image = brightness_->image();
-  std::size_t index = static_cast<std::size_t>(y) * static_cast<std::size_t>(info_.width);
-  for (int x = 0; x < info_.width; ++x, ++index) {
-    if (quiet_[index].holds(interval_end_, image[index])) continue;
-    pixels_[index].skip(t_, last_image_[index]);
-    advance_pixel(x, y, rows_[static_cast<std::size_t>(y)]);
-    quiet_[index] = pixels_[index].quiet();
+  std::size_t pixel = index(y) * index(info_.width);
+  for (int x = 0; x < info_.width; ++x, ++pixel) {
+    if (quiet_[pixel].holds(interval_end_, image[pixel])) continue;
+    pixels_[pixel].skip(t_, last_image_[pixel]);
+    advance_pixel(x, y, rows_[index(y)]);
+    quiet_[pixel] = pixels_[pixel].quiet();
   }
 }
 
 void EventSimulator::advance_pixel(int x, int y, std::vector<Event>& events) {
-  const auto index = static_cast<std::size_t>(y) * static_cast<std::size_t>(info_.width) + static_cast<std::size_t>(x);
+  const std::size_t pixel = index(y) * index(info_.width) + index(x);
   const std::size_t before = events.size();
   const Way way(*brightness_, options_, t_, interval_end_, x, y);
-  way.advance(pixels_[index], 0, Brightness::parts, brightness_->image()[index], events);
+  way.advance(pixels_[pixel], 0, Brightness::kParts, brightness_->image()[pixel], events);
   for (std::size_t i = before; i < events.size(); ++i) {
     events[i].x = static_cast<std::uint16_t>(x);
     events[i].y = static_cast<std::uint16_t>(y);

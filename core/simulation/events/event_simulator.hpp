@@ -19,7 +19,7 @@ struct SimulatorOptions {
 
 /// An event camera that looks at a brightness: a recording that is made while it is read. Within an interval of the
 /// brightness a pixel's log intensity is taken as a straight line; where it emits events and the line is wrong by more
-/// than time_accuracy, the interval is halved for this pixel, down to Brightness::parts parts. Events come by (t, y,
+/// than time_accuracy, the interval is halved for this pixel, down to Brightness::kParts parts. Events come by (t, y,
 /// x). Equal brightness, options and seed give equal bytes, whatever the number of threads.
 class EventSimulator : public EventReader {
  public:

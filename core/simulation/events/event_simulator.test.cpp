@@ -32,7 +32,7 @@ class Formula : public Brightness {
   }
   std::span<const float> image() const override { return image_; }
   float within(int x, int y, int part) const override {
-    return static_cast<float>(function_(x, y, from_ + (to_ - from_) * part / parts));
+    return static_cast<float>(function_(x, y, from_ + (to_ - from_) * part / kParts));
   }
 
  private:
@@ -109,12 +109,12 @@ TEST_CASE("The mean threshold on a ramp is the nominal one, and its spread over 
 }
 
 TEST_CASE("A step edge that moves at a known speed is seen when it passes each pixel, to 10 us") {
-  const double speed = GENERATE(100.0, 1000.0);  // px/s
-  constexpr double blur = 0.45, contrast = 1.5;  // px, of the log intensity
+  const double speed = GENERATE(100.0, 1000.0);    // px/s
+  constexpr double kBlur = 0.45, kContrast = 1.5;  // px, of the log intensity
   // Log intensity of an edge between I = 1 and I = exp(1.5), blurred by a Gaussian.
   const auto edge = [&](double x, double, double t) {
-    const double bright = 0.5 * std::erfc(-(speed * t - x - 2.0) / (blur * M_SQRT2));
-    return std::log(1.0 + (std::exp(contrast) - 1.0) * bright);
+    const double bright = 0.5 * std::erfc(-(speed * t - x - 2.0) / (kBlur * M_SQRT2));
+    return std::log(1.0 + (std::exp(kContrast) - 1.0) * bright);
   };
   SimulatorOptions options = ideal();
   const double duration = 44.0 / speed, interval = 0.5 / speed;  // half a pixel between renderings

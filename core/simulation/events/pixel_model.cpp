@@ -64,14 +64,14 @@ bool Pixel::fires(double t, double L) const {
 }
 
 Pixel::Quiet Pixel::quiet() const {
-  constexpr double longest =
+  constexpr double kLongest =
       0.05;  // [s] that the leak is thought ahead, and the share of the threshold that it may take
-  constexpr double share = 0.1, margin = 1e-5;  // margin: more than is lost by rounding
-  constexpr float far = std::numeric_limits<float>::infinity();
-  if (blind_) return {-far, far, std::nextafter(blind_until_, t_)};
-  const double ahead = std::min({next_noise_ - t_, longest, leak_ > 0.0F ? share * on_ / leak_ : longest});
-  return {static_cast<float>(reference_ - off_ + margin), static_cast<float>(reference_ + on_ - leak_ * ahead - margin),
-          std::nextafter(t_ + ahead, t_)};
+  constexpr double kShare = 0.1, kMargin = 1e-5;  // margin: more than is lost by rounding
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  if (blind_) return {-kFar, kFar, std::nextafter(blind_until_, t_)};
+  const double ahead = std::min({next_noise_ - t_, kLongest, leak_ > 0.0F ? kShare * on_ / leak_ : kLongest});
+  return {static_cast<float>(reference_ - off_ + kMargin),
+          static_cast<float>(reference_ + on_ - leak_ * ahead - kMargin), std::nextafter(t_ + ahead, t_)};
 }
 
 void Pixel::advance(const SensorOptions& options, double t, double L, std::vector<Event>& events) {

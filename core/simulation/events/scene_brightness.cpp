@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/support/index.hpp"
+
 namespace evbench {
 namespace {
 
@@ -49,8 +51,8 @@ double SceneBrightness::advance(double limit) {
   last_length_ = to_ - from_;
   std::swap(frame_, last_);
   views_.clear();
-  for (int part = 1; part < parts; ++part) {
-    views_.push_back(renderer_.view(motion_(from_ + (to_ - from_) * part / parts)));
+  for (int part = 1; part < kParts; ++part) {
+    views_.push_back(renderer_.view(motion_(from_ + (to_ - from_) * part / kParts)));
   }
   renderer_.render(motion_(to_), threads_, frame_);
   return to_;
@@ -70,9 +72,9 @@ double SceneBrightness::displacement(const SE3& T_world_camera) const {
 
 /// From the last interval's length on, by the ratio of displacements.
 double SceneBrightness::choose_end(double limit) const {
-  constexpr int attempts = 8;
+  constexpr int kAttempts = 8;
   double length = last_length_;
-  for (int i = 0; i < attempts; ++i) {
+  for (int i = 0; i < kAttempts; ++i) {
     const double moved = displacement(motion_(std::min(from_ + length, limit)));
     const bool small = moved < 0.7 * options_.max_displacement && length < kLongest;
     if (moved <= options_.max_displacement && !small) break;
@@ -84,7 +86,7 @@ double SceneBrightness::choose_end(double limit) const {
 
 float SceneBrightness::within(int x, int y, int part) const {
   const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(x);
-  return renderer_.pixel(views_[static_cast<std::size_t>(part - 1)], i, frame_.edge[i] != 0 || last_.edge[i] != 0);
+  return renderer_.pixel(views_[index(part - 1)], i, frame_.edge[i] != 0 || last_.edge[i] != 0);
 }
 
 }  // namespace evbench

@@ -27,11 +27,11 @@ std::optional<Vector2> SceneTruth::pixel(const Vector3& point, double t, double 
 }
 
 bool SceneTruth::unoccluded(const SE3& T_world_camera, const Vector3& point) const {
-  constexpr double tolerance = 1e-6;  // of the depth: the point's own surface is not in front of it
+  constexpr double kTolerance = 1e-6;  // of the depth: the point's own surface is not in front of it
   const Vector3 local = T_world_camera.inverse() * point;
   if (local.z() <= 0.0) return false;
   const std::optional<Hit> hit = View(scene_->surfaces, T_world_camera).hit(local / local.z());
-  return !hit || hit->depth > local.z() * (1.0 - tolerance);
+  return !hit || hit->depth > local.z() * (1.0 - kTolerance);
 }
 
 }  // namespace evbench

@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/support/error.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench {
 namespace {
@@ -24,7 +25,7 @@ Polygon star(const Vector2& centre, int vertices, const std::vector<double>& rad
   Polygon polygon;
   for (int i = 0; i < vertices; ++i) {
     const double a = angle + 2.0 * M_PI * i / vertices;
-    polygon.push_back(centre + radii[static_cast<std::size_t>(i) % radii.size()] * Vector2(std::cos(a), std::sin(a)));
+    polygon.push_back(centre + radii[index(i) % radii.size()] * Vector2(std::cos(a), std::sin(a)));
   }
   return polygon;
 }
@@ -71,9 +72,9 @@ void find_corners(Pattern& pattern, double distance) {
 
 Pattern draw_dots(int side, double diameter, Random& random) {
   Pattern pattern{blank(side), places(side, 3.0 * diameter, 0.6 * diameter, random)};
-  constexpr int vertices = 48;
+  constexpr int kVertices = 48;
   for (const Vector2& centre : pattern.features) {
-    fill(pattern.picture, star(centre, vertices, {0.5 * diameter}, 0.0), 30.0);
+    fill(pattern.picture, star(centre, kVertices, {0.5 * diameter}, 0.0), 30.0);
   }
   return pattern;
 }
@@ -98,13 +99,13 @@ Pattern draw_shapes(int side, double size, Random& random) {
 
 Pattern draw_leaves(int side, double smallest, Random& random) {
   Pattern pattern{blank(side), {}};
-  constexpr double largest = 16.0;  // times the smallest
+  constexpr double kLargest = 16.0;  // times the smallest
   // Mean area of a leaf by that density: ∫ d² d⁻³ / ∫ d⁻³ = 2 ln(largest) / (1 − largest⁻²) of the smallest one's. So
   // many leaves fall that each place is covered three times on average.
-  const double area = 0.5 * smallest * smallest * 2.0 * std::log(largest);
+  const double area = 0.5 * smallest * smallest * 2.0 * std::log(kLargest);
   const int count = static_cast<int>(3.0 * side * side / area);
   for (int i = 0; i < count; ++i) {
-    const double diameter = smallest / std::sqrt(1.0 - random.uniform() * (1.0 - 1.0 / (largest * largest)));
+    const double diameter = smallest / std::sqrt(1.0 - random.uniform() * (1.0 - 1.0 / (kLargest * kLargest)));
     const Vector2 centre(random.uniform(0.0, side), random.uniform(0.0, side));
     const int vertices = 3 + static_cast<int>(random.index(3));
     const double radius = 0.5 * diameter, angle = random.uniform(0.0, 2.0 * M_PI);

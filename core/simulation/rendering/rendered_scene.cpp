@@ -10,6 +10,7 @@
 #include "core/simulation/layout.hpp"
 #include "core/simulation/rendering/patterns.hpp"
 #include "core/support/error.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench {
 namespace {
@@ -61,11 +62,11 @@ bool clear_of_path(const StandingBox& box, const SceneLayout& layout, double dis
 }
 
 std::vector<Surface> boxes_in_room(const RenderedSceneOptions& options, const SceneLayout& layout, Random& random) {
-  constexpr int attempts = 20;
+  constexpr int kAttempts = 20;
   const Box volume = layout.viewed_volume(options.near, options.far);
   std::vector<Surface> surfaces;
   for (int i = 0; i < options.boxes; ++i) {
-    for (int attempt = 0; attempt < attempts; ++attempt) {
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
       const StandingBox box(volume, random);
       if (!clear_of_path(box, layout, 0.5 * options.near)) continue;
       surfaces.push_back({Surface::Kind::box, layout.frame * SE3{box.turn, box.centre}, box.half});
@@ -93,10 +94,10 @@ Vector2 offset_on_print(const Surface& surface, int face, const Print& print, Ra
 /// Throws InputError where the path comes so near to the plane, or behind it, that there is nothing to see.
 void check_before_plane(double depth, const SceneLayout& layout, const Motion& motion, double duration,
                         const std::string& place) {
-  constexpr double rate = 50.0, nearest = 0.02;  // [Hz]; share of the depth
-  for (double t = 0.0; t <= duration; t += 1.0 / rate) {
+  constexpr double kRate = 50.0, kNearest = 0.02;  // [Hz]; share of the depth
+  for (double t = 0.0; t <= duration; t += 1.0 / kRate) {
     const double left = depth - (layout.frame.inverse() * motion(t).p).z();
-    if (left > nearest * depth) continue;
+    if (left > kNearest * depth) continue;
     throw InputError(
         fmt::format("{}: at {:.2f} s the camera is {:.3f} m before the plane, which is {:.3g} m ahead of the motion's "
                     "mean; expected "
@@ -115,7 +116,7 @@ std::vector<Surface> plane(const RenderedSceneOptions& options, const SceneLayou
 void add_features(const Surface& surface, int face, const Print& print, std::vector<Vector3>& features) {
   const Eigen::Index axis = face / 2, right = (axis + 1) % 3, down = (axis + 2) % 3;
   for (const Vector2& pixel : print.pattern.features) {
-    const Vector2 place = print.metres(pixel) - surface.offsets[static_cast<std::size_t>(face)];
+    const Vector2 place = print.metres(pixel) - surface.offsets[index(face)];
     if (std::abs(place.x()) > surface.half[right] || std::abs(place.y()) > surface.half[down]) continue;
     Vector3 local;
     local[right] = place.x();
@@ -152,7 +153,7 @@ RenderedScene make_rendered_scene(const RenderedSceneOptions& options, const Cam
   const Print print = make_print(options, camera, 2.0 * largest.maxCoeff(), random, folder);
   for (Surface& surface : surfaces) {
     for (int face = 0; face < 6; ++face) {
-      surface.offsets[static_cast<std::size_t>(face)] = offset_on_print(surface, face, print, random);
+      surface.offsets[index(face)] = offset_on_print(surface, face, print, random);
     }
   }
   RenderedScene scene{std::move(surfaces), Texture(print.pattern.picture, print.size, options.black), {}};

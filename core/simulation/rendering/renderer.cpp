@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/support/index.hpp"
 #include "core/support/parallel.hpp"
 
 namespace evbench {
@@ -47,16 +48,16 @@ Renderer::Renderer(const Camera& camera, const std::vector<Surface>& surfaces, c
 }
 
 Renderer::Ray Renderer::make_ray(const Vector2& pixel) const {
-  constexpr double h = 0.5;
+  constexpr double kH = 0.5;
   const Ray blind{Vector2::Constant(std::numeric_limits<double>::quiet_NaN()), Eigen::Matrix2f::Zero()};
   const std::optional<Vector2> centre = camera_.undistort(pixel);
   if (!centre) return blind;
   Ray ray{camera_.pinhole.ray(*centre).head<2>(), {}};
   for (Eigen::Index axis = 0; axis < 2; ++axis) {
-    const Vector2 step = h * Vector2::Unit(axis);
+    const Vector2 step = kH * Vector2::Unit(axis);
     const std::optional<Vector2> before = camera_.undistort(pixel - step), after = camera_.undistort(pixel + step);
     if (!before || !after) return blind;
-    const Vector3 slope = (camera_.pinhole.ray(*after) - camera_.pinhole.ray(*before)) / (2.0 * h);
+    const Vector3 slope = (camera_.pinhole.ray(*after) - camera_.pinhole.ray(*before)) / (2.0 * kH);
     ray.jacobian.col(axis) = slope.head<2>().cast<float>();
   }
   return ray;
@@ -75,8 +76,7 @@ void Renderer::render(const SE3& T_world_camera, int threads, Frame& frame) cons
       frame.hits[i] = rays_[i].valid() ? seen.hit(rays_[i].direction()).value_or(Hit{}) : Hit{};
     }
     const auto begin = frame.hits.begin() + static_cast<std::ptrdiff_t>(row(y));
-    even[static_cast<std::size_t>(y)] =
-        std::all_of(begin, begin + width, [&](const Hit& h) { return h.same_face(*begin); });
+    even[index(y)] = std::all_of(begin, begin + width, [&](const Hit& h) { return h.same_face(*begin); });
   });
   parallel_for(threads, height, [&](int y) {
     mark_edges(y, even, frame);
@@ -97,8 +97,7 @@ void Renderer::mark_edges(int y, const std::vector<std::uint8_t>& even, Frame& f
   };
   bool same = true;
   for (int v = top; v <= bottom; ++v) {
-    same =
-        same && even[static_cast<std::size_t>(v)] && frame.hits[index_of(0, v)].same_face(frame.hits[index_of(0, y)]);
+    same = same && even[index(v)] && frame.hits[index_of(0, v)].same_face(frame.hits[index_of(0, y)]);
   }
   for (int x = 0; x < width; ++x) {
     bool edge = false;
@@ -134,15 +133,15 @@ float Renderer::intensity(const View& view, const Hit& hit, const Ray& ray) cons
 /// Round samples along the longer axis of a footprint, `longer` and `shorter` the variances along its axes. With
 /// weights 1, 2, ..., n, ..., 2, 1 and the distance d between them their places have the variance d² (n² − 1) / 6.
 float Renderer::row_of_samples(const Vector2& centre, const Matrix2& covariance, double longer, double shorter) const {
-  constexpr int most = 8;
-  constexpr double apart = 1.6;  // so many standard deviations of one at most
+  constexpr int kMost = 8;
+  constexpr double kApart = 1.6;  // so many standard deviations of one at most
   const auto spread = [](int n) { return (n * n - 1) / 6.0; };
   int n = 2;
-  while (n < most && longer - shorter > apart * apart * shorter * spread(n)) ++n;
+  while (n < kMost && longer - shorter > kApart * kApart * shorter * spread(n)) ++n;
   // Either row of covariance − shorter I lies along the longer axis; the larger is taken.
   const Matrix2 rest = covariance - shorter * Matrix2::Identity();
   const Vector2 axis = rest(0, 0) > rest(1, 1) ? rest.row(0) : rest.row(1);
-  shorter = std::max(shorter, longer / (1.0 + apart * apart * spread(most)));
+  shorter = std::max(shorter, longer / (1.0 + kApart * kApart * spread(kMost)));
   const Vector2 step = std::sqrt((longer - shorter) / spread(n)) * axis.normalized();
   float sum = 0.0F;
   for (int i = 1 - n; i < n; ++i) {
@@ -152,7 +151,7 @@ float Renderer::row_of_samples(const Vector2& centre, const Matrix2& covariance,
 }
 
 float Renderer::intensity_at_edge(const View& view, const Ray& ray) const {
-  constexpr double footprint = 0.3;  // of a ray, as a share of the blur
+  constexpr double kFootprint = 0.3;  // of a ray, as a share of the blur
   const Matrix2 jacobian = ray.jacobian.cast<double>();
   float sum = 0.0F;
   for (const Vector2& offset : spread_) {
@@ -163,7 +162,7 @@ float Renderer::intensity_at_edge(const View& view, const Ray& ray) const {
       continue;
     }
     const View::Place place = view.place(*hit, cast);
-    const Matrix2 step = footprint * blur_ * (place.jacobian * jacobian);
+    const Matrix2 step = kFootprint * blur_ * (place.jacobian * jacobian);
     sum += texture_->sample(place.texture, std::max(step.col(0).squaredNorm(), step.col(1).squaredNorm()));
   }
   return sum / kEdgeRays;

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "core/support/index.hpp"
+
 namespace evbench {
 namespace {
 
@@ -65,10 +67,10 @@ std::optional<Hit> View::meet(const Seen& seen, const Vector3& ray) {
 }
 
 View::Place View::place(const Hit& hit, const Vector3& ray) const {
-  const Seen& seen = seen_[static_cast<std::size_t>(hit.surface)];
+  const Seen& seen = seen_[index(hit.surface)];
   const Eigen::Index axis = hit.face / 2;
   const Vector3 d = seen.R * ray;
-  Place place{seen.surface->offsets[static_cast<std::size_t>(hit.face)], {}};
+  Place place{seen.surface->offsets[index(hit.face)], {}};
   for (Eigen::Index i = 0; i < 2; ++i) {
     const Eigen::Index along = (axis + 1 + i) % 3;
     place.texture[i] += seen.eye[along] + hit.depth * d[along];
