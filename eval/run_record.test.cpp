@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/data/tum.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "core/testing/data.hpp"
 #include "eval/score_run.hpp"
@@ -100,13 +101,13 @@ TEST_CASE("A run's folder is scored from its files, within the run's range, and 
   const TemporaryFolder folder;
   const PoseTrajectory truth = sample(wavy_pose, 400, 0.01);
   folder.write("online.tum", "");
-  write_tum(folder.file("final.tum"), disturbed(truth));
+  write_file(folder.file("final.tum"), format_tum(disturbed(truth)));
   RunRecord record = full_record();
   record.range = {1.0, 3.0};
   score_run(folder.path(), {}, record);
   CHECK(record.final_unscored == "no ground truth");
 
-  write_tum(folder.file("groundtruth.tum"), truth);
+  write_file(folder.file("groundtruth.tum"), format_tum(truth));
   score_run(folder.path(), {}, record);
   CHECK(record.final_unscored.empty());
   CHECK(record.final_scores.at("association").at("time_range_s") == Json{1.0, 3.0});

@@ -4,6 +4,7 @@
 #include "bench/commands/commands.hpp"
 #include "core/data/robotevt.hpp"
 #include "core/data/tum.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "core/testing/data.hpp"
 #include "eval/scores.hpp"
@@ -24,8 +25,8 @@ struct Trajectories {
 
   Trajectories() {
     const PoseTrajectory truth = sample(wavy_pose, 200, 0.01);
-    write_tum(ground_truth, truth);
-    write_tum(estimate, disturbed(seen_from(truth, {2.0, {so3::exp({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0}}})));
+    write_file(ground_truth, format_tum(truth));
+    write_file(estimate, format_tum(disturbed(seen_from(truth, {2.0, {so3::exp({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0}}}))));
   }
 
   /// Runs `evbench eval` with these options and gives what it wrote with --json.
@@ -88,7 +89,7 @@ TEST_CASE("eval writes the structure of a run's metrics, which table reads") {
                               "/coverage", "/pairs", "/scale", "/path_m", "/ate/trans_percent"}) {
     CHECK(json.at("final").at(Json::json_pointer(pointer)).is_number());
   }
-  write_tum(files.estimate, read_tum(files.ground_truth));
+  write_file(files.estimate, format_tum(read_tum(files.ground_truth)));
   files.folder.write("metrics.json", json.dump());
   CLI::App app;
   add_table(app);
@@ -101,7 +102,7 @@ TEST_CASE("eval writes the structure of a run's metrics, which table reads") {
 TEST_CASE("eval recognises RobotEvt ground truth by its columns") {
   const Trajectories files;
   const double before = files.eval("-as").at("final").at("ate").at("trans_m").at("rmse");
-  write_robotevt(files.ground_truth, read_tum(files.ground_truth));
+  write_file(files.ground_truth, format_robotevt(read_tum(files.ground_truth)));
   CHECK(files.eval("-as").at("final").at("ate").at("trans_m").at("rmse").get<double>() == Approx(before).epsilon(1e-6));
   CHECK_THROWS_AS(files.eval("--format tum"), InputError);
 }

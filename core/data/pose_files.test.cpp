@@ -5,6 +5,7 @@
 #include "core/data/robotevt.hpp"
 #include "core/data/tum.hpp"
 #include "core/geometry/so3.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "core/testing/data.hpp"
 
@@ -46,13 +47,13 @@ double worst_difference(const PoseTrajectory& a, const PoseTrajectory& b) {
 
 TEST_CASE("A TUM file reads back as written, with absolute Unix time without loss") {
   const testing::TemporaryFolder folder;
-  write_tum(folder.file("a.txt"), unix_time_example());
+  write_file(folder.file("a.txt"), format_tum(unix_time_example()));
   CHECK(worst_difference(read_tum(folder.file("a.txt")), unix_time_example()) < 1e-9);
 }
 
 TEST_CASE("A RobotEvt file reads back as written") {
   const testing::TemporaryFolder folder;
-  write_robotevt(folder.file("a.txt"), unix_time_example());
+  write_file(folder.file("a.txt"), format_robotevt(unix_time_example()));
   CHECK(worst_difference(read_robotevt(folder.file("a.txt")), unix_time_example()) < 1e-9);
 }
 

@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "core/data/pose_record.hpp"
-#include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "core/support/index.hpp"
 
@@ -242,8 +241,6 @@ std::string format_problem(const Problem& problem) {
   }
   return fmt::to_string(text);
 }
-
-void write_problem(const std::string& path, const Problem& problem) { write_file(path, format_problem(problem)); }
 
 Problem prepare(Problem problem) {
   const auto covered = [&](const Problem::Observation& o) {

@@ -64,8 +64,6 @@ Problem read_problem(const std::string& path);
 /// Records in the order of the table above, with the shortest digits that read back as the same numbers.
 std::string format_problem(const Problem& problem);
 
-void write_problem(const std::string& path, const Problem& problem);
-
 /// The problem that is solved: observations outside [first state, last state] are dropped, and so is every observation
 /// and prior of a landmark with fewer than two that are left; observations are sorted by time, then by landmark.
 /// Indices stay: a landmark that nothing refers to any more keeps its place.

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "core/testing/data.hpp"
 
@@ -73,7 +74,7 @@ TEST_CASE("A prepared problem has only usable observations, sorted, and no prior
 TEST_CASE("A problem reads back exactly as written") {
   const testing::TemporaryFolder folder;
   const Problem p = problem(kProblem);
-  write_problem(folder.file("p.txt"), p);
+  write_file(folder.file("p.txt"), format_problem(p));
   CHECK(format_problem(read_problem(folder.file("p.txt"))) == format_problem(p));
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "core/data/pose_record.hpp"
-#include "core/io/atomic_file.hpp"
 
 namespace evbench {
 
@@ -32,10 +31,6 @@ std::string format_robotevt(const PoseTrajectory& trajectory) {
     fmt::format_to(out, " {:.10f} {:.10f} {:.10f}\n", T.p.x(), T.p.y(), T.p.z());
   }
   return fmt::to_string(text);
-}
-
-void write_robotevt(const std::string& path, const PoseTrajectory& trajectory) {
-  write_file(path, format_robotevt(trajectory));
 }
 
 }  // namespace evbench

@@ -17,6 +17,4 @@ PoseTrajectory read_robotevt(const std::string& path);
 /// 9 decimals for time, 10 for positions, 12 for rotations.
 std::string format_robotevt(const PoseTrajectory& trajectory);
 
-void write_robotevt(const std::string& path, const PoseTrajectory& trajectory);
-
 }  // namespace evbench

@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "core/geometry/camera.hpp"
-#include "core/io/atomic_file.hpp"
 #include "core/io/text_reader.hpp"
 #include "core/support/error.hpp"
 
@@ -71,10 +70,6 @@ std::string format_tracks(std::span<const TrackObservation> observations) {
     fmt::format_to(std::back_inserter(text), "{} {} {} {}\n", o.track, o.t, o.pixel.x(), o.pixel.y());
   }
   return fmt::to_string(text);
-}
-
-void write_tracks(const std::string& path, std::span<const TrackObservation> observations) {
-  write_file(path, format_tracks(observations));
 }
 
 }  // namespace evbench

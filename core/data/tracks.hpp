@@ -32,6 +32,4 @@ TrackFile read_tracks(const std::string& path, int width, int height, double sig
 /// The shortest digits that read back as the same numbers.
 std::string format_tracks(std::span<const TrackObservation> observations);
 
-void write_tracks(const std::string& path, std::span<const TrackObservation> observations);
-
 }  // namespace evbench

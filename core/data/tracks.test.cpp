@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "core/testing/data.hpp"
 
@@ -41,7 +42,7 @@ TEST_CASE("A track file reads back exactly as written") {
   const testing::TemporaryFolder folder;
   const std::vector<TrackObservation> written = {{4, 0.1 + 0.2, {1.0 / 3.0, 100.123456789}, 1.0},
                                                  {-2, 7.0, {0, 1}, 1.0}};
-  write_tracks(folder.file("tracks.txt"), written);
+  write_file(folder.file("tracks.txt"), format_tracks(written));
   const auto read = read_tracks(folder.file("tracks.txt"), 240, 180).observations;
   REQUIRE(read.size() == 2);
   for (std::size_t i = 0; i < 2; ++i) {

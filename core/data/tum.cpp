@@ -5,7 +5,6 @@
 #include <charconv>
 
 #include "core/data/pose_record.hpp"
-#include "core/io/atomic_file.hpp"
 
 namespace evbench {
 namespace {
@@ -45,7 +44,5 @@ std::string format_tum(const PoseTrajectory& trajectory) {
   }
   return fmt::to_string(text);
 }
-
-void write_tum(const std::string& path, const PoseTrajectory& trajectory) { write_file(path, format_tum(trajectory)); }
 
 }  // namespace evbench

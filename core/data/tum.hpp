@@ -18,6 +18,4 @@ PoseTrajectory read_tum(const std::string& path, double time_unit = 1.0);
 /// back, a pose differs by less than 1e-10.
 std::string format_tum(const PoseTrajectory& trajectory);
 
-void write_tum(const std::string& path, const PoseTrajectory& trajectory);
-
 }  // namespace evbench

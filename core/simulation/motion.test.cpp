@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/data/tum.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/simulation/random.hpp"
 #include "core/simulation/time_spans.hpp"
 #include "core/support/error.hpp"
@@ -64,7 +65,7 @@ TEST_CASE("The robot arm's motion repeats after its period") {
 TEST_CASE("A trajectory file is followed, with continuous velocity") {
   const testing::TemporaryFolder folder;
   const Motion truth = motion_of({});
-  write_tum(folder.file("path.txt"), sample_motion(truth, 10.0, 50.0));
+  write_file(folder.file("path.txt"), format_tum(sample_motion(truth, 10.0, 50.0)));
   MotionOptions options;
   options.kind = "trajectory";
   options.trajectory = "path.txt";

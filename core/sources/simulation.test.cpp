@@ -5,6 +5,7 @@
 
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/testing/data.hpp"
 
@@ -53,7 +54,7 @@ TEST_CASE("Options of the tracks do not change the motion") {
 TEST_CASE("A simulation follows a trajectory file and names it among its files") {
   const testing::TemporaryFolder folder;
   const Simulation straight = simulate(R"({"duration": 5})");
-  write_tum(folder.file("path.txt"), straight.ground_truth());
+  write_file(folder.file("path.txt"), format_tum(straight.ground_truth()));
   const Simulation follower =
       simulate(R"({"duration": 4, "motion": {"kind": "trajectory", "trajectory": "path.txt"}})", 1, folder.path());
   CHECK(follower.files() == std::vector<std::string>{folder.file("path.txt")});

@@ -69,10 +69,8 @@ std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph,
 /// stage that has to be redone for that, as it may have moved without a change of the stages it moved from or to.
 int Factorisation::place_anchor(const FactorGraph& graph) {
   const int before = anchor_stage_;
-  anchors_ = graph.anchor.landmarks;
-  std::ranges::sort(anchors_);
   anchor_stage_ = -1;
-  for (const int j : anchors_) {
+  for (const int j : graph.anchor.landmarks) {
     const auto& seen = graph.landmarks[index(j)].intervals;
     if (!seen.empty() && !anchor_in_base_) anchor_stage_ = std::max(anchor_stage_, seen.front());
   }
@@ -134,20 +132,11 @@ void Factorisation::enter(int j, const FactorGraph& graph, const LinearisationPo
 
 void Factorisation::add_anchor(const FactorGraph& graph, const LinearisationPoints& points) {
   AnchorLinearisation linear = linearise_anchor(graph);  // at the estimate: e(δ) = e + J (δ − δ_now)
-  std::vector<int> present;
-  std::vector<Vector3> jacobian;
   for (std::size_t i = 0; i < graph.anchor.landmarks.size(); ++i) {
-    const int j = graph.anchor.landmarks[i];
-    if (root_.slot_of(j) < 0) continue;  // never observed: constant
-    linear.e -= linear.jacobian[i].dot(points.landmark_delta(j));
-    present.push_back(j);
-    jacobian.push_back(linear.jacobian[i]);
+    linear.e -= linear.jacobian[i].dot(points.landmark_delta(graph.anchor.landmarks[i]));
   }
-  linear.jacobian = std::move(jacobian);
-  root_.add_landmark_factor(present, linear);
+  root_.add_landmark_factor(graph.anchor.landmarks, linear);
 }
-
-bool Factorisation::is_anchor(int j) const { return std::ranges::binary_search(anchors_, j); }
 
 void Factorisation::find_finished(int k, const FactorGraph& graph) {
   const int newest = static_cast<int>(graph.states.size()) - 1;
@@ -157,7 +146,7 @@ void Factorisation::find_finished(int k, const FactorGraph& graph) {
     if (j < 0) continue;
     const int last = last_interval(j, graph);
     if (last > k || newest - last < grace_) continue;
-    if (k < anchor_stage_ && is_anchor(j)) continue;
+    if (k < anchor_stage_ && std::ranges::find(graph.anchor.landmarks, j) != graph.anchor.landmarks.end()) continue;
     finished_.push_back(j);
   }
 }

@@ -108,7 +108,6 @@ class Factorisation {
   void damp(const Variable& variable, const LinearisationPoints& points, double damping);
   void keep_snapshot(int k, int newest);
   void thin_snapshots(int newest);
-  bool is_anchor(int j) const;
   int last_interval(int j, const FactorGraph& graph) const;
   int row_in_base(const Variable& variable) const;
 
@@ -116,8 +115,7 @@ class Factorisation {
   int done_ = -1;
   int base_ = -1;
   bool anchor_in_base_ = false;
-  int anchor_stage_ = -1;     ///< where the scale anchor is added: its last landmark has come in
-  std::vector<int> anchors_;  ///< ascending
+  int anchor_stage_ = -1;  ///< where the scale anchor is added: its last landmark has come in
   Root root_;
   std::vector<Stage> stages_;
   std::vector<LandmarkStatus> landmarks_;

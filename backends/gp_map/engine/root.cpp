@@ -67,9 +67,11 @@ void Root::add_interval(int k, const IntervalLinearisation& linear) {
 
 void Root::add_landmark_factor(std::span<const int> landmarks, const AnchorLinearisation& linear) {
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    if (slot_of(landmarks[i]) < 0) continue;  // never observed: constant
     const int row = row_of_slot(slot_of(landmarks[i]));
     for (int r = 0; r < 3; ++r) b_[index(row + r)] -= linear.e * linear.jacobian[i](r);
     for (std::size_t j = 0; j < landmarks.size(); ++j) {
+      if (slot_of(landmarks[j]) < 0) continue;
       const int at = row_of_slot(slot_of(landmarks[j]));
       for (int c = 0; c < 3; ++c) {
         for (int r = 0; r < 3; ++r) {
