@@ -17,6 +17,7 @@ struct Options {
   int count = 3;
   bool on = true;
   std::string loss = "none";
+  enum class Rule { rate, motion } rule = Rule::rate;
   std::vector<double> range;
   std::vector<double> weights = {1.0, 2.0};
   std::string path;
@@ -26,6 +27,7 @@ struct Options {
     set.add("count", count, "how many").range(0);
     set.add("on", on, "whether");
     set.add("loss", loss, "robust loss").choices({"none", "huber"});
+    set.add("rule", rule, {"rate", "motion"}, "when");
     set.add("range", range, "from, to [s]").size(2);
     set.add("weights", weights, "two weights").size(2);
     set.add("path", path, "a file").required();
@@ -46,7 +48,10 @@ TEST_CASE("Options are read over their defaults, nested ones too") {
 }
 
 TEST_CASE("Writing options and reading them again changes nothing") {
-  const Json json = write_options(read(R"({"path": "a", "loss": "huber", "on": false})"));
+  const Options options = read(R"({"path": "a", "loss": "huber", "rule": "motion", "on": false})");
+  CHECK(options.rule == Options::Rule::motion);
+  const Json json = write_options(options);
+  CHECK(json["rule"] == "motion");
   CHECK(write_options(read_options<Options>(json, "")) == json);
   CHECK(json["loss"] == "huber");
   CHECK(json["inner"]["width"] == 1.5);
@@ -60,6 +65,8 @@ TEST_CASE("Bad options are refused with the place and what was expected") {
   CHECK_THROWS_WITH(read(R"({"path": "a", "rate": "5"})"), Contains("expected number") && Contains("\"5\""));
   CHECK_THROWS_WITH(read(R"({"path": "a", "count": 1.5})"), Contains("expected integer"));
   CHECK_THROWS_WITH(read(R"({"path": "a", "loss": "hubert"})"), Contains("did you mean \"huber\""));
+  CHECK_THROWS_WITH(read(R"({"path": "a", "rule": "moton"})"), Contains("x.rule") && Contains("mean \"motion\""));
+  CHECK_THROWS_WITH(read(R"({"path": "a", "rule": 1})"), Contains("expected text"));
   CHECK_THROWS_WITH(read(R"({"path": "a", "range": [1]})"), Contains("expected 2 numbers"));
   CHECK_THROWS_WITH(read(R"({"path": "a", "weights": []})"), Contains("expected 2 numbers"));
   CHECK(read(R"({"path": "a", "range": []})").range.empty());
@@ -101,6 +108,10 @@ TEST_CASE("Description and schema name every option with its default and bounds"
   CHECK(schema["properties"]["rate"]["maximum"] == 100.0);
   CHECK(schema["properties"]["inner"]["properties"]["width"]["exclusiveMinimum"] == 0.0);
   CHECK(schema["properties"]["loss"]["enum"].size() == 2);
+  CHECK(schema["properties"]["rule"]["enum"] == Json::array({"rate", "motion"}));
+  CHECK(schema["properties"]["weights"]["minItems"] == 2);
+  CHECK(schema["properties"]["weights"]["maxItems"] == 2);
+  CHECK(schema["properties"]["range"]["anyOf"].size() == 2);  // two, or none
   CHECK(schema["required"] == Json::array({"path"}));
   CHECK(schema["additionalProperties"] == false);
 }
