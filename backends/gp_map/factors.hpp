@@ -20,7 +20,7 @@ double reprojection_error(const GpInterval& interval, const Vector3& landmark, c
 /// Mean of a landmark's over all its observations.
 double reprojection_mean(const FactorGraph& graph, int landmark);
 
-/// Whitened residuals of the problem's factors (problems' README, section "Cost").
+/// Whitened residuals of the problem's factors.
 /// Behind the camera both components are 2 fx/σ, constant.
 Vector2 reprojection_residual(const GpInterval& interval, const Vector3& landmark, const Observation& z,
                               const PinholeCamera& camera);

@@ -166,7 +166,7 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
                     "Also write problem.txt: the problem that gp_map ended with, for evbench solve and other solvers");
   command->add_flag("--check", arguments->check, "Check the config, and that its files can be read, and stop");
   command->footer(
-      "Each run writes OUT/EXPERIMENT/RUN: config.json, job.json, manifest.json, final.tum, online.tum,\n"
+      "Each run writes OUT/EXPERIMENT/KEY: config.json, job.json, manifest.json, final.tum, online.tum,\n"
       "groundtruth.tum, map.ply, metrics.json, timing.csv, log.txt, status.json. RUN names what determines the\n"
       "trajectory (job.json). A run that is complete below OUT is not done again, but named and scored as the config\n"
       "says; one that broke off with an error is.\n"

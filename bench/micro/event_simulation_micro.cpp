@@ -1,8 +1,8 @@
 // What simulating events costs:
 //
-//   event_simulation_micro [MILLIONS [THREADS [CASE]]]     until each case, or those whose name has CASE in it, have
-//   made
-//                                                          that many million events (5), on that many threads (2)
+//   event_simulation_micro [MILLIONS [THREADS [CASE]]]
+//
+// until each case, or those whose name has CASE in it, have made that many million events (5), on so many threads (2).
 //
 // A textured plane, boxes in a room and shapes, with the default sensor, seen along smooth random motion; larger
 // sensors with the same field of view. "rendering": processor time of whole pictures; "pixels": that of all else, the

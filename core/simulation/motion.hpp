@@ -31,8 +31,7 @@ struct MotionOptions {
 
 /// A motion of the given kind:
 /// - smooth_random: position and rotation vector are sums of three sinusoids an axis, none faster than max_frequency;
-/// - robot_arm: a closed path (a tilted figure with ratios 1:1:2) that repeats every period, the camera turned towards
-/// a
+/// - robot_arm: a closed path (a tilted figure with ratios 1:1:2) that repeats every period, the camera turned to a
 ///   point at `distance` in front of the path's centre, with a gentle roll;
 /// - trajectory: a TUM file (relative to `folder`), sampled at knot_rate and joined by the WNOA prior's interpolation.
 /// Throws InputError, naming `place`, when a trajectory file is missing, too short for `duration` [s], or damaged.
