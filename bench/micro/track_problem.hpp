@@ -18,9 +18,9 @@ struct TrackProblemOptions {
   std::uint64_t seed = 1;
 };
 
-/// A problem like those of problems/README.md: a camera of 240 × 180 pixels on a smooth random motion, tracks with
-/// irregular observations, landmarks guessed with 10 % of their depth and a weak prior, the first state held by priors.
-/// The states' guesses are the truth: incremental runs predict theirs.
+/// A problem like those that EVBENCH_PROBLEMS names: a camera of 240 × 180 pixels on a smooth random motion, tracks
+/// with irregular observations, landmarks guessed with 10 % of their depth and a weak prior, the first state held by
+/// priors. The states' guesses are the truth: incremental runs predict theirs.
 Problem make_track_problem(const TrackProblemOptions& options);
 
 }  // namespace evbench
