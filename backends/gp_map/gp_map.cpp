@@ -18,7 +18,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)");
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 2);
 
 constexpr double kMemory = 1.0;  ///< [s] for which tracks are remembered that ended before there is a map
 
@@ -69,7 +69,10 @@ void GpMap::take_observations(double t) {
   const auto later = std::ranges::upper_bound(pending_, t, {}, &TrackObservation::t);
   for (auto z = pending_.begin(); z != later; ++z) take(*z);
   pending_.erase(pending_.begin(), later);
-  for (; !ending_.empty() && ending_.front().t <= t; ending_.pop_front()) end(ending_.front().track);
+  for (; !ending_.empty() && ending_.front().t <= t; ending_.pop_front()) {
+    const auto track = tracks_.find(ending_.front().track);
+    if (track != tracks_.end()) track->second.ended = true;
+  }
 }
 
 void GpMap::take(const TrackObservation& z) {
@@ -82,11 +85,6 @@ void GpMap::take(const TrackObservation& z) {
   }
   if (track.role == Track::Role::waiting) waiting_.add({&z, 1});
   if (track.role == Track::Role::landmark) new_.emplace_back(track.landmark, to_observation(z, options_.sigma_scale));
-}
-
-void GpMap::end(TrackId track) {
-  const auto found = tracks_.find(track);
-  if (found != tracks_.end()) found->second.ended = true;
 }
 
 bool GpMap::initialise(double t) {

@@ -68,7 +68,6 @@ class GpMap : public BackEnd {
 
   void follow_observations(double t, double ahead);
   void take(const TrackObservation& z);
-  void end(TrackId track);
   void become_landmark(TrackId track, int landmark);
   void become_outlier(int landmark);
   void hold_scale_without(int leaving);
