@@ -188,9 +188,9 @@ void add_observation(const Shared& shared, const Lane3& m, const Measured& z, La
   const Lane e0 = in_front ? z.inverse_sigma * (shared.camera.fx * x + shared.camera.cx - z.u) : behind;
   const Lane e1 = in_front ? z.inverse_sigma * (shared.camera.fy * y + shared.camera.cy - z.v) : behind;
   const Lane square = e0 * e0 + e1 * e1;
-  for (int i = 0; i < kLanes; ++i) {
-    if (z.present[i] != 0.0 && in_front[i]) landmark.error[i] += std::sqrt(square[i]) / z.inverse_sigma[i];
-  }
+  Lane error{};
+  for (int i = 0; i < kLanes; ++i) error[i] = std::sqrt(square[i]);
+  landmark.error += (z.present > 0.0) & in_front ? error / z.inverse_sigma : Lane{};
   landmark.behind += in_front ? Lane{} : z.present;
   Lane weight = z.present;
   if (shared.loss.is_quadratic()) {
