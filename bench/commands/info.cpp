@@ -8,6 +8,7 @@
 #include "bench/commands/progress_line.hpp"
 #include "bench/recordings/config_events.hpp"
 #include "bench/recordings/summary.hpp"
+#include "core/support/error.hpp"
 
 namespace evbench {
 namespace {
@@ -20,15 +21,18 @@ struct InfoArguments {
 
 void execute(const InfoArguments& arguments) {
   RecordingSummary summary;
+  StreamOptions options = arguments.options;
+  options.read.lenient = true;  // what is wrong is what one wants to see
   {
     ProgressLine line(arguments.file, arguments.quiet);
-    summary = summarise(arguments.file, arguments.options, [&](std::int64_t events, std::int64_t t) {
+    summary = summarise(arguments.file, options, [&](std::int64_t events, std::int64_t t) {
       line.update(fmt::format("{:.1f} million events, {:.2f} s", static_cast<double>(events) * 1e-6,
                               static_cast<double>(t) * 1e-6));
     });
   }
   fmt::print("{}", arguments.json ? summary_json(arguments.file, summary).dump(2) + "\n"
                                   : format_summary(arguments.file, summary));
+  if (summary.large_loss && !arguments.options.read.lenient) throw InputError(*summary.large_loss);
 }
 
 }  // namespace
@@ -36,7 +40,12 @@ void execute(const InfoArguments& arguments) {
 void add_read_options(CLI::App& command, ReadOptions& options) {
   command.add_option("--topic", options.topic,
                      "Whose events: topic of a bag, group of an HDF5 file; default: the first");
-  command.add_flag("--strict", options.strict, "The first oddity of the recording is an error, not a counted skip");
+  auto* strict = command.add_flag("--strict", options.strict,
+                                  "The first oddity of the recording is an error, not a counted skip");
+  command
+      .add_flag("--lenient", options.lenient,
+                "However much of the recording has to be left out; otherwise more than a tenth is an error")
+      ->excludes(strict);
   command
       .add_option("--width", options.width,
                   "Sensor's width, where the file of events does not say [px]; goes before what lies beside it")
@@ -61,7 +70,7 @@ void add_info(CLI::App& app, const Plugins& plugins) {
   add_read_options(*command, arguments->options.read);
   command->footer(
       "Oddities are events that were left out: out of the order of time, outside the sensor, in damaged parts of the "
-      "file.");
+      "file. Exit code 2 where they are more than a tenth, unless --lenient.");
   command->callback([arguments] { execute(*arguments); });
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/events/formats.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
@@ -49,6 +50,7 @@ RecordingSummary summarise(const std::string& path, const StreamOptions& options
                            const std::function<void(std::int64_t, std::int64_t)>& progress) {
   EventStream stream(path, options);
   RecordingSummary s;
+  s.files = files_of_events(path);
   for (std::vector<Event> events; stream.read(events);) {
     if (s.events == 0) s.start = events.front().t;
     s.end = events.back().t;
@@ -73,11 +75,15 @@ RecordingSummary summarise(const std::string& path, const StreamOptions& options
   ask("calibration", [&] { s.calibration = stream.reader().calibration(); });
   ask("ground truth", [&] { s.ground_truth = stream.reader().ground_truth().value_or(PoseTrajectory()); });
   s.faults = stream.faults();
+  s.large_loss = stream.large_loss();
   return s;
 }
 
 std::string format_summary(const std::string& path, const RecordingSummary& s) {
-  std::string text = row("file", path) + row("format", s.info.format) + row("sensor", sensor_text(s));
+  std::string text = row("file", path);
+  if (s.files.size() > 1) text += row("events in", fmt::format("{} files", s.files.size()));
+  if (s.files.size() == 1 && s.files.front() != path) text += row("events in", s.files.front());
+  text += row("format", s.info.format) + row("sensor", sensor_text(s));
   if (s.events == 0) {
     text += row("events", "none");
   } else {
@@ -103,7 +109,7 @@ std::string format_summary(const std::string& path, const RecordingSummary& s) {
 }
 
 Json summary_json(const std::string& path, const RecordingSummary& s) {
-  Json json = {{"file", path}, {"format", s.info.format}};
+  Json json = {{"file", path}, {"files", s.files}, {"format", s.info.format}};
   json["sensor"] = s.info.width > 0 ? Json{{"width", s.info.width}, {"height", s.info.height}} : Json();
   json["events"] = s.events;
   json["on"] = s.on;

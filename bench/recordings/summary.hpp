@@ -14,6 +14,7 @@ namespace evbench {
 
 /// What `evbench info` says of a recording, after reading all of it.
 struct RecordingSummary {
+  std::vector<std::string> files;  ///< that hold the events
   StreamInfo info;
   std::int64_t events = 0, on = 0;  ///< without those that are faults
   std::int64_t start = 0, end = 0;  ///< [µs] of the first and last event, the file's own time
@@ -22,6 +23,7 @@ struct RecordingSummary {
   std::optional<Camera> calibration;
   PoseTrajectory ground_truth;                                ///< empty: none
   std::vector<std::pair<std::string, Faults::Fault>> faults;  ///< oddities
+  std::optional<std::string> large_loss;                      ///< EventStream::large_loss
 
   double duration() const { return static_cast<double>(end - start) * 1e-6; }  ///< [s]
 };

@@ -32,8 +32,8 @@ const std::vector<WritableFormat>& writable_formats() {
          return std::unique_ptr<EventWriter>(std::make_unique<NativeWriter>(path, header, name));
        }},
       {"text", ".txt", "t x y p, as in the Event-Camera Dataset", PartFile::Needs::nothing,
-       [](const std::string& path, const std::string& name, const RecordingHeader&) {
-         return std::unique_ptr<EventWriter>(std::make_unique<TextWriter>(path, name));
+       [](const std::string& path, const std::string& name, const RecordingHeader& header) {
+         return std::unique_ptr<EventWriter>(std::make_unique<TextWriter>(path, name, header));
        }},
       {"hdf5", ".h5", "HDF5 in DSEC's layout", PartFile::Needs::name,
        [](const std::string& path, const std::string& name, const RecordingHeader& header) {

@@ -40,7 +40,10 @@ void check_sensor_size(const std::string& path, int width, int height) {
 }
 
 EventStream::EventStream(std::unique_ptr<EventReader> reader, std::string path, const StreamOptions& options)
-    : path_(std::move(path)), reader_(std::move(reader)), faults_(path_, options.read.strict) {
+    : path_(std::move(path)),
+      lenient_(options.read.lenient),
+      reader_(std::move(reader)),
+      faults_(path_, options.read.strict) {
   check_sensor_size(path_, info().width, info().height);
   if (options.rebase) find_zero();
   if (options.to) end_ = *options.to + zero_;
@@ -61,6 +64,7 @@ void EventStream::seek(std::int64_t t) {
 
 void EventStream::seek_reader(std::int64_t t) {
   newest_ = kBeginning;
+  good_ = 0;
   ended_ = false;
   ahead_.clear();
   faults_.clear();
@@ -83,7 +87,24 @@ bool EventStream::read(std::vector<Event>& events) {
   }
   events.clear();
   ended_ = true;
+  if (lenient_) return false;
+  if (const auto loss = large_loss()) throw InputError(*loss);
   return false;
+}
+
+std::optional<std::string> EventStream::large_loss() const {
+  std::int64_t lost = 0;
+  std::pair<std::string, Faults::Fault> worst;
+  for (auto& fault : faults()) {
+    lost += fault.second.count;
+    if (fault.second.count > worst.second.count) worst = std::move(fault);
+  }
+  const std::int64_t all = good_ + lost;
+  if (10 * lost <= all) return std::nullopt;
+  return fmt::format(
+      "{}: {:.1f} % of the events, {} of {}, have to be left out, most of them as {} (the first: {}); expected a "
+      "recording with fewer faults, or --lenient",
+      path_, 100.0 * static_cast<double>(lost) / static_cast<double>(all), lost, all, worst.first, worst.second.first);
 }
 
 /// Keeps what is in order, in the sensor, and in the range, with times of the stream.
@@ -94,6 +115,7 @@ void EventStream::check(std::vector<Event>& events) {
     leave_out_outside(events, width, height);
     leave_out_disorder(events);
     if (!events.empty()) newest_ = events.back().t;
+    good_ += std::ssize(events);
     const auto first = std::ranges::lower_bound(events, from_, {}, &Event::t);
     const auto last = std::ranges::lower_bound(events, end_, {}, &Event::t);
     ended_ = last != events.end();
@@ -101,6 +123,7 @@ void EventStream::check(std::vector<Event>& events) {
     events.erase(events.begin(), first);
   } else {
     newest_ = events.back().t;
+    good_ += std::ssize(events);
   }
   if (zero_ == 0) return;
   for (Event& event : events) event.t -= zero_;

@@ -36,8 +36,13 @@ class EventStream {
   EventStream(const std::string& path, const StreamOptions& options = {});
   EventStream(std::unique_ptr<EventReader> reader, std::string path, const StreamOptions& options = {});
 
-  /// Replaces `events` by the next ones. False, and none, at the end.
+  /// Replaces `events` by the next ones. False, and none, at the end, where a large loss is an InputError unless the
+  /// options are lenient.
   bool read(std::vector<Event>& events);
+
+  /// A sentence when more than a tenth of what was read since the beginning or the last seek had to be left out: a
+  /// broken recording, or one that is misread.
+  std::optional<std::string> large_loss() const;
 
   /// Reading goes on with the first event at or after t [µs, after rebasing].
   void seek(std::int64_t t);
@@ -63,12 +68,14 @@ class EventStream {
   void leave_out_disorder(std::vector<Event>& events);
 
   std::string path_;
+  bool lenient_;
   std::unique_ptr<EventReader> reader_;
   Faults faults_;
   std::vector<Event> ahead_;  ///< the reader's next ones
   std::int64_t zero_ = 0;
   std::int64_t from_ = kBeginning, end_ = kEnd;  ///< the file's time
   std::int64_t newest_ = kBeginning;             ///< likewise
+  std::int64_t good_ = 0;                        ///< events, of the time range or not
   bool ended_ = false;
 };
 

@@ -18,6 +18,7 @@ namespace evbench {
 struct ReadOptions {
   std::string topic = {};     ///< of a bag, group of an HDF5 file: whose events; empty: the only one, or the first
   bool strict = false;        ///< faults are errors, not counted skips
+  bool lenient = false;       ///< however many they are (EventStream::large_loss)
   int width = 0, height = 0;  ///< sensor [px], where the file of events doesn't say; before what lies beside it
   std::string columns = {};   ///< of text, e.g. "t_us,x,y,p" (text_layout.hpp); empty: as the file looks
 };

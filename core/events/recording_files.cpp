@@ -23,10 +23,19 @@ namespace fs = std::filesystem;
 constexpr const char* kEvents[] = {"events.evb",     "events.txt",      "events.h5", "events/left/events.h5",
                                    "left/events.h5", "*events_left.h5", "*_data.h5", "*_data.hdf5"};
 
-bool is_zip(const std::string& path) {
-  std::array<std::byte, 4> head{};
+bool is_zip(std::span<const std::byte> head) {
+  return std::string_view(reinterpret_cast<const char*>(head.data()), head.size()).starts_with("PK\3\4");
+}
+
+std::array<std::byte, 8> read_head(const std::string& path) {
+  std::array<std::byte, 8> head{};
   FileBytes(path).read(0, head);
-  return std::string_view(reinterpret_cast<const char*>(head.data()), head.size()) == std::string_view("PK\3\4", 4);
+  return head;
+}
+
+[[noreturn]] void fail_for_several(const std::string& path, const std::vector<std::string>& names) {
+  throw InputError(fmt::format("{}: holds several recordings ({}); expected one: {}", path, fmt::join(names, ", "),
+                               path.ends_with('/') ? "name the file" : "unpack it, and name a folder"));
 }
 
 /// With the slash.
@@ -82,10 +91,12 @@ class MemoryFile {
 RecordingFiles::RecordingFiles(const std::string& path) {
   if (fs::is_directory(path)) {
     folder_ = path + "/";
-  } else if (is_zip(path)) {
+  } else if (is_zip(read_head(path))) {
     archive_.emplace(path);
-    events_ = archive_->find("events.txt");
-    if (events_.empty()) throw InputError(fmt::format("{}: has no events.txt among its files", path));
+    const std::vector<std::string> found = archive_->find("events.txt");
+    if (found.empty()) throw InputError(fmt::format("{}: has no events.txt among its files", path));
+    if (found.size() > 1) fail_for_several(path, found);
+    events_ = found.front();
     folder_ = folder_of(events_);
   } else {
     events_ = path;
@@ -98,10 +109,7 @@ std::string RecordingFiles::events() const {
   if (!events_.empty()) return events_;
   for (const char* pattern : kEvents) {
     const auto names = matching(pattern);
-    if (names.size() > 1) {
-      throw InputError(fmt::format("{}: holds several recordings ({}); expected one: name the file", folder_,
-                                   fmt::join(names, ", ")));
-    }
+    if (names.size() > 1) fail_for_several(folder_, names);
     if (!names.empty()) return path(names.front());
   }
   return "";
@@ -146,7 +154,9 @@ std::unique_ptr<ByteSource> RecordingFiles::open(const std::string& name) const 
 
 std::unique_ptr<ByteSource> RecordingFiles::open_events() const {
   if (archive_) return archive_->open(events_);
-  return std::make_unique<FileBytes>(events());
+  const std::string path = events();
+  if (is_compressed_file(read_head(path))) return open_compressed_file(path);
+  return std::make_unique<FileBytes>(path);
 }
 
 void RecordingFiles::read(const std::string& name, const std::function<void(const std::string& path)>& read) const {

@@ -18,13 +18,14 @@ class RecordingFiles {
  public:
   /// `path`: a folder, a .zip with an events.txt, or a file of events of any name. The folder of DSEC's
   /// events/left/events.h5 is that with events/ in it, that of left/events.h5 the one with left/ in it. Throws
-  /// InputError for a .zip without an events.txt.
+  /// InputError for a .zip without an events.txt, or with several.
   explicit RecordingFiles(const std::string& path);
 
   /// Path of the events, or of the .zip that has them; empty: a folder without. In a folder the first of events.evb (a
   /// native copy), events.txt, and the names of DSEC, TUM-VIE, M3ED, MVSEC and EDS. Throws InputError for a folder with
   /// two of the same kind.
   std::string events() const;
+  /// Unpacked, where they are a compressed file.
   std::unique_ptr<ByteSource> open_events() const;
 
   /// Names are relative to the folder.

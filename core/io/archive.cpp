@@ -31,11 +31,18 @@ class Utf8 {
 
 }  // namespace
 
-Archive::Archive(std::string path) : path_(std::move(path)), archive_(archive_read_new(), archive_read_free) {
+Archive::Archive(std::string path, Form form) : path_(std::move(path)), archive_(archive_read_new(), archive_read_free) {
   constexpr std::size_t kBlock = 1 << 16;  // [bytes]
-  archive_read_support_format_zip(archive_.get());
-  archive_read_support_format_tar(archive_.get());
   archive_read_support_filter_gzip(archive_.get());
+  if (form == Form::compressed_file) {
+    archive_read_support_filter_bzip2(archive_.get());
+    archive_read_support_filter_xz(archive_.get());
+    archive_read_support_filter_zstd(archive_.get());
+    archive_read_support_format_raw(archive_.get());
+  } else {
+    archive_read_support_format_zip(archive_.get());
+    archive_read_support_format_tar(archive_.get());
+  }
   if (archive_read_open_filename(archive_.get(), path_.c_str(), kBlock) != ARCHIVE_OK) fail();
 }
 

@@ -17,14 +17,17 @@ class BadArchive : public InputError {
   using InputError::InputError;
 };
 
-/// The entries of an archive (zip, tar, tar.gz), one after the other. Their names are UTF-8, whatever the user's locale
+/// The entries of an archive (zip, tar, tar.gz), one after the other; a compressed file (gzip, bzip2, xz, zstd) is one
+/// that has a single entry. Their names are UTF-8, whatever the user's locale
 /// is. All functions throw BadArchive, naming the archive, for one that is damaged, for an entry without a name, and
 /// for more than a million entries.
 class Archive {
  public:
   enum class Kind { file, folder, other };  ///< other: a link or device
 
-  explicit Archive(std::string path);
+  enum class Form { archive, compressed_file };
+
+  explicit Archive(std::string path, Form form = Form::archive);
 
   /// Goes to the first entry, then to the next one; false at the end.
   bool next();

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "core/io/archive.hpp"
@@ -10,10 +13,11 @@
 namespace evbench {
 namespace {
 
-class ZipBytes : public ByteSource {
+class ArchivedBytes : public ByteSource {
  public:
-  ZipBytes(std::string path, std::string file)
-      : path_(std::move(path)), file_(std::move(file)), name_(path_ + "/" + file_) {}
+  /// `file`: of the archive; empty: the path is a compressed file.
+  ArchivedBytes(std::string path, std::string file)
+      : path_(std::move(path)), file_(std::move(file)), name_(file_.empty() ? path_ : path_ + "/" + file_) {}
 
   std::uint64_t size() const override { return 0; }
   const std::string& name() const override { return name_; }
@@ -39,10 +43,10 @@ class ZipBytes : public ByteSource {
 
  private:
   void reopen() {
-    archive_ = std::make_unique<Archive>(path_);
+    archive_ = std::make_unique<Archive>(path_, file_.empty() ? Archive::Form::compressed_file : Archive::Form::archive);
     position_ = 0;
     while (archive_->next()) {
-      if (archive_->kind() == Archive::Kind::file && archive_->name() == file_) return;
+      if (file_.empty() || (archive_->kind() == Archive::Kind::file && archive_->name() == file_)) return;
     }
     throw InputError(fmt::format("{}: is not there any more", name_));
   }
@@ -60,18 +64,26 @@ ZipArchive::ZipArchive(std::string path) : path_(std::move(path)) {
   }
 }
 
-std::string ZipArchive::find(const std::string& name) const {
-  const auto depth = [](const std::string& file) { return std::count(file.begin(), file.end(), '/'); };
-  const std::string* best = nullptr;
-  for (const std::string& file : files_) {
-    if (file != name && !file.ends_with("/" + name)) continue;
-    if (best == nullptr || depth(file) < depth(*best)) best = &file;
-  }
-  return best == nullptr ? "" : *best;
+std::vector<std::string> ZipArchive::find(const std::string& name) const {
+  std::vector<std::string> found;
+  std::ranges::copy_if(files_, std::back_inserter(found),
+                       [&](const std::string& file) { return file == name || file.ends_with("/" + name); });
+  return found;
 }
 
 std::unique_ptr<ByteSource> ZipArchive::open(const std::string& file) const {
-  return std::make_unique<ZipBytes>(path_, file);
+  return std::make_unique<ArchivedBytes>(path_, file);
+}
+
+bool is_compressed_file(std::span<const std::byte> head) {
+  using namespace std::string_view_literals;
+  const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
+  return std::ranges::any_of(std::initializer_list<std::string_view>{"\x1F\x8B"sv, "BZh"sv, "\xFD" "7zXZ\0"sv, "\x28\xB5\x2F\xFD"sv},
+                             [&](std::string_view magic) { return text.starts_with(magic); });
+}
+
+std::unique_ptr<ByteSource> open_compressed_file(const std::string& path) {
+  return std::make_unique<ArchivedBytes>(path, "");
 }
 
 }  // namespace evbench

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,8 +19,8 @@ class ZipArchive {
   const std::string& path() const { return path_; }
   const std::vector<std::string>& files() const { return files_; }
 
-  /// The file of this name, in the archive's highest folder that has one; empty: none.
-  std::string find(const std::string& name) const;
+  /// The files of this name, in whatever folders.
+  std::vector<std::string> find(const std::string& name) const;
 
   /// A file's content as it is unpacked. Going back in it begins anew. `file`: one of files().
   std::unique_ptr<ByteSource> open(const std::string& file) const;
@@ -27,5 +29,11 @@ class ZipArchive {
   std::string path_;
   std::vector<std::string> files_;
 };
+
+/// Does a file begin like one that gzip, bzip2, xz or zstd compressed?
+bool is_compressed_file(std::span<const std::byte> head);
+
+/// Its content, as a ZipArchive's file. Throws BadArchive.
+std::unique_ptr<ByteSource> open_compressed_file(const std::string& path);
 
 }  // namespace evbench

@@ -138,9 +138,11 @@ std::unique_ptr<EventReader> open_ecd_text(const std::string& path, const ReadOp
 }
 
 EventFormat ecd_text_format() {
-  return {"ecd_text", "text, a line an event: Event-Camera Dataset (file, folder, .zip) and CSV",
-          [](const std::string&, std::span<const std::byte> head) {
-            return is_text(head) || text_of(head).starts_with("PK\3\4");
+  return {"ecd_text", "text, a line an event: Event-Camera Dataset (file, folder, .zip), CSV, also compressed (.txt.gz)",
+          [](const std::string& path, std::span<const std::byte> head) {
+            if (!is_compressed_file(head)) return is_text(head) || text_of(head).starts_with("PK\3\4");
+            std::array<std::byte, 512> content{};
+            return is_text(std::span(content).first(open_compressed_file(path)->read(0, content)));
           },
           open_ecd_text};
 }

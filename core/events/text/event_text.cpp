@@ -154,13 +154,18 @@ bool EventTextDecoder::parse_common(const char*& at, Event& event) const {
   return true;
 }
 
+/// Where microseconds were taken for whole numbers, a fraction says that they are not.
+bool EventTextDecoder::contradicts_guess(std::string_view time) const {
+  return layout_.unit_is_guessed && layout_.unit == Unit::microseconds && is_fractional(time);
+}
+
 /// Everything that is an event.
 bool EventTextDecoder::parse_any(std::string_view line, Event& event) const {
   for (const Column column : layout_.columns) {
     const std::string_view text = next_column(line);
     bool good = !text.empty();
     switch (column) {
-      case Column::t: good = parse_time(text, layout_.unit, event.t); break;
+      case Column::t: good = parse_time(text, layout_.unit, event.t) && !contradicts_guess(text); break;
       case Column::x: good = parse_coordinate(text, event.x); break;
       case Column::y: good = parse_coordinate(text, event.y); break;
       case Column::p: good = parse_polarity(text, event.on); break;

@@ -19,6 +19,7 @@ class EventTextDecoder final : public EventDecoder {
  private:
   bool parse_common(const char*& at, Event& event) const;
   bool parse_any(std::string_view line, Event& event) const;
+  bool contradicts_guess(std::string_view time) const;
 
   TextLayout layout_;
   std::int64_t line_;

@@ -61,6 +61,17 @@ Column read_name(std::string_view text, std::optional<Unit>& unit) {
   return Column::t;
 }
 
+/// A comment that names the four columns, and nothing else: "# t[s] x y p".
+bool names_columns(std::string_view comment) {
+  comment.remove_prefix(std::min(comment.find_first_not_of("#% \t"), comment.size()));
+  const auto names = split(comment);
+  return names.size() == kTimeFirst.size() && std::ranges::all_of(names, [](std::string_view name) {
+           const std::string_view stem = name.substr(0, name.find_first_of("_[("));
+           return stem.size() == 1 || stem == "ts" || stem == "time" || stem == "timestamp" || stem == "pol" ||
+                  stem == "polarity";
+         });
+}
+
 void read_names(std::string_view line, TextLayout& layout, std::optional<Unit>& unit, const std::string& place) {
   const auto names = split(line);
   for (const std::string_view name : names) layout.columns.push_back(read_name(name, unit));
@@ -71,7 +82,12 @@ void read_names(std::string_view line, TextLayout& layout, std::optional<Unit>& 
   }
 }
 
-using Rows = std::vector<std::vector<double>>;
+/// A line of numbers.
+struct Row {
+  std::vector<double> values;
+  std::vector<bool> have_points;  ///< or exponents: not written as whole numbers
+};
+using Rows = std::vector<Row>;
 
 /// Up to a thousand lines that are `columns` numbers each.
 Rows read_rows(std::string_view text, std::size_t columns) {
@@ -80,55 +96,59 @@ Rows read_rows(std::string_view text, std::size_t columns) {
   while (!text.empty() && rows.size() < kRows) {
     const std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(line.size() + 1, text.size()));
-    std::vector<double> row;
+    Row row;
     double number = 0.0;
     for (const std::string_view column : split(line)) {
-      if (parse_number(column, number)) row.push_back(number);
+      if (!parse_number(column, number)) continue;
+      row.values.push_back(number);
+      row.have_points.push_back(is_fractional(column));
     }
-    if (row.size() == columns) rows.push_back(std::move(row));
+    if (row.values.size() == columns) rows.push_back(std::move(row));
   }
   return rows;
-}
-
-bool fits(const std::vector<double>& row, const std::vector<Column>& order) {
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool is_pixel = row[i] >= 0.0 && row[i] <= kMostPixels && row[i] == std::floor(row[i]);
-    if ((order[i] == Column::x || order[i] == Column::y) && !is_pixel) return false;
-    if (order[i] == Column::p && row[i] != 0.0 && std::abs(row[i]) != 1.0) return false;
-  }
-  return true;
 }
 
 std::size_t time_column(const std::vector<Column>& order) {
   return index(std::ranges::find(order, Column::t) - order.begin());
 }
 
+/// Nobody writes pixels with a decimal point and times without.
+bool fits(const Row& row, const std::vector<Column>& order) {
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const double value = row.values[i];
+    const bool is_pixel = value >= 0.0 && value <= kMostPixels && value == std::floor(value) &&
+                          (!row.have_points[i] || row.have_points[time_column(order)]);
+    if ((order[i] == Column::x || order[i] == Column::y) && !is_pixel) return false;
+    if (order[i] == Column::p && value != 0.0 && std::abs(value) != 1.0) return false;
+  }
+  return true;
+}
+
 /// The order that the more lines fit, but for one in twenty; times do not decrease.
 std::vector<Column> find_order(const Rows& rows, const std::string& place) {
   const auto fitting = [&](const std::vector<Column>& order) {
-    double last = rows.front()[time_column(order)];
-    return std::ranges::count_if(rows, [&](const auto& row) {
-      return fits(row, order) && row[time_column(order)] >= std::exchange(last, row[time_column(order)]);
+    double last = rows.front().values[time_column(order)];
+    return std::ranges::count_if(rows, [&](const Row& row) {
+      const double t = row.values[time_column(order)];
+      return fits(row, order) && t >= std::exchange(last, t);
     });
   };
   const auto first = fitting(kTimeFirst), last = fitting(kTimeLast), most = std::max(first, last);
   if (first != last && 20 * most >= 19 * std::ssize(rows)) return first > last ? kTimeFirst : kTimeLast;
   const bool both = first == last && first > 0;
   throw InputError(fmt::format("{}: has lines like \"{}\", which {} \"t x y p\" {} \"x y p t\"; give --columns", place,
-                               fmt::to_string(fmt::join(rows.front(), " ")), both ? "may be" : "are neither",
+                               fmt::to_string(fmt::join(rows.front().values, " ")), both ? "may be" : "are neither",
                                both ? "and" : "nor"));
 }
 
 /// Without a name that says it.
 Unit find_unit(const Rows& rows, std::size_t time, const std::string& place) {
   constexpr double kLatest = 1e17;  // [µs], the year 5000: in nanoseconds that is 1973
-  bool has_fractions = false;
-  for (const auto& row : rows) has_fractions |= row[time] != std::floor(row[time]);
-  if (has_fractions) return Unit::seconds;
-  if (rows.front()[time] < kLatest) return Unit::microseconds;
+  if (std::ranges::any_of(rows, [&](const Row& row) { return row.have_points[time]; })) return Unit::seconds;
+  if (rows.front().values[time] < kLatest) return Unit::microseconds;
   throw InputError(
       fmt::format("{}: has the time {}, too late for microseconds; give --columns with t_ns, if it is that", place,
-                  rows.front()[time]));
+                  rows.front().values[time]));
 }
 
 }  // namespace
@@ -148,6 +168,8 @@ bool is_passed_over(std::string_view line) {
   const std::string_view first = next_column(line);
   return first.empty() || first.starts_with('#') || first.starts_with('%');
 }
+
+bool is_fractional(std::string_view number) { return number.find_first_of(".eE") != std::string_view::npos; }
 
 bool parse_number(std::string_view text, double& number) {
   if (text.starts_with('+')) text.remove_prefix(1);
@@ -173,6 +195,10 @@ TextLayout detect_text_layout(std::string_view head, bool whole, const std::stri
     double number = 0.0;
     if (is_passed_over(line)) {
       if (line.find("geometry") != std::string_view::npos) read_size(line, layout);
+      if (layout.columns.empty() && names_columns(line)) {
+        read_names(line.substr(line.find_first_not_of("#% \t")), layout, unit, place);
+        layout.origin = " (named in a comment)";
+      }
     } else if (!parse_number(columns[0], number) && !has_header) {
       has_header = true;
       if (asked.empty()) {
@@ -191,6 +217,7 @@ TextLayout detect_text_layout(std::string_view head, bool whole, const std::stri
       const Rows rows = read_rows(head.substr(layout.begin), expected);
       if (rows.empty()) throw InputError(fmt::format("{}: is \"{:.80}\"; expected numbers", place, line));
       if (layout.columns.empty()) layout.columns = find_order(rows, place);
+      layout.unit_is_guessed = !unit;
       layout.unit = unit ? *unit : find_unit(rows, time_column(layout.columns), place);
       return layout;
     }
@@ -205,7 +232,9 @@ std::vector<std::pair<std::string, std::string>> TextLayout::description() const
   constexpr const char* kUnits[] = {"seconds", "milliseconds", "microseconds", "nanoseconds"};
   std::vector<std::string> order;
   for (const Column column : columns) order.push_back(kColumns[index(column)]);
-  return {{"columns", fmt::to_string(fmt::join(order, " ")) + origin}, {"unit of time", kUnits[index(unit)]}};
+  const char* why = unit == Unit::seconds ? " (as they have a decimal point)" : " (as they are whole numbers)";
+  return {{"columns", fmt::to_string(fmt::join(order, " ")) + origin},
+          {"unit of time", std::string(kUnits[index(unit)]) + (unit_is_guessed ? why : "")}};
 }
 
 }  // namespace evbench

@@ -8,11 +8,12 @@
 
 namespace evbench {
 
-/// The Event-Camera Dataset's events.txt: `t x y p`, seconds with six decimals, polarity 0 or 1.
+/// The Event-Camera Dataset's events.txt: `t x y p`, seconds with six decimals, polarity 0 or 1; before them comments
+/// that say so, and the sensor's size where it is known.
 class TextWriter : public EventWriter {
  public:
   /// `name`: what messages call the file.
-  TextWriter(const std::string& path, std::string name);
+  TextWriter(const std::string& path, std::string name, const RecordingHeader& header = {});
   ~TextWriter() override;
   TextWriter(const TextWriter&) = delete;
   TextWriter& operator=(const TextWriter&) = delete;
@@ -21,6 +22,7 @@ class TextWriter : public EventWriter {
   void finish() override;
 
  private:
+  void put_buffer();
   [[noreturn]] void fail() const;
 
   std::string name_;
