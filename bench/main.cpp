@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/exit_code.hpp"
 #include "bench/plugins.hpp"
 #include "bench/version.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
 namespace {
@@ -33,7 +35,7 @@ int run_program(int argc, char** argv) {
       ->type_name("PATH")
       ->allow_extra_args(false);
   app.parse_complete_callback([&] { evbench::load_plugins(plugins, libraries); });  // before any command's
-  int exit_code = 0;
+  int exit_code = evbench::kExitDone;
   evbench::add_run(app, plugins, exit_code);
   evbench::add_eval(app);
   evbench::add_score(app);
@@ -50,20 +52,23 @@ int run_program(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    return app.exit(error) == 0 ? evbench::kExitDone : evbench::kExitBadInput;
   } catch (const evbench::Interrupted& interrupted) {
     fmt::print(stderr, "evbench: {}\n", interrupted.what());
-    return 128 + interrupted.signal();                        // as a shell says it
+    return 128 + interrupted.signal();
+  } catch (const evbench::OutputError& error) {
+    fmt::print(stderr, "evbench: {}\n", error.what());
+    return evbench::kExitNotWritten;
   } catch (const std::filesystem::filesystem_error& error) {  // a folder that can't be read, links in a circle
     fmt::print(stderr, "evbench: {}: {}\n", error.path1().string(), error.code().message());
-    return 2;
+    return evbench::kExitBadInput;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "evbench: the memory is not enough\n");
-    return 2;
+    return evbench::kExitNotWritten;
   } catch (const std::exception& error) {
-    if (std::ferror(stdout) != 0) return 2;  // is told at the end
+    if (std::ferror(stdout) != 0) return evbench::kExitNotWritten;  // is told at the end
     fmt::print(stderr, "evbench: {}\n", error.what());
-    return 2;
+    return evbench::kExitBadInput;
   }
   return exit_code;
 }
@@ -75,5 +80,5 @@ int main(int argc, char** argv) {
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return exit_code;
   fmt::print(stderr, "evbench: what was to be printed can't be written to the standard output (disk full?)\n");
-  return exit_code == 0 ? 2 : exit_code;
+  return exit_code == evbench::kExitDone ? evbench::kExitNotWritten : exit_code;
 }

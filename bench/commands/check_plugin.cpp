@@ -11,6 +11,7 @@
 
 #include "bench/battery/battery.hpp"
 #include "bench/commands/commands.hpp"
+#include "bench/commands/exit_code.hpp"
 #include "core/plugin/registry.hpp"
 #include "core/support/error.hpp"
 #include "core/support/nearest.hpp"
@@ -19,8 +20,6 @@ namespace evbench {
 namespace {
 
 using namespace battery;
-
-constexpr int kExitFailed = 3;
 
 /// A kind of plugin: the names that there are, with their origins, and its battery.
 struct Kind {

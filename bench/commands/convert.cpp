@@ -47,7 +47,8 @@ std::string formats_text() {
     text += fmt::format("  {:<8}{:<6}{}\n", format.name, format.extension, format.description);
   }
   return text +
-         "Calibration, ground truth and header are kept by native alone; hdf5 keeps the sensor's size.\n"
+         "Calibration, ground truth and header are kept by native alone; text and hdf5 keep the sensor's size. Text\n"
+         "begins with comments that say so and name its columns: grep -v '^#' takes them out.\n"
          "OUT appears when it is complete; an interrupted conversion leaves nothing, and what was there before.\n"
          "Text can be written to a pipe or device: convert IN /dev/stdout --format text --quiet | head";
 }
@@ -58,7 +59,7 @@ void add_convert(CLI::App& app, const Plugins& plugins) {
   auto arguments = std::make_shared<ConvertArguments>();
   arguments->options.stream.open = recordings_and_configs(plugins);
   CLI::App* command = app.add_subcommand("convert", "Convert a recording of events: native cache, text, HDF5");
-  command->add_option("in", arguments->in, "File or folder, of any format that evbench reads")
+  command->add_option("in", arguments->in, "File or folder, of any format that evbench reads; -: standard input")
       ->required()
       ->type_name("IN");
   command->add_option("out", arguments->out, "File to write")->required()->type_name("OUT");
@@ -70,6 +71,7 @@ void add_convert(CLI::App& app, const Plugins& plugins) {
                    "Move events to where an ideal pinhole would see them, to the nearest pixel; those outside are left "
                    "out. CALIB: a calib.txt, or \"own\": the recording's")
       ->type_name("CALIB");
+  command->add_flag("--force", arguments->options.force, "Replace OUT where it exists");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   add_read_options(*command, arguments->options.stream.read);
   command->footer(formats_text());

@@ -40,8 +40,8 @@ void execute(const InfoArguments& arguments) {
 void add_read_options(CLI::App& command, ReadOptions& options) {
   command.add_option("--topic", options.topic,
                      "Whose events: topic of a bag, group of an HDF5 file; default: the first");
-  auto* strict = command.add_flag("--strict", options.strict,
-                                  "The first oddity of the recording is an error, not a counted skip");
+  auto* strict =
+      command.add_flag("--strict", options.strict, "The first oddity of the recording is an error, not a counted skip");
   command
       .add_flag("--lenient", options.lenient,
                 "However much of the recording has to be left out; otherwise more than a tenth is an error")
@@ -62,7 +62,7 @@ void add_info(CLI::App& app, const Plugins& plugins) {
   auto arguments = std::make_shared<InfoArguments>();
   arguments->options.open = recordings_and_configs(plugins);
   CLI::App* command = app.add_subcommand("info", "Describe a recording of events: format, counts, rates, oddities");
-  command->add_option("file", arguments->file, "File or folder, of any format that evbench reads")
+  command->add_option("file", arguments->file, "File or folder, of any format that evbench reads; -: standard input")
       ->required()
       ->type_name("FILE");
   command->add_flag("--json", arguments->json, "Print JSON");

@@ -126,7 +126,7 @@ void add_render(CLI::App& app, const Plugins& plugins) {
   auto arguments = std::make_shared<RenderArguments>();
   arguments->options.stream.open = recordings_and_configs(plugins);
   CLI::App* command = app.add_subcommand("render", "Draw a recording of events: pictures (PNG) and video (MP4)");
-  command->add_option("in", arguments->in, "File or folder, of any format that evbench reads")
+  command->add_option("in", arguments->in, "File or folder, of any format that evbench reads; -: standard input")
       ->required()
       ->type_name("FILE");
   command->add_option("out", arguments->out, "NAME.png: one picture; NAME.mp4: a video; NAME/: a folder of pictures")
@@ -135,6 +135,7 @@ void add_render(CLI::App& app, const Plugins& plugins) {
   add_time_options(*command, *arguments);
   add_mode_options(*command, *arguments);
   add_picture_options(*command, *arguments);
+  command->add_flag("--force", arguments->options.force, "Replace OUT where it exists");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   add_read_options(*command, arguments->options.stream.read);
   command->footer(

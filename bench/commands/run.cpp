@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/exit_code.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/plugins.hpp"
 #include "bench/run_folder.hpp"
@@ -17,8 +18,6 @@
 
 namespace evbench {
 namespace {
-
-constexpr int kExitFailed = 3;
 
 struct RunArguments {
   std::string config;
@@ -131,7 +130,7 @@ int execute(const RunArguments& arguments, Plugins& plugins) {
   const Experiment experiment = read_experiment(arguments.config, arguments.overrides, plugins);
   if (arguments.check) {
     check(arguments, experiment, plugins);
-    return 0;
+    return kExitDone;
   }
   const std::unique_ptr<Source> source = make_source(experiment.runs.front().job, plugins);
   Runs runs(arguments, plugins, experiment, *source);
@@ -143,11 +142,14 @@ int execute(const RunArguments& arguments, Plugins& plugins) {
     throw Interrupted(fmt::format("{}: interrupted; {} of {} runs are complete, the same command goes on from there",
                                   arguments.config, runs.records().size(), runs.size()),
                       interrupted.signal());
+  } catch (const OutputError&) {
+    print_table(runs, arguments, experiment.name);
+    throw;
   }
   print_table(runs, arguments, experiment.name);
   const bool failed = std::ranges::any_of(
       runs.records(), [](const RunRecord& run) { return run.status && run.status->status.state == RunState::failed; });
-  return failed ? kExitFailed : 0;
+  return failed ? kExitFailed : kExitDone;
 }
 
 }  // namespace
@@ -171,7 +173,7 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
       "trajectory (job.json). A run that is complete below OUT is not done again, but named and scored as the config\n"
       "says; one that broke off with an error is.\n"
       "Exit codes: 0 done (also when a run is degraded or lost: see its status), 2 bad input, 3 a run failed,\n"
-      "130 interrupted (Ctrl-C).");
+      "4 results can't be written (disk full), 130 interrupted (Ctrl-C).");
   command->callback([arguments, &plugins, &exit_code] { exit_code = execute(*arguments, plugins); });
 }
 

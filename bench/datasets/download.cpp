@@ -123,7 +123,7 @@ Transfer::End Transfer::perform() {
   check_interruption();
   if (code_ == CURLE_OK && !file_) begin();  // a file without bytes
   if (file_ && std::fclose(file_.release()) != 0) {
-    throw InputError(fmt::format("{}: can't be written (disk full?)", part_));
+    throw OutputError(fmt::format("{}: can't be written (disk full?)", part_));
   }
   // Nothing is missing, or the file is another one.
   if (status() == kRangeNotSatisfiable) fits_ = header("Content-Range") == fmt::format("bytes */{}", have_);
@@ -145,7 +145,7 @@ bool Transfer::begin() {
   curl_easy_getinfo(curl_.get(), CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &left);
   if (left >= 0) total_ = have_ + static_cast<std::uint64_t>(left);
   file_.reset(std::fopen(part_.c_str(), have_ == 0 ? "wb" : "ab"));
-  if (!file_) throw InputError(fmt::format("{}: can't be written: {}", part_, std::strerror(errno)));
+  if (!file_) throw OutputError(fmt::format("{}: can't be written: {}", part_, std::strerror(errno)));
   // After the old bytes are gone. A weak tag can't be used with If-Range (RFC 9110, 13.1.5).
   const std::string tag = header("ETag");
   if (have_ == 0) write_file(version_path(part_), tag.empty() || tag.starts_with("W/") ? header("Last-Modified") : tag);
@@ -159,7 +159,7 @@ bool Transfer::body(const char* data, std::size_t size) {
     throw InputError(fmt::format("{}: is bigger than the catalogue allows; removed", url_));
   }
   if (std::fwrite(data, 1, size, file_.get()) != size) {
-    throw InputError(fmt::format("{}: can't be written (disk full?)", part_));
+    throw OutputError(fmt::format("{}: can't be written (disk full?)", part_));
   }
   have_ += size;
   if (options_.progress) options_.progress(have_, total_);
@@ -225,7 +225,7 @@ void download(const std::string& url, const std::string& path, const DownloadOpt
   }
   std::error_code error;
   fs::rename(part, path, error);
-  if (error) throw InputError(fmt::format("{}: can't be written: {}", path, error.message()));
+  if (error) throw OutputError(fmt::format("{}: can't be written: {}", path, error.message()));
   remove_part(part);
 }
 

@@ -6,7 +6,9 @@
 #include <filesystem>
 
 #include "core/data/calib.hpp"
+#include "core/events/formats.hpp"
 #include "core/events/writer.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/io/part_file.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
@@ -72,17 +74,38 @@ PoseTrajectory shifted(const PoseTrajectory& trajectory, double by) {
   return PoseTrajectory(std::move(poses));
 }
 
-RecordingHeader make_header(EventStream& stream, const std::string& in) {
+std::string range_text(const StreamOptions& options) {
+  const auto seconds = [](std::int64_t t) { return static_cast<double>(t) * 1e-6; };
+  if (!options.from) return fmt::format("up to {:.6f} s", seconds(*options.to));
+  if (!options.to) return fmt::format("from {:.6f} s on", seconds(*options.from));
+  return fmt::format("{:.6f} to {:.6f} s", seconds(*options.from), seconds(*options.to));
+}
+
+RecordingHeader make_header(EventStream& stream, const std::string& in, const StreamOptions& options) {
   RecordingHeader header;
   header.width = stream.info().width;
   header.height = stream.info().height;
   header.metadata = stream.info().metadata;
   header.metadata.emplace_back("converted from", fmt::format("{} ({})", in, stream.info().format));
+  if (options.from || options.to) header.metadata.emplace_back("a part of it", range_text(options));
   header.calibration = stream.reader().calibration();
   if (const auto truth = stream.reader().ground_truth()) {
-    header.ground_truth = shifted(*truth, -1e-6 * static_cast<double>(stream.zero()));
+    constexpr double kMargin = 1.0;  // [s], so that poses can be interpolated at the ends
+    const PoseTrajectory own = shifted(*truth, -1e-6 * static_cast<double>(stream.zero()));
+    const double from = options.from ? 1e-6 * static_cast<double>(*options.from) - kMargin : own.start();
+    const double to = options.to ? 1e-6 * static_cast<double>(*options.to) + kMargin : own.end();
+    header.ground_truth = own.cut(from, to);
   }
   return header;
+}
+
+/// --force or not.
+void refuse_input(const std::string& in, const std::string& out) {
+  std::error_code error;
+  for (const std::string& file : files_of_events(in)) {
+    if (!std::filesystem::equivalent(file, out, error)) continue;
+    throw InputError(fmt::format("{}: is what is read; expected another name for what is written", out));
+  }
 }
 
 bool fits(const Camera& camera, const RecordingHeader& header) {
@@ -129,8 +152,10 @@ const char* why_none(const StreamOptions& options, const ConversionReport& repor
 ConversionReport convert(const std::string& in, const std::string& out, const ConversionOptions& options,
                          const std::function<void(std::int64_t, std::int64_t)>& progress) {
   const WritableFormat& format = find_format(out, options.format);
+  refuse_to_replace(out, options.force);
   EventStream stream(in, options.stream);
-  RecordingHeader header = make_header(stream, in);
+  refuse_input(in, out);
+  RecordingHeader header = make_header(stream, in, options.stream);
   std::optional<NearestUndistortion> undistortion;
   if (!options.undistort.empty()) undistortion.emplace(take_lens(options.undistort, in, header));
   drop_misfit(header);

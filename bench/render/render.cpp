@@ -148,7 +148,7 @@ class Renderer {
 RenderReport render(const std::string& in, const std::string& out, const RenderOptions& options,
                     const std::function<void(std::int64_t, std::int64_t)>& progress) {
   check_options(options);
-  const std::unique_ptr<PictureSink> sink = open_picture_sink(out, options.fps);
+  const std::unique_ptr<PictureSink> sink = open_picture_sink(out, options.fps, options.force);
   const double period = options.speed / options.fps * 1e6;  // [us]
   const WindowExtent extent = make_extent(options, !sink->takes_many(), std::llround(period));
   Renderer renderer(in, options, extent);

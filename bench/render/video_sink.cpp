@@ -19,7 +19,7 @@ class NameWithExtension {
  public:
   NameWithExtension(const std::string& target, const std::string& extension) : extension_(extension) {
     std::string folder = (fs::temp_directory_path() / "evbench-XXXXXX").string();
-    if (::mkdtemp(folder.data()) == nullptr) throw InputError(fmt::format("{}: can't be made", folder));
+    if (::mkdtemp(folder.data()) == nullptr) throw OutputError(fmt::format("{}: can't be made", folder));
     folder_ = folder;
     fs::create_symlink(fs::absolute(target), path());
   }
@@ -56,7 +56,7 @@ class VideoSink : public PictureSink {
     cv::VideoCapture written(file_.writable_path(), cv::CAP_FFMPEG);
     const bool complete = written.isOpened() && std::lround(written.get(cv::CAP_PROP_FRAME_COUNT)) == count_;
     written.release();
-    if (!complete) throw InputError(fmt::format("{}: the video could not be written completely (disk full?)", path_));
+    if (!complete) throw OutputError(fmt::format("{}: the video could not be written completely (disk full?)", path_));
     file_.commit();
   }
 

@@ -8,7 +8,8 @@
 #include "core/events/companions/companions.hpp"
 #include "core/events/event_stream.hpp"
 #include "core/io/byte_source.hpp"
-#include "core/support/error.hpp"
+#include "core/io/spool.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
@@ -32,9 +33,8 @@ const EventFormat* find_format(const std::string& path, std::span<const std::byt
   return nullptr;
 }
 
-}  // namespace
-
-std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOptions& options) {
+/// Of a regular file or a folder.
+std::unique_ptr<EventReader> open_recording(const std::string& path, const ReadOptions& options) {
   const auto files = std::make_shared<const RecordingFiles>(path);
   std::string events = files->events();
   if (events.empty()) events = path;  // a folder that is a format itself
@@ -55,6 +55,22 @@ std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOpti
   std::vector<std::string> names;
   for (const EventFormat& format : event_formats()) names.push_back(format.name);
   throw InputError(fmt::format("{}: is of no known event format; known: {}", events, fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+std::unique_ptr<EventReader> open_events(const std::string& path, const ReadOptions& options) {
+  const std::string readable = seekable_path(path);
+  if (readable == path) return open_recording(path, options);
+  try {
+    return open_recording(readable, options);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const InputError& error) {
+    std::string message = error.what();
+    if (const auto at = message.find(readable); at != std::string::npos) message.replace(at, readable.size(), path);
+    throw InputError(message);
+  }
 }
 
 bool holds_events(const std::string& path) {

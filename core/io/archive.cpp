@@ -31,7 +31,8 @@ class Utf8 {
 
 }  // namespace
 
-Archive::Archive(std::string path, Form form) : path_(std::move(path)), archive_(archive_read_new(), archive_read_free) {
+Archive::Archive(std::string path, Form form)
+    : path_(std::move(path)), archive_(archive_read_new(), archive_read_free) {
   constexpr std::size_t kBlock = 1 << 16;  // [bytes]
   archive_read_support_filter_gzip(archive_.get());
   if (form == Form::compressed_file) {

@@ -9,9 +9,11 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <span>
 
 #include "core/io/part_file.hpp"
 #include "core/io/path.hpp"
+#include "core/io/write_all.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
@@ -19,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void fail(const std::string& path, const char* what, int error) {
-  throw InputError(fmt::format("{}: {}: {}", path, what, std::strerror(error)));
+  throw OutputError(fmt::format("{}: {}: {}", path, what, std::strerror(error)));
 }
 
 /// Writes a file, then does `flush` with its descriptor, which returns an error of errno or 0, and closes it. Errors
@@ -28,15 +30,7 @@ template <class Flush>
 void write_whole(const std::string& path, std::string_view content, const std::string& shown, Flush flush) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) fail(shown, "can't be written", errno);
-  int error = 0;
-  while (!content.empty() && error == 0) {
-    const ssize_t written = ::write(file, content.data(), content.size());
-    if (written < 0) {
-      error = errno == EINTR ? 0 : errno;
-    } else {
-      content.remove_prefix(static_cast<std::size_t>(written));
-    }
-  }
+  int error = write_all(file, std::as_bytes(std::span(content)));
   if (error == 0) error = flush(file);
   if (::close(file) != 0 && error == 0) error = errno;
   if (error != 0) fail(shown, "can't be written", error);
@@ -93,7 +87,7 @@ AtomicFolder::AtomicFolder(const std::string& path)
   std::error_code error;
   const fs::path parent = fs::path(target_).parent_path();
   if (!parent.empty()) fs::create_directories(parent, error);
-  if (error) throw InputError(fmt::format("{}: can't be made: {}", parent.string(), error.message()));
+  if (error) throw OutputError(fmt::format("{}: can't be made: {}", parent.string(), error.message()));
   lock_ = open_locked(lock_path_, path);
   if (lock_ < 0) {
     throw InputError(fmt::format("{}: another run is writing to this folder; wait for it, or write elsewhere", path));
@@ -105,7 +99,7 @@ AtomicFolder::AtomicFolder(const std::string& path)
     const std::string message = fmt::format("{}: can't be made: {}", path, (error ? error : removal).message());
     ::unlink(lock_path_.c_str());
     ::close(lock_);
-    throw InputError(message);
+    throw OutputError(message);
   }
 }
 
@@ -124,12 +118,12 @@ void AtomicFolder::commit() {
   std::error_code error;
   fs::remove_all(old_, error);
   if (fs::exists(target_, error)) fs::rename(target_, old_, error);
-  if (error) throw InputError(fmt::format("{}: can't be replaced: {}", path_, error.message()));
+  if (error) throw OutputError(fmt::format("{}: can't be replaced: {}", path_, error.message()));
   fs::rename(part_, target_, error);
   if (error) {
     std::error_code ignored;
     fs::rename(old_, target_, ignored);  // what was there before stays
-    throw InputError(fmt::format("{}: can't be written: {}", path_, error.message()));
+    throw OutputError(fmt::format("{}: can't be written: {}", path_, error.message()));
   }
   fs::remove_all(old_, error);
 }

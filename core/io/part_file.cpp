@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const std::string& path, int error) {
-  throw InputError(fmt::format("{}: can't be written: {}", path, std::strerror(error)));
+  throw OutputError(fmt::format("{}: can't be written: {}", path, std::strerror(error)));
 }
 
 std::string folder_of(const std::string& path) {

@@ -12,4 +12,11 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Nothing is wrong with the input, but what was to be written can't be: a full disk, a folder that is missing or not
+/// writable. The program's exit code then is another one (README.md).
+class OutputError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 }  // namespace evbench

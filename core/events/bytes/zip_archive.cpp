@@ -43,7 +43,8 @@ class ArchivedBytes : public ByteSource {
 
  private:
   void reopen() {
-    archive_ = std::make_unique<Archive>(path_, file_.empty() ? Archive::Form::compressed_file : Archive::Form::archive);
+    archive_ =
+        std::make_unique<Archive>(path_, file_.empty() ? Archive::Form::compressed_file : Archive::Form::archive);
     position_ = 0;
     while (archive_->next()) {
       if (file_.empty() || (archive_->kind() == Archive::Kind::file && archive_->name() == file_)) return;
@@ -78,7 +79,10 @@ std::unique_ptr<ByteSource> ZipArchive::open(const std::string& file) const {
 bool is_compressed_file(std::span<const std::byte> head) {
   using namespace std::string_view_literals;
   const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
-  return std::ranges::any_of(std::initializer_list<std::string_view>{"\x1F\x8B"sv, "BZh"sv, "\xFD" "7zXZ\0"sv, "\x28\xB5\x2F\xFD"sv},
+  return std::ranges::any_of(std::initializer_list<std::string_view>{"\x1F\x8B"sv, "BZh"sv,
+                                                                     "\xFD"
+                                                                     "7zXZ\0"sv,
+                                                                     "\x28\xB5\x2F\xFD"sv},
                              [&](std::string_view magic) { return text.starts_with(magic); });
 }
 

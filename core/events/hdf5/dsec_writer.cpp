@@ -38,7 +38,7 @@ DsecWriter::DsecWriter(const std::string& path, std::string name, const Recordin
 }
 
 std::int64_t DsecWriter::check(std::int64_t id) const {
-  if (id < 0) throw InputError(fmt::format("{}: can't be written by the HDF5 library (disk full?)", name_));
+  if (id < 0) throw OutputError(fmt::format("{}: can't be written by the HDF5 library (disk full?)", name_));
   return id;
 }
 

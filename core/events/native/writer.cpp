@@ -24,7 +24,7 @@ NativeWriter::NativeWriter(const std::string& path, const RecordingHeader& heade
       metadata_(native::format_metadata(header)),
       newest_(std::numeric_limits<std::int64_t>::min()),
       file_(std::fopen(path.c_str(), "wb")) {
-  if (file_ == nullptr) throw InputError(fmt::format("{}: can't be written: {}", name_, std::strerror(errno)));
+  if (file_ == nullptr) throw OutputError(fmt::format("{}: can't be written: {}", name_, std::strerror(errno)));
   header_.width = static_cast<std::uint32_t>(header.width);
   header_.height = static_cast<std::uint32_t>(header.height);
   put(bytes_of(native::Header{}));  // its place; without magic until all is written
@@ -36,7 +36,7 @@ NativeWriter::~NativeWriter() {
 
 void NativeWriter::put(std::span<const std::byte> bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), static_cast<std::FILE*>(file_)) != bytes.size()) {
-    throw InputError(fmt::format("{}: can't be written: {}", name_, std::strerror(errno)));
+    throw OutputError(fmt::format("{}: can't be written: {}", name_, std::strerror(errno)));
   }
   size_ += bytes.size();
 }
@@ -100,7 +100,7 @@ void NativeWriter::finish() {
   std::rewind(file);
   put(bytes_of(header_));
   file_ = nullptr;
-  if (std::fclose(file) != 0) throw InputError(fmt::format("{}: can't be written: {}", name_, std::strerror(errno)));
+  if (std::fclose(file) != 0) throw OutputError(fmt::format("{}: can't be written: {}", name_, std::strerror(errno)));
 }
 
 }  // namespace evbench

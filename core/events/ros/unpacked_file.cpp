@@ -13,20 +13,12 @@
 #include <vector>
 
 #include "core/io/byte_source.hpp"
+#include "core/io/write_all.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
-
-void write_all(int descriptor, const std::string& path, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const auto count = ::write(descriptor, bytes.data(), bytes.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) throw InputError(fmt::format("{}: can't be written: {}", path, std::strerror(errno)));
-    bytes = bytes.subspan(static_cast<std::size_t>(count));
-  }
-}
 
 void unpack(FileBytes& file, int descriptor, const std::string& path) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
@@ -52,7 +44,9 @@ void unpack(FileBytes& file, int descriptor, const std::string& path) {
         throw InputError(fmt::format("{}: holds more than {} bytes; expected at most {} times its size", file.name(),
                                      most, UnpackedFile::kMostRatio));
       }
-      write_all(descriptor, path, std::span(out).first(target.pos));
+      if (const int error = write_all(descriptor, std::span(out).first(target.pos)); error != 0) {
+        throw OutputError(fmt::format("{}: can't be written: {}", path, std::strerror(error)));
+      }
       full = target.pos == target.size && missing != 0;
     }
   }
@@ -65,7 +59,7 @@ UnpackedFile::UnpackedFile(const std::string& packed) {
   FileBytes file(packed);
   path_ = (std::filesystem::temp_directory_path() / "evbench-XXXXXX").string();
   const int descriptor = ::mkostemp(path_.data(), O_CLOEXEC);
-  if (descriptor < 0) throw InputError(fmt::format("{}: can't be written: {}", path_, std::strerror(errno)));
+  if (descriptor < 0) throw OutputError(fmt::format("{}: can't be written: {}", path_, std::strerror(errno)));
   try {
     unpack(file, descriptor, path_);
   } catch (...) {

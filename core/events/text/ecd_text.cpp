@@ -138,7 +138,8 @@ std::unique_ptr<EventReader> open_ecd_text(const std::string& path, const ReadOp
 }
 
 EventFormat ecd_text_format() {
-  return {"ecd_text", "text, a line an event: Event-Camera Dataset (file, folder, .zip), CSV, also compressed (.txt.gz)",
+  return {"ecd_text",
+          "text, a line an event: Event-Camera Dataset (file, folder, .zip), CSV, also compressed (.txt.gz)",
           [](const std::string& path, std::span<const std::byte> head) {
             if (!is_compressed_file(head)) return is_text(head) || text_of(head).starts_with("PK\3\4");
             std::array<std::byte, 512> content{};

@@ -32,7 +32,7 @@ TextWriter::~TextWriter() {
 void TextWriter::fail() const {
   const int error = errno;
   check_interruption();  // it may have waited for a pipe's reader
-  throw InputError(fmt::format("{}: can't be written: {}", name_, std::strerror(error)));
+  throw OutputError(fmt::format("{}: can't be written: {}", name_, std::strerror(error)));
 }
 
 void TextWriter::write(std::span<const Event> events) {

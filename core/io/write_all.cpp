@@ -1,0 +1,18 @@
+#include "core/io/write_all.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+
+namespace evbench {
+
+int write_all(int file, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file, bytes.data(), bytes.size());
+    if (written < 0 && errno != EINTR) return errno;
+    if (written > 0) bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+}  // namespace evbench
