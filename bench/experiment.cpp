@@ -9,12 +9,14 @@
 #include <sstream>
 
 #include "core/io/path.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
 
 /// The top level of a config file.
 struct ExperimentOptions {
+  std::string schema;
   std::string name;
   std::string description;
   std::int64_t seed = 1;
@@ -38,6 +40,7 @@ struct ExperimentOptions {
     set.add("backends", backends, "a comparison on identical observations: a list of back-ends");
     set.group("pipeline", pipeline, "how front-end and back-end work together");
     set.group("evaluation", evaluation, "how trajectories are scored");
+    set.add("$schema", schema, "where an editor finds this file's JSON Schema (evbench describe config --schema)");
   }
 };
 
@@ -51,18 +54,41 @@ Json parse_file(const std::string& path) {
   try {
     return Json::parse(text.str(), nullptr, true, true);  // comments allowed
   } catch (const Json::exception& error) {                // also for numbers out of range
-    throw InputError(fmt::format("{}: is not JSON: {}", path, error.what()));
+    const std::string message = error.what();             // begins with the library's own tag, "[json.exception...] "
+    throw InputError(fmt::format("{}: is not JSON: {}", path, message.substr(message.find("] ") + 2)));
   }
 }
 
-void set_value(Json& config, const std::string& assignment) {
+/// What a schema says of the key `part` of `value`; nullptr: nothing.
+const Json* schema_below(const Json* schema, const Json& value, const std::string& part) {
+  if (schema == nullptr) return nullptr;
+  if (const auto choices = schema->find("anyOf"); choices != schema->end() && value.contains("type")) {  // a plugin
+    const auto chosen = std::ranges::find_if(*choices, [&](const Json& choice) {
+      return choice.value(Json::json_pointer("/properties/type/const"), Json()) == value["type"];
+    });
+    schema = chosen == choices->end() ? nullptr : &*chosen;
+  }
+  if (schema == nullptr) return nullptr;
+  if (schema->contains("items")) return &schema->at("items");
+  const auto properties = schema->find("properties");
+  return properties != schema->end() && properties->contains(part) ? &properties->at(part) : nullptr;
+}
+
+/// Does KEY=VALUE of --set. The schema tells what is text, whatever it looks like, and a list's default, of which a
+/// position may be set.
+void set_value(Json& config, const std::string& assignment, const Json& of_config) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
     throw InputError(fmt::format("--set {}: expected KEY=VALUE", assignment));
   }
   Json* target = &config;
+  const Json* schema = &of_config;
   std::istringstream path(assignment.substr(0, equals));
   for (std::string part; std::getline(path, part, '.');) {
+    if (target->is_null() && schema != nullptr && schema->contains("items") && schema->contains("default")) {
+      *target = schema->at("default");
+    }
+    schema = schema_below(schema, *target, part);
     if (target->is_array()) {
       const bool number = !part.empty() && part.size() < 7 &&
                           std::ranges::all_of(part, [](unsigned char c) { return std::isdigit(c) != 0; });
@@ -79,13 +105,40 @@ void set_value(Json& config, const std::string& assignment) {
     }
   }
   const std::string text = assignment.substr(equals + 1);
-  const Json value = Json::parse(text, nullptr, false);
-  *target = value.is_discarded() ? Json(text) : value;
+  const bool is_text = schema != nullptr && schema->value("type", Json()) == "string";
+  const Json value = is_text ? Json() : Json::parse(text, nullptr, false);
+  *target = is_text || value.is_discarded() ? Json(text) : value;
 }
 
-Json parse_config(const std::string& path, const std::vector<std::string>& overrides) {
+/// Is the error of what --set gave: its place, or a key that nobody knows there?
+bool is_about(const std::string& error, const std::string& path, const std::string& assignment) {
+  const std::string key = assignment.substr(0, assignment.find('='));
+  const std::size_t dot = key.rfind('.');
+  const std::string parent = dot == std::string::npos ? path : fmt::format("{}: {}", path, key.substr(0, dot));
+  return error.starts_with(fmt::format("{}: {}: ", path, key)) ||
+         error.starts_with(fmt::format("{}: {}.", path, key)) ||
+         error.starts_with(fmt::format("{}: unknown key \"{}\"", parent, key.substr(dot + 1)));
+}
+
+/// Calls `read`; an error in a value that --set gave says so.
+template <class Read>
+auto naming_overrides(const std::string& path, const std::vector<std::string>& overrides, const Read& read) {
+  try {
+    return read();
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const InputError& error) {
+    for (const std::string& assignment : overrides) {
+      if (!is_about(error.what(), path, assignment)) continue;
+      throw InputError(fmt::format("{} (from --set {})", error.what(), assignment));
+    }
+    throw;
+  }
+}
+
+Json parse_config(const std::string& path, const std::vector<std::string>& overrides, const Json& schema) {
   Json json = parse_file(path);
-  for (const std::string& assignment : overrides) set_value(json, assignment);
+  for (const std::string& assignment : overrides) set_value(json, assignment, schema);
   return json;
 }
 
@@ -163,24 +216,9 @@ void check_name(const std::string& name, const std::string& path) {
   }
 }
 
-}  // namespace
-
-Json RunConfig::resolved() const {
-  Json labelled = job.backend.with_type();
-  labelled["label"] = label;
-  return {{"name", experiment},
-          {"seed", job.seed},
-          {"trajectory_rate", job.trajectory_rate},
-          {"plugins", plugins},
-          {"source", job.source.with_type()},
-          {"frontend", job.frontend.with_type()},
-          {"backend", labelled},
-          {"pipeline", write_options(job.pipeline)},
-          {"evaluation", write_options(evaluation)}};
-}
-
-Experiment read_experiment(const std::string& path, const std::vector<std::string>& overrides, const Plugins& plugins) {
-  const auto options = read_options<ExperimentOptions>(parse_config(path, overrides), path);
+/// Of a config that is parsed.
+Experiment read_config(const Json& json, const std::string& path, const Plugins& plugins) {
+  const auto options = read_options<ExperimentOptions>(json, path);
   Experiment experiment;
   experiment.name = options.name.empty() ? std::filesystem::path(path).stem().string() : options.name;
   experiment.description = options.description;
@@ -214,8 +252,29 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
   return experiment;
 }
 
+}  // namespace
+
+Json RunConfig::resolved() const {
+  Json labelled = job.backend.with_type();
+  labelled["label"] = label;
+  return {{"name", experiment},
+          {"seed", job.seed},
+          {"trajectory_rate", job.trajectory_rate},
+          {"plugins", plugins},
+          {"source", job.source.with_type()},
+          {"frontend", job.frontend.with_type()},
+          {"backend", labelled},
+          {"pipeline", write_options(job.pipeline)},
+          {"evaluation", write_options(evaluation)}};
+}
+
+Experiment read_experiment(const std::string& path, const std::vector<std::string>& overrides, const Plugins& plugins) {
+  const Json json = parse_config(path, overrides, experiment_schema(plugins));
+  return naming_overrides(path, overrides, [&] { return read_config(json, path, plugins); });
+}
+
 std::vector<std::string> read_plugin_paths(const std::string& path, const std::vector<std::string>& overrides) {
-  const Json json = parse_config(path, overrides);
+  const Json json = parse_config(path, overrides, Json());  // no plugin is known yet
   if (!json.is_object() || !json.contains("plugins")) return {};
   std::vector<std::string> paths = plugin_paths(json["plugins"], path);
   for (std::string& library : paths) library = resolve_path(library, folder_of(path));
@@ -225,6 +284,10 @@ std::vector<std::string> read_plugin_paths(const std::string& path, const std::v
 ScoreOptions read_evaluation(const std::string& path, const Json& otherwise, const std::vector<std::string>& overrides,
                              const std::string& place) {
   Json json = {{"evaluation", otherwise}};
+  ScoreOptions defaults;
+  OptionSet set;
+  defaults.declare(set);
+  const Json schema = {{"properties", {{"evaluation", set.schema()}}}};
   if (!path.empty()) {
     const Json file = parse_file(path);
     if (!file.is_object()) throw InputError(fmt::format("{}: expected a config with an \"evaluation\"", path));
@@ -235,9 +298,11 @@ ScoreOptions read_evaluation(const std::string& path, const Json& otherwise, con
       throw InputError(
           fmt::format("--set {}: expected evaluation.KEY=VALUE: scoring again changes nothing else", assignment));
     }
-    set_value(json, assignment);
+    set_value(json, assignment, schema);
   }
-  return read_options<ScoreOptions>(json["evaluation"], (path.empty() ? place : path) + ": evaluation");
+  const std::string file = path.empty() ? place : path;
+  return naming_overrides(file, overrides,
+                          [&] { return read_options<ScoreOptions>(json["evaluation"], file + ": evaluation"); });
 }
 
 std::unique_ptr<Source> read_source(const std::string& path, const Plugins& plugins) {
@@ -268,7 +333,7 @@ Json experiment_schema(const Plugins& plugins) {
     for (const auto& [name, entry] : registry.entries()) {
       Json schema = entry.schema();
       Json properties = {{"type", {{"const", name}}}};
-      if (labelled) properties["label"] = {{"type", "string"}, {"description", "its name in tables"}};
+      if (labelled) properties["label"] = {{"type", "string"}, {"minLength", 1}, {"description", "its name in tables"}};
       properties.update(schema["properties"]);
       schema["properties"] = properties;
       schema["required"].push_back("type");
@@ -283,12 +348,14 @@ Json experiment_schema(const Plugins& plugins) {
   Json schema = set.schema();
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = "evbench config";
+  schema["oneOf"] = {{{"required", {"backend"}}}, {{"required", {"backends"}}}};
   schema["properties"]["plugins"]["type"] = "array";
   schema["properties"]["plugins"]["items"] = {{"type", "string"}};
   schema["properties"]["source"] = choices(plugins.of<Source>(), false);
   schema["properties"]["frontend"] = choices(plugins.of<FrontEnd>(), false);
   schema["properties"]["backend"] = choices(plugins.of<BackEnd>(), true);
-  schema["properties"]["backends"] = {{"type", "array"}, {"items", choices(plugins.of<BackEnd>(), true)}};
+  schema["properties"]["backends"] = {
+      {"type", "array"}, {"minItems", 1}, {"items", choices(plugins.of<BackEnd>(), true)}};
   return schema;
 }
 

@@ -160,7 +160,7 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
   command->add_option("config", arguments->config, "JSON config")->required();
   command->add_option("--set", arguments->overrides, "Override a value: KEY=VALUE, e.g. backend.placement.rate=50")
       ->type_name("KEY=VALUE")
-      ->allow_extra_args(true);
+      ->allow_extra_args(false);
   command->add_option("--out", arguments->out, "Folder for results")->capture_default_str();
   command->add_flag("--force", arguments->force, "Do runs again that are complete already");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");

@@ -229,6 +229,11 @@ void OptionSet::read(const Json& object, const std::string& place) {
       throw InputError(fmt::format("{}: \"{}\" is missing ({})", place, option.name_, option.text_));
     }
   }
+  for (const std::vector<std::string>& names : alternatives_) {
+    const auto given = [&](const std::string& name) { return object.contains(name) && object[name] != ""; };
+    if (std::ranges::any_of(names, given)) continue;
+    throw InputError(fmt::format("{}: expected at least one of {}", place, fmt::join(names, ", ")));
+  }
   for (Group& group : groups_) {
     const auto found = object.find(group.name);
     if (found != object.end()) group.set.read(*found, below(place, group.name));
@@ -284,6 +289,13 @@ Json OptionSet::schema() const {
   }
   Json result = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
   if (!required.empty()) result["required"] = required;
+  for (const std::vector<std::string>& names : alternatives_) {
+    Json any = Json::array();
+    for (const std::string& name : names) {
+      any.push_back({{"required", {name}}, {"properties", {{name, {{"minLength", 1}}}}}});
+    }
+    result["allOf"].push_back({{"anyOf", any}});
+  }
   return result;
 }
 

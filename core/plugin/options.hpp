@@ -97,9 +97,12 @@ class OptionSet {
     add_group(name, text, std::move(set));
   }
 
+  /// At least one of these texts has to be given.
+  void require_one_of(std::vector<std::string> names) { alternatives_.push_back(std::move(names)); }
+
   /// Sets the members from a JSON object; keys that are missing keep their defaults. `place` is where the object
   /// stands ("config.json: backend"), for messages. Throws InputError for a value of a wrong type or out of range, an
-  /// unknown key (with the nearest known one), a required key that is missing.
+  /// unknown key (with the nearest known one), a required key that is missing, none of several alternatives.
   void read(const Json& object, const std::string& place);
 
   /// Takes relative paths among the options from `folder`, so that they mean the same wherever they are written.
@@ -118,6 +121,7 @@ class OptionSet {
 
   std::vector<Option> options_;
   std::vector<Group> groups_;
+  std::vector<std::vector<std::string>> alternatives_;
 };
 
 struct OptionSet::Group {

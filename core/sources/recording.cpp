@@ -62,6 +62,7 @@ void Recording::Options::declare(OptionSet& set) {
   set.add("time_range", time_range,
           "part of the sequence that is used, [from, to] [s]; empty: the ground truth's, or the events'")
       .size(2);
+  set.require_one_of({"dataset", "folder", "events", "calibration"});
   set.add("time_offset", time_offset, "added to the ground truth's times to get the sequence's [s]");
 }
 
@@ -134,9 +135,6 @@ void Recording::set_camera(const Options& options, const std::string& folder, co
     camera_ = read_calib(options.calibration, width, height, parse_distortion_model(options.distortion));
     files_.push_back(options.calibration);
     return;
-  }
-  if (events_.empty()) {
-    throw InputError(fmt::format("{}: neither folder nor calibration is given; expected one of them", place_));
   }
   if (!own.camera) {
     throw InputError(

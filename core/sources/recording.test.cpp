@@ -71,7 +71,7 @@ TEST_CASE("A recording refuses what is missing or makes no sense, and says what"
   const testing::TemporaryFolder folder;
   folder.write("calib.txt", kCalibration);
   folder.write("groundtruth.txt", kGroundTruth);
-  CHECK_THROWS_WITH(open("{}", folder.path()), Contains("neither folder nor calibration"));
+  CHECK_THROWS_WITH(open("{}", folder.path()), Contains("config: expected at least one of dataset, folder, events, calibration"));
   CHECK_THROWS_WITH(open(R"({"folder": "nowhere"})", folder.path()), Contains("calib.txt: no such file"));
   CHECK_THROWS_WITH(open(R"({"folder": ".", "ground_truth": "no.txt"})", folder.path()), Contains("no such file"));
   CHECK_THROWS_WITH(open(R"({"folder": ".", "time_range": [3, 2]})", folder.path()), Contains("from < to"));
