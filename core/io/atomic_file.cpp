@@ -78,6 +78,12 @@ void write_file(const std::string& path, std::string_view content) {
   file.commit();
 }
 
+void refuse_to_replace(const std::string& path, bool force) {
+  std::error_code error;
+  if (force || !fs::is_regular_file(path, error)) return;
+  throw InputError(fmt::format("{}: exists already; --force replaces it", path));
+}
+
 AtomicFolder::AtomicFolder(const std::string& path)
     : path_(path),
       target_(follow_links(path)),

@@ -9,6 +9,10 @@ namespace evbench {
 /// to. Throws InputError (folder missing, no permission, disk full) and leaves nothing behind.
 void write_file(const std::string& path, std::string_view content);
 
+/// What a command asks before it works for a file: throws InputError when there is one already, unless it is told to
+/// replace it. Pipes and devices hold nothing that could be lost.
+void refuse_to_replace(const std::string& path, bool force);
+
 /// A folder that appears under its name only when it is complete: files are written into a temporary folder beside it
 /// (name + ".evbench.part"), commit() renames it, replacing an older folder of that name, or the one that a symbolic
 /// link of that name leads to. Locked while it exists: a second writer of the same folder gets an InputError. Not

@@ -34,6 +34,18 @@ TEST_CASE("A file that can't be written is an error that names it, and leaves no
   CHECK(count_entries(folder.path()) == 0);
 }
 
+TEST_CASE("A file that is there is not replaced unless that is asked for") {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.write("a", "mine");
+  std::filesystem::create_symlink("a", folder.file("link"));
+  CHECK_THROWS_WITH(refuse_to_replace(path, false), Contains("a: exists already; --force replaces it"));
+  CHECK_THROWS_AS(refuse_to_replace(folder.file("link"), false), InputError);
+  CHECK_NOTHROW(refuse_to_replace(path, true));
+  CHECK_NOTHROW(refuse_to_replace(folder.file("b"), false));
+  CHECK_NOTHROW(refuse_to_replace("/dev/stdout", false));
+  CHECK(read_file(path) == "mine");
+}
+
 TEST_CASE("A folder appears complete when it is committed, and replaces an older one") {
   const testing::TemporaryFolder folder;
   const std::string path = folder.file("x/run");
