@@ -67,6 +67,7 @@ RunRecord rewrite(const std::string& from, const std::string& to, const Json& co
   if (!log.empty()) folder.write("log.txt", content_of(from + "/log.txt").value_or("") + log);
   folder.commit();
   record.folder = to;
+  record.settings = settings_of(config);
   return record;
 }
 
@@ -90,14 +91,26 @@ std::optional<std::string> find_complete_run(const std::string& out, const std::
 RunRecord adopt_run(const std::string& from, const std::string& to, const RunConfig& config) {
   RunRecord record = read_record(from);
   const Json resolved = config.resolved();
-  if (from == to && content_of(from + "/config.json") == pretty(resolved)) return record;
+  const std::optional<std::uint64_t> position = config.position ? config.position : record.position;
+  const bool same_place = from == to && position == record.position;
+  if (same_place && content_of(from + "/config.json") == pretty(resolved)) return record;
   std::string log;
   if (record.experiment != config.experiment || record.label != config.label) {
     log = fmt::format("not run again, but called {}: {}\n", config.experiment, config.label);
   }
   record.experiment = config.experiment;
   record.label = config.label;
+  record.position = position;
   return rewrite(from, to, resolved, std::move(record), config.evaluation, log);
+}
+
+ScoreOptions protocol_of_run(const std::string& folder, const std::vector<std::string>& overrides) {
+  const std::string path = folder + "/config.json";
+  const Json config = Json::parse(content_of(path).value_or(""), nullptr, false);
+  if (!config.is_object() || !config.contains("evaluation")) {
+    throw InputError(fmt::format("{}: can't be read, or has no \"evaluation\"; expected the config of a run", path));
+  }
+  return read_evaluation("", config["evaluation"], overrides, path);
 }
 
 RunRecord score_again(const std::string& folder, const ScoreOptions& options) {

@@ -133,6 +133,51 @@ TEST_CASE("Another label or protocol is a matter of names and scores: nothing is
   CHECK(comparison.metrics("mine").dump() == fresh.dump());
 }
 
+TEST_CASE("Tables have the rows in the order of the config that was run last, whatever was run before") {
+  Comparison comparison;
+  const auto rows = [&] {
+    std::vector<std::string> labels;
+    for (const RunRecord& run : find_runs(std::vector{comparison.folder.file("results")})) labels.push_back(run.label);
+    return labels;
+  };
+  REQUIRE(comparison.run("--quiet").exit_code == 0);
+  CHECK(rows() == std::vector<std::string>{"asynchronous", "frames of 50 ms"});
+  REQUIRE(comparison.run("--quiet --set seed=2").exit_code == 0);
+  CHECK(rows() == std::vector<std::string>{"asynchronous", "asynchronous", "frames of 50 ms", "frames of 50 ms"});
+  std::swap(comparison.config["backends"][0], comparison.config["backends"][1]);
+  comparison.write();
+  const Outcome swapped = comparison.run("");
+  CHECK_THAT(swapped.out, Contains("complete already: 2 of 2"));
+  CHECK(swapped.out.find("frames of 50 ms") < swapped.out.find("asynchronous"));
+  REQUIRE(comparison.run("--quiet --set seed=2").exit_code == 0);
+  CHECK(rows() == std::vector<std::string>{"frames of 50 ms", "frames of 50 ms", "asynchronous", "asynchronous"});
+  const std::string config = "'" + comparison.path("asynchronous") + "/config.json'";
+  REQUIRE(testing::evbench(comparison.folder, "run " + config + " --quiet").exit_code == 0);
+  CHECK(rows().back() == "asynchronous");
+}
+
+TEST_CASE("Runs of several options and seeds are told apart in their table") {
+  const TemporaryFolder folder;
+  folder.write("c.json", short_config().dump());
+  for (const std::string duration : {"0.1", "0.05"}) {
+    for (const std::string seed : {"2", "1"}) {
+      REQUIRE(testing::evbench(folder,
+                               "run c.json --quiet --set seed=" + seed + " --set backend.frame_duration=" + duration)
+                  .exit_code == 0);
+    }
+  }
+  const std::string text = testing::evbench(folder, "table results").out;
+  CHECK_THAT(text.substr(0, text.find('\n')), Contains("backend.frame_duration  seed") && !Contains("key"));
+  const Outcome csv = testing::evbench(folder, "table results --format csv --metrics scale");
+  std::vector<std::string> rows;
+  std::istringstream lines(csv.out);
+  for (std::string line; std::getline(lines, line);) rows.push_back(line.substr(0, line.find("bundle_adjustment-")));
+  CHECK(rows[1] == "short,bundle_adjustment,0.05,1,");
+  CHECK(rows[2] == "short,bundle_adjustment,0.05,2,");
+  CHECK(rows[3] == "short,bundle_adjustment,0.1,1,");
+  CHECK(rows[4] == "short,bundle_adjustment,0.1,2,");
+}
+
 TEST_CASE("A job that is complete in another experiment below the same folder is copied") {
   const Comparison comparison;
   REQUIRE(comparison.run("--quiet").exit_code == 0);
@@ -185,9 +230,9 @@ TEST_CASE("A back-end that throws makes its run failed with the reason; the othe
   CHECK(run_here(plugins, arguments) == 3);
   const auto records = find_runs(std::vector{folder.file("results")});
   REQUIRE(records.size() == 2);
-  CHECK(records[0].label == "frames of 50 ms");
-  CHECK(records[0].final_scores.is_object());
-  const RunRecord& mine = records[1];
+  const RunRecord& mine = records[0];
+  CHECK(mine.label == "mine");
+  CHECK(records[1].final_scores.is_object());
   REQUIRE(mine.status);
   CHECK(mine.status->status.state == RunState::failed);
   CHECK(mine.status->status.reason == "error: the matrix is singular");
@@ -197,11 +242,11 @@ TEST_CASE("A back-end that throws makes its run failed with the reason; the othe
   CHECK(mine.final_unscored == "no trajectory: error: the matrix is singular");
   CHECK(testing::evbench(folder, "score results --quiet").exit_code == 0);
 
-  const std::string other = read_file(records[0].folder + "/timing.csv");
+  const std::string other = read_file(records[1].folder + "/timing.csv");
   breaks = false;
   CHECK(run_here(plugins, arguments) == 0);
   CHECK(read_record(mine.folder).status->complete);
-  CHECK(read_file(records[0].folder + "/timing.csv") == other);
+  CHECK(read_file(records[1].folder + "/timing.csv") == other);
 }
 
 TEST_CASE("Ctrl-C leaves nothing of a run that is not complete") {

@@ -235,6 +235,7 @@ Experiment read_config(const Json& json, const std::string& path, const Plugins&
   run.job.frontend = plugin<FrontEnd>(options.frontend, path + ": frontend", run.job.folder, plugins);
   for (auto& [label, backend] : backends(options, path, plugins)) {
     run.label = label;
+    if (!options.backends.is_null()) run.position = experiment.runs.size();
     run.job.backend = std::move(backend);
     run.plugins = plugin_paths(options.plugins, path);
     for (const std::string& library : libraries_of(run.job, plugins)) {
@@ -305,8 +306,9 @@ ScoreOptions read_evaluation(const std::string& path, const Json& otherwise, con
                           [&] { return read_options<ScoreOptions>(json["evaluation"], file + ": evaluation"); });
 }
 
-std::unique_ptr<Source> read_source(const std::string& path, const Plugins& plugins) {
-  const Json json = parse_file(path);
+std::unique_ptr<Source> read_source(const std::string& path, const Plugins& plugins,
+                                    const std::vector<std::string>& overrides) {
+  const Json json = parse_config(path, overrides);
   if (!json.is_object() || !json.contains("source")) {
     throw InputError(fmt::format("{}: expected a config with a \"source\"", path));
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace evbench {
 struct RunConfig {
   std::string experiment;
   std::string label;
+  std::optional<std::size_t> position;  ///< in the list "backends", from 0
   Job job;
   ScoreOptions evaluation;
   std::vector<std::string> plugins;  ///< libraries, or folders of them, that the config names or its plugins come from
@@ -46,7 +48,8 @@ ScoreOptions read_evaluation(const std::string& path, const Json& otherwise, con
                              const std::string& place);
 
 /// A config file's source alone; nothing else of the file is looked at but its seed.
-std::unique_ptr<Source> read_source(const std::string& path, const Plugins& plugins);
+std::unique_ptr<Source> read_source(const std::string& path, const Plugins& plugins,
+                                    const std::vector<std::string>& overrides = {});
 
 /// A config file's top level: for people, and as a JSON Schema with all known plugins' options, for editors.
 std::string describe_experiment();

@@ -40,6 +40,7 @@ int run_program(int argc, char** argv) {
   evbench::add_eval(app);
   evbench::add_score(app);
   evbench::add_table(app);
+  evbench::add_export(app, plugins);
   evbench::add_list(app, plugins);
   evbench::add_describe(app, plugins);
   evbench::add_solve(app);

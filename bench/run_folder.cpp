@@ -96,6 +96,8 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
   record.label = config.label;
   record.seed = config.job.seed;
   record.key = identity.key;
+  record.position = config.position;
+  record.settings = settings_of(config.resolved());
   record.range = {source.time_range().from, source.time_range().to};
   record.status = status_of(execution);
   if (!execution.complete) return record;

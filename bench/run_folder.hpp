@@ -64,6 +64,10 @@ std::optional<std::string> find_complete_run(const std::string& out, const std::
 /// and scored again, as far as that is needed. Both have the same job.
 RunRecord adopt_run(const std::string& from, const std::string& to, const RunConfig& config);
 
+/// The protocol that a run was scored by: of its config.json, with overrides "evaluation.KEY=VALUE". Throws InputError
+/// when it has none.
+ScoreOptions protocol_of_run(const std::string& folder, const std::vector<std::string>& overrides = {});
+
 /// Scores a run's folder again by this protocol, and rewrites metrics.json, and config.json where it is another one.
 RunRecord score_again(const std::string& folder, const ScoreOptions& options);
 

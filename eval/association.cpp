@@ -15,11 +15,17 @@ std::size_t nearest_index(const std::vector<StampedPose>& poses, double t) {
   return t - poses[index - 1].t <= right->t - t ? index - 1 : index;
 }
 
+constexpr double kFarthest = 1e50;  // [m]: beyond it, products of squares are no numbers any more
+
 void check(const PoseTrajectory& trajectory, const char* name) {
   if (trajectory.empty()) throw InputError(fmt::format("the {} has no poses", name));
   for (const StampedPose& pose : trajectory.poses()) {
     if (!std::isfinite(pose.t) || !pose.T.p.allFinite() || !pose.T.q.coeffs().allFinite()) {
       throw InputError(fmt::format("the {}'s pose at {:.6f} s has a value that is not finite", name, pose.t));
+    }
+    if (const double farthest = pose.T.p.cwiseAbs().maxCoeff(); farthest > kFarthest) {
+      throw InputError(fmt::format("the {}'s pose at {:.6f} s is {:.3g} m from the origin; expected at most {:g} m",
+                                   name, pose.t, farthest, kFarthest));
     }
   }
 }
@@ -54,18 +60,30 @@ std::vector<PosePair> interpolated_pairs(const PoseTrajectory& ground_truth, con
   return pairs;
 }
 
+/// The unit that the times of a trajectory, which has two poses or more, seem to have been written in, in place of
+/// seconds: nullptr where they may be seconds. Its span is compared with the other's, the distance of its poses with
+/// what cameras do.
+const char* other_unit(const PoseTrajectory& trajectory, double other_span) {
+  const double span = trajectory.end() - trajectory.start();
+  const double step = span / static_cast<double>(trajectory.size() - 1);
+  for (const auto& [factor, unit] : {std::pair{1e3, "milliseconds"}, {1e6, "microseconds"}, {1e9, "nanoseconds"}}) {
+    const bool as_long = span / factor > 0.1 * other_span && span / factor < 10.0 * other_span;
+    if (as_long && step / factor > 0.5e-3 && step / factor < 2.0) return unit;
+  }
+  return nullptr;
+}
+
 /// A guess why nothing matches.
-std::string hint(const PoseTrajectory& ground_truth, double start, double end, const AssociationOptions& options) {
-  const double truth_span = ground_truth.end() - ground_truth.start();
-  const double span = end - start;
-  if (truth_span > 0.0 && span > 0.0) {
-    for (const auto& [factor, unit] : {std::pair{1e3, "milliseconds"}, {1e6, "microseconds"}, {1e9, "nanoseconds"}}) {
-      const double ratio = span / truth_span / factor;
-      if (ratio > 0.1 && ratio < 10.0) return fmt::format("the estimate's times look like {}, expected seconds", unit);
-      const double inverse = truth_span / span / factor;
-      if (inverse > 0.1 && inverse < 10.0) {
-        return fmt::format("the ground truth's times look like {}, expected seconds", unit);
-      }
+std::string hint(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate,
+                 const AssociationOptions& options) {
+  const double start = estimate.start() + options.time_offset;
+  const double end = estimate.end() + options.time_offset;
+  if (ground_truth.size() > 1 && estimate.size() > 1) {
+    if (const char* unit = other_unit(estimate, ground_truth.end() - ground_truth.start())) {
+      return fmt::format("the estimate's times look like {}, expected seconds", unit);
+    }
+    if (const char* unit = other_unit(ground_truth, end - start)) {
+      return fmt::format("the ground truth's times look like {}, expected seconds", unit);
     }
   }
   if (end + options.tolerance < ground_truth.start() || start - options.tolerance > ground_truth.end()) {
@@ -85,7 +103,7 @@ std::string hint(const PoseTrajectory& ground_truth, double start, double end, c
       "from "
       "{:.6f} to {:.6f} s, the estimate {} from {:.6f} to {:.6f} s; {}",
       pairs == 0 ? "none" : fmt::format("only {}", pairs), options.tolerance, options.min_pairs, ground_truth.size(),
-      ground_truth.start(), ground_truth.end(), estimate.size(), start, end, hint(ground_truth, start, end, options)));
+      ground_truth.start(), ground_truth.end(), estimate.size(), start, end, hint(ground_truth, estimate, options)));
 }
 
 }  // namespace
@@ -98,6 +116,10 @@ Association associate(const PoseTrajectory& ground_truth, const PoseTrajectory& 
   if (truth.empty()) {
     throw InputError(fmt::format("no ground truth in the time range {} to {} s; it spans {:.6f} to {:.6f} s",
                                  options.range.from, options.range.to, ground_truth.start(), ground_truth.end()));
+  }
+  if (estimate.size() < options.min_pairs) {
+    throw InputError(fmt::format("the estimate has {} pose{}, expected at least {}", estimate.size(),
+                                 estimate.size() == 1 ? "" : "s", options.min_pairs));
   }
   Association result;
   result.pairs = options.mode == AssociationMode::nearest ? nearest_pairs(truth, estimate, options)

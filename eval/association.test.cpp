@@ -99,6 +99,32 @@ TEST_CASE("Too few pairs are an error that says why") {
                     Contains("no ground truth in the time range 5 to 6"));
 }
 
+TEST_CASE("What is wrong with an estimate of few poses, or of a short time, is not taken for a unit of time") {
+  const PoseTrajectory truth = sample(wavy_pose, 1001, 0.01);
+  const auto message = [&](const PoseTrajectory& ground_truth, const PoseTrajectory& estimate) -> std::string {
+    try {
+      associate(ground_truth, estimate, {.tolerance = 0.001});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(message(truth, sample(wavy_pose, 2, 0.01)) == "the estimate has 2 poses, expected at least 3");
+  CHECK(message(truth, sample(wavy_pose, 1)) == "the estimate has 1 pose, expected at least 3");
+  CHECK_THAT(message(truth, sample(wavy_pose, 5, 0.002, 5.003)), Contains("larger tolerance"));
+  const PoseTrajectory milliseconds = sample([](double t) { return wavy_pose(1e-3 * t); }, 1001, 10.0, 1e6);
+  CHECK_THAT(message(truth, milliseconds), Contains("the estimate's times look like milliseconds"));
+  CHECK_THAT(message(milliseconds, truth), Contains("the ground truth's times look like milliseconds"));
+}
+
+TEST_CASE("Positions that no longer can be squared are refused by where they are") {
+  const PoseTrajectory truth = sample(wavy_pose, 10);
+  const PoseTrajectory far = testing::seen_from(truth, {1e-200, {}});
+  CHECK_THROWS_WITH(associate(truth, far, {}),
+                    Contains("the estimate's pose at 0.000000 s is 1e+200 m from the origin"));
+  CHECK_NOTHROW(associate(truth, testing::seen_from(truth, {1e-30, {}}), {}));
+}
+
 TEST_CASE("Empty trajectories and poses that are not finite are errors") {
   const PoseTrajectory truth = sample(wavy_pose, 10);
   CHECK_THROWS_WITH(associate(truth, {}, {}), Contains("the estimate has no poses"));

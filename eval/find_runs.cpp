@@ -70,7 +70,9 @@ std::vector<RunRecord> find_runs(std::span<const std::string> folders) {
   }
   std::ranges::sort(runs, [](const RunRecord& a, const RunRecord& b) {
     if (a.experiment != b.experiment) return natural_less(a.experiment, b.experiment);
+    if (a.position != b.position) return a.position < b.position;
     if (a.label != b.label) return natural_less(a.label, b.label);
+    if (a.settings != b.settings) return settings_less(a.settings, b.settings);
     if (a.seed != b.seed) return a.seed < b.seed;
     return a.folder < b.folder;
   });

@@ -1,5 +1,7 @@
 #include "eval/protocol.hpp"
 
+#include <fmt/ranges.h>
+
 #include <cmath>
 
 namespace evbench {
@@ -58,18 +60,28 @@ std::string relative_text(const Json& rpe) {
   return text;
 }
 
+std::string segments_text(const Json& segments) {
+  const char* tool = segments.at("rule") == "kitti" ? "KITTI's" : "rpg_trajectory_evaluation's";
+  return fmt::format("by {} rule, {} {}", tool, fmt::join(segments.at("lengths").get<std::vector<double>>(), ", "),
+                     segments.at("unit") == "percent" ? "% of the path" : "m");
+}
+
+constexpr int kNameWidth = 15;  // "0.625 m [deg/m]"
+
 std::string row(const std::string& name, const Statistics& s) {
-  if (s.n == 0) return fmt::format("{:<12} no pairs: no two poses are delta apart\n", name);
-  return fmt::format("{:<12} {:>11.6f} {:>11.6f} {:>11.6f} {:>11.6f} {:>11.6f} {:>11.6f} {:>13.6f} {:>7}\n", name,
-                     s.rmse, s.mean, s.median, s.std, s.min, s.max, s.sse, s.n);
+  if (s.n == 0) return fmt::format("{:<{}} no pairs: no two poses are that far apart\n", name, kNameWidth);
+  return fmt::format("{:<{}} {:>11.6f} {:>11.6f} {:>11.6f} {:>11.6f} {:>11.6f} {:>11.6f} {:>13.6f} {:>7}\n", name,
+                     kNameWidth, s.rmse, s.mean, s.median, s.std, s.min, s.max, s.sse, s.n);
 }
 
 }  // namespace
 
 std::string protocol(const Json& scores, const std::string& place) {
   try {
-    return fmt::format("{}; {}; {}", alignment_text(scores.at("alignment")), association_text(scores.at("association")),
-                       relative_text(scores.at("rpe")));
+    std::string text = fmt::format("{}; {}; {}", alignment_text(scores.at("alignment")),
+                                   association_text(scores.at("association")), relative_text(scores.at("rpe")));
+    if (scores.contains("segments")) text += "; segments " + segments_text(scores.at("segments"));
+    return text;
   } catch (const Json::exception& error) {
     throw InputError(fmt::format("{}: the protocol of the scores is incomplete: {}", place, error.what()));
   }
@@ -82,16 +94,21 @@ std::string describe(const Scores& scores) {
   if (!scores.alignment.note.empty()) text += fmt::format("             {}\n", scores.alignment.note);
   text += fmt::format("association  {}\n", association_text(json.at("association")));
   text += fmt::format("relative     {}\n", relative_text(json.at("rpe")));
+  if (json.contains("segments")) text += fmt::format("segments     {}\n", segments_text(json.at("segments")));
   text += fmt::format("pairs        {} poses compared, {:.1f} % of the ground truth's time covered\n", scores.pairs,
                       100.0 * scores.coverage);
   text += fmt::format("scale        {:.6f}\n", scores.alignment.transform.scale);
   text += fmt::format("path         {:.6f} m\n\n", scores.path_m);
-  text += fmt::format("{:<12} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11} {:>13} {:>7}\n", "", "rmse", "mean", "median",
-                      "std", "min", "max", "sse", "n");
+  text += fmt::format("{:<{}} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11} {:>13} {:>7}\n", "", kNameWidth, "rmse", "mean",
+                      "median", "std", "min", "max", "sse", "n");
   text += row("ATE [m]", scores.ate.trans_m);
   text += row("ATE [deg]", scores.ate.rot_deg);
   text += row("RPE [m]", scores.rpe.trans_m);
   text += row("RPE [deg]", scores.rpe.rot_deg);
+  for (const SegmentScores& segments : scores.by_length) {
+    text += row(fmt::format("{:.3g} m [%]", segments.length_m), segments.trans_percent);
+    text += row(fmt::format("{:.3g} m [deg/m]", segments.length_m), segments.rot_deg_per_m);
+  }
   if (std::isfinite(scores.ate.trans_percent)) {
     text += fmt::format("\nATE {:.4f} % of the path\n", scores.ate.trans_percent);
   }

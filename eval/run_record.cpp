@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include "eval/record_reader.hpp"
@@ -60,6 +61,16 @@ std::optional<TimeRange> read_range(const RecordReader& json) {
   return TimeRange{range[0].get<double>(), range[1].get<double>()};
 }
 
+Json parse_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(fmt::format("{}: can't be opened", path));
+  try {
+    return Json::parse(file);
+  } catch (const Json::exception& error) {
+    throw InputError(fmt::format("{}: is not JSON: {}", path, error.what()));
+  }
+}
+
 }  // namespace
 
 Json to_json(const RunStatus& run) {
@@ -87,6 +98,7 @@ Json to_json(const RunRecord& record) {
   Json json = {{"experiment", record.experiment}, {"label", record.label}};
   json["seed"] = record.seed ? Json(*record.seed) : Json();
   json["key"] = record.key.empty() ? Json() : Json(record.key);
+  json["position"] = record.position ? Json(*record.position) : Json();
   json["final"] = record.final_scores;
   json["online"] = record.online_scores;
   if (!record.final_unscored.empty()) json["final_unscored"] = record.final_unscored;
@@ -114,6 +126,7 @@ RunRecord read_record(const Json& metrics, const std::string& place) {
   record.label = json.text("label");
   record.seed = json.count_or_null("seed");
   record.key = json.text_or("key", "");
+  record.position = json.count_or_null("position");
   record.final_unscored = json.text_or("final_unscored", "");
   record.online_unscored = json.text_or("online_unscored", "");
   record.range = read_range(json);
@@ -134,16 +147,10 @@ RunRecord read_record(const Json& metrics, const std::string& place) {
 
 RunRecord read_record(const std::string& folder) {
   const std::string path = folder + "/metrics.json";
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: can't be opened", path));
-  Json metrics;
-  try {
-    metrics = Json::parse(file);
-  } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: is not JSON: {}", path, error.what()));
-  }
-  RunRecord record = read_record(metrics, path);
+  RunRecord record = read_record(parse_file(path), path);
   record.folder = folder;
+  const std::string config = folder + "/config.json";
+  if (std::filesystem::exists(config)) record.settings = settings_of(parse_file(config));
   return record;
 }
 

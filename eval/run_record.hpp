@@ -9,6 +9,7 @@
 #include "core/plugin/options.hpp"
 #include "core/plugin/status.hpp"
 #include "eval/association.hpp"
+#include "eval/run_settings.hpp"
 
 namespace evbench {
 
@@ -43,9 +44,11 @@ struct RunRecord {
   std::string experiment;  ///< runs of one experiment are compared with one another
   std::string label;       ///< the run's name within it
   std::optional<std::uint64_t> seed;
-  std::string key;                   ///< of the job: runs of one key have the same trajectory; empty: not known
-  std::string folder;                ///< where it lies; not in the file
-  Json final_scores, online_scores;  ///< as to_json(Scores) gives them; null: none
+  std::string key;                        ///< of the job: runs of one key have the same trajectory; empty: not known
+  std::optional<std::uint64_t> position;  ///< in its config's list of back-ends, from 0; none: it had no list
+  std::string folder;                     ///< where it lies; not in the file
+  RunSettings settings;                   ///< of its config.json, where there is one; not in the file
+  Json final_scores, online_scores;       ///< as to_json(Scores) gives them; null: none
   std::string final_unscored, online_unscored;  ///< why there are no scores
   std::optional<TimeRange> range;               ///< [s] of the sequence that was run: nothing outside is scored
   std::optional<double> runtime_s;              ///< processing time: front-end and back-end
@@ -65,13 +68,14 @@ Json to_json(const RunStatus& status);
 /// experiment, label, final and online must be there, the others may be missing or null.
 RunRecord read_record(const Json& metrics, const std::string& place);
 
-/// A run's folder: its metrics.json. Throws InputError, likewise for a file that is missing or no JSON.
+/// A run's folder: its metrics.json, and the settings in its config.json. Throws InputError, likewise for a file that
+/// is missing or no JSON.
 RunRecord read_record(const std::string& folder);
 
-/// The runs in these folders and in all folders below them, each once, by experiment, then label (numbers in names
-/// compare as numbers: 25 ms before 100 ms), then seed, then folder. Runs that are not complete (NAME.evbench.part) and
-/// replaced ones (NAME.evbench.old) are passed over. Throws InputError for a path that is no folder, for a folder
-/// without any run, and for a metrics.json that is damaged, with the place.
+/// The runs in these folders and in all folders below them, each once, by experiment, then in the order of their
+/// config, then by label (numbers in names compare as numbers: 25 ms before 100 ms), settings, seed, folder. Runs that
+/// are not complete (NAME.evbench.part) and replaced ones (NAME.evbench.old) are passed over. Throws InputError for a
+/// path that is no folder, for a folder without any run, and for a metrics.json that is damaged, with the place.
 std::vector<RunRecord> find_runs(std::span<const std::string> folders);
 
 /// Does name `a` come before `b`? Digits compare by value, other characters as they are.

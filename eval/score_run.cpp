@@ -21,42 +21,58 @@ OptionSet::List clip(const OptionSet::List& range, const std::optional<TimeRange
   return {std::max(range[0], run->from), std::min(range[1], run->to)};
 }
 
-struct Outcome {
-  Json scores;
-  std::string unscored;
+struct RunTrajectories {
+  PoseTrajectory ground_truth, estimate;  ///< each empty where there is none
 };
 
-Outcome score_estimate(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, ScoreOptions options,
-                       const RunRecord& record) {
-  if (ground_truth.empty()) return {nullptr, "no ground truth"};
-  if (estimate.empty()) {
+RunTrajectories read_trajectories(const std::string& folder, bool online) {
+  const std::string truth = folder + "/groundtruth.tum";
+  return {std::filesystem::exists(truth) ? read_tum(truth) : PoseTrajectory(),
+          read_estimate(folder + (online ? "/online.tum" : "/final.tum"))};
+}
+
+/// Throws InputError with the reason where there are no scores.
+Scores compare(const RunTrajectories& trajectories, ScoreOptions options, const RunRecord& record) {
+  if (trajectories.ground_truth.empty()) throw InputError("no ground truth");
+  if (trajectories.estimate.empty()) {
     const std::string reason = record.status ? record.status->status.reason : "";
-    return {nullptr, reason.empty() ? "no trajectory" : "no trajectory: " + reason};
+    throw InputError(reason.empty() ? "no trajectory" : "no trajectory: " + reason);
   }
   const OptionSet::List asked = options.time_range;
   options.time_range = clip(asked, record.range);
   if (asked.size() == 2 && !(options.time_range[0] < options.time_range[1])) {
-    return {nullptr, fmt::format("the time range to evaluate, {} to {} s, is outside of the run's, {} to {} s",
-                                 asked[0], asked[1], record.range->from, record.range->to)};
+    throw InputError(fmt::format("the time range to evaluate, {} to {} s, is outside of the run's, {} to {} s",
+                                 asked[0], asked[1], record.range->from, record.range->to));
   }
-  try {
-    return {to_json(score(ground_truth, estimate, options)), ""};
-  } catch (const InputError& error) {
-    return {nullptr, error.what()};
-  }
+  return score(trajectories.ground_truth, trajectories.estimate, options);
 }
 
 }  // namespace
 
 void score_run(const std::string& folder, const ScoreOptions& options, RunRecord& record) {
-  const std::string truth_path = folder + "/groundtruth.tum";
-  const PoseTrajectory truth = std::filesystem::exists(truth_path) ? read_tum(truth_path) : PoseTrajectory();
-  Outcome final = score_estimate(truth, read_estimate(folder + "/final.tum"), options, record);
-  Outcome online = score_estimate(truth, read_estimate(folder + "/online.tum"), options, record);
-  record.final_scores = std::move(final.scores);
-  record.final_unscored = std::move(final.unscored);
-  record.online_scores = std::move(online.scores);
-  record.online_unscored = std::move(online.unscored);
+  const auto set = [&](bool online, Json& scores, std::string& unscored) {
+    const RunTrajectories trajectories = read_trajectories(folder, online);
+    scores = nullptr;
+    unscored.clear();
+    try {
+      scores = to_json(compare(trajectories, options, record));
+    } catch (const InputError& error) {
+      unscored = error.what();
+    }
+  };
+  set(false, record.final_scores, record.final_unscored);
+  set(true, record.online_scores, record.online_unscored);
+}
+
+ScoredEstimate score_estimate(const std::string& folder, bool online, const ScoreOptions& options,
+                              const RunRecord& record) {
+  RunTrajectories trajectories = read_trajectories(folder, online);
+  try {
+    Scores scores = compare(trajectories, options, record);
+    return {std::move(trajectories.estimate), std::move(scores)};
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", folder, error.what()));
+  }
 }
 
 }  // namespace evbench

@@ -13,4 +13,15 @@ namespace evbench {
 /// it is scored again. Throws InputError for files that are missing or damaged.
 void score_run(const std::string& folder, const ScoreOptions& options, RunRecord& record);
 
+/// An estimate of a run, and its scores.
+struct ScoredEstimate {
+  PoseTrajectory estimate;
+  Scores scores;
+};
+
+/// One of the estimates, scored likewise; what score_run() takes down as the reason why there are no scores is an
+/// InputError here.
+ScoredEstimate score_estimate(const std::string& folder, bool online, const ScoreOptions& options,
+                              const RunRecord& record);
+
 }  // namespace evbench

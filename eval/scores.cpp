@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/support/index.hpp"
+
 namespace evbench {
 namespace {
 
@@ -29,6 +31,12 @@ RelativeOptions relative_options(const ScoreOptions& options) {
           .source = parse_name<PairSource>(kPairSourceNames, options.rpe_pairs_from, "source of RPE pairs")};
 }
 
+SegmentOptions segment_options(const ScoreOptions& options) {
+  return with_own_lengths({.rule = parse_name<SegmentRule>(kSegmentRuleNames, options.segments, "rule of segments"),
+                           .lengths = options.segment_lengths,
+                           .unit = parse_name<LengthUnit>(kLengthUnitNames, options.segment_unit, "unit of segments")});
+}
+
 /// The pairs that the alignment is computed on.
 std::vector<PosePair> pairs_to_align(const std::vector<PosePair>& pairs, const ScoreOptions& options) {
   const TimeRange range = parse_range(options.align_range, "align_range");
@@ -40,6 +48,16 @@ std::vector<PosePair> pairs_to_align(const std::vector<PosePair>& pairs, const S
   const auto first = static_cast<std::size_t>(options.align_first);
   if (first > 0 && first < result.size()) result.resize(first);
   return result;
+}
+
+void score_segments(const std::vector<SegmentErrors>& segments, Scores& scores) {
+  std::vector<double> trans, rot;
+  for (const SegmentErrors& errors : segments) {
+    scores.by_length.push_back({errors.length_m, statistics(errors.trans_percent), statistics(errors.rot_deg_per_m)});
+    std::ranges::copy(errors.trans_percent, std::back_inserter(trans));
+    std::ranges::copy(errors.rot_deg_per_m, std::back_inserter(rot));
+  }
+  scores.all_segments = {0.0, statistics(trans), statistics(rot)};
 }
 
 double path_length(const std::vector<PosePair>& pairs) {
@@ -77,6 +95,11 @@ Scores score(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate,
   const PoseErrors steps = relative_errors(pairs, delta_pairs(pairs, relative));
   scores.rpe.trans_m = statistics(steps.trans_m);
   scores.rpe.rot_deg = statistics(steps.rot_deg);
+
+  const TimeRange range = parse_range(options.time_range, "time_range");
+  score_segments(segment_errors(pairs, segment_options(options), ground_truth.cut(range.from, range.to).path_length()),
+                 scores);
+  scores.compared = std::move(pairs);
   return scores;
 }
 
@@ -88,6 +111,22 @@ Json range_json(const OptionSet::List& list) {
   Json range = Json::array();
   for (const double t : list) range.push_back(std::isfinite(t) ? Json(t) : Json(nullptr));
   return range;
+}
+
+Json segments_json(const Scores& scores) {
+  const SegmentOptions options = segment_options(scores.options);
+  Json json = {{"rule", scores.options.segments},
+               {"lengths", options.lengths},
+               {"unit", kLengthUnitNames[index(options.unit)]},
+               {"trans_percent", to_json(scores.all_segments.trans_percent)},
+               {"rot_deg_per_m", to_json(scores.all_segments.rot_deg_per_m)},
+               {"by_length", Json::array()}};
+  for (const SegmentScores& segments : scores.by_length) {
+    json["by_length"].push_back({{"length_m", segments.length_m},
+                                 {"trans_percent", to_json(segments.trans_percent)},
+                                 {"rot_deg_per_m", to_json(segments.rot_deg_per_m)}});
+  }
+  return json;
 }
 
 }  // namespace
@@ -103,6 +142,7 @@ Json to_json(const Scores& scores) {
                  {"pairs", scores.rpe.trans_m.n},          {"delta", options.rpe_delta},
                  {"delta_unit", options.rpe_unit},         {"pairing", options.rpe_pairing},
                  {"tolerance", options.rpe_tolerance},     {"pairs_from", options.rpe_pairs_from}};
+  if (options.segments != "none") json["segments"] = segments_json(scores);
   json["pairs"] = scores.pairs;
   json["coverage"] = scores.coverage;
   json["scale"] = scores.alignment.transform.scale;

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/motion/pose_trajectory.hpp"
 #include "core/plugin/options.hpp"
 #include "eval/alignment.hpp"
 #include "eval/pose_error.hpp"
+#include "eval/segment_error.hpp"
 #include "eval/statistics.hpp"
 
 namespace evbench {
@@ -25,6 +27,9 @@ struct ScoreOptions {
   std::string rpe_pairing = "all";
   double rpe_tolerance = 0.1;
   std::string rpe_pairs_from = "estimate";
+  std::string segments = "none";
+  OptionSet::List segment_lengths = {};
+  std::string segment_unit = "metres";
 
   void declare(OptionSet& set) {
     set.add("alignment", alignment, "how the estimate is carried to the ground truth")
@@ -43,6 +48,12 @@ struct ScoreOptions {
     set.add("rpe_tolerance", rpe_tolerance, "how far a pair may be from rpe_delta, relative to it").range(0.0);
     set.add("rpe_pairs_from", rpe_pairs_from, "whose path and angles the distance is measured on, metres and degrees")
         .choices(to_strings(kPairSourceNames));
+    set.add("segments", segments, "whose definition of errors over sub-trajectories is added, in % and deg/m")
+        .choices(to_strings(kSegmentRuleNames));
+    set.add("segment_lengths", segment_lengths,
+            "lengths of sub-trajectories [segment_unit]; empty: 10 to 50 % (rpg), 100 to 800 m (kitti)");
+    set.add("segment_unit", segment_unit, "what these lengths are in: metres, or percent of the ground truth's path")
+        .choices(to_strings(kLengthUnitNames));
   }
 };
 
@@ -55,16 +66,25 @@ struct RelativeScores {
   Statistics trans_m, rot_deg;  ///< of an empty set when no two poses are delta apart
 };
 
+/// Errors over sub-trajectories, relative to their length.
+struct SegmentScores {
+  double length_m = 0.0;
+  Statistics trans_percent, rot_deg_per_m;
+};
+
 /// What is said of a trajectory, with all that a reader needs to judge it.
 struct Scores {
   AbsoluteScores ate;
   RelativeScores rpe;
-  std::size_t pairs = 0;          ///< poses compared
-  double coverage = 0.0;          ///< share of the ground truth's time that they cover (association.hpp)
-  double path_m = 0.0;            ///< length of the ground truth through the compared poses
-  Alignment alignment;            ///< what was applied to the estimate
-  std::size_t aligned_pairs = 0;  ///< poses that it was computed on
-  ScoreOptions options;           ///< the protocol
+  SegmentScores all_segments;            ///< of all lengths together
+  std::vector<SegmentScores> by_length;  ///< none where they are not asked for
+  std::vector<PosePair> compared;        ///< the poses, those of the estimate aligned
+  std::size_t pairs = 0;                 ///< poses compared
+  double coverage = 0.0;                 ///< share of the ground truth's time that they cover (association.hpp)
+  double path_m = 0.0;                   ///< length of the ground truth through the compared poses
+  Alignment alignment;                   ///< what was applied to the estimate
+  std::size_t aligned_pairs = 0;         ///< poses that it was computed on
+  ScoreOptions options;                  ///< the protocol
 };
 
 /// Associates, aligns, and takes the errors. Throws InputError for options that contradict one another or are out of

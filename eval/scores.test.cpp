@@ -79,7 +79,7 @@ TEST_CASE("Relative errors without any pair are null, not an error") {
   const Json json = to_json(scores);
   CHECK(json.at("rpe").at("pairs") == 0);
   CHECK(json.at("rpe").at("trans_m").at("rmse").is_null());
-  CHECK_THAT(describe(scores), Contains("no pairs: no two poses are delta apart"));
+  CHECK_THAT(describe(scores), Contains("no pairs: no two poses are that far apart"));
 }
 
 TEST_CASE("A camera that stands still is scored, with a note instead of a percentage") {

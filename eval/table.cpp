@@ -3,7 +3,6 @@
 #include <cmath>
 #include <optional>
 #include <set>
-#include <tuple>
 
 #include "core/support/index.hpp"
 #include "eval/protocol.hpp"
@@ -30,22 +29,25 @@ struct Metric {
   Better better = Better::neither;
   std::optional<int> decimals = {};  ///< fixed; else as many as the smallest value of the column needs for three digits
   double factor = 1.0;               ///< shown is factor times the value
+  bool in_print = false;             ///< stands in LaTeX tables, too, where no columns are asked for
 };
 
 const std::vector<Metric>& known_metrics() {
   static const std::vector<Metric> metrics = {
-      {"ate.trans_m.rmse", "ATE [m]", Better::lower},
+      {"ate.trans_m.rmse", "ATE [m]", Better::lower, {}, 1.0, true},
       {"ate.trans_percent", "ATE [% of path]", Better::lower},
-      {"ate.rot_deg.rmse", "ATE [deg]", Better::lower},
-      {"rpe.trans_m.rmse", "RPE [m]", Better::lower},
-      {"rpe.rot_deg.rmse", "RPE [deg]", Better::lower},
+      {"ate.rot_deg.rmse", "ATE [deg]", Better::lower, {}, 1.0, true},
+      {"rpe.trans_m.rmse", "RPE [m]", Better::lower, {}, 1.0, true},
+      {"rpe.rot_deg.rmse", "RPE [deg]", Better::lower, {}, 1.0, true},
+      {"segments.trans_percent.mean", "segments [%]", Better::lower, {}, 1.0, true},
+      {"segments.rot_deg_per_m.mean", "segments [deg/m]", Better::lower, {}, 1.0, true},
       {"pairs", "pairs", Better::neither, 0},
       {"coverage", "covered [%]", Better::neither, 1, 100.0},
       {"scale", "scale", Better::neither, 4},
       {"times.frontend_s", "front-end [s]", Better::neither, 3},
       {"times.backend_s", "back-end [s]", Better::lower, 3},
       {"times.waiting_s", "waiting [s]", Better::neither, 3},
-      {"realtime_factor", "real-time factor", Better::higher},
+      {"realtime_factor", "real-time factor", Better::higher, {}, 1.0, true},
   };
   return metrics;
 }
@@ -53,7 +55,8 @@ const std::vector<Metric>& known_metrics() {
 Metric metric_of(const std::string& key) {
   const auto found = std::ranges::find(known_metrics(), key, &Metric::key);
   if (found != known_metrics().end()) return *found;
-  const bool error = (key.starts_with("ate.") || key.starts_with("rpe.")) && !key.ends_with(".n");
+  const bool error =
+      (key.starts_with("ate.") || key.starts_with("rpe.") || key.starts_with("segments.")) && !key.ends_with(".n");
   const bool cost = key == "runtime_s" || key == "peak_rss_mib" || key.starts_with("times.");
   return {key, key, error || cost ? Better::lower : Better::neither};
 }
@@ -110,13 +113,14 @@ std::vector<Metric> choose_metrics(const Rows& rows, const TableOptions& options
     if (!present(key)) fail_unknown(rows, key, options.online);
     metrics.push_back(metric_of(key));
   }
+  const bool print = options.format == TableFormat::latex;
   const auto waited = [](const Row& row) { return row.run->times && row.run->times->waiting > 0.0; };
   for (const Metric& metric : known_metrics()) {
     if (metric.key == "times.waiting_s" && std::ranges::none_of(rows, waited)) continue;  // all ran in one thread
     const bool protocol_value = metric.key == "pairs" || metric.key == "coverage" || metric.key == "scale";
-    const bool wanted =
-        options.metrics.empty() || (options.format == TableFormat::csv && protocol_value &&
-                                    std::ranges::find(options.metrics, metric.key) == options.metrics.end());
+    const bool wanted = (options.metrics.empty() && (metric.in_print || !print)) ||
+                        (options.format == TableFormat::csv && protocol_value &&
+                         std::ranges::find(options.metrics, metric.key) == options.metrics.end());
     if (wanted && present(metric.key)) metrics.push_back(metric);
   }
   return metrics;
@@ -230,46 +234,55 @@ std::string ranges_note(const Rows& rows, const std::vector<Metric>& shown, bool
   return note.empty() ? note : note + ".";
 }
 
-/// Why a run has no scores: the reason of its status tells most.
-std::string reason_of(const Row& row, bool online) {
+/// What went wrong with a run, and why.
+struct Trouble {
+  std::string what, reason;
+  bool operator==(const Trouble&) const = default;
+};
+
+/// None where a run was neither lost nor left without scores. The reason of its status tells most.
+std::optional<Trouble> trouble_of(const Row& row, bool online) {
   const RunRecord& run = *row.run;
-  if (run.status && run.status->status.state >= RunState::lost && !run.status->status.reason.empty()) {
-    return run.status->status.reason;
-  }
+  const std::string reason = competes(row) ? "" : run.status->status.reason;
+  const bool scored = !scores_of(row, online).is_null();
+  if (scored && competes(row)) return std::nullopt;
   const std::string& unscored = online ? run.online_unscored : run.final_unscored;
-  return unscored.empty() ? "not known" : unscored;
+  const std::string what = !scored ? "Without scores" : run.status->status.state == RunState::lost ? "Lost" : "Failed";
+  return Trouble{what, !reason.empty() ? reason : !unscored.empty() ? unscored : "not known"};
 }
 
-/// A sentence for each reason why runs have no scores, with the runs that it holds for.
-std::vector<std::string> unscored_notes(const Rows& rows, bool online) {
-  std::vector<std::pair<std::string, std::string>> labels_of_reason;
-  for (const Row& row : rows) {
-    if (!scores_of(row, online).is_null()) continue;
-    const std::string reason = reason_of(row, online);
-    const auto found = std::ranges::find(labels_of_reason, reason, &std::pair<std::string, std::string>::first);
-    if (found == labels_of_reason.end()) {
-      labels_of_reason.emplace_back(reason, row.run->label);
+/// A sentence for each trouble, with the runs that had it.
+std::vector<std::string> trouble_notes(const Rows& rows, const std::vector<std::string>& names, bool online) {
+  std::vector<std::pair<Trouble, std::string>> troubles;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::optional<Trouble> trouble = trouble_of(rows[i], online);
+    if (!trouble) continue;
+    const auto found = std::ranges::find(troubles, *trouble, &std::pair<Trouble, std::string>::first);
+    if (found == troubles.end()) {
+      troubles.emplace_back(*trouble, names[i]);
     } else {
-      found->second += ", " + row.run->label;
+      found->second += ", " + names[i];
     }
   }
   std::vector<std::string> notes;
-  for (const auto& [reason, labels] : labels_of_reason) {
-    notes.push_back(fmt::format("Without scores: {}: {}.", labels, reason));
-  }
+  for (const auto& [trouble, who] : troubles)
+    notes.push_back(fmt::format("{}: {}: {}.", trouble.what, who, trouble.reason));
   return notes;
 }
 
-std::vector<std::string> notes_of(const Rows& rows, const std::vector<Metric>& metrics, const Protocols& protocols,
+std::vector<std::string> notes_of(const Rows& rows, const std::vector<std::string>& names,
+                                  const std::vector<Metric>& metrics, const Protocols& protocols,
                                   const TableOptions& options) {
   const auto shown = [&](const char* key) { return std::ranges::find(metrics, key, &Metric::key) != metrics.end(); };
   std::vector<std::string> notes;
   if (protocols.texts.empty()) {
     notes.emplace_back("No run has scores.");
   } else {
-    notes.emplace_back(options.online ? "Online: each pose as estimated at the time it was made."
-                                      : "Final: the trajectory as estimated after the whole sequence.");
-    notes.back() += " ATE and RPE columns are root mean squares unless they say otherwise.";
+    const bool of_runs = std::ranges::any_of(rows, [](const Row& row) { return row.run->status.has_value(); });
+    notes.emplace_back(options.online ? "Online: each pose as estimated at the time it was made. "
+                       : of_runs      ? "Final: the trajectory as estimated after the whole sequence. "
+                                      : "");
+    notes.back() += "ATE and RPE columns are root mean squares unless they say otherwise.";
   }
   for (std::size_t i = 0; i < protocols.texts.size(); ++i) {
     const std::string number = protocols.texts.size() > 1 ? fmt::format(" {}", i + 1) : "";
@@ -281,7 +294,7 @@ std::vector<std::string> notes_of(const Rows& rows, const std::vector<Metric>& m
         "Real-time factor: data time / processing time (front-end and back-end); above 1 is faster than "
         "real time.");
   }
-  for (const std::string& note : unscored_notes(rows, options.online)) notes.push_back(note);
+  std::ranges::move(trouble_notes(rows, names, options.online), std::back_inserter(notes));
   if (!std::ranges::all_of(rows, competes))
     notes.emplace_back("Lost and failed runs do not compete for the best value.");
   return notes;
@@ -308,11 +321,38 @@ bool vary(const Rows& rows, const Function& value) {
 
 std::string seed_text(const RunRecord& run) { return run.seed ? fmt::format("{}", *run.seed) : ""; }
 
-/// Do two rows have the same experiment, label and seed?
-bool ambiguous(const Rows& rows) {
-  std::set<std::tuple<std::string, std::string, std::optional<std::uint64_t>>> seen;
-  return !std::ranges::all_of(
-      rows, [&](const Row& row) { return seen.emplace(row.run->experiment, row.run->label, row.run->seed).second; });
+/// The settings in which runs of one name, label and experiment, differ: what the name doesn't tell.
+std::vector<std::string> varying_settings(const Rows& rows) {
+  std::vector<std::string> varying;
+  for (const Row& row : rows) {
+    const RunRecord& run = *row.run;
+    for (const auto& [path, value] : run.settings) {
+      const auto differs = [&](const Row& other) {
+        const Json* theirs = find_setting(other.run->settings, path);
+        return other.run->experiment == run.experiment && other.run->label == run.label &&
+               (theirs == nullptr || *theirs != value);
+      };
+      const bool known = std::ranges::find(varying, path) != varying.end();
+      if (!known && std::ranges::any_of(rows, differs)) varying.push_back(path);
+    }
+  }
+  return varying;
+}
+
+std::string setting_text(const RunRecord& run, const std::string& path) {
+  const Json* value = find_setting(run.settings, path);
+  if (value == nullptr || value->is_null()) return "";
+  return value->is_string() ? value->get<std::string>() : value->dump();
+}
+
+/// Are there rows that no cell tells apart?
+bool ambiguous(const TextTable& table) {
+  std::set<std::vector<std::string>> seen;
+  return !std::ranges::all_of(table.rows, [&](const std::vector<Cell>& cells) {
+    std::vector<std::string> texts;
+    for (const Cell& cell : cells) texts.push_back(cell.text);
+    return seen.insert(std::move(texts)).second;
+  });
 }
 
 /// What tells the runs apart; in CSV all that does, else as much as is needed.
@@ -320,9 +360,43 @@ void add_names(TextTable& table, const Rows& rows, bool csv) {
   const auto experiment = [](const RunRecord& run) { return run.experiment; };
   if (csv || vary(rows, experiment)) add_text_column(table, rows, "experiment", experiment);
   add_text_column(table, rows, csv ? "label" : "", [](const RunRecord& run) { return run.label; });
+  for (const std::string& path : varying_settings(rows)) {
+    add_text_column(table, rows, path, [&](const RunRecord& run) { return setting_text(run, path); });
+  }
   if (csv || vary(rows, seed_text)) add_text_column(table, rows, "seed", seed_text);
-  if (csv || ambiguous(rows)) add_text_column(table, rows, "key", [](const RunRecord& run) { return run.key; });
-  if (csv) add_text_column(table, rows, "folder", [](const RunRecord& run) { return run.folder; });
+  if (csv || ambiguous(table)) add_text_column(table, rows, "key", [](const RunRecord& run) { return run.key; });
+  if (csv || ambiguous(table)) add_text_column(table, rows, "folder", [](const RunRecord& run) { return run.folder; });
+}
+
+/// What each run is called in notes: by its label, and by the rest of its name where others have the same label.
+std::vector<std::string> short_names(const TextTable& table, const Rows& rows) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::string& label = rows[i].run->label;
+    names.push_back(label);
+    const auto same = [&](const Row& row) { return row.run->label == label; };
+    if (std::ranges::count_if(rows, same) == 1) continue;
+    std::string rest;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      if (table.columns[c].header.empty()) continue;  // the label
+      rest += fmt::format("{}{} {}", rest.empty() ? "" : ", ", table.columns[c].header, table.rows[i][c].text);
+    }
+    if (!rest.empty()) names.back() += fmt::format(" ({})", rest);
+  }
+  return names;
+}
+
+bool all_fine(const Rows& rows) {
+  return std::ranges::all_of(
+      rows, [](const Row& row) { return !row.run->status || row.run->status->status.state == RunState::ok; });
+}
+
+std::vector<std::string> distinct_experiments(const Rows& rows) {
+  std::vector<std::string> names;
+  for (const Row& row : rows) {
+    if (std::ranges::find(names, row.run->experiment) == names.end()) names.push_back(row.run->experiment);
+  }
+  return names;
 }
 
 }  // namespace
@@ -340,12 +414,17 @@ std::string make_table(std::span<const RunRecord> runs, const TableOptions& opti
   TextTable table;
   table.rows.resize(rows.size());
   add_names(table, rows, csv);
+  const std::vector<std::string> names = short_names(table, rows);
   for (const Metric& metric : metrics) {
     add_column(table, csv ? metric.key : metric.header, true, metric_cells(rows, groups, metric, options));
   }
-  std::vector<Cell> states;
-  for (const Row& row : rows) states.push_back({status_text(row, options.format)});
-  add_column(table, "status", false, std::move(states));
+  if (options.format != TableFormat::latex || !all_fine(rows)) {
+    std::vector<Cell> states;
+    for (const Row& row : rows) states.push_back({status_text(row, options.format)});
+    add_column(table, "status", false, std::move(states));
+  }
+  if (csv)
+    add_column(table, "trajectory", false, std::vector<Cell>(rows.size(), {options.online ? "online" : "final"}));
   if (csv || protocols.texts.size() > 1) {
     std::vector<Cell> cells;
     for (const int number : protocols.of_run) {
@@ -355,10 +434,11 @@ std::string make_table(std::span<const RunRecord> runs, const TableOptions& opti
     }
     add_column(table, "protocol", false, std::move(cells));
   }
-  if (!vary(rows, [](const RunRecord& run) { return run.experiment; })) {
+  table.experiments = distinct_experiments(rows);
+  if (table.experiments.size() == 1 && options.format != TableFormat::latex) {
     table.notes.push_back(fmt::format("Experiment: {}.", runs[0].experiment));
   }
-  std::ranges::move(notes_of(rows, metrics, protocols, options), std::back_inserter(table.notes));
+  std::ranges::move(notes_of(rows, names, metrics, protocols, options), std::back_inserter(table.notes));
   return format_table(table, options.format);
 }
 

@@ -21,14 +21,16 @@ struct TableOptions {
 };
 
 /// A table of runs, a row each, in the order given. What tells them apart are columns: the label, the experiment and
-/// the seed where they vary, the key where these do not suffice; in CSV all of them, and the folder.
+/// the seed where they vary, settings in which runs of one label differ, named as in a config; the key, and the folder,
+/// where these do not suffice. CSV has label, experiment, seed, key and folder always.
 ///
-/// The protocol stands below (LaTeX: in the caption; CSV: in columns); runs of different protocols are marked with its
-/// number. Pairs, coverage and scale are columns, or, where `metrics` leaves them out, ranges below.
-/// The best value of a column, among runs of the same experiment and protocol, is bold in Markdown and LaTeX and marked
-/// with * in text; runs that were lost or failed do not compete. A value that a run does not have is "-" (CSV: empty).
-/// Why runs have no scores stands below. Throws InputError when there is no run, when no run has a column's value at
-/// all, with the nearest known name, and when no run has online scores but they are asked for.
+/// The protocol stands below (CSV: in columns), and whether the final or the online trajectory is scored; runs of
+/// different protocols are marked with its number. LaTeX has fewer default columns, for a page. Pairs, coverage and
+/// scale are columns, or, where `metrics` leaves them out, ranges below. The best value of a column, among runs of the
+/// same experiment and protocol, is bold in Markdown and LaTeX and marked with * in text; runs that were lost or failed
+/// do not compete. A value that a run does not have is "-" (CSV: empty). Why runs have no scores, or were lost, stands
+/// below. Throws InputError when there is no run, when no run has a column's value at all, with the nearest known name,
+/// and when no run has online scores but they are asked for.
 std::string make_table(std::span<const RunRecord> runs, const TableOptions& options);
 
 }  // namespace evbench

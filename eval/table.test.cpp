@@ -49,6 +49,10 @@ struct Results {
     folder.write(name + "/metrics.json", content);
   }
   void add(const std::string& name, const Json& metrics) const { add(name, metrics.dump()); }
+  void add(const std::string& name, const Json& metrics, const Json& config) const {
+    add(name, metrics);
+    folder.write(name + "/config.json", config.dump());
+  }
   std::vector<RunRecord> find() const { return find_runs(std::vector{folder.path()}); }
   std::string table(const TableOptions& options) const { return make_table(find(), options); }
 };
@@ -115,7 +119,6 @@ TEST_CASE("A table shows the protocol, and the best value of each column") {
   CHECK_THAT(text, Contains("Experiment: arm.") && Contains("Protocol: Sim(3) alignment on all poses; nearest ground "
                                                             "truth within 0.01 s; RPE over 0.1 seconds, all pairs"));
   CHECK_THAT(results.table({.format = TableFormat::markdown}), Contains("**0.0120**"));
-  CHECK_THAT(results.table({.format = TableFormat::latex}), Contains("\\textbf{0.0120}") && Contains("\\caption{"));
 }
 
 TEST_CASE("Only runs of one experiment and protocol that kept track compete") {
@@ -175,6 +178,53 @@ TEST_CASE("Runs that differ in their seed, or in nothing but their options, can 
   CHECK_THAT(results.table({}), Contains("key") && Contains("mine-bb") && Contains("mine-cc"));
 }
 
+TEST_CASE("Runs of one label have as columns the settings in which they differ, in the order of their values") {
+  Results results;
+  int folders = 9;
+  for (const double duration : {0.05, 0.1}) {
+    for (const int seed : {2, 1}) {
+      Json json = run("arm", "bundle_adjustment", scores_with(0.02));
+      json["seed"] = seed;
+      results.add(std::to_string(folders--), json,
+                  {{"seed", seed},
+                   {"source", {{"type", "simulation"}}},
+                   {"backend", {{"type", "bundle_adjustment"}, {"frame_duration", duration}, {"label", "x"}}}});
+    }
+  }
+  const std::string text = results.table({});
+  CHECK_THAT(line_with(text, "ATE [m]"), Contains("backend.frame_duration") && Contains("seed") && !Contains("key"));
+  CHECK_THAT(text, !Contains("source.type") && !Contains("backend.label"));
+  const auto runs = results.find();
+  CHECK(runs[0].seed == 1);
+  CHECK(runs[1].seed == 2);
+  CHECK(*find_setting(runs[1].settings, "backend.frame_duration") == 0.05);
+  CHECK(*find_setting(runs[2].settings, "backend.frame_duration") == 0.1);
+  CHECK_THAT(results.table({.format = TableFormat::csv}),
+             Contains("experiment,label,backend.frame_duration,seed,key,folder,") &&
+                 Contains("\narm,bundle_adjustment,0.05,1,"));
+}
+
+TEST_CASE("Labels that tell runs apart need no settings beside them") {
+  Results results;
+  results.add("a", run("arm", "25 ms", scores_with(0.02)), {{"backend", {{"frame_duration", 0.025}}}});
+  results.add("b", run("arm", "50 ms", scores_with(0.03)), {{"backend", {{"frame_duration", 0.05}}}});
+  CHECK_THAT(results.table({}), !Contains("frame_duration"));
+}
+
+TEST_CASE("Rows stand in the order of their config") {
+  Results results;
+  int position = 0;
+  for (const char* label : {"mine", "baseline", "another"}) {
+    Json json = run("arm", label, scores_with(0.02));
+    json["position"] = position++;
+    results.add(std::to_string(9 - position), json);
+  }
+  const auto runs = results.find();
+  CHECK(runs[0].label == "mine");
+  CHECK(runs[1].label == "baseline");
+  CHECK(runs[2].label == "another");
+}
+
 TEST_CASE("Front-end and back-end have a time each, and every time can be a column") {
   Results results;
   results.add("a", run("arm", "one", scores_with(0.020)));
@@ -194,6 +244,11 @@ TEST_CASE("Below a table stands why runs have no scores") {
   Json unscored = run("arm", "unscored", nullptr);
   unscored["final_unscored"] = "only 2 of the estimate's poses have ground truth";
   results.add("c", unscored);
+  Json lost = run("arm", "good", scores_with(0.030), "lost");
+  lost["seed"] = 8;
+  lost["status"]["reason"] = "nothing was seen for 1 s";
+  results.add("d", lost);
+  CHECK_THAT(results.table({}), Contains("Lost: good (seed 8): nothing was seen for 1 s."));
   CHECK_THAT(results.table({}), Contains("Without scores: bad: 2 tracks at 3.051 s, 15 needed.") &&
                                     Contains("Without scores: unscored: only 2 of the estimate's poses"));
 }
@@ -203,9 +258,49 @@ TEST_CASE("CSV has the exact numbers under the keys of metrics.json") {
   results.add("a", run("arm, left", "say \"one\"", scores_with(0.0123456789)));
   const std::string csv = results.table({.format = TableFormat::csv, .metrics = {"ate.trans_m.rmse"}});
   CHECK(csv.substr(0, csv.find('\n')) ==
-        "experiment,label,seed,key,folder,ate.trans_m.rmse,pairs,coverage,scale,status,protocol");
+        "experiment,label,seed,key,folder,ate.trans_m.rmse,pairs,coverage,scale,status,trajectory,protocol");
   CHECK_THAT(csv, Contains("\n\"arm, left\",\"say \"\"one\"\"\",7,mine-0123456789," + results.folder.file("a") +
                            ",0.0123456789,100,1,"));
+}
+
+TEST_CASE("Every format says which trajectory is scored") {
+  Results results;
+  Json json = run("arm", "mine", scores_with(0.02));
+  json["online"] = json["final"];
+  results.add("a", json);
+  for (const TableFormat format : {TableFormat::text, TableFormat::markdown, TableFormat::latex}) {
+    CHECK_THAT(results.table({.format = format}), Contains("Final: the trajectory as estimated after"));
+    CHECK_THAT(results.table({.format = format, .online = true}), Contains("Online: each pose as estimated"));
+  }
+  CHECK_THAT(results.table({.format = TableFormat::csv}),
+             Contains(",status,trajectory,protocol\n") && Contains(",final,"));
+  CHECK_THAT(results.table({.format = TableFormat::csv, .online = true}), Contains(",online,"));
+}
+
+TEST_CASE("LaTeX is a float for a page: few columns, booktabs' rules, a label, the protocol in a note") {
+  Results results;
+  results.add("a", run("arm_2", "asynchronous", scores_with(0.012)));
+  results.add("b", run("arm_2", "bundle", scores_with(0.034)));
+  const std::string latex = results.table({.format = TableFormat::latex});
+  CHECK(line_with(latex, "ATE") ==
+        "                 &         ATE [m] & ATE [deg] & RPE [m] & RPE [deg] & real-time factor \\\\");
+  CHECK_THAT(line_with(latex, "asynchronous"), Contains("& \\textbf{0.0120} &"));
+  CHECK_THAT(latex, Contains("\\begin{tabular}{lrrrrr}") && Contains("\\caption{arm\\_2}") &&
+                        Contains("\\label{tab:arm_2}") && !Contains("\\hline"));
+  const std::vector<std::string> order = {"\\begin{table}", "\\caption",        "\\label",      "\\begin{tabular}",
+                                          "\\toprule",      "\\midrule",        "\\bottomrule", "\\end{tabular}",
+                                          "\\footnotesize", "Protocol: Sim(3)", "\\end{table}"};
+  std::size_t at = 0;
+  for (const std::string& part : order) {
+    INFO(part);
+    at = latex.find(part, at);
+    REQUIRE(at != std::string::npos);
+  }
+  CHECK(std::ranges::count(latex, '{') == std::ranges::count(latex, '}'));
+  results.add("c", run("arm_2", "third", scores_with(0.034), "degraded"));
+  CHECK_THAT(results.table({.format = TableFormat::latex}), Contains("& status ") && Contains("degraded at 3.25 s"));
+  CHECK_THAT(results.table({.format = TableFormat::latex, .metrics = {"coverage"}}),
+             Contains("covered [\\%]") && !Contains("ATE [m]"));
 }
 
 TEST_CASE("Characters with a meaning in LaTeX and Markdown are escaped") {

@@ -2,6 +2,8 @@
 
 #include <fmt/ranges.h>
 
+#include <cctype>
+#include <cstring>
 #include <functional>
 
 namespace evbench {
@@ -99,22 +101,33 @@ std::string format_csv(const TextTable& table) {
   return text;
 }
 
+/// What may stand in a \\label.
+std::string label_of(const TextTable& table) {
+  std::string label = fmt::format("tab:{}", fmt::join(table.experiments, "+"));
+  const auto safe = [](unsigned char c) {
+    return std::isalnum(c) != 0 || (c != 0 && std::strchr(":+-._/", c) != nullptr);
+  };
+  std::ranges::replace_if(label, std::not_fn(safe), '-');
+  return label;
+}
+
 std::string format_latex(const TextTable& table) {
   const auto rows = padded_rows(table, [](const Cell& cell) {
     return cell.best ? fmt::format("\\textbf{{{}}}", escape_latex(cell.text)) : escape_latex(cell.text);
   });
   std::string alignment;
   for (const TextTable::Column& column : table.columns) alignment += column.number ? 'r' : 'l';
-  std::string text = "\\begin{table}\n  \\centering\n";
-  text += fmt::format("  \\begin{{tabular}}{{{}}}\n    \\hline\n", alignment);
+  std::string text = "\\begin{table}  % \\usepackage{booktabs}\n  \\centering\n";
+  text += fmt::format("  \\caption{{{}}}\n", escape_latex(fmt::format("{}", fmt::join(table.experiments, ", "))));
+  text += fmt::format("  \\label{{{}}}\n", label_of(table));
+  text += fmt::format("  \\begin{{tabular}}{{{}}}\n    \\toprule\n", alignment);
   for (std::size_t r = 0; r < rows.size(); ++r) {
     text += fmt::format("    {} \\\\\n", fmt::join(rows[r], " & "));
-    if (r == 0) text += "    \\hline\n";
+    if (r == 0) text += "    \\midrule\n";
   }
-  text += "    \\hline\n  \\end{tabular}\n";
-  text +=
-      fmt::format("  \\caption{{{}}}\n\\end{{table}}\n", escape_latex(fmt::format("{}", fmt::join(table.notes, " "))));
-  return text;
+  text += "    \\bottomrule\n  \\end{tabular}\n\n  \\smallskip\n  \\parbox{\\linewidth}{\\footnotesize\n";
+  for (const std::string& note : table.notes) text += fmt::format("    {}\n", escape_latex(note));
+  return text + "  }\n\\end{table}\n";
 }
 
 }  // namespace

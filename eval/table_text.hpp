@@ -19,10 +19,12 @@ struct TextTable {
   };
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;
-  std::vector<std::string> notes;  ///< sentences, one a line
+  std::vector<std::string> notes;        ///< sentences, one a line
+  std::vector<std::string> experiments;  ///< what it is of
 };
 
-/// Written out; characters with a meaning in the format are escaped.
+/// Written out; characters with a meaning in the format are escaped. LaTeX is a float with caption, label and notes
+/// that needs the package booktabs.
 std::string format_table(const TextTable& table, TableFormat format);
 
 std::string escape_latex(const std::string& text);

@@ -20,8 +20,10 @@ void add_dataset(CLI::App& app);
 void add_render(CLI::App& app, const Plugins& plugins);
 void add_new_plugin(CLI::App& app, const Plugins& plugins);
 
-/// `exit_code` is set to what the program returns: 0, or 3 when a run failed. A config may name libraries with more
-/// plugins: they are added.
+/// A config may name libraries with more plugins: they are added.
+void add_export(CLI::App& app, Plugins& plugins);
+
+/// `exit_code` is set to what the program returns: 0, or 3 when a run failed. Plugins are added likewise.
 void add_run(CLI::App& app, Plugins& plugins, int& exit_code);
 
 /// `exit_code` likewise: 3 when a check fails.

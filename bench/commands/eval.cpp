@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <memory>
 
@@ -9,15 +10,18 @@
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/io/text_reader.hpp"
+#include "eval/error_files.hpp"
 #include "eval/protocol.hpp"
-#include "eval/run_record.hpp"
+#include "eval/score_run.hpp"
+#include "eval/table.hpp"
 
 namespace evbench {
 namespace {
 
 /// The command line, in evo's words.
 struct EvalArguments {
-  std::string ground_truth, estimate;
+  std::string ground_truth;
+  std::vector<std::string> estimates;
   std::string format = "auto";
   bool align = false, correct_scale = false, align_origin = false;
   bool interpolate = false, all_pairs = false, pairs_from_reference = false;
@@ -25,13 +29,16 @@ struct EvalArguments {
   double t_start = -std::numeric_limits<double>::infinity(), t_end = std::numeric_limits<double>::infinity();
   std::string alignment;
   std::string delta_unit = "f";
-  std::string json;
+  std::string table;  ///< format; empty: a table of several estimates, all numbers of one
+  std::string json, aligned, errors;
+  bool force = false;
   ScoreOptions options = {.rpe_delta = 1.0};  ///< what goes straight into the protocol
 };
 
 PoseTrajectory read_trajectory(const std::string& path, const std::string& format) {
   if (format == "tum") return read_tum(path);
   if (format == "robotevt") return read_robotevt(path);
+  if (!std::filesystem::is_regular_file(path)) return read_tum(path);  // a pipe can be read once only
   TextReader reader(path);
   const bool robotevt = reader.next() && reader.columns().size() == 13;
   return robotevt ? read_robotevt(path) : read_tum(path);
@@ -66,30 +73,66 @@ ScoreOptions score_options(const EvalArguments& arguments) {
 }
 
 /// Errors name the estimate's file, as those of reading do.
-Scores score_files(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, const EvalArguments& arguments) {
+ScoredEstimate score_file(const PoseTrajectory& ground_truth, const std::string& path, const EvalArguments& arguments) {
+  ScoredEstimate scored{read_trajectory(path, arguments.format), {}};
   try {
-    return score(ground_truth, estimate, score_options(arguments));
+    scored.scores = score(ground_truth, scored.estimate, score_options(arguments));
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", arguments.estimate, error.what()));
+    throw InputError(fmt::format("{}: {}", path, error.what()));
   }
+  return scored;
 }
 
 /// What only a run knows is left open.
-RunRecord record_of(const EvalArguments& arguments, const Scores& scores) {
+RunRecord record_of(const std::string& ground_truth, const std::string& estimate, const Scores& scores) {
   RunRecord record;
-  record.experiment = arguments.ground_truth;
-  record.label = arguments.estimate;
+  record.experiment = ground_truth;
+  record.label = estimate;
   record.final_scores = to_json(scores);
   return record;
 }
 
+/// One estimate's as a run's metrics.json, several as a list of them.
+std::string json_text(const std::vector<RunRecord>& records) {
+  Json json = Json::array();
+  for (const RunRecord& record : records) json.push_back(to_json(record));
+  return (records.size() == 1 ? json[0] : json).dump(2) + "\n";
+}
+
+void check_outputs(const EvalArguments& arguments) {
+  for (const std::string* path : {&arguments.json, &arguments.aligned, &arguments.errors}) {
+    refuse_to_replace(*path, arguments.force);
+  }
+  if (arguments.estimates.size() > 1 && !(arguments.aligned.empty() && arguments.errors.empty())) {
+    throw InputError(
+        fmt::format("--aligned and --errors are of one estimate; {} are given", arguments.estimates.size()));
+  }
+}
+
 void execute(const EvalArguments& arguments) {
+  check_outputs(arguments);
   const PoseTrajectory ground_truth = read_trajectory(arguments.ground_truth, arguments.format);
-  const PoseTrajectory estimate = read_trajectory(arguments.estimate, arguments.format);
-  const Scores scores = score_files(ground_truth, estimate, arguments);
-  if (!arguments.json.empty()) write_file(arguments.json, to_json(record_of(arguments, scores)).dump(2) + "\n");
-  if (arguments.json == "/dev/stdout") return;
-  fmt::print("ground truth {}\nestimate     {}\n{}", arguments.ground_truth, arguments.estimate, describe(scores));
+  std::vector<RunRecord> records;
+  ScoredEstimate last;
+  for (const std::string& path : arguments.estimates) {
+    last = score_file(ground_truth, path, arguments);
+    records.push_back(record_of(arguments.ground_truth, path, last.scores));
+  }
+  if (!arguments.json.empty()) write_file(arguments.json, json_text(records));
+  if (!arguments.aligned.empty())
+    write_file(arguments.aligned, format_tum(aligned_estimate(last.estimate, last.scores)));
+  if (!arguments.errors.empty()) write_file(arguments.errors, errors_csv(last.scores));
+  for (const std::string* path : {&arguments.json, &arguments.aligned, &arguments.errors}) {
+    if (*path == "/dev/stdout") return;
+  }
+  if (records.size() > 1 || !arguments.table.empty()) {
+    const std::string format = arguments.table.empty() ? "text" : arguments.table;
+    fmt::print("{}",
+               make_table(records, {.format = parse_name<TableFormat>(kTableFormatNames, format, "table format")}));
+    return;
+  }
+  fmt::print("ground truth {}\nestimate     {}\n{}", arguments.ground_truth, arguments.estimates[0],
+             describe(last.scores));
 }
 
 void add_alignment_options(CLI::App& command, EvalArguments& arguments) {
@@ -138,20 +181,58 @@ void add_relative_options(CLI::App& command, EvalArguments& arguments) {
                    "Measure metres and degrees on the ground truth, not on the estimate");
 }
 
+void add_segment_options(CLI::App& command, EvalArguments& arguments) {
+  ScoreOptions& options = arguments.options;
+  auto* rule =
+      command
+          .add_option("--segments", options.segments,
+                      "Also errors over sub-trajectories in % and deg/m, as rpg_trajectory_evaluation (rpg) or "
+                      "the KITTI odometry benchmark (kitti) define them")
+          ->check(CLI::IsMember(to_strings(kSegmentRuleNames)))
+          ->capture_default_str();
+  command
+      .add_option("--segment_lengths", options.segment_lengths,
+                  "Their lengths; else 10 to 50 % of the path (rpg), 100 to 800 m (kitti)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::PositiveNumber)
+      ->type_name("LENGTH,...")
+      ->needs(rule);
+  command.add_option("--segment_unit", options.segment_unit, "What --segment_lengths are in")
+      ->check(CLI::IsMember(to_strings(kLengthUnitNames)))
+      ->capture_default_str();
+}
+
+void add_output_options(CLI::App& command, EvalArguments& arguments) {
+  command.add_option("--table", arguments.table, "Print a table of this format; of several estimates: text")
+      ->check(CLI::IsMember(to_strings(kTableFormatNames)));
+  command
+      .add_option("--json", arguments.json,
+                  "Write the scores, with the structure of a run's metrics.json; of several estimates a list of them")
+      ->type_name("FILE");
+  command.add_option("--aligned", arguments.aligned, "Write the estimate as it is compared, aligned (TUM)")
+      ->type_name("FILE");
+  command.add_option("--errors", arguments.errors, "Write the error of each pose: CSV")->type_name("FILE");
+  command.add_flag("--force", arguments.force, "Replace files that exist");
+}
+
 }  // namespace
 
 void add_eval(CLI::App& app) {
   auto arguments = std::make_shared<EvalArguments>();
-  CLI::App* command = app.add_subcommand("eval", "Score a trajectory: ATE and RPE, with evo's options and numbers");
+  CLI::App* command = app.add_subcommand("eval", "Score trajectories: ATE and RPE, with evo's options and numbers");
   command->add_option("groundtruth", arguments->ground_truth, "Ground truth")->required();
-  command->add_option("estimate", arguments->estimate, "Estimated trajectory")->required();
-  command->add_option("--format", arguments->format, "TUM (t x y z qx qy qz qw) or RobotEvt (t r11..r33 t1 t2 t3)")
+  command->add_option("estimates", arguments->estimates, "Estimated trajectories")->required();
+  command
+      ->add_option("--format", arguments->format,
+                   "TUM (t x y z qx qy qz qw) or RobotEvt (t r11..r33 t1 t2 t3); auto: by the columns, of a pipe TUM")
       ->check(CLI::IsMember({"auto", "tum", "robotevt"}))
       ->capture_default_str();
   add_alignment_options(*command, *arguments);
   add_association_options(*command, *arguments);
   add_relative_options(*command, *arguments);
-  command->add_option("--json", arguments->json, "Write the scores, with the structure of a run's metrics.json");
+  add_segment_options(*command, *arguments);
+  add_output_options(*command, *arguments);
   command->footer("As evo does, nothing is aligned unless asked for: monocular estimates need -as.");
   command->callback([arguments] { execute(*arguments); });
 }

@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "bench/commands/commands.hpp"
+#include "bench/testing/program.hpp"
 #include "core/data/robotevt.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
@@ -33,7 +34,7 @@ struct Trajectories {
   Json eval(const std::string& options) const {
     CLI::App app;
     add_eval(app);
-    app.parse("eval " + ground_truth + " " + estimate + " --json " + json + " " + options);
+    app.parse("eval " + ground_truth + " " + estimate + " --force --json " + json + " " + options);
     return Json::parse(read_file(json));
   }
 };
@@ -105,6 +106,91 @@ TEST_CASE("eval recognises RobotEvt ground truth by its columns") {
   write_file(files.ground_truth, format_robotevt(read_tum(files.ground_truth)));
   CHECK(files.eval("-as").at("final").at("ate").at("trans_m").at("rmse").get<double>() == Approx(before).epsilon(1e-6));
   CHECK_THROWS_AS(files.eval("--format tum"), InputError);
+}
+
+TEST_CASE("eval of several estimates prints a table and writes a list") {
+  const Trajectories files;
+  write_file(files.folder.file("perfect.txt"), read_file(files.ground_truth));
+  const Outcome outcome = testing::evbench(files.folder, "eval truth.txt estimate.txt perfect.txt -as --json all.json");
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out, Contains("estimate.txt") && Contains("perfect.txt") && Contains("ATE [m]") &&
+                              Contains("Protocol: Sim(3) alignment") && !Contains("Final:"));
+  const Json list = Json::parse(read_file(files.folder.file("all.json")));
+  REQUIRE(list.size() == 2);
+  CHECK(list[0].at("label") == "estimate.txt");
+  CHECK(list[0].at("final").dump() == files.eval("-as").at("final").dump());
+  CHECK(list[1].at("final").at("ate").at("trans_m").at("rmse").get<double>() < 1e-9);
+  CHECK_THAT(testing::evbench(files.folder, "eval truth.txt estimate.txt --table latex").out, Contains("\\toprule"));
+  const Outcome missing = testing::evbench(files.folder, "eval truth.txt estimate.txt none.txt");
+  CHECK(missing.exit_code == 2);
+  CHECK_THAT(missing.err, Contains("none.txt: no such file"));
+}
+
+TEST_CASE("eval takes errors over sub-trajectories as rpg_trajectory_evaluation and KITTI do") {
+  const Trajectories files;
+  CHECK_FALSE(files.eval("-as").at("final").contains("segments"));
+  CHECK(files.eval("-as --segments rpg").at("final").at("segments").at("by_length").size() == 5);
+  const Json kitti = files.eval("-as --segments kitti --segment_lengths 0.25,0.5").at("final").at("segments");
+  CHECK(kitti.at("by_length")[1].at("length_m") == 0.5);
+  CHECK(kitti.at("by_length")[1].at("trans_percent").at("n").get<int>() > 5);
+  CHECK(files.eval("-as --segments kitti --segment_lengths 50 --segment_unit percent")
+            .at("final")
+            .at("segments")
+            .at("unit") == "percent");
+  CHECK(
+      testing::evbench(files.folder, "eval --segments kitti --segment_lengths 0.5 truth.txt estimate.txt").exit_code ==
+      0);
+  CHECK_THROWS_AS(files.eval("--segments tum"), CLI::ParseError);
+  CHECK_THROWS_AS(files.eval("--segment_lengths 1"), CLI::ParseError);
+}
+
+TEST_CASE("eval writes the aligned estimate and the error of each pose, and replaces nothing unasked") {
+  const Trajectories files;
+  const std::string command = "eval truth.txt estimate.txt -as --aligned aligned.txt --errors errors.csv";
+  REQUIRE(testing::evbench(files.folder, command).exit_code == 0);
+  const PoseTrajectory truth = read_tum(files.ground_truth), aligned = read_tum(files.folder.file("aligned.txt"));
+  REQUIRE(aligned.size() == truth.size());
+  const Json scores = files.eval("-as").at("final");
+  const std::string csv = read_file(files.folder.file("errors.csv"));
+  CHECK(csv.starts_with("t_s,trans_m,rot_deg,x_m,y_m,z_m\n0,"));
+  CHECK(std::ranges::count(csv, '\n') == 201);
+  double sse = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    sse += (aligned.poses()[i].T.p - truth.poses()[i].T.p).squaredNorm();
+  }
+  CHECK(sse == Approx(scores.at("ate").at("trans_m").at("sse").get<double>()).epsilon(1e-6));
+  files.folder.write("errors.csv", "mine");
+  std::filesystem::remove(files.folder.file("aligned.txt"));
+  const Outcome again = testing::evbench(files.folder, command);
+  CHECK(again.exit_code == 2);
+  CHECK_THAT(again.err, Contains("errors.csv: exists already; --force replaces it"));
+  CHECK(read_file(files.folder.file("errors.csv")) == "mine");
+  CHECK_FALSE(std::filesystem::exists(files.folder.file("aligned.txt")));
+  CHECK(testing::evbench(files.folder, command + " --force").exit_code == 0);
+  CHECK(read_file(files.folder.file("errors.csv")) == csv);
+  CHECK(testing::evbench(files.folder, "eval truth.txt estimate.txt truth.txt --aligned a.txt").exit_code == 2);
+}
+
+TEST_CASE("table replaces no file unless that is asked for") {
+  const Trajectories files;
+  files.folder.write("metrics.json", files.eval("-as").dump());
+  files.folder.write("table.txt", "mine");
+  CHECK(testing::evbench(files.folder, "table . --out table.txt").exit_code == 2);
+  CHECK(read_file(files.folder.file("table.txt")) == "mine");
+  CHECK(testing::evbench(files.folder, "table . --out table.txt --force").exit_code == 0);
+  CHECK_THAT(read_file(files.folder.file("table.txt")), Contains("ATE [m]"));
+}
+
+TEST_CASE("eval reads pipes, and says what it waits for") {
+  const Trajectories files;
+  const std::string expected = testing::evbench(files.folder, "eval truth.txt estimate.txt -as --table csv").out;
+  const Outcome piped = testing::shell(files.folder, R"(
+    mkfifo pipe; { sleep 1.5; cat estimate.txt; } > pipe & "$evbench" eval truth.txt pipe -as --table csv)");
+  CHECK(piped.exit_code == 0);
+  CHECK(piped.out.substr(piped.out.find("pipe") + 4) == expected.substr(expected.find("estimate.txt") + 12));
+  CHECK(piped.err == "pipe: is a pipe that nobody has written to; waiting for it\n");
+  CHECK(testing::shell(files.folder, "cat estimate.txt > pipe & \"$evbench\" eval truth.txt pipe").err.empty());
+  CHECK(testing::shell(files.folder, "timeout -s INT 2 \"$evbench\" eval truth.txt pipe").exit_code == 124);
 }
 
 TEST_CASE("eval refuses what it can't score and then writes nothing") {

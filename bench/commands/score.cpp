@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,20 +21,9 @@ struct ScoreArguments {
   bool quiet = false;
 };
 
-/// The protocol that a run was scored by.
-Json own_protocol(const std::string& folder) {
-  const std::string path = folder + "/config.json";
-  std::ifstream file(path, std::ios::binary);
-  const Json config = Json::parse(file, nullptr, false);
-  if (!config.is_object() || !config.contains("evaluation")) {
-    throw InputError(fmt::format("{}: can't be read, or has no \"evaluation\"; expected the config of a run", path));
-  }
-  return config["evaluation"];
-}
-
 ScoreOptions protocol_of(const std::string& folder, const ScoreArguments& arguments) {
-  const Json own = arguments.config.empty() ? own_protocol(folder) : Json();
-  return read_evaluation(arguments.config, own, arguments.overrides, folder + "/config.json");
+  return arguments.config.empty() ? protocol_of_run(folder, arguments.overrides)
+                                  : read_evaluation(arguments.config, Json(), arguments.overrides, "");
 }
 
 void execute(const ScoreArguments& arguments) {

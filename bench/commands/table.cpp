@@ -14,10 +14,12 @@ struct TableArguments {
   std::vector<std::string> folders;
   std::string format = "text";
   std::string out;
+  bool force = false;
   TableOptions options;
 };
 
 void execute(const TableArguments& arguments) {
+  refuse_to_replace(arguments.out, arguments.force);
   TableOptions options = arguments.options;
   options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
   const std::string table = make_table(find_runs(arguments.folders), options);
@@ -40,10 +42,12 @@ void add_table(CLI::App& app) {
       ->check(CLI::IsMember(to_strings(kTableFormatNames)))
       ->capture_default_str();
   command->add_option("--out", arguments->out, "Write to this file instead of the terminal")->type_name("FILE");
+  command->add_flag("--force", arguments->force, "Replace the file of --out where it exists");
   command
       ->add_option("--metrics", arguments->options.metrics,
                    "Columns, e.g. ate.trans_m.rmse,rpe.trans_m.median,runtime_s")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("KEY,...");
   command->add_flag("--online", arguments->options.online, "Scores of the poses as estimated when they were made");
   command->callback([arguments] { execute(*arguments); });

@@ -1,6 +1,9 @@
 #include "core/io/text_reader.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <charconv>
@@ -16,6 +19,23 @@ namespace {
 constexpr std::size_t kBufferSize = std::size_t{1} << 18;
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
 
+constexpr int kPatience = 1000;  // [ms] until it is said that a pipe is waited for
+
+/// Opens a file to be read; -1 with errno where that fails. A pipe is waited for until there is something in it: who
+/// does not write to it should not leave a user before a silent terminal.
+int open_file(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_fifo(path, ignored)) return ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // at once, also without a writer
+  pollfd pipe = {file, POLLIN, 0};
+  if (file >= 0 && ::poll(&pipe, 1, kPatience) == 0) {
+    fmt::print(stderr, "{}: is a pipe that nobody has written to; waiting for it\n", path);
+    ::poll(&pipe, 1, -1);
+  }
+  if (file >= 0) ::fcntl(file, F_SETFL, ::fcntl(file, F_GETFL) & ~O_NONBLOCK);
+  return file;
+}
+
 gzFile handle(void* file) { return static_cast<gzFile>(file); }
 
 }  // namespace
@@ -27,8 +47,13 @@ TextReader::TextReader(const std::string& path, std::string_view separators)
   if (std::filesystem::is_directory(path, ignored)) {
     throw InputError(fmt::format("{}: is a folder; expected a text file", path));
   }
-  file_ = gzopen(path.c_str(), "rb");
-  if (file_ == nullptr) throw InputError(fmt::format("{}: can't be opened: {}", path, std::strerror(errno)));
+  const int file = open_file(path);
+  if (file < 0) throw InputError(fmt::format("{}: can't be opened: {}", path, std::strerror(errno)));
+  file_ = gzdopen(file, "rb");
+  if (file_ == nullptr) {
+    ::close(file);
+    throw InputError(fmt::format("{}: can't be opened: the memory is not enough", path));
+  }
 }
 
 TextReader::~TextReader() { gzclose(handle(file_)); }

@@ -12,7 +12,8 @@ namespace evbench {
 /// Every error is an InputError that names the file and the line.
 class TextReader {
  public:
-  /// `separators`: the characters between columns. Throws when the file can't be opened.
+  /// `separators`: the characters between columns. Throws when the file can't be opened. Waits for a pipe, and
+  /// says so on the standard error after a second.
   explicit TextReader(const std::string& path, std::string_view separators = " \t");
   ~TextReader();
   TextReader(const TextReader&) = delete;

@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "bench/commands/commands.hpp"
+#include "bench/experiment.hpp"
+#include "bench/plugins.hpp"
+#include "bench/run_folder.hpp"
+#include "core/data/tracks.hpp"
+#include "core/data/tum.hpp"
+#include "core/io/atomic_file.hpp"
+#include "core/support/error.hpp"
+#include "eval/error_files.hpp"
+#include "eval/score_run.hpp"
+
+namespace evbench {
+namespace {
+
+struct ExportArguments {
+  std::string from;
+  std::vector<std::string> overrides;
+  std::string ground_truth, tracks, aligned, errors;
+  bool online = false;
+  bool force = false;
+
+  bool of_source() const { return !ground_truth.empty() || !tracks.empty(); }
+  bool of_run() const { return !aligned.empty() || !errors.empty(); }
+};
+
+void check(const ExportArguments& arguments) {
+  if (!arguments.of_source() && !arguments.of_run()) {
+    throw InputError("nothing to export; expected at least one of --groundtruth, --tracks, --aligned, --errors");
+  }
+  for (const std::string* path : {&arguments.ground_truth, &arguments.tracks, &arguments.aligned, &arguments.errors}) {
+    refuse_to_replace(*path, arguments.force);
+  }
+  std::error_code ignored;
+  const bool folder = std::filesystem::is_directory(arguments.from, ignored);
+  if (arguments.of_run() && !folder) {
+    throw InputError(fmt::format("{}: --aligned and --errors are of a run; expected its folder", arguments.from));
+  }
+  if (folder && !std::filesystem::exists(arguments.from + "/metrics.json")) {
+    throw InputError(fmt::format("{}: has no metrics.json; expected the folder of a run", arguments.from));
+  }
+  if (folder && !arguments.overrides.empty()) {
+    throw InputError(fmt::format("{}: --set changes configs, not what a run has done", arguments.from));
+  }
+}
+
+void export_source(const std::string& config, const ExportArguments& arguments, Plugins& plugins) {
+  load_plugins_of(plugins, config, arguments.overrides);
+  const std::unique_ptr<Source> source = read_source(config, plugins, arguments.overrides);
+  if (!arguments.ground_truth.empty()) {
+    if (source->ground_truth().empty()) throw InputError(fmt::format("{}: its source has no ground truth", config));
+    write_file(arguments.ground_truth, format_tum(source->ground_truth()));
+  }
+  if (!arguments.tracks.empty()) {
+    const auto tracks = source->true_tracks();
+    if (!tracks) throw InputError(fmt::format("{}: its source knows no tracks; simulated ones do", config));
+    write_file(arguments.tracks, format_tracks(*tracks));
+  }
+}
+
+void export_run(const ExportArguments& arguments) {
+  const auto [estimate, scores] =
+      score_estimate(arguments.from, arguments.online, protocol_of_run(arguments.from), read_record(arguments.from));
+  if (!arguments.aligned.empty()) write_file(arguments.aligned, format_tum(aligned_estimate(estimate, scores)));
+  if (!arguments.errors.empty()) write_file(arguments.errors, errors_csv(scores));
+}
+
+void execute(const ExportArguments& arguments, Plugins& plugins) {
+  check(arguments);
+  const bool folder = std::filesystem::is_directory(arguments.from);
+  if (arguments.of_run()) export_run(arguments);
+  if (arguments.of_source()) {
+    export_source(folder ? arguments.from + "/config.json" : arguments.from, arguments, plugins);
+  }
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, Plugins& plugins) {
+  auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command =
+      app.add_subcommand("export", "Write a sequence's ground truth and tracks, a run's aligned estimate and errors");
+  command->add_option("from", arguments->from, "Config, or folder of a run")->required()->type_name("FROM");
+  command->add_option("--groundtruth", arguments->ground_truth, "All of the source's ground truth (TUM)")
+      ->type_name("FILE");
+  command->add_option("--tracks", arguments->tracks, "The tracks of a simulated source: id t x y, raw pixels")
+      ->type_name("FILE");
+  command->add_option("--aligned", arguments->aligned, "The run's estimate, aligned as it was scored (TUM)")
+      ->type_name("FILE");
+  command->add_option("--errors", arguments->errors, "The error of each of its poses: CSV")->type_name("FILE");
+  command->add_flag("--online", arguments->online, "The poses as estimated when they were made, not the final ones");
+  command->add_option("--set", arguments->overrides, "Override a value of the config: KEY=VALUE, e.g. seed=3")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_flag("--force", arguments->force, "Replace files that exist");
+  command->footer(
+      "A config's source is made as evbench run makes it: the same seed gives the same tracks. A run's folder stands "
+      "for\n"
+      "its config; its estimate is scored by its own protocol. Files of poses and tracks are what the source "
+      "recording\n"
+      "and the front-end recorded read, and evo plots.");
+  command->callback([arguments, &plugins] { execute(*arguments, plugins); });
+}
+
+}  // namespace evbench

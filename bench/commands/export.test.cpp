@@ -1,0 +1,73 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "bench/testing/program.hpp"
+#include "core/data/tracks.hpp"
+#include "core/data/tum.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// A folder with the config c.json of the short simulated sequence.
+struct Sequence {
+  TemporaryFolder folder;
+
+  Sequence() { folder.write("c.json", short_config().dump()); }
+  Outcome run(const std::string& arguments) const { return testing::evbench(folder, arguments); }
+  void refused(const std::string& arguments, const std::string& message) const {
+    INFO(arguments);
+    const Outcome outcome = run("export " + arguments);
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains(message));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A simulated sequence is exported whole, and can be run from its files") {
+  const Sequence sequence;
+  REQUIRE(sequence.run("export c.json --groundtruth groundtruth.txt --tracks tracks.txt").exit_code == 0);
+  const PoseTrajectory truth = read_tum(sequence.folder.file("groundtruth.txt"));
+  CHECK(truth.start() <= 0.0);
+  CHECK(truth.end() >= 3.0);
+  const auto tracks = read_tracks(sequence.folder.file("tracks.txt"), 240, 180).observations;
+  CHECK(tracks.size() > 1000);
+  const std::string first = read_file(sequence.folder.file("tracks.txt"));
+  REQUIRE(sequence.run("export c.json --tracks tracks.txt --set seed=2 --force").exit_code == 0);
+  CHECK(read_file(sequence.folder.file("tracks.txt")) != first);
+}
+
+TEST_CASE("A run's aligned estimate and errors are those that it was scored by") {
+  const Sequence sequence;
+  REQUIRE(sequence.run("run c.json --quiet").exit_code == 0);
+  const std::string run =
+      sequence.folder.file("results/short/" + *names_in(sequence.folder.file("results/short")).begin());
+  REQUIRE(sequence.run("export '" + run + "' --aligned a.txt --errors e.csv --groundtruth g.txt --tracks t.txt")
+              .exit_code == 0);
+  const Json scores = Json::parse(read_file(run + "/metrics.json")).at("final");
+  const std::string csv = read_file(sequence.folder.file("e.csv"));
+  CHECK(std::ranges::count(csv, '\n') == 1 + scores.at("pairs").get<std::ptrdiff_t>());
+  CHECK(read_tum(sequence.folder.file("a.txt")).size() == read_tum(run + "/final.tum").size());
+  REQUIRE(sequence.run("eval g.txt a.txt --interpolate --json s.json --t_start 0 --t_end 3").exit_code == 0);
+  const Json aligned = Json::parse(read_file(sequence.folder.file("s.json"))).at("final");
+  CHECK(aligned.at("ate").at("trans_m").at("rmse").get<double>() ==
+        Approx(scores.at("ate").at("trans_m").at("rmse").get<double>()).epsilon(1e-6));
+  REQUIRE(sequence.run("export '" + run + "' --online --aligned online.txt").exit_code == 0);
+  CHECK(read_file(sequence.folder.file("online.txt")) != read_file(sequence.folder.file("a.txt")));
+}
+
+TEST_CASE("What can't be exported is refused with what was expected, and no file is replaced") {
+  const Sequence sequence;
+  sequence.refused("c.json", "nothing to export; expected at least one of --groundtruth");
+  sequence.refused("c.json --errors e.csv", "c.json: --aligned and --errors are of a run; expected its folder");
+  sequence.refused("none.json --tracks t.txt", "none.json: can't be read");
+  sequence.refused(". --errors e.csv", ".: has no metrics.json; expected the folder of a run");
+  sequence.folder.write("t.txt", "mine");
+  sequence.refused("c.json --tracks t.txt", "t.txt: exists already; --force replaces it");
+  CHECK(read_file(sequence.folder.file("t.txt")) == "mine");
+  write_recording(sequence.folder);
+  sequence.refused("recording.json --tracks none.txt", "recording.json: its source knows no tracks");
+}

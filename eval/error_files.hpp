@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "eval/scores.hpp"
+
+namespace evbench {
+
+/// The whole estimate as it was compared: aligned, on the ground truth's clock.
+PoseTrajectory aligned_estimate(const PoseTrajectory& estimate, const Scores& scores);
+
+/// The absolute error of each pose compared, as CSV: `t_s,trans_m,rot_deg,x_m,y_m,z_m`; the last three are the aligned
+/// estimate's position minus the ground truth's. Numbers have the shortest digits that read back as the same.
+std::string errors_csv(const Scores& scores);
+
+}  // namespace evbench

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/plugin/options.hpp"
+
+namespace evbench {
+
+/// Values by their paths in a config ("backend.frame_duration"), in its order.
+using RunSettings = std::vector<std::pair<std::string, Json>>;
+
+/// What a run's config.json says of source, front-end, back-end and pipeline: what may make two runs of one name
+/// differ, besides the seed.
+RunSettings settings_of(const Json& config);
+
+/// Nothing where the settings don't have it.
+const Json* find_setting(const RunSettings& settings, const std::string& path);
+
+/// Are the values of `a` before those of `b`? Numbers compare as numbers.
+bool settings_less(const RunSettings& a, const RunSettings& b);
+
+}  // namespace evbench
