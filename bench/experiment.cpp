@@ -10,6 +10,7 @@
 
 #include "core/io/path.hpp"
 #include "core/support/interruption.hpp"
+#include "core/support/json_reason.hpp"
 
 namespace evbench {
 namespace {
@@ -54,8 +55,7 @@ Json parse_file(const std::string& path) {
   try {
     return Json::parse(text.str(), nullptr, true, true);  // comments allowed
   } catch (const Json::exception& error) {                // also for numbers out of range
-    const std::string message = error.what();             // begins with the library's own tag, "[json.exception...] "
-    throw InputError(fmt::format("{}: is not JSON: {}", path, message.substr(message.find("] ") + 2)));
+    throw InputError(fmt::format("{}: is not JSON: {}", path, json_reason(error)));
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/support/json_reason.hpp"
+
 namespace evbench {
 namespace {
 
@@ -83,7 +85,7 @@ std::string protocol(const Json& scores, const std::string& place) {
     if (scores.contains("segments")) text += "; segments " + segments_text(scores.at("segments"));
     return text;
   } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: the protocol of the scores is incomplete: {}", place, error.what()));
+    throw InputError(fmt::format("{}: the protocol of the scores is incomplete: {}", place, json_reason(error)));
   }
 }
 

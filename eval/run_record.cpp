@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/support/json_reason.hpp"
 #include "eval/record_reader.hpp"
 
 namespace evbench {
@@ -67,7 +68,7 @@ Json parse_file(const std::string& path) {
   try {
     return Json::parse(file);
   } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: is not JSON: {}", path, error.what()));
+    throw InputError(fmt::format("{}: is not JSON: {}", path, json_reason(error)));
   }
 }
 

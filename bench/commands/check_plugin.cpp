@@ -14,6 +14,7 @@
 #include "bench/commands/exit_code.hpp"
 #include "core/plugin/registry.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json_reason.hpp"
 #include "core/support/nearest.hpp"
 
 namespace evbench {
@@ -56,7 +57,7 @@ Json parse(const std::string& text, const std::string& place) {
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {
-    throw InputError(fmt::format("{}: {} is not JSON: {}", place, text, error.what()));
+    throw InputError(fmt::format("{}: {} is not JSON: {}", place, text, json_reason(error)));
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/process/line_tail.hpp"
 #include "core/support/index.hpp"
+#include "core/support/json_reason.hpp"
 #include "core/support/nearest.hpp"
 
 namespace evbench::process {
@@ -76,7 +77,7 @@ Json parse_object(const std::string& line) {
   } catch (const nlohmann::json::exception& error) {
     const bool not_a_number = line.find("NaN") != std::string::npos || line.find("Infinity") != std::string::npos;
     throw MessageError(fmt::format("expected one JSON object a line, found {} ({})", printable(line, 200),
-                                   not_a_number ? "JSON has no NaN and no Infinity" : error.what()));
+                                   not_a_number ? "JSON has no NaN and no Infinity" : json_reason(error)));
   }
   if (!value.is_object()) {
     throw MessageError(fmt::format("expected a JSON object, found {}", shown(value)));
