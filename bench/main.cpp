@@ -16,8 +16,18 @@
 #include "core/plugin/registration.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
+#include "core/support/nearest.hpp"
 
 namespace {
+
+/// "; did you mean ...?" where the first word is no command.
+std::string command_suggestion(const CLI::App& app, int argc, char** argv) {
+  const std::string word = argc > 1 ? argv[1] : "";
+  if (word.empty() || word.starts_with('-') || app.get_subcommand_no_throw(word) != nullptr) return "";
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return fmt::format("evbench: \"{}\" is no command{}\n", word, evbench::suggestion(word, names));
+}
 
 int run_program(int argc, char** argv) {
   CLI::App app{"evbench: a benchmark harness for back-ends of event-camera visual odometry"};
@@ -53,6 +63,10 @@ int run_program(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (const std::string text = command_suggestion(app, argc, argv); !text.empty()) {
+      fmt::print(stderr, "{}", text);
+      return evbench::kExitBadInput;
+    }
     return app.exit(error) == 0 ? evbench::kExitDone : evbench::kExitBadInput;
   } catch (const evbench::Interrupted& interrupted) {
     fmt::print(stderr, "evbench: {}\n", interrupted.what());

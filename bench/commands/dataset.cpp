@@ -6,6 +6,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/progress_line.hpp"
+#include "bench/datasets/download.hpp"
 #include "bench/datasets/fetch.hpp"
 #include "core/datasets/catalogue.hpp"
 #include "core/support/interruption.hpp"
@@ -18,7 +19,19 @@ constexpr const char* kPlace =
     "name; NAME.download beside it has what was fetched of one that is not complete yet. A source of type recording\n"
     "takes them by name: {\"dataset\": \"ecd/dynamic_6dof\"}. Their licences are their own.";
 
-void list_datasets() {
+/// "1234.5 MiB" of all its files, as the servers say; "?" where one doesn't.
+std::string size_text(const Dataset& dataset) {
+  double mib = 0.0;
+  for (const Dataset::File& file : dataset.files) {
+    const std::optional<std::uint64_t> size = remote_size(file.url);
+    if (!size) return "?";
+    mib += static_cast<double>(*size) * 0x1p-20;
+  }
+  return fmt::format("{:.1f} MiB", mib);
+}
+
+void list_datasets(bool sizes) {
+  const Interruption interruption("interrupted");
   std::string collection;
   for (const Dataset& dataset : read_catalogue(catalogue_path())) {
     if (dataset.collection != collection) {
@@ -26,7 +39,9 @@ void list_datasets() {
       fmt::print("{}\n  {}, {}\n", collection, dataset.homepage, dataset.licence);
     }
     const bool there = std::filesystem::is_directory(dataset_folder(dataset.name));
-    fmt::print("  {} {:<28} {}\n", there ? '*' : ' ', dataset.name, dataset.description);
+    const std::string size = sizes ? fmt::format("{:>12}  ", size_text(dataset)) : "";
+    fmt::print("  {} {:<28} {}{}\n", there ? '*' : ' ', dataset.name, size, dataset.description);
+    check_interruption();
   }
   fmt::print("\n*: in {}\n", datasets_folder());
 }
@@ -63,12 +78,14 @@ void get_dataset(const std::string& name, bool quiet) {
 void add_dataset(CLI::App& app) {
   struct Arguments {
     std::string name;
-    bool quiet = false;
+    bool quiet = false, sizes = false;
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("dataset", "List and fetch public recordings");
   command->require_subcommand(1);
-  command->add_subcommand("list", "List the catalogue; a star marks what is there")->callback(list_datasets);
+  CLI::App* list = command->add_subcommand("list", "List the catalogue; a star marks what is there");
+  list->add_flag("--sizes", arguments->sizes, "Ask the servers how large the downloads are");
+  list->callback([arguments] { list_datasets(arguments->sizes); });
   CLI::App* get = command->add_subcommand("get", "Fetch a dataset; a download that broke off goes on");
   get->footer(kPlace);
   get->add_option("name", arguments->name, "Name, e.g. ecd/dynamic_6dof")->required();

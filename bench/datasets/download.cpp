@@ -38,6 +38,24 @@ void remove_part(const std::string& part) {
   fs::remove(version_path(part), ignored);
 }
 
+void initialise_curl() {
+  static const CURLcode initialised = curl_global_init(CURL_GLOBAL_DEFAULT);
+  if (initialised != CURLE_OK) throw InputError("libcurl can't be initialised");
+}
+
+/// What is asked of every server.
+void set_manners(CURL* curl, const std::string& url) {
+  constexpr long kConnectSeconds = 30;
+  curl_easy_setopt(curl, CURLOPT_URL, url.c_str());
+  curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
+  curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 1L);
+  curl_easy_setopt(curl, CURLOPT_MAXREDIRS, 5L);
+  curl_easy_setopt(curl, CURLOPT_FAILONERROR, 1L);
+  curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
+  curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT, kConnectSeconds);
+  curl_easy_setopt(curl, CURLOPT_USERAGENT, "evbench");
+}
+
 /// One request, from where the part file ends.
 class Transfer {
  public:
@@ -73,18 +91,11 @@ class Transfer {
 
 Transfer::Transfer(const std::string& url, const std::string& part, const DownloadOptions& options)
     : url_(url), part_(part), options_(options) {
-  constexpr long kConnectSeconds = 30, kSilentSeconds = 60;
+  constexpr long kSilentSeconds = 60;
   CURL* const curl = curl_.get();
-  curl_easy_setopt(curl, CURLOPT_URL, url_.c_str());
-  curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
-  curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 1L);
-  curl_easy_setopt(curl, CURLOPT_MAXREDIRS, 5L);
-  curl_easy_setopt(curl, CURLOPT_FAILONERROR, 1L);
-  curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT, kConnectSeconds);
+  set_manners(curl, url_);
   curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, 1L);
   curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, kSilentSeconds);
-  curl_easy_setopt(curl, CURLOPT_USERAGENT, "evbench");
   curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, error_);
   curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, on_body);
   curl_easy_setopt(curl, CURLOPT_WRITEDATA, this);
@@ -131,6 +142,9 @@ Transfer::End Transfer::perform() {
   if (code_ == CURLE_OK || status() == kRangeNotSatisfiable) return End::complete;
   if (code_ == CURLE_HTTP_RETURNED_ERROR && status() < kServerError) {
     throw InputError(fmt::format("{}: the server answers {}; has the file moved?", url_, status()));
+  }
+  if (code_ == CURLE_COULDNT_RESOLVE_HOST || code_ == CURLE_COULDNT_RESOLVE_PROXY) {
+    throw InputError(fmt::format("{}: {}; is there a network?", url_, message()));
   }
   return End::broken_off;
 }
@@ -203,8 +217,7 @@ void check_content(const std::string& url, const std::string& part, const std::s
 }  // namespace
 
 void download(const std::string& url, const std::string& path, const DownloadOptions& options) {
-  static const CURLcode initialised = curl_global_init(CURL_GLOBAL_DEFAULT);
-  if (initialised != CURLE_OK) throw InputError("libcurl can't be initialised");
+  initialise_curl();
   const std::string part = path + ".part";
   for (int attempt = 1;; ++attempt) {
     Transfer transfer(url, part, options);
@@ -227,6 +240,19 @@ void download(const std::string& url, const std::string& path, const DownloadOpt
   fs::rename(part, path, error);
   if (error) throw OutputError(fmt::format("{}: can't be written: {}", path, error.message()));
   remove_part(part);
+}
+
+std::optional<std::uint64_t> remote_size(const std::string& url) {
+  initialise_curl();
+  const std::unique_ptr<CURL, decltype(&curl_easy_cleanup)> curl(curl_easy_init(), curl_easy_cleanup);
+  set_manners(curl.get(), url);
+  curl_easy_setopt(curl.get(), CURLOPT_NOBODY, 1L);
+  const CURLcode code = curl_easy_perform(curl.get());
+  if (code == CURLE_HTTP_RETURNED_ERROR) return std::nullopt;
+  if (code != CURLE_OK) throw InputError(fmt::format("{}: {}", url, curl_easy_strerror(code)));
+  curl_off_t size = -1;
+  curl_easy_getinfo(curl.get(), CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &size);
+  return size < 0 ? std::nullopt : std::optional(static_cast<std::uint64_t>(size));
 }
 
 }  // namespace evbench

@@ -27,4 +27,8 @@ struct DownloadOptions {
 /// place of the file (these are removed).
 void download(const std::string& url, const std::string& path, const DownloadOptions& options = {});
 
+/// How many bytes a file has, as the server says without sending it; nothing where it doesn't say. Throws InputError
+/// where it can't be asked.
+std::optional<std::uint64_t> remote_size(const std::string& url);
+
 }  // namespace evbench

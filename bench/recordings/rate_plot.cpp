@@ -8,6 +8,17 @@
 
 namespace evbench {
 
+namespace {
+
+constexpr double kSlow = 1e5;  // [events/s], below which millions are a bad unit
+
+}  // namespace
+
+std::string rate_text(double events_per_second) {
+  return events_per_second < kSlow ? fmt::format("{:.0f}/s", events_per_second)
+                                   : fmt::format("{:.3f} million/s", events_per_second * 1e-6);
+}
+
 void RateHistogram::add(std::span<const Event> events) {
   for (const Event& event : events) {
     if (bins_.empty()) start_ = event.t;
@@ -62,9 +73,10 @@ std::vector<double> RateHistogram::resampled(std::size_t count) const {
 std::string plot_rates(const std::vector<double>& rates, double start, double end, int rows) {
   constexpr std::array<const char*, 9> kBars = {" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
   const double most = rates.empty() ? 0.0 : *std::ranges::max_element(rates);
-  std::string text;
+  const std::string top = most < kSlow ? fmt::format("{:.0f}", most) : fmt::format("{:.3f}", most * 1e-6);
+  std::string text = most < kSlow ? "events/s\n" : "million events/s\n";
   for (int row = rows; row-- > 0;) {
-    text += row == rows - 1 ? fmt::format("  {:>9.3f} |", most * 1e-6) : fmt::format("  {:>9} |", row == 0 ? "0" : "");
+    text += fmt::format("  {:>9} |", row == rows - 1 ? top : row == 0 ? "0" : "");
     for (const double rate : rates) {
       const double eighths = most > 0.0 ? std::ceil(8.0 * rows * rate / most) - 8.0 * row : 0.0;
       text += kBars[static_cast<std::size_t>(std::clamp(eighths, 0.0, 8.0))];

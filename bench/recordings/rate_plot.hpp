@@ -9,6 +9,9 @@
 
 namespace evbench {
 
+/// "1.234 million/s", of slow recordings "1234/s".
+std::string rate_text(double events_per_second);
+
 /// How many events there were when, in bounded memory although nobody knows beforehand how long it will last: bins of
 /// equal width, which doubles when they run out.
 class RateHistogram {

@@ -36,12 +36,12 @@ std::string ground_truth_text(const PoseTrajectory& truth) {
 
 std::string rates_text(const RecordingSummary& s) {
   const double seconds = s.duration();
-  const std::string mean = seconds > 0.0 ? fmt::format("{:.3f}", static_cast<double>(s.events) / seconds * 1e-6) : "-";
+  const std::string mean = seconds > 0.0 ? rate_text(static_cast<double>(s.events) / seconds) : "-";
   auto fine = s.rates.rates();
-  if (fine.size() == 1) return fmt::format("{} million/s on average", mean);
+  if (fine.size() == 1) return fmt::format("{} on average", mean);
   fine.pop_back();  // shorter than the others
-  return fmt::format("{} million/s on average, {:.3f} at most over {:g} ms", mean,
-                     *std::ranges::max_element(fine) * 1e-6, s.rates.width() * 1e3);
+  return fmt::format("{} on average, {} at most over {:g} ms", mean, rate_text(*std::ranges::max_element(fine)),
+                     s.rates.width() * 1e3);
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ std::string format_summary(const std::string& path, const RecordingSummary& s) {
                 fmt::format("{} {}, left out; the first: {}", fault.count, kind, fault.first));
   }
   if (s.events == 0) return text;
-  return text + "\nmillion events/s\n" +
+  return text + "\n" +
          plot_rates(s.rates.resampled(kPlotWidth), static_cast<double>(s.start) * 1e-6,
                     static_cast<double>(s.end) * 1e-6);
 }

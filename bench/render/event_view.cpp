@@ -31,6 +31,13 @@ cv::Size sensor_size(const std::string& path, const StreamOptions& options, cons
 
 }  // namespace
 
+PoseTrajectory motion_of(const std::string& path, const RenderOptions& options, EventStream& stream) {
+  PoseTrajectory trajectory = options.trajectory.empty() ? stream.reader().ground_truth().value_or(PoseTrajectory())
+                                                         : read_tum(options.trajectory);
+  if (!trajectory.empty()) return trajectory;
+  throw InputError(fmt::format("{}: has no ground truth; compensation needs --trajectory", path));
+}
+
 EventView::EventView(const std::string& path, const RenderOptions& options, const WindowExtent& extent)
     : stream_(path, options.stream),
       size_(sensor_size(path, options.stream, stream_.info())),
@@ -43,11 +50,7 @@ EventView::EventView(const std::string& path, const RenderOptions& options, cons
 
 void EventView::prepare_compensation(const std::string& path, const RenderOptions& options) {
   const std::string whose = options.trajectory.empty() ? path : options.trajectory;
-  trajectory_ = options.trajectory.empty() ? stream_.reader().ground_truth().value_or(PoseTrajectory())
-                                           : read_tum(options.trajectory);
-  if (trajectory_.empty()) {
-    throw InputError(fmt::format("{}: has no ground truth; compensation needs --trajectory", path));
-  }
+  trajectory_ = motion_of(path, options, stream_);
   const std::optional<Camera> camera = options.calibration.empty()
                                            ? stream_.reader().calibration()
                                            : read_calib(options.calibration, size_.width, size_.height);
@@ -62,12 +65,11 @@ void EventView::prepare_compensation(const std::string& path, const RenderOption
 EventView::Sight EventView::before(std::int64_t t) {
   const std::span<const Event> events = window_.before(t);
   const bool any = !events.empty();
+  // Not beyond the end of the recording, where a time surface would have faded, and no time is to be told.
+  if (any && !window_.next()) t = std::min(t, events.back().t + 1);
   switch (mode_) {
     case RenderMode::events: break;
-    case RenderMode::time_surface:
-      // Not beyond the end of the recording, where all would have faded.
-      if (any && !window_.next()) t = std::min(t, events.back().t + 1);
-      return {draw_time_surface(time_surface(events, size_, t, decay_), palette_), t, any};
+    case RenderMode::time_surface: return {draw_time_surface(time_surface(events, size_, t, decay_), palette_), t, any};
     case RenderMode::compensated:
       // The middle of the events, not of the window: a trajectory may end with the events.
       if (any) t = std::midpoint(events.front().t, events.back().t);

@@ -11,6 +11,10 @@
 
 namespace evbench {
 
+/// The motion for compensation: the file that the options name, or the recording's own. Throws InputError where there
+/// is neither.
+PoseTrajectory motion_of(const std::string& path, const RenderOptions& options, EventStream& stream);
+
 /// One recording as it is seen at a time: reads what it needs, time moves forward.
 class EventView {
  public:

@@ -104,7 +104,8 @@ class Renderer {
     drawn_ |= sight.has_events;
     Picture picture = enlarge(sight.picture, scale_);
     if (tracks_) {
-      tracks_->draw(static_cast<double>(sight.t + main_.stream().zero()) * 1e-6, scale_, palette_, picture);
+      const double now = static_cast<double>(sight.t + main_.stream().zero()) * 1e-6;
+      drawn_tracks_ |= tracks_->draw(now, scale_, palette_, picture);
     }
     if (with_time_) draw_time(sight.t, palette_, picture);
     if (!beside_) return picture;
@@ -120,6 +121,8 @@ class Renderer {
     if (!drawn_) throw InputError(fmt::format(kNone, in_));
     if (beside_ && !drawn_beside_) throw InputError(fmt::format(kNone, beside_path_));
   }
+
+  bool lacks_tracks() const { return tracks_ && !drawn_tracks_; }
 
   /// Time of the first event that is still to be drawn.
   std::optional<std::int64_t> next() { return main_.window().next(); }
@@ -141,18 +144,40 @@ class Renderer {
   std::optional<TrackOverlay> tracks_;
   std::optional<EventView> beside_;
   bool drawn_ = false, drawn_beside_ = false;  ///< any event?
+  bool drawn_tracks_ = false;
 };
+
+/// What is compensated without --from or --to: the time that the trajectory covers. Says so where that is not all.
+RenderOptions within_motion(const std::string& in, const RenderOptions& asked, RenderReport& report) {
+  if (asked.mode != RenderMode::compensated || (asked.stream.from && asked.stream.to)) return asked;
+  RenderOptions options = asked;
+  EventStream stream(in, asked.stream);
+  const PoseTrajectory motion = motion_of(in, asked, stream);
+  const auto time = [&](double t, double (*round)(double)) {
+    return static_cast<std::int64_t>(round(t * 1e6)) - stream.zero();
+  };
+  const std::int64_t start = time(motion.start(), std::ceil), end = time(motion.end(), std::floor) + 1;
+  std::vector<Event> events;
+  if (!asked.stream.from && stream.read(events) && events.front().t < start) {
+    options.stream.from = start;
+    report.remarks.push_back(fmt::format("the trajectory begins at {:.6f} s, after the events: drawn from there on",
+                                         static_cast<double>(start) * 1e-6));
+  }
+  if (!asked.stream.to) options.stream.to = end;
+  return options;
+}
 
 }  // namespace
 
-RenderReport render(const std::string& in, const std::string& out, const RenderOptions& options,
+RenderReport render(const std::string& in, const std::string& out, const RenderOptions& asked,
                     const std::function<void(std::int64_t, std::int64_t)>& progress) {
-  check_options(options);
+  check_options(asked);
+  RenderReport report;
+  const RenderOptions options = within_motion(in, asked, report);
   const std::unique_ptr<PictureSink> sink = open_picture_sink(out, options.fps, options.force);
   const double period = options.speed / options.fps * 1e6;  // [us]
-  const WindowExtent extent = make_extent(options, !sink->takes_many(), std::llround(period));
+  const WindowExtent extent = make_extent(asked, !sink->takes_many(), std::llround(period));
   Renderer renderer(in, options, extent);
-  RenderReport report;
   const std::int64_t first = first_end(in, options.stream, extent);
   while (true) {
     const std::int64_t t = first + std::llround(period * static_cast<double>(report.pictures));
@@ -172,6 +197,10 @@ RenderReport render(const std::string& in, const std::string& out, const RenderO
     }
   }
   renderer.expect_events();
+  if (renderer.lacks_tracks()) {
+    report.remarks.push_back(
+        fmt::format("{}: none of its tracks is in view at the times that are drawn", asked.tracks));
+  }
   sink->finish();
   report.faults = renderer.faults();
   return report;

@@ -43,13 +43,14 @@ struct RenderReport {
   std::int64_t pictures = 0;
   cv::Size size;                                              ///< of a picture
   std::vector<std::pair<std::string, Faults::Fault>> faults;  ///< of the recordings, left out
+  std::vector<std::string> remarks;  ///< sentences: what was not drawn as one may have expected
 };
 
 /// Draws a recording to `out` (picture_sink.hpp). The first picture shows the beginning of the time range; the next
 /// ones follow every speed / fps seconds (not less than 1 µs), up to the one that shows the last event. Times of tracks
-/// and trajectory are the file's own. `progress` is told how many pictures are done, and their time [µs]. Throws
-/// InputError for what can't be read or written, for times without events, a trajectory that does not reach, and
-/// options that don't fit.
+/// and trajectory are the file's own. Without --from or --to, compensation draws what the trajectory covers. `progress`
+/// is told how many pictures are done, and their time [µs]. Throws InputError for what can't be read or written, for
+/// times without events, a trajectory that does not reach, and options that don't fit.
 RenderReport render(const std::string& in, const std::string& out, const RenderOptions& options,
                     const std::function<void(std::int64_t, std::int64_t)>& progress = {});
 

@@ -41,7 +41,7 @@ Colour track_colour(TrackId track, const Palette& palette) {
   return result;
 }
 
-void TrackOverlay::draw(double t, int scale, const Palette& palette, Picture& picture) const {
+bool TrackOverlay::draw(double t, int scale, const Palette& palette, Picture& picture) const {
   const auto first = std::ranges::upper_bound(observations_, t - tail_, {}, &TrackObservation::t);
   const auto last = std::ranges::upper_bound(observations_, t, {}, &TrackObservation::t);
   std::map<TrackId, std::vector<const TrackObservation*>> tracks;
@@ -60,6 +60,7 @@ void TrackOverlay::draw(double t, int scale, const Palette& palette, Picture& pi
                  scalar(rim ? palette.background : colour), cv::FILLED, cv::LINE_AA, kFractionBits);
     }
   }
+  return !tracks.empty();
 }
 
 }  // namespace evbench

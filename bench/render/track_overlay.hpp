@@ -14,8 +14,8 @@ class TrackOverlay {
   TrackOverlay(std::vector<TrackObservation> observations, double tail)
       : observations_(std::move(observations)), tail_(tail) {}
 
-  /// Over a picture that shows the sensor at time t [s], each pixel of it `scale` pixels wide.
-  void draw(double t, int scale, const Palette& palette, Picture& picture) const;
+  /// Over a picture that shows the sensor at time t [s], each pixel of it `scale` pixels wide. Is any track there?
+  bool draw(double t, int scale, const Palette& palette, Picture& picture) const;
 
  private:
   std::vector<TrackObservation> observations_;

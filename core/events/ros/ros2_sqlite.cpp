@@ -5,8 +5,10 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
+#include "core/io/byte_source.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
@@ -71,6 +73,23 @@ std::string uri(const std::string& path) {
   return result + (journal ? "?mode=ro" : "?mode=ro&immutable=1");
 }
 
+/// How many of its pages a file is short of; SQLite takes those that it doesn't look at for zeros. 0 where a journal
+/// may have them.
+std::uint64_t missing_pages(const std::string& path) {
+  // Big-endian: the size of a page (1: 64 KiB) at byte 16, their number at byte 28.
+  std::array<std::byte, 32> header{};
+  FileBytes file(path);
+  if (file.read(0, header) < header.size() || std::filesystem::exists(path + "-wal")) return 0;
+  const auto number = [&](std::size_t at, std::size_t count) {
+    std::uint64_t value = 0;
+    for (std::size_t i = at; i < at + count; ++i) value = value << 8 | static_cast<std::uint64_t>(header[i]);
+    return value;
+  };
+  const std::uint64_t size = number(16, 2) == 1 ? 65536 : number(16, 2), count = number(28, 4);
+  const std::uint64_t whole = size == 0 ? count : file.size() / size;
+  return count > whole ? count - whole : 0;
+}
+
 SqliteBag::SqliteBag(const std::string& path, Faults& faults, bool count) : path_(path), faults_(faults) {
   constexpr int kMostBytes = 256 << 20;  // of a message
   constexpr int kSteps = 10'000;         // of SQLite's machine between two looks for an interruption
@@ -78,6 +97,9 @@ SqliteBag::SqliteBag(const std::string& path, Faults& faults, bool count) : path
   const int result = sqlite3_open_v2(uri(path).c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
   database_.reset(database);
   if (result != SQLITE_OK) throw InputError(fmt::format("{}: SQLite cannot open it: {}", path, sqlite3_errstr(result)));
+  if (const std::uint64_t missing = missing_pages(path); missing > 0) {
+    faults_.add("pages missing at the end: the file is cut short", fmt::format("{} of them", missing));
+  }
   sqlite3_limit(database, SQLITE_LIMIT_LENGTH, kMostBytes);
   sqlite3_progress_handler(
       database, kSteps, [](void*) { return Interruption::is_requested() ? 1 : 0; }, nullptr);
