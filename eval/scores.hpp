@@ -51,7 +51,8 @@ struct ScoreOptions {
     set.add("segments", segments, "whose definition of errors over sub-trajectories is added, in % and deg/m")
         .choices(to_strings(kSegmentRuleNames));
     set.add("segment_lengths", segment_lengths,
-            "lengths of sub-trajectories [segment_unit]; empty: 10 to 50 % (rpg), 100 to 800 m (kitti)");
+            "lengths of sub-trajectories [segment_unit]; empty: 10 to 50 % (rpg), 100 to 800 m (kitti)")
+        .above(0.0);
     set.add("segment_unit", segment_unit, "what these lengths are in: metres, or percent of the ground truth's path")
         .choices(to_strings(kLengthUnitNames));
   }

@@ -8,6 +8,7 @@
 #include "bench/experiment.hpp"
 #include "bench/plugins.hpp"
 #include "bench/run_folder.hpp"
+#include "core/data/calib.hpp"
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
@@ -21,19 +22,21 @@ namespace {
 struct ExportArguments {
   std::string from;
   std::vector<std::string> overrides;
-  std::string ground_truth, tracks, aligned, errors;
+  std::string ground_truth, tracks, calibration, aligned, errors;
   bool online = false;
   bool force = false;
 
-  bool of_source() const { return !ground_truth.empty() || !tracks.empty(); }
+  bool of_source() const { return !ground_truth.empty() || !tracks.empty() || !calibration.empty(); }
   bool of_run() const { return !aligned.empty() || !errors.empty(); }
 };
 
 void check(const ExportArguments& arguments) {
   if (!arguments.of_source() && !arguments.of_run()) {
-    throw InputError("nothing to export; expected at least one of --groundtruth, --tracks, --aligned, --errors");
+    throw InputError(
+        "nothing to export; expected at least one of --groundtruth, --tracks, --calib, --aligned, --errors");
   }
-  for (const std::string* path : {&arguments.ground_truth, &arguments.tracks, &arguments.aligned, &arguments.errors}) {
+  for (const std::string* path :
+       {&arguments.ground_truth, &arguments.tracks, &arguments.calibration, &arguments.aligned, &arguments.errors}) {
     refuse_to_replace(*path, arguments.force);
   }
   std::error_code ignored;
@@ -52,15 +55,16 @@ void check(const ExportArguments& arguments) {
 void export_source(const std::string& config, const ExportArguments& arguments, Plugins& plugins) {
   load_plugins_of(plugins, config, arguments.overrides);
   const std::unique_ptr<Source> source = read_source(config, plugins, arguments.overrides);
-  if (!arguments.ground_truth.empty()) {
-    if (source->ground_truth().empty()) throw InputError(fmt::format("{}: its source has no ground truth", config));
-    write_file(arguments.ground_truth, format_tum(source->ground_truth()));
+  const auto tracks = source->true_tracks();
+  if (!arguments.ground_truth.empty() && source->ground_truth().empty()) {
+    throw InputError(fmt::format("{}: its source has no ground truth", config));
   }
-  if (!arguments.tracks.empty()) {
-    const auto tracks = source->true_tracks();
-    if (!tracks) throw InputError(fmt::format("{}: its source knows no tracks; simulated ones do", config));
-    write_file(arguments.tracks, format_tracks(*tracks));
+  if (!arguments.tracks.empty() && !tracks) {
+    throw InputError(fmt::format("{}: its source knows no tracks; expected a simulated one", config));
   }
+  if (!arguments.ground_truth.empty()) write_file(arguments.ground_truth, format_tum(source->ground_truth()));
+  if (!arguments.tracks.empty()) write_file(arguments.tracks, format_tracks(*tracks));
+  if (!arguments.calibration.empty()) write_file(arguments.calibration, format_calib(source->camera()));
 }
 
 void export_run(const ExportArguments& arguments) {
@@ -90,6 +94,8 @@ void add_export(CLI::App& app, Plugins& plugins) {
       ->type_name("FILE");
   command->add_option("--tracks", arguments->tracks, "The tracks of a simulated source: id t x y, raw pixels")
       ->type_name("FILE");
+  command->add_option("--calib", arguments->calibration, "The source's camera: fx fy cx cy k1 k2 p1 p2 k3")
+      ->type_name("FILE");
   command->add_option("--aligned", arguments->aligned, "The run's estimate, aligned as it was scored (TUM)")
       ->type_name("FILE");
   command->add_option("--errors", arguments->errors, "The error of each of its poses: CSV")->type_name("FILE");
@@ -99,11 +105,9 @@ void add_export(CLI::App& app, Plugins& plugins) {
       ->allow_extra_args(false);
   command->add_flag("--force", arguments->force, "Replace files that exist");
   command->footer(
-      "A config's source is made as evbench run makes it: the same seed gives the same tracks. A run's folder stands "
-      "for\n"
-      "its config; its estimate is scored by its own protocol. Files of poses and tracks are what the source "
-      "recording\n"
-      "and the front-end recorded read, and evo plots.");
+      "A config's source is made as evbench run makes it: the same seed gives the same tracks. Written as\n"
+      "groundtruth.txt, calib.txt and tracks.txt, it can be run by the source recording and the front-end recorded.\n"
+      "A run's folder stands for its config; its estimate is scored by its own protocol.");
   command->callback([arguments, &plugins] { execute(*arguments, plugins); });
 }
 

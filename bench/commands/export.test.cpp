@@ -29,12 +29,22 @@ struct Sequence {
 
 TEST_CASE("A simulated sequence is exported whole, and can be run from its files") {
   const Sequence sequence;
-  REQUIRE(sequence.run("export c.json --groundtruth groundtruth.txt --tracks tracks.txt").exit_code == 0);
+  REQUIRE(sequence.run("export c.json --groundtruth groundtruth.txt --tracks tracks.txt --calib calib.txt").exit_code ==
+          0);
   const PoseTrajectory truth = read_tum(sequence.folder.file("groundtruth.txt"));
   CHECK(truth.start() <= 0.0);
   CHECK(truth.end() >= 3.0);
   const auto tracks = read_tracks(sequence.folder.file("tracks.txt"), 240, 180).observations;
   CHECK(tracks.size() > 1000);
+  Json config = short_config();
+  config["name"] = "files";
+  config["source"] = {{"type", "recording"}, {"folder", "."}, {"width", 240}, {"height", 180}};
+  config["frontend"] = {{"type", "recorded"}, {"tracks", "tracks.txt"}};
+  sequence.folder.write("files.json", config.dump());
+  REQUIRE(sequence.run("run files.json --quiet").exit_code == 0);
+  const std::string run = *names_in(sequence.folder.file("results/files")).begin();
+  const Json metrics = Json::parse(read_file(sequence.folder.file("results/files/" + run + "/metrics.json")));
+  CHECK(metrics.at("final").at("ate").at("trans_percent").get<double>() < 2.0);
   const std::string first = read_file(sequence.folder.file("tracks.txt"));
   REQUIRE(sequence.run("export c.json --tracks tracks.txt --set seed=2 --force").exit_code == 0);
   CHECK(read_file(sequence.folder.file("tracks.txt")) != first);
@@ -69,5 +79,7 @@ TEST_CASE("What can't be exported is refused with what was expected, and no file
   sequence.refused("c.json --tracks t.txt", "t.txt: exists already; --force replaces it");
   CHECK(read_file(sequence.folder.file("t.txt")) == "mine");
   write_recording(sequence.folder);
-  sequence.refused("recording.json --tracks none.txt", "recording.json: its source knows no tracks");
+  sequence.refused("recording.json --groundtruth none.txt --tracks none2.txt",
+                   "recording.json: its source knows no tracks; expected a simulated one");
+  CHECK_FALSE(std::filesystem::exists(sequence.folder.file("none.txt")));
 }

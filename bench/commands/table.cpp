@@ -38,7 +38,7 @@ void add_table(CLI::App& app) {
   command->add_option("folders", arguments->folders, "Folders of runs, searched with all folders below")
       ->required()
       ->type_name("DIR");
-  command->add_option("--format", arguments->format, "Format")
+  command->add_option("--format", arguments->format, "Format; latex has few columns, see --metrics, and needs booktabs")
       ->check(CLI::IsMember(to_strings(kTableFormatNames)))
       ->capture_default_str();
   command->add_option("--out", arguments->out, "Write to this file instead of the terminal")->type_name("FILE");

@@ -44,4 +44,15 @@ Camera read_calib(const std::string& path, int width, int height, DistortionMode
   return camera;
 }
 
+std::string format_calib(const Camera& camera) {
+  const bool pinhole = camera.distortion == DistortionModel::none;
+  const Layout written = layout(pinhole ? DistortionModel::radial_tangential : camera.distortion);
+  const PinholeCamera& p = camera.pinhole;
+  std::string text = fmt::format("{} {} {} {}", p.fx, p.fy, p.cx, p.cy);
+  for (std::size_t i = 0; i < written.coefficients; ++i) {
+    text += fmt::format(" {}", pinhole ? 0.0 : camera.coefficients[static_cast<Eigen::Index>(i)]);
+  }
+  return text + "\n";
+}
+
 }  // namespace evbench

@@ -13,4 +13,7 @@ namespace evbench {
 Camera read_calib(const std::string& path, int width, int height,
                   DistortionModel model = DistortionModel::radial_tangential);
 
+/// The record that read_calib() reads back as the same camera; one without a lens as radial_tangential, all of it 0.
+std::string format_calib(const Camera& camera);
+
 }  // namespace evbench

@@ -29,6 +29,13 @@ TEST_CASE("A calibration gives pinhole, lens and the sensor's size") {
   CHECK(calib("199 198 132 110", DistortionModel::none).distortion == DistortionModel::none);
 }
 
+TEST_CASE("A calibration that is written reads back as the same camera") {
+  const std::string radial = "199.125 198 132 110 -0.37 0.15 -0.0003 -0.0008 0.01\n";
+  CHECK(format_calib(calib(radial)) == radial);
+  CHECK(format_calib(calib("199 198 132 110 1 2 3 4", DistortionModel::equidistant)) == "199 198 132 110 1 2 3 4\n");
+  CHECK(format_calib(calib("199 198 132 110", DistortionModel::none)) == "199 198 132 110 0 0 0 0 0\n");
+}
+
 TEST_CASE("A damaged calibration is refused with what is wrong") {
   CHECK_THROWS_AS(calib(""), InputError);
   CHECK_THROWS_WITH(calib(""), Contains("is empty"));
