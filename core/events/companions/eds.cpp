@@ -1,5 +1,5 @@
 #include "core/data/tum.hpp"
-#include "core/events/companions/calibration_fields.hpp"
+#include "core/data/calibration_fields.hpp"
 #include "core/events/companions/data_sets.hpp"
 
 namespace evbench {

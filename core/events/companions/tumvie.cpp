@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "core/data/tum.hpp"
-#include "core/events/companions/calibration_fields.hpp"
+#include "core/data/calibration_fields.hpp"
 #include "core/events/companions/data_sets.hpp"
 
 namespace evbench {
@@ -24,8 +24,11 @@ Camera read_camera(const Field& calibration, std::size_t index) {
     for (const char* name : names) numbers.push_back(values.at(name).number());
     return numbers;
   };
+  const Field resolution = calibration.at("resolution").at(index);
+  const std::vector<double> size = resolution.numbers(2);
   return checked_camera(values.place(), several({"fx", "fy", "cx", "cy"}), DistortionModel::equidistant,
-                        several({"k1", "k2", "k3", "k4"}), calibration.at("resolution").at(index).numbers(2));
+                        several({"k1", "k2", "k3", "k4"}), checked_side(resolution.place(), size[0]),
+                        checked_side(resolution.place(), size[1]));
 }
 
 /// Of the calibrations A and B each sequence has one.
