@@ -5,10 +5,8 @@
 #include <memory>
 
 #include "bench/commands/commands.hpp"
-#include "core/data/robotevt.hpp"
-#include "core/data/tum.hpp"
+#include "core/data/pose_file.hpp"
 #include "core/io/atomic_file.hpp"
-#include "core/io/text_reader.hpp"
 #include "eval/protocol.hpp"
 #include "eval/run_record.hpp"
 
@@ -18,7 +16,7 @@ namespace {
 /// The command line, in evo's words.
 struct EvalArguments {
   std::string ground_truth, estimate;
-  std::string format = "auto";
+  std::string format = "auto", times, ground_truth_unit = "auto", estimate_unit = "auto";
   bool align = false, correct_scale = false, align_origin = false;
   bool interpolate = false, all_pairs = false, pairs_from_reference = false;
   int n_to_align = -1;
@@ -29,12 +27,31 @@ struct EvalArguments {
   ScoreOptions options = {.rpe_delta = 1.0};  ///< what goes straight into the protocol
 };
 
-PoseTrajectory read_trajectory(const std::string& path, const std::string& format) {
-  if (format == "tum") return read_tum(path);
-  if (format == "robotevt") return read_robotevt(path);
-  TextReader reader(path);
-  const bool robotevt = reader.next() && reader.columns().size() == 13;
-  return robotevt ? read_robotevt(path) : read_tum(path);
+/// The value with this name; CLI11 has checked that there is one.
+template <class Enum, std::size_t count>
+Enum named(const std::array<const char*, count>& names, const std::string& name) {
+  return static_cast<Enum>(std::ranges::find(names, name) - names.begin());
+}
+
+PoseFile read_file(const std::string& path, const std::string& unit, const EvalArguments& arguments) {
+  PoseFileOptions options;
+  options.format = named<PoseFormat>(kPoseFormatNames, arguments.format);
+  options.time_unit = named<TimeUnit>(kTimeUnitNames, unit);
+  options.times = arguments.times;
+  options.may_number = true;
+  return read_poses(path, options);
+}
+
+/// Where neither file has times, poses go together by their numbers.
+void check_numbers(const PoseFile& ground_truth, const PoseFile& estimate, const EvalArguments& arguments) {
+  if (ground_truth.numbered != estimate.numbered) {
+    throw InputError(fmt::format("{}: has no times, as the other trajectory has; expected --times with a time a pose",
+                                 estimate.numbered ? arguments.estimate : arguments.ground_truth));
+  }
+  const std::size_t poses = estimate.trajectory.size(), expected = ground_truth.trajectory.size();
+  if (!estimate.numbered || poses == expected) return;
+  throw InputError(fmt::format("{}: has {} poses without times; expected {}, as the ground truth has, or --times",
+                               arguments.estimate, poses, expected));
 }
 
 std::string alignment_name(const EvalArguments& arguments) {
@@ -84,12 +101,35 @@ RunRecord record_of(const EvalArguments& arguments, const Scores& scores) {
 }
 
 void execute(const EvalArguments& arguments) {
-  const PoseTrajectory ground_truth = read_trajectory(arguments.ground_truth, arguments.format);
-  const PoseTrajectory estimate = read_trajectory(arguments.estimate, arguments.format);
-  const Scores scores = score_files(ground_truth, estimate, arguments);
+  const PoseFile ground_truth = read_file(arguments.ground_truth, arguments.ground_truth_unit, arguments);
+  const PoseFile estimate = read_file(arguments.estimate, arguments.estimate_unit, arguments);
+  check_numbers(ground_truth, estimate, arguments);
+  const Scores scores = score_files(ground_truth.trajectory, estimate.trajectory, arguments);
+  for (const PoseFile* file : {&ground_truth, &estimate}) {
+    for (const std::string& remark : file->remarks) fmt::print(stderr, "remark: {}\n", remark);
+  }
   if (!arguments.json.empty()) write_file(arguments.json, to_json(record_of(arguments, scores)).dump(2) + "\n");
   if (arguments.json == "/dev/stdout") return;
   fmt::print("ground truth {}\nestimate     {}\n{}", arguments.ground_truth, arguments.estimate, describe(scores));
+}
+
+void add_file_options(CLI::App& command, EvalArguments& arguments) {
+  command
+      .add_option(
+          "--format", arguments.format,
+          "Columns of both files: tum (t x y z qx qy qz qw), euroc (t x y z qw qx qy qz), kitti (3x4 matrices), "
+          "robotevt (t r11..r33 x y z); auto: as their names or number tell")
+      ->check(CLI::IsMember(to_strings(kPoseFormatNames)))
+      ->capture_default_str();
+  command.add_option("--times", arguments.times, "Times, one a line, of trajectories without (KITTI)")
+      ->type_name("FILE");
+  const auto add_unit = [&](const char* name, std::string& unit, const std::string& whose) {
+    command.add_option(name, unit, "Unit of the " + whose + "'s times; auto: as their column's name says, or seconds")
+        ->check(CLI::IsMember(to_strings(kTimeUnitNames)))
+        ->capture_default_str();
+  };
+  add_unit("--groundtruth_unit", arguments.ground_truth_unit, "ground truth");
+  add_unit("--estimate_unit", arguments.estimate_unit, "estimate");
 }
 
 void add_alignment_options(CLI::App& command, EvalArguments& arguments) {
@@ -145,9 +185,7 @@ void add_eval(CLI::App& app) {
   CLI::App* command = app.add_subcommand("eval", "Score a trajectory: ATE and RPE, with evo's options and numbers");
   command->add_option("groundtruth", arguments->ground_truth, "Ground truth")->required();
   command->add_option("estimate", arguments->estimate, "Estimated trajectory")->required();
-  command->add_option("--format", arguments->format, "TUM (t x y z qx qy qz qw) or RobotEvt (t r11..r33 t1 t2 t3)")
-      ->check(CLI::IsMember({"auto", "tum", "robotevt"}))
-      ->capture_default_str();
+  add_file_options(*command, *arguments);
   add_alignment_options(*command, *arguments);
   add_association_options(*command, *arguments);
   add_relative_options(*command, *arguments);

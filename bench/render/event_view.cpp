@@ -8,7 +8,7 @@
 #include "bench/render/event_image.hpp"
 #include "bench/render/time_surface.hpp"
 #include "core/data/calib.hpp"
-#include "core/data/tum.hpp"
+#include "core/data/pose_file.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
@@ -44,7 +44,7 @@ EventView::EventView(const std::string& path, const RenderOptions& options, cons
 void EventView::prepare_compensation(const std::string& path, const RenderOptions& options) {
   const std::string whose = options.trajectory.empty() ? path : options.trajectory;
   trajectory_ = options.trajectory.empty() ? stream_.reader().ground_truth().value_or(PoseTrajectory())
-                                           : read_tum(options.trajectory);
+                                           : read_poses(options.trajectory).trajectory;
   if (trajectory_.empty()) {
     throw InputError(fmt::format("{}: has no ground truth; compensation needs --trajectory", path));
   }

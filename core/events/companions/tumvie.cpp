@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "core/data/tum.hpp"
 #include "core/data/calibration_fields.hpp"
 #include "core/events/companions/data_sets.hpp"
 
@@ -61,8 +60,9 @@ Companions tumvie_companions(const EventsPlace& place) {
   const std::string poses = find_poses(place);
   if (poses.empty()) return found;
   const auto read_markers = [=] {
-    constexpr double kMicrosecond = 1e-6;
-    return files->get(poses, [](const std::string& path) { return read_tum(path, kMicrosecond); });
+    return files->get(poses, [](const std::string& path) {
+      return read_poses(path, {.format = PoseFormat::tum, .time_unit = TimeUnit::microseconds});
+    });
   };
   if (cameras.empty() || markers.empty()) {
     found.ground_truth = {{poses},
@@ -76,9 +76,11 @@ Companions tumvie_companions(const EventsPlace& place) {
     const SE3 T_imu_marker = read_pose(read_calibration(*files, markers).at("T_imu_marker")),
               T_imu_camera = read_pose(read_calibration(*files, cameras).at("T_imu_cam").at(index));
     const SE3 T_marker_camera = T_imu_marker.inverse() * T_imu_camera;
-    std::vector<StampedPose> trajectory = read_markers().poses();
+    PoseFile file = read_markers();
+    std::vector<StampedPose> trajectory = std::move(file.trajectory).poses();
     for (StampedPose& pose : trajectory) pose.T = pose.T * T_marker_camera;
-    return PoseTrajectory(std::move(trajectory));
+    file.trajectory = PoseTrajectory(std::move(trajectory));
+    return file;
   };
   found.ground_truth = {{poses, markers.front(), cameras.front()}, "the event camera", read};
   return found;
