@@ -6,10 +6,8 @@
 #include <memory>
 
 #include "bench/commands/commands.hpp"
-#include "core/data/robotevt.hpp"
-#include "core/data/tum.hpp"
+#include "core/data/pose_file.hpp"
 #include "core/io/atomic_file.hpp"
-#include "core/io/text_reader.hpp"
 #include "eval/error_files.hpp"
 #include "eval/protocol.hpp"
 #include "eval/score_run.hpp"
@@ -22,7 +20,7 @@ namespace {
 struct EvalArguments {
   std::string ground_truth;
   std::vector<std::string> estimates;
-  std::string format = "auto";
+  std::string format = "auto", times, ground_truth_unit = "auto", estimate_unit = "auto";
   bool align = false, correct_scale = false, align_origin = false;
   bool interpolate = false, all_pairs = false, pairs_from_reference = false;
   int n_to_align = -1;
@@ -35,13 +33,36 @@ struct EvalArguments {
   ScoreOptions options = {.rpe_delta = 1.0};  ///< what goes straight into the protocol
 };
 
-PoseTrajectory read_trajectory(const std::string& path, const std::string& format) {
-  if (format == "tum") return read_tum(path);
-  if (format == "robotevt") return read_robotevt(path);
-  if (!std::filesystem::is_regular_file(path)) return read_tum(path);  // a pipe can be read once only
-  TextReader reader(path);
-  const bool robotevt = reader.next() && reader.columns().size() == 13;
-  return robotevt ? read_robotevt(path) : read_tum(path);
+/// The value with this name; CLI11 has checked that there is one.
+template <class Enum, std::size_t count>
+Enum named(const std::array<const char*, count>& names, const std::string& name) {
+  return static_cast<Enum>(std::ranges::find(names, name) - names.begin());
+}
+
+PoseFile read_file(const std::string& path, const std::string& unit, const EvalArguments& arguments) {
+  PoseFileOptions options;
+  options.format = named<PoseFormat>(kPoseFormatNames, arguments.format);
+  options.time_unit = named<TimeUnit>(kTimeUnitNames, unit);
+  options.times = arguments.times;
+  options.may_number = true;
+  return read_poses(path, options);
+}
+
+void print_remarks(const PoseFile& file) {
+  for (const std::string& remark : file.remarks) fmt::print(stderr, "remark: {}\n", remark);
+}
+
+/// Where neither file has times, poses go together by their numbers.
+void check_numbers(const PoseFile& ground_truth, const PoseFile& estimate, const std::string& path,
+                   const EvalArguments& arguments) {
+  if (ground_truth.numbered != estimate.numbered) {
+    throw InputError(fmt::format("{}: has no times, as the other trajectory has; expected --times with a time a pose",
+                                 estimate.numbered ? path : arguments.ground_truth));
+  }
+  const std::size_t poses = estimate.trajectory.size(), expected = ground_truth.trajectory.size();
+  if (!estimate.numbered || poses == expected) return;
+  throw InputError(fmt::format("{}: has {} poses without times; expected {}, as the ground truth has, or --times", path,
+                               poses, expected));
 }
 
 std::string alignment_name(const EvalArguments& arguments) {
@@ -73,10 +94,13 @@ ScoreOptions score_options(const EvalArguments& arguments) {
 }
 
 /// Errors name the estimate's file, as those of reading do.
-ScoredEstimate score_file(const PoseTrajectory& ground_truth, const std::string& path, const EvalArguments& arguments) {
-  ScoredEstimate scored{read_trajectory(path, arguments.format), {}};
+ScoredEstimate score_file(const PoseFile& ground_truth, const std::string& path, const EvalArguments& arguments) {
+  PoseFile estimate = read_file(path, arguments.estimate_unit, arguments);
+  print_remarks(estimate);
+  check_numbers(ground_truth, estimate, path, arguments);
+  ScoredEstimate scored{std::move(estimate.trajectory), {}};
   try {
-    scored.scores = score(ground_truth, scored.estimate, score_options(arguments));
+    scored.scores = score(ground_truth.trajectory, scored.estimate, score_options(arguments));
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", path, error.what()));
   }
@@ -111,7 +135,8 @@ void check_outputs(const EvalArguments& arguments) {
 
 void execute(const EvalArguments& arguments) {
   check_outputs(arguments);
-  const PoseTrajectory ground_truth = read_trajectory(arguments.ground_truth, arguments.format);
+  const PoseFile ground_truth = read_file(arguments.ground_truth, arguments.ground_truth_unit, arguments);
+  print_remarks(ground_truth);
   std::vector<RunRecord> records;
   ScoredEstimate last;
   for (const std::string& path : arguments.estimates) {
@@ -133,6 +158,25 @@ void execute(const EvalArguments& arguments) {
   }
   fmt::print("ground truth {}\nestimate     {}\n{}", arguments.ground_truth, arguments.estimates[0],
              describe(last.scores));
+}
+
+void add_file_options(CLI::App& command, EvalArguments& arguments) {
+  command
+      .add_option(
+          "--format", arguments.format,
+          "Columns of both files: tum (t x y z qx qy qz qw), euroc (t x y z qw qx qy qz), kitti (3x4 matrices), "
+          "robotevt (t r11..r33 x y z); auto: as their names or number tell")
+      ->check(CLI::IsMember(to_strings(kPoseFormatNames)))
+      ->capture_default_str();
+  command.add_option("--times", arguments.times, "Times, one a line, of trajectories without (KITTI)")
+      ->type_name("FILE");
+  const auto add_unit = [&](const char* name, std::string& unit, const std::string& whose) {
+    command.add_option(name, unit, "Unit of the " + whose + "'s times; auto: as their column's name says, or seconds")
+        ->check(CLI::IsMember(to_strings(kTimeUnitNames)))
+        ->capture_default_str();
+  };
+  add_unit("--groundtruth_unit", arguments.ground_truth_unit, "ground truth");
+  add_unit("--estimate_unit", arguments.estimate_unit, "estimate");
 }
 
 void add_alignment_options(CLI::App& command, EvalArguments& arguments) {
@@ -223,11 +267,7 @@ void add_eval(CLI::App& app) {
   CLI::App* command = app.add_subcommand("eval", "Score trajectories: ATE and RPE, with evo's options and numbers");
   command->add_option("groundtruth", arguments->ground_truth, "Ground truth")->required();
   command->add_option("estimates", arguments->estimates, "Estimated trajectories")->required();
-  command
-      ->add_option("--format", arguments->format,
-                   "TUM (t x y z qx qy qz qw) or RobotEvt (t r11..r33 t1 t2 t3); auto: by the columns, of a pipe TUM")
-      ->check(CLI::IsMember({"auto", "tum", "robotevt"}))
-      ->capture_default_str();
+  add_file_options(*command, *arguments);
   add_alignment_options(*command, *arguments);
   add_association_options(*command, *arguments);
   add_relative_options(*command, *arguments);

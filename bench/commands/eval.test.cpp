@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 
@@ -191,6 +193,47 @@ TEST_CASE("eval reads pipes, and says what it waits for") {
   CHECK(piped.err == "pipe: is a pipe that nobody has written to; waiting for it\n");
   CHECK(testing::shell(files.folder, "cat estimate.txt > pipe & \"$evbench\" eval truth.txt pipe").err.empty());
   CHECK(testing::shell(files.folder, "timeout -s INT 2 \"$evbench\" eval truth.txt pipe").exit_code == 124);
+}
+
+TEST_CASE("eval gives the same scores for the same trajectories in KITTI's and EuRoC's layouts") {
+  const Trajectories files;
+  const auto ate = [&](const std::string& options) {
+    const Json scores = files.eval("-as " + options).at("final");
+    CHECK(scores.at("pairs") == 200);
+    return scores.at("ate").at("trans_m").at("rmse").get<double>();
+  };
+  const double expected = ate("");
+  const PoseTrajectory truth = read_tum(files.ground_truth), estimate = read_tum(files.estimate);
+  const auto kitti = [](const PoseTrajectory& trajectory) {
+    std::string text;
+    for (const StampedPose& pose : trajectory.poses()) {
+      const Matrix3 R = pose.T.R();
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        text += fmt::format("{} {} {} {}{}", R(i, 0), R(i, 1), R(i, 2), pose.T.p[i], i < 2 ? " " : "\n");
+      }
+    }
+    return text;
+  };
+  std::string times;
+  for (const StampedPose& pose : truth.poses()) times += fmt::format("{}\n", pose.t);
+  files.folder.write("times.txt", times);
+  write_file(files.estimate, kitti(estimate));
+  CHECK_THROWS_WITH(ate(""), Contains("estimate.txt: has no times, as the other trajectory has; expected --times"));
+  CHECK(ate("--times " + files.folder.file("times.txt")) == Approx(expected).epsilon(1e-9));
+  write_file(files.ground_truth, kitti(truth));
+  CHECK(ate("") == Approx(expected).epsilon(1e-9));
+  write_file(files.ground_truth, kitti(truth.cut(0.0, 1.0)));
+  CHECK_THROWS_WITH(ate(""), Contains("has 200 poses without times; expected 101"));
+
+  std::string euroc = "#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z\n";
+  for (const auto& [t, T] : truth.poses()) {
+    euroc += fmt::format("{:.0f},{},{},{},{},{},{},{}\n", 1e9 * t, T.p.x(), T.p.y(), T.p.z(), T.q.w(), T.q.x(), T.q.y(),
+                         T.q.z());
+  }
+  write_file(files.ground_truth, euroc);
+  CHECK(ate("--times " + files.folder.file("times.txt")) == Approx(expected).epsilon(1e-9));
+  write_file(files.estimate, format_tum(estimate));
+  CHECK(ate("") == Approx(expected).epsilon(1e-9));
 }
 
 TEST_CASE("eval refuses what it can't score and then writes nothing") {

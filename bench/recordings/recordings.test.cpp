@@ -187,9 +187,10 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
   write_native(folder.file("a.evb"), walking_events(20000), davis_header());
   write_native(folder.file("unknown.evb"), walking_events(10), {});
   write_native(folder.file("none.evb"), {}, {});
-  folder.write("mistaken.json", R"({"source": {"type": "recording", "events": "a.evb", "calibration": "aside.txt",
+  write_native(folder.file("corner.evb"), {{1, 0, 0, true}}, davis_header());
+  folder.write("mistaken.json", R"({"source": {"type": "recording", "events": "a.evb", "calibration": "lens.txt",
                                                "width": 320, "height": 240, "time_range": [2, 3]}})");
-  folder.write("aside.txt", "200 200 5000 5000 -0.35 0 0 0 0\n");
+  folder.write("lens.txt", "200 200 120 90 -0.35 0.12 0 0 0\n");
   folder.write("ok.txt", "old");
   const auto refused = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = testing::evbench(folder, "convert " + arguments);
@@ -210,7 +211,7 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
   refused("mistaken.json b.evb --undistort own", "calibration of 320x240 pixels; expected the sensor's 240x180");
   refused("a.evb no/b.evb", "no/b.evb");
   refused("a.evb ok.txt --from 100", "has no events in the time range");
-  refused("a.evb ok.txt --undistort aside.txt", "all events lie outside the undistorted image");
+  refused("corner.evb ok.txt --undistort lens.txt", "all events lie outside the undistorted image");
   refused("none.evb ok.txt", "has no events; nothing was written");
   CHECK(read_file(folder.file("ok.txt")) == "old");
   damage(folder.file("a.evb"));
@@ -220,8 +221,8 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
              Contains("left out: 16384 events in damaged chunks"));
   REQUIRE(testing::evbench(folder, "convert mistaken.json ok.evb").exit_code == 0);
   CHECK_FALSE(open_events(folder.file("ok.evb"))->calibration());  // it fits another sensor
-  CHECK(names_in(folder.path()) ==
-        std::set<std::string>{"a.evb", "unknown.evb", "none.evb", "mistaken.json", "aside.txt", "ok.txt", "ok.evb"});
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", "unknown.evb", "none.evb", "corner.evb",
+                                                         "mistaken.json", "lens.txt", "ok.txt", "ok.evb"});
 }
 
 TEST_CASE("A conversion that is interrupted leaves nothing, and the older file as it was") {

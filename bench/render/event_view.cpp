@@ -8,7 +8,7 @@
 #include "bench/render/event_image.hpp"
 #include "bench/render/time_surface.hpp"
 #include "core/data/calib.hpp"
-#include "core/data/tum.hpp"
+#include "core/data/pose_file.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
@@ -33,7 +33,7 @@ cv::Size sensor_size(const std::string& path, const StreamOptions& options, cons
 
 PoseTrajectory motion_of(const std::string& path, const RenderOptions& options, EventStream& stream) {
   PoseTrajectory trajectory = options.trajectory.empty() ? stream.reader().ground_truth().value_or(PoseTrajectory())
-                                                         : read_tum(options.trajectory);
+                                                         : read_poses(options.trajectory).trajectory;
   if (!trajectory.empty()) return trajectory;
   throw InputError(fmt::format("{}: has no ground truth; compensation needs --trajectory", path));
 }

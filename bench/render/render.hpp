@@ -33,8 +33,8 @@ struct RenderOptions {
   bool time = false;            ///< is written into the pictures (time_label.hpp)
   std::string tracks;           ///< file `id t x y`, drawn over `in`; empty: none
   double tail = 0.1;            ///< of tracks [s]
-  std::string trajectory;       ///< TUM, for compensation; empty: the recording's own
-  std::string calibration;      ///< calib.txt, likewise
+  std::string trajectory;       ///< for compensation; empty: the recording's own
+  std::string calibration;      ///< likewise
   std::optional<double> depth;  ///< of the plane [m]; none: only the rotation is compensated
   std::string beside;           ///< another recording, at the right; empty: none
 };

@@ -2,46 +2,56 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
+#include "core/data/calibration_fields.hpp"
 #include "core/io/text_reader.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
 namespace {
 
+bool is_yaml(const TextReader& reader) {
+  return reader.text().starts_with("---") || reader.text().find_first_of(":{") != std::string::npos;
+}
+
 struct Layout {
-  std::size_t coefficients;
+  std::size_t count;
   const char* columns;
 };
 
+/// With every coefficient that there may be.
 Layout layout(DistortionModel model) {
   switch (model) {
-    case DistortionModel::radial_tangential: return {5, "fx fy cx cy k1 k2 p1 p2 k3"};
-    case DistortionModel::equidistant: return {4, "fx fy cx cy k1 k2 k3 k4"};
+    case DistortionModel::radial_tangential: return {9, "fx fy cx cy k1 k2 p1 p2 k3"};
+    case DistortionModel::equidistant: return {8, "fx fy cx cy k1 k2 k3 k4"};
     case DistortionModel::none: break;
   }
-  return {0, "fx fy cx cy"};
+  return {4, "fx fy cx cy"};
 }
 
 }  // namespace
 
-Camera read_calib(const std::string& path, int width, int height, DistortionModel model) {
+Camera read_calib(const std::string& path, int width, int height, DistortionModel model, const std::string& camera) {
   TextReader reader(path);
-  const Layout expected = layout(model);
-  if (!reader.next()) throw InputError(fmt::format("{}: is empty; expected one record {}", path, expected.columns));
-  reader.expect_columns(4 + expected.coefficients, expected.columns);
-  Camera camera;
-  camera.width = width;
-  camera.height = height;
-  camera.distortion = model;
-  camera.pinhole = {reader.number(0, "fx"), reader.number(1, "fy"), reader.number(2, "cx"), reader.number(3, "cy")};
-  if (!(camera.pinhole.fx > 0.0 && camera.pinhole.fy > 0.0)) {
-    reader.fail(fmt::format("the focal lengths are {} and {}; expected > 0 px", camera.pinhole.fx, camera.pinhole.fy));
+  const Layout full = layout(model);
+  if (!reader.next()) {
+    throw InputError(fmt::format("{}: is empty; expected one record {}, or YAML", path, full.columns));
   }
-  for (std::size_t i = 0; i < expected.coefficients; ++i) {
-    camera.coefficients[static_cast<Eigen::Index>(i)] = reader.number(4 + i, "a lens coefficient");
+  if (is_yaml(reader)) return yaml_camera(Field::read_yaml(path), camera, {width, height, model});
+  constexpr std::size_t kPinhole = 4;
+  const std::size_t count = reader.columns().size();
+  if (count < kPinhole || model == DistortionModel::none) reader.expect_columns(full.count, full.columns);
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < count; ++i) {
+    constexpr std::array kNames{"fx", "fy", "cx", "cy", "a lens coefficient"};
+    numbers.push_back(reader.number(i, kNames[std::min(i, kPinhole)]));
   }
+  const std::string place = reader.place();
   if (reader.next()) reader.fail("a second record; expected one camera a file");
-  return camera;
+  return checked_camera(place, {numbers.begin(), numbers.begin() + kPinhole}, model,
+                        {numbers.begin() + kPinhole, numbers.end()}, width, height);
 }
 
 std::string format_calib(const Camera& camera) {

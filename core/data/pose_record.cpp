@@ -6,7 +6,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "core/support/error.hpp"
+#include "core/geometry/types.hpp"
 
 namespace evbench {
 namespace {
@@ -15,9 +15,9 @@ constexpr double kTolerance = 1e-2;  // files carry few digits; anything worse i
 
 }  // namespace
 
-Eigen::Quaterniond read_quaternion(const TextReader& reader, std::size_t first) {
-  const double x = reader.number(first, "qx"), y = reader.number(first + 1, "qy");
-  const double z = reader.number(first + 2, "qz"), w = reader.number(first + 3, "qw");
+Eigen::Quaterniond read_quaternion(const TextReader& reader, std::span<const std::size_t> columns) {
+  const double x = reader.number(columns[0], "qx"), y = reader.number(columns[1], "qy");
+  const double z = reader.number(columns[2], "qz"), w = reader.number(columns[3], "qw");
   const Eigen::Quaterniond q(w, x, y, z);
   const double norm = q.norm();
   if (!(std::abs(norm - 1.0) <= kTolerance)) {
@@ -27,11 +27,11 @@ Eigen::Quaterniond read_quaternion(const TextReader& reader, std::size_t first) 
   return q.normalized();
 }
 
-Eigen::Quaterniond read_rotation_matrix(const TextReader& reader, std::size_t first) {
+Eigen::Quaterniond read_rotation_matrix(const TextReader& reader, std::span<const std::size_t> columns) {
   Matrix3 m;
   for (std::size_t i = 0; i < 9; ++i) {
     m(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) =
-        reader.number(first + i, "an element of the rotation");
+        reader.number(columns[i], "an element of the rotation");
   }
   const double error = (m * m.transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff();
   if (!(error <= kTolerance)) {
@@ -45,20 +45,8 @@ Eigen::Quaterniond read_rotation_matrix(const TextReader& reader, std::size_t fi
   return Eigen::Quaterniond(svd.matrixU() * svd.matrixV().transpose()).normalized();
 }
 
-Vector3 read_vector3(const TextReader& reader, std::size_t first, const char* what) {
-  return {reader.number(first, what), reader.number(first + 1, what), reader.number(first + 2, what)};
-}
-
-void append_pose(const TextReader& reader, const StampedPose& pose, std::vector<StampedPose>& poses) {
-  if (!poses.empty() && !(poses.back().t < pose.t)) {
-    reader.fail(fmt::format("time {:.9f} s is {} the one before it ({:.9f} s); expected strictly increasing times",
-                            pose.t, poses.back().t == pose.t ? "the same as" : "before", poses.back().t));
-  }
-  poses.push_back(pose);
-}
-
-void expect_poses(const std::vector<StampedPose>& poses, const std::string& path) {
-  if (poses.empty()) throw InputError(fmt::format("{}: holds no pose; expected at least one", path));
+Vector3 read_vector3(const TextReader& reader, std::span<const std::size_t> columns, const char* what) {
+  return {reader.number(columns[0], what), reader.number(columns[1], what), reader.number(columns[2], what)};
 }
 
 }  // namespace evbench

@@ -1,29 +1,32 @@
 #pragma once
 
-#include <vector>
+#include <array>
+#include <numeric>
+#include <span>
 
+#include "core/geometry/se3.hpp"
 #include "core/io/text_reader.hpp"
-#include "core/motion/pose_trajectory.hpp"
 
 namespace evbench {
 
-/// What the pose formats share: the checks of a record's rotation and time. Every error names the file and the line.
+/// Parts of a pose in the columns of a record. Every error names the file and the line.
 
-/// Columns `first` to `first` + 3 as a quaternion qx qy qz qw. Throws when its norm is not within 1e-2 of 1;
-/// normalised.
-Eigen::Quaterniond read_quaternion(const TextReader& reader, std::size_t first);
+/// `first` and those behind it.
+template <std::size_t count>
+std::array<std::size_t, count> consecutive(std::size_t first) {
+  std::array<std::size_t, count> columns;
+  std::iota(columns.begin(), columns.end(), first);
+  return columns;
+}
 
-/// Columns `first` to `first` + 8 as a rotation matrix, row by row. Throws when R Rᵀ is not within 1e-2 of the identity
-/// or det R < 0; the nearest rotation (Frobenius norm, by SVD) is returned.
-Eigen::Quaterniond read_rotation_matrix(const TextReader& reader, std::size_t first);
+/// Columns of qx qy qz qw. Throws when the norm is not within 1e-2 of 1; normalised.
+Eigen::Quaterniond read_quaternion(const TextReader& reader, std::span<const std::size_t> columns);
 
-/// Columns `first` to `first` + 2.
-Vector3 read_vector3(const TextReader& reader, std::size_t first, const char* what);
+/// Columns of a rotation matrix, row by row. Throws when R Rᵀ is not within 1e-2 of the identity or det R < 0; the
+/// nearest rotation (Frobenius norm, by SVD) is returned.
+Eigen::Quaterniond read_rotation_matrix(const TextReader& reader, std::span<const std::size_t> columns);
 
-/// Appends a pose; throws when it is not later than the last one.
-void append_pose(const TextReader& reader, const StampedPose& pose, std::vector<StampedPose>& poses);
-
-/// Throws unless there is at least one pose; for the end of the file `path`.
-void expect_poses(const std::vector<StampedPose>& poses, const std::string& path);
+/// `what` names it in messages.
+Vector3 read_vector3(const TextReader& reader, std::span<const std::size_t> columns, const char* what);
 
 }  // namespace evbench

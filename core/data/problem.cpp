@@ -85,9 +85,9 @@ class ProblemReader {
     return v;
   }
 
-  SE3 pose(std::size_t first) const {
-    return {read_quaternion(reader_, first), read_vector3(reader_, first + 4, "the position")};
-  }
+  Vector3 vector3(std::size_t first) const { return read_vector3(reader_, consecutive<3>(first), "the position"); }
+
+  SE3 pose(std::size_t first) const { return {read_quaternion(reader_, consecutive<4>(first)), vector3(first + 4)}; }
 
   void record() {
     const std::string_view kind = reader_.columns()[0];
@@ -97,7 +97,7 @@ class ProblemReader {
       state();
     } else if (kind == "LM") {
       reader_.expect_columns(5, "LM j x y z");
-      landmarks_.push_back({index(1), reader_.line(), read_vector3(reader_, 2, "the position")});
+      landmarks_.push_back({index(1), reader_.line(), vector3(2)});
     } else if (kind == "LMPRIOR") {
       landmark_prior();
     } else if (kind == "PRIORPOSE") {
@@ -159,8 +159,7 @@ class ProblemReader {
   void landmark_prior() {
     reader_.expect_columns(6, "LMPRIOR j x y z sigma");
     landmark_references_.push_back(reference(1));
-    problem_.landmark_priors.push_back(
-        {landmark_references_.back().index, read_vector3(reader_, 2, "the position"), positive(5, "sigma")});
+    problem_.landmark_priors.push_back({landmark_references_.back().index, vector3(2), positive(5, "sigma")});
   }
 
   /// The values by index; every index from 0 on must be there once. Leaves the records sorted by index.

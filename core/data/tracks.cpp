@@ -3,15 +3,50 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <tuple>
 
+#include "core/data/columns.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/io/text_reader.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
 namespace {
+
+constexpr std::array kQuantities{Quantity{"id", "(.*_)?(id|trackid|featureid)|track|feature"}, kTime,
+                                 Quantity{"x", "(.*_)?x|x_.*|u|px"}, Quantity{"y", "(.*_)?y|y_.*|v|py"}};
+constexpr const char *kUsual = "id t x y", *kHaste = "t x y - id";
+
+bool complete(const Columns& columns) { return !columns.find_all(kQuantities).empty(); }
+
+bool is_integer(std::string_view text) {
+  return text.find_first_not_of("0123456789", text.starts_with('-') ? 1 : 0) == std::string_view::npos;
+}
+
+/// At the first record; a line of names is passed over.
+Columns find_columns(TextReader& reader, const std::string& asked) {
+  const auto named = read_names(
+      reader, kQuantities, [&](const Columns& c) { return !asked.empty() || complete(c); }, kUsual);
+  if (!asked.empty()) {
+    Columns columns(asked, kQuantities);
+    if (complete(columns)) return columns;
+    throw InputError(
+        fmt::format("{}: what is asked for names the columns \"{:.80}\"; expected id, t, x and y, and - for others",
+                    reader.path(), asked));
+  }
+  if (named) return *named;
+  const auto record = reader.columns();
+  const bool haste = record.size() == 5 && is_integer(record.back()) && !is_integer(record.front());
+  const Columns columns(haste ? kHaste : kUsual, kQuantities);
+  return haste ? columns : columns.followed_to(record.size());
+}
+
+std::string assumption(const std::string& path, const Columns& columns, TimeUnit unit) {
+  if (columns.text() == kUsual && unit == TimeUnit::seconds) return "";
+  return fmt::format("{}: read with columns {}, times in {}", path, columns.text(), to_string(unit));
+}
 
 std::int64_t count_unordered(std::span<const TrackObservation> in_file_order) {
   std::int64_t count = 0;
@@ -33,18 +68,29 @@ void count_tracks(std::span<const TrackObservation> observations, TrackFileRepor
 
 }  // namespace
 
-TrackFile read_tracks(const std::string& path, int width, int height, double sigma) {
+TrackFile read_tracks(const std::string& path, int width, int height, const TrackFileOptions& options) {
   TrackFile file;
   std::vector<TrackObservation>& all = file.observations;
   TextReader reader(path);
-  while (reader.next()) {
-    reader.expect_columns(4, "id t x y");
-    all.push_back({reader.integer(0, "the id"),
-                   reader.number(1, "the time"),
-                   {reader.number(2, "x"), reader.number(3, "y")},
-                   sigma});
+  const auto expect_some = [&](bool some) {
+    if (!some) throw InputError(fmt::format("{}: holds no observation; expected records {}", path, kUsual));
+  };
+  expect_some(reader.next());
+  const Columns columns = find_columns(reader, options.columns);
+  const std::vector<std::size_t> at = columns.find_all(kQuantities);
+  std::optional<TimeColumn> time;
+  for (; !reader.columns().empty(); reader.next()) {
+    reader.expect_columns(columns.size(), columns.text().c_str());
+    if (!time) {
+      time.emplace(reader, at[1], options.time_unit, columns.time_unit());
+      file.assumption = assumption(path, columns, time->unit());
+    }
+    all.push_back({reader.integer(at[0], "the id"),
+                   time->read(reader),
+                   {reader.number(at[2], "x"), reader.number(at[3], "y")},
+                   options.sigma});
   }
-  if (all.empty()) throw InputError(fmt::format("{}: holds no observation; expected records id t x y", path));
+  expect_some(!all.empty());
 
   file.report.records = static_cast<std::int64_t>(all.size());
   file.report.unordered = count_unordered(all);

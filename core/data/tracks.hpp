@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/data/time_unit.hpp"
 #include "core/data/track.hpp"
 
 namespace evbench {
@@ -18,16 +19,26 @@ struct TrackFileReport {
   std::int64_t single_observation = 0;  ///< tracks that have one observation only: kept
 };
 
+struct TrackFileOptions {
+  double sigma = 1.0;                     ///< given to every observation [px]
+  std::string columns = {};               ///< their names in their order, e.g. "t x y - id"; empty: as in the file
+  TimeUnit time_unit = TimeUnit::unsaid;  ///< of times whose column does not say it
+};
+
 struct TrackFile {
   std::vector<TrackObservation> observations;  ///< by time, then by id
   TrackFileReport report;
+  std::string assumption;  ///< a sentence on columns and unit of time where they could be others; empty: usual
 };
 
-/// Reads feature tracks, `id t x y` a line: an integer id, seconds, pixels. Lines may come in any order. Observations
-/// outside a sensor of width × height pixels are counted. `sigma` [px] is given to every observation.
-/// Throws InputError, naming file and line, for a wrong number of columns, a value that is not finite, an id that is
-/// not an integer, and a file without observations.
-TrackFile read_tracks(const std::string& path, int width, int height, double sigma = 1.0);
+/// Reads feature tracks, an observation a line in columns between blanks, tabs, commas or semicolons: an integer id,
+/// time, pixels. Columns are those asked for, those that a line of names or the comment before the first record names,
+/// or `id t x y` (EKLT, the RPG's feature tracking; more are not read), or HASTE's `t x y theta id`: five, of which the
+/// last one is an integer and the first one is not. Times are seconds unless the options, the column's name (t_us) or
+/// their size tell another unit (usual_time_unit()). Lines may come in any order. Observations outside a sensor of
+/// width × height pixels are counted. Throws InputError, naming file and line, for another number of columns, a value
+/// that is not finite, an id that is not an integer, and a file without observations.
+TrackFile read_tracks(const std::string& path, int width, int height, const TrackFileOptions& options = {});
 
 /// The shortest digits that read back as the same numbers.
 std::string format_tracks(std::span<const TrackObservation> observations);

@@ -13,7 +13,7 @@ namespace {
 
 TrackFile tracks(const std::string& content) {
   const testing::TemporaryFolder folder;
-  return read_tracks(folder.write("tracks.txt", content), 240, 180, 0.5);
+  return read_tracks(folder.write("tracks.txt", content), 240, 180, {0.5});
 }
 
 }  // namespace
@@ -60,6 +60,30 @@ TEST_CASE("A damaged track file is refused with the line and what is wrong") {
   CHECK_THROWS_WITH(tracks("1 nan 1 1\n"), Contains("the time is \"nan\""));
   CHECK_THROWS_WITH(tracks("1 0.1 inf 1\n"), Contains("x is \"inf\""));
   CHECK_THROWS_WITH(read_tracks("/no/such/file", 240, 180), Contains("no such file"));
+}
+
+TEST_CASE("Tracks are in the columns that are asked for, that names say, or that EKLT and HASTE write") {
+  const auto same = [](const TrackFile& file) {
+    REQUIRE(file.observations.size() == 2);
+    CHECK(file.observations[0].track == 7);
+    CHECK(file.observations[0].t == 0.5);
+    CHECK(file.observations[1].pixel == Vector2(12, 21));
+  };
+  same(tracks("7 0.5 10 20\n7 0.6 12 21\n"));
+  same(tracks("7,0.5,10,20\n7,0.6,12,21\n"));
+  same(tracks("# comment\n7\t0.5\t10\t20\n7;0.6;12;21\n"));
+  same(tracks("# feature_id timestamp x y\n7 0.5 10 20\n7 0.6 12 21\n"));
+  same(tracks("x,y,score,track_id,t_us\n10,20,0,7,500000\n12,21,0,7,600000\n"));
+  same(tracks("7,0.5,10,20,0.1\n7,0.6,12,21,0.2\n"));
+  const TrackFile haste = tracks("0.500000,10.000000,20.000000,0.000000,7\n0.600000,12.000000,21.000000,0.1,7\n");
+  same(haste);
+  CHECK_THAT(haste.assumption, Contains("tracks.txt: read with columns t x y - id, times in seconds"));
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.write("tracks.txt", "frame,feature,when,where\n1,0.5,10,20,7\n2,0.6,12,21,7\n");
+  same(read_tracks(path, 240, 180, {.columns = "- t x y id"}));
+  CHECK_THROWS_WITH(read_tracks(path, 240, 180), Contains("tracks.txt:1: names the columns") && Contains("id t x y"));
+  CHECK_THROWS_WITH(read_tracks(path, 240, 180, {.columns = "t x y"}), Contains("expected id, t, x and y"));
+  CHECK(tracks("7 0.5 10 20\n").assumption.empty());
 }
 
 TEST_CASE("The real tracks of poster_translation read whole") {

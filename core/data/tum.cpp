@@ -4,7 +4,7 @@
 
 #include <charconv>
 
-#include "core/data/pose_record.hpp"
+#include "core/data/pose_file.hpp"
 
 namespace evbench {
 namespace {
@@ -22,18 +22,7 @@ void append_time(double t, fmt::memory_buffer& text) {
 
 }  // namespace
 
-PoseTrajectory read_tum(const std::string& path, double time_unit) {
-  TextReader reader(path);
-  std::vector<StampedPose> poses;
-  while (reader.next()) {
-    reader.expect_columns(8, "t px py pz qx qy qz qw");
-    const double t = time_unit * reader.number(0, "the time");
-    const SE3 T{read_quaternion(reader, 4), read_vector3(reader, 1, "the position")};
-    append_pose(reader, {t, T}, poses);
-  }
-  expect_poses(poses, path);
-  return PoseTrajectory(std::move(poses), path);
-}
+PoseTrajectory read_tum(const std::string& path) { return read_poses(path, {.format = PoseFormat::tum}).trajectory; }
 
 std::string format_tum(const PoseTrajectory& trajectory) {
   fmt::memory_buffer text;

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kBufferSize = std::size_t{1} << 18;
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 constexpr int kPatience = 1000;  // [ms] until it is said that a pipe is waited for
 
@@ -40,8 +41,7 @@ gzFile handle(void* file) { return static_cast<gzFile>(file); }
 
 }  // namespace
 
-TextReader::TextReader(const std::string& path, std::string_view separators)
-    : path_(path), separators_(separators), buffer_(kBufferSize) {
+TextReader::TextReader(const std::string& path) : path_(path), buffer_(kBufferSize) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw InputError(fmt::format("{}: no such file", path));
   if (std::filesystem::is_directory(path, ignored)) {
@@ -92,21 +92,38 @@ bool TextReader::read_line() {
 }
 
 bool TextReader::next() {
+  comment_.clear();
   while (true) {
     ++line_;
+    columns_.clear();
     if (!read_line()) return false;
     if (current_.find('\0') != std::string::npos) fail("has a NUL byte; expected a text file");
+    if (line_ == 1 && current_.starts_with(kByteOrderMark)) current_.erase(0, kByteOrderMark.size());
     if (!current_.empty() && current_.back() == '\r') current_.pop_back();
-    columns_.clear();
-    const std::string_view text = current_;
-    std::size_t at = text.find_first_not_of(separators_);
-    if (at == std::string_view::npos || text[at] == '#') continue;
-    while (at != std::string_view::npos) {
-      const std::size_t stop = std::min(text.find_first_of(separators_, at), text.size());
-      columns_.push_back(text.substr(at, stop - at));
-      at = text.find_first_not_of(separators_, stop);
+    split();
+    if (columns_.empty()) {
+      comment_.clear();
+    } else if (columns_.front().starts_with('#') || columns_.front().starts_with('%')) {
+      comment_ = current_;
+    } else {
+      return true;
     }
-    return true;
+  }
+}
+
+/// A separator behind the last column ends it; there is none behind it.
+void TextReader::split() {
+  constexpr std::string_view kBlanks = " \t", kSeparators = " \t,;";
+  columns_.clear();
+  const std::string_view text = current_;
+  std::size_t at = text.find_first_not_of(kBlanks);
+  while (at != std::string_view::npos) {
+    const std::size_t stop = std::min(text.find_first_of(kSeparators, at), text.size());
+    columns_.push_back(text.substr(at, stop - at));
+    at = text.find_first_not_of(kBlanks, stop);
+    if (at != std::string_view::npos && (text[at] == ',' || text[at] == ';')) {
+      at = text.find_first_not_of(kBlanks, at + 1);
+    }
   }
 }
 
@@ -117,7 +134,8 @@ void TextReader::expect_columns(std::size_t count, const char* what) const {
 }
 
 double TextReader::number(std::size_t column, const char* what) const {
-  const std::string_view text = columns_[column];
+  std::string_view text = columns_[column];
+  if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {

@@ -8,13 +8,13 @@
 
 namespace evbench {
 
-/// Reads a text file, gzip or not, record by record: the columns of each line that is neither blank nor a comment (#).
-/// Every error is an InputError that names the file and the line.
+/// Reads a text file, gzip or not, record by record: the columns of each line that is neither blank nor a comment (# or
+/// %). Between columns are blanks and tabs, or a comma or semicolon with or without them. Every error is an InputError
+/// that names the file and the line.
 class TextReader {
  public:
-  /// `separators`: the characters between columns. Throws when the file can't be opened. Waits for a pipe, and
-  /// says so on the standard error after a second.
-  explicit TextReader(const std::string& path, std::string_view separators = " \t");
+  /// Throws when the file can't be opened. Waits for a pipe, and says so on the standard error after a second.
+  explicit TextReader(const std::string& path);
   ~TextReader();
   TextReader(const TextReader&) = delete;
   TextReader& operator=(const TextReader&) = delete;
@@ -23,8 +23,14 @@ class TextReader {
   /// than 64 KiB, a NUL byte).
   bool next();
 
+  /// Empty before the first record and behind the last one.
   std::span<const std::string_view> columns() const { return columns_; }
+  /// The record's line, and the comment that stands directly before it; empty: none.
+  const std::string& text() const { return current_; }
+  const std::string& comment() const { return comment_; }
   std::int64_t line() const { return line_; }
+
+  const std::string& path() const { return path_; }
 
   /// Throws unless the record has exactly `count` columns; `what` names them ("id t x y").
   void expect_columns(std::size_t count, const char* what) const;
@@ -41,16 +47,16 @@ class TextReader {
 
  private:
   std::string path_;
-  std::string separators_;
   void* file_ = nullptr;  // gzFile
   std::vector<char> buffer_;
   std::size_t begin_ = 0, end_ = 0;
   bool at_end_ = false;
-  std::string current_;
+  std::string current_, comment_;
   std::vector<std::string_view> columns_;
   std::int64_t line_ = 0;
 
   bool read_line();
+  void split();
   void fill();
 };
 

@@ -11,9 +11,9 @@ using Catch::Matchers::Contains;
 namespace {
 
 /// The records of a text, columns joined by "|".
-std::vector<std::string> records(const std::string& text, std::string_view separators = " \t") {
+std::vector<std::string> records(const std::string& text) {
   const testing::TemporaryFolder folder;
-  TextReader reader(folder.write("a.txt", text), separators);
+  TextReader reader(folder.write("a.txt", text));
   std::vector<std::string> result;
   while (reader.next()) {
     std::string joined;
@@ -27,10 +27,28 @@ using Records = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("Records are split at runs of separators; comments and blank lines are none") {
-  CHECK(records("1 2\n\n# no\n  \t\n\t 3 \t 4 \n") == Records{"1|2|", "3|4|"});
-  CHECK(records("1,2\n3,,4\n", ",") == Records{"1|2|", "3|4|"});
+TEST_CASE("Records are split at blanks; comments and blank lines are none") {
+  CHECK(records("1 2\n\n# no\n  \t\n\t 3 \t 4 \n% no\n") == Records{"1|2|", "3|4|"});
   CHECK(records("").empty());
+}
+
+TEST_CASE("Records are split at each comma and semicolon, blanks around them or not, and may end with one") {
+  CHECK(records("1,2\n3, 4\n5 ;6\n7;8;\n") == Records{"1|2|", "3|4|", "5|6|", "7|8|"});
+  CHECK(records("1,,2\n,3\n") == Records{"1||2|", "|3|"});
+}
+
+TEST_CASE("A byte order mark is no part of the text") {
+  CHECK(records("\xEF\xBB\xBF"
+                "1 2\n") == Records{"1|2|"});
+}
+
+TEST_CASE("The comment that stands directly before a record is known") {
+  const testing::TemporaryFolder folder;
+  TextReader reader(folder.write("a.txt", "# far\n# near\n1 2\n3 4\n# cut off\n\n5 6\n"));
+  std::string comments;
+  while (reader.next()) comments += "[" + reader.comment() + "]";
+  CHECK(comments == "[# near][][]");
+  CHECK(reader.columns().empty());
 }
 
 TEST_CASE("Windows line ends and a last line without an end are no matter") {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/data/tum.hpp"
+#include "core/data/pose_file.hpp"
 #include "core/geometry/so3.hpp"
 #include "core/io/path.hpp"
 #include "core/motion/gp_trajectory.hpp"
@@ -95,9 +95,9 @@ std::vector<StampedPose> knots_of(const PoseTrajectory& file, double rate) {
 Motion from_trajectory(const MotionOptions& options, double duration, const std::string& folder,
                        const std::string& place) {
   if (options.trajectory.empty()) {
-    throw InputError(fmt::format("{}.trajectory: is empty; expected the path of a TUM trajectory", place));
+    throw InputError(fmt::format("{}.trajectory: is empty; expected the path of a trajectory", place));
   }
-  const PoseTrajectory file = read_tum(resolve_path(options.trajectory, folder));
+  const PoseTrajectory file = read_poses(resolve_path(options.trajectory, folder)).trajectory;
   const double begin = file.start() + options.start;
   if (begin + duration > file.end()) {
     throw InputError(fmt::format("{}.trajectory: {} lasts {:.3f} s; expected at least start + duration = {:.3f} s",
@@ -128,7 +128,7 @@ void MotionOptions::declare(OptionSet& set) {
   set.add("max_frequency", max_frequency, "fastest sinusoid of smooth_random [Hz]").range(0.0, 1e3).above(0.0);
   set.add("period", period, "time after which robot_arm repeats [s]").above(0.0);
   set.add("distance", distance, "distance of the point that robot_arm looks at [m]").above(0.0);
-  set.add("trajectory", trajectory, "path of a TUM trajectory to follow").path();
+  set.add("trajectory", trajectory, "path of a trajectory to follow").path();
   set.add("start", start, "where in the trajectory to begin, after its first pose [s]").range(0.0);
   set.add("knot_rate", knot_rate, "poses of the trajectory that are used [Hz]; fewer smooth its noise; 0: all")
       .range(0.0, 1e4);

@@ -5,8 +5,6 @@
 #include <filesystem>
 
 #include "core/data/calib.hpp"
-#include "core/data/robotevt.hpp"
-#include "core/data/tum.hpp"
 #include "core/datasets/catalogue.hpp"
 #include "core/events/companions/companions.hpp"
 #include "core/events/formats.hpp"
@@ -51,13 +49,23 @@ void Recording::Options::declare(OptionSet& set) {
   set.add("dataset", dataset, "name of a public recording (evbench dataset list), instead of a folder");
   set.add("folder", folder, "a recording's folder: its events, calibration and ground truth").path();
   set.add("events", events, "events of any format that evbench reads, instead of the folder's").path();
-  set.add("calibration", calibration, "calibration file like calib.txt, instead of the folder's").path();
-  set.add("ground_truth", ground_truth, "ground truth file like groundtruth.txt, instead of the folder's").path();
-  set.add("ground_truth_format", ground_truth_format, "its format, or that of groundtruth.txt")
-      .choices({"tum", "robotevt"});
+  set.add("calibration", calibration,
+          "calibration file, instead of the folder's: calib.txt (fx fy cx cy k1 k2 p1 p2 k3), YAML of Kalibr, ROS or "
+          "OpenCV")
+      .path();
+  set.add("camera", camera, "which one of a named calibration that holds several, e.g. cam1");
+  set.add("ground_truth", ground_truth,
+          "ground truth file, instead of the folder's: TUM, EuRoC, KITTI, RobotEvt, or named columns")
+      .path();
+  set.add("ground_truth_format", ground_truth_format, {kPoseFormatNames.begin(), kPoseFormatNames.end()},
+          "its format, or that of groundtruth.txt; auto: as the columns' names or number tell");
+  set.add("ground_truth_times", ground_truth_times, "file with its times, one a line, where it has none (KITTI)")
+      .path();
+  set.add("ground_truth_time_unit", ground_truth_time_unit, {kTimeUnitNames.begin(), kTimeUnitNames.end()},
+          "unit of its times; auto: as the column's name says, or seconds, from 1e17 on nanoseconds");
   set.add("width", width, "sensor's width, where the recording does not say it [px]; 0: 240").range(0, 1e5);
   set.add("height", height, "sensor's height, likewise [px]; 0: 180").range(0, 1e5);
-  set.add("distortion", distortion, "lens model of a named calibration, or of calib.txt")
+  set.add("distortion", distortion, "lens model of a calibration that does not say it")
       .choices({"none", "radial_tangential", "equidistant"});
   set.add("time_range", time_range,
           "part of the sequence that is used, [from, to] [s]; empty: the ground truth's, or the events'")
@@ -75,15 +83,24 @@ Recording::Recording(const Options& options, const SourceContext& context) : pla
   events_ = options.events.empty() ? folder : resolve_path(options.events, context.folder);
   Options resolved = options;
   if (!options.calibration.empty()) resolved.calibration = resolve_path(options.calibration, context.folder);
+  if (!options.ground_truth_times.empty()) {
+    resolved.ground_truth_times = resolve_path(options.ground_truth_times, context.folder);
+  }
   if (!options.ground_truth.empty()) resolved.ground_truth = resolve_path(options.ground_truth, context.folder);
   const auto usual = [&](const char* name, bool said, std::string& path) {  // whose format the options say
     if (path.empty() && said && std::filesystem::exists(folder + "/" + name)) path = folder + "/" + name;
   };
   usual("calib.txt", options.distortion != Options().distortion, resolved.calibration);
-  usual("groundtruth.txt", options.ground_truth_format != Options().ground_truth_format, resolved.ground_truth);
+  usual("groundtruth.txt",
+        options.ground_truth_format != PoseFormat::automatic || options.ground_truth_time_unit != TimeUnit::unsaid ||
+            !options.ground_truth_times.empty(),
+        resolved.ground_truth);
 
   Own own = find_own(resolved, folder);
   set_camera(resolved, folder, own);
+  if (camera_.distortion == DistortionModel::none && options.distortion != "none") {
+    remarks_.push_back("the calibration has no lens: pixels are taken to be undistorted");
+  }
   set_ground_truth(resolved, own);
   set_time_range(options.time_range, own);
 }
@@ -132,7 +149,8 @@ void Recording::set_camera(const Options& options, const std::string& folder, co
   const int width = options.width > 0 ? options.width : kUsualWidth,
             height = options.height > 0 ? options.height : kUsualHeight;
   if (!options.calibration.empty()) {
-    camera_ = read_calib(options.calibration, width, height, parse_distortion_model(options.distortion));
+    camera_ =
+        read_calib(options.calibration, width, height, parse_distortion_model(options.distortion), options.camera);
     files_.push_back(options.calibration);
     return;
   }
@@ -152,9 +170,13 @@ void Recording::set_camera(const Options& options, const std::string& folder, co
 
 void Recording::set_ground_truth(const Options& options, Own& own) {
   if (!options.ground_truth.empty()) {
-    own.ground_truth =
-        options.ground_truth_format == "tum" ? read_tum(options.ground_truth) : read_robotevt(options.ground_truth);
+    PoseFile file = read_poses(options.ground_truth, {.format = options.ground_truth_format,
+                                                      .time_unit = options.ground_truth_time_unit,
+                                                      .times = options.ground_truth_times});
+    own.ground_truth = std::move(file.trajectory);
+    remarks_.insert(remarks_.end(), file.remarks.begin(), file.remarks.end());
     files_.push_back(options.ground_truth);
+    if (!options.ground_truth_times.empty()) files_.push_back(options.ground_truth_times);
   }
   if (own.ground_truth) {
     ground_truth_ = shifted(*own.ground_truth, options.time_offset);
@@ -178,9 +200,10 @@ void Recording::set_time_range(const std::vector<double>& range, const Own& own)
   if (ground_truth_.empty()) return;
   const double start = ground_truth_.start(), end = ground_truth_.end();
   if (range_.to < start || range_.from > end) {
-    throw InputError(
-        fmt::format("{}.time_range: {} to {} s does not meet the ground truth, which goes from {:.3f} to {:.3f} s",
-                    place_, range_.from, range_.to, start, end));
+    throw InputError(fmt::format(
+        "{}.time_range: does not meet the ground truth, whose times {} (ground_truth_time_unit says another "
+        "unit)",
+        place_, times_beside(start, end, range_.from, range_.to)));
   }
   if (range_.from < start || range_.to > end) {
     remarks_.push_back(fmt::format("the ground truth covers {:.3f} to {:.3f} s of {:.3f} to {:.3f} s", start, end,

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/data/pose_file.hpp"
 #include "core/plugin/options.hpp"
 #include "core/plugin/source.hpp"
 
@@ -18,8 +19,10 @@ namespace evbench {
 class Recording : public Source {
  public:
   struct Options {
-    std::string dataset, folder, events, calibration, ground_truth;
-    std::string ground_truth_format = "tum";
+    std::string dataset, folder, events, calibration, camera;
+    std::string ground_truth, ground_truth_times;
+    PoseFormat ground_truth_format = PoseFormat::automatic;
+    TimeUnit ground_truth_time_unit = TimeUnit::unsaid;
     int width = 0, height = 0;
     std::string distortion = "radial_tangential";
     std::vector<double> time_range;

@@ -67,6 +67,57 @@ TEST_CASE("A recording reads RobotEvt ground truth") {
   CHECK(source.ground_truth().poses()[1].T.p.z() == 4.0);
 }
 
+TEST_CASE("A recording reads ground truth as EuRoC and KITTI lay it out, and says what it took it for") {
+  const testing::TemporaryFolder folder;
+  folder.write("calib.txt", kCalibration);
+  folder.write("groundtruth.txt",
+               "#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z\n1000000000,1,2,3,1,0,0,0\n"
+               "2000000000,1,2,4,1,0,0,0\n");
+  folder.write("kitti.txt", "1 0 0 1 0 1 0 2 0 0 1 3\n1 0 0 1 0 1 0 2 0 0 1 4\n");
+  folder.write("times.txt", "1000\n2000\n");
+  const Recording euroc = open(R"({"folder": "."})", folder.path());
+  CHECK(euroc.ground_truth().end() == 2.0);
+  CHECK(euroc.ground_truth().poses()[1].T.p.z() == 4.0);
+  CHECK_THAT(euroc.remarks().at(0), Contains("times in nanoseconds"));
+  const Recording kitti = open(R"({"folder": ".", "ground_truth": "kitti.txt", "ground_truth_times": "times.txt",
+                                   "ground_truth_time_unit": "ms"})",
+                               folder.path());
+  CHECK(kitti.ground_truth().end() == 2.0);
+  CHECK(kitti.files().size() == 3);
+  CHECK_THROWS_WITH(open(R"({"folder": ".", "ground_truth": "kitti.txt"})", folder.path()), Contains("has no time"));
+  CHECK_THROWS_WITH(
+      open(R"({"folder": ".", "ground_truth": "kitti.txt", "ground_truth_times": "times.txt",
+                             "time_range": [1, 2]})",
+           folder.path()),
+      Contains("taken as milliseconds they would go from 1 to 2 s") && Contains("ground_truth_time_unit"));
+}
+
+TEST_CASE("A recording takes one camera of a Kalibr chain, with its size and lens") {
+  const testing::TemporaryFolder folder;
+  folder.write("groundtruth.txt", kGroundTruth);
+  std::string chain;
+  for (const char* name : {"cam0", "cam1"}) {
+    chain += std::string(name) +
+             ":\n  camera_model: pinhole\n  intrinsics: [700, 701, 330, 250]\n"
+             "  distortion_model: equidistant\n  distortion_coeffs: [0.1, 0, 0, 0]\n  resolution: [640, 480]\n";
+  }
+  folder.write("camchain.yaml", chain);
+  const std::string json = R"({"calibration": "camchain.yaml", "ground_truth": "groundtruth.txt")";
+  const Recording source = open(json + R"(, "camera": "cam1"})", folder.path());
+  CHECK(source.camera().width == 640);
+  CHECK(source.camera().distortion == DistortionModel::equidistant);
+  CHECK_THROWS_WITH(open(json + "}", folder.path()), Contains("holds cam0, cam1"));
+}
+
+TEST_CASE("A recording says that its calibration has no lens") {
+  const testing::TemporaryFolder folder;
+  folder.write("calib.txt", "200 200 120 90\n");
+  folder.write("groundtruth.txt", kGroundTruth);
+  const Recording source = open(R"({"folder": "."})", folder.path());
+  CHECK(source.camera().distortion == DistortionModel::none);
+  CHECK_THAT(source.remarks().at(0), Contains("no lens"));
+}
+
 TEST_CASE("A recording refuses what is missing or makes no sense, and says what") {
   const testing::TemporaryFolder folder;
   folder.write("calib.txt", kCalibration);

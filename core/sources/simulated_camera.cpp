@@ -17,7 +17,7 @@ void SimulatedCameraOptions::declare(OptionSet& set) {
   set.add("distortion", distortion, "lens model of the raw pixels")
       .choices({"none", "radial_tangential", "equidistant"});
   set.add("coefficients", coefficients, "of the lens: k1 k2 p1 p2 k3 (radial_tangential), k1 k2 k3 k4 (equidistant)");
-  set.add("calib", calib, "path of a calib.txt to take all but size and lens model from; empty: none").path();
+  set.add("calib", calib, "path of a calibration to take instead, as in source recording; empty: none").path();
 }
 
 Camera make_camera(const SimulatedCameraOptions& options, const std::string& folder, const std::string& place) {

@@ -13,12 +13,19 @@
 namespace evbench {
 namespace {
 
-const Registration<FrontEnd, Recorded> registration("recorded", "tracks from a file (id t x y)");
+const Registration<FrontEnd, Recorded> registration("recorded",
+                                                    "tracks from a file (id t x y, HASTE's, or named columns)");
 
 }  // namespace
 
 void Recorded::Options::declare(OptionSet& set) {
   set.add("tracks", tracks, "path of the track file").required().path();
+  set.add(
+      "columns", columns,
+      "order of the file's columns, e.g. \"t x y - id\", - being one that is not read; empty: as a line of names says, "
+      "id t x y, or HASTE's t x y theta id");
+  set.add("time_unit", time_unit, {kTimeUnitNames.begin(), kTimeUnitNames.end()},
+          "unit of the file's times; auto: as the column's name says (t_us), or seconds, from 1e17 on nanoseconds");
   set.add("sigma", sigma, "standard deviation of an observation [px]").above(0.0);
   set.add("outside", outside, "what to do with observations outside the image").choices({"keep", "drop"});
   set.add("min_track_length", min_track_length, "tracks with fewer observations are left out").range(1);
@@ -27,9 +34,10 @@ void Recorded::Options::declare(OptionSet& set) {
 Recorded::Recorded(const Options& options, const FrontEndContext& context)
     : path_(resolve_path(options.tracks, context.folder)) {
   const Camera& camera = context.source.camera();
-  TrackFile file = read_tracks(path_, camera.width, camera.height, options.sigma);
+  TrackFile file = read_tracks(path_, camera.width, camera.height, {options.sigma, options.columns, options.time_unit});
   const TrackFileReport& report = file.report;
   remarks_.push_back(fmt::format("{}: {} observations of {} tracks", path_, report.records, report.tracks));
+  if (!file.assumption.empty()) remarks_.push_back(file.assumption);
   const auto remark = [&](std::int64_t count, const char* what) {
     if (count > 0) remarks_.push_back(fmt::format("{}: {} {}", path_, count, what));
   };
@@ -42,6 +50,13 @@ Recorded::Recorded(const Options& options, const FrontEndContext& context)
 
   observations_ = std::move(file.observations);
   const Source::TimeRange range = context.source.time_range();
+  const double first = observations_.front().t, last = observations_.back().t;
+  if (first > range.to || last < range.from) {
+    throw InputError(
+        fmt::format("{}: no observation is left: their times {}; expected tracks in the source's time range "
+                    "(time_unit says another unit)",
+                    path_, times_beside(first, last, range.from, range.to)));
+  }
   const auto beyond = [&](const TrackObservation& o) { return o.t < range.from || o.t > range.to; };
   remark(static_cast<std::int64_t>(std::erase_if(observations_, beyond)),
          fmt::format("observations outside {} to {} s (left out)", range.from, range.to).c_str());
@@ -50,10 +65,10 @@ Recorded::Recorded(const Options& options, const FrontEndContext& context)
   }
   drop_short_tracks(options.min_track_length);
   if (observations_.empty()) {
-    throw InputError(
-        fmt::format("{}: no observation is left between {} and {} s; expected tracks in the source's time "
-                    "range",
-                    path_, range.from, range.to));
+    throw InputError(fmt::format(
+        "{}: no observation is left between {} and {} s, inside the image, in tracks of {} or more of them; "
+        "expected some",
+        path_, range.from, range.to, options.min_track_length));
   }
   player_ = TrackPlayer(observations_);
 }

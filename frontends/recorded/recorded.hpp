@@ -1,11 +1,12 @@
 #pragma once
 
+#include "core/data/time_unit.hpp"
 #include "core/plugin/options.hpp"
 #include "core/plugin/track_player.hpp"
 
 namespace evbench {
 
-/// Tracks from a file, `id t x y` (see core/data/tracks.hpp), in the source's time range. Lines out of order and
+/// Tracks from a file (see core/data/tracks.hpp), in the source's time range. Lines out of order and
 /// duplicates are put right and reported by remarks(), as are observations outside the image and tracks of one
 /// observation. Throws InputError for a file that is missing or damaged and when no observation is left.
 class Recorded : public FrontEnd {
@@ -13,7 +14,8 @@ class Recorded : public FrontEnd {
   static constexpr bool reads_events = false;
 
   struct Options {
-    std::string tracks;
+    std::string tracks = {}, columns = {};
+    TimeUnit time_unit = TimeUnit::unsaid;
     double sigma = 1.0;
     std::string outside = "drop";
     int min_track_length = 1;

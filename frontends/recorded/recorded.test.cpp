@@ -97,10 +97,32 @@ TEST_CASE("Recorded tracks that are missing, or of another time, are refused") {
   CHECK_THROWS_WITH(open("{}", folder, source), Contains("\"tracks\" is missing"));
 }
 
+TEST_CASE("Tracks in another unit of time are diagnosed, and read when it is said") {
+  const testing::TemporaryFolder folder;
+  folder.write("tracks.txt", "1 100000 10 10\n1 900000 11 10\n");
+  const FakeSource source({0.0, 1.0});
+  CHECK_THROWS_WITH(
+      open(R"({"tracks": "tracks.txt"})", folder, source),
+      Contains("go from 100000 to 900000 s, outside of 0 to 1 s; taken as microseconds they would go from 0.1 "
+               "to 0.9 s") &&
+          Contains("time_unit"));
+  Recorded frontend = open(R"({"tracks": "tracks.txt", "time_unit": "us"})", folder, source);
+  CHECK(all(frontend).at(0).t == 0.1);
+  CHECK_THAT(frontend.remarks().at(1), Contains("times in microseconds"));
+}
+
+TEST_CASE("Tracks in other columns are read as they are named") {
+  const testing::TemporaryFolder folder;
+  folder.write("tracks.csv", "0.1,10,12,0,5\n0.2,11,12,0,5\n");
+  const FakeSource source({0.0, 1.0});
+  Recorded frontend = open(R"({"tracks": "tracks.csv", "columns": "t x y theta id"})", folder, source);
+  CHECK(all(frontend).at(1).pixel == Vector2(11, 12));
+}
+
 TEST_CASE("The real tracks of poster_translation are read whole") {
   const auto path = testing::data_file("poster_translation/tracks_eklt.txt");
   if (!path) return;
   const FakeSource source({0.0, 10.0});
-  Recorded frontend({*path, 1.0, "keep", 1}, {source, 0, ""});
+  Recorded frontend({.tracks = *path, .outside = "keep"}, {source, 0, ""});
   CHECK(all(frontend).size() == 66331);
 }

@@ -72,7 +72,12 @@ std::optional<Camera> AccompaniedReader::calibration() {
 std::optional<PoseTrajectory> AccompaniedReader::ground_truth() {
   if (!companions_.ground_truth) return reader_->ground_truth();
   for (const std::string& name : companions_.ground_truth->names) files_beside_.insert(files_->path(name));
-  return companions_.ground_truth->read();
+  PoseFile file = companions_.ground_truth->read();
+  for (std::string& text : file.remarks) {
+    std::pair<std::string, std::string> remark("remark", std::move(text));
+    if (std::ranges::count(info_.metadata, remark) == 0) info_.metadata.push_back(std::move(remark));
+  }
+  return std::move(file.trajectory);
 }
 
 /// A size that the calibration says is better than one that was assumed, but not than what an option says.

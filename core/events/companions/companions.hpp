@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/data/pose_file.hpp"
 #include "core/events/reader.hpp"
 #include "core/events/recording_files.hpp"
 
@@ -22,7 +23,7 @@ struct Companions {
   struct GroundTruth {
     std::vector<std::string> names;
     std::string whose;  ///< the body that the poses are of
-    std::function<PoseTrajectory()> read;
+    std::function<PoseFile()> read;
     std::string remark = {};  ///< a sentence where that isn't the camera
   };
   struct Sensor {
@@ -39,7 +40,7 @@ Companions find_companions(const std::shared_ptr<const RecordingFiles>& files, c
 
 /// The reader with what lies beside its events where it has no calibration or ground truth itself; their poses, and the
 /// sensor's size where it was only assumed and no option says it. Metadata says what is from where: "calibration",
-/// "ground truth", "remark".
+/// "ground truth", "remark"; what was assumed in reading the ground truth is a remark as soon as it was asked for.
 std::unique_ptr<EventReader> with_companions(std::unique_ptr<EventReader> reader,
                                              const std::shared_ptr<const RecordingFiles>& files,
                                              const ReadOptions& options);

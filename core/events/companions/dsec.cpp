@@ -1,4 +1,4 @@
-#include "core/events/companions/calibration_fields.hpp"
+#include "core/data/calibration_fields.hpp"
 #include "core/events/companions/data_sets.hpp"
 
 namespace evbench {

@@ -1,5 +1,4 @@
 #include "core/data/calib.hpp"
-#include "core/data/tum.hpp"
 #include "core/events/companions/data_sets.hpp"
 
 namespace evbench {
@@ -15,7 +14,7 @@ Companions ecd_companions(const EventsPlace& place) {
   }
   if (files->has("groundtruth.txt")) {
     const auto read = [files] {
-      return files->get("groundtruth.txt", [](const std::string& path) { return read_tum(path); });
+      return files->get("groundtruth.txt", [](const std::string& path) { return read_poses(path); });
     };
     found.ground_truth = {{"groundtruth.txt"}, "the camera", read};
   }

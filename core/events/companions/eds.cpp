@@ -1,5 +1,4 @@
-#include "core/data/tum.hpp"
-#include "core/events/companions/calibration_fields.hpp"
+#include "core/data/calibration_fields.hpp"
 #include "core/events/companions/data_sets.hpp"
 
 namespace evbench {
@@ -20,7 +19,7 @@ Companions eds_companions(const EventsPlace& place) {
   }
   if (files->has(truth)) {
     const auto read = [files, truth] {
-      return files->get(truth, [](const std::string& path) { return read_tum(path); });
+      return files->get(truth, [](const std::string& path) { return read_poses(path); });
     };
     found.ground_truth = {{truth}, "the event camera", read};
   }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/events/companions/calibration_fields.hpp"
+#include "core/data/calibration_fields.hpp"
 #include "core/events/hdf5/file.hpp"
 #include "core/events/hdf5/trial.hpp"
 #include "core/support/error.hpp"

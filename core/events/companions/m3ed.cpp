@@ -22,7 +22,7 @@ Companions m3ed_companions(const EventsPlace& place) {
       });
     }
     for (StampedPose& pose : poses) pose.T = pose.T.inverse() * T_left_camera;
-    return PoseTrajectory(std::move(poses), files->path(name));
+    return PoseFile{PoseTrajectory(std::move(poses), files->path(name)), {}};
   };
   found.ground_truth = {{name}, to_right ? "the right event camera" : "the left event camera", read};
   if (to_right && files->path(data) != place.path) found.ground_truth->names.push_back(data);

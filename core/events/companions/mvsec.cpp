@@ -1,4 +1,4 @@
-#include "core/events/companions/calibration_fields.hpp"
+#include "core/data/calibration_fields.hpp"
 #include "core/events/companions/data_sets.hpp"
 #include "core/events/companions/hdf5_poses.hpp"
 
@@ -44,13 +44,13 @@ Companions mvsec_companions(const EventsPlace& place) {
       const SE3 T_left_right = matrix_pose(read_chain().at("cam1").at("T_cn_cnm1")).inverse();
       auto poses = read_left();
       for (StampedPose& pose : poses) pose.T = pose.T * T_left_right;
-      return PoseTrajectory(std::move(poses), files->path(name));
+      return PoseFile{PoseTrajectory(std::move(poses), files->path(name)), {}};
     };
     std::vector<std::string> names = chains;
     names.insert(names.begin(), name);
     found.ground_truth = {std::move(names), "the right camera", read};
   } else {
-    const auto read = [=] { return PoseTrajectory(read_left(), files->path(name)); };
+    const auto read = [=] { return PoseFile{PoseTrajectory(read_left(), files->path(name)), {}}; };
     found.ground_truth = {{name}, "the left camera", read};
     if (place.right) {
       found.ground_truth->remark =

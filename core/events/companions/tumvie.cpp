@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include "core/data/tum.hpp"
-#include "core/events/companions/calibration_fields.hpp"
+#include "core/data/calibration_fields.hpp"
 #include "core/events/companions/data_sets.hpp"
 
 namespace evbench {
@@ -24,8 +23,11 @@ Camera read_camera(const Field& calibration, std::size_t index) {
     for (const char* name : names) numbers.push_back(values.at(name).number());
     return numbers;
   };
+  const Field resolution = calibration.at("resolution").at(index);
+  const std::vector<double> size = resolution.numbers(2);
   return checked_camera(values.place(), several({"fx", "fy", "cx", "cy"}), DistortionModel::equidistant,
-                        several({"k1", "k2", "k3", "k4"}), calibration.at("resolution").at(index).numbers(2));
+                        several({"k1", "k2", "k3", "k4"}), checked_side(resolution.place(), size[0]),
+                        checked_side(resolution.place(), size[1]));
 }
 
 /// Of the calibrations A and B each sequence has one.
@@ -58,8 +60,9 @@ Companions tumvie_companions(const EventsPlace& place) {
   const std::string poses = find_poses(place);
   if (poses.empty()) return found;
   const auto read_markers = [=] {
-    constexpr double kMicrosecond = 1e-6;
-    return files->get(poses, [](const std::string& path) { return read_tum(path, kMicrosecond); });
+    return files->get(poses, [](const std::string& path) {
+      return read_poses(path, {.format = PoseFormat::tum, .time_unit = TimeUnit::microseconds});
+    });
   };
   if (cameras.empty() || markers.empty()) {
     found.ground_truth = {{poses},
@@ -73,9 +76,11 @@ Companions tumvie_companions(const EventsPlace& place) {
     const SE3 T_imu_marker = read_pose(read_calibration(*files, markers).at("T_imu_marker")),
               T_imu_camera = read_pose(read_calibration(*files, cameras).at("T_imu_cam").at(index));
     const SE3 T_marker_camera = T_imu_marker.inverse() * T_imu_camera;
-    std::vector<StampedPose> trajectory = read_markers().poses();
+    PoseFile file = read_markers();
+    std::vector<StampedPose> trajectory = std::move(file.trajectory).poses();
     for (StampedPose& pose : trajectory) pose.T = pose.T * T_marker_camera;
-    return PoseTrajectory(std::move(trajectory));
+    file.trajectory = PoseTrajectory(std::move(trajectory));
+    return file;
   };
   found.ground_truth = {{poses, markers.front(), cameras.front()}, "the event camera", read};
   return found;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "core/events/companions/calibration_fields.hpp"
+#include "core/data/calibration_fields.hpp"
 #include "core/events/hdf5/columns.hpp"
 #include "core/events/hdf5/file.hpp"
 #include "core/events/hdf5/layout.hpp"
@@ -242,10 +242,11 @@ std::optional<Camera> Hdf5Reader::calibration() {
   }
   DistortionModel distortion = DistortionModel::radial_tangential;
   if (file_.has_dataset(group + "distortion_model")) {
-    distortion = kalibr_distortion(place("distortion_model"), file_.text(group + "distortion_model"));
+    distortion = named_distortion(place("distortion_model"), file_.text(group + "distortion_model"));
   }
+  const std::vector<double> size = numbers("resolution", 2);
   return checked_camera(place(""), numbers("intrinsics", 4), distortion, numbers("distortion_coeffs", 4),
-                        numbers("resolution", 2));
+                        checked_side(place("resolution"), size[0]), checked_side(place("resolution"), size[1]));
 }
 
 /// The signature stands at the beginning, or after a user's block of 512, 1024, ... bytes.

@@ -1,4 +1,4 @@
-#include "core/events/companions/field.hpp"
+#include "core/io/field.hpp"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -88,14 +88,27 @@ double Field::number() const {
   return number;
 }
 
+std::vector<std::string> Field::keys() const {
+  std::vector<std::string> keys;
+  if (is_map()) {
+    for (const auto& [key, value] : value_->items()) keys.push_back(key);
+  }
+  return keys;
+}
+
+std::vector<double> Field::numbers() const {
+  if (!value_->is_array()) fail(fmt::format("is {}; expected a list of numbers", value_->type_name()));
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < value_->size(); ++i) numbers.push_back(at(i).number());
+  return numbers;
+}
+
 std::vector<double> Field::numbers(std::size_t count) const {
   if (!value_->is_array() || value_->size() != count) {
     fail(fmt::format("is {}; expected {} numbers",
                      value_->is_array() ? fmt::format("a list of {}", value_->size()) : value_->type_name(), count));
   }
-  std::vector<double> numbers;
-  for (std::size_t i = 0; i < count; ++i) numbers.push_back(at(i).number());
-  return numbers;
+  return numbers();
 }
 
 std::string Field::text() const {

@@ -18,7 +18,11 @@ class Field {
   Field at(const std::string& key) const;
   Field at(std::size_t index) const;
 
+  bool is_map() const { return value_->is_object(); }
+  std::vector<std::string> keys() const;  ///< of a map; otherwise none
+
   double number() const;                                 ///< finite
+  std::vector<double> numbers() const;                   ///< a list
   std::vector<double> numbers(std::size_t count) const;  ///< a list of that length
   std::string text() const;
 

@@ -1,0 +1,45 @@
+#include "core/data/columns.hpp"
+
+#include <array>
+#include <catch2/catch.hpp>
+
+using namespace evbench;
+
+namespace {
+
+constexpr std::array kQuantities{kTime, Quantity{"x", "(.*_)?x"}, Quantity{"y", "(.*_)?y"}};
+
+Columns columns(const std::string& names) { return {names, kQuantities}; }
+
+}  // namespace
+
+TEST_CASE("Columns are known by their names, whatever separates them and whatever case they are in") {
+  CHECK(columns("t x y").text() == "t x y");
+  CHECK(columns("# Timestamp, Pos X [m], foo, Y").text() == "t x - y");
+  CHECK(columns("\"y\";\"x\";\"time\"").text() == "y x t");
+  CHECK(columns("x y x t").text() == "x y - t");
+}
+
+TEST_CASE("A time's name says its unit, in brackets or behind it") {
+  CHECK(columns("#timestamp [ns],x,y").time_unit() == TimeUnit::nanoseconds);
+  CHECK(columns("# time [us] x y").time_unit() == TimeUnit::microseconds);
+  CHECK(columns("x y t_ms").time_unit() == TimeUnit::milliseconds);
+  CHECK(columns("t(sec) x y").time_unit() == TimeUnit::seconds);
+  CHECK(columns("t x y").time_unit() == TimeUnit::unsaid);
+}
+
+TEST_CASE("Times without a unit are seconds, or nanoseconds where nothing else can be, or unknown") {
+  CHECK(usual_time_unit(0.0) == TimeUnit::seconds);
+  CHECK(usual_time_unit(1.4e9) == TimeUnit::seconds);
+  CHECK(usual_time_unit(1403636579763555584.0) == TimeUnit::nanoseconds);
+  CHECK_FALSE(usual_time_unit(1403636579763555.0));
+}
+
+TEST_CASE("Times that do not meet a range are told with the unit in which they would") {
+  CHECK(times_beside(50'000, 5'260'000, 0, 6) ==
+        "go from 50000 to 5260000 s, outside of 0 to 6 s; taken as microseconds they would go from 0.05 to 5.26 s");
+  CHECK(times_beside(10, 20, 0, 6) ==
+        "go from 10 to 20 s, outside of 0 to 6 s; taken as milliseconds they would go from "
+        "0.01 to 0.02 s");
+  CHECK(times_beside(10, 20, 3, 6) == "go from 10 to 20 s, outside of 3 to 6 s");
+}

@@ -1,0 +1,203 @@
+#include "core/data/pose_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/data/columns.hpp"
+#include "core/data/pose_record.hpp"
+#include "core/support/error.hpp"
+#include "core/support/index.hpp"
+
+namespace evbench {
+namespace {
+
+constexpr std::array kQuantities{
+    kTime,
+    Quantity{"px", "((.*_)?(p|t|pos|position|trans|translation)(_.*)?_?)?x"},
+    Quantity{"py", "((.*_)?(p|t|pos|position|trans|translation)(_.*)?_?)?y"},
+    Quantity{"pz", "((.*_)?(p|t|pos|position|trans|translation)(_.*)?_?)?z"},
+    Quantity{"qx", "(.*_)?(q|quat|quaternion|orientation|rot|rotation)(_.*)?_?x"},
+    Quantity{"qy", "(.*_)?(q|quat|quaternion|orientation|rot|rotation)(_.*)?_?y"},
+    Quantity{"qz", "(.*_)?(q|quat|quaternion|orientation|rot|rotation)(_.*)?_?z"},
+    Quantity{"qw", "(.*_)?(q|quat|quaternion|orientation|rot|rotation)(_.*)?_?w"},
+    Quantity{"r11", "r_?11"},
+    Quantity{"r12", "r_?12"},
+    Quantity{"r13", "r_?13"},
+    Quantity{"r21", "r_?21"},
+    Quantity{"r22", "r_?22"},
+    Quantity{"r23", "r_?23"},
+    Quantity{"r31", "r_?31"},
+    Quantity{"r32", "r_?32"},
+    Quantity{"r33", "r_?33"},
+};
+constexpr std::span kPosition(&kQuantities[1], 3), kQuaternion(&kQuantities[4], 4), kMatrix(&kQuantities[8], 9);
+
+struct Layout {
+  PoseFormat format;
+  const char* columns;
+};
+
+constexpr Layout kLayouts[] = {
+    {PoseFormat::tum, "t px py pz qx qy qz qw"},
+    {PoseFormat::kitti, "r11 r12 r13 px r21 r22 r23 py r31 r32 r33 pz"},
+    {PoseFormat::kitti, "r11 r12 r13 px r21 r22 r23 py r31 r32 r33 pz - - - -"},
+    {PoseFormat::robotevt, "t r11 r12 r13 r21 r22 r23 r31 r32 r33 px py pz"},
+    {PoseFormat::kitti, "t r11 r12 r13 px r21 r22 r23 py r31 r32 r33 pz"},
+    {PoseFormat::kitti, "t r11 r12 r13 px r21 r22 r23 py r31 r32 r33 pz - - - -"},
+    {PoseFormat::euroc, "t px py pz qw qx qy qz - - - - - - - - -"},
+    {PoseFormat::euroc, "t px py pz qw qx qy qz"},
+};
+
+/// Where a record has its pose.
+class PoseColumns {
+ public:
+  explicit PoseColumns(const Columns& columns)
+      : position_(columns.find_all(kPosition)),
+        quaternion_(columns.find_all(kQuaternion)),
+        matrix_(columns.find_all(kMatrix)) {}
+
+  bool complete() const { return !position_.empty() && !(quaternion_.empty() && matrix_.empty()); }
+
+  SE3 read(const TextReader& reader) const {
+    return {quaternion_.empty() ? read_rotation_matrix(reader, matrix_) : read_quaternion(reader, quaternion_),
+            read_vector3(reader, position_, "the position")};
+  }
+
+  bool fits(const TextReader& reader) const {
+    try {
+      read(reader);
+      return true;
+    } catch (const InputError&) {
+      return false;
+    }
+  }
+
+ private:
+  std::vector<std::size_t> position_, quaternion_, matrix_;
+};
+
+/// By the number of the record's columns: a format's, or of all formats the first whose rotation is one. What has a
+/// quaternion may be followed by more.
+Columns find_layout(const TextReader& reader, PoseFormat format) {
+  const std::size_t count = reader.columns().size();
+  std::vector<Columns> known, fitting;
+  for (const Layout& layout : kLayouts) {
+    if (format == PoseFormat::automatic || layout.format == format) known.emplace_back(layout.columns, kQuantities);
+  }
+  for (const Columns& columns : known) {
+    if (columns.size() == count) fitting.push_back(columns);
+  }
+  for (const Columns& columns : known) {
+    if (columns.size() < count && columns.find("qw")) fitting.push_back(columns.followed_to(count));
+  }
+  if (fitting.empty()) reader.expect_columns(known.front().size(), known.front().text().c_str());
+  const auto rotating = std::ranges::find_if(fitting, [&](const Columns& c) { return PoseColumns(c).fits(reader); });
+  return rotating == fitting.end() ? fitting.front() : *rotating;
+}
+
+/// Of poses, one after the other: from a column, from a file of their own, or their numbers.
+class PoseTimes {
+ public:
+  PoseTimes(const TextReader& poses, const Columns& columns, const PoseFileOptions& options) {
+    if (const auto column = columns.find(kTime.name)) {
+      column_.emplace(poses, *column, options.time_unit, columns.time_unit());
+    } else if (!options.times.empty()) {
+      file_.emplace(options.times);
+      if (file_->next()) column_.emplace(*file_, 0, options.time_unit, TimeUnit::unsaid);
+    } else if (!options.may_number) {
+      poses.fail(fmt::format("has no time (columns {}); expected times in it, or the name of a file with a time a line",
+                             columns.text()));
+    }
+  }
+
+  double next(const TextReader& poses) {
+    if (!file_) return column_ ? column_->read(poses) : static_cast<double>(number_++);
+    if (file_->columns().empty()) poses.fail(fmt::format("has no time in {}; expected a time a pose", file_->path()));
+    const double t = column_->read(*file_);
+    file_->next();
+    return t;
+  }
+
+  /// At the end of the poses.
+  void expect_end() const {
+    if (file_ && !file_->columns().empty()) file_->fail("a time without a pose; expected a time a pose");
+  }
+
+  bool numbered() const { return !column_; }
+  TimeUnit unit() const { return column_ ? column_->unit() : TimeUnit::seconds; }
+
+ private:
+  std::optional<TimeColumn> column_;
+  std::optional<TextReader> file_;
+  std::int64_t number_ = 0;
+};
+
+/// What a reader of the file could have taken otherwise; empty for what is TUM's all along.
+std::string assumption(const TextReader& first, bool named, const Columns& columns, const PoseTimes& times,
+                       const PoseFileOptions& options) {
+  const bool asked = options.format != PoseFormat::automatic && columns.text().find('-') == std::string::npos;
+  const bool by_blanks = first.text().find_first_of(",;") == std::string::npos;
+  const bool usual = columns.text() == kLayouts[0].columns && (named || by_blanks);
+  std::string text;
+  if (!asked && !usual) {
+    text += fmt::format(", columns {} ({})", columns.text(), named ? "as they are named" : "assumed");
+  }
+  if (times.numbered()) text += ", without times: poses are numbered";
+  if (options.time_unit == TimeUnit::unsaid && times.unit() != TimeUnit::seconds) {
+    text += ", times in " + to_string(times.unit());
+  }
+  return text.empty() ? "" : fmt::format("{}: read with{}", first.path(), text.substr(1));
+}
+
+}  // namespace
+
+PoseFile read_poses(const std::string& path, const PoseFileOptions& options) {
+  TextReader reader(path);
+  const auto expect_poses = [&] {
+    if (reader.columns().empty()) throw InputError(fmt::format("{}: holds no pose; expected at least one", path));
+  };
+  reader.next();
+  expect_poses();
+  const bool asked = options.format != PoseFormat::automatic;
+  const auto will_do = [&](const Columns& c) { return asked || PoseColumns(c).complete(); };
+  std::optional<Columns> named = read_names(reader, kQuantities, will_do, kLayouts[0].columns);
+  expect_poses();
+  if (asked) named.reset();
+  const Columns columns = named ? *named : find_layout(reader, options.format);
+  const PoseColumns pose(columns);
+  PoseTimes times(reader, columns, options);
+
+  PoseFile file;
+  file.numbered = times.numbered();
+  if (const auto text = assumption(reader, named.has_value(), columns, times, options); !text.empty()) {
+    file.remarks.push_back(text);
+  }
+  std::vector<StampedPose> poses;
+  std::string first_repeated;
+  std::int64_t repeated = 0;
+  for (; !reader.columns().empty(); reader.next()) {
+    reader.expect_columns(columns.size(), columns.text().c_str());
+    const double t = times.next(reader);
+    const SE3 T = pose.read(reader);
+    if (!poses.empty() && t < poses.back().t) {
+      reader.fail(fmt::format("time {:.9f} s is before the one before it ({:.9f} s); expected increasing times", t,
+                              poses.back().t));
+    }
+    if (poses.empty() || t > poses.back().t) {
+      poses.push_back({t, T});
+    } else if (repeated++ == 0) {
+      first_repeated = reader.place();
+    }
+  }
+  times.expect_end();
+  if (repeated > 0) {
+    file.remarks.push_back(fmt::format("{}: {} pose{} with the time of the one before, left out; the first: {}", path,
+                                       repeated, repeated == 1 ? "" : "s", first_repeated));
+  }
+  file.trajectory = PoseTrajectory(std::move(poses), path);
+  return file;
+}
+
+}  // namespace evbench

@@ -1,0 +1,70 @@
+#include "core/data/time_unit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "core/support/index.hpp"
+
+namespace evbench {
+namespace {
+
+constexpr std::array kFiner{TimeUnit::milliseconds, TimeUnit::microseconds, TimeUnit::nanoseconds};
+
+/// Length that two ranges have in common, of the length that they have together; < 0: they don't meet.
+double overlap(double from_a, double to_a, double from_b, double to_b) {
+  const double common = std::min(to_a, to_b) - std::max(from_a, from_b);
+  const double together = std::max(to_a, to_b) - std::min(from_a, from_b);
+  return together > 0.0 ? common / together : 1.0;
+}
+
+}  // namespace
+
+std::optional<TimeUnit> parse_time_unit(std::string_view text) {
+  std::string name;
+  for (const char c : text) {
+    if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
+      name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+  }
+  const auto is = [&](std::initializer_list<const char*> names) {
+    return std::ranges::any_of(names, [&](const char* known) { return name == known; });
+  };
+  if (is({"s", "sec", "secs", "second", "seconds"})) return TimeUnit::seconds;
+  if (is({"ms", "msec", "msecs", "millis", "millisecond", "milliseconds"})) return TimeUnit::milliseconds;
+  if (is({"us", "usec", "usecs", "micros", "microsecond", "microseconds"})) return TimeUnit::microseconds;
+  if (is({"ns", "nsec", "nsecs", "nanos", "nanosecond", "nanoseconds"})) return TimeUnit::nanoseconds;
+  return std::nullopt;
+}
+
+std::string to_string(TimeUnit unit) {
+  constexpr std::array kNames{"seconds", "seconds", "milliseconds", "microseconds", "nanoseconds"};
+  return kNames[index(unit)];
+}
+
+double per_second(TimeUnit unit) {
+  constexpr std::array kCounts{1.0, 1.0, 1e3, 1e6, 1e9};
+  return kCounts[index(unit)];
+}
+
+std::optional<TimeUnit> usual_time_unit(double time) {
+  constexpr double kLatestSecond = 1e11, kEarliestNanosecond = 1e17;
+  if (std::abs(time) >= kEarliestNanosecond) return TimeUnit::nanoseconds;
+  if (std::abs(time) < kLatestSecond) return TimeUnit::seconds;
+  return std::nullopt;
+}
+
+std::string times_beside(double from, double to, double range_from, double range_to) {
+  const auto fit = [&](TimeUnit unit) {
+    return overlap(from / per_second(unit), to / per_second(unit), range_from, range_to);
+  };
+  const TimeUnit best = *std::ranges::max_element(kFiner, {}, fit);
+  std::string text = fmt::format("go from {} to {} s, outside of {} to {} s", from, to, range_from, range_to);
+  if (fit(best) < 0.0) return text;
+  return text + fmt::format("; taken as {} they would go from {} to {} s", to_string(best), from / per_second(best),
+                            to / per_second(best));
+}
+
+}  // namespace evbench

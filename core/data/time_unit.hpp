@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace evbench {
+
+/// What a file's times count.
+enum class TimeUnit { unsaid, seconds, milliseconds, microseconds, nanoseconds };
+
+inline constexpr std::array kTimeUnitNames{"auto", "s", "ms", "us", "ns"};
+
+/// "[ns]", "usec", "seconds"; none for anything else.
+std::optional<TimeUnit> parse_time_unit(std::string_view text);
+
+/// "microseconds".
+std::string to_string(TimeUnit unit);
+
+double per_second(TimeUnit unit);
+
+/// Of times that say none, by one of them: seconds, or nanoseconds where it is 10¹⁷ or more, which is after the year
+/// 5000 in any other unit. None from 10¹¹ on: those are no seconds, but microseconds since 1970 or nanoseconds since a
+/// machine's start are alike.
+std::optional<TimeUnit> usual_time_unit(double time);
+
+/// For a file's times [s] that do not meet a range [s]: a sentence part that says both, and the unit in which they
+/// would meet it best, if there is one.
+std::string times_beside(double from, double to, double range_from, double range_to);
+
+}  // namespace evbench
