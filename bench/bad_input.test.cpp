@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "bench/commands/exit_code.hpp"
 #include "bench/testing/program.hpp"
 
 using namespace evbench;
@@ -17,10 +18,11 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-void check_refused(const TemporaryFolder& folder, const std::string& arguments, const std::string& message) {
+void check_refused(const TemporaryFolder& folder, const std::string& arguments, const std::string& message,
+                   int exit_code = kExitBadInput) {
   const Outcome outcome = testing::evbench(folder, arguments);
   INFO(arguments << "\n" << outcome.err);
-  CHECK(outcome.exit_code == 2);
+  CHECK(outcome.exit_code == exit_code);
   CHECK_THAT(outcome.err, Catch::Matchers::StartsWith("evbench: ") && Contains(message));
   CHECK(std::ranges::count(outcome.err, '\n') == 1);
   CHECK(outcome.out.empty());
@@ -133,19 +135,19 @@ TEST_CASE("A folder for results that can't be made ends the program before any w
   const TemporaryFolder folder;
   folder.write("c.json", short_config().dump());
   folder.write("file", "");
-  check_refused(folder, "run c.json --out file", "file/short: can't be made: Not a directory");
-  check_refused(folder, "run c.json --out /dev/full", "/dev/full/short: can't be made");
+  check_refused(folder, "run c.json --out file", "file/short: can't be made: Not a directory", kExitNotWritten);
+  check_refused(folder, "run c.json --out /dev/full", "/dev/full/short: can't be made", kExitNotWritten);
 }
 
 TEST_CASE("A full disk is an error wherever the program writes") {
   const TemporaryFolder folder;
   write_recording(folder);
   check_refused(folder, "eval groundtruth.txt groundtruth.txt --json /dev/full",
-                "/dev/full: can't be written: No space");
+                "/dev/full: can't be written: No space", kExitNotWritten);
   for (const char* command : {"list", "describe config", "--help", "eval groundtruth.txt groundtruth.txt"}) {
     INFO(command);
     const Outcome outcome = testing::evbench(folder, std::string(command) + " > /dev/full");
-    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.exit_code == kExitNotWritten);
     CHECK_THAT(outcome.err, Contains("standard output"));
   }
 }
@@ -156,8 +158,9 @@ TEST_CASE("A file that can't be written whole leaves the one before as it was") 
   folder.write("scores.json", "before");
   // A limit on the size of files stands for a disk that is full.
   const Outcome outcome = testing::shell(
-      folder, "trap '' XFSZ; ulimit -f 1; \"$evbench\" eval groundtruth.txt groundtruth.txt --json scores.json");
-  CHECK(outcome.exit_code == 2);
+      folder,
+      "trap '' XFSZ; ulimit -f 1; \"$evbench\" eval groundtruth.txt groundtruth.txt --json scores.json --force");
+  CHECK(outcome.exit_code == kExitNotWritten);
   CHECK_THAT(outcome.err, Contains("scores.json: can't be written") && !Contains(".part"));
   CHECK(read_file(folder.file("scores.json")) == "before");
   CHECK(names_in(folder.path()).size() == 5);
@@ -172,7 +175,7 @@ TEST_CASE("A run that can't be written whole leaves the run before as it was") {
   const std::string before = testing::shell(folder, "cd results/short && sha256sum */*").out;
   const Outcome outcome = testing::shell(
       folder, "trap '' XFSZ; ulimit -f 8; \"$evbench\" run c.json --force; code=$?; ulimit -f unlimited; exit $code");
-  CHECK(outcome.exit_code == 2);
+  CHECK(outcome.exit_code == kExitNotWritten);
   CHECK_THAT(outcome.err, Contains("can't be written: File too large") && !Contains(".part"));
   CHECK(testing::shell(folder, "cd results/short && sha256sum */*").out == before);
   CHECK(names_in(folder.file("results/short")).size() == 1);
@@ -191,7 +194,7 @@ TEST_CASE("A run on a disk that is full leaves nothing there") {
   }
   const Outcome outcome = testing::shell(
       folder, mount + " && \"$evbench\" run c.json --out small; code=$?; find small -type f; exit $code'");
-  CHECK(outcome.exit_code == 2);
+  CHECK(outcome.exit_code == kExitNotWritten);
   CHECK_THAT(outcome.err, Contains("can't be written: No space left on device"));
   CHECK(outcome.out.empty());
 }

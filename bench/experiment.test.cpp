@@ -106,6 +106,37 @@ TEST_CASE("An override that can't be meant is refused") {
   CHECK_THROWS_WITH(read(short_config(), {"trajectory_rate=NaN"}), Contains("expected number, found \"NaN\""));
 }
 
+TEST_CASE("--set gives text where text is expected, and a position of a list that the config leaves at its default") {
+  CHECK(read(short_config(), {"backend.label=0.05"}).runs[0].label == "0.05");
+  CHECK(read(short_config(), {"name=2024"}).name == "2024");
+  const Json twice = read(short_config("gp_map"), {"backend.qc.3=2"}).runs[0].job.backend.options["qc"];
+  const Json before = read(short_config("gp_map")).runs[0].job.backend.options["qc"];
+  REQUIRE(twice.size() == before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) CHECK(twice[i] == (i == 3 ? Json(2.0) : before[i]));
+  CHECK_THROWS_WITH(read(short_config("gp_map"), {"backend.qc.6=2"}),
+                    Contains("\"6\" is not a position in a list of 6"));
+}
+
+TEST_CASE("An error in what --set gave says so, an error in the file does not") {
+  CHECK_THROWS_WITH(
+      read(short_config(), {"trajectory_rate=fast"}),
+      Contains("c.json: trajectory_rate: expected number") && EndsWith("(from --set trajectory_rate=fast)"));
+  CHECK_THROWS_WITH(read(short_config(), {"seed=2", "source.motion.knid=3"}),
+                    Contains("unknown key \"knid\"") && EndsWith("(from --set source.motion.knid=3)"));
+  CHECK_THROWS_WITH(read(short_config(), {"source={\"type\": \"simulation\", \"duration\": -1}"}),
+                    Contains("source.duration") && Contains("(from --set source="));
+  Json config = short_config();
+  config["source"]["duration"] = -1;
+  CHECK_THROWS_WITH(read(config, {"seed=2"}), Contains("source.duration") && !Contains("--set"));
+}
+
+TEST_CASE("A config may name its schema") {
+  Json config = short_config();
+  config["$schema"] = "evbench.schema.json";
+  CHECK(key_of(read(config).runs[0]) == key_of(read(short_config()).runs[0]));
+  CHECK_FALSE(read(config).runs[0].resolved().contains("$schema"));
+}
+
 TEST_CASE("A config that is not as expected is refused with the place and the nearest name") {
   CHECK_THROWS_WITH(read_experiment("/no/such.json", {}, known_plugins()), Contains("/no/such.json: can't be read"));
   CHECK_THROWS_WITH(read_experiment("/", {}, known_plugins()), Contains("can't be read"));

@@ -70,7 +70,8 @@ TEST_CASE("A command line that is not understood ends with exit code 2 and says 
     CHECK_THAT(outcome.err, Contains(message));
   };
   refused("", "subcommand");
-  refused("frobnicate", "subcommand");
+  refused("frobnicate", "\"frobnicate\" is no command; known: ");
+  refused("runn c.json", "\"runn\" is no command; did you mean \"run\"?");
   refused("run", "config is required");
   refused("run c.json --foo", "--foo");
   refused("describe backnd gp_map", "backnd");
@@ -79,6 +80,7 @@ TEST_CASE("A command line that is not understood ends with exit code 2 and says 
   refused("table nowhere", "nowhere: is not a folder");
   refused("table .", "no metrics.json");
   refused("run c.json --set seed", "expected KEY=VALUE");
+  refused("run c.json --set seed=1 source.duration=2", "source.duration=2");
 }
 
 TEST_CASE("Nothing is printed by --quiet, the table and the folder without") {
@@ -96,6 +98,36 @@ TEST_CASE("Nothing is printed by --quiet, the table and the folder without") {
     const Outcome table = testing::evbench(folder, std::string("table results --format ") + format);
     CHECK(table.exit_code == 0);
     CHECK_THAT(table.out, Contains("bundle"));
+  }
+}
+
+TEST_CASE("--set takes one value, so that the config may stand behind it") {
+  const TemporaryFolder folder;
+  folder.write("c.json", short_config().dump());
+  CHECK(testing::evbench(folder, "run --check --set seed=2 c.json").exit_code == 0);
+}
+
+TEST_CASE("Checking a config finds what would fail at once") {
+  const TemporaryFolder folder;
+  write_recording(folder);
+  CHECK(testing::evbench(folder, "run --check recording.json").exit_code == 0);
+  const struct {
+    const char* value;
+    const char* message;
+  } cases[] = {{"evaluation.time_range=[3,0]", "evaluation.time_range: is [3,0]; expected rising numbers"},
+               {"source.time_range=[3,0]", "source.time_range: is [3,0]; expected rising numbers"},
+               {"frontend.tracks=none.txt", "none.txt: no such file"},
+               {"frontend.tracks=${EVBENCH_NOT_SET}/a.txt", "EVBENCH_NOT_SET"},
+               {"source.folder=nowhere", "nowhere"},
+               {"source={\"type\": \"recording\"}", "expected at least one of dataset, folder, events, calibration"},
+               {"source={\"type\": \"recording\", \"dataset\": \"ecd/dynamic_6dof\"}", "evbench dataset get"}};
+  for (const auto& [value, message] : cases) {
+    INFO(value);
+    const Outcome outcome =
+        testing::shell(folder, "export EVBENCH_DATASETS=none; \"$evbench\" run --check recording.json --set '" +
+                                   std::string(value) + "'");
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains(message));
   }
 }
 

@@ -9,6 +9,7 @@
 #include "bench/recordings/config_events.hpp"
 #include "bench/recordings/conversion.hpp"
 #include "core/events/writer.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/support/interruption.hpp"
 
 namespace evbench {
@@ -17,11 +18,12 @@ namespace {
 struct ConvertArguments {
   std::string in, out;
   TimeRangeArguments range;
-  bool quiet = false;
+  bool quiet = false, force = false;
   ConversionOptions options;
 };
 
 void execute(const ConvertArguments& arguments) {
+  refuse_to_replace(arguments.out, arguments.force);
   ConversionOptions options = arguments.options;
   set_time_range(arguments.range, options.stream);
   const Interruption interruption(arguments.out + ": interrupted; nothing was written");
@@ -71,7 +73,7 @@ void add_convert(CLI::App& app, const Plugins& plugins) {
                    "Move events to where an ideal pinhole would see them, to the nearest pixel; those outside are left "
                    "out. CALIB: a calib.txt, or \"own\": the recording's")
       ->type_name("CALIB");
-  command->add_flag("--force", arguments->options.force, "Replace OUT where it exists");
+  command->add_flag("--force", arguments->force, "Replace OUT where it exists");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   add_read_options(*command, arguments->options.stream.read);
   command->footer(formats_text());

@@ -9,6 +9,7 @@
 #include "bench/commands/progress_line.hpp"
 #include "bench/commands/time_range.hpp"
 #include "bench/recordings/config_events.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
@@ -24,7 +25,7 @@ struct RenderArguments {
   std::string in, out, mode = "events";
   TimeRangeArguments range;
   std::optional<double> duration, decay, tail;  // [ms]
-  bool quiet = false;
+  bool quiet = false, force = false;
   RenderOptions options;
 };
 
@@ -39,6 +40,7 @@ RenderOptions render_options(const RenderArguments& arguments) {
 }
 
 void execute(const RenderArguments& arguments) {
+  refuse_to_replace(arguments.out, arguments.force);
   if (arguments.decay && arguments.mode != "time_surface") throw InputError("--decay: is for --mode time_surface");
   RenderReport report;
   {
@@ -136,7 +138,7 @@ void add_render(CLI::App& app, const Plugins& plugins) {
   add_time_options(*command, *arguments);
   add_mode_options(*command, *arguments);
   add_picture_options(*command, *arguments);
-  command->add_flag("--force", arguments->options.force, "Replace OUT where it exists");
+  command->add_flag("--force", arguments->force, "Replace OUT where it exists");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   add_read_options(*command, arguments->options.stream.read);
   command->footer(

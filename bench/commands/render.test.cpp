@@ -31,6 +31,8 @@ TEST_CASE("render writes a picture, a folder of pictures, or a video, and says s
   outcome = testing::evbench(folder, "render a.evb pictures/ --speed 0.15 --fps 15 --duration 10 --mode time_surface");
   CHECK(outcome.out == "written: pictures/, 5 pictures of 640x320 pixels\n");
   CHECK(names_in(folder.file("pictures")).size() == 5);
+  CHECK_THAT(testing::evbench(folder, "render a.evb pictures/").err, Contains("pictures/: exists already; --force"));
+  CHECK(testing::evbench(folder, "render a.evb a.png --scale 4 --force").exit_code == 0);
 
   outcome = testing::evbench(folder, "render a.evb a.mp4 --beside a.evb --quiet");
   CHECK(outcome.exit_code == 0);
@@ -58,6 +60,7 @@ TEST_CASE("render refuses with exit code 2 and a sentence what it can't draw") {
   refused("a.evb a.png --mode compensated", "--trajectory");
   refused("a.evb a.png --tracks none.txt", "none.txt");
   refused("a.evb a.png --fps 0", "--fps");
+  refused("a.evb a.evb", "a.evb: exists already; --force replaces it");
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb"});
 }
 

@@ -8,7 +8,6 @@
 #include "core/data/calib.hpp"
 #include "core/events/formats.hpp"
 #include "core/events/writer.hpp"
-#include "core/io/atomic_file.hpp"
 #include "core/io/part_file.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
@@ -152,7 +151,6 @@ const char* why_none(const StreamOptions& options, const ConversionReport& repor
 ConversionReport convert(const std::string& in, const std::string& out, const ConversionOptions& options,
                          const std::function<void(std::int64_t, std::int64_t)>& progress) {
   const WritableFormat& format = find_format(out, options.format);
-  refuse_to_replace(out, options.force);
   EventStream stream(in, options.stream);
   refuse_input(in, out);
   RecordingHeader header = make_header(stream, in, options.stream);

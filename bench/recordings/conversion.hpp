@@ -14,7 +14,6 @@ namespace evbench {
 struct ConversionOptions {
   StreamOptions stream;
   std::string format;     ///< a writable format's name; empty: by the extension
-  bool force = false;     ///< replaces an existing file, but never what is read
   std::string undistort;  ///< calib.txt of the lens that is to be undone, or "own": the recording's; empty: not
 };
 
@@ -27,7 +26,7 @@ struct ConversionReport {
 
 /// Writes a recording in another format. Nothing is left at `out` when that fails or is interrupted, and an older file
 /// stays. `progress` is told how many events have been read, and the time reached [µs].
-/// Throws InputError when `out` names no writable format, exists already or is what is read, for a sensor of unknown
+/// Throws InputError when `out` names no writable format, is what is read, for a sensor of unknown
 /// size or another than the calibration's where undistortion needs it, when no event is left to be written, and for
 /// what reader and writer refuse.
 ConversionReport convert(const std::string& in, const std::string& out, const ConversionOptions& options,

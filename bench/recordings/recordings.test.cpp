@@ -70,7 +70,7 @@ TEST_CASE("info says a recording's format, sensor, counts, times, rates, calibra
   CHECK(text.err.empty());
   CHECK_THAT(text.out, Contains("evbench native 1") && Contains("240x180 pixels") &&
                            Contains("1000: 666 on, 334 off (66.6 % on)") &&
-                           Contains("2.000000 to 2.999000 s: 0.999000 s") && Contains("0.001 million/s on average") &&
+                           Contains("2.000000 to 2.999000 s: 0.999000 s") && Contains("1001/s on average") &&
                            Contains("radial_tangential") && Contains("2 poses, 2.000 to 3.000 s, path 0.50 m") &&
                            Contains("oddities      none") && Contains("█"));
   const Json json = Json::parse(testing::evbench(folder, "info a.evb --json").out);
@@ -91,8 +91,12 @@ TEST_CASE("info of a recording without events, and of one with damage, says so")
   CHECK(Json::parse(testing::evbench(folder, "info none.evb --json").out).at("start_us").is_null());
   write_native(folder.file("a.evb"), walking_events(20000), davis_header());
   damage(folder.file("a.evb"));
-  CHECK_THAT(testing::evbench(folder, "info a.evb").out,
-             Contains("16384 events in damaged chunks (checksum), left out"));
+  const Outcome damaged = testing::evbench(folder, "info a.evb");
+  CHECK_THAT(damaged.out, Contains("16384 events in damaged chunks (checksum), left out"));
+  CHECK(damaged.exit_code == 2);
+  CHECK_THAT(damaged.err, Contains("a.evb: 81.9 % of the events, 16384 of 20000, have to be left out") &&
+                              Contains("(the first: chunk 0 at byte 64)") && Contains("--lenient"));
+  CHECK(testing::evbench(folder, "info a.evb --lenient").exit_code == 0);
   const Outcome strict = testing::evbench(folder, "info a.evb --strict");
   CHECK(strict.exit_code == 2);
   CHECK_THAT(strict.err, Contains("chunk 0 at byte 64"));
@@ -112,7 +116,8 @@ TEST_CASE("A recording of 100 days still has a histogram, of bounded size, with 
 
 TEST_CASE("Rates are plotted as high as they are") {
   const std::string plot = plot_rates({0.0, 1e6, 2e6}, 0.0, 3.0, 1);
-  CHECK_THAT(plot, Contains("2.000 | ▄█\n") && Contains("0.000 s"));
+  CHECK_THAT(plot, Contains("million events/s\n") && Contains("2.000 | ▄█\n") && Contains("0.000 s"));
+  CHECK_THAT(plot_rates({0.0, 4.0, 8.0}, 0.0, 3.0, 1), Catch::StartsWith("events/s\n") && Contains("8 | ▄█\n"));
   CHECK_FALSE(plot_rates({}, 0.0, 0.0).empty());
 }
 
@@ -128,7 +133,8 @@ TEST_CASE("convert writes native, text and HDF5 files that read back as the same
     CHECK(read_all(folder.file(out)) == events);
   }
   CHECK(testing::evbench(folder, "convert a.evb b --format text --quiet").out.empty());
-  CHECK_THAT(read_file(folder.file("b")), Catch::StartsWith("2.000000 0 0 0\n2.001000 1 1 1\n"));
+  CHECK_THAT(read_file(folder.file("b")),
+             Catch::StartsWith("# t[s] x y p\n# geometry: 240x180\n2.000000 0 0 0\n2.001000 1 1 1\n"));
   const auto reader = open_events(folder.file("b.evb"));
   REQUIRE(reader->calibration());
   CHECK(reader->ground_truth()->size() == 2);
@@ -139,7 +145,8 @@ TEST_CASE("Text has times before zero with their sign") {
   const TemporaryFolder folder;
   write_native(folder.file("a.evb"), {{-1500000, 1, 2, true}, {-1, 1, 2, false}, {7, 1, 2, true}}, davis_header());
   convert(folder.file("a.evb"), folder.file("a.txt"), {});
-  CHECK(read_file(folder.file("a.txt")) == "-1.500000 1 2 1\n-0.000001 1 2 0\n0.000007 1 2 1\n");
+  CHECK(read_file(folder.file("a.txt")) ==
+        "# t[s] x y p\n# geometry: 240x180\n-1.500000 1 2 1\n-0.000001 1 2 0\n0.000007 1 2 1\n");
 }
 
 TEST_CASE("convert takes a time range, with times from the first event on or as they are") {
@@ -150,11 +157,63 @@ TEST_CASE("convert takes a time range, with times from the first event on or as 
   CHECK(cut.size() == 1500);
   CHECK(cut.front().t == 3000000);
   CHECK(cut.back().t == 4499000);
-  REQUIRE(testing::evbench(folder, "convert a.evb b.evb --from 1 --to 2 --rebase").exit_code == 0);
+  CHECK_THAT(testing::evbench(folder, "info b.evb").out, Contains("a part of it: 3.000000 to 4.500000 s"));
+  REQUIRE(testing::evbench(folder, "convert a.evb b.evb --force --from 1 --to 2 --rebase").exit_code == 0);
   cut = read_all(folder.file("b.evb"));
   CHECK(cut.size() == 1000);
   CHECK(cut.front().t == 1000000);
   CHECK(open_events(folder.file("b.evb"))->ground_truth()->start() == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("What evbench writes as text it reads as the same events, however they begin") {
+  const TemporaryFolder folder;
+  std::vector<Event> events;  // times and pixels that could be of either order, or in microseconds
+  for (int i = 0; i < 1500; ++i) events.push_back({0, 1, 1, true});
+  for (int i = 0; i < 500; ++i) events.push_back({1000 * i, 1, 0, i % 2 == 0});
+  write_native(folder.file("a.evb"), events, davis_header());
+  REQUIRE(testing::evbench(folder, "convert a.evb a.txt --quiet").exit_code == 0);
+  REQUIRE(testing::evbench(folder, "convert a.txt b.txt --quiet").exit_code == 0);
+  CHECK(read_file(folder.file("a.txt")) == read_file(folder.file("b.txt")));
+  CHECK(read_all(folder.file("b.txt")) == events);
+  CHECK_THAT(testing::evbench(folder, "info b.txt").out, Contains("240x180 pixels"));
+  REQUIRE(testing::shell(folder, "grep -v '^#' a.txt > bare.txt").exit_code == 0);
+  CHECK(read_all(folder.file("bare.txt")) == events);
+}
+
+TEST_CASE("A part of a recording keeps the ground truth of its time, and a folder says which file was read") {
+  const TemporaryFolder folder;
+  RecordingHeader header = davis_header();
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 1000; ++i) poses.push_back({0.1 * i, SE3()});
+  header.ground_truth = PoseTrajectory(poses);
+  write_native(folder.file("a.evb"), walking_events(5000), header);
+  std::filesystem::create_directory(folder.file("seq"));
+  REQUIRE(testing::evbench(folder, "convert a.evb seq/events.evb --from 3 --to 4").exit_code == 0);
+  const auto truth = open_events(folder.file("seq"))->ground_truth();
+  REQUIRE(truth);
+  CHECK(truth->start() == Approx(2.0));
+  CHECK(truth->end() == Approx(5.0));
+  CHECK_THAT(testing::evbench(folder, "info seq").out,
+             Contains("events in     seq/events.evb") && Contains("a part of it: 3.000000 to 4.000000 s"));
+}
+
+TEST_CASE("A recording may come from a pipe or the standard input, of any format") {
+  const TemporaryFolder folder;
+  const auto events = walking_events(5000);
+  write_native(folder.file("a.evb"), events, davis_header());
+  REQUIRE(testing::evbench(folder, "convert a.evb a.h5 --quiet").exit_code == 0);
+  for (const char* const in : {"a.evb", "a.h5"}) {
+    INFO(in);
+    const std::string command = std::string("cat ") + in + " | \"$evbench\" convert - b.txt --force";
+    CHECK(testing::shell(folder, command).exit_code == 0);
+    CHECK(read_all(folder.file("b.txt")) == events);
+  }
+  const Outcome piped = testing::shell(folder, "mkfifo pipe; cat a.evb > pipe & \"$evbench\" info pipe");
+  CHECK(piped.exit_code == 0);
+  CHECK_THAT(piped.out, Contains("file          pipe") && Contains("5000: "));
+  const Outcome broken = testing::shell(folder, "head -c 100 a.evb | \"$evbench\" info -");
+  CHECK(broken.exit_code == 2);
+  CHECK_THAT(broken.err, Contains("evbench: -: ") && Contains("truncated") && !Contains("/proc"));
 }
 
 TEST_CASE("convert undoes the lens: events go to where a pinhole sees them, or are left out and counted") {
@@ -198,9 +257,6 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
     CHECK(outcome.exit_code == 2);
     CHECK_THAT(outcome.err, Contains(message));
   };
-  REQUIRE(::mkfifo(folder.file("pipe").c_str(), 0600) == 0);
-  refused("pipe b.evb", "pipe: is no regular file");
-  std::filesystem::remove(folder.file("pipe"));
   refused("a.evb b.xyz", "expected one of .evb (native)");
   refused("a.evb b --format nativ", "did you mean \"native\"?");
   refused("a.evb b.evb --from 3 --to 2", "expected from < to");
@@ -210,16 +266,19 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
   refused("unknown.evb b.evb --undistort calib.txt --width 8000 --height 8001", "64 million pixels at most");
   refused("mistaken.json b.evb --undistort own", "calibration of 320x240 pixels; expected the sensor's 240x180");
   refused("a.evb no/b.evb", "no/b.evb");
-  refused("a.evb ok.txt --from 100", "has no events in the time range");
-  refused("corner.evb ok.txt --undistort lens.txt", "all events lie outside the undistorted image");
-  refused("none.evb ok.txt", "has no events; nothing was written");
+  refused("unknown.evb ok.txt", "ok.txt: exists already; --force replaces it");
+  refused("a.evb a.evb --force --to 3", "a.evb: is what is read");
+  refused("a.evb ok.txt --force --from 100", "has no events in the time range");
+  refused("corner.evb ok.txt --force --undistort lens.txt", "all events lie outside the undistorted image");
+  refused("none.evb ok.txt --force", "has no events; nothing was written");
   CHECK(read_file(folder.file("ok.txt")) == "old");
   damage(folder.file("a.evb"));
   refused("a.evb b.evb --strict", "checksum");
   refused("a.evb b.h5 --strict", "checksum");
-  CHECK_THAT(testing::evbench(folder, "convert a.evb ok.evb").out,
+  refused("a.evb b.evb", "81.9 % of the events, 16384 of 20000, have to be left out");
+  CHECK_THAT(testing::evbench(folder, "convert a.evb ok.evb --lenient").out,
              Contains("left out: 16384 events in damaged chunks"));
-  REQUIRE(testing::evbench(folder, "convert mistaken.json ok.evb").exit_code == 0);
+  REQUIRE(testing::evbench(folder, "convert mistaken.json ok.evb --lenient --force").exit_code == 0);
   CHECK_FALSE(open_events(folder.file("ok.evb"))->calibration());  // it fits another sensor
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", "unknown.evb", "none.evb", "corner.evb",
                                                          "mistaken.json", "lens.txt", "ok.txt", "ok.evb"});
@@ -265,7 +324,7 @@ TEST_CASE("Text is converted into a pipe; other formats are not") {
   const TemporaryFolder folder;
   write_native(folder.file("a.evb"), walking_events(3), davis_header());
   const Outcome text = testing::shell(folder, "\"$evbench\" convert a.evb /dev/stdout --format text --quiet | cat");
-  CHECK(text.out == "2.000000 0 0 0\n2.001000 1 1 1\n2.002000 2 2 1\n");
+  CHECK(text.out == "# t[s] x y p\n# geometry: 240x180\n2.000000 0 0 0\n2.001000 1 1 1\n2.002000 2 2 1\n");
   const Outcome hdf5 = testing::evbench(folder, "convert a.evb /dev/null --format hdf5");
   CHECK(hdf5.exit_code == 2);
   CHECK_THAT(hdf5.err, Contains("/dev/null: is a pipe or a device"));
@@ -284,9 +343,9 @@ TEST_CASE("A disk that is full while a file is written is an error that names th
   const std::string out = GENERATE("b.txt", "b.h5", "b.evb");
   folder.write(out, "old");
   // A limit on the size of files stands for the disk.
-  const Outcome outcome = testing::shell(folder, "trap '' XFSZ; ulimit -f 64; \"$evbench\" convert a.evb " + out +
-                                                     "; code=$?; ulimit -f unlimited; exit $code");
-  CHECK(outcome.exit_code == 2);
+  const Outcome outcome = testing::shell(folder, "trap '' XFSZ; ulimit -f 64; \"$evbench\" convert --force a.evb " +
+                                                     out + "; code=$?; ulimit -f unlimited; exit $code");
+  CHECK(outcome.exit_code == 4);
   CHECK_THAT(outcome.err, Contains(out + ": can't be written") && !Contains(".part") && !Contains("/proc"));
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", out});
   CHECK(read_file(folder.file(out)) == "old");

@@ -66,22 +66,16 @@ void check_parent(const std::string& path) {
 
 }  // namespace
 
-std::unique_ptr<PictureSink> open_picture_sink(const std::string& path, double fps, bool force) {
+std::unique_ptr<PictureSink> open_picture_sink(const std::string& path, double fps) {
   const std::string extension = fs::path(path).extension().string();
   if (path.ends_with('/') || fs::is_directory(path)) {
     std::string name = path;
     while (name.size() > 1 && name.ends_with('/')) name.pop_back();
     check_parent(name);
-    if (fs::is_directory(name)) {
-      check_replaceable(name);
-      if (!force && !fs::is_empty(name)) throw InputError(fmt::format("{}: exists already; --force replaces it", name));
-    }
+    if (fs::is_directory(name)) check_replaceable(name);
     return std::make_unique<FolderSink>(name);
   }
-  if (extension == ".png" || extension == ".mp4") {
-    check_parent(path);
-    refuse_to_replace(path, force);
-  }
+  if (extension == ".png" || extension == ".mp4") check_parent(path);
   if (extension == ".png") return std::make_unique<FileSink>(path);
   if (extension == ".mp4") return open_video_sink(path, fps);
   throw InputError(

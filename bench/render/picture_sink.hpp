@@ -18,10 +18,10 @@ class PictureSink {
   virtual void finish() = 0;
 };
 
-/// Refuses a file or folder that exists, unless `force`. By the name: NAME.png is one picture, NAME/ a folder of them
-/// (000000.png and so on), NAME.mp4 a video (H.264, or MPEG-4 where there is no encoder for that) of `fps` pictures a
-/// second. Throws InputError for another name, when the folder that it lies in is missing, and for a folder that holds
-/// anything but such pictures.
-std::unique_ptr<PictureSink> open_picture_sink(const std::string& path, double fps, bool force);
+/// By the name: NAME.png is one picture, NAME/ a folder of them (000000.png and so on), NAME.mp4 a video (H.264, or
+/// MPEG-4 where there is no encoder for that) of `fps` pictures a second.
+/// Throws InputError for another name, when the folder that it lies in is missing, and for a folder that holds anything
+/// but such pictures.
+std::unique_ptr<PictureSink> open_picture_sink(const std::string& path, double fps);
 
 }  // namespace evbench

@@ -174,7 +174,7 @@ RenderReport render(const std::string& in, const std::string& out, const RenderO
   check_options(asked);
   RenderReport report;
   const RenderOptions options = within_motion(in, asked, report);
-  const std::unique_ptr<PictureSink> sink = open_picture_sink(out, options.fps, options.force);
+  const std::unique_ptr<PictureSink> sink = open_picture_sink(out, options.fps);
   const double period = options.speed / options.fps * 1e6;  // [us]
   const WindowExtent extent = make_extent(asked, !sink->takes_many(), std::llround(period));
   Renderer renderer(in, options, extent);

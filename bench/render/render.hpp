@@ -19,7 +19,6 @@ enum class RenderMode {
 
 struct RenderOptions {
   StreamOptions stream;
-  bool force = false;  ///< replaces what exists
   RenderMode mode = RenderMode::events;
   /// What a picture shows: [s], or a number of events. Neither: what --from and --to enclose for one picture that has
   /// both; five times the decay for time surfaces; otherwise 20 ms, in a video at least the time between two pictures

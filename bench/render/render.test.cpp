@@ -285,6 +285,34 @@ TEST_CASE("Tracks are drawn over the recording that they belong to") {
   CHECK(picture(34, 42) == track_colour(4, light_palette()));
 }
 
+TEST_CASE("Tracks of which none is in view at the times that are drawn are told") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events());
+  RenderOptions options;
+  options.tracks = folder.write("tracks.txt", "1 1.01 5 5\n1 1.02 6 5\n");
+  CHECK(render(in, folder.file("a.png"), options).remarks.empty());
+  options.stream.from = 1080000;
+  options.tail = 0.01;
+  const RenderReport report = render(in, folder.file("a.png"), options);
+  REQUIRE(report.remarks.size() == 1);
+  CHECK_THAT(report.remarks[0], Contains("tracks.txt: none of its tracks is in view"));
+}
+
+TEST_CASE("The time in a picture is not later than the recording's end") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events());
+  const auto draw = [&](double duration) {
+    RenderOptions options;
+    options.time = true;
+    options.duration = duration;
+    options.stream.from = 1000000;
+    render(in, folder.file("a.png"), options);
+    return cv::imread(folder.file("a.png"), cv::IMREAD_COLOR);
+  };
+  CHECK(cv::norm(draw(0.099001), draw(0.5)) == 0.0);  // both show all, to the last event
+  CHECK(cv::norm(draw(0.099001), draw(0.098)) > 0.0);
+}
+
 TEST_CASE("A sensor of unknown size is as large as its events need") {
   const TemporaryFolder folder;
   const std::vector<Event> events{{100, 5, 7, true}, {200, 9, 3, false}};
@@ -321,6 +349,11 @@ TEST_CASE("A recording with ground truth and calibration is compensated by them"
   render(bare, out, options);
   CHECK(drawn_pixels(out) == 20);
   options.trajectory = folder.write("late.txt", "1.015 0 0 0 0 0 0 1\n1.5 0 0 0 0 0 0 1\n");
+  const RenderReport late = render(bare, out, options);
+  CHECK(drawn_pixels(out) == 20);
+  REQUIRE(late.remarks.size() == 1);
+  CHECK_THAT(late.remarks[0], Contains("the trajectory begins at 1.015000 s, after the events"));
+  options.stream.from = 1000000;
   CHECK_THROWS_WITH(render(bare, out, options), Contains("late.txt") && Contains("--from"));
 }
 

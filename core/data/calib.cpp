@@ -12,6 +12,8 @@
 namespace evbench {
 namespace {
 
+constexpr std::size_t kPinhole = 4;  // fx fy cx cy
+
 bool is_yaml(const TextReader& reader) {
   return reader.text().starts_with("---") || reader.text().find_first_of(":{") != std::string::npos;
 }
@@ -40,7 +42,6 @@ Camera read_calib(const std::string& path, int width, int height, DistortionMode
     throw InputError(fmt::format("{}: is empty; expected one record {}, or YAML", path, full.columns));
   }
   if (is_yaml(reader)) return yaml_camera(Field::read_yaml(path), camera, {width, height, model});
-  constexpr std::size_t kPinhole = 4;
   const std::size_t count = reader.columns().size();
   if (count < kPinhole || model == DistortionModel::none) reader.expect_columns(full.count, full.columns);
   std::vector<double> numbers;
@@ -59,7 +60,7 @@ std::string format_calib(const Camera& camera) {
   const Layout written = layout(pinhole ? DistortionModel::radial_tangential : camera.distortion);
   const PinholeCamera& p = camera.pinhole;
   std::string text = fmt::format("{} {} {} {}", p.fx, p.fy, p.cx, p.cy);
-  for (std::size_t i = 0; i < written.coefficients; ++i) {
+  for (std::size_t i = 0; i < written.count - kPinhole; ++i) {
     text += fmt::format(" {}", pinhole ? 0.0 : camera.coefficients[static_cast<Eigen::Index>(i)]);
   }
   return text + "\n";

@@ -74,7 +74,9 @@ void write_file(const std::string& path, std::string_view content) {
 
 void refuse_to_replace(const std::string& path, bool force) {
   std::error_code error;
-  if (force || !fs::is_regular_file(path, error)) return;
+  const bool holds_something =
+      fs::is_regular_file(path, error) || (fs::is_directory(path, error) && !fs::is_empty(path, error));
+  if (force || !holds_something) return;
   throw InputError(fmt::format("{}: exists already; --force replaces it", path));
 }
 

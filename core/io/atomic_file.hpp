@@ -9,8 +9,8 @@ namespace evbench {
 /// to. Throws InputError (folder missing, no permission, disk full) and leaves nothing behind.
 void write_file(const std::string& path, std::string_view content);
 
-/// What a command asks before it works for a file: throws InputError when there is one already, unless it is told to
-/// replace it. Pipes and devices hold nothing that could be lost.
+/// What a command asks before it works for a file, or a folder of files: throws InputError when there is one already,
+/// unless it is told to replace it. Empty folders, pipes and devices hold nothing that could be lost.
 void refuse_to_replace(const std::string& path, bool force);
 
 /// A folder that appears under its name only when it is complete: files are written into a temporary folder beside it

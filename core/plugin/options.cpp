@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "core/io/path.hpp"
 #include "core/support/error.hpp"
@@ -49,6 +50,11 @@ OptionSet::Option& OptionSet::Option::above(double minimum) {
 
 OptionSet::Option& OptionSet::Option::choices(std::vector<std::string> values) {
   choices_ = std::move(values);
+  return *this;
+}
+
+OptionSet::Option& OptionSet::Option::rising() {
+  rising_ = true;
   return *this;
 }
 
@@ -152,6 +158,9 @@ void OptionSet::Option::read(const Json& value, const std::string& place) {
                    }
                    if (size_ && list.size() != *size_ && !(may_be_empty_ && list.empty())) {
                      throw InputError(fmt::format("{}: expected {} numbers, found {}", place, *size_, list.size()));
+                   }
+                   if (rising_ && std::ranges::adjacent_find(list, std::greater_equal()) != list.end()) {
+                     throw InputError(fmt::format("{}: is {}; expected rising numbers", place, shown(value)));
                    }
                    *target = std::move(list);
                  },

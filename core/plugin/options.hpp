@@ -46,6 +46,7 @@ class OptionSet {
     Option& above(double minimum);                                            ///< open below: > minimum
     Option& choices(std::vector<std::string> values);
     Option& size(std::size_t count);  ///< number of items of a list; none are fine too where that is the default
+    Option& rising();                 ///< items of a list, e.g. [from, to]
     Option& required();               ///< no default: must be given
     Option& path();                   ///< text that names a file or folder, relative to the config's folder
     Option& folder();                 ///< likewise; what lies there is not part of a run's identity
@@ -56,7 +57,7 @@ class OptionSet {
     Target target_;
     double minimum_ = -std::numeric_limits<double>::infinity();
     double maximum_ = std::numeric_limits<double>::infinity();
-    bool open_below_ = false, may_be_empty_ = false, required_ = false, path_ = false, folder_ = false;
+    bool open_below_ = false, may_be_empty_ = false, rising_ = false, required_ = false, path_ = false, folder_ = false;
     std::vector<std::string> choices_;
     std::optional<std::size_t> size_;
 

@@ -28,7 +28,7 @@ struct Options {
     set.add("on", on, "whether");
     set.add("loss", loss, "robust loss").choices({"none", "huber"});
     set.add("rule", rule, {"rate", "motion"}, "when");
-    set.add("range", range, "from, to [s]").size(2);
+    set.add("range", range, "from, to [s]").size(2).rising();
     set.add("weights", weights, "two weights").size(2);
     set.add("path", path, "a file").required();
     set.group("inner", inner, "more");
@@ -70,6 +70,7 @@ TEST_CASE("Bad options are refused with the place and what was expected") {
   CHECK_THROWS_WITH(read(R"({"path": "a", "range": [1]})"), Contains("expected 2 numbers"));
   CHECK_THROWS_WITH(read(R"({"path": "a", "weights": []})"), Contains("expected 2 numbers"));
   CHECK(read(R"({"path": "a", "range": []})").range.empty());
+  CHECK_THROWS_WITH(read(R"({"path": "a", "range": [2, 2]})"), Contains("x.range: is [2,2]; expected rising numbers"));
   CHECK_THROWS_WITH(read(R"({"path": "a", "inner": {"width": 0}})"), Contains("inner.width") && Contains("> 0"));
   CHECK_THROWS_WITH(read(R"({"path": "a", "inner": 3})"), Contains("expected an object"));
   CHECK_THROWS_WITH(read("{}"), Contains("\"path\" is missing"));

@@ -69,7 +69,8 @@ void Recording::Options::declare(OptionSet& set) {
       .choices({"none", "radial_tangential", "equidistant"});
   set.add("time_range", time_range,
           "part of the sequence that is used, [from, to] [s]; empty: the ground truth's, or the events'")
-      .size(2);
+      .size(2)
+      .rising();
   set.require_one_of({"dataset", "folder", "events", "calibration"});
   set.add("time_offset", time_offset, "added to the ground truth's times to get the sequence's [s]");
 }
@@ -194,9 +195,6 @@ void Recording::set_time_range(const std::vector<double>& range, const Own& own)
     throw InputError(fmt::format("{}: without ground truth, time_range must be given: [from, to] in seconds", place_));
   }
   range_ = range.empty() ? TimeRange{ground_truth_.start(), ground_truth_.end()} : TimeRange{range[0], range[1]};
-  if (range_.from > range_.to || (!range.empty() && range_.from == range_.to)) {
-    throw InputError(fmt::format("{}.time_range: is {} to {} s; expected from < to", place_, range_.from, range_.to));
-  }
   if (ground_truth_.empty()) return;
   const double start = ground_truth_.start(), end = ground_truth_.end();
   if (range_.to < start || range_.from > end) {

@@ -1,0 +1,131 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "bench/testing/program.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+
+// The JSON Schema that editors get, and the program itself, are asked about the same configs; the schema by a validator
+// that is nobody's here (Python's jsonschema).
+
+namespace {
+
+/// For each config of the list on the command line a line: "fine", or what is wrong with it.
+constexpr const char* kValidator = R"(
+import json, sys
+from jsonschema import Draft202012Validator
+schema = json.load(open("schema.json"))
+Draft202012Validator.check_schema(schema)
+validator = Draft202012Validator(schema)
+for name in sys.argv[1:]:
+    errors = list(validator.iter_errors(json.load(open(name))))
+    print("fine" if not errors else "wrong: " + errors[0].message.replace("\n", " ")[:300])
+)";
+
+class Schema {
+ public:
+  Schema() {
+    folder_.write("validate.py", kValidator);
+    folder_.write("schema.json", testing::evbench(folder_, "describe config --schema").out);
+    write_recording(folder_);
+  }
+
+  /// Whether the schema and the program's --check find the configs, files or texts of JSON, fine.
+  void expect(const std::vector<Json>& configs, bool fine) const {
+    std::string names;
+    for (std::size_t i = 0; i < configs.size(); ++i) {
+      const std::string name = "c" + std::to_string(i) + ".json";
+      std::ofstream(folder_.file(name)) << configs[i];
+      names += " " + name;
+    }
+    const Outcome validated = testing::shell(folder_, "python3 validate.py" + names);
+    CAPTURE(validated.err);
+    REQUIRE(validated.exit_code == 0);
+    std::istringstream lines(validated.out);
+    for (std::size_t i = 0; i < configs.size(); ++i) {
+      std::string line;
+      REQUIRE(std::getline(lines, line));
+      const Outcome checked = testing::evbench(folder_, "run --check c" + std::to_string(i) + ".json");
+      CAPTURE(configs[i].dump(), line, checked.err);
+      CHECK((line == "fine") == fine);
+      CHECK((checked.exit_code == 0) == fine);
+    }
+  }
+
+  /// Those that need no file to be there.
+  void expect_fine_by_schema(const std::vector<std::string>& paths) const {
+    std::string names;
+    for (const std::string& path : paths) names += " '" + path + "'";
+    const Outcome validated = testing::shell(folder_, "python3 validate.py" + names);
+    CAPTURE(validated.err, validated.out);
+    CHECK(validated.exit_code == 0);
+    CHECK(validated.out.find("wrong") == std::string::npos);
+  }
+
+  const TemporaryFolder& folder() const { return folder_; }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+Json with(Json config, const char* pointer, const Json& value) {
+  config[Json::json_pointer(pointer)] = value;
+  return config;
+}
+
+}  // namespace
+
+TEST_CASE("Every config that comes with evbench, and every one that a run writes, is valid by the schema") {
+  const Schema schema;
+  std::vector<std::string> paths;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(EVBENCH_CONFIGS)) {
+    if (entry.path().extension() == ".json" && entry.path().filename() != "datasets.json")
+      paths.push_back(entry.path());
+  }
+  CHECK(paths.size() >= 2);
+  REQUIRE(testing::evbench(schema.folder(), "run recording.json --quiet").exit_code == 0);
+  for (const auto& run : std::filesystem::directory_iterator(schema.folder().file("results/recording"))) {
+    paths.push_back((run.path() / "config.json").string());
+  }
+  schema.expect_fine_by_schema(paths);
+}
+
+TEST_CASE("Configs that are fine are so for the schema and for the program") {
+  const Json config = short_config();
+  Schema().expect(
+      {config, short_comparison(), with(config, "/$schema", "x.json"), with(config, "/backend/label", "a"),
+       with(config, "/evaluation/time_range", {0, 1}), with(config, "/evaluation/time_range", Json::array()),
+       with(config, "/seed", 3.0), short_config("gp_map")},
+      true);
+}
+
+TEST_CASE("Configs that are broken are so for the schema and for the program") {
+  const Json config = short_config(), recording = with(config, "/source", {{"type", "recording"}});
+  Json neither = config;
+  neither.erase("backend");
+  Schema().expect({neither,
+                   with(config, "/backends", {{{"type", "gp_map"}}}),
+                   with(neither, "/backends", Json::array()),
+                   recording,
+                   with(recording, "/source/folder", ""),
+                   with(config, "/evaluation/time_range", {0}),
+                   with(config, "/evaluation/time_range", {0, 1, 2}),
+                   with(config, "/seed", -1),
+                   with(config, "/seed", "1"),
+                   with(config, "/seed", 1.5),
+                   with(config, "/sede", 1),
+                   with(config, "/backend/type", "gp_mop"),
+                   with(config, "/backend/label", ""),
+                   with(config, "/backend/label", 3),
+                   with(config, "/source/duration", 0),
+                   with(config, "/source/motion/kind", "still"),
+                   with(config, "/plugins", "a.so"),
+                   Json::array(),
+                   Json("text"),
+                   with(config, "/trajectory_rate", 1e6),
+                   with(short_config("gp_map"), "/backend/qc", {1, 2, 3})},
+                  false);
+}
