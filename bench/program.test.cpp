@@ -139,3 +139,20 @@ TEST_CASE("Checking a config runs and writes nothing") {
   CHECK_THAT(check.out, Contains("c.json: fine, 2 runs"));
   CHECK(names_in(folder.path()) == std::set<std::string>{"c.json"});
 }
+
+TEST_CASE("A run that is interrupted leaves no half of it, and says what is complete with its table") {
+  const TemporaryFolder folder;
+  Json config = short_config();
+  config.erase("backend");
+  config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "frames"}},
+                        {{"type", "process"}, {"label", "sleeps"}, {"command", {"sleep", "100"}}, {"timeout", 100}}};
+  folder.write("c.json", config.dump());
+  // Twice, as terminals, shells and `timeout` may do; not SIGINT, which a shell's background jobs ignore.
+  const Outcome outcome = testing::shell(folder, R"("$evbench" run c.json & pid=$!
+    until ls results/short/bundle_adjustment-*/metrics.json > /dev/null 2>&1; do sleep 0.1; done
+    sleep 0.5; kill -TERM $pid; kill -TERM $pid; wait $pid)");
+  CHECK(outcome.exit_code == 143);
+  CHECK(outcome.err == "evbench: c.json: interrupted; 1 of 2 runs are complete, the same command goes on from there\n");
+  CHECK_THAT(outcome.out, Contains("frames") && Contains("ATE [m]") && Contains("written: results/short"));
+  CHECK(names_in(folder.file("results/short")).size() == 1);
+}

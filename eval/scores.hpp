@@ -35,12 +35,16 @@ struct ScoreOptions {
     set.add("alignment", alignment, "how the estimate is carried to the ground truth")
         .choices(to_strings(kAlignmentNames));
     set.add("align_first", align_first, "align on this many first poses only; 0: on all").range(0);
-    set.add("align_range", align_range, "align on the poses in this time range only [s]; empty: on all").size(2);
+    set.add("align_range", align_range, "align on the poses in this time range only [s]; empty: on all")
+        .size(2)
+        .rising();
     set.add("association", association, "which ground truth a pose is compared with")
         .choices(to_strings(kAssociationNames));
     set.add("tolerance", tolerance, "no ground truth this near in time to a pose: it is not compared [s]").range(0.0);
     set.add("time_offset", time_offset, "added to the estimate's times [s]");
-    set.add("time_range", time_range, "evaluate in this time range of the ground truth only [s]; empty: all").size(2);
+    set.add("time_range", time_range, "evaluate in this time range of the ground truth only [s]; empty: all")
+        .size(2)
+        .rising();
     set.add("min_pairs", min_pairs, "fewer compared poses are an error").range(3);
     set.add("rpe_delta", rpe_delta, "distance of the two poses of a relative error [rpe_unit]").above(0.0);
     set.add("rpe_unit", rpe_unit, "what that distance is measured in").choices(to_strings(kDeltaUnitNames));

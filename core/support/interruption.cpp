@@ -1,13 +1,31 @@
 #include "core/support/interruption.hpp"
 
 #include <atomic>
+#include <cstdint>
+#include <ctime>
 #include <utility>
 
 namespace evbench {
 namespace {
 
-std::atomic<int> requested = 0;                        // the signal that came
-static_assert(std::atomic<int>::is_always_lock_free);  // for a signal's handler
+std::atomic<int> requested = 0;              // the signal that came
+std::atomic<std::int64_t> requested_at = 0;  // [ns]
+static_assert(std::atomic<int>::is_always_lock_free &&
+              std::atomic<std::int64_t>::is_always_lock_free);  // for a signal's handler
+
+void on_signal(int signal) {
+  constexpr std::int64_t kSame = 500'000'000;  // [ns]
+  timespec time{};
+  ::clock_gettime(CLOCK_MONOTONIC, &time);
+  const std::int64_t now = std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+  if (requested == 0) {
+    requested_at = now;
+    requested = signal;
+  } else if (now - requested_at > kSame) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+}
 
 std::string& current_message() {
   static std::string message;
@@ -22,8 +40,8 @@ Interruption::Interruption(std::string message) {
     ::sigaction(kSignals[i], nullptr, &before_[i]);
     if (before_[i].sa_handler == SIG_IGN) continue;
     struct sigaction action {};
-    action.sa_handler = [](int signal) { requested = signal; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);  // without SA_RESTART: waiting for a pipe ends, too
+    action.sa_handler = on_signal;
+    action.sa_flags = 0;  // without SA_RESTART: waiting for a pipe ends, too
     ::sigaction(kSignals[i], &action, nullptr);
   }
 }

@@ -18,8 +18,9 @@ class Interrupted : public InputError {
 };
 
 /// While one lives, a signal that asks the program to end (SIGINT by Ctrl-C, SIGTERM, SIGHUP) lets the next
-/// check_interruption() throw, so that what was begun is removed as after an error. The same signal once more ends the
-/// program at once. A signal that was ignored (nohup) stays so. There is one at a time.
+/// check_interruption() throw, so that what was begun is removed as after an error. Another one, half a second later or
+/// more, ends the program at once; those before are the same, as terminals, shells and `timeout` may each send it. A
+/// signal that was ignored (nohup) stays so. There is one at a time.
 class Interruption {
  public:
   /// `message`: of the error, e.g. "a.txt: interrupted; nothing was written".

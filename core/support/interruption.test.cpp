@@ -1,5 +1,8 @@
 #include "core/support/interruption.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 
 #include "core/support/error.hpp"
@@ -40,10 +43,26 @@ TEST_CASE("A signal that was ignored stays so, also afterwards; the others are a
   CHECK(std::signal(SIGTERM, terminate) == SIG_DFL);
 }
 
-TEST_CASE("The same signal once more would end the program") {
+TEST_CASE("A signal that comes twice at once is one signal") {
   const Interruption interruption("a.txt: interrupted");
   std::raise(SIGTERM);
-  struct sigaction now {};
-  ::sigaction(SIGTERM, nullptr, &now);
-  CHECK(now.sa_handler == SIG_DFL);
+  std::raise(SIGTERM);
+  std::raise(SIGINT);
+  CHECK_THROWS_WITH(check_interruption(), "a.txt: interrupted");
+}
+
+TEST_CASE("A signal that comes again later ends the program") {
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    const Interruption interruption("a.txt: interrupted");
+    std::raise(SIGTERM);
+    ::usleep(700'000);
+    std::raise(SIGTERM);
+    ::_exit(0);
+  }
+  int status = 0;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  CHECK(WIFSIGNALED(status));
+  CHECK(WTERMSIG(status) == SIGTERM);
 }
