@@ -76,12 +76,12 @@ RecordingHeader make_header(EventStream& stream, const std::string& in) {
   RecordingHeader header;
   header.width = stream.info().width;
   header.height = stream.info().height;
-  header.metadata = stream.info().metadata;
-  header.metadata.emplace_back("converted from", fmt::format("{} ({})", in, stream.info().format));
   header.calibration = stream.reader().calibration();
   if (const auto truth = stream.reader().ground_truth()) {
     header.ground_truth = shifted(*truth, -1e-6 * static_cast<double>(stream.zero()));
   }
+  header.metadata = stream.info().metadata;  // with remarks on what was read just now
+  header.metadata.emplace_back("converted from", fmt::format("{} ({})", in, stream.info().format));
   return header;
 }
 
