@@ -308,7 +308,7 @@ ScoreOptions read_evaluation(const std::string& path, const Json& otherwise, con
 
 std::unique_ptr<Source> read_source(const std::string& path, const Plugins& plugins,
                                     const std::vector<std::string>& overrides) {
-  const Json json = parse_config(path, overrides);
+  const Json json = parse_config(path, overrides, experiment_schema(plugins));
   if (!json.is_object() || !json.contains("source")) {
     throw InputError(fmt::format("{}: expected a config with a \"source\"", path));
   }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -23,9 +24,10 @@ namespace {
 /// "; did you mean ...?" where the first word is no command.
 std::string command_suggestion(const CLI::App& app, int argc, char** argv) {
   const std::string word = argc > 1 ? argv[1] : "";
-  if (word.empty() || word.starts_with('-') || app.get_subcommand_no_throw(word) != nullptr) return "";
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  const bool is_command = std::ranges::find(names, word) != names.end();
+  if (is_command || word.empty() || word.starts_with('-')) return "";
   return fmt::format("evbench: \"{}\" is no command{}\n", word, evbench::suggestion(word, names));
 }
 

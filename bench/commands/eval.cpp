@@ -7,6 +7,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "core/data/pose_file.hpp"
+#include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
 #include "eval/error_files.hpp"
 #include "eval/protocol.hpp"

@@ -84,9 +84,6 @@ RecordingHeader make_header(EventStream& stream, const std::string& in, const St
   RecordingHeader header;
   header.width = stream.info().width;
   header.height = stream.info().height;
-  header.metadata = stream.info().metadata;
-  header.metadata.emplace_back("converted from", fmt::format("{} ({})", in, stream.info().format));
-  if (options.from || options.to) header.metadata.emplace_back("a part of it", range_text(options));
   header.calibration = stream.reader().calibration();
   if (const auto truth = stream.reader().ground_truth()) {
     constexpr double kMargin = 1.0;  // [s], so that poses can be interpolated at the ends
@@ -95,6 +92,9 @@ RecordingHeader make_header(EventStream& stream, const std::string& in, const St
     const double to = options.to ? 1e-6 * static_cast<double>(*options.to) + kMargin : own.end();
     header.ground_truth = own.cut(from, to);
   }
+  header.metadata = stream.info().metadata;  // with remarks on what was read just now
+  header.metadata.emplace_back("converted from", fmt::format("{} ({})", in, stream.info().format));
+  if (options.from || options.to) header.metadata.emplace_back("a part of it", range_text(options));
   return header;
 }
 

@@ -27,6 +27,17 @@ TEST_CASE("Folders of public data sets are described, converted and drawn, and c
   CHECK_THAT(named.out, Contains("calibration   fx "));
 }
 
+TEST_CASE("What was assumed of the ground truth beside a recording is a remark on it, which a native copy keeps") {
+  const testing::TemporaryFolder folder;
+  folder.write("events.txt", "0.1 5 6 1\n0.2 7 8 0\n");
+  folder.write("groundtruth.txt", "#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z\n100000000,1,2,3,1,0,0,0\n");
+  const std::string remark = "remark: ./groundtruth.txt: read with columns t px py pz qw qx qy qz (as they are named)";
+  const testing::Outcome info = testing::evbench(folder, "info --quiet .");
+  CHECK_THAT(info.out, Contains("1 poses, 0.100 to 0.100 s") && Contains(remark));
+  REQUIRE(testing::evbench(folder, "convert . copy.evb --width 10 --height 10").exit_code == 0);
+  CHECK_THAT(testing::evbench(folder, "info --quiet copy.evb").out, Contains(remark));
+}
+
 TEST_CASE("A recording whose calibration or ground truth cannot be used is described all the same, but not strictly") {
   const testing::TemporaryFolder folder;
   folder.write("events.txt", "0.1 5 6 1\n0.2 7 8 0\n");

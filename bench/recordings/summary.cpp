@@ -63,17 +63,19 @@ RecordingSummary summarise(const std::string& path, const StreamOptions& options
     s.rates.add(events);
     if (progress) progress(s.events, s.end);
   }
-  s.info = stream.info();
+  std::vector<std::pair<std::string, std::string>> unusable;
   const auto ask = [&](const char* what, const auto& read) {
     try {
       read();
     } catch (const InputError& error) {
       if (options.read.strict) throw;
-      s.info.metadata.emplace_back(fmt::format("{} that cannot be used", what), error.what());
+      unusable.emplace_back(fmt::format("{} that cannot be used", what), error.what());
     }
   };
   ask("calibration", [&] { s.calibration = stream.reader().calibration(); });
   ask("ground truth", [&] { s.ground_truth = stream.reader().ground_truth().value_or(PoseTrajectory()); });
+  s.info = stream.info();  // with remarks on what was read just now
+  s.info.metadata.insert(s.info.metadata.end(), unusable.begin(), unusable.end());
   s.faults = stream.faults();
   s.large_loss = stream.large_loss();
   return s;

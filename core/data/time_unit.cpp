@@ -56,15 +56,16 @@ std::optional<TimeUnit> usual_time_unit(double time) {
   return std::nullopt;
 }
 
-std::string times_beside(double from, double to, double range_from, double range_to) {
+std::string times_beside(double from, double to, double range_from, double range_to, const std::string& option) {
+  constexpr double kAboutThere = 0.01;
   const auto fit = [&](TimeUnit unit) {
     return overlap(from / per_second(unit), to / per_second(unit), range_from, range_to);
   };
   const TimeUnit best = *std::ranges::max_element(kFiner, {}, fit);
-  std::string text = fmt::format("go from {} to {} s, outside of {} to {} s", from, to, range_from, range_to);
-  if (fit(best) < 0.0) return text;
-  return text + fmt::format("; taken as {} they would go from {} to {} s", to_string(best), from / per_second(best),
-                            to / per_second(best));
+  const std::string text = fmt::format("go from {} to {} s", from, to);
+  if (fit(best) < kAboutThere) return text;
+  return text + fmt::format("; in {} ({}: {}) they would go from {} to {} s", to_string(best), option,
+                            kTimeUnitNames[index(best)], from / per_second(best), to / per_second(best));
 }
 
 }  // namespace evbench

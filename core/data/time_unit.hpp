@@ -25,8 +25,8 @@ double per_second(TimeUnit unit);
 /// machine's start are alike.
 std::optional<TimeUnit> usual_time_unit(double time);
 
-/// For a file's times [s] that do not meet a range [s]: a sentence part that says both, and the unit in which they
-/// would meet it best, if there is one.
-std::string times_beside(double from, double to, double range_from, double range_to);
+/// For a file's times [s] that do not meet a range [s]: "go from 50637 to 5259582 s", and the unit, as the value of an
+/// option, in which they would be about there, if there is one.
+std::string times_beside(double from, double to, double range_from, double range_to, const std::string& option);
 
 }  // namespace evbench

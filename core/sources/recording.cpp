@@ -198,10 +198,9 @@ void Recording::set_time_range(const std::vector<double>& range, const Own& own)
   if (ground_truth_.empty()) return;
   const double start = ground_truth_.start(), end = ground_truth_.end();
   if (range_.to < start || range_.from > end) {
-    throw InputError(fmt::format(
-        "{}.time_range: does not meet the ground truth, whose times {} (ground_truth_time_unit says another "
-        "unit)",
-        place_, times_beside(start, end, range_.from, range_.to)));
+    throw InputError(fmt::format("{}.time_range: {} to {} s does not meet the ground truth, whose times {}", place_,
+                                 range_.from, range_.to,
+                                 times_beside(start, end, range_.from, range_.to, "ground_truth_time_unit")));
   }
   if (range_.from < start || range_.to > end) {
     remarks_.push_back(fmt::format("the ground truth covers {:.3f} to {:.3f} s of {:.3f} to {:.3f} s", start, end,

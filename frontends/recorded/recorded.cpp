@@ -52,10 +52,9 @@ Recorded::Recorded(const Options& options, const FrontEndContext& context)
   const Source::TimeRange range = context.source.time_range();
   const double first = observations_.front().t, last = observations_.back().t;
   if (first > range.to || last < range.from) {
-    throw InputError(
-        fmt::format("{}: no observation is left: their times {}; expected tracks in the source's time range "
-                    "(time_unit says another unit)",
-                    path_, times_beside(first, last, range.from, range.to)));
+    throw InputError(fmt::format("{}: no observation is left between {} and {} s, the source's time range: times {}",
+                                 path_, range.from, range.to,
+                                 times_beside(first, last, range.from, range.to, "time_unit")));
   }
   const auto beyond = [&](const TrackObservation& o) { return o.t < range.from || o.t > range.to; };
   remark(static_cast<std::int64_t>(std::erase_if(observations_, beyond)),
