@@ -71,7 +71,7 @@ void add_convert(CLI::App& app, const Plugins& plugins) {
   command
       ->add_option("--undistort", arguments->options.undistort,
                    "Move events to where an ideal pinhole would see them, to the nearest pixel; those outside are left "
-                   "out. CALIB: a calib.txt, or \"own\": the recording's")
+                   "out. CALIB: a calibration, text or YAML, or \"own\": the recording's")
       ->type_name("CALIB");
   command->add_flag("--force", arguments->force, "Replace OUT where it exists");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");

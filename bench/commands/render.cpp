@@ -94,7 +94,7 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
       ->type_name("FILE");
   command
       .add_option("--calib", options.calibration,
-                  "calib.txt for compensation (fx fy cx cy k1 k2 p1 p2 k3); default: the recording's")
+                  "Calibration for compensation, text or YAML; default: the recording's")
       ->type_name("FILE");
   command
       .add_option("--depth", options.depth,
