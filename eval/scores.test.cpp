@@ -111,7 +111,7 @@ TEST_CASE("Options of an evaluation that are out of range or contradict one anot
   CHECK_THROWS_WITH(with({{"tolerance", -1.0}}), Contains("evaluation: tolerance: "));
   CHECK_THROWS_WITH(with({{"rpe_detla", 1.0}}), Contains("did you mean \"rpe_delta\""));
   CHECK_THROWS_WITH(score(truth, truth, with({{"time_range", {2.0, 1.0}}})),
-                    Contains("time_range: expected two rising"));
+                    Contains("time_range: is [2.0,1.0]; expected rising"));
   CHECK_THROWS_WITH(score(truth, truth, with({{"align_first", 5}, {"align_range", {0.0, 1.0}}})),
                     Contains("align_first and align_range are both given"));
   CHECK_THROWS_WITH(score(truth, truth, with({{"align_range", {5.0, 6.0}}})), Contains("0 pairs of poses to align on"));

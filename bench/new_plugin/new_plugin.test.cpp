@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "bench/commands/exit_code.hpp"
 #include "bench/testing/program.hpp"
 #include "core/support/error.hpp"
 
@@ -47,10 +48,10 @@ TEST_CASE("A new plugin that can't be is refused with a sentence, and nothing is
   folder.write("file", "");
   std::filesystem::create_directory(folder.file("full"));
   folder.write("full/thing", "");
-  const auto refused = [&](const std::string& arguments, const std::string& message) {
+  const auto refused = [&](const std::string& arguments, const std::string& message, int exit_code = kExitBadInput) {
     const Outcome outcome = testing::evbench(folder, "new-plugin " + arguments);
     INFO(arguments);
-    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.exit_code == exit_code);
     CHECK_THAT(outcome.err, Contains(message));
     CHECK(names_in(folder.path()) == std::set<std::string>{"file", "full"});
   };
@@ -63,6 +64,6 @@ TEST_CASE("A new plugin that can't be is refused with a sentence, and nothing is
   refused("tracker mine", "tracker");
   refused("backend mine --out full", "full: is there already; expected a new folder");
   refused("backend mine --out file", "file: is there already");
-  refused("backend mine --out file/mine", "file");
-  refused("backend mine --out /proc/mine", "/proc/mine");
+  refused("backend mine --out file/mine", "file", kExitNotWritten);
+  refused("backend mine --out /proc/mine", "/proc/mine", kExitNotWritten);
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "bench/commands/exit_code.hpp"
 #include "bench/recordings/conversion.hpp"
 #include "bench/recordings/summary.hpp"
 #include "bench/testing/program.hpp"
@@ -251,10 +252,10 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
                                                "width": 320, "height": 240, "time_range": [2, 3]}})");
   folder.write("lens.txt", "200 200 120 90 -0.35 0.12 0 0 0\n");
   folder.write("ok.txt", "old");
-  const auto refused = [&](const std::string& arguments, const std::string& message) {
+  const auto refused = [&](const std::string& arguments, const std::string& message, int exit_code = kExitBadInput) {
     const Outcome outcome = testing::evbench(folder, "convert " + arguments);
     INFO(arguments);
-    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.exit_code == exit_code);
     CHECK_THAT(outcome.err, Contains(message));
   };
   refused("a.evb b.xyz", "expected one of .evb (native)");
@@ -265,7 +266,7 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
   refused("unknown.evb b.evb --undistort own --width 10 --height 10", "no calibration of its own");
   refused("unknown.evb b.evb --undistort calib.txt --width 8000 --height 8001", "64 million pixels at most");
   refused("mistaken.json b.evb --undistort own", "calibration of 320x240 pixels; expected the sensor's 240x180");
-  refused("a.evb no/b.evb", "no/b.evb");
+  refused("a.evb no/b.evb", "no/b.evb: can't be written", kExitNotWritten);
   refused("unknown.evb ok.txt", "ok.txt: exists already; --force replaces it");
   refused("a.evb a.evb --force --to 3", "a.evb: is what is read");
   refused("a.evb ok.txt --force --from 100", "has no events in the time range");
@@ -372,8 +373,9 @@ TEST_CASE("A config is a recording of its source's events, with camera and groun
   folder.write("calib.txt", "200 200 120 90 0 0 0 0 0\n");
   write_config(R"({"source": {"type": "recording", "events": "b.evb", "calibration": "calib.txt",
                    "width": 240, "height": 180, "time_range": [2, 3]}})");
-  CHECK(testing::evbench(folder, "convert a.json b.txt").exit_code == 0);
-  const Outcome strict = testing::evbench(folder, "convert a.json b.txt --strict");
+  CHECK_THAT(testing::evbench(folder, "convert a.json b.txt --force").err, Contains("have to be left out"));
+  CHECK(testing::evbench(folder, "convert a.json b.txt --force --lenient").exit_code == 0);
+  const Outcome strict = testing::evbench(folder, "convert a.json b.txt --force --strict");
   CHECK(strict.exit_code == 2);
   CHECK_THAT(strict.err, Contains("a.json") && Contains("damaged chunks"));
 

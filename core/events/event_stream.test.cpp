@@ -12,6 +12,8 @@ using namespace evbench;
 
 namespace {
 
+const StreamOptions kLenient{.read = {.lenient = true}};  // one of five events is more than a tenth
+
 /// Gives events three at a time.
 class ListReader : public EventReader {
  public:
@@ -61,15 +63,15 @@ TEST_CASE("A stream gives all events, or those in a range, from the file's zero 
 TEST_CASE("A time that is far too late is left out, not all that follow") {
   auto events = kFive;
   events[1].t = 1'000'000;
-  CHECK(times(events, {}) == std::vector<std::int64_t>{100, 110, 130, 150});
-  CHECK(times(events, {.to = 140}) == std::vector<std::int64_t>{100, 110, 130});
+  CHECK(times(events, kLenient) == std::vector<std::int64_t>{100, 110, 130, 150});
+  CHECK(times(events, {.read = {.lenient = true}, .to = 140}) == std::vector<std::int64_t>{100, 110, 130});
 }
 
 TEST_CASE("Times that would overflow are left out and counted") {
   auto events = kFive;
   events[0].t = std::numeric_limits<std::int64_t>::min();
   events[4].t = std::numeric_limits<std::int64_t>::max();
-  EventStream stream(std::make_unique<ListReader>(events), "list", {.rebase = true});
+  EventStream stream(std::make_unique<ListReader>(events), "list", {.read = {.lenient = true}, .rebase = true});
   std::vector<Event> all;
   for (std::vector<Event> chunk; stream.read(chunk);) all.insert(all.end(), chunk.begin(), chunk.end());
   CHECK(all.size() == 3);
@@ -81,11 +83,11 @@ TEST_CASE("Times that would overflow are left out and counted") {
 TEST_CASE("A time that is far too late at the end of what a reader gives at once costs no more") {
   auto events = kFive;
   events[2].t = 1'000'000;  // the last of the first three
-  CHECK(times(events, {}) == std::vector<std::int64_t>{100, 110, 130, 150});
-  CHECK(times(events, {.to = 140}) == std::vector<std::int64_t>{100, 110, 130});
+  CHECK(times(events, kLenient) == std::vector<std::int64_t>{100, 110, 130, 150});
+  CHECK(times(events, {.read = {.lenient = true}, .to = 140}) == std::vector<std::int64_t>{100, 110, 130});
   events = kFive;
   events[3].t = 1'000'000;  // the first of the next
-  CHECK(times(events, {}) == std::vector<std::int64_t>{100, 110, 110, 150});
+  CHECK(times(events, kLenient) == std::vector<std::int64_t>{100, 110, 110, 150});
 }
 
 TEST_CASE("Zero is the first event that is given, and what is wrong before it is told once") {
@@ -93,7 +95,7 @@ TEST_CASE("Zero is the first event that is given, and what is wrong before it is
   const std::string path = folder.write("a.txt", "240 180\n10 240 1 1\nno event\n20 1 1 1\n30 2 2 0\n");
   for (const bool rebase : {false, true}) {
     CAPTURE(rebase);
-    EventStream stream(path, {.rebase = rebase});
+    EventStream stream(path, {.read = {.lenient = true}, .rebase = rebase});
     std::vector<Event> all;
     for (std::vector<Event> chunk; stream.read(chunk);) all.insert(all.end(), chunk.begin(), chunk.end());
     REQUIRE(all.size() == 2);
@@ -110,7 +112,7 @@ TEST_CASE("Events outside the sensor or out of order are left out and counted, o
   auto events = kFive;
   events[1].x = 10;
   events[4].t = 120;
-  EventStream stream(std::make_unique<ListReader>(events), "list");
+  EventStream stream(std::make_unique<ListReader>(events), "list", kLenient);
   std::size_t count = 0;
   for (std::vector<Event> chunk; stream.read(chunk);) count += chunk.size();
   CHECK(count == 3);
@@ -119,6 +121,21 @@ TEST_CASE("Events outside the sensor or out of order are left out and counted, o
   StreamOptions strict;
   strict.read.strict = true;
   CHECK_THROWS_AS(times(events, strict), InputError);
+}
+
+TEST_CASE("A stream of which more than a tenth is left out ends with an error that says what, unless it is lenient") {
+  std::vector<Event> events;
+  for (int i = 0; i < 20; ++i) events.push_back({100 + i, 1, 1, true});
+  events[3].x = events[7].y = 10;
+  CHECK(times(events, {}).size() == 18);  // a tenth
+  events[9].x = 10;
+  CHECK_THROWS_WITH(times(events, {}),
+                    "list: 15.0 % of the events, 3 of 20, have to be left out, most of them as events "
+                    "outside the sensor of 10x10 pixels (the first: 103 us, pixel (10, 1)); expected "
+                    "a recording with fewer faults, or --lenient");
+  CHECK(times(events, kLenient).size() == 17);
+  CHECK_THROWS_AS(times(events, {.to = 112}), InputError);
+  CHECK(times(events, {.from = 110}).size() == 10);  // as far as it is read
 }
 
 TEST_CASE("A sensor beyond any that is made is refused, an unknown one is not") {

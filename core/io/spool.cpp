@@ -5,51 +5,38 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <map>
+#include <memory>
 #include <mutex>
-#include <span>
 #include <vector>
 
-#include "core/io/write_all.hpp"
-#include "core/support/error.hpp"
+#include "core/io/temporary_file.hpp"
 #include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
 
-/// Everything that `from` gives, into `to`.
-void copy_all(int from, int to, const std::string& path) {
+[[noreturn]] void fail(const std::string& path, int error) {
+  check_interruption();  // it may have waited
+  throw InputError(fmt::format("{}: can't be read: {}", path, std::strerror(error)));
+}
+
+std::unique_ptr<TemporaryFile> copy(const std::string& path) {
+  const int file = path == "-" ? ::dup(STDIN_FILENO) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) fail(path, errno);
+  const auto close = [](const int* open) { ::close(*open); };
+  const std::unique_ptr<const int, decltype(close)> closed(&file, close);
+  auto copy = std::make_unique<TemporaryFile>();
   std::vector<std::byte> piece(1 << 20);
   while (true) {
     check_interruption();
-    const ssize_t got = ::read(from, piece.data(), piece.size());
-    if (got == 0) return;
-    if (got < 0 && errno != EINTR) throw InputError(fmt::format("{}: can't be read: {}", path, std::strerror(errno)));
-    const auto bytes = std::span(piece).first(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
-    if (const int error = write_all(to, bytes); error != 0) {
-      throw OutputError(fmt::format("{}: can't be copied to the disk: {}", path, std::strerror(error)));
-    }
+    const ssize_t got = ::read(file, piece.data(), piece.size());
+    if (got < 0) fail(path, errno);
+    if (got == 0) return copy;
+    copy->write(std::span(piece).first(static_cast<std::size_t>(got)));
   }
-}
-
-/// The copy's path, by which other processes can open it, too.
-std::string copy_to_disk(const std::string& path) {
-  const int from = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (from < 0) {
-    const int error = errno;
-    check_interruption();  // it may have waited for a pipe's writer
-    throw InputError(fmt::format("{}: {}", path, std::strerror(error)));
-  }
-  const std::string folder = std::filesystem::temp_directory_path().string();
-  const int to = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (to < 0) throw OutputError(fmt::format("{}: no file can be made there: {}", folder, std::strerror(errno)));
-  copy_all(from, to, path);
-  if (from != STDIN_FILENO) ::close(from);
-  return fmt::format("/proc/{}/fd/{}", ::getpid(), to);
 }
 
 }  // namespace
@@ -60,11 +47,11 @@ std::string seekable_path(const std::string& path) {
     return path;
   }
   static std::mutex mutex;
-  static std::map<std::string, std::string> copies;  // a pipe can be read once only
+  static std::map<std::string, std::unique_ptr<TemporaryFile>> copies;  // a pipe can be read once only
   const std::lock_guard lock(mutex);
-  std::string& copy = copies[path];
-  if (copy.empty()) copy = copy_to_disk(path);
-  return copy;
+  std::unique_ptr<TemporaryFile>& kept = copies[path];
+  if (!kept) kept = copy(path);
+  return kept->path();
 }
 
 }  // namespace evbench

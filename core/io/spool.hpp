@@ -5,9 +5,9 @@
 namespace evbench {
 
 /// A path that can be opened, sought in and opened again. A regular file or folder is that itself; what a pipe, a
-/// device or "-" (the standard input) gives is copied into a file without a name in the folder for temporary files
-/// ($TMPDIR, /tmp), once, which lasts as long as the program. Waiting can be interrupted (interruption.hpp). Throws
-/// InputError when it can't be read, and OutputError when the copy can't be written.
+/// device or "-" (the standard input) gives is copied into a TemporaryFile, once, which lasts as long as the program.
+/// Waiting can be interrupted (interruption.hpp). Throws InputError when it can't be read, OutputError when it can't be
+/// copied.
 std::string seekable_path(const std::string& path);
 
 }  // namespace evbench

@@ -1,26 +1,19 @@
 #include "core/events/ros/unpacked_file.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 #include <zstd.h>
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "core/io/byte_source.hpp"
-#include "core/io/write_all.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
 
-void unpack(FileBytes& file, int descriptor, const std::string& path) {
+void unpack(FileBytes& file, TemporaryFile& content) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
   ZSTD_DCtx_setParameter(context.get(), ZSTD_d_windowLogMax, 27);
   std::vector<std::byte> in(1 << 20), out(1 << 20);
@@ -44,9 +37,7 @@ void unpack(FileBytes& file, int descriptor, const std::string& path) {
         throw InputError(fmt::format("{}: holds more than {} bytes; expected at most {} times its size", file.name(),
                                      most, UnpackedFile::kMostRatio));
       }
-      if (const int error = write_all(descriptor, std::span(out).first(target.pos)); error != 0) {
-        throw OutputError(fmt::format("{}: can't be written: {}", path, std::strerror(error)));
-      }
+      content.write(std::span(out).first(target.pos));
       full = target.pos == target.size && missing != 0;
     }
   }
@@ -57,19 +48,7 @@ void unpack(FileBytes& file, int descriptor, const std::string& path) {
 
 UnpackedFile::UnpackedFile(const std::string& packed) {
   FileBytes file(packed);
-  path_ = (std::filesystem::temp_directory_path() / "evbench-XXXXXX").string();
-  const int descriptor = ::mkostemp(path_.data(), O_CLOEXEC);
-  if (descriptor < 0) throw OutputError(fmt::format("{}: can't be written: {}", path_, std::strerror(errno)));
-  try {
-    unpack(file, descriptor, path_);
-  } catch (...) {
-    ::close(descriptor);
-    ::unlink(path_.c_str());
-    throw;
-  }
-  ::close(descriptor);
+  unpack(file, content_);
 }
-
-UnpackedFile::~UnpackedFile() { ::unlink(path_.c_str()); }
 
 }  // namespace evbench

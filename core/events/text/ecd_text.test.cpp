@@ -89,7 +89,7 @@ TEST_CASE("Real excerpts of the Event-Camera Dataset are read to their last line
     CHECK(reader->faults().empty());
     CHECK(reader->calibration().has_value());
     CHECK(metadata(*reader, "columns") == "t x y p");
-    CHECK(metadata(*reader, "unit of time") == "seconds");
+    CHECK(metadata(*reader, "unit of time") == "seconds (as they have a decimal point)");
   }
 }
 
