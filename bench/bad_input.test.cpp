@@ -105,7 +105,7 @@ TEST_CASE("Observations outside the ground truth's time are refused when none is
   write_recording(folder);
   check_refused(folder, "run recording.json --set source.time_range=[5,6]",
                 "recording.json: source.time_range: 5 to 6 s does not meet the ground truth");
-  check_refused(folder, "run recording.json --set source.time_range=[1,0]", "expected from < to");
+  check_refused(folder, "run recording.json --set source.time_range=[1,0]", "expected rising numbers");
   folder.write("late.txt", "50 0 0 0 0 0 0 1\n51 1 0 0 0 0 0 1\n52 2 0 0 0 0 0 1\n");
   check_refused(folder, "eval groundtruth.txt late.txt --json scores.json", "late.txt");
   CHECK_FALSE(std::filesystem::exists(folder.file("scores.json")));
