@@ -190,7 +190,7 @@ TEST_CASE("eval reads pipes, and says what it waits for") {
     mkfifo pipe; { sleep 1.5; cat estimate.txt; } > pipe & "$evbench" eval truth.txt pipe -as --table csv)");
   CHECK(piped.exit_code == 0);
   CHECK(piped.out.substr(piped.out.find("pipe") + 4) == expected.substr(expected.find("estimate.txt") + 12));
-  CHECK(piped.err == "pipe: is a pipe that nobody has written to; waiting for it\n");
+  CHECK(piped.err == "pipe: nobody has written to it yet; waiting\n");
   CHECK(testing::shell(files.folder, "cat estimate.txt > pipe & \"$evbench\" eval truth.txt pipe").err.empty());
   CHECK(testing::shell(files.folder, "timeout -s INT 2 \"$evbench\" eval truth.txt pipe").exit_code == 124);
 }

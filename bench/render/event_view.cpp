@@ -66,7 +66,7 @@ EventView::Sight EventView::before(std::int64_t t) {
   const std::span<const Event> events = window_.before(t);
   const bool any = !events.empty();
   // Not beyond the end of the recording, where a time surface would have faded, and no time is to be told.
-  if (any && !window_.next()) t = std::min(t, events.back().t + 1);
+  if (any && !window_.next()) t = std::min(t, events.back().t);
   switch (mode_) {
     case RenderMode::events: break;
     case RenderMode::time_surface: return {draw_time_surface(time_surface(events, size_, t, decay_), palette_), t, any};

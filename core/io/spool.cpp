@@ -1,6 +1,5 @@
 #include "core/io/spool.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -12,6 +11,7 @@
 #include <mutex>
 #include <vector>
 
+#include "core/io/open_to_read.hpp"
 #include "core/io/temporary_file.hpp"
 #include "core/support/interruption.hpp"
 
@@ -24,7 +24,7 @@ namespace {
 }
 
 std::unique_ptr<TemporaryFile> copy(const std::string& path) {
-  const int file = path == "-" ? ::dup(STDIN_FILENO) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int file = open_to_read(path);
   if (file < 0) fail(path, errno);
   const auto close = [](const int* open) { ::close(*open); };
   const std::unique_ptr<const int, decltype(close)> closed(&file, close);

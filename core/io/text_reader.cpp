@@ -1,8 +1,6 @@
 #include "core/io/text_reader.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -11,7 +9,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "core/support/error.hpp"
+#include "core/io/open_to_read.hpp"
+#include "core/support/interruption.hpp"
 
 namespace evbench {
 namespace {
@@ -19,23 +18,6 @@ namespace {
 constexpr std::size_t kBufferSize = std::size_t{1} << 18;
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-constexpr int kPatience = 1000;  // [ms] until it is said that a pipe is waited for
-
-/// Opens a file to be read; -1 with errno where that fails. A pipe is waited for until there is something in it: who
-/// does not write to it should not leave a user before a silent terminal.
-int open_file(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_fifo(path, ignored)) return ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // at once, also without a writer
-  pollfd pipe = {file, POLLIN, 0};
-  if (file >= 0 && ::poll(&pipe, 1, kPatience) == 0) {
-    fmt::print(stderr, "{}: is a pipe that nobody has written to; waiting for it\n", path);
-    ::poll(&pipe, 1, -1);
-  }
-  if (file >= 0) ::fcntl(file, F_SETFL, ::fcntl(file, F_GETFL) & ~O_NONBLOCK);
-  return file;
-}
 
 gzFile handle(void* file) { return static_cast<gzFile>(file); }
 
@@ -47,8 +29,12 @@ TextReader::TextReader(const std::string& path) : path_(path), buffer_(kBufferSi
   if (std::filesystem::is_directory(path, ignored)) {
     throw InputError(fmt::format("{}: is a folder; expected a text file", path));
   }
-  const int file = open_file(path);
-  if (file < 0) throw InputError(fmt::format("{}: can't be opened: {}", path, std::strerror(errno)));
+  const int file = open_to_read(path);
+  if (file < 0) {
+    const int error = errno;
+    check_interruption();  // it may have waited for a pipe
+    throw InputError(fmt::format("{}: can't be opened: {}", path, std::strerror(error)));
+  }
   file_ = gzdopen(file, "rb");
   if (file_ == nullptr) {
     ::close(file);
@@ -62,6 +48,7 @@ void TextReader::fill() {
   const int count = gzread(handle(file_), buffer_.data(), static_cast<unsigned>(buffer_.size()));
   int code = Z_OK;
   const char* message = gzerror(handle(file_), &code);
+  check_interruption();  // which may have ended the reading
   if (count < 0 || (code != Z_OK && code != Z_STREAM_END)) {
     fail(code == Z_BUF_ERROR ? "the gzip data end too early: the file is truncated"
                              : fmt::format("can't be read on: {}", message));

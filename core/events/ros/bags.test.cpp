@@ -95,13 +95,17 @@ TEST_CASE("Bags with broken bytes anywhere are never a crash") {
 }
 
 TEST_CASE("A ROS 2 bag in SQLite that is cut short is refused or gives the beginning of its events") {
-  const auto path = testing::data_file(kTrigger);
+  const auto path = testing::data_file(GENERATE(kTrigger, kDb3));
   if (!path) return;
   const testing::TemporaryFolder folder;
   const std::string whole = testing::read_file(*path);
   const auto all = testing::read_all(*path);
-  for (std::size_t i = 1; i < 20; ++i) {
-    const std::string cut = folder.write("cut.db3", whole.substr(0, whole.size() * i / 20));
+  std::vector<std::size_t> sizes;
+  for (std::size_t i = 1; i < 20; ++i) sizes.push_back(whole.size() * i / 20);
+  for (const std::size_t missing : {1, 100, 4096, 5000, 12288}) sizes.push_back(whole.size() - missing);
+  for (const std::size_t size : sizes) {
+    CAPTURE(size, whole.size());
+    const std::string cut = folder.write("cut.db3", whole.substr(0, size));
     try {
       const auto reader = open_events(cut);
       const auto events = testing::read_all(*reader);
