@@ -42,7 +42,7 @@ void check_file_refused(const std::string& name, const std::string& content, con
 TEST_CASE("A file that is missing ends the program with its name") {
   const TemporaryFolder folder;
   write_recording(folder);
-  check_refused(folder, "run nowhere.json", "nowhere.json: can't be read");
+  check_refused(folder, "run nowhere.json", "nowhere.json: no such file");
   check_refused(folder, "run recording.json --set frontend.tracks=no.txt", folder.file("no.txt") + ": no such file");
   check_refused(folder, "run recording.json --set source.folder=no", folder.file("no/calib.txt") + ": no such file");
   check_refused(folder, "run recording.json --set source.ground_truth=no.txt", "no.txt: no such file");

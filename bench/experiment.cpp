@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/io/path.hpp"
+#include "core/io/spool.hpp"
 #include "core/support/interruption.hpp"
 #include "core/support/json_reason.hpp"
 
@@ -46,10 +47,13 @@ struct ExperimentOptions {
 };
 
 Json parse_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) {
-    throw InputError(fmt::format("{}: can't be read; expected a JSON config", path));
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) {
+    throw InputError(fmt::format("{}: is a folder; expected a JSON config", path));
   }
+  if (path != "-" && !std::filesystem::exists(path, none)) throw InputError(fmt::format("{}: no such file", path));
+  std::ifstream file(seekable_path(path), std::ios::binary);
+  if (!file) throw InputError(fmt::format("{}: can't be read; expected a JSON config", path));
   std::ostringstream text;
   text << file.rdbuf();
   try {
@@ -110,14 +114,19 @@ void set_value(Json& config, const std::string& assignment, const Json& of_confi
   *target = is_text || value.is_discarded() ? Json(text) : value;
 }
 
-/// Is the error of what --set gave: its place, or a key that nobody knows there?
+/// Is the error of what --set gave: its place or one below, the list that it is in, or a key that nobody knows there?
 bool is_about(const std::string& error, const std::string& path, const std::string& assignment) {
   const std::string key = assignment.substr(0, assignment.find('='));
   const std::size_t dot = key.rfind('.');
+  const std::string last = key.substr(dot == std::string::npos ? 0 : dot + 1);
+  const auto at = [&](const std::string& place, const char* behind) {
+    return error.starts_with(fmt::format("{}: {}{}", path, place, behind));
+  };
   const std::string parent = dot == std::string::npos ? path : fmt::format("{}: {}", path, key.substr(0, dot));
-  return error.starts_with(fmt::format("{}: {}: ", path, key)) ||
-         error.starts_with(fmt::format("{}: {}.", path, key)) ||
-         error.starts_with(fmt::format("{}: unknown key \"{}\"", parent, key.substr(dot + 1)));
+  const bool in_list = dot != std::string::npos && last.find_first_not_of("0123456789") == std::string::npos;
+  return at(key, ": ") || at(key, ".") || (in_list && at(key.substr(0, dot), ": ")) ||
+         error.starts_with(fmt::format("{}: unknown key \"{}\"", parent, last)) ||
+         error.starts_with(fmt::format("{}: unknown key \"{}\"", path, key.substr(0, key.find('.'))));
 }
 
 /// Calls `read`; an error in a value that --set gave says so.
@@ -142,7 +151,12 @@ Json parse_config(const std::string& path, const std::vector<std::string>& overr
   return json;
 }
 
-std::string folder_of(const std::string& path) { return std::filesystem::absolute(path).parent_path().string(); }
+/// What relative paths in a config refer to: its folder; of one from a pipe the working folder.
+std::string folder_of(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return std::filesystem::current_path().string();
+  return std::filesystem::absolute(path).parent_path().string();
+}
 
 /// The key "plugins", relative paths taken from the config's folder.
 std::vector<std::string> plugin_paths(const Json& list, const std::string& path) {
@@ -350,6 +364,7 @@ Json experiment_schema(const Plugins& plugins) {
   Json schema = set.schema();
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = "evbench config";
+  schema["properties"]["name"]["pattern"] = "^([A-Za-z0-9_+-][A-Za-z0-9_.+-]*)?$";
   schema["oneOf"] = {{{"required", {"backend"}}}, {{"required", {"backends"}}}};
   schema["properties"]["plugins"]["type"] = "array";
   schema["properties"]["plugins"]["items"] = {{"type", "string"}};

@@ -106,7 +106,8 @@ TEST_CASE("An override that can't be meant is refused") {
   CHECK_THROWS_WITH(read(short_config(), {"trajectory_rate=NaN"}), Contains("expected number, found \"NaN\""));
 }
 
-TEST_CASE("--set gives text where text is expected, and a position of a list that the config leaves at its default") {
+TEST_CASE(
+    "An override gives text where text is expected, and a position of a list that the config leaves at its default") {
   CHECK(read(short_config(), {"backend.label=0.05"}).runs[0].label == "0.05");
   CHECK(read(short_config(), {"name=2024"}).name == "2024");
   const Json twice = read(short_config("gp_map"), {"backend.qc.3=2"}).runs[0].job.backend.options["qc"];
@@ -138,8 +139,8 @@ TEST_CASE("A config may name its schema") {
 }
 
 TEST_CASE("A config that is not as expected is refused with the place and the nearest name") {
-  CHECK_THROWS_WITH(read_experiment("/no/such.json", {}, known_plugins()), Contains("/no/such.json: can't be read"));
-  CHECK_THROWS_WITH(read_experiment("/", {}, known_plugins()), Contains("can't be read"));
+  CHECK_THROWS_WITH(read_experiment("/no/such.json", {}, known_plugins()), Contains("/no/such.json: no such file"));
+  CHECK_THROWS_WITH(read_experiment("/", {}, known_plugins()), Contains("is a folder; expected a JSON config"));
   CHECK_THROWS_WITH(read_text(""), Contains("c.json: is not JSON"));
   CHECK_THROWS_WITH(read_text("{\"name\": "), Contains("c.json: is not JSON") && Contains("line 1"));
   CHECK_THROWS_WITH(read_text("[]"), Contains("expected an object"));

@@ -101,7 +101,7 @@ TEST_CASE("Nothing is printed by --quiet, the table and the folder without") {
   }
 }
 
-TEST_CASE("--set takes one value, so that the config may stand behind it") {
+TEST_CASE("An override is one value, so that the config may stand behind it") {
   const TemporaryFolder folder;
   folder.write("c.json", short_config().dump());
   CHECK(testing::evbench(folder, "run --check --set seed=2 c.json").exit_code == 0);
@@ -155,4 +155,66 @@ TEST_CASE("A run that is interrupted leaves no half of it, and says what is comp
   CHECK(outcome.err == "evbench: c.json: interrupted; 1 of 2 runs are complete, the same command goes on from there\n");
   CHECK_THAT(outcome.out, Contains("frames") && Contains("ATE [m]") && Contains("written: results/short"));
   CHECK(names_in(folder.file("results/short")).size() == 1);
+}
+
+TEST_CASE("No command replaces what it reads, or writes two outputs to one file, forced or not") {
+  const TemporaryFolder folder;
+  write_recording(folder);
+  folder.write("c.json", short_config().dump());
+  REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
+  REQUIRE(testing::shell(folder, "mv results/short/* run").exit_code == 0);
+  const std::string before = testing::shell(folder, "sha256sum * run/* 2> /dev/null").out;
+  for (const char* const command :
+       {"eval groundtruth.txt groundtruth.txt --aligned groundtruth.txt",
+        "eval run/groundtruth.tum run/final.tum --json run/final.tum", "export run --errors run/metrics.json",
+        "table run --out run/metrics.json", "export c.json --tracks c.json",
+        "export recording.json --groundtruth groundtruth.txt", "export recording.json --calib calib.txt"}) {
+    INFO(command);
+    const Outcome outcome = testing::evbench(folder, std::string(command) + " --force");
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains("is what is read; expected another name"));
+  }
+  for (const char* const command : {"export c.json --groundtruth same.txt --tracks ./same.txt",
+                                    "eval groundtruth.txt groundtruth.txt --errors same.txt --json same.txt"}) {
+    INFO(command);
+    const Outcome outcome = testing::evbench(folder, std::string(command) + " --force");
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains("same.txt: is to be written twice"));
+  }
+  CHECK(testing::shell(folder, "sha256sum * run/* 2> /dev/null").out == before);
+}
+
+TEST_CASE("A config may come from a pipe, with paths relative to the working folder") {
+  const TemporaryFolder folder;
+  write_recording(folder);
+  const Outcome outcome = testing::shell(folder, "cat recording.json | \"$evbench\" run /dev/stdin --check");
+  CHECK(outcome.err.empty());
+  CHECK(outcome.exit_code == 0);
+}
+
+TEST_CASE("Runs that can't be read are told behind the table of the others") {
+  const TemporaryFolder folder;
+  folder.write("c.json", short_comparison().dump());
+  REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
+  REQUIRE(testing::shell(folder,
+                         "cp -r results/short/gp_map-* a; cp -r a b; cp -r a results/c; : > a/metrics.json;"
+                         "rm b/metrics.json; mv a b results")
+              .exit_code == 0);
+  for (const char* const command : {"table", "score"}) {
+    const Outcome outcome = testing::evbench(folder, std::string(command) + " results");
+    INFO(command);
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.out, Contains("asynchronous") && Contains("frames of 50 ms"));
+    CHECK_THAT(outcome.err, Contains("a/metrics.json: is not JSON") && Contains("b: is the folder of a run without"));
+  }
+}
+
+TEST_CASE("Checking a config finds a folder for results that can't be written") {
+  const TemporaryFolder folder;
+  folder.write("c.json", short_config().dump());
+  CHECK(testing::evbench(folder, "run c.json --check --out new/folder").exit_code == 0);
+  CHECK_FALSE(std::filesystem::exists(folder.file("new")));
+  const Outcome outcome = testing::evbench(folder, "run c.json --check --out c.json/results");
+  CHECK(outcome.exit_code == 4);
+  CHECK_THAT(outcome.err, Contains("c.json: is no folder; expected one for results"));
 }

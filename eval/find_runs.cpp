@@ -21,24 +21,27 @@ std::string take_number(const std::string& text, std::size_t& at) {
   return text.substr(begin, at - begin);
 }
 
-/// Every metrics.json in and below a folder.
-std::vector<fs::path> find_files(const std::string& folder) {
+/// Every folder with a metrics.json in and below a folder; `missing`: those of runs that have none.
+std::vector<fs::path> find_folders(const std::string& folder, std::vector<fs::path>& missing) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) throw InputError(fmt::format("{}: is not a folder", folder));
-  std::vector<fs::path> files;
+  std::vector<fs::path> folders;
   const auto options = fs::directory_options::skip_permission_denied;
   // Sweeps write while tables are made: what vanishes in between is passed over.
   for (auto entry = fs::recursive_directory_iterator(folder, options, error); entry != fs::end(entry);
        entry.increment(error)) {
     const fs::path extension = entry->path().extension();
     if (extension == ".part" || extension == ".old") entry.disable_recursion_pending();
-    if (entry->path().filename() == "metrics.json" && entry->is_regular_file(error)) files.push_back(entry->path());
+    const fs::path within = entry->path().parent_path();
+    if (entry->path().filename() == "metrics.json" && entry->is_regular_file(error)) folders.push_back(within);
+    if (entry->path().filename() == "job.json" && !fs::exists(within / "metrics.json", error))
+      missing.push_back(within);
   }
-  if (files.empty()) {
+  if (folders.empty() && missing.empty()) {
     throw InputError(
         fmt::format("{}: no metrics.json in it or below; expected the folder of a run or of several", folder));
   }
-  return files;
+  return folders;
 }
 
 }  // namespace
@@ -60,12 +63,24 @@ bool natural_less(const std::string& a, const std::string& b) {
   return a < b;  // equal but for leading zeros
 }
 
-std::vector<RunRecord> find_runs(std::span<const std::string> folders) {
+std::vector<RunRecord> find_runs(std::span<const std::string> folders, std::vector<std::string>* unreadable) {
   std::vector<RunRecord> runs;
+  std::vector<fs::path> missing;
   std::set<fs::path> seen;
   for (const std::string& folder : folders) {
-    for (const fs::path& file : find_files(folder)) {
-      if (seen.insert(fs::canonical(file)).second) runs.push_back(read_record(file.parent_path().string()));
+    for (const fs::path& run : find_folders(folder, missing)) {
+      if (!seen.insert(fs::canonical(run)).second) continue;
+      try {
+        runs.push_back(read_record(run.string()));
+      } catch (const InputError& error) {
+        if (unreadable == nullptr) throw;
+        unreadable->emplace_back(error.what());
+      }
+    }
+  }
+  if (unreadable != nullptr) {
+    for (const fs::path& run : missing) {
+      unreadable->push_back(fmt::format("{}: is the folder of a run without metrics.json; run it again", run.string()));
     }
   }
   std::ranges::sort(runs, [](const RunRecord& a, const RunRecord& b) {

@@ -76,7 +76,9 @@ RunRecord read_record(const std::string& folder);
 /// config, then by label (numbers in names compare as numbers: 25 ms before 100 ms), settings, seed, folder. Runs that
 /// are not complete (NAME.evbench.part) and replaced ones (NAME.evbench.old) are passed over. Throws InputError for a
 /// path that is no folder, for a folder without any run, and for a metrics.json that is damaged, with the place.
-std::vector<RunRecord> find_runs(std::span<const std::string> folders);
+/// `unreadable` gets a sentence for each run that can't be read, or whose metrics are missing; nullptr: such a one is
+/// an InputError.
+std::vector<RunRecord> find_runs(std::span<const std::string> folders, std::vector<std::string>* unreadable = nullptr);
 
 /// Does name `a` come before `b`? Digits compare by value, other characters as they are.
 bool natural_less(const std::string& a, const std::string& b);

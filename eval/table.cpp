@@ -245,6 +245,8 @@ std::optional<Trouble> trouble_of(const Row& row, bool online) {
   const RunRecord& run = *row.run;
   const std::string reason = competes(row) ? "" : run.status->status.reason;
   const bool scored = !scores_of(row, online).is_null();
+  const bool degraded = run.status && run.status->status.state == RunState::degraded;
+  if (scored && degraded) return Trouble{"Degraded", run.status->status.reason};
   if (scored && competes(row)) return std::nullopt;
   const std::string& unscored = online ? run.online_unscored : run.final_unscored;
   const std::string what = !scored ? "Without scores" : run.status->status.state == RunState::lost ? "Lost" : "Failed";
@@ -261,7 +263,7 @@ std::vector<std::string> trouble_notes(const Rows& rows, const std::vector<std::
     if (found == troubles.end()) {
       troubles.emplace_back(*trouble, names[i]);
     } else {
-      found->second += ", " + names[i];
+      found->second += "; " + names[i];
     }
   }
   std::vector<std::string> notes;

@@ -23,8 +23,9 @@ struct ConvertArguments {
 };
 
 void execute(const ConvertArguments& arguments) {
-  refuse_to_replace(arguments.out, arguments.force);
+  check_outputs({arguments.out}, {arguments.in}, arguments.force);  // at once, as far as it can be told
   ConversionOptions options = arguments.options;
+  options.force = arguments.force;
   set_time_range(arguments.range, options.stream);
   const Interruption interruption(arguments.out + ": interrupted; nothing was written");
   ConversionReport report;

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/failures.hpp"
 #include "core/data/pose_file.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
@@ -124,10 +125,10 @@ std::string json_text(const std::vector<RunRecord>& records) {
   return (records.size() == 1 ? json[0] : json).dump(2) + "\n";
 }
 
-void check_outputs(const EvalArguments& arguments) {
-  for (const std::string* path : {&arguments.json, &arguments.aligned, &arguments.errors}) {
-    refuse_to_replace(*path, arguments.force);
-  }
+void check(const EvalArguments& arguments) {
+  std::vector<std::string> read = arguments.estimates;
+  read.insert(read.end(), {arguments.ground_truth, arguments.times});
+  check_outputs({arguments.json, arguments.aligned, arguments.errors}, read, arguments.force);
   if (arguments.estimates.size() > 1 && !(arguments.aligned.empty() && arguments.errors.empty())) {
     throw InputError(
         fmt::format("--aligned and --errors are of one estimate; {} are given", arguments.estimates.size()));
@@ -135,15 +136,21 @@ void check_outputs(const EvalArguments& arguments) {
 }
 
 void execute(const EvalArguments& arguments) {
-  check_outputs(arguments);
+  check(arguments);
   const PoseFile ground_truth = read_file(arguments.ground_truth, arguments.ground_truth_unit, arguments);
   print_remarks(ground_truth);
   std::vector<RunRecord> records;
   ScoredEstimate last;
+  std::vector<std::string> failures;
   for (const std::string& path : arguments.estimates) {
-    last = score_file(ground_truth, path, arguments);
-    records.push_back(record_of(arguments.ground_truth, path, last.scores));
+    try {
+      last = score_file(ground_truth, path, arguments);
+      records.push_back(record_of(arguments.ground_truth, path, last.scores));
+    } catch (const InputError& error) {
+      failures.emplace_back(error.what());
+    }
   }
+  if (records.empty()) throw_together(failures);
   if (!arguments.json.empty()) write_file(arguments.json, json_text(records));
   if (!arguments.aligned.empty())
     write_file(arguments.aligned, format_tum(aligned_estimate(last.estimate, last.scores)));
@@ -151,10 +158,11 @@ void execute(const EvalArguments& arguments) {
   for (const std::string* path : {&arguments.json, &arguments.aligned, &arguments.errors}) {
     if (*path == "/dev/stdout") return;
   }
-  if (records.size() > 1 || !arguments.table.empty()) {
+  if (arguments.estimates.size() > 1 || !arguments.table.empty()) {
     const std::string format = arguments.table.empty() ? "text" : arguments.table;
     fmt::print("{}",
                make_table(records, {.format = parse_name<TableFormat>(kTableFormatNames, format, "table format")}));
+    throw_together(failures);
     return;
   }
   fmt::print("ground truth {}\nestimate     {}\n{}", arguments.ground_truth, arguments.estimates[0],

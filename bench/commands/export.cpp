@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 
 #include "bench/commands/commands.hpp"
@@ -26,6 +28,7 @@ struct ExportArguments {
   bool online = false;
   bool force = false;
 
+  std::vector<std::string> outputs() const { return {ground_truth, tracks, calibration, aligned, errors}; }
   bool of_source() const { return !ground_truth.empty() || !tracks.empty() || !calibration.empty(); }
   bool of_run() const { return !aligned.empty() || !errors.empty(); }
 };
@@ -35,10 +38,6 @@ void check(const ExportArguments& arguments) {
     throw InputError(
         "nothing to export; expected at least one of --groundtruth, --tracks, --calib, --aligned, --errors");
   }
-  for (const std::string* path :
-       {&arguments.ground_truth, &arguments.tracks, &arguments.calibration, &arguments.aligned, &arguments.errors}) {
-    refuse_to_replace(*path, arguments.force);
-  }
   std::error_code ignored;
   const bool folder = std::filesystem::is_directory(arguments.from, ignored);
   if (arguments.of_run() && !folder) {
@@ -47,6 +46,12 @@ void check(const ExportArguments& arguments) {
   if (folder && !std::filesystem::exists(arguments.from + "/metrics.json")) {
     throw InputError(fmt::format("{}: has no metrics.json; expected the folder of a run", arguments.from));
   }
+  std::vector<std::string> read = {arguments.from};
+  for (const char* name : {"config.json", "job.json", "manifest.json", "metrics.json", "status.json", "final.tum",
+                           "online.tum", "groundtruth.tum", "map.ply", "timing.csv", "log.txt"}) {
+    read.push_back(arguments.from + "/" + name);
+  }
+  check_outputs(arguments.outputs(), read, arguments.force);
   if (folder && !arguments.overrides.empty()) {
     throw InputError(fmt::format("{}: --set changes configs, not what a run has done", arguments.from));
   }
@@ -55,6 +60,9 @@ void check(const ExportArguments& arguments) {
 void export_source(const std::string& config, const ExportArguments& arguments, Plugins& plugins) {
   load_plugins_of(plugins, config, arguments.overrides);
   const std::unique_ptr<Source> source = read_source(config, plugins, arguments.overrides);
+  std::vector<std::string> read = source->files();
+  std::ranges::move(source->event_files(), std::back_inserter(read));
+  check_outputs(arguments.outputs(), read, true);  // what exists has been asked before, and may be written by now
   const auto tracks = source->true_tracks();
   if (!arguments.ground_truth.empty() && source->ground_truth().empty()) {
     throw InputError(fmt::format("{}: its source has no ground truth", config));

@@ -73,7 +73,7 @@ TEST_CASE("What can't be exported is refused with what was expected, and no file
   const Sequence sequence;
   sequence.refused("c.json", "nothing to export; expected at least one of --groundtruth");
   sequence.refused("c.json --errors e.csv", "c.json: --aligned and --errors are of a run; expected its folder");
-  sequence.refused("none.json --tracks t.txt", "none.json: can't be read");
+  sequence.refused("none.json --tracks t.txt", "none.json: no such file");
   sequence.refused(". --errors e.csv", ".: has no metrics.json; expected the folder of a run");
   sequence.folder.write("t.txt", "mine");
   sequence.refused("c.json --tracks t.txt", "t.txt: exists already; --force replaces it");

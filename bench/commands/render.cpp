@@ -40,7 +40,9 @@ RenderOptions render_options(const RenderArguments& arguments) {
 }
 
 void execute(const RenderArguments& arguments) {
-  refuse_to_replace(arguments.out, arguments.force);
+  const RenderOptions& files = arguments.options;
+  check_outputs({arguments.out}, {arguments.in, files.tracks, files.trajectory, files.calibration, files.beside},
+                arguments.force);
   if (arguments.decay && arguments.mode != "time_surface") throw InputError("--decay: is for --mode time_surface");
   RenderReport report;
   {

@@ -60,7 +60,7 @@ TEST_CASE("render refuses with exit code 2 and a sentence what it can't draw") {
   refused("a.evb a.png --mode compensated", "--trajectory");
   refused("a.evb a.png --tracks none.txt", "none.txt");
   refused("a.evb a.png --fps 0", "--fps");
-  refused("a.evb a.evb", "a.evb: exists already; --force replaces it");
+  refused("a.evb a.evb --force", "a.evb: is what is read");
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb"});
 }
 

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -118,7 +121,21 @@ void print_table(const Runs& runs, const RunArguments& arguments, const std::str
   std::fflush(stdout);
 }
 
+/// Results can be written to a folder, or to one that is to be made there.
+void check_writable(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::path place = std::filesystem::absolute(folder);
+  while (!std::filesystem::exists(place, error) && place.has_relative_path()) place = place.parent_path();
+  if (!std::filesystem::is_directory(place, error)) {
+    throw OutputError(fmt::format("{}: is no folder; expected one for results", place.string()));
+  }
+  if (::access(place.c_str(), W_OK) != 0) {
+    throw OutputError(fmt::format("{}: can't be written to: {}", place.string(), std::strerror(errno)));
+  }
+}
+
 void check(const RunArguments& arguments, const Experiment& experiment, const Plugins& plugins) {
+  check_writable(arguments.out);
   const std::unique_ptr<Source> source = make_source(experiment.runs.front().job, plugins);
   for (const RunConfig& config : experiment.runs) check_job(config.job, *source, plugins);
   fmt::print("{}: fine, {} run{}\n", arguments.config, experiment.runs.size(), experiment.runs.size() == 1 ? "" : "s");
@@ -160,6 +177,9 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
   command->add_option("config", arguments->config, "JSON config")->required();
   command->add_option("--set", arguments->overrides, "Override a value: KEY=VALUE, e.g. backend.placement.rate=50")
       ->type_name("KEY=VALUE")
+      ->check([](const std::string& text) {
+        return text.find('=') == std::string::npos ? fmt::format("{}: expected KEY=VALUE", text) : std::string();
+      })
       ->allow_extra_args(false);
   command->add_option("--out", arguments->out, "Folder for results")->capture_default_str();
   command->add_flag("--force", arguments->force, "Do runs again that are complete already");

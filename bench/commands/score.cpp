@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/failures.hpp"
 #include "bench/run_folder.hpp"
 #include "core/support/interruption.hpp"
 #include "eval/table.hpp"
@@ -28,7 +29,9 @@ ScoreOptions protocol_of(const std::string& folder, const ScoreArguments& argume
 
 void execute(const ScoreArguments& arguments) {
   const Interruption interruption("interrupted; the runs that were not scored again are as before");
-  std::vector<RunRecord> records = find_runs(arguments.folders);
+  std::vector<std::string> unreadable;
+  std::vector<RunRecord> records = find_runs(arguments.folders, &unreadable);
+  if (records.empty()) throw_together(unreadable);
   std::vector<ScoreOptions> protocols;  // all of them first: what is wrong with one is told before any work
   for (const RunRecord& run : records) protocols.push_back(protocol_of(run.folder, arguments));
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -38,6 +41,7 @@ void execute(const ScoreArguments& arguments) {
     records[i].folder = found_as;
   }
   if (!arguments.quiet) fmt::print("{}", make_table(records, {}));
+  throw_together(unreadable);
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/failures.hpp"
 #include "core/io/atomic_file.hpp"
 
 namespace evbench {
@@ -19,15 +21,20 @@ struct TableArguments {
 };
 
 void execute(const TableArguments& arguments) {
-  refuse_to_replace(arguments.out, arguments.force);
+  const std::filesystem::path folder = std::filesystem::path(arguments.out).parent_path();  // of a run, perhaps
+  check_outputs({arguments.out}, {folder / "metrics.json", folder / "config.json"}, arguments.force);
   TableOptions options = arguments.options;
   options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
-  const std::string table = make_table(find_runs(arguments.folders), options);
+  std::vector<std::string> unreadable;
+  const std::vector<RunRecord> runs = find_runs(arguments.folders, &unreadable);
+  if (runs.empty()) throw_together(unreadable);
+  const std::string table = make_table(runs, options);
   if (arguments.out.empty()) {
     fmt::print("{}", table);
   } else {
     write_file(arguments.out, table);
   }
+  throw_together(unreadable);
 }
 
 }  // namespace

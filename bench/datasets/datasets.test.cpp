@@ -443,5 +443,5 @@ TEST_CASE("dataset get fetches and unpacks by name, once; dataset list marks wha
   CHECK(missing.exit_code == 2);
   CHECK_THAT(missing.err, Contains("answers 404"));
   CHECK_THAT(testing::shell(folder, environment + "get local/fil").err, Contains("did you mean \"local/file\"?"));
-  CHECK(names_in(folder.file("sets/local")) == std::set<std::string>{"file", "no.download"});
+  CHECK(names_in(folder.file("sets/local")) == std::set<std::string>{"file"});
 }

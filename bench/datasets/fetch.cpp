@@ -52,7 +52,13 @@ void fetch_dataset(const Dataset& dataset, const std::string& folder, const Down
     const std::string path = downloads / file.name;
     // What an earlier call left may be of another catalogue.
     if (fs::exists(path) && !file.sha256.empty() && sha256_file(path) != file.sha256) fs::remove(path);
-    if (!fs::exists(path)) download(file.url, path, options);
+    try {
+      if (!fs::exists(path)) download(file.url, path, options);
+    } catch (const InputError&) {
+      std::error_code full;
+      fs::remove(downloads, full);  // unless something is in it
+      throw;
+    }
     told(fmt::format("{}: {} bytes, SHA-256 {} ({})", file.url, fs::file_size(path), sha256_file(path),
                      file.sha256.empty() ? "not compared: the catalogue has none" : "as the catalogue has it"));
   }

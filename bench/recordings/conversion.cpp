@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "core/data/calib.hpp"
 #include "core/events/formats.hpp"
 #include "core/events/writer.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/io/part_file.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
@@ -98,15 +101,6 @@ RecordingHeader make_header(EventStream& stream, const std::string& in, const St
   return header;
 }
 
-/// --force or not.
-void refuse_input(const std::string& in, const std::string& out) {
-  std::error_code error;
-  for (const std::string& file : files_of_events(in)) {
-    if (!std::filesystem::equivalent(file, out, error)) continue;
-    throw InputError(fmt::format("{}: is what is read; expected another name for what is written", out));
-  }
-}
-
 bool fits(const Camera& camera, const RecordingHeader& header) {
   return camera.width == header.width && camera.height == header.height;
 }
@@ -152,8 +146,11 @@ ConversionReport convert(const std::string& in, const std::string& out, const Co
                          const std::function<void(std::int64_t, std::int64_t)>& progress) {
   const WritableFormat& format = find_format(out, options.format);
   EventStream stream(in, options.stream);
-  refuse_input(in, out);
   RecordingHeader header = make_header(stream, in, options.stream);
+  std::vector<std::string> inputs = stream.reader().files_beside();
+  std::ranges::move(files_of_events(in), std::back_inserter(inputs));
+  inputs.push_back(options.undistort);
+  check_outputs({out}, inputs, options.force);
   std::optional<NearestUndistortion> undistortion;
   if (!options.undistort.empty()) undistortion.emplace(take_lens(options.undistort, in, header));
   drop_misfit(header);

@@ -14,6 +14,7 @@ namespace evbench {
 struct ConversionOptions {
   StreamOptions stream;
   std::string format;     ///< a writable format's name; empty: by the extension
+  bool force = true;      ///< replaces an older file, but never what is read
   std::string undistort;  ///< calib.txt of the lens that is to be undone, or "own": the recording's; empty: not
 };
 

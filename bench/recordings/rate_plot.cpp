@@ -15,6 +15,7 @@ constexpr double kSlow = 1e5;  // [events/s], below which millions are a bad uni
 }  // namespace
 
 std::string rate_text(double events_per_second) {
+  if (events_per_second < 100.0) return fmt::format("{:.3g}/s", events_per_second);
   return events_per_second < kSlow ? fmt::format("{:.0f}/s", events_per_second)
                                    : fmt::format("{:.3f} million/s", events_per_second * 1e-6);
 }

@@ -123,6 +123,7 @@ class Renderer {
   }
 
   bool lacks_tracks() const { return tracks_ && !drawn_tracks_; }
+  std::string tracks_range() const { return tracks_->range_text(); }
 
   /// Time of the first event that is still to be drawn.
   std::optional<std::int64_t> next() { return main_.window().next(); }
@@ -158,6 +159,10 @@ RenderOptions within_motion(const std::string& in, const RenderOptions& asked, R
   };
   const std::int64_t start = time(motion.start(), std::ceil), end = time(motion.end(), std::floor) + 1;
   std::vector<Event> events;
+  if (start >= asked.stream.to.value_or(end)) {
+    throw InputError(fmt::format("{}: the trajectory begins at {:.6f} s; expected to draw a time after that", in,
+                                 static_cast<double>(start) * 1e-6));
+  }
   if (!asked.stream.from && stream.read(events) && events.front().t < start) {
     options.stream.from = start;
     report.remarks.push_back(fmt::format("the trajectory begins at {:.6f} s, after the events: drawn from there on",
@@ -199,7 +204,8 @@ RenderReport render(const std::string& in, const std::string& out, const RenderO
   renderer.expect_events();
   if (renderer.lacks_tracks()) {
     report.remarks.push_back(
-        fmt::format("{}: none of its tracks is in view at the times that are drawn", asked.tracks));
+        fmt::format("{}: none of its tracks is in view at the times that are drawn; they go from {}", asked.tracks,
+                    renderer.tracks_range()));
   }
   sink->finish();
   report.faults = renderer.faults();

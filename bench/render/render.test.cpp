@@ -396,3 +396,17 @@ TEST_CASE("A clock that jumps by days is refused, not filmed") {
                     Contains("1000000.000000 s"));
   CHECK(names(folder.path()) == std::set<std::string>{"a.evb"});
 }
+
+TEST_CASE("Times that end before a trajectory begins are refused, and a range that is none holds no events") {
+  const TemporaryFolder folder;
+  const std::string in = write_native(folder, "a.evb", hundred_events());
+  RenderOptions options;
+  options.mode = RenderMode::compensated;
+  options.trajectory = folder.write("late.txt", "1.05 0 0 0 0 0 0 1\n1.5 0 0 0 0 0 0 1\n");
+  options.calibration = folder.write("calib.txt", "20 20 10 5 0 0 0 0 0\n");
+  options.stream.to = 1020000;
+  CHECK_THROWS_WITH(render(in, folder.file("a.png"), options), Contains("the trajectory begins at 1.050000 s"));
+  EventStream stream(in, {.from = 1050000, .to = 1020000});
+  std::vector<Event> events;
+  CHECK_FALSE(stream.read(events));
+}

@@ -1,5 +1,7 @@
 #include "bench/render/track_overlay.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -39,6 +41,11 @@ Colour track_colour(TrackId track, const Palette& palette) {
   Colour result;
   for (int i = 0; i < 3; ++i) result[i] = cv::saturate_cast<std::uint8_t>(255.0F * colour(0, 0)[i]);
   return result;
+}
+
+std::string TrackOverlay::range_text() const {
+  if (observations_.empty()) return "nowhere";
+  return fmt::format("{:.3f} to {:.3f} s", observations_.front().t, observations_.back().t);
 }
 
 bool TrackOverlay::draw(double t, int scale, const Palette& palette, Picture& picture) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "bench/render/palette.hpp"
@@ -13,6 +14,9 @@ class TrackOverlay {
   /// `observations` in time order; `tail` [s]: how long a tail is, and how long a track that has ended stays.
   TrackOverlay(std::vector<TrackObservation> observations, double tail)
       : observations_(std::move(observations)), tail_(tail) {}
+
+  /// "0.100 to 2.000 s".
+  std::string range_text() const;
 
   /// Over a picture that shows the sensor at time t [s], each pixel of it `scale` pixels wide. Is any track there?
   bool draw(double t, int scale, const Palette& palette, Picture& picture) const;

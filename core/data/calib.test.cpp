@@ -86,7 +86,7 @@ TEST_CASE("Kalibr's calibration is read with its own size and lens; of several c
   const std::string path = folder.write("camchain.yaml", both);
   CHECK(read_calib(path, 240, 180, DistortionModel::none, "cam1").distortion == DistortionModel::equidistant);
   CHECK_THROWS_WITH(read_calib(path, 240, 180), Contains("camchain.yaml: holds cam0, cam1; expected the name"));
-  CHECK_THROWS_WITH(read_calib(path, 240, 180, DistortionModel::none, "cam2"), Contains("has no cam2"));
+  CHECK_THROWS_WITH(read_calib(path, 240, 180, DistortionModel::none, "cam2"), Contains("has no camera \"cam2\"; did you mean"));
   CHECK_THROWS_WITH(calib("cam0:\n  camera_model: omni\n  distortion_model: none\n"),
                     Contains("\"omni\"; expected pinhole"));
 }

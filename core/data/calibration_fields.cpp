@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/support/error.hpp"
+#include "core/support/nearest.hpp"
 
 namespace evbench {
 namespace {
@@ -98,6 +99,12 @@ Camera checked_camera(const std::string& place, const std::vector<double>& intri
                                    intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]));
     }
   }
+  const PinholeCamera& p = camera.pinhole;
+  constexpr double kLeastFocalLength = 10.0;  // [px]; that of coordinates normalised to 0..1 is about 1
+  if (p.fx < kLeastFocalLength || p.fy < kLeastFocalLength || p.cx < 0.0 || p.cy < 0.0) {
+    throw InputError(fmt::format("{}: has fx fy cx cy {} {} {} {}; expected pixels of the image, not shares of it",
+                                 place, p.fx, p.fy, p.cx, p.cy));
+  }
   camera.width = width;
   camera.height = height;
   const bool known = width > 0 && height > 0;
@@ -147,7 +154,10 @@ Camera yaml_camera(const Field& file, const std::string& name, const Calibration
   const auto names = camera_names(cameras);
   if (names.empty() && name.empty()) return single_camera(file, defaults);
   if (name.empty() && names.size() > 1) {
-    cameras.fail(fmt::format("holds {}; expected the name of the one that is meant", fmt::join(names, ", ")));
+    cameras.fail(fmt::format("holds {}; expected the name of the one that is meant (camera)", fmt::join(names, ", ")));
+  }
+  if (!name.empty() && std::ranges::find(names, name) == names.end()) {
+    cameras.fail(fmt::format("has no camera \"{}\"{}", name, suggestion(name, names)));
   }
   return single_camera(cameras.at(name.empty() ? names.front() : name), defaults);
 }

@@ -116,8 +116,8 @@ void EventStream::check(std::vector<Event>& events) {
     leave_out_disorder(events);
     if (!events.empty()) newest_ = events.back().t;
     good_ += std::ssize(events);
-    const auto first = std::ranges::lower_bound(events, from_, {}, &Event::t);
     const auto last = std::ranges::lower_bound(events, end_, {}, &Event::t);
+    const auto first = std::ranges::lower_bound(events.begin(), last, from_, {}, &Event::t);  // from may be after end
     ended_ = last != events.end();
     events.erase(last, events.end());
     events.erase(events.begin(), first);

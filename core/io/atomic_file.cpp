@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -72,12 +73,26 @@ void write_file(const std::string& path, std::string_view content) {
   file.commit();
 }
 
-void refuse_to_replace(const std::string& path, bool force) {
+void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& read, bool force) {
   std::error_code error;
-  const bool holds_something =
-      fs::is_regular_file(path, error) || (fs::is_directory(path, error) && !fs::is_empty(path, error));
-  if (force || !holds_something) return;
-  throw InputError(fmt::format("{}: exists already; --force replaces it", path));
+  std::vector<std::string> files;  // of them, those that are there or are to be made
+  for (const std::string& path : outputs) {
+    if (path.empty()) continue;
+    if (path == "-") throw InputError("-: expected a file's name; the standard output is /dev/stdout");
+    const bool is_file = fs::is_regular_file(path, error), is_folder = fs::is_directory(path, error);
+    if (fs::exists(path, error) && !is_file && !is_folder) continue;
+    for (const std::string& other : read) {
+      if (!fs::equivalent(path, other, error)) continue;
+      throw InputError(fmt::format("{}: is what is read; expected another name for what is written", path));
+    }
+    const std::string place = fs::weakly_canonical(fs::absolute(path, error), error).string();
+    if (std::ranges::find(files, place) != files.end()) {
+      throw InputError(fmt::format("{}: is to be written twice; expected a name for each output", path));
+    }
+    files.push_back(place);
+    const bool holds_something = is_file || (is_folder && !fs::is_empty(path, error));
+    if (holds_something && !force) throw InputError(fmt::format("{}: exists already; --force replaces it", path));
+  }
 }
 
 AtomicFolder::AtomicFolder(const std::string& path)

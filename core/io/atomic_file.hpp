@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace evbench {
 
@@ -9,9 +10,10 @@ namespace evbench {
 /// to. Throws InputError (folder missing, no permission, disk full) and leaves nothing behind.
 void write_file(const std::string& path, std::string_view content);
 
-/// What a command asks before it works for a file, or a folder of files: throws InputError when there is one already,
-/// unless it is told to replace it. Empty folders, pipes and devices hold nothing that could be lost.
-void refuse_to_replace(const std::string& path, bool force);
+/// What a command asks before it works: throws InputError for an output, a file or a folder of files, that is there
+/// already, unless it is told to replace it; for one that is among the files that are read, in any case; and for two
+/// that are the same. Empty names are none; empty folders, pipes and devices hold nothing that could be lost.
+void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& read, bool force);
 
 /// A folder that appears under its name only when it is complete: files are written into a temporary folder beside it
 /// (name + ".evbench.part"), commit() renames it, replacing an older folder of that name, or the one that a symbolic

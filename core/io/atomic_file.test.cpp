@@ -34,15 +34,20 @@ TEST_CASE("A file that can't be written is an error that names it, and leaves no
   CHECK(count_entries(folder.path()) == 0);
 }
 
-TEST_CASE("A file that is there is not replaced unless that is asked for") {
+TEST_CASE("A file that is there is not replaced unless that is asked for, one that is read never") {
   const testing::TemporaryFolder folder;
   const std::string path = folder.write("a", "mine");
   std::filesystem::create_symlink("a", folder.file("link"));
-  CHECK_THROWS_WITH(refuse_to_replace(path, false), Contains("a: exists already; --force replaces it"));
-  CHECK_THROWS_AS(refuse_to_replace(folder.file("link"), false), InputError);
-  CHECK_NOTHROW(refuse_to_replace(path, true));
-  CHECK_NOTHROW(refuse_to_replace(folder.file("b"), false));
-  CHECK_NOTHROW(refuse_to_replace("/dev/stdout", false));
+  CHECK_THROWS_WITH(check_outputs({path}, {}, false), Contains("a: exists already; --force replaces it"));
+  CHECK_THROWS_AS(check_outputs({folder.file("link")}, {}, false), InputError);
+  CHECK_THROWS_AS(check_outputs({folder.path()}, {}, false), InputError);
+  CHECK_NOTHROW(check_outputs({path, ""}, {}, true));
+  CHECK_NOTHROW(check_outputs({folder.file("b")}, {path}, false));
+  CHECK_NOTHROW(check_outputs({"/dev/stdout", "/dev/stdout"}, {}, false));
+  CHECK_THROWS_WITH(check_outputs({folder.file("link")}, {path}, true), Contains("link: is what is read"));
+  CHECK_THROWS_WITH(check_outputs({folder.file("b"), folder.file("./b")}, {}, true),
+                    Contains("is to be written twice"));
+  CHECK_THROWS_WITH(check_outputs({"-"}, {}, true), Contains("/dev/stdout"));
   CHECK(read_file(path) == "mine");
 }
 

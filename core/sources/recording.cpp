@@ -167,6 +167,13 @@ void Recording::set_camera(const Options& options, const std::string& folder, co
     camera_.width = width;
     camera_.height = height;
   }
+  const Vector2 centre(camera_.pinhole.cx, camera_.pinhole.cy);
+  if (!camera_.contains(centre)) {
+    throw InputError(
+        fmt::format("{}: the calibration has the principal point ({}, {}), outside the sensor of {}x{} "
+                    "pixels; expected width and height of this camera",
+                    place_, centre.x(), centre.y(), camera_.width, camera_.height));
+  }
 }
 
 void Recording::set_ground_truth(const Options& options, Own& own) {

@@ -43,6 +43,7 @@ std::string nearest_name(const std::string& name, std::span<const std::string> c
 std::string suggestion(const std::string& name, std::span<const std::string> candidates) {
   const std::string best = nearest_name(name, candidates);
   if (!best.empty()) return fmt::format("; did you mean \"{}\"?", best);
+  if (candidates.empty()) return "; there are none";
   return fmt::format("; known: {}", fmt::join(candidates, ", "));
 }
 

@@ -159,6 +159,14 @@ bool EventTextDecoder::contradicts_guess(std::string_view time) const {
   return layout_.unit_is_guessed && layout_.unit == Unit::microseconds && is_fractional(time);
 }
 
+bool EventTextDecoder::has_contradicting_time(std::string_view line) const {
+  for (const Column column : layout_.columns) {
+    const std::string_view text = next_column(line);
+    if (column == Column::t) return contradicts_guess(text);
+  }
+  return false;
+}
+
 /// Everything that is an event.
 bool EventTextDecoder::parse_any(std::string_view line, Event& event) const {
   for (const Column column : layout_.columns) {
@@ -181,7 +189,7 @@ EventDecoder::Progress EventTextDecoder::decode(std::span<const std::byte> in, s
   const char* const begin = reinterpret_cast<const char*>(in.data());
   const char* const end = begin + in.size();
   const char* at = begin;
-  FaultCount wrong, too_long;
+  FaultCount wrong, fractional, too_long;
   std::size_t count = 0;
   while (at < end && count < out.size()) {
     if (end - at > kReach && !in_long_line_ && parse_common(at, out[count])) {
@@ -204,10 +212,12 @@ EventDecoder::Progress EventTextDecoder::decode(std::span<const std::byte> in, s
     if (parse_any(line, out[count])) {
       ++count;
     } else {
-      wrong.add(static_cast<std::uint64_t>(line_));
+      (has_contradicting_time(line) ? fractional : wrong).add(static_cast<std::uint64_t>(line_));
     }
   }
   wrong.report(faults, "lines that are no event", "line");
+  fractional.report(
+      faults, "lines whose time has a fraction, unlike the first ones (are they seconds? --columns t_s,...)", "line");
   too_long.report(faults, "lines of more than 64 KiB", "line");
   return {static_cast<std::size_t>(at - begin), count};
 }

@@ -20,6 +20,7 @@ class EventTextDecoder final : public EventDecoder {
   bool parse_common(const char*& at, Event& event) const;
   bool parse_any(std::string_view line, Event& event) const;
   bool contradicts_guess(std::string_view time) const;
+  bool has_contradicting_time(std::string_view line) const;
 
   TextLayout layout_;
   std::int64_t line_;

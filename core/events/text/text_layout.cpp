@@ -30,6 +30,21 @@ std::vector<std::string_view> split(std::string_view line) {
   return columns;
 }
 
+/// Names of columns: between commas, semicolons or tabs where there are any ("timestamp [us],x,y,p"), else blanks.
+std::vector<std::string_view> split_names(std::string_view line) {
+  if (line.find_first_of(",;\t") == std::string_view::npos) return split(line);
+  std::vector<std::string_view> names;
+  while (!line.empty()) {
+    const std::size_t end = std::min(line.find_first_of(",;\t\r"), line.size());
+    std::string_view name = line.substr(0, end);
+    line.remove_prefix(std::min(end + 1, line.size()));
+    const std::size_t first = name.find_first_not_of(' ');
+    if (first == std::string_view::npos) continue;
+    names.push_back(name.substr(first, name.find_last_not_of(' ') - first + 1));
+  }
+  return names;
+}
+
 /// "240 180", "%geometry:1280,720", "# geometry: 240x180".
 void read_size(std::string_view line, TextLayout& layout) {
   int width = 0, height = 0;
@@ -52,8 +67,9 @@ Column read_name(std::string_view text, std::optional<Unit>& unit) {
   if (name.starts_with('y')) return Column::y;
   if (name.starts_with('p') || name == "on") return Column::p;
   if (!name.starts_with('t')) return Column::other;
-  const auto behind = name.find_first_of("_[(");
-  const std::string suffix = behind == std::string::npos ? "" : name.substr(behind + 1);
+  const auto behind = name.find_first_of("_[( ");
+  const auto suffix_at = name.find_first_not_of("_[( ", behind);
+  const std::string suffix = suffix_at == std::string::npos ? "" : name.substr(suffix_at);
   if (suffix.starts_with("ns") || suffix.starts_with("nano")) unit = Unit::nanoseconds;
   if (suffix.starts_with("us") || suffix.starts_with("micro")) unit = Unit::microseconds;
   if (suffix.starts_with("ms") || suffix.starts_with("milli")) unit = Unit::milliseconds;
@@ -73,7 +89,7 @@ bool names_columns(std::string_view comment) {
 }
 
 void read_names(std::string_view line, TextLayout& layout, std::optional<Unit>& unit, const std::string& place) {
-  const auto names = split(line);
+  const auto names = split_names(line);
   for (const std::string_view name : names) layout.columns.push_back(read_name(name, unit));
   for (const Column wanted : kTimeFirst) {
     if (std::ranges::count(layout.columns, wanted) == 1) continue;
@@ -124,18 +140,24 @@ bool fits(const Row& row, const std::vector<Column>& order) {
   return true;
 }
 
-/// The order that the more lines fit, but for one in twenty; times do not decrease.
+/// The order that the more lines fit, but for one in twenty; times do not decrease, unless nothing fits then.
 std::vector<Column> find_order(const Rows& rows, const std::string& place) {
-  const auto fitting = [&](const std::vector<Column>& order) {
+  const auto fitting = [&](const std::vector<Column>& order, bool in_order) {
     double last = rows.front().values[time_column(order)];
     return std::ranges::count_if(rows, [&](const Row& row) {
-      const double t = row.values[time_column(order)];
-      return fits(row, order) && t >= std::exchange(last, t);
+      const double t = row.values[time_column(order)], before = std::exchange(last, t);
+      // Out of order only what can't be a pixel: "x y t p" is neither.
+      return fits(row, order) && (in_order ? t >= before : bool(row.have_points[time_column(order)]));
     });
   };
-  const auto first = fitting(kTimeFirst), last = fitting(kTimeLast), most = std::max(first, last);
-  if (first != last && 20 * most >= 19 * std::ssize(rows)) return first > last ? kTimeFirst : kTimeLast;
-  const bool both = first == last && first > 0;
+  bool both = false;
+  for (const bool in_order : {true, false}) {
+    const auto first = fitting(kTimeFirst, in_order), last = fitting(kTimeLast, in_order);
+    if (first != last && 20 * std::max(first, last) >= 19 * std::ssize(rows)) {
+      return first > last ? kTimeFirst : kTimeLast;
+    }
+    both |= first == last && first > 0;
+  }
   throw InputError(fmt::format("{}: has lines like \"{}\", which {} \"t x y p\" {} \"x y p t\"; give --columns", place,
                                fmt::to_string(fmt::join(rows.front().values, " ")), both ? "may be" : "are neither",
                                both ? "and" : "nor"));
@@ -199,7 +221,7 @@ TextLayout detect_text_layout(std::string_view head, bool whole, const std::stri
         read_names(line.substr(line.find_first_not_of("#% \t")), layout, unit, place);
         layout.origin = " (named in a comment)";
       }
-    } else if (!parse_number(columns[0], number) && !has_header) {
+    } else if (!has_header && std::ranges::none_of(columns, [&](auto c) { return parse_number(c, number); })) {
       has_header = true;
       if (asked.empty()) {
         read_names(line, layout, unit, place);
