@@ -74,6 +74,8 @@ void add_convert(CLI::App& app, const Plugins& plugins) {
                    "Move events to where an ideal pinhole would see them, to the nearest pixel; those outside are left "
                    "out. CALIB: a calibration, text or YAML, or \"own\": the recording's")
       ->type_name("CALIB");
+  command->add_option("--camera", arguments->options.camera, "Which camera of a CALIB that has several (Kalibr)")
+      ->type_name("NAME");
   command->add_flag("--force", arguments->force, "Replace OUT where it exists");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   add_read_options(*command, arguments->options.stream.read);

@@ -98,6 +98,8 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
       .add_option("--calib", options.calibration,
                   "Calibration for compensation, text or YAML; default: the recording's")
       ->type_name("FILE");
+  command.add_option("--camera", options.camera, "Which camera of a --calib that has several (Kalibr)")
+      ->type_name("NAME");
   command
       .add_option("--depth", options.depth,
                   "Compensate translation, too, for a plane at this depth [m] in front of the camera")

@@ -106,7 +106,8 @@ bool fits(const Camera& camera, const RecordingHeader& header) {
 }
 
 /// The lens to be undone; the header then says that there is none.
-Camera take_lens(const std::string& calibration, const std::string& in, RecordingHeader& header) {
+Camera take_lens(const ConversionOptions& options, const std::string& in, RecordingHeader& header) {
+  const std::string& calibration = options.undistort;
   if (header.width <= 0 || header.height <= 0) {
     throw InputError(
         fmt::format("{}: does not say the sensor's size, which --undistort needs; give --width, --height", in));
@@ -114,7 +115,9 @@ Camera take_lens(const std::string& calibration, const std::string& in, Recordin
   if (calibration == "own" && !header.calibration) {
     throw InputError(fmt::format("{}: has no calibration of its own; give a calib.txt to --undistort", in));
   }
-  const Camera lens = calibration == "own" ? *header.calibration : read_calib(calibration, header.width, header.height);
+  const Camera lens = calibration == "own" ? *header.calibration
+                                           : read_calib(calibration, header.width, header.height,
+                                                        DistortionModel::radial_tangential, options.camera);
   if (!fits(lens, header)) {
     throw InputError(fmt::format("{}: calibration of {}x{} pixels; expected the sensor's {}x{}", in, lens.width,
                                  lens.height, header.width, header.height));
@@ -152,7 +155,7 @@ ConversionReport convert(const std::string& in, const std::string& out, const Co
   inputs.push_back(options.undistort);
   check_outputs({out}, inputs, options.force);
   std::optional<NearestUndistortion> undistortion;
-  if (!options.undistort.empty()) undistortion.emplace(take_lens(options.undistort, in, header));
+  if (!options.undistort.empty()) undistortion.emplace(take_lens(options, in, header));
   drop_misfit(header);
 
   PartFile file(out, format.needs);

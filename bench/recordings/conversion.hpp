@@ -16,6 +16,7 @@ struct ConversionOptions {
   std::string format;     ///< a writable format's name; empty: by the extension
   bool force = true;      ///< replaces an older file, but never what is read
   std::string undistort;  ///< calib.txt of the lens that is to be undone, or "own": the recording's; empty: not
+  std::string camera;     ///< of a calibration of several; empty: the only one
 };
 
 struct ConversionReport {

@@ -240,6 +240,14 @@ TEST_CASE("convert undoes the lens: events go to where a pinhole sees them, or a
   folder.write("calib.txt", "200 200 120 90 -0.35 0.12 0 0 0\n");
   REQUIRE(testing::evbench(folder, "convert a.evb c.evb --undistort calib.txt").exit_code == 0);
   CHECK(read_all(folder.file("c.evb")) == expected);
+  const auto kalibr = [](const char* name, const char* coefficients) {
+    return std::string(name) + ": {camera_model: pinhole, intrinsics: [200, 200, 120, 90], distortion_model: radtan, " +
+           "distortion_coeffs: [" + coefficients + "], resolution: [240, 180]}\n";
+  };
+  folder.write("two.yaml", kalibr("cam0", "0, 0, 0, 0") + kalibr("cam1", "-0.35, 0.12, 0, 0"));
+  CHECK_THAT(testing::evbench(folder, "convert a.evb d.evb --undistort two.yaml").err, Contains("holds cam0, cam1"));
+  REQUIRE(testing::evbench(folder, "convert a.evb d.evb --undistort two.yaml --camera cam1").exit_code == 0);
+  CHECK(read_all(folder.file("d.evb")) == expected);
 }
 
 TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing behind") {

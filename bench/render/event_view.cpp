@@ -53,7 +53,8 @@ void EventView::prepare_compensation(const std::string& path, const RenderOption
   trajectory_ = motion_of(path, options, stream_);
   const std::optional<Camera> camera = options.calibration.empty()
                                            ? stream_.reader().calibration()
-                                           : read_calib(options.calibration, size_.width, size_.height);
+                                           : read_calib(options.calibration, size_.width, size_.height,
+                                                        DistortionModel::radial_tangential, options.camera);
   if (!camera) throw InputError(fmt::format("{}: has no calibration; compensation needs --calib", path));
   if (camera->width != size_.width || camera->height != size_.height) {
     throw InputError(fmt::format("{}: calibration of {}x{} pixels; expected the sensor's {}x{}", path, camera->width,

@@ -34,6 +34,7 @@ struct RenderOptions {
   double tail = 0.1;            ///< of tracks [s]
   std::string trajectory;       ///< for compensation; empty: the recording's own
   std::string calibration;      ///< likewise
+  std::string camera;           ///< of a calibration of several; empty: the only one
   std::optional<double> depth;  ///< of the plane [m]; none: only the rotation is compensated
   std::string beside;           ///< another recording, at the right; empty: none
 };
