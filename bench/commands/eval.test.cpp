@@ -193,6 +193,10 @@ TEST_CASE("eval reads pipes, and says what it waits for") {
   CHECK(piped.err == "pipe: nobody has written to it yet; waiting\n");
   CHECK(testing::shell(files.folder, "cat estimate.txt > pipe & \"$evbench\" eval truth.txt pipe").err.empty());
   CHECK(testing::shell(files.folder, "timeout -s INT 2 \"$evbench\" eval truth.txt pipe").exit_code == 124);
+  const Outcome input =
+      testing::shell(files.folder, "cat estimate.txt | \"$evbench\" eval truth.txt - -as --table csv");
+  CHECK(input.exit_code == 0);
+  CHECK(input.out.substr(input.out.find(",-,") + 2) == expected.substr(expected.find("estimate.txt") + 12));
 }
 
 TEST_CASE("eval gives the same scores for the same trajectories in KITTI's and EuRoC's layouts") {

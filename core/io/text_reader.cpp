@@ -25,7 +25,7 @@ gzFile handle(void* file) { return static_cast<gzFile>(file); }
 
 TextReader::TextReader(const std::string& path) : path_(path), buffer_(kBufferSize) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) throw InputError(fmt::format("{}: no such file", path));
+  if (path != "-" && !std::filesystem::exists(path, ignored)) throw InputError(fmt::format("{}: no such file", path));
   if (std::filesystem::is_directory(path, ignored)) {
     throw InputError(fmt::format("{}: is a folder; expected a text file", path));
   }

@@ -13,7 +13,8 @@ namespace evbench {
 /// that names the file and the line.
 class TextReader {
  public:
-  /// Throws when the file can't be opened. Waits for a pipe, and says so on the standard error after a second.
+  /// "-" is the standard input. Throws when the file can't be opened. Waits for a pipe, and says so on the standard
+  /// error after a second.
   explicit TextReader(const std::string& path);
   ~TextReader();
   TextReader(const TextReader&) = delete;
