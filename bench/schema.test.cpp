@@ -41,7 +41,7 @@ class Schema {
       std::ofstream(folder_.file(name)) << configs[i];
       names += " " + name;
     }
-    const Outcome validated = testing::shell(folder_, "python3 validate.py" + names);
+    const Outcome validated = testing::shell(folder_, "/usr/bin/python3 validate.py" + names);
     CAPTURE(validated.err);
     REQUIRE(validated.exit_code == 0);
     std::istringstream lines(validated.out);
@@ -59,7 +59,7 @@ class Schema {
   void expect_fine_by_schema(const std::vector<std::string>& paths) const {
     std::string names;
     for (const std::string& path : paths) names += " '" + path + "'";
-    const Outcome validated = testing::shell(folder_, "python3 validate.py" + names);
+    const Outcome validated = testing::shell(folder_, "/usr/bin/python3 validate.py" + names);
     CAPTURE(validated.err, validated.out);
     CHECK(validated.exit_code == 0);
     CHECK(validated.out.find("wrong") == std::string::npos);
