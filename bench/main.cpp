@@ -21,14 +21,22 @@
 
 namespace {
 
-/// "; did you mean ...?" where the first word is no command.
+/// A sentence where a word stands in the place of a command and is none; empty: that is not what is wrong.
 std::string command_suggestion(const CLI::App& app, int argc, char** argv) {
-  const std::string word = argc > 1 ? argv[1] : "";
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  const bool is_command = std::ranges::find(names, word) != names.end();
-  if (is_command || word.empty() || word.starts_with('-')) return "";
-  return fmt::format("evbench: \"{}\" is no command{}\n", word, evbench::suggestion(word, names));
+  const CLI::App* place = &app;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto commands = place->get_subcommands({});
+    if (commands.empty() || word.empty() || word.starts_with('-')) return "";
+    const auto found = std::ranges::find(commands, word, [](const CLI::App* command) { return command->get_name(); });
+    if (found == commands.end()) {
+      std::vector<std::string> names;
+      for (const CLI::App* command : commands) names.push_back(command->get_name());
+      return fmt::format("evbench: \"{}\" is no command{}\n", word, evbench::suggestion(word, names));
+    }
+    place = *found;
+  }
+  return "";
 }
 
 int run_program(int argc, char** argv) {

@@ -72,6 +72,7 @@ TEST_CASE("A command line that is not understood ends with exit code 2 and says 
   refused("", "subcommand");
   refused("frobnicate", "\"frobnicate\" is no command; known: ");
   refused("runn c.json", "\"runn\" is no command; did you mean \"run\"?");
+  refused("dataset lst", "\"lst\" is no command; did you mean \"list\"?");
   refused("run", "config is required");
   refused("run c.json --foo", "--foo");
   refused("describe backnd gp_map", "backnd");
