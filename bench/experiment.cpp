@@ -332,8 +332,10 @@ std::unique_ptr<Source> read_source(const std::string& path, const Plugins& plug
   Job job;
   job.folder = folder_of(path);
   job.seed = seed.get<std::uint64_t>();
-  job.source = plugin<Source>(json["source"], path + ": source", job.folder, plugins);
-  return make_source(job, plugins);
+  return naming_overrides(path, overrides, [&] {
+    job.source = plugin<Source>(json["source"], path + ": source", job.folder, plugins);
+    return make_source(job, plugins);
+  });
 }
 
 std::string describe_experiment() {

@@ -80,6 +80,7 @@ std::vector<RunRecord> find_runs(std::span<const std::string> folders, std::vect
   }
   if (unreadable != nullptr) {
     for (const fs::path& run : missing) {
+      if (!seen.insert(fs::canonical(run)).second) continue;
       unreadable->push_back(fmt::format("{}: is the folder of a run without metrics.json; run it again", run.string()));
     }
   }

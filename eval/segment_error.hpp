@@ -36,9 +36,8 @@ struct SegmentErrors {
 };
 
 /// The relative pose errors (pose_error.hpp) over segments of the ground truth's path through the compared poses:
-/// - rpg: from every pose to the one at the distance that is nearest to the length, if it is within a fifth of it;
-/// fewer
-///   than two such pairs are none. Lengths in percent are cut to whole centimetres; what is left at 0 is left out;
+/// - rpg: from every pose to the one at the distance that is nearest to the length, if it is within a fifth of it.
+///   Fewer than two such pairs are none. Lengths in percent are cut to whole centimetres; what is then 0 is left out;
 /// - kitti: from every tenth pose to the first one that is farther away than the length.
 /// `path_m`: length of the whole ground truth, which percentages are of. The estimates' scale is aligned. Throws
 /// InputError for a length that is not above 0.

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 #include "core/plugin/registry.hpp"
 
@@ -28,6 +30,9 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code);
 
 /// `exit_code` likewise: 3 when a check fails.
 void add_check_plugin(CLI::App& app, const Plugins& plugins, int& exit_code);
+
+/// The option --set of commands that read configs, a KEY=VALUE each time; `text`: its help.
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const std::string& text);
 
 /// The options of commands that read events.
 struct ReadOptions;

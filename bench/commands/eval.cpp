@@ -35,16 +35,10 @@ struct EvalArguments {
   ScoreOptions options = {.rpe_delta = 1.0};  ///< what goes straight into the protocol
 };
 
-/// The value with this name; CLI11 has checked that there is one.
-template <class Enum, std::size_t count>
-Enum named(const std::array<const char*, count>& names, const std::string& name) {
-  return static_cast<Enum>(std::ranges::find(names, name) - names.begin());
-}
-
 PoseFile read_file(const std::string& path, const std::string& unit, const EvalArguments& arguments) {
   PoseFileOptions options;
-  options.format = named<PoseFormat>(kPoseFormatNames, arguments.format);
-  options.time_unit = named<TimeUnit>(kTimeUnitNames, unit);
+  options.format = parse_name<PoseFormat>(kPoseFormatNames, arguments.format, "format");
+  options.time_unit = parse_name<TimeUnit>(kTimeUnitNames, unit, "unit of time");
   options.times = arguments.times;
   options.may_number = true;
   return read_poses(path, options);
@@ -135,6 +129,28 @@ void check(const EvalArguments& arguments) {
   }
 }
 
+void write_outputs(const EvalArguments& arguments, const std::vector<RunRecord>& records, const ScoredEstimate& last) {
+  if (!arguments.json.empty()) write_file(arguments.json, json_text(records));
+  if (!arguments.aligned.empty()) {
+    write_file(arguments.aligned, format_tum(aligned_estimate(last.estimate, last.scores)));
+  }
+  if (!arguments.errors.empty()) write_file(arguments.errors, errors_csv(last.scores));
+}
+
+/// Nothing where an output goes to the terminal.
+void print_scores(const EvalArguments& arguments, const std::vector<RunRecord>& records, const ScoredEstimate& last) {
+  for (const std::string* path : {&arguments.json, &arguments.aligned, &arguments.errors}) {
+    if (*path == "/dev/stdout") return;
+  }
+  if (arguments.estimates.size() == 1 && arguments.table.empty()) {
+    fmt::print("ground truth {}\nestimate     {}\n{}", arguments.ground_truth, arguments.estimates[0],
+               describe(last.scores));
+    return;
+  }
+  const std::string format = arguments.table.empty() ? "text" : arguments.table;
+  fmt::print("{}", make_table(records, {.format = parse_name<TableFormat>(kTableFormatNames, format, "table format")}));
+}
+
 void execute(const EvalArguments& arguments) {
   check(arguments);
   const PoseFile ground_truth = read_file(arguments.ground_truth, arguments.ground_truth_unit, arguments);
@@ -151,22 +167,9 @@ void execute(const EvalArguments& arguments) {
     }
   }
   if (records.empty()) throw_together(failures);
-  if (!arguments.json.empty()) write_file(arguments.json, json_text(records));
-  if (!arguments.aligned.empty())
-    write_file(arguments.aligned, format_tum(aligned_estimate(last.estimate, last.scores)));
-  if (!arguments.errors.empty()) write_file(arguments.errors, errors_csv(last.scores));
-  for (const std::string* path : {&arguments.json, &arguments.aligned, &arguments.errors}) {
-    if (*path == "/dev/stdout") return;
-  }
-  if (arguments.estimates.size() > 1 || !arguments.table.empty()) {
-    const std::string format = arguments.table.empty() ? "text" : arguments.table;
-    fmt::print("{}",
-               make_table(records, {.format = parse_name<TableFormat>(kTableFormatNames, format, "table format")}));
-    throw_together(failures);
-    return;
-  }
-  fmt::print("ground truth {}\nestimate     {}\n{}", arguments.ground_truth, arguments.estimates[0],
-             describe(last.scores));
+  write_outputs(arguments, records, last);
+  print_scores(arguments, records, last);
+  throw_together(failures);
 }
 
 void add_file_options(CLI::App& command, EvalArguments& arguments) {

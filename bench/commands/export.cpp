@@ -108,9 +108,7 @@ void add_export(CLI::App& app, Plugins& plugins) {
       ->type_name("FILE");
   command->add_option("--errors", arguments->errors, "The error of each of its poses: CSV")->type_name("FILE");
   command->add_flag("--online", arguments->online, "The poses as estimated when they were made, not the final ones");
-  command->add_option("--set", arguments->overrides, "Override a value of the config: KEY=VALUE, e.g. seed=3")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_overrides(*command, arguments->overrides, "Override a value of the config: KEY=VALUE, e.g. seed=3");
   command->add_flag("--force", arguments->force, "Replace files that exist");
   command->footer(
       "A config's source is made as evbench run makes it: the same seed gives the same tracks. Written as\n"

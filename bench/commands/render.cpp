@@ -52,8 +52,8 @@ void execute(const RenderArguments& arguments) {
       line.update(fmt::format("{} pictures, {:.3f} s", pictures, static_cast<double>(t) * 1e-6));
     });
   }
-  for (const std::string& remark : report.remarks) fmt::print(stderr, "evbench: {}\n", remark);
   if (arguments.quiet) return;
+  for (const std::string& remark : report.remarks) fmt::print(stderr, "evbench: {}\n", remark);
   for (const auto& [kind, fault] : report.faults) {
     fmt::print("left out: {} {}; the first: {}\n", fault.count, kind, fault.first);
   }

@@ -171,16 +171,20 @@ int execute(const RunArguments& arguments, Plugins& plugins) {
 
 }  // namespace
 
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const std::string& text) {
+  command.add_option("--set", overrides, text)
+      ->type_name("KEY=VALUE")
+      ->check([](const std::string& value) {
+        return value.find('=') == std::string::npos ? fmt::format("{}: expected KEY=VALUE", value) : std::string();
+      })
+      ->allow_extra_args(false);  // so that the config may stand behind it
+}
+
 void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
   auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "Run a config: one back-end, or a comparison on identical tracks");
   command->add_option("config", arguments->config, "JSON config")->required();
-  command->add_option("--set", arguments->overrides, "Override a value: KEY=VALUE, e.g. backend.placement.rate=50")
-      ->type_name("KEY=VALUE")
-      ->check([](const std::string& text) {
-        return text.find('=') == std::string::npos ? fmt::format("{}: expected KEY=VALUE", text) : std::string();
-      })
-      ->allow_extra_args(false);
+  add_overrides(*command, arguments->overrides, "Override a value: KEY=VALUE, e.g. backend.placement.rate=50");
   command->add_option("--out", arguments->out, "Folder for results")->capture_default_str();
   command->add_flag("--force", arguments->force, "Do runs again that are complete already");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
@@ -189,7 +193,7 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
   command->add_flag("--check", arguments->check, "Check the config, and that its files can be read, and stop");
   command->footer(
       "Each run writes OUT/EXPERIMENT/KEY: config.json, job.json, manifest.json, final.tum, online.tum,\n"
-      "groundtruth.tum, map.ply, metrics.json, timing.csv, log.txt, status.json. RUN names what determines the\n"
+      "groundtruth.tum, map.ply, metrics.json, timing.csv, log.txt, status.json. KEY names what determines the\n"
       "trajectory (job.json). A run that is complete below OUT is not done again, but named and scored as the config\n"
       "says; one that broke off with an error is.\n"
       "Exit codes: 0 done (also when a run is degraded or lost: see its status), 2 bad input, 3 a run failed,\n"

@@ -54,11 +54,8 @@ void add_score(CLI::App& app) {
       ->type_name("DIR");
   command->add_option("--config", arguments->config, "Take the protocol from this config, not from each run's own")
       ->type_name("FILE");
-  command
-      ->add_option("--set", arguments->overrides,
-                   "Override a value of the protocol: evaluation.KEY=VALUE, e.g. evaluation.alignment=se3")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_overrides(*command, arguments->overrides,
+                "Override a value of the protocol: evaluation.KEY=VALUE, e.g. evaluation.alignment=se3");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->footer(
       "Reads final.tum, online.tum and groundtruth.tum of each run, rewrites its metrics.json, and its config.json "

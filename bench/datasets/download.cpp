@@ -45,7 +45,7 @@ void initialise_curl() {
 
 /// What is asked of every server.
 void set_manners(CURL* curl, const std::string& url) {
-  constexpr long kConnectSeconds = 30;
+  constexpr long kConnectSeconds = 30, kSilentSeconds = 60;
   curl_easy_setopt(curl, CURLOPT_URL, url.c_str());
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
   curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 1L);
@@ -53,7 +53,15 @@ void set_manners(CURL* curl, const std::string& url) {
   curl_easy_setopt(curl, CURLOPT_FAILONERROR, 1L);
   curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
   curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT, kConnectSeconds);
+  curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, 1L);
+  curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, kSilentSeconds);
   curl_easy_setopt(curl, CURLOPT_USERAGENT, "evbench");
+  // Called about once a second, also while nothing comes. Ends the transfer unless 0.
+  curl_easy_setopt(
+      curl, CURLOPT_XFERINFOFUNCTION, +[](void*, curl_off_t, curl_off_t, curl_off_t, curl_off_t) -> int {
+        return Interruption::is_requested() ? 1 : 0;
+      });
+  curl_easy_setopt(curl, CURLOPT_NOPROGRESS, 0L);
 }
 
 /// One request, from where the part file ends.
@@ -91,20 +99,11 @@ class Transfer {
 
 Transfer::Transfer(const std::string& url, const std::string& part, const DownloadOptions& options)
     : url_(url), part_(part), options_(options) {
-  constexpr long kSilentSeconds = 60;
   CURL* const curl = curl_.get();
   set_manners(curl, url_);
-  curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, 1L);
-  curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, kSilentSeconds);
   curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, error_);
   curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, on_body);
   curl_easy_setopt(curl, CURLOPT_WRITEDATA, this);
-  // Called about once a second, also while nothing comes. Ends the transfer unless 0.
-  curl_easy_setopt(
-      curl, CURLOPT_XFERINFOFUNCTION, +[](void*, curl_off_t, curl_off_t, curl_off_t, curl_off_t) -> int {
-        return Interruption::is_requested() ? 1 : 0;
-      });
-  curl_easy_setopt(curl, CURLOPT_NOPROGRESS, 0L);
   const std::string version = version_of(part_);
   std::error_code none;
   const std::uintmax_t size = fs::file_size(part_, none);
@@ -248,6 +247,7 @@ std::optional<std::uint64_t> remote_size(const std::string& url) {
   set_manners(curl.get(), url);
   curl_easy_setopt(curl.get(), CURLOPT_NOBODY, 1L);
   const CURLcode code = curl_easy_perform(curl.get());
+  check_interruption();
   if (code == CURLE_HTTP_RETURNED_ERROR) return std::nullopt;
   if (code != CURLE_OK) throw InputError(fmt::format("{}: {}", url, curl_easy_strerror(code)));
   curl_off_t size = -1;

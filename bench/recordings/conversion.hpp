@@ -28,9 +28,9 @@ struct ConversionReport {
 
 /// Writes a recording in another format. Nothing is left at `out` when that fails or is interrupted, and an older file
 /// stays. `progress` is told how many events have been read, and the time reached [µs].
-/// Throws InputError when `out` names no writable format, is what is read, for a sensor of unknown
-/// size or another than the calibration's where undistortion needs it, when no event is left to be written, and for
-/// what reader and writer refuse.
+/// Throws InputError when `out` names no writable format, exists without `force` or is what is read, for a sensor of
+/// unknown size or another than the calibration's where undistortion needs it, when no event is left to be written, and
+/// for what reader and writer refuse.
 ConversionReport convert(const std::string& in, const std::string& out, const ConversionOptions& options,
                          const std::function<void(std::int64_t, std::int64_t)>& progress = {});
 

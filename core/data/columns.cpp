@@ -79,10 +79,14 @@ std::string_view bare(std::string_view line) {
 }  // namespace
 
 Columns::Columns(std::string_view names, std::span<const Quantity> quantities) {
+  constexpr std::size_t kLongest = 64;  // std::regex takes stack by the length, and nobody's names are longer
+  std::vector<std::regex> aliases;
+  for (const Quantity& quantity : quantities) aliases.emplace_back(quantity.aliases);
   for (const std::string& text : split_names(bare(names))) {
     const Name name = read_name(text);
     const auto known = std::ranges::find_if(quantities, [&](const Quantity& quantity) {
-      return !find(quantity.name) && std::regex_match(name.words, std::regex(quantity.aliases));
+      return name.words.size() <= kLongest && !find(quantity.name) &&
+             std::regex_match(name.words, aliases[static_cast<std::size_t>(&quantity - quantities.data())]);
     });
     quantities_.emplace_back(known == quantities.end() ? "" : known->name);
     if (quantities_.back() == kTime.name) time_unit_ = name.unit;

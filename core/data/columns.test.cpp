@@ -42,3 +42,14 @@ TEST_CASE("Times that do not meet a range are told with the unit in which they w
         "go from 2000 to 4000 s; in milliseconds (unit: ms) they would go from 2 to 4 s");
   CHECK(times_beside(10, 20, 0, 6, "unit") == "go from 10 to 20 s");
 }
+
+TEST_CASE("Names that are as long as a line, or as many as fit one, are names of nothing") {
+  constexpr std::array quantities{kTime, Quantity{"x", "(.*_)?x"}};
+  std::string one, many;
+  for (int i = 0; i < 30'000; ++i) {
+    one += "a_";
+    many += "a ";
+  }
+  CHECK_FALSE(Columns(one + "x", quantities).find("x"));
+  CHECK(Columns(many + "x", quantities).find("x") == 30'000);
+}

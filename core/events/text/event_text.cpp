@@ -14,7 +14,6 @@ namespace evbench {
 namespace {
 
 using Column = TextLayout::Column;
-using Unit = TextLayout::Unit;
 
 constexpr std::size_t kLongestLine = 1 << 16;
 // How far behind a line's beginning parse_common may look: half of it for where a column begins, half for the column.
@@ -72,10 +71,10 @@ bool read_seconds(const char*& at, std::int64_t& t) {
   return true;
 }
 
-bool read_time(const char*& at, Unit unit, std::int64_t& t) {
-  if (unit == Unit::seconds) return read_seconds(at, t);
+bool read_time(const char*& at, TimeUnit unit, std::int64_t& t) {
+  if (unit == TimeUnit::seconds) return read_seconds(at, t);
   std::uint64_t value = 0;
-  if (unit != Unit::microseconds || !read_integer(at, value)) return false;
+  if (unit != TimeUnit::microseconds || !read_integer(at, value)) return false;
   t = static_cast<std::int64_t>(value);
   return true;
 }
@@ -94,20 +93,19 @@ bool read_polarity(const char*& at, bool& on) {
 }
 
 /// Any number of the unit; integers exactly.
-bool parse_time(std::string_view text, Unit unit, std::int64_t& t) {
+bool parse_time(std::string_view text, TimeUnit unit, std::int64_t& t) {
   constexpr std::int64_t kLatestNanosecond = 9'000'000'000'000'000'000;
   std::int64_t integer = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), integer);
-  if (unit == Unit::nanoseconds && error == std::errc() && end == text.data() + text.size()) {
+  if (unit == TimeUnit::nanoseconds && error == std::errc() && end == text.data() + text.size()) {
     if (integer > kLatestNanosecond || integer < -kLatestNanosecond) return false;
     const std::int64_t part = ((integer % 1000) + 1000) % 1000;
     t = (integer - part) / 1000 + (part >= 500 ? 1 : 0);
     return true;
   }
-  constexpr double kMicroseconds[] = {1e6, 1e3, 1.0, 1e-3};
   double number = 0.0;
   if (!parse_number(text, number)) return false;
-  number *= kMicroseconds[index(unit)];
+  number *= 1e6 / per_second(unit);
   if (std::abs(number) > kLatest) return false;
   t = std::llround(number);
   return true;
@@ -156,7 +154,7 @@ bool EventTextDecoder::parse_common(const char*& at, Event& event) const {
 
 /// Where microseconds were taken for whole numbers, a fraction says that they are not.
 bool EventTextDecoder::contradicts_guess(std::string_view time) const {
-  return layout_.unit_is_guessed && layout_.unit == Unit::microseconds && is_fractional(time);
+  return layout_.unit_is_guessed && layout_.unit == TimeUnit::microseconds && is_fractional(time);
 }
 
 bool EventTextDecoder::has_contradicting_time(std::string_view line) const {

@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/data/columns.hpp"
 #include "core/support/error.hpp"
 #include "core/support/index.hpp"
 
@@ -18,7 +19,6 @@ namespace evbench {
 namespace {
 
 using Column = TextLayout::Column;
-using Unit = TextLayout::Unit;
 
 constexpr double kMostPixels = 65535.0;
 const std::vector<Column> kTimeFirst{Column::t, Column::x, Column::y, Column::p};
@@ -28,21 +28,6 @@ std::vector<std::string_view> split(std::string_view line) {
   std::vector<std::string_view> columns;
   for (auto column = next_column(line); !column.empty(); column = next_column(line)) columns.push_back(column);
   return columns;
-}
-
-/// Names of columns: between commas, semicolons or tabs where there are any ("timestamp [us],x,y,p"), else blanks.
-std::vector<std::string_view> split_names(std::string_view line) {
-  if (line.find_first_of(",;\t") == std::string_view::npos) return split(line);
-  std::vector<std::string_view> names;
-  while (!line.empty()) {
-    const std::size_t end = std::min(line.find_first_of(",;\t\r"), line.size());
-    std::string_view name = line.substr(0, end);
-    line.remove_prefix(std::min(end + 1, line.size()));
-    const std::size_t first = name.find_first_not_of(' ');
-    if (first == std::string_view::npos) continue;
-    names.push_back(name.substr(first, name.find_last_not_of(' ') - first + 1));
-  }
-  return names;
 }
 
 /// "240 180", "%geometry:1280,720", "# geometry: 240x180".
@@ -57,45 +42,28 @@ void read_size(std::string_view line, TextLayout& layout) {
   layout.height = height;
 }
 
-/// "x", "Timestamp_us", "t[ns]", "polarity": what it begins with, and a unit behind.
-Column read_name(std::string_view text, std::optional<Unit>& unit) {
-  std::string name;
-  for (const char c : text) {
-    if (c != '"' && c != '\'') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+constexpr Quantity kQuantities[] = {kTime, {"x", "x.*"}, {"y", "y.*"}, {"p", "p.*|on"}};
+
+/// Takes the columns' order, and the unit of time where it is said. False unless all four quantities are there.
+bool take_names(std::string_view line, TextLayout& layout) {
+  const Columns names(line, kQuantities);
+  std::vector<Column> order(names.size(), Column::other);
+  constexpr Column kColumns[] = {Column::t, Column::x, Column::y, Column::p};
+  for (std::size_t i = 0; i < std::size(kQuantities); ++i) {
+    const auto found = names.find(kQuantities[i].name);
+    if (!found) return false;
+    order[*found] = kColumns[i];
   }
-  if (name.starts_with('x')) return Column::x;
-  if (name.starts_with('y')) return Column::y;
-  if (name.starts_with('p') || name == "on") return Column::p;
-  if (!name.starts_with('t')) return Column::other;
-  const auto behind = name.find_first_of("_[( ");
-  const auto suffix_at = name.find_first_not_of("_[( ", behind);
-  const std::string suffix = suffix_at == std::string::npos ? "" : name.substr(suffix_at);
-  if (suffix.starts_with("ns") || suffix.starts_with("nano")) unit = Unit::nanoseconds;
-  if (suffix.starts_with("us") || suffix.starts_with("micro")) unit = Unit::microseconds;
-  if (suffix.starts_with("ms") || suffix.starts_with("milli")) unit = Unit::milliseconds;
-  if (suffix == "s" || suffix == "s]" || suffix == "s)" || suffix.starts_with("sec")) unit = Unit::seconds;
-  return Column::t;
+  layout.columns = order;
+  layout.unit_is_guessed = names.time_unit() == TimeUnit::unsaid;
+  if (!layout.unit_is_guessed) layout.unit = names.time_unit();
+  return true;
 }
 
-/// A comment that names the four columns, and nothing else: "# t[s] x y p".
-bool names_columns(std::string_view comment) {
-  comment.remove_prefix(std::min(comment.find_first_not_of("#% \t"), comment.size()));
-  const auto names = split(comment);
-  return names.size() == kTimeFirst.size() && std::ranges::all_of(names, [](std::string_view name) {
-           const std::string_view stem = name.substr(0, name.find_first_of("_[("));
-           return stem.size() == 1 || stem == "ts" || stem == "time" || stem == "timestamp" || stem == "pol" ||
-                  stem == "polarity";
-         });
-}
-
-void read_names(std::string_view line, TextLayout& layout, std::optional<Unit>& unit, const std::string& place) {
-  const auto names = split_names(line);
-  for (const std::string_view name : names) layout.columns.push_back(read_name(name, unit));
-  for (const Column wanted : kTimeFirst) {
-    if (std::ranges::count(layout.columns, wanted) == 1) continue;
-    throw InputError(fmt::format("{}: names the columns \"{:.80}\"; expected time, x, y and polarity, once each", place,
-                                 fmt::to_string(fmt::join(names, ", "))));
-  }
+void read_names(std::string_view line, TextLayout& layout, const std::string& place) {
+  if (take_names(line, layout)) return;
+  throw InputError(fmt::format("{}: names the columns \"{:.80}\"; expected time, x, y and polarity", place,
+                               fmt::to_string(fmt::join(split(line), ", "))));
 }
 
 /// A line of numbers.
@@ -164,10 +132,10 @@ std::vector<Column> find_order(const Rows& rows, const std::string& place) {
 }
 
 /// Without a name that says it.
-Unit find_unit(const Rows& rows, std::size_t time, const std::string& place) {
+TimeUnit find_unit(const Rows& rows, std::size_t time, const std::string& place) {
   constexpr double kLatest = 1e17;  // [µs], the year 5000: in nanoseconds that is 1973
-  if (std::ranges::any_of(rows, [&](const Row& row) { return row.have_points[time]; })) return Unit::seconds;
-  if (rows.front().values[time] < kLatest) return Unit::microseconds;
+  if (std::ranges::any_of(rows, [&](const Row& row) { return row.have_points[time]; })) return TimeUnit::seconds;
+  if (rows.front().values[time] < kLatest) return TimeUnit::microseconds;
   throw InputError(
       fmt::format("{}: has the time {}, too late for microseconds; give --columns with t_ns, if it is that", place,
                   rows.front().values[time]));
@@ -202,9 +170,8 @@ bool parse_number(std::string_view text, double& number) {
 TextLayout detect_text_layout(std::string_view head, bool whole, const std::string& name, const std::string& asked) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   TextLayout layout;
-  std::optional<Unit> unit;
   if (!asked.empty()) {
-    read_names(asked, layout, unit, fmt::format("{}: what is asked for", name));
+    read_names(asked, layout, fmt::format("{}: what is asked for", name));
     layout.origin = " (as asked for)";
   }
   if (!whole) head = head.substr(0, head.rfind('\n') + 1);
@@ -217,14 +184,15 @@ TextLayout detect_text_layout(std::string_view head, bool whole, const std::stri
     double number = 0.0;
     if (is_passed_over(line)) {
       if (line.find("geometry") != std::string_view::npos) read_size(line, layout);
-      if (layout.columns.empty() && names_columns(line)) {
-        read_names(line.substr(line.find_first_not_of("#% \t")), layout, unit, place);
+      TextLayout named = layout;
+      if (layout.columns.empty() && take_names(line, named) && named.columns.size() == kTimeFirst.size()) {
+        layout = named;
         layout.origin = " (named in a comment)";
       }
     } else if (!has_header && std::ranges::none_of(columns, [&](auto c) { return parse_number(c, number); })) {
       has_header = true;
       if (asked.empty()) {
-        read_names(line, layout, unit, place);
+        read_names(line, layout, place);
         layout.origin = " (named in the file)";
       }
     } else if (columns.size() == 2 && layout.width == 0) {
@@ -239,8 +207,7 @@ TextLayout detect_text_layout(std::string_view head, bool whole, const std::stri
       const Rows rows = read_rows(head.substr(layout.begin), expected);
       if (rows.empty()) throw InputError(fmt::format("{}: is \"{:.80}\"; expected numbers", place, line));
       if (layout.columns.empty()) layout.columns = find_order(rows, place);
-      layout.unit_is_guessed = !unit;
-      layout.unit = unit ? *unit : find_unit(rows, time_column(layout.columns), place);
+      if (layout.unit_is_guessed) layout.unit = find_unit(rows, time_column(layout.columns), place);
       return layout;
     }
     layout.begin = std::min(layout.begin + line.size() + 1, head.size());
@@ -251,12 +218,11 @@ TextLayout detect_text_layout(std::string_view head, bool whole, const std::stri
 
 std::vector<std::pair<std::string, std::string>> TextLayout::description() const {
   constexpr const char* kColumns[] = {"t", "x", "y", "p", "-"};
-  constexpr const char* kUnits[] = {"seconds", "milliseconds", "microseconds", "nanoseconds"};
   std::vector<std::string> order;
   for (const Column column : columns) order.push_back(kColumns[index(column)]);
-  const char* why = unit == Unit::seconds ? " (as they have a decimal point)" : " (as they are whole numbers)";
+  const char* why = unit == TimeUnit::seconds ? " (as they have a decimal point)" : " (as they are whole numbers)";
   return {{"columns", fmt::to_string(fmt::join(order, " ")) + origin},
-          {"unit of time", std::string(kUnits[index(unit)]) + (unit_is_guessed ? why : "")}};
+          {"unit of time", to_string(unit) + (unit_is_guessed ? why : "")}};
 }
 
 }  // namespace evbench

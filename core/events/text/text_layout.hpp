@@ -6,20 +6,21 @@
 #include <utility>
 #include <vector>
 
+#include "core/data/time_unit.hpp"
+
 namespace evbench {
 
 /// How a text file holds events: a line each, columns between blanks, tabs, commas or semicolons.
 struct TextLayout {
   enum class Column : std::uint8_t { t, x, y, p, other };
-  enum class Unit : std::uint8_t { seconds, milliseconds, microseconds, nanoseconds };
 
   std::vector<Column> columns;
-  Unit unit = Unit::seconds;
-  bool unit_is_guessed = false;  ///< as no name says it
-  std::string origin;            ///< what tells the order of the columns, for people; empty: their values
-  std::size_t begin = 0;         ///< of the events [bytes]
-  std::int64_t lines = 0;        ///< before the events
-  int width = 0, height = 0;     ///< of the sensor [px], where a line before the events says it; 0: unknown
+  TimeUnit unit = TimeUnit::seconds;
+  bool unit_is_guessed = true;  ///< as no name says it
+  std::string origin;           ///< what tells the order of the columns, for people; empty: their values
+  std::size_t begin = 0;        ///< of the events [bytes]
+  std::int64_t lines = 0;       ///< before the events
+  int width = 0, height = 0;    ///< of the sensor [px], where a line before the events says it; 0: unknown
 
   /// For people: order of the columns, unit of time.
   std::vector<std::pair<std::string, std::string>> description() const;
