@@ -65,6 +65,14 @@ std::string timing_csv(const std::vector<UpdateRecord>& updates) {
   return text;
 }
 
+std::string learnt_csv(const RunResult& result) {
+  std::string text = fmt::format("t_s,{}\n", fmt::join(result.learnt, ","));
+  for (const UpdateRecord& u : result.updates) {
+    if (!u.learnt.empty()) text += fmt::format("{:.6f},{:.6g}\n", u.t, fmt::join(u.learnt, ","));
+  }
+  return text;
+}
+
 std::string log_text(const RunConfig& config, const RunResult& result) {
   std::string text = fmt::format("{}\n{}: {}\n", version_text(), config.experiment, config.label);
   for (const std::string& line : result.log) text += line + "\n";
@@ -151,6 +159,7 @@ RunRecord RunFolder::write(const RunConfig& config, const JobIdentity& identity,
   write_pieces(folder_, result);
   if (!ground_truth.empty()) folder_.write("groundtruth.tum", ground_truth);
   folder_.write("timing.csv", timing_csv(result.updates));
+  if (!result.learnt.empty()) folder_.write("learnt.csv", learnt_csv(result));
   folder_.write("log.txt", log_text(config, result));
   if (problem && !result.pieces.empty() && result.pieces[result.longest].problem) {
     folder_.write("problem.txt", format_problem(*result.pieces[result.longest].problem));

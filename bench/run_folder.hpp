@@ -31,6 +31,7 @@ class EmptyFolders {
 ///   groundtruth.tum  the source's, in the time range of the run (and 1 s around it), where there is one
 ///   metrics.json, status.json        eval/metrics.md
 ///   timing.csv       a line an update
+///   learnt.csv       what the back-end has learnt of its parameters by then, where it does
 ///   log.txt
 ///
 /// Where the estimate is in pieces, these are of the longest one; the others are final.piece2.tum, online.piece2.tum,

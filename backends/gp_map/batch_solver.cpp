@@ -255,7 +255,7 @@ std::optional<Matrix12> BatchCovariance::at(double t) const {
   const std::optional<Matrix24> joint = neighbours(k - 1);
   if (!joint) return std::nullopt;
   const GpInterval interval(graph_.states[index(k - 1)], graph_.states[index(k)]);
-  return interval.covariance(t, *joint, graph_.qc);
+  return interval.covariance(t, *joint, graph_.qcs[index(k)]);
 }
 
 std::optional<Matrix3> BatchCovariance::landmark(int landmark) const {

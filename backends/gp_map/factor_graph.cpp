@@ -45,12 +45,14 @@ std::span<const Observation> IntervalObservations::of(int landmark) const {
 void FactorGraph::add_state(const ControlState& state) {
   states.push_back(state);
   intervals.emplace_back();
+  qcs.push_back(qc);
 }
 
 void FactorGraph::remove_newest_state() {
   const int newest = static_cast<int>(states.size()) - 1;
   forget_interval(newest);
   intervals.pop_back();
+  qcs.pop_back();
   states.pop_back();
   const auto on_newest = [&](const auto& prior) { return prior.state == newest; };
   std::erase_if(pose_priors, on_newest);

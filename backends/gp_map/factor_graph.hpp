@@ -80,12 +80,13 @@ struct FactorGraph {
   };
 
   PinholeCamera camera;
-  Vector6 qc = Vector6::Ones();
+  Vector6 qc = Vector6::Ones();  ///< of the WNOA prior over the intervals that are added from now on
   RobustLoss loss;
 
   std::vector<ControlState> states;
   std::vector<Landmark> landmarks;
   std::vector<IntervalObservations> intervals;  ///< intervals[k] ends in state k; intervals[0] is empty
+  std::vector<Vector6> qcs;                     ///< qcs[k]: power spectral density of the prior over interval k
   std::vector<PosePrior> pose_priors;
   std::vector<VelocityPrior> velocity_priors;
   ScaleAnchor anchor;

@@ -37,7 +37,7 @@ Cost evaluate(const FactorGraph& graph) {
   Cost cost;
   for (int k = 1; k < static_cast<int>(graph.states.size()); ++k) {
     const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
-    cost.motion_prior += motion_prior_cost(interval, graph.qc);
+    cost.motion_prior += motion_prior_cost(interval, graph.qcs[index(k)]);
     cost.measurements += measurement_cost(graph, k, interval);
   }
   for (const PosePrior& prior : graph.pose_priors) {
@@ -122,7 +122,7 @@ void add_state_priors(const FactorGraph& graph, int state, const ControlState& x
 
 double interval_cost(const FactorGraph& graph, int k) {
   const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
-  return motion_prior_cost(interval, graph.qc) + measurement_cost(graph, k, interval);
+  return motion_prior_cost(interval, graph.qcs[index(k)]) + measurement_cost(graph, k, interval);
 }
 
 double state_prior_cost(const FactorGraph& graph, int state) {

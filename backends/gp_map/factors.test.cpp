@@ -80,7 +80,7 @@ TEST_CASE("An interval's normal equations are those of central differences of it
     const auto prior = interval.prior_jacobians(interval.derivatives());
     Eigen::Matrix<double, 12, 24> J_prior;
     J_prior << prior.J0, prior.J1;
-    const Matrix12 W = wnoa::process_information(interval.dt(), graph.qc);
+    const Matrix12 W = wnoa::process_information(interval.dt(), graph.qcs[1]);
 
     IntervalLinearisation linear;
     linearise_interval(graph, 1, linear);

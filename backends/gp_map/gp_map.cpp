@@ -33,6 +33,7 @@ GpMap::GpMap(const Options& options, const BackEndContext& context)
       context_(context),
       placement_(options.placement),
       first_map_(options, context.camera),
+      prior_(options.learn.window, options.learn.memory),
       monitor_(context.patience) {}
 
 void GpMap::advance(const TrackBatch& batch) {
@@ -57,8 +58,10 @@ void GpMap::step(double t) {
     add_observations();
     add_landmarks();
     optimise();
+    learn();
     check_support();
     tell_online(t);
+    predict_tracks();
   }
   forget_ended_tracks(t);
   add_record(t, std::exchange(seconds_since_step_, 0.0) + seconds_since(start), 1, {});
@@ -104,8 +107,10 @@ bool GpMap::initialise(double t) {
 void GpMap::remove_outliers() {
   std::vector<int> outliers;
   for (const auto& group : graph().intervals.back().groups()) {
-    if (engine_->reprojection_mean(group.landmark) > options_.map.outlier_threshold) outliers.push_back(group.landmark);
+    if (is_outlier(group.landmark, engine_->reprojection_mean(group.landmark))) outliers.push_back(group.landmark);
   }
+  // Most tracks at once: then it is the motion that is wrong.
+  if (2 * outliers.size() > graph().intervals.back().groups().size()) return;
   for (const int landmark : outliers) become_outlier(landmark);
 }
 
@@ -139,7 +144,85 @@ void GpMap::add_landmarks() {
   }
 }
 
-void GpMap::optimise() { last_update_ = engine_->update(); }
+bool GpMap::is_outlier(int landmark, double error_px) const {
+  const auto& seen = graph().landmarks[index(landmark)].intervals;
+  if (seen.empty()) return false;
+  const double inverse_sigma = graph().intervals[index(seen.back())].of(landmark).back().inverse_sigma;
+  return error_px * inverse_sigma > options_.map.outlier_threshold * noise_scale_;
+}
+
+void GpMap::optimise() {
+  last_update_ = engine_->update();
+  if (options_.learn.prior) yield_to_motion();
+}
+
+/// Where most tracks are far from where they should be, the prior is too strong for what the camera does, and the
+/// robust loss would take them for outliers: the prior over the newest intervals is weakened as long as that helps.
+void GpMap::yield_to_motion() {
+  constexpr double kFar = 3.0;  // [sigmas]
+  constexpr double kWeaker = 10.0, kWeakest = 1e4, kHelp = 0.8;
+  constexpr int kIntervals = 3;
+  const int newest = static_cast<int>(graph().states.size()) - 1;
+  const int first = std::max(engine_->first_state() + 1, newest - kIntervals + 1);
+  const std::vector<Vector6> learnt(graph().qcs.begin() + first, graph().qcs.end());
+  const auto weaken = [&](double factor) {
+    for (int k = first; k <= newest; ++k) engine_->set_qc(k, factor * learnt[index(k - first)]);
+    last_update_ = engine_->update();
+  };
+  double error = newest_error(), factor = 1.0;
+  while (error > kFar && factor < kWeakest) {
+    weaken(kWeaker * factor);
+    const double now = newest_error();
+    if (!(now < kHelp * error)) {
+      weaken(factor);
+      break;
+    }
+    error = now;
+    factor *= kWeaker;
+  }
+  if (factor > 1.0) engine_->set_next_qc(graph().qcs.back());
+}
+
+/// Median error of the tracks seen in the newest interval, each at its last observation [sigmas]; 0: too few.
+double GpMap::newest_error() const {
+  const std::size_t k = graph().states.size() - 1;
+  const GpInterval interval(graph().states[k - 1], graph().states[k]);
+  std::vector<double> errors;
+  for (const auto& group : graph().intervals[k].groups()) {
+    const Observation& z = graph().intervals[k].of(group).back();
+    const Vector3& position = graph().landmarks[index(group.landmark)].position;
+    errors.push_back(reprojection_error(interval, position, z, graph().camera) * z.inverse_sigma / noise_scale_);
+  }
+  return std::ssize(errors) < options_.health.min_landmarks ? 0.0 : median(std::move(errors));
+}
+
+/// Prior and noise from what has been seen until now.
+void GpMap::learn() {
+  if (options_.learn.noise) {
+    noise_.follow(graph(), options_.learn.memory);
+    noise_scale_ = noise_.scale();
+    engine_->set_loss(noise_.loss(options_.loss, options_.loss_width));
+  }
+  if (options_.learn.prior) prior_.follow(*engine_);
+}
+
+/// What is seen next is compared with the newest state's constant velocity.
+void GpMap::predict_tracks() {
+  constexpr double kLargestSpread = 2.0;
+  const double spread = std::min(kLargestSpread, 1.0 / std::sqrt(noise_.share()));  // errors that drift
+  placement_.predict([this, spread, newest = graph().states.back()](const TrackObservation& z) {
+    std::optional<double> deviation;
+    const auto track = tracks_.find(z.track);
+    if (track == tracks_.end() || track->second.role != Track::Role::landmark) return deviation;
+    const SE3 T = extrapolate(newest, z.t - newest.t).T;
+    const Vector3 point = T.inverse() * graph().landmarks[index(track->second.landmark)].position;
+    if (point.z() > 0.0) {
+      deviation =
+          (graph().camera.project(point) - z.pixel).norm() / (spread * noise_scale_ * options_.sigma_scale * z.sigma);
+    }
+    return deviation;
+  });
+}
 
 void GpMap::check_support() {
   using Support = TrackingMonitor::Support;
@@ -279,8 +362,15 @@ void GpMap::add_record(double t, double seconds, int iterations, std::optional<d
     record.states = static_cast<int>(graph().states.size());
     record.landmarks = landmarks_;
     record.observations = graph().observation_count();
+    record.learnt = {noise_scale_, noise_.share()};
+    record.learnt.insert(record.learnt.end(), graph().qc.begin(), graph().qc.end());
   }
   updates_.push_back(record);
+}
+
+std::vector<std::string> GpMap::learnt() const {
+  return {"noise_scale",   "noise_share",      "qc_rotation_x",    "qc_rotation_y",
+          "qc_rotation_z", "qc_translation_x", "qc_translation_y", "qc_translation_z"};
 }
 
 void GpMap::finish() {
@@ -294,12 +384,31 @@ void GpMap::finish() {
   const auto start = std::chrono::steady_clock::now();
   for (const auto& [id, track] : tracks_) {
     if (track.role != Track::Role::landmark) continue;
-    if (reprojection_mean(graph(), track.landmark) > options_.map.outlier_threshold) become_outlier(track.landmark);
+    if (is_outlier(track.landmark, reprojection_mean(graph(), track.landmark))) become_outlier(track.landmark);
   }
-  const Engine::OptimiseSummary summary = engine_->optimise(options_.final_iterations, 1e-9);
+  const Engine::OptimiseSummary summary = estimate_everything();
   context_.log(fmt::format("final estimate: cost {:.2f} after {:.2f}, {} iterations{}", summary.final_cost,
                            summary.initial_cost, summary.iterations, summary.converged ? "" : ", not converged"));
   add_record(graph().states.back().t, seconds_since(start), summary.iterations, summary.final_cost);
+}
+
+/// Prior and noise follow from the estimate, and it from them.
+Engine::OptimiseSummary GpMap::estimate_everything() {
+  const bool learns = options_.learn.prior || options_.learn.noise;
+  constexpr int kIterationsARound = 3;
+  constexpr double kRoughly = 1e-4, kLearnt = 1e-6, kFixed = 1e-9;  // what is learnt is known no better
+  if (learns) engine_->optimise(kIterationsARound, kRoughly);
+  for (int round = 0; learns && round < options_.learn.rounds; ++round) {
+    if (options_.learn.noise) {
+      noise_ = NoiseLearner();
+      for (int k = 1; k < static_cast<int>(graph().states.size()); ++k) noise_.add(graph(), k);
+      noise_scale_ = noise_.scale();
+      engine_->set_loss(noise_.loss(options_.loss, options_.loss_width));
+    }
+    if (options_.learn.prior) learn_prior(*engine_);
+    engine_->optimise(kIterationsARound, kRoughly);
+  }
+  return engine_->optimise(options_.final_iterations, learns ? kLearnt : kFixed);
 }
 
 Feedback GpMap::feedback(const FeedbackNeeds& needs) {
@@ -378,7 +487,7 @@ std::vector<Landmark> GpMap::map() const {
 }
 
 std::optional<Problem> GpMap::problem() const {
-  if (!engine_ || options_.lag > 0.0) return std::nullopt;
+  if (!engine_ || options_.lag > 0.0 || options_.learn.prior || options_.learn.noise) return std::nullopt;
   return to_problem(graph());
 }
 

@@ -5,13 +5,16 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/first_map.hpp"
+#include "backends/gp_map/noise_learning.hpp"
 #include "backends/gp_map/observation_follower.hpp"
 #include "backends/gp_map/options.hpp"
+#include "backends/gp_map/prior_learning.hpp"
 #include "backends/gp_map/state_placement.hpp"
 #include "core/plugin/backend.hpp"
 #include "core/plugin/tracking_monitor.hpp"
@@ -41,6 +44,7 @@ class GpMap : public BackEnd {
   std::vector<Landmark> map() const override;
   std::optional<Problem> problem() const override;
   std::span<const UpdateRecord> updates() const override { return updates_; }
+  std::vector<std::string> learnt() const override;
 
   /// The problem with its present estimate; not before initialisation.
   const FactorGraph& graph() const { return engine_->graph(); }
@@ -63,8 +67,11 @@ class GpMap : public BackEnd {
   void add_observations();
   void add_landmarks();
   void optimise();
+  void yield_to_motion();
+  void learn();
   void check_support();
   void forget_ended_tracks(double t);
+  void predict_tracks();
 
   void follow_observations(double t, double ahead);
   void take(const TrackObservation& z);
@@ -75,8 +82,11 @@ class GpMap : public BackEnd {
   double median_depth() const;
   ControlState newest_seen() const;
   std::vector<ExpectedFeature> expected_features();
+  double newest_error() const;
+  bool is_outlier(int landmark, double error_px) const;
   int landmarks_in_view() const;
   void tell_online(double t);
+  Engine::OptimiseSummary estimate_everything();
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
 
   Options options_;
@@ -95,6 +105,9 @@ class GpMap : public BackEnd {
   std::vector<std::pair<int, Observation>> new_;  ///< of landmarks, not in the engine yet
   std::vector<TrackId> new_outliers_;
   UpdateSummary last_update_;
+  PriorLearner prior_;
+  NoiseLearner noise_;
+  double noise_scale_ = 1.0;         ///< true sigmas over the stated ones
   double seconds_since_step_ = 0.0;  ///< spent on single observations
   TrackingMonitor monitor_;
   double until_ = 0.0;                                        ///< [s] of the last batch

@@ -283,9 +283,9 @@ void linearise_interval(const FactorGraph& graph, int k, IntervalLinearisation& 
   for (const auto& group : observations.groups()) {
     positions.push_back(graph.landmarks[index(group.landmark)].position);
   }
-  linearise_interval(
-      {graph.camera, graph.loss, graph.qc, graph.states[index(k - 1)], graph.states[index(k)], observations, positions},
-      result);
+  linearise_interval({graph.camera, graph.loss, graph.qcs[index(k)], graph.states[index(k - 1)], graph.states[index(k)],
+                      observations, positions},
+                     result);
 }
 
 }  // namespace evbench::gp_map

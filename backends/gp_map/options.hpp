@@ -11,35 +11,40 @@ namespace evbench::gp_map {
 
 /// When a control state is placed.
 struct PlacementOptions {
-  enum class Rule { rate, observations, motion } rule = Rule::rate;
+  enum class Rule { rate, observations, motion, prediction } rule = Rule::prediction;
   double rate = 20.0;
   int observations = 100;
   double motion = 2.0;
-  double min_spacing = 0.01, max_spacing = 0.1;
+  double deviation = 3.0;
+  double min_spacing = 0.005, max_spacing = 0.05;
 
   void declare(OptionSet& set) {
-    set.add("rule", rule, {"rate", "observations", "motion"},
-            "rate: evenly in time; observations: after a number of observations; motion: when the tracks have moved");
+    set.add("rule", rule, {"rate", "observations", "motion", "prediction"},
+            "rate: evenly in time; observations: after a number of observations; motion: when the tracks have moved; "
+            "prediction: when the landmarks are not seen where a constant velocity takes them");
     set.add("rate", rate, "rule \"rate\": control states per second [Hz]").range(0.5, 1000.0);
     set.add("observations", observations, "rule \"observations\": observations between two control states").range(1);
     set.add("motion", motion,
             "rule \"motion\": median distance of the tracks' newest observations from their last one before the newest "
             "control state [px]")
         .above(0.0);
-    set.add("min_spacing", min_spacing, "rules \"observations\", \"motion\": least time between two [s]")
-        .range(1e-3, 10.0);
-    set.add("max_spacing", max_spacing, "rules \"observations\", \"motion\": greatest time between two [s]")
-        .range(1e-3, 10.0);
+    set.add(
+           "deviation", deviation,
+           "rule \"prediction\": median distance of the landmarks from where the newest control state's velocity takes "
+           "them; interpolation between two states errs by about an eighth of it [sigmas of the observations]")
+        .above(0.0);
+    set.add("min_spacing", min_spacing, "all rules but \"rate\": least time between two [s]").range(1e-3, 10.0);
+    set.add("max_spacing", max_spacing, "all rules but \"rate\": greatest time between two [s]").range(1e-3, 10.0);
   }
 };
 
 /// When tracks become landmarks, and when they are dropped.
 struct MapOptions {
   TriangulationOptions triangulation;
-  int min_observations = 10;
-  double patience = 0.3;
+  int min_observations = 5;
+  double patience = 0.0;
   double depth_sigma = 0.5;
-  double outlier_threshold = 3.0;
+  double outlier_threshold = 5.0;
 
   void declare(OptionSet& set) {
     set.group("triangulation", triangulation, "when a track becomes a landmark");
@@ -51,8 +56,25 @@ struct MapOptions {
         .range(0.0);
     set.add("depth_sigma", depth_sigma, "standard deviation of that guess, as a share of the depth").above(0.0);
     set.add("outlier_threshold", outlier_threshold,
-            "tracks whose average reprojection error over all their observations is larger are dropped [px]")
+            "tracks whose average reprojection error over all their observations is larger are dropped [sigmas]")
         .above(0.0);
+  }
+};
+
+/// What is learnt from the data.
+struct LearningOptions {
+  bool prior = true, noise = true;
+  double window = 0.3, memory = 3.0;
+  int rounds = 2;
+
+  void declare(OptionSet& set) {
+    set.add("prior", prior, "learn the prior's power spectral density, which begins with qc; false: qc is kept");
+    set.add("noise", noise,
+            "learn a scale of the observations' sigmas, and how much of their information counts, as trackers drift");
+    set.add("window", window, "while running, the prior follows what the last seconds show [s]").range(0.01, 100.0);
+    set.add("memory", memory, "and falls back to what these show, where that is little; the noise follows these [s]")
+        .range(0.1, 1000.0);
+    set.add("rounds", rounds, "of learning from everything, in the final estimate").range(0, 100);
   }
 };
 
@@ -76,6 +98,7 @@ struct Options {
   RobustLoss::Kind loss = RobustLoss::Kind::cauchy;
   double loss_width = 2.0;
   double sigma_scale = 1.0;
+  LearningOptions learn;
   InitialiserOptions initialiser;
   double max_initial_error = 2.0;
   double ambiguity_ratio = 1.1;
@@ -94,8 +117,11 @@ struct Options {
         .above(0.0);
     set.add("qc_scale", qc_scale, "multiplies qc: above 1 is a weaker prior").above(0.0);
     set.add("loss", loss, {"none", "huber", "cauchy"}, "robust loss of reprojection errors");
-    set.add("loss_width", loss_width, "residual where the loss turns from quadratic [sigmas]").above(0.0);
+    set.add("loss_width", loss_width,
+            "residual where the loss turns from quadratic [sigmas, learnt ones where they are]")
+        .above(0.0);
     set.add("sigma_scale", sigma_scale, "multiplies the observations' sigmas").above(0.0);
+    set.group("learn", learn, "prior and noise");
     set.group("initialiser", initialiser, "two-view initialisation");
     set.add("max_initial_error", max_initial_error, "a first map with a larger reprojection error is tried again [px]")
         .above(0.0);

@@ -4,18 +4,27 @@
 
 namespace evbench::gp_map {
 
-/// Loss ρ(s) on the squared norm s of a whitened residual, ρ'(0) = 1. The cost is ½ Σ ρ(s).
+/// Loss ρ(s) on the squared norm s of a whitened residual, ρ'(0) = share. The cost is ½ Σ ρ(s).
 class RobustLoss {
  public:
   enum class Kind { none, huber, cauchy };
 
   RobustLoss() = default;
-  /// `width`: the residual norm [sigmas] where the loss turns from quadratic.
-  RobustLoss(Kind kind, double width) : kind_(kind), width_(width) {}
+  /// `width`: the residual norm [sigmas] where the loss turns from quadratic. `share`: of the information in an
+  /// observation, as much counts.
+  RobustLoss(Kind kind, double width, double share = 1.0) : kind_(kind), width_(width), share_(share) {}
 
-  bool is_quadratic() const { return kind_ == Kind::none; }
+  Kind kind() const { return kind_; }
+  double width() const { return width_; }
+  double share() const { return share_; }
 
-  double value(double s) const {
+  double value(double s) const { return share_ * shape(s); }
+
+  /// ρ'(s): the weight of the residual in iteratively reweighted least squares.
+  double weight(double s) const { return share_ * slope(s); }
+
+ private:
+  double shape(double s) const {
     const double w2 = width_ * width_;
     switch (kind_) {
       case Kind::huber: return s <= w2 ? s : 2.0 * width_ * std::sqrt(s) - w2;
@@ -25,8 +34,7 @@ class RobustLoss {
     return s;
   }
 
-  /// ρ'(s): the weight of the residual in iteratively reweighted least squares.
-  double weight(double s) const {
+  double slope(double s) const {
     switch (kind_) {
       case Kind::huber: return s <= width_ * width_ ? 1.0 : width_ / std::sqrt(s);
       case Kind::cauchy: return 1.0 / (1.0 + s / (width_ * width_));
@@ -35,9 +43,9 @@ class RobustLoss {
     return 1.0;
   }
 
- private:
   Kind kind_ = Kind::none;
   double width_ = 1.0;
+  double share_ = 1.0;
 };
 
 }  // namespace evbench::gp_map

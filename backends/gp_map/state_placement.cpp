@@ -37,6 +37,14 @@ double StatePlacement::time_by_data() {
 
 void StatePlacement::look_at(const TrackObservation& observation) {
   ++count_;
+  if (options_.rule == Rule::prediction) {
+    const std::optional<double> deviation = deviation_(observation);
+    if (!deviation) return;
+    bool& deviates = deviates_[observation.track];
+    deviating_ -= deviates;
+    deviates = *deviation > options_.deviation;
+    deviating_ += deviates;
+  }
   if (options_.rule != Rule::motion) return;
   Displacement& track = displacements_.try_emplace(observation.track, Displacement{observation.pixel}).first->second;
   track.to = observation.pixel;
@@ -45,6 +53,10 @@ void StatePlacement::look_at(const TrackObservation& observation) {
 
 bool StatePlacement::is_enough() const {
   if (options_.rule == Rule::observations) return count_ >= options_.observations;
+  constexpr int kFewest = 6;  // of which one can say "most"
+  if (options_.rule == Rule::prediction) {
+    return std::ssize(deviates_) >= kFewest && 2 * deviating_ > std::ssize(deviates_);
+  }
   std::vector<double> distances;
   for (const auto& [id, track] : displacements_) distances.push_back((track.to - track.from).norm());
   return !distances.empty() && median(std::move(distances)) >= options_.motion;
@@ -57,6 +69,8 @@ void StatePlacement::place(double t) {
   newest_ = t;
   ++placed_;
   count_ = 0;
+  deviates_.clear();
+  deviating_ = 0;
   enough_.reset();
 }
 

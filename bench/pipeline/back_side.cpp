@@ -135,6 +135,7 @@ void BackSide::finish(double rate, double end, RunResult& result) {
 /// The estimator's piece, where it has one, and its updates.
 void BackSide::add_piece(Estimator& estimator, double rate, RunResult& result) const {
   BackEnd& backend = *estimator.backend;
+  result.learnt = backend.learnt();
   result.updates.insert(result.updates.end(), backend.updates().begin(), backend.updates().end());
   Piece piece{sample(backend, rate), PoseTrajectory(std::move(estimator.online), "the online trajectory"),
               backend.map(), backend.problem()};

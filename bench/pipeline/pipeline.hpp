@@ -38,6 +38,7 @@ struct RunResult {
   std::size_t longest = 0;    ///< of the pieces, by time: the one that is scored
   std::vector<StillSpan> still;
   std::vector<UpdateRecord> updates;
+  std::vector<std::string> learnt;  ///< names of the updates' `learnt`
   RunTimes times;
   double data_s = 0.0;        ///< [s] from the first to the last observation that the front-end gave
   double peak_rss_mib = 0.0;  ///< of the process during the run, source and tracks included

@@ -8,14 +8,6 @@ namespace {
 
 constexpr int kMaxPivots = 3 * kMaxPivotLandmarks + 12;
 
-/// Calls visit(first row in the root's layout, size) for each pivot variable.
-template <class Visit>
-void for_each_pivot(const Conditional& conditional, Visit visit) {
-  for (std::size_t i = 0; i < conditional.rows.size(); ++i) {
-    visit(conditional.rows[i], i < conditional.landmarks.size() ? 3 : 12);
-  }
-}
-
 /// Copies a symmetric matrix's columns `indices` into A and clears them there, rows and columns.
 void take_columns(Root& root, std::span<const int> indices, int n, double* A) {
   const std::ptrdiff_t stride = root.stride();
@@ -85,7 +77,7 @@ void Conditional::back_substitute(const double* z, double* delta) const {
   x.noalias() -= as_matrix(A.data(), extent, pivots, extent).transpose() * as_vector(delta, extent);
   as_matrix(L.data(), pivots, pivots, pivots).transpose().triangularView<Eigen::Upper>().solveInPlace(x);
   const double* from = values.data();
-  for_each_pivot(*this, [&](int row, int size) {
+  for_each_pivot([&](int row, int size) {
     std::copy(from, from + size, delta + row);
     from += size;
   });
@@ -93,7 +85,7 @@ void Conditional::back_substitute(const double* z, double* delta) const {
 
 void Conditional::eliminate(double* r, double* z) const {
   double* to = z;
-  for_each_pivot(*this, [&](int row, int size) {
+  for_each_pivot([&](int row, int size) {
     to = std::copy(r + row, r + row + size, to);
     std::fill(r + row, r + row + size, 0.0);
   });

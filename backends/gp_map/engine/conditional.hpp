@@ -18,6 +18,12 @@ struct Conditional {
   int extent = 0;              ///< rows of A
   Buffer A, L, y;
 
+  /// Calls visit(first row in the root's layout, size) for each pivot variable.
+  template <class Visit>
+  void for_each_pivot(Visit visit) const {
+    for (std::size_t i = 0; i < rows.size(); ++i) visit(rows[i], i < landmarks.size() ? 3 : 12);
+  }
+
   /// δ_p from the increments in the root's layout, into their places there.
   void back_substitute(double* delta) const { back_substitute(y.data(), delta); }
   /// The same for another right-hand side: δ_p = L⁻ᵀ (z − Aᵀ δ_r).

@@ -56,6 +56,58 @@ Eigen::MatrixXd Factorisation::marginal(int stage, std::span<const int> rows) co
   return 0.5 * (result + result.transpose());
 }
 
+/// Of everything in the root, in its layout; zero where nobody is.
+Eigen::MatrixXd Factorisation::root_covariance() const {
+  const int n = factor_.row_of_states() + 12;
+  Eigen::MatrixXd half = Eigen::MatrixXd::Identity(n, n);  // L⁻¹
+  as_matrix(factor_.column(0), n, n, factor_.stride()).triangularView<Eigen::Lower>().solveInPlace(half);
+  Eigen::MatrixXd covariance(n, n);
+  covariance.noalias() = half.transpose() * half;
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(root_.stride(), n);
+  for (int c = 0; c < n; ++c) factor_.copy_to_root(covariance.col(c).data(), rows.col(c).data());
+  covariance = rows.transpose();
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(root_.stride(), root_.stride());
+  for (int c = 0; c < root_.stride(); ++c) factor_.copy_to_root(covariance.col(c).data(), result.col(c).data());
+  return result;
+}
+
+/// Σ of what is left in the root gives that of what a conditional took out: with X = A L⁻¹, δ_p = L⁻ᵀ y − Xᵀ δ_r and
+/// Σ_rp = −Σ_rr X, Σ_pp = (L Lᵀ)⁻¹ − Xᵀ Σ_rp.
+std::vector<Matrix24> Factorisation::chain(int first) const {
+  std::vector<Matrix24> result(index(std::max(0, done_ - first + 1)));
+  Eigen::MatrixXd S = root_covariance(), X, S_rp;
+  for (int k = done_; k >= first; --k) {
+    const auto& conditionals = stages_[index(k)].conditionals;
+    for (auto c = conditionals.rbegin(); c != conditionals.rend(); ++c) {
+      const int n = c->extent, p = c->pivots;
+      const auto L = as_matrix(c->L.data(), p, p, p);
+      X = as_matrix(c->A.data(), n, p, n);
+      L.triangularView<Eigen::Lower>().solveInPlace<Eigen::OnTheRight>(X);
+      S_rp.noalias() = -S.topLeftCorner(n, n) * X;
+      Eigen::MatrixXd half = Eigen::MatrixXd::Identity(p, p);
+      L.triangularView<Eigen::Lower>().solveInPlace(half);
+      Eigen::MatrixXd S_pp = half.transpose() * half;
+      S_pp.noalias() -= X.transpose() * S_rp;
+      std::vector<int> rows;
+      c->for_each_pivot([&](int row, int size) {
+        for (int i = 0; i < size; ++i) rows.push_back(row + i);
+      });
+      for (int i = 0; i < p; ++i) {
+        S.col(rows[index(i)]).head(n) = S_rp.col(i);
+        S.row(rows[index(i)]).head(n) = S_rp.col(i).transpose();
+      }
+      for (int i = 0; i < p; ++i) {
+        for (int j = 0; j < p; ++j) S(rows[index(i)], rows[index(j)]) = 0.5 * (S_pp(i, j) + S_pp(j, i));
+      }
+    }
+    const int older = Root::row_of_state(k - 1), newer = Root::row_of_state(k);
+    Matrix24& joint = result[index(k - first)];
+    joint << S.block<12, 12>(older, older), S.block<12, 12>(older, newer), S.block<12, 12>(newer, older),
+        S.block<12, 12>(newer, newer);
+  }
+  return result;
+}
+
 Eigen::MatrixXd Factorisation::image_in_root(std::span<const int> rows, const Eigen::MatrixXd& J) const {
   Eigen::MatrixXd solved(static_cast<Eigen::Index>(rows.size()), J.rows());
   Buffer x(index(root_.stride()));
@@ -92,12 +144,17 @@ std::optional<Matrix24> Engine::neighbours(int k) {
   return joint;
 }
 
+std::vector<Matrix24> Engine::chain_covariances(int first) {
+  if (first < 1 || first <= first_state() || !factorise_undamped()) return {};
+  return factorisation_.chain(first);
+}
+
 std::optional<Matrix12> Engine::covariance(double t) {
   const int k = graph_.interval_of(t);
   if (k < 1) return std::nullopt;
   const std::optional<Matrix24> joint = neighbours(k - 1);
   if (!joint) return std::nullopt;
-  return GpInterval(graph_.states[index(k - 1)], graph_.states[index(k)]).covariance(t, *joint, graph_.qc);
+  return GpInterval(graph_.states[index(k - 1)], graph_.states[index(k)]).covariance(t, *joint, graph_.qcs[index(k)]);
 }
 
 std::optional<Matrix3> Engine::landmark_covariance(int landmark) {

@@ -76,6 +76,13 @@ void Engine::remove_newest_state() {
   touch(newest);
 }
 
+void Engine::set_qc(int k, const Vector6& qc) {
+  if (k <= factorisation_.base()) return;
+  graph_.qcs[index(k)] = qc;
+  points_.invalidate(k);
+  touch(k);
+}
+
 void Engine::remove_landmark(int landmark) {
   touch_landmarks({&landmark, 1});
   for (const int k : graph_.landmarks[index(landmark)].intervals) points_.invalidate(k);
@@ -197,7 +204,7 @@ UpdateSummary Engine::update() {
   const std::int64_t linearised = points_.linearised_observations();
   choose_points();
   const int first = summary.first_stage = restart_;
-  constexpr double kFirstDamping = 1e-4, kMaxDamping = 1e8;
+  constexpr double kFirstDamping = 1e-3, kDampingGrowth = 30.0, kMaxDamping = 1e3;
   double damping = 0.0;
   while (true) {
     const bool solved = solve(damping, summary);
@@ -206,7 +213,7 @@ UpdateSummary Engine::update() {
       if (!raises_cost()) break;
     }
     if (solved) swap_changes();
-    damping = damping == 0.0 ? kFirstDamping : 10.0 * damping;
+    damping = damping == 0.0 ? kFirstDamping : kDampingGrowth * damping;
     if (damping > kMaxDamping || (!solved && !summary.reason.empty() && damping > 1.0)) {
       summary.rejected = true;
       break;

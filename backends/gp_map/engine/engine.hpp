@@ -97,6 +97,13 @@ class Engine {
   /// first_state().
   void remove_newest_state();
 
+  /// Power spectral density of the motion prior over interval k, and over the intervals to come.
+  void set_qc(int k, const Vector6& qc);
+  void set_next_qc(const Vector6& qc) { graph_.qc = qc; }
+
+  /// The robust loss from now on; intervals that are not linearised anew keep the one that they were linearised with.
+  void set_loss(const RobustLoss& loss) { graph_.loss = loss; }
+
   /// Removes a landmark with all its observations.
   void remove_landmark(int landmark);
 
@@ -118,6 +125,9 @@ class Engine {
 
   /// Of states k and k + 1 jointly, 24 × 24.
   std::optional<Matrix24> neighbours(int k);
+  /// The same for k = first − 1, first, ... up to the newest state but one, at the price of a few stages for each; none
+  /// of them when the system is singular.
+  std::vector<Matrix24> chain_covariances(int first);
   /// Of pose and velocity at any time within the states' span.
   std::optional<Matrix12> covariance(double t);
   std::optional<Matrix3> landmark_covariance(int landmark);

@@ -42,6 +42,13 @@ TEST_CASE("Covariances of the engine are those of the batch solver") {
     REQUIRE(expected);
     CHECK((*joint - *expected).norm() < 1e-6 * expected->norm());
   }
+  const int first = newest / 2;
+  const std::vector<Matrix24> chain = engine.chain_covariances(first);
+  REQUIRE(std::ssize(chain) == newest - first + 1);
+  for (const int k : {first, first + 7, newest - 1, newest}) {
+    const Matrix24 expected = *engine.neighbours(k - 1);
+    CHECK((chain[index(k - first)] - expected).norm() < 1e-9 * expected.norm());
+  }
   for (const double t : {0.01, 2.513, engine.graph().states.back().t}) {
     CHECK((*engine.covariance(t) - *oracle.at(t)).norm() < 1e-6 * oracle.at(t)->norm());
   }

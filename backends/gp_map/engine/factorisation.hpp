@@ -68,6 +68,10 @@ class Factorisation {
   /// Covariance of rows in the layout that the root had before stage `stage` eliminated them (or later ones).
   Eigen::MatrixXd marginal(int stage, std::span<const int> rows) const;
 
+  /// Joint covariances of states k − 1 and k for k = first, first + 1, ..., done(): one walk backwards that inverts
+  /// selected blocks only, about as dear as the stages were.
+  std::vector<Matrix24> chain(int first) const;
+
   /// Covariance of J x for x in these rows of the root as it is now.
   Eigen::MatrixXd image_in_root(std::span<const int> rows, const Eigen::MatrixXd& J) const;
 
@@ -96,6 +100,7 @@ class Factorisation {
     bool held = false, forgotten = false;
   };
   void solve_with_root_factor(double* x) const;
+  Eigen::MatrixXd root_covariance() const;
   int place_anchor(const FactorGraph& graph);
   int go_back_to(int first);
   std::optional<Variable> do_stage(int k, const FactorGraph& graph, LinearisationPoints& points, double damping);

@@ -193,13 +193,9 @@ void add_observation(const Shared& shared, const Lane3& m, const Measured& z, La
   landmark.error += (z.present > 0.0) & in_front ? error / z.inverse_sigma : Lane{};
   landmark.behind += in_front ? Lane{} : z.present;
   Lane weight = z.present;
-  if (shared.loss.is_quadratic()) {
-    sums.cost += 0.5 * z.present * square;
-  } else {
-    for (int i = 0; i < kLanes; ++i) {
-      sums.cost[i] += 0.5 * z.present[i] * shared.loss.value(square[i]);
-      weight[i] *= shared.loss.weight(square[i]);
-    }
+  for (int i = 0; i < kLanes; ++i) {
+    sums.cost[i] += 0.5 * z.present[i] * shared.loss.value(square[i]);
+    weight[i] *= shared.loss.weight(square[i]);
   }
   weight = in_front ? weight : Lane{};
   const Lane ax = shared.camera.fx * z.inverse_sigma * iz;

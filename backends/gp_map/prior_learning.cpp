@@ -1,0 +1,142 @@
+#include "backends/gp_map/prior_learning.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/motion/wnoa.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kGuessWeight = 2.0;     ///< degrees of freedom of what a longer time tells
+constexpr double kCommonWeight = 100.0;  ///< of what the other axes tell
+constexpr double kBegin = 0.5;           ///< of what was set before there was any evidence
+constexpr double kLeast = 1e-9;
+constexpr double kHistoryWindow = 0.5;  ///< [s], to both sides
+constexpr double kPace = 0.1;           ///< [s] between two looks
+constexpr double kLookedBack = 0.4;     ///< [s]
+constexpr int kMostLookedBack = 16;     ///< intervals
+constexpr int kSetAnew = 8;             ///< of the newest intervals
+constexpr double kChange = 1.5;         ///< by which a density must change to be set anew
+
+/// `joint`: covariance of the states at both ends.
+PriorEvidence evidence_of(const GpInterval& interval, const Matrix24& joint, const Vector6& qc) {
+  const GpInterval::PriorJacobians jacobians = interval.prior_jacobians(interval.derivatives());
+  Eigen::Matrix<double, 12, 24> J;
+  J << jacobians.J0, jacobians.J1;
+  const Matrix12 covariance = J * joint * J.transpose();
+  const Vector12 e = interval.prior_residual();
+  const Matrix12 W = wnoa::process_information(interval.dt(), Vector6::Ones());
+  PriorEvidence result;
+  result.t = interval.t0() + 0.5 * interval.dt();
+  for (int i = 0; i < 6; ++i) {
+    const double w00 = W(i, i), w01 = W(i, i + 6), w11 = W(i + 6, i + 6);
+    result.square[i] = w00 * e[i] * e[i] + 2.0 * w01 * e[i] * e[i + 6] + w11 * e[i + 6] * e[i + 6];
+    const double trace = w00 * covariance(i, i) + 2.0 * w01 * covariance(i, i + 6) + w11 * covariance(i + 6, i + 6);
+    result.freedom[i] = std::clamp(2.0 - trace / qc[i], 0.0, 2.0);
+  }
+  return result;
+}
+
+/// Of the intervals from `first` on; none when the system is singular.
+std::vector<PriorEvidence> evidence_from(Engine& engine, int first) {
+  std::vector<PriorEvidence> result;
+  const FactorGraph& graph = engine.graph();
+  for (const Matrix24& joint : engine.chain_covariances(first)) {
+    const std::size_t k = index(first) + result.size();
+    result.push_back(evidence_of(GpInterval(graph.states[k - 1], graph.states[k]), joint, graph.qcs[k]));
+  }
+  return result;
+}
+
+}  // namespace
+
+void PriorEvidence::add(const PriorEvidence& other, double window) {
+  const double weight = std::exp(-std::abs(t - other.t) / window);
+  square += weight * other.square;
+  freedom += weight * other.freedom;
+}
+
+Vector6 PriorEvidence::qc(const Vector6& guess, double weight) const {
+  return (square + weight * guess).cwiseQuotient((freedom.array() + weight).matrix()).cwiseMax(kLeast);
+}
+
+Vector6 PriorEvidence::common_qc(const Vector6& guess, double weight) const {
+  Vector6 result;
+  for (const int kind : {0, 3}) {
+    result.segment<3>(kind).setConstant((square.segment<3>(kind).sum() + weight * guess.segment<3>(kind).mean()) /
+                                        (freedom.segment<3>(kind).sum() + weight));
+  }
+  return result;
+}
+
+void PriorLearner::follow(Engine& engine) {
+  const FactorGraph& graph = engine.graph();
+  const double now = graph.states.back().t;
+  if (now < followed_until_ + kPace) return;
+  followed_until_ = now;
+  take_evidence(engine);
+  if (recent_.empty()) return;
+  const int newest = static_cast<int>(graph.states.size()) - 1;
+  for (const auto& [k, evidence] : recent_) {
+    if (k <= newest - kSetAnew) continue;
+    const Vector6 qc = qc_at(evidence.t, graph.qc), change = qc.cwiseQuotient(graph.qcs[index(k)]);
+    if (change.maxCoeff() > kChange || change.minCoeff() < 1.0 / kChange) engine.set_qc(k, qc);
+  }
+  engine.set_next_qc(qc_at(now, graph.qc));
+}
+
+void PriorLearner::take_evidence(Engine& engine) {
+  const FactorGraph& graph = engine.graph();
+  const int newest = static_cast<int>(graph.states.size()) - 1;
+  int first = 1;  // all of the first map's
+  if (!recent_.empty()) {
+    first = newest;
+    const double from = graph.states.back().t - kLookedBack;
+    while (first > 1 && newest - first + 1 < kMostLookedBack && graph.states[index(first - 1)].t > from) --first;
+  }
+  first = std::max(first, engine.first_state() + 1);
+  recent_.erase(recent_.upper_bound(newest), recent_.end());  // of states that were taken back
+  const std::vector<PriorEvidence> evidence = evidence_from(engine, first);
+  for (std::size_t i = 0; i < evidence.size(); ++i) recent_[first + static_cast<int>(i)] = evidence[i];
+  for (; !recent_.empty() && recent_.begin()->first < first; recent_.erase(recent_.begin())) {
+    PriorEvidence settled = recent_.begin()->second, remembered = settled;
+    settled.add(settled_, window_);
+    remembered.add(remembered_, memory_);
+    settled_ = settled;
+    remembered_ = remembered;
+  }
+}
+
+Vector6 PriorLearner::qc_at(double t, const Vector6& guess) const {
+  PriorEvidence window{t, Vector6::Zero(), Vector6::Zero()}, memory = window;
+  window.add(settled_, window_);
+  memory.add(remembered_, memory_);
+  for (const auto& [k, evidence] : recent_) {
+    window.add(evidence, window_);
+    memory.add(evidence, memory_);
+  }
+  return window.qc(memory.qc(memory.common_qc(guess, kBegin), kCommonWeight), kGuessWeight);
+}
+
+void learn_prior(Engine& engine) {
+  const std::vector<PriorEvidence> evidence = evidence_from(engine, 1);
+  PriorEvidence all;
+  for (const PriorEvidence& one : evidence) {
+    all.square += one.square;
+    all.freedom += one.freedom;
+  }
+  const Vector6 mean = all.qc(all.common_qc(engine.graph().qc, kBegin), kCommonWeight);
+  // Sums over those before and those after, each carried along.
+  std::vector<PriorEvidence> before = evidence, after = evidence;
+  for (std::size_t k = 1; k < evidence.size(); ++k) before[k].add(before[k - 1], kHistoryWindow);
+  for (std::size_t k = evidence.size(); k-- > 1;) after[k - 1].add(after[k], kHistoryWindow);
+  for (std::size_t k = 0; k < evidence.size(); ++k) {
+    PriorEvidence sum = before[k];
+    sum.square += after[k].square - evidence[k].square;
+    sum.freedom += after[k].freedom - evidence[k].freedom;
+    engine.set_qc(static_cast<int>(k) + 1, sum.qc(mean, kGuessWeight));
+  }
+}
+
+}  // namespace evbench::gp_map
