@@ -9,7 +9,6 @@
 
 #include "backends/gp_map/problem_graph.hpp"
 #include "core/geometry/so3.hpp"
-#include "core/motion/gp_trajectory.hpp"
 #include "core/motion/wnoa.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/median.hpp"
