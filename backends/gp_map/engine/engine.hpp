@@ -118,6 +118,8 @@ class Engine {
 
   /// Of states k and k + 1 jointly, 24 × 24.
   std::optional<Matrix24> neighbours(int k);
+  /// Of the poses of states i < j jointly.
+  std::optional<Matrix12> poses(int i, int j);
   /// Of pose and velocity at any time within the states' span.
   std::optional<Matrix12> covariance(double t);
   std::optional<Matrix3> landmark_covariance(int landmark);

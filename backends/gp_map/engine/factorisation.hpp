@@ -68,6 +68,9 @@ class Factorisation {
   /// Covariance of rows in the layout that the root had before stage `stage` eliminated them (or later ones).
   Eigen::MatrixXd marginal(int stage, std::span<const int> rows) const;
 
+  /// The covariance between rows in the layout before stage `stage`, as above, and rows in that before a later one.
+  Eigen::MatrixXd cross(int stage, std::span<const int> rows, int later, std::span<const int> later_rows) const;
+
   /// Covariance of J x for x in these rows of the root as it is now.
   Eigen::MatrixXd image_in_root(std::span<const int> rows, const Eigen::MatrixXd& J) const;
 
@@ -96,6 +99,8 @@ class Factorisation {
     bool held = false, forgotten = false;
   };
   void solve_with_root_factor(double* x) const;
+  template <class Visit>
+  void solve_from(int stage, Buffer& x, Buffer& z, const Visit& visit) const;
   int place_anchor(const FactorGraph& graph);
   int go_back_to(int first);
   std::optional<Variable> do_stage(int k, const FactorGraph& graph, LinearisationPoints& points, double damping);
