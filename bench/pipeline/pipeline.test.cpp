@@ -348,7 +348,9 @@ TEST_CASE("What a back-end tells of an older time again is kept beside the onlin
       if (batch.until > 0.5) online_({{batch.until - 0.205, T}});
     }
     void finish() override {}
-    PoseTrajectory trajectory() const override { return PoseTrajectory({{0.0, {}}, {1.0, {}}}); }
+    PoseTrajectory trajectory() const override {
+      return PoseTrajectory(std::vector<StampedPose>{{0.0, {}}, {1.0, {}}});
+    }
 
    private:
     std::function<void(const OnlinePose&)> online_;
