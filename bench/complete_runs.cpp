@@ -29,7 +29,8 @@ std::optional<std::string> content_of(const std::string& path) {
 /// Does a complete run of this job lie there?
 bool is_complete(const std::string& folder, const JobIdentity& identity) {
   if (content_of(folder + "/job.json") != identity.text) return false;
-  for (const char* name : {"config.json", "manifest.json", "final.tum", "online.tum", "map.ply", "log.txt"}) {
+  for (const char* name :
+       {"config.json", "manifest.json", "final.tum", "online.tum", "told.txt", "map.ply", "log.txt"}) {
     std::error_code error;
     if (!fs::is_regular_file(folder + "/" + name, error)) return false;
   }

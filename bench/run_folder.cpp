@@ -120,6 +120,8 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
 void write_piece(const AtomicFolder& folder, const Piece& piece, const std::string& suffix) {
   folder.write("final" + suffix + ".tum", format_tum(piece.final_trajectory));
   folder.write("online" + suffix + ".tum", format_tum(piece.online_trajectory));
+  folder.write("told" + suffix + ".txt", format_online_poses(piece.told));
+  if (!piece.relative.empty()) folder.write("covariance" + suffix + ".txt", format_relative_poses(piece.relative));
   folder.write("map" + suffix + ".ply", map_ply(piece.map));
 }
 

@@ -28,6 +28,8 @@ class EmptyFolders {
 ///   job.json         what determines the trajectory: its SHA-256 begins with the key's digits
 ///   manifest.json    program, host, seed, SHA-256 of config.json, of each input and of the tracks
 ///   final.tum, online.tum, map.ply   the estimate: after the fact, causal, landmarks
+///   told.txt         every pose told while the data came in, with the time at which it was known
+///   covariance.txt   relative poses with the covariances that the back-end gave, where it has them
 ///   groundtruth.tum  the source's, in the time range of the run (and 1 s around it), where there is one
 ///   metrics.json, status.json        eval/metrics.md
 ///   timing.csv       a line an update
@@ -35,7 +37,7 @@ class EmptyFolders {
 ///   log.txt
 ///
 /// Where the estimate is in pieces, these are of the longest one; the others are final.piece2.tum, online.piece2.tum,
-/// map.piece2.ply, numbered in time order from 1 (status.json lists all). The folder appears complete or not at all; an
+/// and so on, numbered in time order from 1 (status.json lists all). The folder appears complete or not at all; an
 /// older run of the same key is replaced.
 class RunFolder {
  public:

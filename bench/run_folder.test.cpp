@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 
+#include "bench/common_time.hpp"
 #include "bench/testing/keys.hpp"
 #include "bench/testing/program.hpp"
 #include "core/data/tum.hpp"
@@ -16,9 +17,9 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const std::set<std::string> kFiles = {"config.json", "job.json",        "manifest.json", "final.tum",
-                                      "online.tum",  "groundtruth.tum", "map.ply",       "metrics.json",
-                                      "timing.csv",  "log.txt",         "status.json"};
+const std::set<std::string> kFiles = {"config.json",  "job.json",   "manifest.json",   "final.tum",
+                                      "online.tum",   "told.txt",   "groundtruth.tum", "map.ply",
+                                      "metrics.json", "timing.csv", "log.txt",         "status.json"};
 
 /// The runs of a config by label.
 std::map<std::string, std::string> run_folders(const TemporaryFolder& folder, const std::string& out) {
@@ -76,7 +77,9 @@ TEST_CASE("A run's folder holds the documented files") {
   const TwoRuns& runs = two_runs();
   REQUIRE(runs.first.size() == 2);
   for (const auto& [label, path] : runs.first) {
-    CHECK(names_in(path) == kFiles);
+    std::set<std::string> files = kFiles;
+    if (label == "asynchronous") files.insert("covariance.txt");  // frames don't say how sure they are
+    CHECK(names_in(path) == files);
     CHECK(json_file(path, "status.json").at("state").is_string());
     const Json manifest = json_file(path, "manifest.json");
     for (const char* key : {"program", "host", "seed", "key", "config_sha256", "inputs_sha256", "observations"}) {
@@ -94,8 +97,8 @@ TEST_CASE("The same config twice gives the same bytes, but for measured times") 
     INFO(label);
     const std::string& other = runs.second.at(label);
     CHECK(std::filesystem::path(path).filename() == std::filesystem::path(other).filename());
-    for (const char* name : {"config.json", "job.json", "manifest.json", "final.tum", "online.tum", "groundtruth.tum",
-                             "map.ply", "status.json"}) {
+    for (const char* name : {"config.json", "job.json", "manifest.json", "final.tum", "online.tum", "told.txt",
+                             "groundtruth.tum", "map.ply", "status.json"}) {
       CHECK(read_file(path + "/" + name) == read_file(other + "/" + name));
     }
     const Json a = json_file(path, "metrics.json"), b = json_file(other, "metrics.json");
@@ -103,6 +106,66 @@ TEST_CASE("The same config twice gives the same bytes, but for measured times") 
     CHECK(a.at("final").dump() == b.at("final").dump());
     CHECK(a.at("online").dump() == b.at("online").dump());
   }
+}
+
+TEST_CASE("A run is scored for what was known at once and after the same wait, and by its covariances") {
+  const TwoRuns& runs = two_runs();
+  for (const auto& [label, path] : runs.first) {
+    INFO(label);
+    const Json metrics = json_file(path, "metrics.json"), online = metrics.at("online");
+    const auto ate = [](const Json& scores) { return scores.at("ate").at("trans_m").at("rmse").get<double>(); };
+    CHECK(online.at("zero_latency").at("latency_s") == 0.0);
+    CHECK(online.at("equal_latency").at("latency_s") == 0.2);
+    CHECK(ate(online.at("equal_latency")) < ate(online.at("zero_latency")));
+    CHECK(online.at("zero_latency").at("pairs") > 300);  // of ground truth at 200 Hz
+    CHECK(metrics.at("covariance").is_null() == (label != "asynchronous"));
+  }
+  const Json covariance = json_file(runs.first.at("asynchronous"), "metrics.json").at("covariance");
+  for (const char* kind : {"newest", "over_100ms", "over_1s"}) {
+    INFO(kind);
+    CHECK(covariance.at(kind).at("n") > 10);
+    CHECK(covariance.at(kind).at("singular") == 0);
+    CHECK(covariance.at(kind).at("nees") > 0.1);
+    CHECK(covariance.at(kind).at("nees") < 10.0);
+    CHECK(covariance.at(kind).at("within_3_sigma") > 0.8);
+  }
+  const std::string folder = "'" + runs.folder.file("first") + "'";
+  const Outcome table = testing::evbench(runs.folder, "table --online " + folder);
+  CHECK_THAT(table.out, Contains("ATE at zero latency [m]") && Contains("ATE at equal latency [m]") &&
+                            Contains("equal latency 0.2 s"));
+  CHECK_THAT(testing::evbench(runs.folder, "table --metrics covariance.over_1s.nees,covariance.newest.within_2_sigma," +
+                                               std::string("online.zero_latency.ate.trans_m.rmse ") + folder)
+                 .out,
+             Contains("NEES over 1 s") && Contains("covariance.newest.within_2_sigma") &&
+                 Contains("online ATE at zero latency [m]"));
+}
+
+TEST_CASE("A table scores its runs over the time that all of them cover, too") {
+  const TwoRuns& runs = two_runs();
+  const std::string folder = "'" + runs.folder.file("first") + "'";
+  const Outcome table = testing::evbench(
+      runs.folder, "table --format csv --metrics common.span_s,common.coverage,common.ate.trans_m.rmse " + folder);
+  CHECK(table.exit_code == 2);  // a span is no number
+  const Outcome text = testing::evbench(runs.folder, "table " + folder);
+  CHECK_THAT(text.out, Contains("ATE, common time [m]") && Contains("Common time: ") &&
+                           Contains("which every run covers that was not lost"));
+  std::vector<RunRecord> records = find_runs(std::vector{runs.folder.file("first")});
+  score_common_time(records, false);
+  const auto span = [](const Json& scores) {
+    return std::pair(scores.at("span_s")[0].get<double>(), scores.at("span_s")[1].get<double>());
+  };
+  REQUIRE(records.size() == 2);
+  const auto a = span(records[0].final_scores), b = span(records[1].final_scores);
+  for (const RunRecord& record : records) {
+    const auto common = span(record.common_scores);
+    CHECK(common.first >= std::max(a.first, b.first));
+    CHECK(common.first < std::max(a.first, b.first) + 0.05);
+    CHECK(common.second <= std::min(a.second, b.second));
+    CHECK(record.common_scores.at("coverage") > 0.99);
+  }
+  records[0].folder = "/nowhere";
+  score_common_time(records, false);
+  CHECK(records[0].common_scores.is_null());
 }
 
 TEST_CASE("All back-ends of a comparison get the identical observations") {

@@ -83,6 +83,9 @@ std::string protocol(const Json& scores, const std::string& place) {
     std::string text = fmt::format("{}; {}; {}", alignment_text(scores.at("alignment")),
                                    association_text(scores.at("association")), relative_text(scores.at("rpe")));
     if (scores.contains("segments")) text += "; segments " + segments_text(scores.at("segments"));
+    if (scores.contains("equal_latency") && !scores.at("equal_latency").is_null()) {
+      text += fmt::format("; equal latency {} s", scores.at("equal_latency").at("latency_s").get<double>());
+    }
     return text;
   } catch (const Json::exception& error) {
     throw InputError(fmt::format("{}: the protocol of the scores is incomplete: {}", place, json_reason(error)));

@@ -102,6 +102,7 @@ Json to_json(const RunRecord& record) {
   json["position"] = record.position ? Json(*record.position) : Json();
   json["final"] = record.final_scores;
   json["online"] = record.online_scores;
+  json["covariance"] = record.covariance;
   if (!record.final_unscored.empty()) json["final_unscored"] = record.final_unscored;
   if (!record.online_unscored.empty()) json["online_unscored"] = record.online_unscored;
   json["range_s"] = record.range ? Json{record.range->from, record.range->to} : Json();
@@ -123,6 +124,7 @@ RunRecord read_record(const Json& metrics, const std::string& place) {
     }
     *scores = json.at(key);
   }
+  record.covariance = json.at("covariance");
   record.experiment = json.text("experiment");
   record.label = json.text("label");
   record.seed = json.count_or_null("seed");

@@ -49,6 +49,8 @@ struct RunRecord {
   std::string folder;                     ///< where it lies; not in the file
   RunSettings settings;                   ///< of its config.json, where there is one; not in the file
   Json final_scores, online_scores;       ///< as to_json(Scores) gives them; null: none
+  Json covariance;                        ///< {kind: as to_json(CovarianceScores) gives it}; null: none
+  Json common_scores;                     ///< over the time that all runs of a table cover; not in the file
   std::string final_unscored, online_unscored;  ///< why there are no scores
   std::optional<TimeRange> range;               ///< [s] of the sequence that was run: nothing outside is scored
   std::optional<double> runtime_s;              ///< processing time: front-end and back-end
@@ -57,6 +59,9 @@ struct RunRecord {
   std::optional<RecordedTimes> times;
   std::optional<double> peak_rss_mib;
   std::optional<RunStatus> status;
+
+  /// Is it measured against others? Lost and failed runs aren't.
+  bool competes() const { return !status || status->status.state < RunState::lost; }
 };
 
 /// The contents of metrics.json and of status.json. The same record gives the same bytes.

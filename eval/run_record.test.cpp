@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "core/data/online_poses.hpp"
+#include "core/data/relative_poses.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
@@ -125,6 +127,39 @@ TEST_CASE("A run's folder is scored from its files, within the run's range, and 
   CHECK_THROWS_WITH(score_run(folder.path(), {}, record), Contains("final.tum:1: has 3 columns"));
   std::filesystem::remove(folder.file("final.tum"));
   CHECK_THROWS_WITH(score_run(folder.path(), {}, record), Contains("final.tum: no such file"));
+}
+
+TEST_CASE("A run is scored at a latency by what it told, and by its covariances, where there are such files") {
+  const TemporaryFolder folder;
+  const PoseTrajectory truth = sample(wavy_pose, 400, 0.01);
+  write_file(folder.file("groundtruth.tum"), format_tum(truth));
+  write_file(folder.file("final.tum"), format_tum(truth));
+  write_file(folder.file("online.tum"), format_tum(truth));
+  RunRecord record = full_record();
+  record.range = {0.0, 4.0};
+  score_run(folder.path(), {.alignment = "none"}, record);
+  CHECK_FALSE(record.online_scores.contains("zero_latency"));
+  CHECK(record.covariance.is_null());
+
+  std::vector<OnlinePose> told;  // frames of 0.1 s, known when they end
+  for (int i = 0; i < 39; ++i) told.push_back({{0.05 + 0.1 * i, wavy_pose(0.05 + 0.1 * i)}, 0.1 + 0.1 * i});
+  write_file(folder.file("told.txt"), format_online_poses(told));
+  write_file(folder.file("covariance.txt"),
+             format_relative_poses(std::vector<RelativePose>{
+                 {"over_1s", 1.0, 2.0, wavy_pose(1.0).inverse() * wavy_pose(2.0), Matrix6::Identity()}}));
+  score_run(folder.path(), {.alignment = "none", .latency = 0.3}, record);
+  const auto ate = [&](const char* latency) {
+    return record.online_scores.at(latency).at("ate").at("trans_m").at("rmse").get<double>();
+  };
+  CHECK(ate("zero_latency") > 0.005);
+  CHECK(ate("equal_latency") < 0.3 * ate("zero_latency"));
+  CHECK(record.online_scores.at("equal_latency").at("latency_s") == 0.3);
+  CHECK(record.covariance.at("over_1s").at("n") == 1);
+  CHECK(record.covariance.at("over_1s").at("within_1_sigma") == 1.0);
+  CHECK(to_json(read_record(to_json(record), "m")).dump() == to_json(record).dump());
+
+  folder.write("told.txt", "1 2 3\n");
+  CHECK_THROWS_WITH(score_run(folder.path(), {}, record), Contains("told.txt:1: has 3 columns"));
 }
 
 }  // namespace evbench

@@ -1,8 +1,11 @@
 #include "eval/score_run.hpp"
 
 #include <filesystem>
+#include <map>
 
 #include "core/data/tum.hpp"
+#include "eval/covariance_scores.hpp"
+#include "eval/latency.hpp"
 
 namespace evbench {
 namespace {
@@ -19,6 +22,11 @@ OptionSet::List clip(const OptionSet::List& range, const std::optional<TimeRange
   if (!run) return range;
   if (range.size() != 2) return {run->from, run->to};
   return {std::max(range[0], run->from), std::min(range[1], run->to)};
+}
+
+bool exists(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(path, error);
 }
 
 struct RunTrajectories {
@@ -47,6 +55,32 @@ Scores compare(const RunTrajectories& trajectories, ScoreOptions options, const 
   return score(trajectories.ground_truth, trajectories.estimate, options);
 }
 
+/// The scores of what the back-end would have given for each ground-truth pose's time, `latency` later.
+Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<OnlinePose>& told, double latency,
+                       const ScoreOptions& options, const RunRecord& record) {
+  std::vector<double> times;
+  for (const StampedPose& pose : ground_truth.poses()) times.push_back(pose.t - options.time_offset);
+  try {
+    Json json = to_json(compare({ground_truth, estimates_at_latency(told, times, latency)}, options, record));
+    json["latency_s"] = latency;
+    return json;
+  } catch (const InputError&) {
+    return nullptr;
+  }
+}
+
+/// By kind.
+Json covariance_scores(const std::vector<RelativePose>& poses, const PoseTrajectory& ground_truth, double scale,
+                       double time_offset) {
+  std::map<std::string, std::vector<RelativePose>> kinds;
+  for (const RelativePose& pose : poses) kinds[pose.kind].push_back(pose);
+  Json json = Json::object();
+  for (const auto& [kind, of_kind] : kinds) {
+    json[kind] = to_json(score_covariances(of_kind, ground_truth, scale, time_offset));
+  }
+  return json;
+}
+
 }  // namespace
 
 void score_run(const std::string& folder, const ScoreOptions& options, RunRecord& record) {
@@ -62,6 +96,17 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
   };
   set(false, record.final_scores, record.final_unscored);
   set(true, record.online_scores, record.online_unscored);
+  if (const std::string path = folder + "/told.txt"; exists(path) && !record.online_scores.is_null()) {
+    const PoseTrajectory ground_truth = read_tum(folder + "/groundtruth.tum");
+    const std::vector<OnlinePose> told = read_online_poses(path);
+    record.online_scores["zero_latency"] = scores_at_latency(ground_truth, told, 0.0, options, record);
+    record.online_scores["equal_latency"] = scores_at_latency(ground_truth, told, options.latency, options, record);
+  }
+  record.covariance = nullptr;
+  if (const std::string path = folder + "/covariance.txt"; exists(path) && !record.final_scores.is_null()) {
+    record.covariance = covariance_scores(read_relative_poses(path), read_tum(folder + "/groundtruth.tum"),
+                                          record.final_scores.at("scale").get<double>(), options.time_offset);
+  }
 }
 
 ScoredEstimate score_estimate(const std::string& folder, bool online, const ScoreOptions& options,

@@ -7,10 +7,11 @@
 
 namespace evbench {
 
-/// Scores what lies in a run's folder, final.tum and online.tum against groundtruth.tum: sets the record's scores, or
-/// why there are none (no groundtruth.tum, no trajectory, too few poses to compare). Ground truth outside of the
-/// record's range is not used. So the scores of a run are of what it wrote, and come out the same, digit by digit, when
-/// it is scored again. Throws InputError for files that are missing or damaged.
+/// Scores what lies in a run's folder, final.tum, online.tum, told.txt (at zero and at equal latency) and
+/// covariance.txt against groundtruth.tum: sets the record's scores, or why there are none (no groundtruth.tum, no
+/// trajectory, too few poses to compare). Ground truth outside of the record's range is not used. So the scores of a
+/// run are of what it wrote, and come out the same, digit by digit, when it is scored again. Throws InputError for
+/// files that are missing or damaged.
 void score_run(const std::string& folder, const ScoreOptions& options, RunRecord& record);
 
 /// An estimate of a run, and its scores.

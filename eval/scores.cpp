@@ -145,6 +145,7 @@ Json to_json(const Scores& scores) {
   if (options.segments != "none") json["segments"] = segments_json(scores);
   json["pairs"] = scores.pairs;
   json["coverage"] = scores.coverage;
+  json["span_s"] = {scores.compared.front().t, scores.compared.back().t};
   json["scale"] = scores.alignment.transform.scale;
   json["path_m"] = scores.path_m;
   json["alignment"] = {{"method", options.alignment},

@@ -22,6 +22,7 @@ struct ScoreOptions {
   double time_offset = 0.0;
   OptionSet::List time_range = {};
   int min_pairs = 3;
+  double latency = 0.2;
   double rpe_delta = 0.1;
   std::string rpe_unit = "seconds";
   std::string rpe_pairing = "all";
@@ -46,6 +47,10 @@ struct ScoreOptions {
         .size(2)
         .rising();
     set.add("min_pairs", min_pairs, "fewer compared poses are an error").range(3);
+    set.add("latency", latency,
+            "how long one waits for each online pose, the same for all back-ends of a table: scores at equal latency "
+            "[s]")
+        .range(0.0, 10.0);
     set.add("rpe_delta", rpe_delta, "distance of the two poses of a relative error [rpe_unit]").above(0.0);
     set.add("rpe_unit", rpe_unit, "what that distance is measured in").choices(to_strings(kDeltaUnitNames));
     set.add("rpe_pairing", rpe_pairing, "from every pose, or in one chain").choices(to_strings(kPairingNames));

@@ -14,8 +14,6 @@ namespace {
 
 using Cell = TextTable::Cell;
 
-bool competes(const Row& row) { return !row.run->status || row.run->status->status.state < RunState::lost; }
-
 std::string status_text(const Row& row, TableFormat format) {
   if (!row.run->status) return format == TableFormat::csv ? "" : "-";
   const Status& status = row.run->status->status;
@@ -46,10 +44,10 @@ void mark_best(const Rows& rows, const std::vector<Group>& groups, const std::ve
                Better better, std::vector<Cell>& cells) {
   if (better == Better::neither) return;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    bool best = values[i] && competes(rows[i]);
+    bool best = values[i] && rows[i].run->competes();
     bool differs = false;
     for (std::size_t k = 0; k < rows.size() && best; ++k) {
-      if (groups[k] != groups[i] || !values[k] || !competes(rows[k]) || cells[k].text == cells[i].text) continue;
+      if (groups[k] != groups[i] || !values[k] || !rows[k].run->competes() || cells[k].text == cells[i].text) continue;
       differs = true;
       best = better == Better::lower ? *values[i] < *values[k] : *values[i] > *values[k];
     }
@@ -131,11 +129,11 @@ struct Trouble {
 /// None where a run was neither lost nor left without scores. The reason of its status tells most.
 std::optional<Trouble> trouble_of(const Row& row, bool online) {
   const RunRecord& run = *row.run;
-  const std::string reason = competes(row) ? "" : run.status->status.reason;
+  const std::string reason = run.competes() ? "" : run.status->status.reason;
   const bool scored = !scores_of(row, online).is_null();
   const bool degraded = run.status && run.status->status.state == RunState::degraded;
   if (scored && degraded) return Trouble{"Degraded", run.status->status.reason};
-  if (scored && competes(row)) return std::nullopt;
+  if (scored && run.competes()) return std::nullopt;
   const std::string& unscored = online ? run.online_unscored : run.final_unscored;
   const std::string what = !scored ? "Without scores" : run.status->status.state == RunState::lost ? "Lost" : "Failed";
   return Trouble{what, !reason.empty() ? reason : !unscored.empty() ? unscored : "not known"};
@@ -160,6 +158,19 @@ std::vector<std::string> trouble_notes(const Rows& rows, const std::vector<std::
   return notes;
 }
 
+/// The time that the runs of each experiment have in common.
+std::vector<std::string> common_time_notes(const Rows& rows) {
+  std::vector<std::string> notes;
+  for (const Row& row : rows) {
+    if (row.run->common_scores.is_null()) continue;
+    const Json& range = row.run->common_scores.at("association").at("time_range_s");
+    std::string note = fmt::format("Common time: {:.2f} to {:.2f} s, which every run covers that was not lost.",
+                                   range.at(0).get<double>(), range.at(1).get<double>());
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(std::move(note));
+  }
+  return notes;
+}
+
 std::vector<std::string> notes_of(const Rows& rows, const std::vector<std::string>& names,
                                   const std::vector<Metric>& metrics, const Protocols& protocols,
                                   const TableOptions& options) {
@@ -179,13 +190,16 @@ std::vector<std::string> notes_of(const Rows& rows, const std::vector<std::strin
     notes.push_back(fmt::format("Protocol{}: {}.", number, protocols.texts[i]));
   }
   if (const std::string ranges = ranges_note(rows, metrics, options.online); !ranges.empty()) notes.push_back(ranges);
+  if (std::ranges::any_of(metrics, [](const Metric& metric) { return metric.key.starts_with("common."); })) {
+    std::ranges::move(common_time_notes(rows), std::back_inserter(notes));
+  }
   if (shown("realtime_factor")) {
     notes.emplace_back(
         "Real-time factor: data time / processing time (front-end and back-end); above 1 is faster than "
         "real time.");
   }
   std::ranges::move(trouble_notes(rows, names, options.online), std::back_inserter(notes));
-  if (!std::ranges::all_of(rows, competes))
+  if (!std::ranges::all_of(rows, [](const Row& row) { return row.run->competes(); }))
     notes.emplace_back("Lost and failed runs do not compete for the best value.");
   return notes;
 }
@@ -295,7 +309,10 @@ std::string make_table(std::span<const RunRecord> runs, const TableOptions& opti
   if (runs.empty()) throw InputError("there is no run to make a table of");
   const bool csv = options.format == TableFormat::csv;
   Rows rows;
-  for (const RunRecord& run : runs) rows.push_back({&run, to_json(run)});
+  for (const RunRecord& run : runs) {
+    rows.push_back({&run, to_json(run)});
+    rows.back().metrics["common"] = run.common_scores;
+  }
   const Protocols protocols = collect_protocols(rows, options.online);
   const std::vector<Metric> metrics = choose_metrics(rows, options);
   std::vector<Group> groups;

@@ -12,20 +12,35 @@ namespace {
 
 const std::vector<Metric>& known_metrics() {
   static const std::vector<Metric> metrics = {
-      {"ate.trans_m.rmse", "ATE [m]", Better::lower, {}, 1.0, true},
+      {"ate.trans_m.rmse", "ATE [m]", Better::lower, {}, 1.0, Shown::in_print},
       {"ate.trans_percent", "ATE [% of path]", Better::lower},
-      {"ate.rot_deg.rmse", "ATE [deg]", Better::lower, {}, 1.0, true},
-      {"rpe.trans_m.rmse", "RPE [m]", Better::lower, {}, 1.0, true},
-      {"rpe.rot_deg.rmse", "RPE [deg]", Better::lower, {}, 1.0, true},
-      {"segments.trans_percent.mean", "segments [%]", Better::lower, {}, 1.0, true},
-      {"segments.rot_deg_per_m.mean", "segments [deg/m]", Better::lower, {}, 1.0, true},
+      {"ate.rot_deg.rmse", "ATE [deg]", Better::lower, {}, 1.0, Shown::in_print},
+      {"rpe.trans_m.rmse", "RPE [m]", Better::lower, {}, 1.0, Shown::in_print},
+      {"rpe.rot_deg.rmse", "RPE [deg]", Better::lower, {}, 1.0, Shown::in_print},
+      {"common.ate.trans_m.rmse", "ATE, common time [m]", Better::lower},
+      {"common.ate.rot_deg.rmse", "ATE, common time [deg]", Better::lower, {}, 1.0, Shown::on_request},
+      {"common.rpe.trans_m.rmse", "RPE, common time [m]", Better::lower},
+      {"common.rpe.rot_deg.rmse", "RPE, common time [deg]", Better::lower, {}, 1.0, Shown::on_request},
+      {"zero_latency.ate.trans_m.rmse", "ATE at zero latency [m]", Better::lower},
+      {"zero_latency.ate.rot_deg.rmse", "ATE at zero latency [deg]", Better::lower, {}, 1.0, Shown::on_request},
+      {"zero_latency.rpe.trans_m.rmse", "RPE at zero latency [m]", Better::lower},
+      {"zero_latency.rpe.rot_deg.rmse", "RPE at zero latency [deg]", Better::lower, {}, 1.0, Shown::on_request},
+      {"equal_latency.ate.trans_m.rmse", "ATE at equal latency [m]", Better::lower},
+      {"equal_latency.ate.rot_deg.rmse", "ATE at equal latency [deg]", Better::lower, {}, 1.0, Shown::on_request},
+      {"equal_latency.rpe.trans_m.rmse", "RPE at equal latency [m]", Better::lower},
+      {"equal_latency.rpe.rot_deg.rmse", "RPE at equal latency [deg]", Better::lower, {}, 1.0, Shown::on_request},
+      {"covariance.newest.nees", "NEES, newest pose", Better::neither, {}, 1.0, Shown::on_request},
+      {"covariance.over_100ms.nees", "NEES over 0.1 s", Better::neither, {}, 1.0, Shown::on_request},
+      {"covariance.over_1s.nees", "NEES over 1 s", Better::neither, {}, 1.0, Shown::on_request},
+      {"segments.trans_percent.mean", "segments [%]", Better::lower, {}, 1.0, Shown::in_print},
+      {"segments.rot_deg_per_m.mean", "segments [deg/m]", Better::lower, {}, 1.0, Shown::in_print},
       {"pairs", "pairs", Better::neither, 0},
       {"coverage", "covered [%]", Better::neither, 1, 100.0},
       {"scale", "scale", Better::neither, 4},
       {"times.frontend_s", "front-end [s]", Better::neither, 3},
       {"times.backend_s", "back-end [s]", Better::lower, 3},
       {"times.waiting_s", "waiting [s]", Better::neither, 3},
-      {"realtime_factor", "real-time factor", Better::higher, {}, 1.0, true},
+      {"realtime_factor", "real-time factor", Better::higher, {}, 1.0, Shown::in_print},
   };
   return metrics;
 }
@@ -68,6 +83,13 @@ void list_numbers(const Json& node, const std::string& prefix, std::vector<std::
 }  // namespace
 
 Metric metric_of(const std::string& key) {
+  for (const std::string of : {"final", "online"}) {  // the scores of the trajectory that the table isn't of
+    if (!key.starts_with(of + ".")) continue;
+    Metric metric = metric_of(key.substr(of.size() + 1));
+    metric.header = metric.header == metric.key ? key : of + " " + metric.header;
+    metric.key = key;
+    return metric;
+  }
   const auto found = std::ranges::find(known_metrics(), key, &Metric::key);
   if (found != known_metrics().end()) return *found;
   const bool error =
@@ -97,9 +119,10 @@ std::vector<Metric> choose_metrics(const Rows& rows, const TableOptions& options
   for (const Metric& metric : known_metrics()) {
     if (metric.key == "times.waiting_s" && std::ranges::none_of(rows, waited)) continue;  // all ran in one thread
     const bool protocol_value = metric.key == "pairs" || metric.key == "coverage" || metric.key == "scale";
-    const bool wanted = (options.metrics.empty() && (metric.in_print || !print)) ||
-                        (options.format == TableFormat::csv && protocol_value &&
-                         std::ranges::find(options.metrics, metric.key) == options.metrics.end());
+    const bool usual = metric.shown <= (print ? Shown::in_print : Shown::on_screen);
+    const bool wanted =
+        (options.metrics.empty() && usual) || (options.format == TableFormat::csv && protocol_value &&
+                                               std::ranges::find(options.metrics, metric.key) == options.metrics.end());
     if (wanted && present(metric.key)) metrics.push_back(metric);
   }
   return metrics;

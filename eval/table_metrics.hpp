@@ -17,6 +17,10 @@ using Rows = std::vector<Row>;
 
 enum class Better { neither, lower, higher };
 
+/// In which tables a column stands where no columns are asked for: in LaTeX's, which must fit on a page, too; in all
+/// others; in none.
+enum class Shown { in_print, on_screen, on_request };
+
 /// A column: a number found in every run's metrics.
 struct Metric {
   std::string key;     ///< path into metrics.json or into its scores
@@ -24,7 +28,7 @@ struct Metric {
   Better better = Better::neither;
   std::optional<int> decimals = {};  ///< fixed; else as many as the smallest value of the column needs for three digits
   double factor = 1.0;               ///< shown is factor times the value
-  bool in_print = false;             ///< stands in LaTeX tables, too, where no columns are asked for
+  Shown shown = Shown::on_screen;
 };
 
 /// The column of a number, known or not.

@@ -44,7 +44,8 @@ struct BundleAdjustment::Trial {
 BundleAdjustment::BundleAdjustment(const Options& options, const BackEndContext& context)
     : options_(options),
       context_(context),
-      frames_({options.frame_duration, options.frame_observations, options.common_noise_px}),
+      frames_({options.frame_duration, options.frame_observations, options.frame_motion, options.shortest_frame,
+               options.common_noise_px}),
       initialiser_(initialiser_options(), context.camera),
       waiting_for_("no observations"),
       monitor_(context.patience) {
@@ -66,7 +67,7 @@ TriangulationOptions BundleAdjustment::triangulation_options() const {
 }
 
 SolverOptions BundleAdjustment::solver_options(int iterations) const {
-  return {options_.loss, options_.loss_width, iterations};
+  return {options_.loss, options_.loss_width * noise_factor_, iterations};
 }
 
 void BundleAdjustment::advance(const TrackBatch& batch) {
@@ -99,12 +100,27 @@ void BundleAdjustment::process(Frame frame) {
   if (!map_.views.empty()) frame.t = std::max(frame.t, map_.views.back().t + kSmallestStep);
   const int view = map_.add(frame);
   if (segments_.empty()) remember(view);
+  const std::size_t maps = segments_.size();
   const SolveReport report = segments_.empty() ? initialise(view) : track(view);
-  // Of the first map's views only the newest one: the older ones were not known at their times.
-  if (!segments_.empty()) context_.online({map_.views[at(view)].t, map_.views[at(view)].T});
+  if (!segments_.empty()) {
+    const int first = segments_.back().first;
+    tell_online(view, segments_.size() > maps ? first : std::max(first, view - options_.window + 1), frame.end);
+  }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   updates_.push_back(
       {frame.t, elapsed.count(), report.poses, report.landmarks, report.observations, report.iterations, report.cost});
+}
+
+/// The newest view first: the others are better estimates of times of which poses were told before, or, of a first map,
+/// of times for which it comes late.
+void BundleAdjustment::tell_online(int view, int oldest, double known_at) const {
+  const View& newest = map_.views[at(view)];
+  context_.online({{newest.t, newest.T}, known_at, velocity_});
+  if (!newest.estimated()) return;
+  for (int i = oldest; i < view; ++i) {
+    const View& older = map_.views[at(i)];
+    if (older.estimated()) context_.online({{older.t, older.T}, known_at});
+  }
 }
 
 int BundleAdjustment::view_at(double t) const {
@@ -225,7 +241,7 @@ std::string BundleAdjustment::locate(int view) {
   if (static_cast<int>(keypoints.size()) < options_.min_landmarks) {
     return fmt::format("{} landmarks in sight, {} needed", keypoints.size(), options_.min_landmarks);
   }
-  const auto loss = make_loss(options_.loss, options_.loss_width);
+  const auto loss = make_loss(options_.loss, options_.loss_width * noise_factor_);
   const PoseEstimate estimate = estimate_pose(now.T, map_, keypoints, context_.camera, loss.get(), options_.outlier_px);
   if (!(estimate.median_px <= 2.0 * options_.outlier_px)) {
     return fmt::format("no pose explains the landmarks (median reprojection error {:.1f} px)", estimate.median_px);
@@ -250,9 +266,17 @@ void BundleAdjustment::start_over() {
   initialiser_ = Initialiser(initialiser_options(), context_.camera);
 }
 
+/// From the residuals of the views from `first` on.
+void BundleAdjustment::learn_noise(int first) {
+  constexpr double kLeast = 0.1, kMost = 10.0;  // a fit of next to nothing, or to nothing, says little
+  if (!options_.learn_noise) return;
+  noise_factor_ = std::clamp(map_.noise_factor(context_.camera, first).value_or(noise_factor_), kLeast, kMost);
+}
+
 SolveReport BundleAdjustment::solve_window(int view) {
   const Segment& segment = segments_.back();
   const int first_variable = std::max(segment.first, view - options_.window + 1);
+  learn_noise(first_variable);
   const int first_used = std::max(segment.first, first_variable - kHeldWindows * options_.window);
   return solve(map_, context_.camera, {first_used, first_variable, view, segment.first, segment.scale},
                solver_options(options_.iterations));
@@ -303,6 +327,7 @@ void BundleAdjustment::solve_segment(const Segment& segment, int last) {
   const auto start = std::chrono::steady_clock::now();
   SolveReport report;
   for (int round = 0; round < kGlobalRounds; ++round) {
+    learn_noise(segment.first);
     report = solve(map_, context_.camera, {segment.first, segment.first, last, segment.first, segment.scale},
                    solver_options(options_.global_iterations));
     if (!remove_outliers(segment.first)) break;

@@ -19,8 +19,8 @@ namespace evbench::bundle_adjustment {
 ///
 /// A new frame's pose: constant-velocity prediction, refined on the landmarks that it sees (PnP with RANSAC when that
 /// fails). Then new landmarks, bundle adjustment of a window of frames (older ones held), removal of outlier tracks.
-/// At the end: bundle adjustment of everything. World: the camera at the first frame used; unit: the median depth
-/// of the first landmarks.
+/// Then the window's poses are told anew, for whoever can wait for better ones. At the end: bundle adjustment of
+/// everything. World: the camera at the first frame used; unit: the median depth of the first landmarks.
 ///
 /// With too few landmarks in sight a pose is predicted (`degraded`), and the map starts afresh from two new views,
 /// placed at the predicted pose and scaled so that the median depth stays what it was. Without success for the
@@ -58,6 +58,7 @@ class BundleAdjustment : public BackEnd {
   std::string waiting_for_;  ///< why there is no map yet
 
   Vector6 velocity_ = Vector6::Zero();
+  double noise_factor_ = 1.0;  ///< on the keypoints' sigmas
   double median_depth_ = 1.0;  ///< of the landmarks in the last estimated view
   bool failing_ = false;       ///< the newest views' poses are predicted
   TrackingMonitor monitor_;
@@ -74,6 +75,7 @@ class BundleAdjustment : public BackEnd {
   SE3 predict(double t, int from) const;
 
   void process(Frame frame);
+  void tell_online(int view, int oldest, double known_at) const;
   SolveReport initialise(int view);
   Trial try_guess(const InitialGuess& guess, int view) const;
   void accept(Trial trial, int view);
@@ -83,6 +85,7 @@ class BundleAdjustment : public BackEnd {
   void start_over();
   void pass_time(double t);
   std::vector<ExpectedFeature> expected_features() const;
+  void learn_noise(int first);
   SolveReport solve_window(int view);
   bool remove_outliers(int first);
   void update_motion(int view);

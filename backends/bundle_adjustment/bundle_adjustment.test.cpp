@@ -35,6 +35,7 @@ struct Simulation {
   Scene scene = Scene::volume;
   Motion motion = weaving;
   double duration = 4.0, noise = 0.3, outlier_share = 0.0;
+  double told_noise = 0.0;  ///< sigma of the observations; 0: the noise
   double blackout_from = 0.0, blackout_to = 0.0;
   bool new_tracks_after_blackout = false;
 };
@@ -53,7 +54,8 @@ std::vector<TrackObservation> simulate(const Simulation& simulation) {
           davis().project(simulation.motion(t).inverse() * point) + testing::noise(simulation.noise, random);
       if (outlier) pixel += t * drift;
       const bool renamed = simulation.new_tracks_after_blackout && t >= simulation.blackout_to;
-      result.push_back({renamed ? id + 1000 : id, t, pixel, std::max(0.1, simulation.noise)});
+      result.push_back({renamed ? id + 1000 : id, t, pixel,
+                        simulation.told_noise > 0.0 ? simulation.told_noise : std::max(0.1, simulation.noise)});
     }
     ++id;
   }
@@ -68,7 +70,11 @@ BundleAdjustment make(const PinholeCamera& camera = davis(), const Options& opti
                       std::vector<StampedPose>* online = nullptr) {
   BackEndContext context;
   context.camera = camera;
-  if (online != nullptr) context.online = [online](const StampedPose& pose) { online->push_back(pose); };
+  if (online != nullptr) {
+    context.online = [online](const OnlinePose& pose) {
+      if (online->empty() || pose.t > online->back().t) online->push_back(pose);
+    };
+  }
   return BundleAdjustment(options, context);
 }
 
@@ -143,6 +149,60 @@ TEST_CASE("frames by count give about the same as frames by duration") {
   feed(backend, simulate(simulation));
   CHECK(backend.trajectory().size() > 70);
   CHECK(ate(backend.trajectory(), simulation.motion) < 0.01);
+}
+
+TEST_CASE("frames by motion give about the same as frames by duration") {
+  Options options;
+  options.frame_motion = 3.0;
+  options.frame_duration = 0.4;
+  const Simulation simulation;
+  BundleAdjustment backend = make(davis(), options);
+  feed(backend, simulate(simulation));
+  CHECK(backend.trajectory().size() > 20);
+  CHECK(ate(backend.trajectory(), simulation.motion) < 0.01);
+}
+
+TEST_CASE("noise that is learnt makes up for sigmas that are wrong by a factor") {
+  Simulation simulation;
+  simulation.noise = 0.5;
+  Options options;
+  options.common_noise_px = 0.0;
+  const auto error = [&](double told, bool learn) {
+    simulation.told_noise = told;
+    options.learn_noise = learn;
+    BundleAdjustment backend = make(davis(), options);
+    feed(backend, simulate(simulation));
+    return ate(backend.trajectory(), simulation.motion);
+  };
+  const double right = error(0.5, false);
+  CHECK(error(0.05, true) < 1.1 * right);
+  CHECK(error(0.05, true) <= error(0.05, false));
+  CHECK(error(2.0, true) < 1.1 * right);
+}
+
+TEST_CASE("a frame's pose is told when the frame ends, and the window's poses are told anew") {
+  BackEndContext context;
+  context.camera = davis();
+  std::vector<OnlinePose> told;
+  context.online = [&](const OnlinePose& pose) { told.push_back(pose); };
+  Options options;
+  options.frame_duration = 0.1;
+  options.window = 5;
+  BundleAdjustment backend(options, context);
+  feed(backend, simulate({}));
+  double newest = 0.0;
+  int anew = 0;
+  for (const OnlinePose& pose : told) {
+    if (pose.t > newest) {
+      CHECK(*pose.known_at - pose.t == Approx(0.05).margin(0.01));
+      CHECK(pose.velocity);
+    } else {
+      ++anew;
+      CHECK(*pose.known_at > newest);
+    }
+    newest = std::max(newest, pose.t);
+  }
+  CHECK(anew > 3 * 30);
 }
 
 TEST_CASE("the same observations give the same trajectory to the last bit") {

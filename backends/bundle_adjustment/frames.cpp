@@ -3,7 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/support/median.hpp"
+
 namespace evbench::bundle_adjustment {
+
+void FrameBuilder::gather(const TrackObservation& z) {
+  gathered_.push_back(z);
+  shifts_.try_emplace(z.track, Shift{z.pixel, z.pixel}).first->second.to = z.pixel;
+}
+
+bool FrameBuilder::is_full() const {
+  if (rule_.observations > 0) return static_cast<int>(gathered_.size()) == rule_.observations;
+  return rule_.motion_px > 0.0 && gathered_.back().t - *start_ >= rule_.shortest_duration &&
+         median_shift() >= rule_.motion_px;
+}
+
+/// Of the tracks that the frame has seen, since they came into it.
+double FrameBuilder::median_shift() const {
+  std::vector<double> distances;
+  for (const auto& [track, shift] : shifts_) distances.push_back((shift.to - shift.from).norm());
+  return distances.empty() ? 0.0 : median(std::move(distances));
+}
 
 Frame FrameBuilder::close(double end) {
   struct Sum {
@@ -21,12 +41,14 @@ Frame FrameBuilder::close(double end) {
   }
   Frame frame;
   frame.t = *start_ + time / static_cast<double>(gathered_.size());
+  frame.end = end;
   for (const auto& [track, sum] : sums) {
     const double variance = sum.variance / sum.count;
     const double common = std::min(variance, rule_.common_noise_px * rule_.common_noise_px);
     frame.keypoints.push_back({track, sum.pixel / sum.count, std::sqrt(common + (variance - common) / sum.count)});
   }
   gathered_.clear();
+  shifts_.clear();
   start_ = end;
   return frame;
 }
@@ -35,13 +57,9 @@ std::vector<Frame> FrameBuilder::add(std::span<const TrackObservation> observati
   std::vector<Frame> frames;
   for (const TrackObservation& z : observations) {
     if (!start_) start_ = z.t;
-    if (rule_.observations > 0) {
-      gathered_.push_back(z);
-      if (static_cast<int>(gathered_.size()) == rule_.observations) frames.push_back(close(z.t));
-      continue;
-    }
     for (Frame& frame : advance(z.t)) frames.push_back(std::move(frame));
-    gathered_.push_back(z);
+    gather(z);
+    if (is_full()) frames.push_back(close(z.t));
   }
   return frames;
 }
@@ -59,7 +77,8 @@ std::optional<Frame> FrameBuilder::rest() {
   if (gathered_.empty()) return std::nullopt;
   const double last = gathered_.back().t;
   const bool half = rule_.observations > 0 ? 2 * static_cast<int>(gathered_.size()) >= rule_.observations
-                                           : last - *start_ >= 0.5 * rule_.duration;
+                                           : last - *start_ >= 0.5 * rule_.duration ||
+                                                 (rule_.motion_px > 0.0 && median_shift() >= 0.5 * rule_.motion_px);
   if (!half) return std::nullopt;
   return close(last);
 }

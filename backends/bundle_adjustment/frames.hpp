@@ -20,13 +20,17 @@ struct Keypoint {
 /// feature belongs to the mean time of the observations that made it, not to the middle of the frame.
 struct Frame {
   double t = 0.0;
+  double end = 0.0;                 ///< [s] when it was complete
   std::vector<Keypoint> keypoints;  ///< by track; never empty
 };
 
+/// When a frame is complete. Frames follow one another from the first observation on.
 struct FrameRule {
-  double duration = 0.05;        ///< [s]; frames follow one another from the first observation on
-  int observations = 0;          ///< fixed count instead, when above zero
-  double common_noise_px = 0.0;  ///< σ² of a mean = common² + (σ² − common²)⁺/n
+  double duration = 0.05;          ///< [s]
+  int observations = 0;            ///< this many instead, when above zero
+  double motion_px = 0.0;          ///< when above zero, the tracks' median motion in the frame instead
+  double shortest_duration = 0.0;  ///< [s] with motion_px; `duration` is then the longest
+  double common_noise_px = 0.0;    ///< σ² of a mean = common² + (σ² − common²)⁺/n
 };
 
 /// Groups observations into frames.
@@ -37,7 +41,7 @@ class FrameBuilder {
   /// Takes observations in time order; returns the frames that they complete.
   std::vector<Frame> add(std::span<const TrackObservation> observations);
 
-  /// The frame by duration that ends at or before t, all observations up to t having been given.
+  /// The frame that time completes at or before t, all observations up to t having been given.
   std::vector<Frame> advance(double t);
 
   /// The frame at the end that is not complete, when it has half of what a frame should have.
@@ -47,7 +51,14 @@ class FrameBuilder {
   FrameRule rule_;
   std::optional<double> start_;  // of the frame that is being gathered
   std::vector<TrackObservation> gathered_;
+  struct Shift {
+    Vector2 from, to;
+  };
+  std::map<TrackId, Shift> shifts_;  // of each track in the frame
 
+  void gather(const TrackObservation& z);
+  bool is_full() const;
+  double median_shift() const;
   Frame close(double end);
 };
 

@@ -1,5 +1,6 @@
 #include "backends/bundle_adjustment/frames.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -15,11 +16,12 @@ TrackObservation observation(TrackId id, double t, double x, double sigma = 1.0)
 }  // namespace
 
 TEST_CASE("a feature in a frame is the mean of its observations, at their mean time") {
-  FrameBuilder builder({0.1, 0, 0.0});
+  FrameBuilder builder({0.1});
   CHECK(builder.add(std::vector{observation(2, 0.00, 10), observation(1, 0.02, 50), observation(2, 0.06, 14)}).empty());
   const std::vector<Frame> frames = builder.advance(0.1);
   REQUIRE(frames.size() == 1);
   CHECK(frames[0].t == Approx(0.08 / 3));
+  CHECK(frames[0].end == Approx(0.1));  // known only then
   REQUIRE(frames[0].keypoints.size() == 2);
   CHECK(frames[0].keypoints[0].track == 1);
   CHECK(frames[0].keypoints[0].sigma == Approx(1.0));
@@ -28,7 +30,7 @@ TEST_CASE("a feature in a frame is the mean of its observations, at their mean t
 }
 
 TEST_CASE("noise that a track's observations share stays in their mean") {
-  FrameBuilder builder({0.1, 0, 0.6});
+  FrameBuilder builder({.duration = 0.1, .common_noise_px = 0.6});
   std::vector<TrackObservation> observations;
   for (int i = 0; i < 50; ++i) observations.push_back(observation(1, 0.001 * i, 10));
   builder.add(observations);
@@ -36,7 +38,7 @@ TEST_CASE("noise that a track's observations share stays in their mean") {
 }
 
 TEST_CASE("frames by duration follow one another, and a gap makes none") {
-  FrameBuilder builder({0.1, 0, 0.0});
+  FrameBuilder builder({0.1});
   std::vector<Frame> frames = builder.add(std::vector{observation(1, 1.0, 1), observation(1, 1.05, 1),
                                                       observation(1, 1.12, 2), observation(1, 1e6 + 0.05, 3)});
   REQUIRE(frames.size() == 2);
@@ -49,7 +51,7 @@ TEST_CASE("frames by duration follow one another, and a gap makes none") {
 }
 
 TEST_CASE("frames by count hold that many observations") {
-  FrameBuilder builder({0.1, 3, 0.0});
+  FrameBuilder builder({0.1, 3});
   std::vector<TrackObservation> observations;
   for (int i = 0; i < 8; ++i) observations.push_back(observation(1, 0.5 * i, i));
   const std::vector<Frame> frames = builder.add(observations);
@@ -62,8 +64,36 @@ TEST_CASE("frames by count hold that many observations") {
   CHECK(rest->keypoints.at(0).pixel.x() == Approx(6.5));
 }
 
+TEST_CASE("frames by motion end when the median track has moved so far, within bounds of time") {
+  FrameBuilder builder({.duration = 0.5, .motion_px = 5.0, .shortest_duration = 0.02});
+  std::vector<TrackObservation> observations;
+  for (int i = 0; i <= 200;
+       ++i) {  // three tracks at 40, 100 and 0 px/s for a second, then ten times as fast, then at rest
+    const double t = 0.01 * i, fast = std::clamp(t - 1.0, 0.0, 0.2);
+    const double moved = std::min(t, 1.0) + 10.0 * fast;
+    for (const double speed : {40.0, 100.0, 0.0}) {
+      observations.push_back({static_cast<TrackId>(speed), t, {speed * moved, 0.0}, 1.0});
+    }
+  }
+  std::vector<Frame> frames = builder.add(observations);
+  const auto longest = [&](double from, double to) {
+    double length = 0.0;
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+      if (frames[i - 1].end >= from && frames[i].end <= to)
+        length = std::max(length, frames[i].end - frames[i - 1].end);
+    }
+    return length;
+  };
+  CHECK(longest(0.0, 1.0) == Approx(0.14).margin(0.011));  // 5 px at 40 px/s, the next observation after it
+  CHECK(longest(1.02, 1.19) == Approx(0.03).margin(0.011));
+  CHECK(longest(1.2, 2.0) == Approx(0.5));  // at rest
+  FrameBuilder bounded({.duration = 0.5, .motion_px = 5.0, .shortest_duration = 0.2});
+  frames = bounded.add(observations);
+  CHECK(longest(0.0, 1.0) == Approx(0.2).margin(0.011));
+}
+
 TEST_CASE("no observations make no frames") {
-  FrameBuilder builder({0.1, 0, 0.0});
+  FrameBuilder builder({0.1});
   CHECK(builder.add({}).empty());
   CHECK(builder.advance(10.0).empty());
   CHECK_FALSE(builder.rest());

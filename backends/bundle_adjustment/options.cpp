@@ -6,6 +6,12 @@ void Options::declare(OptionSet& set) {
   set.add("frame_duration", frame_duration, "time that a frame gathers observations [s]").above(0.0);
   set.add("frame_observations", frame_observations, "observations that a frame gathers; 0: frames by duration")
       .range(0);
+  set.add("frame_motion", frame_motion,
+          "median motion of a frame's tracks over the image, at which it ends [px]; 0: frames by duration")
+      .range(0.0);
+  set.add("shortest_frame", shortest_frame,
+          "time that a frame by motion gathers observations, at least [s]; frame_duration is the longest then")
+      .range(0.0);
   set.add("common_noise_px", common_noise_px,
           "part of an observation's noise that all of a track's observations in a frame share, so that their mean "
           "keeps it [px]")
@@ -21,6 +27,10 @@ void Options::declare(OptionSet& set) {
   set.add("loss", loss, "robust loss").choices({"none", "huber", "cauchy"});
   set.add("loss_width", loss_width, "reprojection error where the loss turns from quadratic [sigmas of the keypoint]")
       .above(0.0);
+  set.add(
+      "learn_noise", learn_noise,
+      "learn a factor on the keypoints' sigmas from the residuals, so that loss_width is in units of the errors that "
+      "there are");
   set.add("iterations", iterations, "iterations of an update, at most").range(1);
   set.add("global_solve", global_solve, "optimise all frames and landmarks at the end");
   set.add("global_iterations", global_iterations, "iterations of the solve at the end, at most").range(1);

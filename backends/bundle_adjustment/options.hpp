@@ -10,6 +10,8 @@ struct Options {
   // Frames.
   double frame_duration = 0.05;  ///< [s]
   int frame_observations = 0;    ///< observations in a frame; 0: frames by duration
+  double frame_motion = 0.0;     ///< [px] median motion of the tracks in a frame; 0: frames by duration
+  double shortest_frame = 0.02;  ///< [s], of frames by motion; frame_duration is the longest then
   double common_noise_px = 0.3;  ///< part of an observation's noise that all observations in a frame share
   // Map.
   InitialiserOptions initialiser;  ///< its window is as long as a frame: it sees frame means
@@ -21,6 +23,7 @@ struct Options {
   int window = 10;  ///< frames that each update optimises
   std::string loss = "cauchy";
   double loss_width = 1.0;   ///< reprojection error where the loss turns from quadratic [sigmas of the keypoint]
+  bool learn_noise = false;  ///< the keypoints' sigmas get a factor that residuals tell
   int iterations = 10;       ///< of an update, at most
   bool global_solve = true;  ///< of everything, at the end
   int global_iterations = 25;

@@ -4,6 +4,7 @@
 
 #include "backends/bundle_adjustment/reprojection.hpp"
 #include "core/support/index.hpp"
+#include "core/support/median.hpp"
 
 namespace evbench::bundle_adjustment {
 
@@ -75,6 +76,21 @@ double Reconstruction::mean_error(const Track& track, const PinholeCamera& camer
     count += 1.0;
   }
   return count > 0.0 ? sum / count : 0.0;
+}
+
+std::optional<double> Reconstruction::noise_factor(const PinholeCamera& camera, int first) const {
+  constexpr double kMedianOfTwo = 1.17741;  // median length of two independent standard normal numbers
+  std::vector<double> errors;
+  for (const auto& [id, track] : tracks) {
+    if (!track.position) continue;
+    for (const TrackSighting& z : track.sightings) {
+      const View& view = views[index(z.view)];
+      if (z.view < first || !view.estimated()) continue;
+      errors.push_back(reprojection_error(view.T, *track.position, z.pixel, camera).norm() / z.sigma);
+    }
+  }
+  if (errors.empty()) return std::nullopt;
+  return median(std::move(errors)) / kMedianOfTwo;
 }
 
 std::vector<TrackId> Reconstruction::outliers(const PinholeCamera& camera, double limit_px, int first) {

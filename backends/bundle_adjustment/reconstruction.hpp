@@ -59,6 +59,10 @@ struct Reconstruction {
   /// exceeds `limit_px` even after they have been triangulated anew.
   std::vector<TrackId> outliers(const PinholeCamera& camera, double limit_px, int first);
 
+  /// How many times as large as their sigmas say the reprojection errors are that landmarks have in the estimated views
+  /// from `first` on: by the median, which outliers don't move. None without errors.
+  std::optional<double> noise_factor(const PinholeCamera& camera, int first) const;
+
   /// Mean norm of a landmark's reprojection error over the estimated views that see it [px].
   double mean_error(const Track& track, const PinholeCamera& camera) const;
 

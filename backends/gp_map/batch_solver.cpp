@@ -230,11 +230,14 @@ struct BatchCovariance::Factor {
   }
 
   /// Marginal covariance of `size` variables from `offset` on.
-  Eigen::MatrixXd marginal(int offset, int size) const {
+  Eigen::MatrixXd marginal(int offset, int size) const { return cross(offset, offset, size); }
+
+  /// Covariance of `size` variables from `i` on with as many from `j` on.
+  Eigen::MatrixXd cross(int i, int j, int size) const {
     Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(layout.size, size);
-    unit.block(offset, 0, size, size).setIdentity();
+    unit.block(j, 0, size, size).setIdentity();
     const Eigen::MatrixXd columns = cholesky.solve(unit);
-    return columns.middleRows(offset, size);
+    return columns.middleRows(i, size);
   }
 };
 
@@ -246,6 +249,15 @@ std::optional<Matrix24> BatchCovariance::neighbours(int k) const {
   const Matrix24 joint =
       factor_->marginal(factor_->layout.state_offset[index(k)], 24);  // neighbours stand side by side
   if (!joint.allFinite()) return std::nullopt;
+  return joint;
+}
+
+std::optional<Matrix12> BatchCovariance::poses(int i, int j) const {
+  if (!factor_->usable) return std::nullopt;
+  const int at_i = factor_->layout.state_offset[index(i)], at_j = factor_->layout.state_offset[index(j)];
+  Matrix12 joint;
+  joint << factor_->marginal(at_i, 6), factor_->cross(at_i, at_j, 6), factor_->cross(at_j, at_i, 6),
+      factor_->marginal(at_j, 6);
   return joint;
 }
 

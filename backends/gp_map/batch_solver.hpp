@@ -34,6 +34,9 @@ class BatchCovariance {
   /// Of states k and k + 1 jointly, 24 × 24; none when the information matrix is singular.
   std::optional<Matrix24> neighbours(int k) const;
 
+  /// Of the poses of states i and j jointly.
+  std::optional<Matrix12> poses(int i, int j) const;
+
   /// Of pose and velocity at any time within the states' span, in the gauge of the priors: what both neighbours leave
   /// uncertain plus the prior's own interpolation uncertainty.
   std::optional<Matrix12> at(double t) const;

@@ -7,7 +7,6 @@
 
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/problem_graph.hpp"
-#include "core/motion/gp_trajectory.hpp"
 #include "core/structure/depth_reversal.hpp"
 #include "core/support/median.hpp"
 

@@ -9,7 +9,6 @@
 
 #include "backends/gp_map/problem_graph.hpp"
 #include "core/geometry/so3.hpp"
-#include "core/motion/gp_trajectory.hpp"
 #include "core/motion/wnoa.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/median.hpp"
@@ -352,7 +351,7 @@ void GpMap::hold_scale_without(int leaving) {
 void GpMap::tell_online(double t) {
   const std::optional<SE3> T = pose(t);  // none where the state has been taken back
   if (!T || t <= online_) return;
-  context_.online({t, *T});
+  context_.online({{t, *T}, t, velocity(t)});
   online_ = t;
 }
 
@@ -476,6 +475,21 @@ std::optional<Vector6> GpMap::velocity(double t) const {
 }
 
 std::optional<Matrix12> GpMap::covariance(double t) { return engine_ ? engine_->covariance(t) : std::nullopt; }
+
+std::optional<Matrix6> GpMap::relative_covariance(double t0, double t1) {
+  if (!engine_) return std::nullopt;
+  const auto state_at = [&](double t) {
+    const auto found = std::ranges::lower_bound(graph().states, t, {}, &ControlState::t);
+    return static_cast<int>(found - graph().states.begin());
+  };
+  const int i = state_at(t0), j = state_at(t1);
+  const std::optional<Matrix12> joint = engine_->poses(i, j);
+  if (!joint) return std::nullopt;
+  const SE3 inverse = graph().states[index(j)].T.inverse() * graph().states[index(i)].T;
+  Eigen::Matrix<double, 6, 12> J;  // (T_i Exp δ_i)⁻¹ T_j Exp δ_j = T_i⁻¹ T_j Exp(δ_j − Ad(T_j⁻¹ T_i) δ_i)
+  J << -se3::adjoint(inverse), Matrix6::Identity();
+  return Matrix6(J * *joint * J.transpose());
+}
 
 std::vector<Landmark> GpMap::map() const {
   std::vector<Landmark> result;

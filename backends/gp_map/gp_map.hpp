@@ -41,6 +41,7 @@ class GpMap : public BackEnd {
   std::optional<SE3> pose(double t) const override;
   std::optional<Vector6> velocity(double t) const override;
   std::optional<Matrix12> covariance(double t) override;
+  std::optional<Matrix6> relative_covariance(double t0, double t1) override;
   std::vector<Landmark> map() const override;
   std::optional<Problem> problem() const override;
   std::span<const UpdateRecord> updates() const override { return updates_; }

@@ -1,7 +1,5 @@
 #include "backends/gp_map/observation_follower.hpp"
 
-#include "core/motion/gp_trajectory.hpp"
-
 namespace evbench::gp_map {
 
 void add_extrapolated_state(Engine& engine, double t) {

@@ -81,15 +81,10 @@ void ProcessBackEnd::take_state(const Json& answer, double until) {
 void ProcessBackEnd::take_online(const Json& answer, double until) {
   const Json* const found = find(answer, "online");
   if (found == nullptr) return;
-  const std::vector<StampedPose> online = poses(*found, "online");
-  for (std::size_t i = 0; i < online.size(); ++i) {
-    check_not_later(online[i].t, until, {"online", i});
-    if (online_ && online[i].t <= online_->t) {
-      throw MessageError(fmt::format("online[{}]: time {} s is not after that of the last pose told, {} s", i,
-                                     online[i].t, online_->t));
-    }
-    online_ = online[i];
-    context_.online(online[i]);
+  for (std::size_t i = 0; i < list(*found, {"online"}).size(); ++i) {
+    const auto [pose, velocity] = moving_pose((*found)[i], {"online", i});
+    check_not_later(pose.t, until, {"online", i});
+    context_.online({pose, until, velocity});
   }
 }
 
@@ -98,7 +93,7 @@ void ProcessBackEnd::take_newest(const Json& answer, double until) {
   feedback_.covariance.reset();
   feedback_.expected.clear();
   if (const Json* const found = find(answer, "newest")) {
-    const auto [pose, velocity] = newest(*found);
+    const auto [pose, velocity] = moving_pose(*found, {"newest"});
     check_not_later(pose.t, until, {"newest"});
     feedback_.newest = ControlState{pose.t, pose.T, velocity.value_or(Vector6::Zero())};
     if (!velocity && before && before->t < pose.t) {

@@ -37,8 +37,7 @@ class ProcessBackEnd : public BackEnd {
   BackEndContext context_;
   Dialogue dialogue_;
   TrackingMonitor monitor_;
-  Feedback feedback_;                  ///< at the last batch's end; outliers since the last call of feedback()
-  std::optional<StampedPose> online_;  ///< the last pose of the causal estimate
+  Feedback feedback_;  ///< at the last batch's end; outliers since the last call of feedback()
   std::optional<Status> final_status_;
   PoseTrajectory trajectory_;
   std::vector<Landmark> map_;

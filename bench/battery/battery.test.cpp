@@ -40,7 +40,7 @@ class Careless : public BackEnd {
   void advance(const TrackBatch& batch) override {
     const double x = static_cast<double>(++advances_);
     poses_.push_back({batch.until, {Eigen::Quaterniond::Identity(), {x, 0, 0}}});
-    context_.online(poses_.back());
+    context_.online({poses_.back()});
   }
   Feedback feedback(const FeedbackNeeds&) override {
     Feedback feedback;

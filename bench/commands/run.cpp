@@ -13,6 +13,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/exit_code.hpp"
 #include "bench/commands/progress_line.hpp"
+#include "bench/common_time.hpp"
 #include "bench/plugins.hpp"
 #include "bench/run_folder.hpp"
 #include "bench/runner.hpp"
@@ -116,7 +117,9 @@ class Runs {
 
 void print_table(const Runs& runs, const RunArguments& arguments, const std::string& experiment) {
   if (arguments.quiet || runs.records().empty()) return;
-  fmt::print("{}", make_table(runs.records(), {}));
+  std::vector<RunRecord> records = runs.records();
+  score_common_time(records, false);
+  fmt::print("{}", make_table(records, {}));
   fmt::print("\nwritten: {}\n", (std::filesystem::path(arguments.out) / experiment).string());
   std::fflush(stdout);
 }
@@ -192,7 +195,7 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
                     "Also write problem.txt: the problem that gp_map ended with, for evbench solve and other solvers");
   command->add_flag("--check", arguments->check, "Check the config, and that its files can be read, and stop");
   command->footer(
-      "Each run writes OUT/EXPERIMENT/KEY: config.json, job.json, manifest.json, final.tum, online.tum,\n"
+      "Each run writes OUT/EXPERIMENT/KEY: config.json, job.json, manifest.json, final.tum, online.tum, told.txt,\n"
       "groundtruth.tum, map.ply, metrics.json, timing.csv, log.txt, status.json. KEY names what determines the\n"
       "trajectory (job.json). A run that is complete below OUT is not done again, but named and scored as the config\n"
       "says; one that broke off with an error is.\n"

@@ -8,6 +8,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/failures.hpp"
+#include "bench/common_time.hpp"
 #include "bench/run_folder.hpp"
 #include "core/support/interruption.hpp"
 #include "eval/table.hpp"
@@ -40,7 +41,10 @@ void execute(const ScoreArguments& arguments) {
     records[i] = score_again(std::filesystem::canonical(found_as).string(), protocols[i]);
     records[i].folder = found_as;
   }
-  if (!arguments.quiet) fmt::print("{}", make_table(records, {}));
+  if (!arguments.quiet) {
+    score_common_time(records, false);
+    fmt::print("{}", make_table(records, {}));
+  }
   throw_together(unreadable);
 }
 
@@ -58,7 +62,8 @@ void add_score(CLI::App& app) {
                 "Override a value of the protocol: evaluation.KEY=VALUE, e.g. evaluation.alignment=se3");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->footer(
-      "Reads final.tum, online.tum and groundtruth.tum of each run, rewrites its metrics.json, and its config.json "
+      "Reads final.tum, online.tum, told.txt and groundtruth.tum of each run, rewrites its metrics.json, and its "
+      "config.json "
       "with\n"
       "the protocol. The same protocol gives the same bytes.");
   command->callback([arguments] { execute(*arguments); });

@@ -7,6 +7,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/failures.hpp"
+#include "bench/common_time.hpp"
 #include "core/io/atomic_file.hpp"
 
 namespace evbench {
@@ -26,8 +27,9 @@ void execute(const TableArguments& arguments) {
   TableOptions options = arguments.options;
   options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
   std::vector<std::string> unreadable;
-  const std::vector<RunRecord> runs = find_runs(arguments.folders, &unreadable);
+  std::vector<RunRecord> runs = find_runs(arguments.folders, &unreadable);
   if (runs.empty()) throw_together(unreadable);
+  score_common_time(runs, options.online);
   const std::string table = make_table(runs, options);
   if (arguments.out.empty()) {
     fmt::print("{}", table);

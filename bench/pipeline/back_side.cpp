@@ -28,6 +28,15 @@ PoseTrajectory sample(const BackEnd& backend, double rate) {
 
 bool is_finite(const StampedPose& pose) { return pose.T.p.allFinite() && pose.T.q.coeffs().allFinite(); }
 
+/// Each pose that was the newest when it was told.
+PoseTrajectory newest_poses(const std::vector<OnlinePose>& told) {
+  std::vector<StampedPose> poses;
+  for (const OnlinePose& pose : told) {
+    if (poses.empty() || pose.t > poses.back().t) poses.push_back(pose);
+  }
+  return PoseTrajectory(std::move(poses), "the online trajectory");
+}
+
 template <class Value>
 void append(std::string& bytes, const Value& value) {
   static_assert(std::is_trivially_copyable_v<Value> && sizeof(TrackId) == sizeof(double));  // no padding
@@ -49,17 +58,25 @@ BackSide::BackSide(const MakeBackEnd& make, BackEndContext context, const Camera
 void BackSide::begin() {
   auto estimator = std::make_unique<Estimator>();
   BackEndContext context = context_;
-  context.online = [&online = estimator->online](const StampedPose& pose) {
-    if (!is_finite(pose))
-      throw std::runtime_error(fmt::format("the back-end's pose at {:.6f} s is not finite", pose.t));
-    if (!online.empty() && pose.t <= online.back().t) {
-      throw std::runtime_error(
-          fmt::format("the back-end told its online pose at {:.6f} s after that at {:.6f} s", pose.t, online.back().t));
-    }
-    online.push_back(pose);
-  };
+  context.online = [this, &heard = *estimator](const OnlinePose& pose) { hear(pose, heard); };
   estimator->backend = watch_.time([&] { return make_(context); });
   estimators_.push_back(std::move(estimator));
+}
+
+/// A pose ahead of the data counts as known when its time has come.
+void BackSide::hear(OnlinePose pose, Estimator& estimator) const {
+  if (!std::isfinite(pose.t) || !is_finite(pose) || (pose.velocity && !pose.velocity->allFinite())) {
+    throw std::runtime_error(fmt::format("the back-end's pose at {:.6f} s is not finite", pose.t));
+  }
+  pose.known_at = std::max(pose.t, pose.known_at.value_or(until_));
+  std::vector<OnlinePose>& told = estimator.told;
+  if (!told.empty() && !(*pose.known_at >= *told.back().known_at)) {
+    throw std::runtime_error(
+        fmt::format("the back-end told an online pose as known at {:.6f} s after one known at {:.6f} s", *pose.known_at,
+                    *told.back().known_at));
+  }
+  told.push_back(pose);
+  if (!estimator.newest || pose.t >= estimator.newest->t) estimator.newest = pose;
 }
 
 void BackSide::take(TrackBatch batch) {
@@ -72,7 +89,9 @@ void BackSide::take(TrackBatch batch) {
     begin();
   }
   until_ = batch.until;
-  watch_.time([&] { estimators_.back()->backend->advance(batch); });
+  Estimator& estimator = *estimators_.back();
+  watch_.time([&] { estimator.backend->advance(batch); });
+  if (estimator.newest) estimator.covariances.take(*estimator.newest, *estimator.backend);
 }
 
 Feedback BackSide::feedback(const FeedbackNeeds& needs) {
@@ -137,17 +156,22 @@ void BackSide::add_piece(Estimator& estimator, double rate, RunResult& result) c
   BackEnd& backend = *estimator.backend;
   result.learnt = backend.learnt();
   result.updates.insert(result.updates.end(), backend.updates().begin(), backend.updates().end());
-  Piece piece{sample(backend, rate), PoseTrajectory(std::move(estimator.online), "the online trajectory"),
-              backend.map(), backend.problem()};
+  Piece piece;
+  piece.final_trajectory = sample(backend, rate);
   if (!std::ranges::all_of(piece.final_trajectory.poses(), is_finite)) {
     throw std::runtime_error("the back-end's trajectory is not finite");
   }
   const Status status = backend.status();
   if (piece.final_trajectory.empty() || status.state == RunState::failed) return;
   // What was told after the data had ended is no estimate from data.
-  if (status.state == RunState::lost && !piece.online_trajectory.empty()) {
-    piece.online_trajectory = piece.online_trajectory.cut(piece.online_trajectory.start(), status.time);
+  piece.told = std::move(estimator.told);
+  if (status.state == RunState::lost) {
+    std::erase_if(piece.told, [&](const OnlinePose& pose) { return pose.t > status.time; });
   }
+  piece.online_trajectory = newest_poses(piece.told);
+  piece.map = backend.map();
+  piece.problem = backend.problem();
+  piece.relative = estimator.covariances.finish(backend);
   result.pieces.push_back(std::move(piece));
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/pipeline/covariance_samples.hpp"
 #include "bench/pipeline/pipeline.hpp"
 #include "bench/pipeline/standstill.hpp"
 #include "bench/pipeline/stopwatch.hpp"
@@ -36,10 +37,13 @@ class BackSide {
   /// A back-end and what it told.
   struct Estimator {
     std::unique_ptr<BackEnd> backend;
-    std::vector<StampedPose> online;
+    std::vector<OnlinePose> told;
+    std::optional<StampedPose> newest;  ///< of these
+    CovarianceSamples covariances;
   };
 
   void begin();
+  void hear(OnlinePose pose, Estimator& estimator) const;
   void undistort(TrackBatch& batch);
   void digest(const TrackBatch& batch);
   void add_piece(Estimator& estimator, double rate, RunResult& result) const;

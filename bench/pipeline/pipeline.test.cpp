@@ -89,7 +89,7 @@ class Mean : public BackEnd {
     }
     if (!batch.observations.empty()) {
       poses_.push_back({batch.observations.back().t, {Eigen::Quaterniond::Identity(), {sum_.x(), sum_.y(), 0.0}}});
-      context_.online(poses_.back());
+      context_.online({poses_.back()});
       silent_since_ = batch.until;
     }
     using Support = TrackingMonitor::Support;
@@ -314,25 +314,57 @@ TEST_CASE("An error in the back-end ends a run in two threads, too") {
   }
 }
 
-TEST_CASE("Online poses that are not finite or go back in time are an error") {
+TEST_CASE("Online poses that are not finite, or known before what was told already, are an error") {
   class Tells : public Mean {
    public:
-    Tells(const BackEndContext& context, StampedPose pose) : Mean(context), online_(context.online), pose_(pose) {}
+    Tells(const BackEndContext& context, OnlinePose pose) : Mean(context), online_(context.online), pose_(pose) {}
     void advance(const TrackBatch& batch) override {
+      if (batch.until > 0.5) online_({{batch.until, {}}});
       if (batch.until > 0.5) online_(pose_);
     }
 
    private:
-    std::function<void(const StampedPose&)> online_;
-    StampedPose pose_;
+    std::function<void(const OnlinePose&)> online_;
+    OnlinePose pose_;
   };
   Listener frontend(tracks({{0.0, 2.0}}), {});
-  const auto telling = [](StampedPose pose) {
+  const auto telling = [](const OnlinePose& pose) {
     return [pose](const BackEndContext& context) { return std::make_unique<Tells>(context, pose); };
   };
-  CHECK_THROWS_WITH(run(frontend, 2.0, {}, telling({0.5, {}})), Contains("after that at"));
-  CHECK_THROWS_WITH(run(frontend, 2.0, {}, telling({0.5, {Eigen::Quaterniond::Identity(), {0, std::nan(""), 0}}})),
-                    Contains("not finite"));
+  CHECK_THROWS_WITH(run(frontend, 2.0, {}, telling({{0.5, {}}, 0.5})), Contains("known at 0.500000 s after one"));
+  const SE3 broken{Eigen::Quaterniond::Identity(), {0, std::nan(""), 0}};
+  CHECK_THROWS_WITH(run(frontend, 2.0, {}, telling({{0.5, broken}})), Contains("not finite"));
+  const Vector6 no_velocity = Vector6::Constant(std::nan(""));
+  CHECK_THROWS_WITH(run(frontend, 2.0, {}, telling({{0.5, {}}, {}, no_velocity})), Contains("not finite"));
+}
+
+TEST_CASE("What a back-end tells of an older time again is kept beside the online trajectory, with when it was known") {
+  class Smooths : public Mean {
+   public:
+    explicit Smooths(const BackEndContext& context) : Mean(context), online_(context.online) {}
+    void advance(const TrackBatch& batch) override {
+      const SE3 T;
+      online_({{batch.until - 0.005, T}, batch.until - 0.002});
+      if (batch.until > 0.5) online_({{batch.until - 0.205, T}});
+    }
+    void finish() override {}
+    PoseTrajectory trajectory() const override {
+      return PoseTrajectory(std::vector<StampedPose>{{0.0, {}}, {1.0, {}}});
+    }
+
+   private:
+    std::function<void(const OnlinePose&)> online_;
+  };
+  Listener frontend(tracks({{0.0, 1.0}}), {});
+  const RunResult result =
+      run(frontend, 1.0, {}, [](const BackEndContext& context) { return std::make_unique<Smooths>(context); });
+  const std::vector<OnlinePose>& told = result.pieces.at(0).told;
+  const PoseTrajectory& online = result.pieces.at(0).online_trajectory;
+  CHECK(online.size() == 100);
+  CHECK(told.size() == 150);
+  CHECK(told.back().t == Approx(0.795));
+  CHECK(told.back().known_at == Approx(1.0));
+  CHECK(told[told.size() - 2].known_at == Approx(0.998));
 }
 
 TEST_CASE("Free-running, feedback comes as soon as it is there, and the log says that the run can't be repeated") {

@@ -6,6 +6,10 @@
 
 namespace evbench {
 
+ControlState extrapolate(const ControlState& state, double dt) {
+  return {state.t + dt, state.T * se3::exp(dt * state.velocity), state.velocity};
+}
+
 HermiteWeights::HermiteWeights(double s, double dt)
     : a(dt * s * (1.0 - s) * (1.0 - s)),
       b(s * s * (3.0 - 2.0 * s)),

@@ -16,6 +16,9 @@ struct ControlState {
   }
 };
 
+/// The state dt [s] later (or earlier) at constant body velocity: T Exp(dt ϖ).
+ControlState extrapolate(const ControlState& state, double dt);
+
 /// Weights of (ϖ_0, ξ_1, J_r(ξ_1)⁻¹ϖ_1) in the local tangent ξ(τ), and of the same in its time derivative.
 struct HermiteWeights {
   double a, b, c;     ///< ξ(τ) = a ϖ_0 + b ξ_1 + c w_1

@@ -3,9 +3,7 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
-#include "core/motion/gp_trajectory.hpp"
 #include "core/motion/wnoa.hpp"
-#include "core/support/error.hpp"
 #include "core/testing/differences.hpp"
 
 namespace evbench {
@@ -133,16 +131,13 @@ TEST_CASE("Covariance between two states equals the dense GP posterior for small
   CHECK(interval.conditional_covariance(0.0, qc).norm() == 0.0);
 }
 
-TEST_CASE("A trajectory extrapolates by constant velocity and refuses unordered states") {
-  ControlState a, b;
-  b.t = 1.0;
-  b.T.p.x() = 1.0;
-  a.velocity[3] = b.velocity[3] = 1.0;
-  const GpTrajectory trajectory({a, b});
-  CHECK(trajectory.at(0.25).T.p.x() == Approx(0.25));
-  CHECK(trajectory.at(1.5).T.p.x() == Approx(1.5));
-  CHECK(trajectory.at(-0.5).T.p.x() == Approx(-0.5));
-  CHECK_THROWS_AS(GpTrajectory({b, a}), InputError);
+TEST_CASE("A state goes on with constant velocity, ahead and back") {
+  ControlState a;
+  a.t = 1.0;
+  a.velocity[3] = 2.0;
+  CHECK(extrapolate(a, 0.5).T.p.x() == Approx(1.0));
+  CHECK(extrapolate(a, -0.5).T.p.x() == Approx(-1.0));
+  CHECK(extrapolate(a, 0.5).t == 1.5);
 }
 
 }  // namespace evbench

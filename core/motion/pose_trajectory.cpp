@@ -8,6 +8,11 @@
 
 namespace evbench {
 
+SE3 interpolate(const StampedPose& left, const StampedPose& right, double t) {
+  const double s = (t - left.t) / (right.t - left.t);
+  return {left.T.q.slerp(s, right.T.q), (1.0 - s) * left.T.p + s * right.T.p};
+}
+
 PoseTrajectory::PoseTrajectory(std::vector<StampedPose> poses, const std::string& name) : poses_(std::move(poses)) {
   for (std::size_t i = 1; i < poses_.size(); ++i) {
     if (!(poses_[i - 1].t < poses_[i].t)) {
@@ -24,9 +29,7 @@ std::optional<SE3> PoseTrajectory::pose(double t) const {
   const auto right =
       std::lower_bound(poses_.begin(), poses_.end(), t, [](const StampedPose& p, double time) { return p.t < time; });
   if (right->t == t) return right->T;
-  const auto left = right - 1;
-  const double s = (t - left->t) / (right->t - left->t);
-  return SE3{left->T.q.slerp(s, right->T.q), (1.0 - s) * left->T.p + s * right->T.p};
+  return interpolate(*(right - 1), *right, t);
 }
 
 PoseTrajectory PoseTrajectory::cut(double from, double to) const {

@@ -13,6 +13,9 @@ struct StampedPose {
   SE3 T;           ///< T_world_camera
 };
 
+/// The pose at t between two: position linearly, rotation by slerp.
+SE3 interpolate(const StampedPose& left, const StampedPose& right, double t);
+
 /// A discrete trajectory: poses at strictly increasing times.
 class PoseTrajectory {
  public:
@@ -28,7 +31,7 @@ class PoseTrajectory {
   double start() const { return poses_.front().t; }  ///< [s]; not of an empty trajectory
   double end() const { return poses_.back().t; }     ///< [s]; not of an empty trajectory
 
-  /// Pose at t, interpolated between its neighbours (position linearly, rotation by slerp); none outside [start, end].
+  /// Pose at t, interpolated between its neighbours; none outside [start, end].
   std::optional<SE3> pose(double t) const;
 
   /// The poses with from ≤ t ≤ to.

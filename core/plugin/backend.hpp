@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/data/landmark.hpp"
+#include "core/data/online_poses.hpp"
 #include "core/data/problem.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/pose_trajectory.hpp"
@@ -25,8 +26,11 @@ struct BackEndContext {
   double patience = 1.0;
   std::string folder;             ///< what relative paths in options refer to
   std::string place = "backend";  ///< where the options stand, for messages: "config.json: backend"
-  /// Takes each pose of the causal estimate as it is first made, times strictly increasing: told once, never changed.
-  std::function<void(const StampedPose&)> online = [](const StampedPose&) {};
+  /// Takes poses of the causal estimate as they are made: {t, T}, and with {{t, T}, known_at, velocity} when the data
+  /// were complete that are in it, and how it moves. A pose later than all told before is the newest: it is told first
+  /// of those that an update makes, at once. What is said of an older time (again) is a better estimate, for whoever
+  /// can wait: for one that smooths. known_at must not decrease.
+  std::function<void(const OnlinePose&)> online = [](const OnlinePose&) {};
   std::function<void(const std::string&)> log = [](const std::string&) {};  ///< a line for the run's log.txt
 };
 
@@ -75,6 +79,10 @@ class BackEnd {
   /// Covariance of (δpose, δvelocity) at t, T ← T Exp(δpose), in the gauge of the back-end's anchor. Not const: it may
   /// have to factorise what has changed; the estimate stays as it is.
   virtual std::optional<Matrix12> covariance(double /*t*/) { return std::nullopt; }
+
+  /// Covariance of δ for the relative pose T(t0)⁻¹ T(t1) ← T(t0)⁻¹ T(t1) Exp(δ), t0 < t1, both times of trajectory()'s
+  /// poses. Not const, as above.
+  virtual std::optional<Matrix6> relative_covariance(double /*t0*/, double /*t1*/) { return std::nullopt; }
 
   virtual std::vector<Landmark> map() const = 0;
 

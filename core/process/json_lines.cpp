@@ -166,8 +166,7 @@ std::vector<StampedPose> poses(const Json& value, const char* key) {
   return result;
 }
 
-NewestPose newest(const Json& value) {
-  const Place place{"newest"};
+MovingPose moving_pose(const Json& value, const Place& place) {
   if (!value.is_array() || value.size() <= 8) return {pose(value, place), std::nullopt};
   const std::vector<double> v = numbers(value, "t px py pz qx qy qz qw wx wy wz vx vy vz", place);
   Json first = Json::array();

@@ -76,11 +76,11 @@ StampedPose pose(const Json& value, const Place& place);
 std::vector<StampedPose> poses(const Json& value, const char* key);
 
 /// [t, px ... qw] or [t, px ... qw, ωx, ωy, ωz, νx, νy, νz]: the velocity is none for the former.
-struct NewestPose {
+struct MovingPose {
   StampedPose pose;
   std::optional<Vector6> velocity;
 };
-NewestPose newest(const Json& value);
+MovingPose moving_pose(const Json& value, const Place& place);
 
 TrackingState tracking_state(const Json& value);
 RunState run_state(const Json& value);

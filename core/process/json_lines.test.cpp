@@ -92,7 +92,7 @@ TEST_CASE("Feedback that is written reads as what it was") {
   write_feedback(line, feedback);
   const Json message = parse_object(text_of(line));
   CHECK(tracking_state(message.at("state")) == TrackingState::degraded);
-  const NewestPose read = newest(message.at("newest"));
+  const MovingPose read = moving_pose(message.at("newest"), {"newest"});
   CHECK(read.pose.t == 0.2);
   CHECK(read.pose.T.p == newest_state.T.p);
   CHECK((read.pose.T.q.coeffs() - newest_state.T.q.coeffs()).norm() < 1e-15);

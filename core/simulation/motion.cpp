@@ -8,7 +8,7 @@
 #include "core/data/pose_file.hpp"
 #include "core/geometry/so3.hpp"
 #include "core/io/path.hpp"
-#include "core/motion/gp_trajectory.hpp"
+#include "core/motion/pose_spline.hpp"
 #include "core/simulation/random.hpp"
 #include "core/simulation/time_spans.hpp"
 #include "core/support/error.hpp"
@@ -65,20 +65,6 @@ Motion robot_arm(const MotionOptions& options, std::uint64_t seed) {
   };
 }
 
-/// The body velocity at knot i from its neighbours: the slope at i of the parabola through the three in i's tangent
-/// space, at either end that of the line.
-Vector6 velocity_at(const std::vector<StampedPose>& knots, std::size_t i) {
-  const SE3 inverse = knots[i].T.inverse();
-  const auto slope_to = [&](const StampedPose& other) -> Vector6 {
-    return se3::log(inverse * other.T) / (other.t - knots[i].t);
-  };
-  if (knots.size() < 2) return Vector6::Zero();
-  if (i == 0) return slope_to(knots[1]);
-  if (i + 1 == knots.size()) return slope_to(knots[i - 1]);
-  const double back = knots[i].t - knots[i - 1].t, ahead = knots[i + 1].t - knots[i].t;
-  return (back * slope_to(knots[i + 1]) + ahead * slope_to(knots[i - 1])) / (back + ahead);
-}
-
 /// The trajectory's poses, or interpolated ones at about `rate` [Hz] when rate > 0.
 std::vector<StampedPose> knots_of(const PoseTrajectory& file, double rate) {
   const double length = file.end() - file.start();
@@ -105,9 +91,7 @@ Motion from_trajectory(const MotionOptions& options, double duration, const std:
   }
   std::vector<StampedPose> knots = knots_of(file, options.knot_rate);
   for (StampedPose& knot : knots) knot.T.p *= options.scale;
-  std::vector<ControlState> states;
-  for (std::size_t i = 0; i < knots.size(); ++i) states.push_back({knots[i].t, knots[i].T, velocity_at(knots, i)});
-  return [trajectory = GpTrajectory(std::move(states)), begin](double t) { return trajectory.at(begin + t).T; };
+  return [spline = PoseSpline(PoseTrajectory(std::move(knots))), begin](double t) { return spline.at(begin + t); };
 }
 
 Motion base_motion(const MotionOptions& options, double duration, std::uint64_t seed, const std::string& folder,
@@ -128,7 +112,8 @@ void MotionOptions::declare(OptionSet& set) {
   set.add("max_frequency", max_frequency, "fastest sinusoid of smooth_random [Hz]").range(0.0, 1e3).above(0.0);
   set.add("period", period, "time after which robot_arm repeats [s]").above(0.0);
   set.add("distance", distance, "distance of the point that robot_arm looks at [m]").above(0.0);
-  set.add("trajectory", trajectory, "path of a trajectory to follow").path();
+  set.add("trajectory", trajectory, "path of a trajectory to follow: its poses are joined by a smooth (C2) spline")
+      .path();
   set.add("start", start, "where in the trajectory to begin, after its first pose [s]").range(0.0);
   set.add("knot_rate", knot_rate, "poses of the trajectory that are used [Hz]; fewer smooth its noise; 0: all")
       .range(0.0, 1e4);

@@ -10,7 +10,7 @@
 
 namespace evbench {
 
-/// T_world_camera at any time t [s] from 0 to the sequence's end; pose and velocity are continuous.
+/// T_world_camera at any time t [s] from 0 to the sequence's end; pose, velocity and acceleration are continuous.
 using Motion = std::function<SE3(double t)>;
 
 struct MotionOptions {
@@ -33,7 +33,8 @@ struct MotionOptions {
 /// - smooth_random: position and rotation vector are sums of three sinusoids an axis, none faster than max_frequency;
 /// - robot_arm: a closed path (a tilted figure with ratios 1:1:2) that repeats every period, the camera turned to a
 ///   point at `distance` in front of the path's centre, with a gentle roll;
-/// - trajectory: a TUM file (relative to `folder`), sampled at knot_rate and joined by the WNOA prior's interpolation.
+/// - trajectory: the poses of a file (relative to `folder`), sampled at knot_rate and joined by a spline (PoseSpline).
+///   What joins them must be no back-end's motion model, which it would favour.
 /// Throws InputError, naming `place`, when a trajectory file is missing, too short for `duration` [s], or damaged.
 Motion make_motion(const MotionOptions& options, double duration, std::uint64_t seed, const std::string& folder,
                    const std::string& place);

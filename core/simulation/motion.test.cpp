@@ -78,6 +78,22 @@ TEST_CASE("A trajectory file is followed, with continuous velocity") {
   }
 }
 
+TEST_CASE("A flight through few poses of a trajectory has no jump of acceleration at them") {
+  const testing::TemporaryFolder folder;
+  write_file(folder.file("path.txt"), format_tum(sample_motion(motion_of({}), 10.0, 50.0)));
+  MotionOptions options;
+  options.kind = "trajectory";
+  options.trajectory = "path.txt";
+  options.knot_rate = 4.0;
+  const Motion motion = motion_of(options, folder.path());
+  const auto acceleration = [&](double t) -> Vector6 {
+    return (velocity(motion, t + 1e-4) - velocity(motion, t - 1e-4)) / 2e-4;
+  };
+  for (double t = 0.25; t < 9.9; t += 0.25) {
+    REQUIRE((acceleration(t + 5e-4) - acceleration(t - 5e-4)).norm() < 0.01);
+  }
+}
+
 TEST_CASE("A camera on hold rests, one that only rotates keeps its place, and neither jumps") {
   MotionOptions options;
   options.hold = {2.0, 3.0};

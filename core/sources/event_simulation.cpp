@@ -10,7 +10,7 @@ namespace evbench {
 namespace {
 
 const Registration<Source, EventSimulation> registration("event_simulation",
-                                                         "simulated events of a rendered scene, with ground truth");
+                                                         "simulated events of a rendered scene, with ground truth", 2);
 
 /// A pixel takes some 300 bytes.
 constexpr std::int64_t kMostPixels = 4'000'000;

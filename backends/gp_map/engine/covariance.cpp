@@ -28,31 +28,47 @@ std::optional<std::pair<int, int>> Factorisation::find_landmark(int j) const {
   return std::nullopt;
 }
 
-Eigen::MatrixXd Factorisation::marginal(int stage, std::span<const int> rows) const {
-  const auto size = static_cast<Eigen::Index>(rows.size());
-  Eigen::MatrixXd result(size, size);
-  Buffer x(index(root_.stride())), z;
-  for (Eigen::Index column = 0; column < size; ++column) {
-    std::ranges::fill(x, 0.0);
-    x[index(rows[index(column)])] = 1.0;
-    z.clear();
-    for (int k = stage; k <= done_; ++k) {
-      for (const Conditional& c : stages_[index(k)].conditionals) {
-        z.resize(z.size() + index(c.pivots));
-        c.eliminate(x.data(), z.data() + z.size() - c.pivots);
-      }
+/// x ← H⁻¹ x for what is left from stage `stage` on, in the layouts in which the stages find it: visit(k) is called
+/// when x is in the layout before stage k, from the one after the last done (the root as it is now) down to `stage`.
+template <class Visit>
+void Factorisation::solve_from(int stage, Buffer& x, Buffer& z, const Visit& visit) const {
+  z.clear();
+  for (int k = stage; k <= done_; ++k) {
+    for (const Conditional& c : stages_[index(k)].conditionals) {
+      z.resize(z.size() + index(c.pivots));
+      c.eliminate(x.data(), z.data() + z.size() - c.pivots);
     }
-    solve_with_root_factor(x.data());
-    double* end = z.data() + z.size();
-    for (int k = done_; k >= stage; --k) {
-      const auto& conditionals = stages_[index(k)].conditionals;
-      for (auto c = conditionals.rbegin(); c != conditionals.rend(); ++c) {
-        end -= c->pivots;
-        c->back_substitute(end, x.data());
-      }
-    }
-    for (Eigen::Index row = 0; row < size; ++row) result(row, column) = x[index(rows[index(row)])];
   }
+  solve_with_root_factor(x.data());
+  visit(done_ + 1);
+  double* end = z.data() + z.size();
+  for (int k = done_; k >= stage; --k) {
+    const auto& conditionals = stages_[index(k)].conditionals;
+    for (auto c = conditionals.rbegin(); c != conditionals.rend(); ++c) {
+      end -= c->pivots;
+      c->back_substitute(end, x.data());
+    }
+    visit(k);
+  }
+}
+
+Eigen::MatrixXd Factorisation::cross(int stage, std::span<const int> rows, int later,
+                                     std::span<const int> later_rows) const {
+  Eigen::MatrixXd result(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(later_rows.size()));
+  Buffer x(index(root_.stride())), z;
+  for (Eigen::Index i = 0; i < result.rows(); ++i) {
+    std::ranges::fill(x, 0.0);
+    x[index(rows[index(i)])] = 1.0;
+    solve_from(stage, x, z, [&](int k) {
+      if (k != later) return;
+      for (Eigen::Index j = 0; j < result.cols(); ++j) result(i, j) = x[index(later_rows[index(j)])];
+    });
+  }
+  return result;
+}
+
+Eigen::MatrixXd Factorisation::marginal(int stage, std::span<const int> rows) const {
+  const Eigen::MatrixXd result = cross(stage, rows, stage, rows);
   return 0.5 * (result + result.transpose());
 }
 
@@ -147,6 +163,22 @@ std::optional<Matrix24> Engine::neighbours(int k) {
 std::vector<Matrix24> Engine::chain_covariances(int first) {
   if (first < 1 || first <= first_state() || !factorise_undamped()) return {};
   return factorisation_.chain(first);
+}
+
+std::optional<Matrix12> Engine::poses(int i, int j) {
+  if (i < first_state() || j <= i || j >= static_cast<int>(graph_.states.size()) || !factorise_undamped())
+    return std::nullopt;
+  std::array<int, 6> rows_i, rows_j;
+  for (int row = 0; row < 6; ++row) {
+    rows_i[index(row)] = Root::row_of_state(i) + row;
+    rows_j[index(row)] = Root::row_of_state(j) + row;
+  }
+  Matrix12 joint;
+  joint << factorisation_.marginal(i + 1, rows_i), factorisation_.cross(i + 1, rows_i, j, rows_j), Matrix6::Zero(),
+      factorisation_.marginal(j, rows_j);
+  joint.bottomLeftCorner<6, 6>() = joint.topRightCorner<6, 6>().transpose();
+  if (!joint.allFinite()) return std::nullopt;
+  return joint;
 }
 
 std::optional<Matrix12> Engine::covariance(double t) {

@@ -128,6 +128,8 @@ class Engine {
   /// The same for k = first − 1, first, ... up to the newest state but one, at the price of a few stages for each; none
   /// of them when the system is singular.
   std::vector<Matrix24> chain_covariances(int first);
+  /// Of the poses of states i < j jointly.
+  std::optional<Matrix12> poses(int i, int j);
   /// Of pose and velocity at any time within the states' span.
   std::optional<Matrix12> covariance(double t);
   std::optional<Matrix3> landmark_covariance(int landmark);

@@ -49,6 +49,16 @@ TEST_CASE("Covariances of the engine are those of the batch solver") {
     const Matrix24 expected = *engine.neighbours(k - 1);
     CHECK((chain[index(k - first)] - expected).norm() < 1e-9 * expected.norm());
   }
+  for (const auto& [i, j] : {std::pair(0, 1), {3, 23}, {0, newest}, {newest - 20, newest}, {newest - 1, newest}}) {
+    const auto joint = engine.poses(i, j);
+    const auto expected = oracle.poses(i, j);
+    REQUIRE(joint);
+    REQUIRE(expected);
+    CHECK((*joint - *expected).norm() < 1e-6 * expected->norm());
+    CHECK((joint->topRightCorner<6, 6>() - expected->topRightCorner<6, 6>()).norm() < 1e-6 * expected->norm());
+  }
+  CHECK_FALSE(engine.poses(3, 3));
+  CHECK_FALSE(engine.poses(3, newest + 1));
   for (const double t : {0.01, 2.513, engine.graph().states.back().t}) {
     CHECK((*engine.covariance(t) - *oracle.at(t)).norm() < 1e-6 * oracle.at(t)->norm());
   }

@@ -71,6 +71,8 @@ class Factorisation {
   /// Joint covariances of states k − 1 and k for k = first, first + 1, ..., done(): one walk backwards that inverts
   /// selected blocks only, about as dear as the stages were.
   std::vector<Matrix24> chain(int first) const;
+  /// The covariance between rows in the layout before stage `stage`, as above, and rows in that before a later one.
+  Eigen::MatrixXd cross(int stage, std::span<const int> rows, int later, std::span<const int> later_rows) const;
 
   /// Covariance of J x for x in these rows of the root as it is now.
   Eigen::MatrixXd image_in_root(std::span<const int> rows, const Eigen::MatrixXd& J) const;
@@ -101,6 +103,8 @@ class Factorisation {
   };
   void solve_with_root_factor(double* x) const;
   Eigen::MatrixXd root_covariance() const;
+  template <class Visit>
+  void solve_from(int stage, Buffer& x, Buffer& z, const Visit& visit) const;
   int place_anchor(const FactorGraph& graph);
   int go_back_to(int first);
   std::optional<Variable> do_stage(int k, const FactorGraph& graph, LinearisationPoints& points, double damping);

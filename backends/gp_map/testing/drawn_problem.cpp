@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "core/motion/gp_trajectory.hpp"
 #include "core/motion/wnoa.hpp"
 
 namespace evbench::gp_map::testing {

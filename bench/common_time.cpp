@@ -1,0 +1,61 @@
+#include "bench/common_time.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "bench/run_folder.hpp"
+#include "core/support/error.hpp"
+#include "eval/score_run.hpp"
+
+namespace evbench {
+namespace {
+
+const Json& scores_of(const RunRecord& run, bool online) { return online ? run.online_scores : run.final_scores; }
+
+/// From the first pose compared to the last one.
+std::optional<TimeRange> span_of(const Json& scores) {
+  const Json span = scores.value("span_s", Json());
+  if (!span.is_array() || span.size() != 2) return std::nullopt;  // scored before this was written down
+  return TimeRange{span[0].get<double>(), span[1].get<double>()};
+}
+
+TimeRange both(const TimeRange& a, const TimeRange& b) { return {std::max(a.from, b.from), std::min(a.to, b.to)}; }
+
+TimeRange common_time(const std::vector<RunRecord*>& runs, bool online) {
+  TimeRange common;
+  for (const RunRecord* run : runs) {
+    const Json& scores = scores_of(*run, online);
+    if (scores.is_null() || !run->competes()) continue;
+    if (const std::optional<TimeRange> span = span_of(scores)) common = both(common, *span);
+  }
+  return common;
+}
+
+Json score_within(const TimeRange& range, const RunRecord& run, bool online) {
+  if (scores_of(run, online).is_null()) return nullptr;
+  try {
+    ScoreOptions options = protocol_of_run(run.folder);
+    const bool limited = options.time_range.size() == 2;
+    const TimeRange asked = limited ? TimeRange{options.time_range[0], options.time_range[1]} : TimeRange{};
+    const TimeRange time = both(asked, range);
+    options.time_range = {time.from, time.to};
+    return to_json(score_estimate(run.folder, online, options, run).scores);
+  } catch (const InputError&) {  // too few poses, or files that are gone: the run's own scores stand all the same
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+void score_common_time(std::span<RunRecord> runs, bool online) {
+  std::map<std::string, std::vector<RunRecord*>> experiments;
+  for (RunRecord& run : runs) experiments[run.experiment].push_back(&run);
+  for (const auto& [name, of_one] : experiments) {
+    const TimeRange common = common_time(of_one, online);
+    for (RunRecord* run : of_one) {
+      run->common_scores = common.from < common.to ? score_within(common, *run, online) : Json();
+    }
+  }
+}
+
+}  // namespace evbench

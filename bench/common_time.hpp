@@ -1,0 +1,15 @@
+#pragma once
+
+#include <span>
+
+#include "eval/run_record.hpp"
+
+namespace evbench {
+
+/// Scores the runs of each experiment once more, by their own protocols, over the time that all of them cover: from the
+/// latest first pose to the earliest last one, of the final or of the online trajectories. Sets common_scores: null for
+/// runs that have no scores, or whose files can't be read, and where there is no such time. Lost and failed runs have
+/// no say in what is common.
+void score_common_time(std::span<RunRecord> runs, bool online);
+
+}  // namespace evbench

@@ -1,0 +1,46 @@
+#include "core/data/online_poses.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/geometry/so3.hpp"
+#include "core/io/atomic_file.hpp"
+#include "core/support/error.hpp"
+#include "core/testing/data.hpp"
+
+using namespace evbench;
+using Catch::Matchers::Contains;
+
+TEST_CASE("Online poses are read as they were written, with and without a velocity, an older time again") {
+  const SE3 T{so3::exp({0.1, -0.2, 1.0 / 3.0}), {1.0 / 7.0, -2.0, 3e-9}};
+  const std::vector<OnlinePose> poses = {
+      {{1.0, T}, 1.1, {}}, {{1.05, T}, 1.1 + 1e-9, Vector6(Vector6::LinSpaced(0.1, 0.7))}, {{1.0, T}, 1.2, {}}};
+  const testing::TemporaryFolder folder;
+  write_file(folder.file("told.txt"), format_online_poses(poses));
+  const std::vector<OnlinePose> read = read_online_poses(folder.file("told.txt"));
+  REQUIRE(read.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(read[i].t == poses[i].t);
+    CHECK(read[i].known_at == poses[i].known_at);
+    CHECK(read[i].T.p == T.p);
+    CHECK(read[i].T.q.angularDistance(T.q) < 1e-15);
+    CHECK(read[i].velocity == poses[i].velocity);
+  }
+  folder.write("none.txt", format_online_poses({}));
+  CHECK(read_online_poses(folder.file("none.txt")).empty());
+}
+
+TEST_CASE("A damaged file of online poses is refused with its line") {
+  const testing::TemporaryFolder folder;
+  const auto refusal = [&](const std::string& text) {
+    folder.write("told.txt", text);
+    try {
+      read_online_poses(folder.file("told.txt"));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK_THAT(refusal("1 1 0 0 0 0 0 0\n"), Contains("told.txt:1") && Contains("known_at t x y z qx qy qz qw"));
+  CHECK_THAT(refusal("1 1 0 0 0 0 0 0 1\n0.5 0.5 0 0 0 0 0 0 1\n"), Contains("told.txt:2") && Contains("decrease"));
+  CHECK_THAT(refusal("1 1 0 0 0 0 0 0 nan\n"), Contains("told.txt:1"));
+}

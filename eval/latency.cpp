@@ -1,0 +1,47 @@
+#include "eval/latency.hpp"
+
+#include <map>
+
+namespace evbench {
+namespace {
+
+constexpr double kLongestPrediction = 1.0;  // [s]
+constexpr double kVelocityBase = 0.02;      // [s]: the noise of poses nearer than this is no velocity
+constexpr double kRounding = 1e-9;          // [s]
+
+using KnownPoses = std::map<double, const OnlinePose*>;  // by time, the last that was told of it
+
+Vector6 velocity_of(const OnlinePose& newest, const KnownPoses& known) {
+  if (newest.velocity) return *newest.velocity;
+  auto older = known.upper_bound(newest.t - kVelocityBase);
+  if (older != known.begin()) --older;
+  const double dt = newest.t - older->first;
+  return dt > 0.0 ? Vector6(se3::log(older->second->T.inverse() * newest.T) / dt) : Vector6(Vector6::Zero());
+}
+
+std::optional<SE3> estimate(const KnownPoses& known, double t) {
+  const auto right = known.lower_bound(t);
+  if (right == known.end()) {
+    if (known.empty() || t - known.rbegin()->first > kLongestPrediction) return std::nullopt;
+    const OnlinePose& newest = *known.rbegin()->second;
+    return newest.T * se3::exp((t - newest.t) * velocity_of(newest, known));
+  }
+  if (right->first == t) return right->second->T;
+  if (right == known.begin()) return std::nullopt;
+  return interpolate(*std::prev(right)->second, *right->second, t);
+}
+
+}  // namespace
+
+PoseTrajectory estimates_at_latency(std::span<const OnlinePose> told, std::span<const double> times, double latency) {
+  KnownPoses known;
+  std::vector<StampedPose> poses;
+  auto next = told.begin();
+  for (const double t : times) {
+    for (; next != told.end() && *next->known_at <= t + latency + kRounding; ++next) known[next->t] = &*next;
+    if (const std::optional<SE3> T = estimate(known, t)) poses.push_back({t, *T});
+  }
+  return PoseTrajectory(std::move(poses), "the estimate at a latency");
+}
+
+}  // namespace evbench

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/data/online_poses.hpp"
+
+namespace evbench {
+
+/// What a back-end would have given at each of the times t (rising) for t itself, `latency` [s] later: from the poses
+/// that it had told as known by t + latency, of each time as it was told last. By the same rule for every back-end:
+/// - between poses of a time before t and after it, interpolation (PoseTrajectory);
+/// - after the newest one, constant body velocity: the back-end's own where it was told, else that since the newest
+///   pose that is at least 20 ms older; no farther than a second, after which there is none;
+/// - before the first one there is none.
+PoseTrajectory estimates_at_latency(std::span<const OnlinePose> told, std::span<const double> times, double latency);
+
+}  // namespace evbench
