@@ -13,7 +13,8 @@ class RobustLoss {
   /// `width`: the residual norm [sigmas] where the loss turns from quadratic.
   RobustLoss(Kind kind, double width) : kind_(kind), width_(width) {}
 
-  bool is_quadratic() const { return kind_ == Kind::none; }
+  Kind kind() const { return kind_; }
+  double width() const { return width_; }
 
   double value(double s) const {
     const double w2 = width_ * width_;
