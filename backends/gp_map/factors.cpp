@@ -9,19 +9,6 @@
 namespace evbench::gp_map {
 namespace {
 
-/// ½ Σ ρ of the observations in an interval.
-double measurement_cost(const FactorGraph& graph, int k, const GpInterval& interval) {
-  const IntervalObservations& observations = graph.intervals[index(k)];
-  double cost = 0.0;
-  for (const auto& group : observations.groups()) {
-    const Vector3& landmark = graph.landmarks[index(group.landmark)].position;
-    for (const Observation& z : observations.of(group)) {
-      cost += 0.5 * graph.loss.value(reprojection_residual(interval, landmark, z, graph.camera).squaredNorm());
-    }
-  }
-  return cost;
-}
-
 /// Calls visit(interval, observation) for each of a landmark's observations.
 template <class Visit>
 void for_each_observation(const FactorGraph& graph, int landmark, Visit visit) {
@@ -135,35 +122,6 @@ double state_prior_cost(const FactorGraph& graph, int state) {
     if (prior.state == state) cost += 0.5 * residual(prior, x).squaredNorm();
   }
   return cost;
-}
-
-double landmark_cost(const FactorGraph& graph, int landmark, const Vector3& position) {
-  const LandmarkPrior& prior = graph.landmarks[index(landmark)].prior;
-  double cost = 0.5 * residual(prior, position).squaredNorm();
-  for_each_observation(graph, landmark, [&](const GpInterval& interval, const Observation& z) {
-    cost += 0.5 * graph.loss.value(reprojection_residual(interval, position, z, graph.camera).squaredNorm());
-  });
-  return cost;
-}
-
-LandmarkSystem linearise_landmark(const FactorGraph& graph, int landmark, const Vector3& position) {
-  const LandmarkPrior& prior = graph.landmarks[index(landmark)].prior;
-  LandmarkSystem system;
-  if (std::isfinite(prior.sigma)) {
-    system.H.diagonal().setConstant(1.0 / (prior.sigma * prior.sigma));
-    system.g = (position - prior.position) / (prior.sigma * prior.sigma);
-  }
-  for_each_observation(graph, landmark, [&](const GpInterval& interval, const Observation& z) {
-    const SE3 T = interval.pose(z.t).inverse();
-    const Vector3 q = T * position;
-    if (!(q.z() > 0.0)) return;
-    const Vector2 e = z.inverse_sigma * (graph.camera.project(q) - z.pixel);
-    const Matrix23 J = z.inverse_sigma * graph.camera.project_jacobian(q) * T.R();
-    const double weight = graph.loss.weight(e.squaredNorm());
-    system.H += weight * J.transpose() * J;
-    system.g += weight * J.transpose() * e;
-  });
-  return system;
 }
 
 double mean_log_distance(const FactorGraph& graph) {

@@ -30,17 +30,11 @@ Vector6 residual(const VelocityPrior& prior, const ControlState& state);
 Vector3 residual(const LandmarkPrior& prior, const Vector3& position);  ///< zero without a prior
 double residual(const ScaleAnchor& anchor, const FactorGraph& graph);   ///< zero without an anchor
 
+/// ½ Σ ρ of the observations in interval k, whose states are those of `interval`.
+double measurement_cost(const FactorGraph& graph, int k, const GpInterval& interval);
 /// ½ Σ ρ of an interval's observations and motion prior, and of the priors on a state.
 double interval_cost(const FactorGraph& graph, int k);
 double state_prior_cost(const FactorGraph& graph, int state);
-/// ½ Σ ρ of a landmark's observations and prior if it were at this position.
-double landmark_cost(const FactorGraph& graph, int landmark, const Vector3& position);
-/// H and g of the same with respect to the landmark alone.
-struct LandmarkSystem {
-  Matrix3 H = Matrix3::Zero();
-  Vector3 g = Vector3::Zero();
-};
-LandmarkSystem linearise_landmark(const FactorGraph& graph, int landmark, const Vector3& position);
 double mean_log_distance(const FactorGraph& graph);  ///< of the scale anchor's landmarks; 0 without any
 
 using Matrix24 = Eigen::Matrix<double, 24, 24>;
@@ -53,6 +47,9 @@ struct ErrorSum {
   int count = 0;
   int behind = 0;  ///< of these, so many have the landmark behind the camera
 };
+
+/// Of interval k's observations at the graph's estimate, one for each of its groups.
+std::vector<ErrorSum> reprojection_errors(const FactorGraph& graph, int k);
 
 /// What one interval contributes to the normal equations H δ = −g, H = Σ JᵀJ, g = Σ Jᵀe: state columns are the
 /// increments (pose, velocity) of state k−1, then of state k.

@@ -103,6 +103,34 @@ TEST_CASE("An interval's normal equations are those of central differences of it
   }
 }
 
+TEST_CASE("An interval's cost and reprojection errors are the sums over its observations, however far it turns") {
+  RandomTangents random;
+  for (int i = 0; i < 200; ++i) {
+    FactorGraph graph = random_interval(random, i, 1 + i % 9);
+    graph.loss = RobustLoss(static_cast<RobustLoss::Kind>(i % 3), 2.0);
+    if (i % 2 == 0) graph.states[1].T = graph.states[0].T * se3::exp(random.tangent(i));
+    const GpInterval interval(graph.states[0], graph.states[1]);
+    const std::vector<ErrorSum> errors = reprojection_errors(graph, 1);
+    const auto& groups = graph.intervals[1].groups();
+    REQUIRE(errors.size() == groups.size());
+    double cost = 0.0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const Vector3& point = graph.landmarks[index(groups[g].landmark)].position;
+      ErrorSum expected;
+      for (const Observation& z : graph.intervals[1].of(groups[g])) {
+        cost += 0.5 * graph.loss.value(reprojection_residual(interval, point, z, graph.camera).squaredNorm());
+        const double error = reprojection_error(interval, point, z, graph.camera);
+        ++expected.count;
+        std::isfinite(error) ? expected.px += error : ++expected.behind;
+      }
+      CHECK(errors[g].px == Approx(expected.px).epsilon(1e-9));
+      CHECK(errors[g].count == expected.count);
+      CHECK(errors[g].behind == expected.behind);
+    }
+    CHECK(measurement_cost(graph, 1, interval) == Approx(cost).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("Gradients of robust losses and of state priors are those of the cost") {
   RandomTangents random;
   for (int i = 0; i < 100; ++i) {

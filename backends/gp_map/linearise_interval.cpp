@@ -137,16 +137,9 @@ void add_landmarks(const Shared& shared, const IntervalInput& in, const Matrix3&
     }
     LandmarkSums landmark;
     for (int n = 0; n < count[0]; ++n) {  // lane 0 has the most
-      Measured z;
+      Measured z(shared.interval.t0);
       for (std::size_t i = 0; i < kLanes; ++i) {
-        z.t[i] = shared.t0;
-        if (n >= count[i]) continue;
-        const Observation& o = *next[i]++;
-        z.t[i] = o.t;
-        z.u[i] = o.pixel.x();
-        z.v[i] = o.pixel.y();
-        z.inverse_sigma[i] = o.inverse_sigma;
-        z.present[i] = 1.0;
+        if (n < count[i]) z.set(i, *next[i]++);
       }
       add_observation<range>(shared, m, z, landmark, sums);
     }
@@ -229,15 +222,6 @@ void map_to_states(const LocalSystem& local, const EndMap& blocks, IntervalLinea
   result.gradient.head<12>() += local.g.head<12>();
 }
 
-/// An upper bound of |φ(τ)| in the interval.
-Range range_of(const GpInterval& interval) {
-  const double bound =
-      4.0 / 27.0 * interval.dt() * (interval.velocity0().head<3>().norm() + interval.w1().head<3>().norm()) +
-      interval.xi1().head<3>().norm();
-  if (bound < 1.0) return Range::small;
-  return bound < 3.5 ? Range::medium : Range::any;
-}
-
 }  // namespace
 
 void linearise_interval(const IntervalInput& in, IntervalLinearisation& result) {
@@ -255,22 +239,9 @@ void linearise_interval(const IntervalInput& in, IntervalLinearisation& result) 
     const auto& gb = groups[index(b)];
     return ga.end - ga.begin > gb.end - gb.begin;
   });
-  const Shared shared{in.loss,
-                      in.camera,
-                      interval.t0(),
-                      interval.dt(),
-                      lane3(interval.velocity0().head<3>()),
-                      lane3(interval.velocity0().tail<3>()),
-                      lane3(interval.xi1().head<3>()),
-                      lane3(interval.xi1().tail<3>()),
-                      lane3(interval.w1().head<3>()),
-                      lane3(interval.w1().tail<3>())};
+  const Shared shared{in.loss, in.camera, Interval(interval)};
   IntervalSums sums;
-  switch (range_of(interval)) {
-    case Range::small: add_landmarks<Range::small>(shared, in, R0, map, order, sums, result); break;
-    case Range::medium: add_landmarks<Range::medium>(shared, in, R0, map, order, sums, result); break;
-    case Range::any: add_landmarks<Range::any>(shared, in, R0, map, order, sums, result); break;
-  }
+  with_range_of(interval, [&]<Range range>() { add_landmarks<range>(shared, in, R0, map, order, sums, result); });
   LocalSystem local(sums);
   result.cost = sum(sums.cost) + local.add_motion_prior(interval, in.qc);
   map_to_states(local, map, result);

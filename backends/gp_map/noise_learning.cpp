@@ -10,9 +10,9 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kMedianNorm = 1.17741;  ///< of a two-dimensional standard normal
-constexpr double kBlock = 0.2;           ///< [s]
-constexpr int kFewest = 4;               ///< observations in a block that tells of drift
+constexpr double kMedianNorm = 1.17741;           ///< of a two-dimensional standard normal
+constexpr double kBlock = 0.2, kForgotten = 1.0;  ///< [s]
+constexpr int kFewest = 4;                        ///< observations in a block that tells of drift
 constexpr std::size_t kFewestTracks = 6;
 constexpr double kBinsPerOctave = 16.0;
 constexpr double kLeastShare = 0.01;
@@ -92,6 +92,7 @@ void NoiseLearner::add(const FactorGraph& graph, int k) {
     }
   }
   common.solve();
+  std::erase_if(open_, [&](const auto& block) { return block.second.since < interval.t0() - kForgotten; });
   const auto n = static_cast<double>(tracks);
   const double taken_away = std::sqrt(n / (n - 3.0));
   for (const Residual& r : residuals) add(r.landmark, r.t, taken_away * (r.value - common.at(r.place)));

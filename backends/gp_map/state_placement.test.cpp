@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <optional>
 
 namespace evbench::gp_map {
 namespace {
@@ -36,8 +37,37 @@ std::vector<double> placed(const PlacementOptions& options, const std::vector<Tr
 
 }  // namespace
 
+TEST_CASE("By prediction, a state stands where most tracks are not where they were predicted, else far apart") {
+  PlacementOptions options;
+  options.min_spacing = 0.01;
+  options.max_spacing = 0.1;
+  StatePlacement placement(options);
+  for (const TrackObservation& z : moving(100.0, 0.5)) placement.observe(z);
+  std::vector<double> times;
+  const auto next = [&] {
+    const auto t = placement.next(0.5);
+    if (t) times.push_back(*t);
+    return t.has_value();
+  };
+  REQUIRE(next());
+  REQUIRE(next());  // without a prediction
+  CHECK(times == std::vector{0.0, 0.1});
+  // One track of ten always deviates, all do from 0.25 s on.
+  placement.predict([&](const TrackObservation& z) {
+    return std::optional<double>(z.track == 0 || z.t > 0.25 ? 2.0 * options.deviation : 0.5 * options.deviation);
+  });
+  while (next()) {
+  }
+  REQUIRE(times.size() > 5);
+  CHECK(times[2] == Approx(0.2));
+  CHECK(times[3] > 0.25);
+  CHECK(times[3] < 0.26);
+  for (std::size_t i = 4; i < times.size(); ++i) CHECK(times[i] - times[i - 1] == Approx(0.01).margin(0.002));
+}
+
 TEST_CASE("By rate, control states stand evenly from the first observation past the last one") {
   PlacementOptions options;
+  options.rule = Rule::rate;
   options.rate = 8.0;
   const auto times = placed(options, moving(0.0, 1.05), 0.01);
   REQUIRE(times.size() == 10);

@@ -3,17 +3,17 @@
 #include <cmath>
 
 #include "backends/gp_map/engine/engine.hpp"
+#include "backends/gp_map/engine/landmark_views.hpp"
 
 // The part of the engine that turns a factorisation into increments and decides whether to accept them.
 namespace evbench::gp_map {
 namespace {
 
 /// The share of `step` that lowers the landmark's own cost below `cost`, tried by halving; 0: none. Lowers `cost`.
-double descend(const FactorGraph& graph, int landmark, const Vector3& start, const Vector3& step, double share,
-               double& cost) {
+double descend(const LandmarkViews& views, const Vector3& start, const Vector3& step, double share, double& cost) {
   constexpr int kHalvings = 6;
   for (int i = 0; i < kHalvings; ++i, share *= 0.5) {
-    const double after = landmark_cost(graph, landmark, start + share * step);
+    const double after = views.cost(start + share * step);
     if (after > cost || !std::isfinite(after)) continue;
     cost = after;
     return share;
@@ -22,16 +22,16 @@ double descend(const FactorGraph& graph, int landmark, const Vector3& start, con
 }
 
 /// `size`: of the step, relative to the landmark's distance.
-Vector3 refine_landmark(const FactorGraph& graph, int landmark, Vector3 position, const Vector3& step, double size) {
+Vector3 refine_landmark(const LandmarkViews& views, Vector3 position, const Vector3& step, double size) {
   constexpr double kLargestStep = 0.3;
   constexpr int kIterations = 2;
-  double cost = landmark_cost(graph, landmark, position);
-  position += descend(graph, landmark, position, step, std::min(1.0, kLargestStep / size), cost) * step;
+  double cost = views.cost(position);
+  position += descend(views, position, step, std::min(1.0, kLargestStep / size), cost) * step;
   for (int i = 0; i < kIterations; ++i) {
-    const LandmarkSystem system = linearise_landmark(graph, landmark, position);
+    const LandmarkViews::System system = views.linearise(position);
     const Vector3 next = -system.H.ldlt().solve(system.g);
     if (!next.allFinite() || next.norm() > kLargestStep / size * step.norm()) break;
-    position += descend(graph, landmark, position, next, 1.0, cost) * next;
+    position += descend(views, position, next, 1.0, cost) * next;
   }
   return position;
 }
@@ -105,7 +105,8 @@ void Engine::refine_landmarks() {
     if (factorisation_.in_base(change.variable)) continue;  // its own cost isn't known any more
     const Vector3 before = change.before.head<3>();
     const Vector3 start = points_.landmark(j) + before;
-    const Vector3 refined = refine_landmark(graph_, j, start, points_.landmark_delta(j) - before, change.size);
+    const Vector3 step = points_.landmark_delta(j) - before;
+    const Vector3 refined = refine_landmark(LandmarkViews(graph_, j), start, step, change.size);
     points_.set_landmark_delta(graph_, j, refined - points_.landmark(j));
     refined_.push_back(change.variable);
   }

@@ -1,11 +1,7 @@
 #pragma once
 
-#include <array>
-#include <cmath>
-
-#include "backends/gp_map/engine/lanes.hpp"
-#include "backends/gp_map/factors.hpp"
-#include "core/geometry/lie_coefficients.hpp"
+#include "backends/gp_map/engine/lane_loss.hpp"
+#include "backends/gp_map/engine/observation_geometry.hpp"
 
 /// Sums of JᵀJ and Jᵀe over observations, kLanes landmarks at a time: the inner part of linearise_interval, which has
 /// the derivation.
@@ -13,73 +9,11 @@ namespace evbench::gp_map::lanes {
 
 inline constexpr int kPairs = 21;  ///< of a symmetric 6 × 6
 
-/// b, c, and their derivatives with respect to z = θ².
-struct Coefficients {
-  Lane b, c, db, dc;
-};
-
-/// 1/(2n + 2)! and 1/(2n + 3)!, alternating: b and c as power series in z.
-inline constexpr int kMaxTerms = 16;
-struct Series {
-  std::array<double, kMaxTerms> b{}, c{};
-  constexpr Series() {
-    double sign = 1.0, factorial = 1.0;  // (2n + 1)!
-    for (std::size_t n = 0; n < kMaxTerms; ++n) {
-      const double even = factorial * static_cast<double>(2 * n + 2);
-      const double odd = even * static_cast<double>(2 * n + 3);
-      b[n] = sign / even;
-      c[n] = sign / odd;
-      factorial = odd;
-      sign = -sign;
-    }
-  }
-};
-inline constexpr Series kSeries;
-
-template <int Terms>
-Coefficients series(Lane z) {
-  Coefficients r{};
-  for (std::size_t n = Terms; n-- > 0;) {  // Horner, with derivatives
-    r.db = r.db * z + r.b;
-    r.dc = r.dc * z + r.c;
-    r.b = r.b * z + kSeries.b[n];
-    r.c = r.c * z + kSeries.c[n];
-  }
-  return r;
-}
-
-/// How the coefficients are computed for all observations of an interval: by the largest rotation angle in it.
-enum class Range { small, medium, any };
-
-template <Range range>
-Coefficients coefficients(Lane z) {
-  if constexpr (range == Range::small) return series<8>(z);    // θ < 1: 2e-16
-  if constexpr (range == Range::medium) return series<16>(z);  // θ < 3.5
-  Coefficients r{};
-  for (int i = 0; i < kLanes; ++i) {
-    const CoefficientJet b = coefficient_b(z[i]);
-    const CoefficientJet c = coefficient_c(z[i]);
-    r.b[i] = b.f;
-    r.c[i] = c.f;
-    r.db[i] = b.d;
-    r.dc[i] = c.d;
-  }
-  return r;
-}
-
-inline Lane3 lane3(const Vector3& v) { return {broadcast(v.x()), broadcast(v.y()), broadcast(v.z())}; }
-
 /// What all observations of the interval share.
 struct Shared {
   const RobustLoss& loss;
   const PinholeCamera& camera;
-  double t0, dt;
-  Lane3 velocity_phi, velocity_rho, xi1_phi, xi1_rho, w1_phi, w1_rho;
-};
-
-/// The measured values of one observation of each lane's landmark.
-struct Measured {
-  Lane t{}, u{}, v{}, inverse_sigma{}, present{};
+  Interval interval;
 };
 
 /// Sums over the interval, kept by lane and added up at the end.
@@ -106,20 +40,14 @@ struct Row {
   std::array<Lane, 6> xi;
 };
 
-struct Geometry {
-  Lane3 phi, rho, u1, u2, q;
-  Coefficients k;
-  Lane s1;  // sin θ/θ
-};
-
 /// D: the row of the whitened projection's Jacobian with respect to q.
-inline Row row(const Geometry& g, const Lane3& D) {
+inline Row row(const Tangent& g, const Lane3& q, const Lane3& D) {
   const Coefficients& k = g.k;
   const Lane3 c1 = cross(g.phi, D);
   const Lane3 c2 = cross(g.phi, c1);
   const Lane3 d_m = D + g.s1 * c1 + k.b * c2;  // R D
   const Lane3 h = D + k.b * c1 + k.c * c2;     // J_l D = J_rᵀ D
-  const Lane3 w = cross(D, g.q);
+  const Lane3 w = cross(D, q);
   const Lane3 w1 = cross(g.phi, w);
   const Lane3 w2 = cross(g.phi, w1);
   // d_mᵀ ∂(J_l(φ) ρ)/∂φ
@@ -165,44 +93,17 @@ inline void accumulate(const std::array<Row, 2>& rows, const std::array<Lane, 3>
 template <Range range>
 void add_observation(const Shared& shared, const Lane3& m, const Measured& z, LandmarkSums& landmark,
                      IntervalSums& sums) {
-  const Lane s = (z.t - shared.t0) / shared.dt;
-  const Lane rest = 1.0 - s;
-  const std::array<Lane, 3> basis = {shared.dt * s * rest * rest, s * s * (3.0 - 2.0 * s), -shared.dt * s * s * rest};
-  Geometry g;
-  g.phi = basis[0] * shared.velocity_phi + basis[1] * shared.xi1_phi + basis[2] * shared.w1_phi;
-  g.rho = basis[0] * shared.velocity_rho + basis[1] * shared.xi1_rho + basis[2] * shared.w1_rho;
-  const Lane theta2 = dot(g.phi, g.phi);
-  g.k = coefficients<range>(theta2);
-  g.s1 = 1.0 - theta2 * g.k.c;
-  g.u1 = cross(g.phi, g.rho);
-  g.u2 = cross(g.phi, g.u1);
-  const Lane3 d = m - (g.rho + g.k.b * g.u1 + g.k.c * g.u2);
-  const Lane3 d1 = cross(g.phi, d);
-  g.q = d - g.s1 * d1 + g.k.b * cross(g.phi, d1);
-
-  const auto in_front = g.q.z > 0.0;
-  const Lane iz = 1.0 / (in_front ? g.q.z : Lane{} + 1.0);
-  const Lane x = g.q.x * iz;
-  const Lane y = g.q.y * iz;
-  const Lane behind = 2.0 * shared.camera.fx * z.inverse_sigma;
-  const Lane e0 = in_front ? z.inverse_sigma * (shared.camera.fx * x + shared.camera.cx - z.u) : behind;
-  const Lane e1 = in_front ? z.inverse_sigma * (shared.camera.fy * y + shared.camera.cy - z.v) : behind;
-  const Lane square = e0 * e0 + e1 * e1;
-  Lane error{};
-  for (int i = 0; i < kLanes; ++i) error[i] = std::sqrt(square[i]);
-  landmark.error += (z.present > 0.0) & in_front ? error / z.inverse_sigma : Lane{};
-  landmark.behind += in_front ? Lane{} : z.present;
-  Lane weight = z.present;
-  for (int i = 0; i < kLanes; ++i) {
-    sums.cost[i] += 0.5 * z.present[i] * shared.loss.value(square[i]);
-    weight[i] *= shared.loss.weight(square[i]);
-  }
-  weight = in_front ? weight : Lane{};
-  const Lane ax = shared.camera.fx * z.inverse_sigma * iz;
-  const Lane ay = shared.camera.fy * z.inverse_sigma * iz;
-  const std::array<Row, 2> rows = {row(g, {ax, Lane{}, -ax * x}), row(g, {Lane{}, ay, -ay * y})};
-
-  accumulate(rows, basis, {e0, e1}, weight, landmark, sums);
+  const std::array<Lane, 3> basis = hermite_basis(shared.interval, z.t);
+  const Tangent g = tangent<range>(shared.interval, basis);
+  const Lane3 q = motion(g).into_camera(m);
+  const Residual residual = residual_of(shared.camera, q, z);
+  const LaneLoss loss = loss_of(shared.loss, residual.square);
+  landmark.error += (z.present > 0.0) & residual.in_front ? sqrt(residual.square) / z.inverse_sigma : Lane{};
+  landmark.behind += residual.in_front ? Lane{} : z.present;
+  sums.cost += 0.5 * z.present * loss.value;
+  const Lane weight = residual.in_front ? z.present * loss.weight : Lane{};
+  const ImageRows D = image_rows(shared.camera, residual, z);
+  accumulate({row(g, q, D.x), row(g, q, D.y)}, basis, {residual.e0, residual.e1}, weight, landmark, sums);
 }
 
 }  // namespace evbench::gp_map::lanes

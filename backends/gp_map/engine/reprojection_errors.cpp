@@ -1,6 +1,5 @@
 #include "backends/gp_map/engine/reprojection_errors.hpp"
 
-#include <cmath>
 #include <limits>
 
 namespace evbench::gp_map {
@@ -28,17 +27,9 @@ void ReprojectionErrors::set(int k, const std::vector<IntervalLinearisation::Cou
 
 void ReprojectionErrors::take(const FactorGraph& graph, int k) {
   remove(k);
-  const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
-  for (const auto& group : graph.intervals[index(k)].groups()) {
-    ErrorSum sum;
-    for (const Observation& z : graph.intervals[index(k)].of(group)) {
-      const double error =
-          reprojection_error(interval, graph.landmarks[index(group.landmark)].position, z, graph.camera);
-      ++sum.count;
-      std::isfinite(error) ? sum.px += error : ++sum.behind;
-    }
-    parts(k).push_back({group.landmark, sum});
-  }
+  const std::vector<ErrorSum> sums = reprojection_errors(graph, k);
+  const auto& groups = graph.intervals[index(k)].groups();
+  for (std::size_t i = 0; i < sums.size(); ++i) parts(k).push_back({groups[i].landmark, sums[i]});
   count(parts(k), 1);
 }
 

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "backends/gp_map/engine/observation_geometry.hpp"
+
+namespace evbench::gp_map {
+
+/// The observations of one landmark with the poses that they were made from, for moving the landmark while these stay.
+/// The poses are the graph's when this was made; of the graph itself a reference is kept.
+class LandmarkViews {
+ public:
+  LandmarkViews(const FactorGraph& graph, int landmark);
+
+  /// ½ Σ ρ of the landmark's observations and prior if it were at this position.
+  double cost(const Vector3& position) const;
+
+  /// H and g of the same with respect to the landmark alone.
+  struct System {
+    Matrix3 H = Matrix3::Zero();
+    Vector3 g = Vector3::Zero();
+  };
+  System linearise(const Vector3& position) const;
+
+ private:
+  /// As many of an interval's observations as there are lanes.
+  struct View {
+    Matrix3 R;  ///< (R, p): from the world into the camera at the interval's first state
+    Vector3 p;
+    lanes::Motion motion;
+    lanes::Measured observed;
+  };
+  lanes::Residual residual_at(const View& view, const Vector3& position) const;
+
+  const FactorGraph& graph_;
+  LandmarkPrior prior_;
+  std::vector<View> views_;
+};
+
+}  // namespace evbench::gp_map

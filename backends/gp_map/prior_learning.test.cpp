@@ -1,0 +1,48 @@
+#include "backends/gp_map/prior_learning.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "backends/gp_map/testing/drawn_problem.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kTrue = 0.01;  // [rad²/s³, m²/s³]
+
+/// Geometric mean over intervals and axes.
+double mean_qc(const FactorGraph& graph) {
+  double sum = 0.0;
+  for (std::size_t k = 1; k < graph.qcs.size(); ++k) sum += graph.qcs[k].array().log().sum();
+  return std::exp(sum / (6.0 * static_cast<double>(graph.qcs.size() - 1)));
+}
+
+}  // namespace
+
+TEST_CASE("The prior that a motion was drawn from is learnt, from one a hundred times stronger or weaker") {
+  for (const double start : {0.01, 1.0, 100.0}) {
+    Engine engine = testing::DrawnProblem({.qc = kTrue, .pixel_sigma = 0.05}, 1).solve_incrementally();
+    for (int k = 1; k < testing::DrawnProblem::kStates; ++k) engine.set_qc(k, Vector6::Constant(start * kTrue));
+    for (int round = 0; round < 6; ++round) {
+      engine.optimise(10, 1e-6);
+      learn_prior(engine);
+    }
+    CAPTURE(start);
+    CHECK(mean_qc(engine.graph()) == Approx(kTrue).epsilon(0.4));
+  }
+}
+
+TEST_CASE("Evidence fades with time, and a guess counts where there is little") {
+  PriorEvidence sum{1.0, Vector6::Constant(4.0), Vector6::Constant(2.0)};
+  CHECK(sum.qc(Vector6::Ones(), 0.0)[0] == Approx(2.0));
+  CHECK(sum.qc(Vector6::Ones(), 2.0)[3] == Approx(1.5));
+  sum.add({1.0 + 0.5, Vector6::Constant(8.0), Vector6::Constant(1.0)}, 0.5);
+  CHECK(sum.square[2] == Approx(4.0 + 8.0 / std::exp(1.0)));
+  CHECK(sum.freedom[5] == Approx(2.0 + 1.0 / std::exp(1.0)));
+  sum.square << 1.0, 2.0, 3.0, 40.0, 50.0, 60.0;
+  sum.freedom.setOnes();
+  CHECK(sum.common_qc(Vector6::Ones(), 0.0)[1] == Approx(2.0));
+  CHECK(sum.common_qc(Vector6::Ones(), 0.0)[5] == Approx(50.0));
+}
+
+}  // namespace evbench::gp_map
