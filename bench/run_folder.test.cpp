@@ -273,8 +273,8 @@ TEST_CASE("Of an estimate in pieces the longest one is scored, and the others li
     record = run.write(config, identity_of(config), *source, ground_truth_tum(*source), execution);
   }
   std::set<std::string> expected = kFiles;
-  for (const char* name : {"final.piece1.tum", "online.piece1.tum", "map.piece1.ply", "final.piece3.tum",
-                           "online.piece3.tum", "map.piece3.ply"}) {
+  for (const char* name : {"final.piece1.tum", "online.piece1.tum", "told.piece1.txt", "map.piece1.ply",
+                           "final.piece3.tum", "online.piece3.tum", "told.piece3.txt", "map.piece3.ply"}) {
     expected.insert(name);
   }
   const std::string made = folder.file("out/short/mine");

@@ -14,14 +14,15 @@ CovarianceScores score_covariances(std::span<const RelativePose> poses, const Po
     const std::optional<SE3> from = ground_truth.pose(pose.t0 + time_offset);
     const std::optional<SE3> to = ground_truth.pose(pose.t1 + time_offset);
     if (!from || !to) continue;
-    const Eigen::LLT<Matrix6> covariance(units.asDiagonal() * pose.covariance * units.asDiagonal());
+    // Sums of parts of a matrix begin where memory is aligned: in one and the same place the digits are the same.
+    alignas(64) const Eigen::LLT<Matrix6> covariance(units.asDiagonal() * pose.covariance * units.asDiagonal());
     if (covariance.info() != Eigen::Success) {
       ++scores.singular;
       continue;
     }
     const SE3 estimate{pose.T.q, scale * pose.T.p};
-    const Vector6 error = se3::log(estimate.inverse() * (from->inverse() * *to));
-    const Vector6 whitened = covariance.matrixL().solve(error);
+    alignas(64) const Vector6 error = se3::log(estimate.inverse() * (from->inverse() * *to));
+    alignas(64) const Vector6 whitened = covariance.matrixL().solve(error);
     ++scores.n;
     scores.nees += whitened.squaredNorm() / 6.0;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -17,7 +17,7 @@ namespace evbench::bundle_adjustment {
 namespace {
 
 const Registration<BackEnd, BundleAdjustment> registration(
-    "bundle_adjustment", "bundle adjustment of frames of observations (the baseline of Liu et al. 2022)");
+    "bundle_adjustment", "bundle adjustment of frames of observations (the baseline of Liu et al. 2022)", 2);
 
 constexpr double kLongestPrediction = 0.5;  // [s]; farther, constant velocity says nothing
 constexpr double kClearlyCheaper = 1.1;     // ratio of two initial guesses' errors that decides between them

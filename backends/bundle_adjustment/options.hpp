@@ -22,8 +22,8 @@ struct Options {
   // Solver.
   int window = 10;  ///< frames that each update optimises
   std::string loss = "cauchy";
-  double loss_width = 1.0;   ///< reprojection error where the loss turns from quadratic [sigmas of the keypoint]
-  bool learn_noise = false;  ///< the keypoints' sigmas get a factor that residuals tell
+  double loss_width = 2.4;   ///< reprojection error where the loss turns from quadratic [sigmas of the keypoint]
+  bool learn_noise = true;   ///< the keypoints' sigmas get a factor that residuals tell
   int iterations = 10;       ///< of an update, at most
   bool global_solve = true;  ///< of everything, at the end
   int global_iterations = 25;
