@@ -4,6 +4,7 @@
 #include <string>
 
 #include "backends/gp_map/testing/oracle_distance.hpp"
+#include "core/simulation/random.hpp"
 #include "core/testing/data.hpp"
 
 namespace evbench::gp_map {
@@ -17,7 +18,40 @@ double largest_distance(const std::string& path, int every) {
   return testing::distance_from_oracle(engine.graph(), every).component;
 }
 
+/// Of each landmark so many, each but the first seen with more noise of its own.
+Problem multiplied(const Problem& problem, int times) {
+  Problem result = problem;
+  Random random(1);
+  const int landmarks = static_cast<int>(problem.landmarks.size());
+  result.observations.clear();
+  for (const Problem::Observation& z : problem.observations) {
+    for (int i = 0; i < times; ++i) {
+      result.observations.push_back(z);
+      result.observations.back().landmark += i * landmarks;
+      if (i > 0) result.observations.back().pixel += z.sigma * Vector2(random.normal(), random.normal());
+    }
+  }
+  for (int i = 1; i < times; ++i) {
+    result.landmarks.insert(result.landmarks.end(), problem.landmarks.begin(), problem.landmarks.end());
+    for (auto prior : problem.landmark_priors) {
+      prior.landmark += i * landmarks;
+      result.landmark_priors.push_back(prior);
+    }
+  }
+  return result;
+}
+
 }  // namespace
+
+TEST_CASE("An incremental estimate is near the optimum, of 40 landmarks alive as of 200") {
+  const auto path = evbench::testing::problem_file("small.txt.gz");
+  if (!path) return;
+  const Problem problem = read_problem(*path);
+  for (const int times : {1, 5}) {
+    const SolveResult solved = solve_problem(multiplied(problem, times), {});
+    CHECK(check_against_batch(solved.graph).relative_excess < 1e-4);
+  }
+}
 
 TEST_CASE("After the final iterations the small problem's states are the oracle's within 1 % of a sigma") {
   if (const auto path = evbench::testing::problem_file("small.txt.gz")) CHECK(largest_distance(*path, 1) < 0.01);

@@ -119,7 +119,9 @@ void add_solve(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command
-      ->add_option("--solve-tolerance", engine.solve_tolerance, "Changes below this are not solved back further [rad]")
+      ->add_option(
+          "--solve-tolerance", engine.solve_tolerance,
+          "Changes below this over the root of the number of landmarks alive are not solved back further [rad]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--check-step", engine.check_step, "Steps above this must not raise the cost [rad]")

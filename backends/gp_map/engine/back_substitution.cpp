@@ -65,13 +65,17 @@ void Engine::solve_back(UpdateSummary& summary) {
   const int newest = factorisation_.done();
   slot_change_.assign(index(Root::slot_of_row(root.stride()) + 1), 0.0);
   set_state(newest, delta_.data() + Root::row_of_state(newest));
+  int landmarks = 0;
   for (int slot = 0; slot < root.slots(); ++slot) {
-    if (root.occupant(slot) >= 0) set_landmark(root.occupant(slot), delta_.data() + Root::row_of_slot(slot), slot);
+    if (root.occupant(slot) < 0) continue;
+    set_landmark(root.occupant(slot), delta_.data() + Root::row_of_slot(slot), slot);
+    ++landmarks;
   }
+  const double tolerance = options_.solve_tolerance / std::sqrt(std::max(1, landmarks));
   for (int k = newest; k > std::max(0, factorisation_.base()); --k) {
     Factorisation::Stage& stage = factorisation_.stage(k);
     stage.skipped += separator_change(k);
-    if (stage.skipped < options_.solve_tolerance) break;
+    if (stage.skipped < tolerance) break;
     stage.skipped = 0.0;
     ++summary.solved_back;
     for (auto conditional = stage.conditionals.rbegin(); conditional != stage.conditionals.rend(); ++conditional) {

@@ -21,8 +21,9 @@ struct EngineOptions {
   int reach = 128;
   /// The same for variables in stages that are redone anyway: only their intervals have to be linearised anew.
   double relinearise_redone = 0.0015;
-  /// Back-substitution ends where the change of what a stage is solved from is below this [rad, as above].
-  double solve_tolerance = 5e-4;
+  /// Back-substitution ends where the change of what a stage is solved from is below this over √n with n landmarks in
+  /// the root [rad, as above]: what n landmarks determine together is known √n times better than by one.
+  double solve_tolerance = 3.8e-3;
   /// An update that changes a variable by more than this [rad] must not raise the cost of the intervals concerned.
   double check_step = 0.02;
   /// States for which a landmark may go unobserved before it is eliminated [≥ 1].
