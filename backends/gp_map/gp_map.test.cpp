@@ -158,6 +158,22 @@ TEST_CASE("A stretch of pure rotation does not destroy the trajectory") {
   CHECK(result.scores.ate.trans_percent < 3.0);
 }
 
+TEST_CASE("Slow motion starts as soon as the noise allows, and the trajectory begins with the observations") {
+  const TrackedScene scene(8.0, R"({"tracks": {"outlier_share": 0.1}})", 5);
+  const auto result = run(scene);
+  CHECK(result.backend->status().state == RunState::ok);
+  CHECK(result.backend->trajectory().start() < scene.observations().front().t + 0.05);
+  CHECK(result.scores.ate.trans_percent < 2.0);
+}
+
+TEST_CASE("Tracks that end before the first map lengthen the trajectory all the same") {
+  // The camera turns first: none of the tracks of its beginning is left when parallax shows.
+  const TrackedScene scene(6.0, R"({"motion": {"amplitude": 0.3}, "tracks": {"lifetime": [0.3, 0.6]}})", 2);
+  const auto result = run(scene);
+  CHECK(result.backend->status().state == RunState::ok);
+  CHECK(result.backend->trajectory().start() < 0.1);
+}
+
 TEST_CASE("A camera at rest gives no map and says so") {
   const TrackedScene scene(2.0,
                            R"({"motion": {"kind": "smooth_random", "amplitude": 1e-9, "rotation_amplitude": 1e-9}})");
