@@ -20,10 +20,11 @@ constexpr double kWidth = 3.0;  ///< of the loss, in median errors
 constexpr int kIterations = 10;
 constexpr double kDecisive = 0.5;       ///< share of the allowed uncertainty below which the best explanation is taken
 constexpr double kClearlyBetter = 2.0;  ///< [sigmas] for another explanation to replace the present map
-constexpr double kMotionGrowth = 1.15;  ///< a new attempt has to see this many times the motion of the last one ...
-constexpr double kTimeGrowth = 1.5;     ///< ... or time
-constexpr double kFarthest = 10.0;      ///< [units] where landmarks of the first map may be
-constexpr double kAnchorSigma = 1e-4;   ///< [rad, units] of the gauge: far below what data tell, well conditioned
+constexpr double kLaterUncertainty = 2.0;  ///< times what is allowed to a first map: later views may be fewer
+constexpr double kMotionGrowth = 1.15;     ///< a new attempt has to see this many times the motion of the last one ...
+constexpr double kTimeGrowth = 1.5;        ///< ... or time
+constexpr double kFarthest = 10.0;         ///< [units] where landmarks of the first map may be
+constexpr double kAnchorSigma = 1e-4;      ///< [rad, units] of the gauge: far below what data tell, well conditioned
 
 double parallax_deg(const FactorGraph& graph) {
   std::vector<double> angles;
@@ -81,7 +82,7 @@ std::optional<FirstMap> FirstMapFinder::reconsider(const TrackBuffer& tracks, do
   ViewsExplained& other = others.front();
   look->views.refine(other, now.front().width, kIterations);  // costs of one loss
   if (same_way(other, now.front()) || advantage(other, now.front()) < kClearlyBetter) return std::nullopt;
-  if (!is_sound(look->views, other)) return std::nullopt;
+  if (!(look->views.distance_sigma(other) <= kLaterUncertainty * options_.max_initial_uncertainty)) return std::nullopt;
   looks_ = 0;
   return map_of(tracks, look->views, other);
 }

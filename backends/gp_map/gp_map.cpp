@@ -18,7 +18,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 2);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 3);
 
 constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
 

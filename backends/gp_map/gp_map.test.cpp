@@ -97,7 +97,7 @@ TEST_CASE("The first landmarks keep the mean log distance that they were given")
 }
 
 TEST_CASE("When most landmarks that hold the scale turn out to be outliers, others hold it too") {
-  // The first map, at 0.85 s, has 25 tracks; 40 others come then; from 1.4 s on the first ones jump away in turn.
+  // Only 25 tracks make the first map; 40 others come at 0.86 s; from 1.4 s on the first ones jump away in turn.
   const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [7.0, 8.0], "alive": 65}})");
   constexpr TrackId kFirst = 25;
   std::vector<TrackObservation> observations;
