@@ -5,18 +5,27 @@
 #include <algorithm>
 #include <cmath>
 
-#include "backends/gp_map/engine/engine.hpp"
+#include "backends/gp_map/first_trajectory.hpp"
 #include "backends/gp_map/problem_graph.hpp"
-#include "core/structure/depth_reversal.hpp"
 #include "core/support/median.hpp"
 
 namespace evbench::gp_map {
 namespace {
 
-/// With this many times the parallax that is needed, the cheaper of two first maps is taken, however little cheaper.
-constexpr double kDecisiveParallax = 2.0;
-constexpr int kIterations = 30;
-constexpr double kAnchorSigma = 1e-4;  ///< [rad, units] of the gauge: far below what data tell, well conditioned
+constexpr int kViews = 6;
+constexpr std::size_t kTracks = 60;  ///< in the views, at most
+constexpr int kFirstIterations = 3;  ///< after which explanations that cost far more than the best one are given up
+constexpr double kFarMore = 1.5;
+constexpr double kWidth = 3.0;  ///< of the loss, in median errors
+constexpr int kIterations = 10;
+constexpr double kDecisive = 0.5;       ///< share of the allowed uncertainty below which the best explanation is taken
+constexpr double kClearlyBetter = 2.0;  ///< [sigmas] for another explanation to replace the present map
+constexpr double kLaterUncertainty = 2.0;  ///< times what is allowed to a first map: later views may be fewer
+constexpr double kMotionGrowth = 1.15;     ///< a new attempt has to see this many times the motion of the last one ...
+constexpr double kTimeGrowth = 1.5;        ///< ... or time
+constexpr double kFarOff = 2.0;            ///< times the allowed error: an outlier
+constexpr double kFarthest = 10.0;         ///< [units] where landmarks of the first map may be
+constexpr double kAnchorSigma = 1e-4;      ///< [rad, units] of the gauge: far below what data tell, well conditioned
 
 double parallax_deg(const FactorGraph& graph) {
   std::vector<double> angles;
@@ -27,12 +36,23 @@ double parallax_deg(const FactorGraph& graph) {
   return median(std::move(angles));
 }
 
-double median_error_px(const FactorGraph& graph) {
-  std::vector<double> errors;
-  for (std::size_t j = 0; j < graph.landmarks.size(); ++j) {
-    errors.push_back(reprojection_mean(graph, static_cast<int>(j)));
+/// Does the camera go the same way, as far as it goes? Two guesses that end in one solution are no ambiguity.
+bool same_way(const ViewsExplained& a, const ViewsExplained& b) {
+  constexpr double kSame = 25.0 * M_PI / 180.0;
+  std::size_t v = 0;
+  for (std::size_t i = 1; i < a.poses.size(); ++i) {
+    if (a.poses[i].p.norm() > a.poses[v].p.norm()) v = i;
   }
-  return median(std::move(errors));
+  const Vector3 &p = a.poses[v].p, &q = b.poses[v].p;
+  return std::atan2(p.cross(q).norm(), p.dot(q)) < kSame;
+}
+
+/// Evenly from one to the other, at least this far apart: so that no observation is in two views.
+std::vector<double> view_times(double from, double to, double apart) {
+  const int steps = std::min(kViews - 1, static_cast<int>((to - from) / apart + 1e-9));
+  std::vector<double> times;
+  for (int i = 0; i <= steps; ++i) times.push_back(from + (to - from) * i / std::max(steps, 1));
+  return times;
 }
 
 }  // namespace
@@ -41,90 +61,143 @@ FirstMapFinder::FirstMapFinder(const Options& options, const PinholeCamera& came
     : options_(options), camera_(camera), initialiser_(options.initialiser, camera) {}
 
 std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, double t) {
-  state_times_.push_back(t);
-  const Initialiser::Attempt attempt = initialiser_.attempt(tracks, t);
-  reason_ = attempt.reason;
-  std::vector<FirstMap> refined;
-  for (const InitialGuess& guess : attempt.candidates) {
-    auto map = refine(tracks, guess);
-    if (!map) continue;
-    const auto same = [&](const FirstMap& other) {  // two guesses that end in one solution are no ambiguity
-      return same_motion(other.graph.states.back().T, map->graph.states.back().T);
-    };
-    if (std::ranges::none_of(refined, same)) refined.push_back(std::move(*map));
-  }
-  if (refined.empty()) {
-    if (!attempt.candidates.empty()) reason_ = "the first map does not explain the observations";
+  const auto look = look_at(tracks, t);
+  if (!look) return std::nullopt;
+  const std::vector<ViewsExplained> found = explanations(look->views, look->guesses);
+  if (found.empty()) {
+    if (reason_.empty()) reason_ = "no motion explains the tracks";
     return std::nullopt;
   }
-  std::ranges::sort(refined, {}, &FirstMap::cost);
-  // What two views showed may have been noise; the refined map has seen every observation.
-  const double needed = options_.initialiser.two_view.min_parallax_deg;
-  if (refined[0].parallax_deg < needed) {
-    reason_ = fmt::format("median parallax {:.2f} deg, {:.2f} needed", refined[0].parallax_deg, needed);
-    return std::nullopt;
-  }
-  if (refined.size() > 1 && refined[1].cost < options_.ambiguity_ratio * refined[0].cost &&
-      refined[0].parallax_deg < kDecisiveParallax * needed) {
-    reason_ = "two first maps explain the observations equally well";
-    return std::nullopt;
-  }
-  return std::move(refined[0]);
+  if (!is_sound(look->views, found.front()) || !is_clear(look->views, found)) return std::nullopt;
+  return map_of(tracks, look->views, found.front());
 }
 
-/// The whole continuous-time problem over the time of the initialisation, solved from a two-view guess. None when it
-/// doesn't explain the data.
-std::optional<FirstMap> FirstMapFinder::refine(const TrackBuffer& tracks, const InitialGuess& guess) const {
+std::optional<FirstMap> FirstMapFinder::reconsider(const TrackBuffer& tracks, double t, const Present& present) {
+  auto look = look_at(tracks, t);
+  if (!look) return std::nullopt;
+  ++looks_;
+  const std::vector<double>& times = look->views.views().times;
+  const std::vector<ViewsExplained> now = explanations(look->views, {present(times.front(), times.back())});
+  std::vector<ViewsExplained> others = explanations(look->views, look->guesses);
+  if (now.empty() || others.empty()) return std::nullopt;
+  ViewsExplained& other = others.front();
+  look->views.refine(other, now.front().width, kIterations);  // costs of one loss
+  if (same_way(other, now.front()) || advantage(other, now.front()) < kClearlyBetter) return std::nullopt;
+  if (!(look->views.distance_sigma(other) <= kLaterUncertainty * options_.max_initial_uncertainty)) return std::nullopt;
+  looks_ = 0;
+  return map_of(tracks, look->views, other);
+}
+
+/// None where there is nothing new to see.
+std::optional<FirstMapFinder::Look> FirstMapFinder::look_at(const TrackBuffer& tracks, double t) {
+  state_times_.push_back(t);
+  const TrackMatches matches = initialiser_.match(tracks, t);
+  if (!matches.reason.empty()) reason_ = matches.reason;
+  if (!matches.reason.empty() || !worthwhile(matches)) return std::nullopt;
+  std::vector<double> times = view_times(matches.t0, matches.t1, options_.initialiser.window);
+  if (times.size() < 3) return std::nullopt;
+  last_ = Progress{matches.t0, matches.t1, matches.median_motion()};
+  Initialiser::Attempt attempt = initialiser_.explain(matches);
+  reason_ = attempt.reason;
+  TrackViews views = TrackViews::of(tracks, std::move(times), options_.initialiser.window, kTracks);
+  return Look{MultiView(std::move(views), camera_), std::move(attempt.candidates)};
+}
+
+/// Have the tracks moved, and farther or for longer than at the last attempt from this first view?
+bool FirstMapFinder::worthwhile(const TrackMatches& matches) const {
+  const double motion = matches.median_motion();
+  if (motion < 2.0 * options_.initialiser.two_view.threshold_px) return false;
+  if (!last_ || last_->t0 != matches.t0) return true;
+  return motion >= kMotionGrowth * last_->motion || matches.t1 - matches.t0 >= kTimeGrowth * (last_->t1 - last_->t0);
+}
+
+/// Distinct, best first. The loss gets as wide as the noise of the best one asks for.
+std::vector<ViewsExplained> FirstMapFinder::explanations(const MultiView& views,
+                                                         const std::vector<InitialGuess>& guesses) const {
+  const double wide = 2.0 * options_.initialiser.two_view.threshold_px;
+  std::vector<ViewsExplained> trials;
+  for (const InitialGuess& guess : guesses) {
+    auto trial = views.start(guess, wide);
+    if (!trial) continue;
+    views.refine(*trial, wide, kFirstIterations);
+    trials.push_back(std::move(*trial));
+  }
+  if (trials.empty()) return {};
+  std::ranges::sort(trials, {}, &ViewsExplained::cost);
+  const double width = kWidth * median(views.errors(trials.front())), enough = kFarMore * trials.front().cost;
+  std::vector<ViewsExplained> result;
+  for (ViewsExplained& trial : trials) {
+    if (trial.cost > enough) break;
+    views.refine(trial, width, kIterations);
+    const auto same = std::ranges::find_if(result, [&](const auto& other) { return same_way(other, trial); });
+    if (same == result.end()) {
+      result.push_back(std::move(trial));
+    } else if (trial.cost < same->cost) {
+      *same = std::move(trial);
+    }
+  }
+  std::ranges::sort(result, {}, &ViewsExplained::cost);
+  return result;
+}
+
+/// Do the errors that are left, and the uncertainty of the structure, allow a map?
+bool FirstMapFinder::is_sound(const MultiView& views, const ViewsExplained& explained) {
+  const double error = median(views.errors(explained)), sigma = views.distance_sigma(explained);
+  if (!(error <= options_.max_initial_error)) {
+    reason_ = fmt::format("the best first map leaves {:.2f} px, {:.2f} allowed", error, options_.max_initial_error);
+  } else if (!(sigma <= options_.max_initial_uncertainty)) {
+    reason_ = fmt::format("the structure is uncertain by {:.0f} %, {:.0f} % allowed", 100.0 * sigma,
+                          100.0 * options_.max_initial_uncertainty);
+  } else {
+    return true;
+  }
+  return false;
+}
+
+/// Is the best one so much better than all others, or its structure so certain that it is taken all the same?
+bool FirstMapFinder::is_clear(const MultiView& views, const std::vector<ViewsExplained>& found) {
+  if (views.distance_sigma(found.front()) < kDecisive * options_.max_initial_uncertainty) return true;
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    const double sigmas = advantage(found.front(), found[i]);
+    if (sigmas >= options_.min_advantage) continue;
+    reason_ = fmt::format("two first maps explain the tracks, one better by {:.1f} sigmas, {:.1f} needed", sigmas,
+                          options_.min_advantage);
+    return false;
+  }
+  return true;
+}
+
+FirstMap FirstMapFinder::map_of(const TrackBuffer& tracks, const MultiView& views,
+                                const ViewsExplained& explained) const {
+  FirstTrajectory path(tracks, camera_, options_);
+  const std::vector<double> errors = views.errors(explained);
+  std::vector<TrackId> anchored;
+  for (std::size_t i = 0; i < explained.points.size(); ++i) {
+    if (errors[i] > kFarOff * options_.max_initial_error || explained.points[i].inverse < 1.0 / kFarthest) continue;
+    path.add_landmark(views.views().tracks[i], explained.points[i]);
+    anchored.push_back(views.views().tracks[i]);
+  }
+  path.go_along(explained.poses, views.views().times, state_times_);
+
   FirstMap map;
   FactorGraph& graph = map.graph;
   graph.camera = camera_;
   graph.qc = options_.qc_scale * Eigen::Map<const Vector6>(options_.qc.data());
   graph.loss = RobustLoss(options_.loss, options_.loss_width);
-  // Constant velocity between the two views, and before the first where its tracks were seen already.
-  const ControlState view0{guess.t0, SE3{}, se3::log(guess.T1) / (guess.t1 - guess.t0)};
-  for (const double time : state_times_from(start_time(tracks, guess))) {
-    graph.add_state(extrapolate(view0, time - guess.t0));
-  }
-  if (graph.states.size() < 2) return std::nullopt;
+  for (const ControlState& state : path.states()) graph.add_state(state);
   graph.pose_priors.push_back({0, graph.states.front().T, Vector6::Constant(kAnchorSigma)});
   std::vector<int> anchors;
-  for (const Landmark& landmark : guess.landmarks) {
-    map.tracks.push_back(landmark.track);
-    anchors.push_back(graph.add_landmark(landmark.position));
-    for (const TrackObservation& z : tracks.observations(landmark.track)) {
-      graph.add_observation(anchors.back(), to_observation(z, options_.sigma_scale));
+  for (const auto& [track, point] : path.landmarks()) {
+    map.tracks.push_back(track);
+    const int landmark = graph.add_landmark(point.position());
+    if (std::ranges::binary_search(anchored, track)) anchors.push_back(landmark);
+    for (const TrackObservation& z : tracks.observations(track)) {
+      graph.add_observation(landmark, to_observation(z, options_.sigma_scale));
     }
   }
   graph.anchor_scale(graph.states.front().T.p, anchors);
-  if (graph.observation_count() == 0) return std::nullopt;
-  Engine engine(std::move(graph), {});
-  engine.optimise(kIterations, 1e-6);
-  graph = engine.graph();
-  if (!(median_error_px(graph) <= options_.max_initial_error)) return std::nullopt;
-  map.cost = evaluate(graph).total() / graph.observation_count();
   map.parallax_deg = parallax_deg(graph);
   return map;
-}
-
-/// The last state time at or before `start`, and all after it.
-std::vector<double> FirstMapFinder::state_times_from(double start) const {
-  auto first = std::upper_bound(state_times_.begin(), state_times_.end(), start + 1e-9);
-  if (first != state_times_.begin()) --first;
-  return {first, state_times_.end()};
-}
-
-/// The time from which on the guess's landmarks suffice for states, at most as long before its first view as the second
-/// one is after it.
-double FirstMapFinder::start_time(const TrackBuffer& tracks, const InitialGuess& guess) const {
-  std::vector<double> seen_from;
-  for (const Landmark& landmark : guess.landmarks) {
-    const auto observations = tracks.observations(landmark.track);
-    if (!observations.empty()) seen_from.push_back(observations.front().t);
-  }
-  const auto enough = index(options_.health.min_landmarks);
-  if (seen_from.size() < enough) return guess.t0;
-  std::ranges::sort(seen_from);
-  return std::clamp(seen_from[enough - 1], 2.0 * guess.t0 - guess.t1, guess.t0);
 }
 
 }  // namespace evbench::gp_map

@@ -17,9 +17,9 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 2);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 3);
 
-constexpr double kMemory = 1.0;  ///< [s] for which tracks are remembered that ended before there is a map
+constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -51,13 +51,15 @@ void GpMap::step(double t) {
   if (monitor_.lost()) return;
   const auto start = std::chrono::steady_clock::now();
   take_observations(t);
-  if (engine_ || initialise(t)) {
+  const bool had_map = engine_.has_value();
+  if (had_map || initialise(t)) {
     remove_outliers();
     extrapolate_state(t);
     add_observations();
     add_landmarks();
     optimise();
     learn();
+    if (had_map) reconsider(t);
     check_support();
     tell_online(t);
     predict_tracks();
@@ -86,19 +88,58 @@ void GpMap::take(const TrackObservation& z) {
     --landmarks_;
   }
   if (track.role == Track::Role::waiting) waiting_.add({&z, 1});
+  if (!young_.empty()) young_.add({&z, 1});
   if (track.role == Track::Role::landmark) new_.emplace_back(track.landmark, to_observation(z, options_.sigma_scale));
 }
 
 bool GpMap::initialise(double t) {
   auto map = first_map_.attempt(waiting_, t);
   if (!map) return false;
-  engine_.emplace(std::move(map->graph), EngineOptions{.lag = options_.lag});
-  for (const TrackId track : map->tracks) become_landmark(track, static_cast<int>(track_of_.size()));
+  young_ = waiting_;
+  begin_from(std::move(*map));
+  return true;
+}
+
+void GpMap::begin_from(FirstMap map) {
+  engine_.emplace(std::move(map.graph), EngineOptions{.lag = options_.lag});
+  prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
+  noise_ = NoiseLearner();
+  track_of_.clear();
+  landmarks_ = 0;
+  for (const TrackId track : map.tracks) become_landmark(track, static_cast<int>(track_of_.size()));
   context_.log(
       fmt::format("{:.3f} s: first map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s",
-                  graph().states.back().t, graph().landmarks.size(), graph().observation_count(), map->parallax_deg,
+                  graph().states.back().t, graph().landmarks.size(), graph().observation_count(), map.parallax_deg,
                   graph().states.front().t));
-  return true;
+}
+
+/// A young map is wrong when what has been seen since has a better explanation: then all begins anew from that.
+void GpMap::reconsider(double t) {
+  if (young_.empty()) return;
+  auto other = first_map_.reconsider(young_, t, [this](double t0, double t1) { return present_map(t0, t1); });
+  if (other) {
+    context_.log(fmt::format("{:.3f} s: another first map explains the tracks better", t));
+    for (auto& [id, track] : tracks_) track = {.ended = track.ended};
+    for (const TrackId id : young_.ids()) {
+      tracks_.try_emplace(id, Track{.ended = true});
+      live_.insert(id);
+    }
+    waiting_ = young_;
+    new_.clear();
+    begin_from(std::move(*other));
+  }
+  if (first_map_.settled()) young_ = TrackBuffer();
+}
+
+/// The world is the camera at t0, the unit the landmarks' median distance.
+InitialGuess GpMap::present_map(double t0, double t1) const {
+  InitialGuess result;
+  result.t0 = t0;
+  result.t1 = t1;
+  const SE3 to_first = pose(t0)->inverse();
+  result.T1 = to_first * *pose(t1);
+  for (const Landmark& landmark : map()) result.landmarks.push_back({landmark.track, to_first * landmark.position});
+  return result;
 }
 
 /// Tracks seen of late whose error was too large at the last optimum. What has been observed since is not counted: its

@@ -63,6 +63,7 @@ class GpMap : public BackEnd {
   void step(double t);
   void take_observations(double t);
   bool initialise(double t);
+  void reconsider(double t);
   void remove_outliers();
   void extrapolate_state(double t);
   void add_observations();
@@ -76,6 +77,8 @@ class GpMap : public BackEnd {
 
   void follow_observations(double t, double ahead);
   void take(const TrackObservation& z);
+  void begin_from(FirstMap map);
+  InitialGuess present_map(double t0, double t1) const;
   void become_landmark(TrackId track, int landmark);
   void become_outlier(int landmark);
   void hold_scale_without(int leaving);
@@ -98,6 +101,7 @@ class GpMap : public BackEnd {
   ObservationFollower follower_;
   std::map<TrackId, Track> tracks_;
   TrackBuffer waiting_;                           ///< observations of waiting tracks
+  TrackBuffer young_;                             ///< of all tracks, until the first map is settled
   std::set<TrackId> live_;                        ///< tracks that are alive, or have ended since the last step
   std::vector<TrackId> track_of_;                 ///< by landmark
   int landmarks_ = 0;                             ///< tracks that are landmarks

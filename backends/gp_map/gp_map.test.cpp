@@ -97,7 +97,7 @@ TEST_CASE("The first landmarks keep the mean log distance that they were given")
 }
 
 TEST_CASE("When most landmarks that hold the scale turn out to be outliers, others hold it too") {
-  // The first map, at 0.85 s, has 25 tracks; 40 others come then; from 1.4 s on the first ones jump away in turn.
+  // Only 25 tracks make the first map; 40 others come at 0.86 s; from 1.4 s on the first ones jump away in turn.
   const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [7.0, 8.0], "alive": 65}})");
   constexpr TrackId kFirst = 25;
   std::vector<TrackObservation> observations;
@@ -156,6 +156,22 @@ TEST_CASE("A stretch of pure rotation does not destroy the trajectory") {
   const auto result = run(scene);
   CHECK(result.backend->status().state != RunState::lost);
   CHECK(result.scores.ate.trans_percent < 3.0);
+}
+
+TEST_CASE("Slow motion starts as soon as the noise allows, and the trajectory begins with the observations") {
+  const TrackedScene scene(8.0, R"({"tracks": {"outlier_share": 0.1}})", 5);
+  const auto result = run(scene);
+  CHECK(result.backend->status().state == RunState::ok);
+  CHECK(result.backend->trajectory().start() < scene.observations().front().t + 0.05);
+  CHECK(result.scores.ate.trans_percent < 2.0);
+}
+
+TEST_CASE("Tracks that end before the first map lengthen the trajectory all the same") {
+  // The camera turns first: none of the tracks of its beginning is left when parallax shows.
+  const TrackedScene scene(6.0, R"({"motion": {"amplitude": 0.3}, "tracks": {"lifetime": [0.3, 0.6]}})", 2);
+  const auto result = run(scene);
+  CHECK(result.backend->status().state == RunState::ok);
+  CHECK(result.backend->trajectory().start() < 0.1);
 }
 
 TEST_CASE("A camera at rest gives no map and says so") {

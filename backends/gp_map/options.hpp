@@ -99,9 +99,10 @@ struct Options {
   double loss_width = 2.0;
   double sigma_scale = 1.0;
   LearningOptions learn;
-  InitialiserOptions initialiser;
+  InitialiserOptions initialiser{.two_view = {.max_iterations = 200, .min_parallax_deg = 0.0}};  ///< more views decide
   double max_initial_error = 2.0;
-  double ambiguity_ratio = 1.1;
+  double max_initial_uncertainty = 0.25;
+  double min_advantage = 3.0;
   MapOptions map;
   HealthOptions health;
   double lag = 0.0;
@@ -125,9 +126,14 @@ struct Options {
     set.group("initialiser", initialiser, "two-view initialisation");
     set.add("max_initial_error", max_initial_error, "a first map with a larger reprojection error is tried again [px]")
         .above(0.0);
-    set.add("ambiguity_ratio", ambiguity_ratio,
-            "when the second-best first map costs less than this times the best one's, wait for more data")
-        .range(1.0);
+    set.add("max_initial_uncertainty", max_initial_uncertainty,
+            "standard deviation of a first map's distances that noise may leave, as a share: the parallax that is "
+            "needed "
+            "follows from the noise")
+        .above(0.0);
+    set.add("min_advantage", min_advantage,
+            "a first map must be better than the second-best one by this much, the tracks being witnesses [sigmas]")
+        .range(0.0);
     set.group("map", map, "landmarks");
     set.group("health", health, "degraded and lost");
     set.add("lag", lag,

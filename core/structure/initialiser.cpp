@@ -11,14 +11,10 @@
 namespace evbench {
 namespace {
 
-/// Tracks with a place at both times, and the places.
-struct Matches {
-  std::vector<TrackId> tracks;
-  std::vector<Vector2> first, second;
-};
-
-Matches match(const TrackBuffer& buffer, double t0, double t1, double window) {
-  Matches result;
+TrackMatches matches_between(const TrackBuffer& buffer, double t0, double t1, double window) {
+  TrackMatches result;
+  result.t0 = t0;
+  result.t1 = t1;
   for (const TrackId id : buffer.alive(t1, 0.5 * window)) {
     const std::optional<Vector2> first = buffer.position(id, t0, window), second = buffer.position(id, t1, window);
     if (!first || !second) continue;
@@ -37,18 +33,18 @@ double median_depth(const TwoViewCandidate& candidate) {
   return median(std::move(depths));
 }
 
-InitialGuess to_guess(const TwoViewCandidate& candidate, const std::vector<TrackId>& tracks, double t0, double t1) {
+InitialGuess to_guess(const TwoViewCandidate& candidate, const TrackMatches& matches) {
   const double depth = median_depth(candidate);
   InitialGuess guess;
-  guess.t0 = t0;
-  guess.t1 = t1;
+  guess.t0 = matches.t0;
+  guess.t1 = matches.t1;
   guess.T1 = {candidate.T_first_second.q, candidate.T_first_second.p / depth};
   guess.median_parallax_deg = candidate.median_parallax_deg;
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
+  for (std::size_t i = 0; i < matches.tracks.size(); ++i) {
     if (candidate.inlier[i]) {
-      guess.landmarks.push_back({tracks[i], candidate.points[i] / depth});
+      guess.landmarks.push_back({matches.tracks[i], candidate.points[i] / depth});
     } else {
-      guess.outliers.push_back(tracks[i]);
+      guess.outliers.push_back(matches.tracks[i]);
     }
   }
   return guess;
@@ -62,21 +58,35 @@ void InitialiserOptions::declare(OptionSet& set) {
   set.group("two_view", two_view, "relative pose of the two views");
 }
 
+double TrackMatches::median_motion() const {
+  std::vector<double> motions;
+  for (std::size_t i = 0; i < tracks.size(); ++i) motions.push_back((second[i] - first[i]).norm());
+  return median(std::move(motions));
+}
+
 Initialiser::Attempt Initialiser::attempt(const TrackBuffer& tracks, double t) {
-  Matches matches;
-  if (reference_) matches = match(tracks, *reference_, t, options_.window);
-  if (static_cast<int>(matches.tracks.size()) < options_.min_tracks) {
-    const std::size_t now = match(tracks, t, t, options_.window).tracks.size();
-    const bool enough = static_cast<int>(now) >= options_.min_tracks;
-    const std::string reason = enough ? fmt::format("first view set at {:.3f} s with {} tracks", t, now)
-                                      : fmt::format("{} tracks at {:.3f} s, {} needed", now, t, options_.min_tracks);
-    reference_ = enough ? std::optional(t) : std::nullopt;
-    return {reason, {}};
-  }
+  const TrackMatches matches = match(tracks, t);
+  return matches.reason.empty() ? explain(matches) : Attempt{matches.reason, {}};
+}
+
+TrackMatches Initialiser::match(const TrackBuffer& tracks, double t) {
+  TrackMatches matches;
+  if (reference_) matches = matches_between(tracks, *reference_, t, options_.window);
+  if (static_cast<int>(matches.tracks.size()) >= options_.min_tracks) return matches;
+  const std::size_t now = matches_between(tracks, t, t, options_.window).tracks.size();
+  const bool enough = static_cast<int>(now) >= options_.min_tracks;
+  reference_ = enough ? std::optional(t) : std::nullopt;
+  TrackMatches none;
+  none.reason = enough ? fmt::format("first view set at {:.3f} s with {} tracks", t, now)
+                       : fmt::format("{} tracks at {:.3f} s, {} needed", now, t, options_.min_tracks);
+  return none;
+}
+
+Initialiser::Attempt Initialiser::explain(const TrackMatches& matches) const {
   const TwoViewResult result = relative_pose(matches.first, matches.second, camera_, options_.two_view);
   Attempt attempt{result.reason, {}};
   for (const TwoViewCandidate& candidate : result.candidates) {
-    attempt.candidates.push_back(to_guess(candidate, matches.tracks, *reference_, t));
+    attempt.candidates.push_back(to_guess(candidate, matches));
     attempt.candidates.push_back(reverse_depth(attempt.candidates.back()));
   }
   return attempt;

@@ -27,6 +27,16 @@ struct InitialGuess {
   std::vector<TrackId> outliers;  ///< tracks seen at both times that the guess doesn't explain
 };
 
+/// Where tracks were at the first view and are now.
+struct TrackMatches {
+  std::string reason;  ///< why there are none
+  double t0 = 0.0, t1 = 0.0;
+  std::vector<TrackId> tracks;
+  std::vector<Vector2> first, second;  ///< [px]
+
+  double median_motion() const;  ///< [px] from the first to the second place; of any but none
+};
+
 /// Initialisation of monocular odometry from two views (Liu et al. 2022, Algorithm 1, lines 7-9).
 ///
 /// The first view is at a reference time: the first with enough tracks; it moves on when too few of its tracks are
@@ -44,6 +54,10 @@ class Initialiser {
 
   /// Tries with the tracks at time t; call it with times that increase.
   Attempt attempt(const TrackBuffer& tracks, double t);
+
+  /// The same in two parts: the matches are cheap, what they are explained by is not.
+  TrackMatches match(const TrackBuffer& tracks, double t);
+  Attempt explain(const TrackMatches& matches) const;
 
   /// Time of the first view, once there is one.
   std::optional<double> reference_time() const { return reference_; }

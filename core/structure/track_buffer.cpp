@@ -10,8 +10,15 @@ namespace {
 
 constexpr auto by_time = [](const TrackObservation& a, const TrackObservation& b) { return a.t < b.t; };
 
-/// Weighted straight line through the observations; its value at t, or the weighted mean when the times don't span one.
-Vector2 line_at(std::span<const TrackObservation> observations, std::span<const double> weights, double t) {
+/// A straight line through observations, its times relative to t.
+struct Line {
+  Vector2 at_t = Vector2::Zero(), slope = Vector2::Zero();
+
+  Vector2 at(double dt) const { return at_t + slope * dt; }
+};
+
+/// The weighted least squares line; a constant when the times don't span one.
+Line line_through(std::span<const TrackObservation> observations, std::span<const double> weights, double t) {
   double sum = 0.0, time = 0.0;
   Vector2 mean = Vector2::Zero();
   for (std::size_t i = 0; i < observations.size(); ++i) {
@@ -28,25 +35,27 @@ Vector2 line_at(std::span<const TrackObservation> observations, std::span<const 
     spread += weights[i] * dt * dt;
     slope += weights[i] * dt * (observations[i].pixel - mean);
   }
-  return spread > 0.0 ? Vector2(mean - slope / spread * time) : mean;
+  if (!(spread > 0.0)) return {mean, Vector2::Zero()};
+  slope /= spread;
+  return {mean - slope * time, slope};
 }
 
 /// Robust line: reweighted by the distance from the coordinate-wise trend, so that single jumps of a tracker do no
 /// harm.
 Vector2 robust_line_at(std::span<const TrackObservation> observations, double t) {
   std::vector<double> weights(observations.size(), 1.0);
-  Vector2 result = line_at(observations, weights, t);
-  if (observations.size() < 4) return result;
+  Line line = line_through(observations, weights, t);
+  if (observations.size() < 4) return line.at_t;
   std::vector<double> distances(observations.size());
   for (int iteration = 0; iteration < 3; ++iteration) {
     for (std::size_t i = 0; i < observations.size(); ++i) {
-      distances[i] = (observations[i].pixel - line_at(observations, weights, observations[i].t)).norm();
+      distances[i] = (observations[i].pixel - line.at(observations[i].t - t)).norm();
     }
     const double width = std::max(2.0 * median(distances), 1e-3);
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = distances[i] <= width ? 1.0 : width / distances[i];
-    result = line_at(observations, weights, t);
+    line = line_through(observations, weights, t);
   }
-  return result;
+  return line.at_t;
 }
 
 }  // namespace

@@ -59,8 +59,8 @@ std::vector<Hypothesis> hypotheses(const Matches& matches) {
   const std::vector<cv::Point2d> first = to_cv(matches.first), second = to_cv(matches.second);
   std::vector<Hypothesis> result;
 
-  const cv::Mat essentials =
-      cv::findEssentialMat(first, second, K, cv::RANSAC, matches.options.confidence, matches.options.threshold_px);
+  const cv::Mat essentials = cv::findEssentialMat(first, second, K, cv::RANSAC, matches.options.confidence,
+                                                  matches.options.threshold_px, matches.options.max_iterations);
   for (int row = 0; row + 3 <= essentials.rows; row += 3) {
     cv::Mat R1, R2, t;
     cv::decomposeEssentialMat(essentials.rowRange(row, row + 3), R1, R2, t);
@@ -179,9 +179,12 @@ std::vector<TwoViewCandidate> distinct(const std::vector<TwoViewCandidate>& all,
 void TwoViewOptions::declare(OptionSet& set) {
   set.add("threshold_px", threshold_px, "distance of an inlier from the model [px]").above(0.0);
   set.add("confidence", confidence, "of RANSAC").range(0.5, 0.999999);
+  set.add("max_iterations", max_iterations, "samples of five matches that RANSAC tries, at most").range(1);
   set.add("min_inliers", min_inliers, "matches that the relative pose must explain").range(8);
   set.add("min_inlier_share", min_inlier_share, "the same as a share of all matches").range(0.0, 1.0);
-  set.add("min_parallax_deg", min_parallax_deg, "median angle between the rays to a landmark, at least [deg]")
+  set.add("min_parallax_deg", min_parallax_deg,
+          "median angle between the rays to a landmark, at least [deg]; 0: "
+          "none, and matches that a rotation explains are not refused")
       .range(0.0, 90.0);
   set.add("ambiguity", ambiguity, "a second solution stays when it explains this share of what the best one explains")
       .range(0.0, 1.0);
@@ -198,7 +201,7 @@ TwoViewResult relative_pose(std::span<const Vector2> first, std::span<const Vect
     return {{}, fmt::format("{} matches, {} needed", first.size(), std::max<int>(kFewestMatches, options.min_inliers))};
   }
 
-  const int rotated = explained_by_rotation(matches);
+  const int rotated = options.min_parallax_deg > 0.0 ? explained_by_rotation(matches) : 0;
   if (rotated >= 0.9 * static_cast<double>(first.size())) {
     return {{}, fmt::format("a rotation alone explains {} of {} matches", rotated, first.size())};
   }

@@ -13,9 +13,10 @@ namespace evbench {
 struct TwoViewOptions {
   double threshold_px = 1.5;      ///< RANSAC: distance of an inlier from its model
   double confidence = 0.9999;     ///< RANSAC
+  int max_iterations = 1000;      ///< RANSAC, of five points
   int min_inliers = 12;           ///< matches that a candidate must explain
   double min_inlier_share = 0.5;  ///< the same as a share of all matches
-  double min_parallax_deg = 4.0;  ///< median angle between the rays to a point
+  double min_parallax_deg = 4.0;  ///< median angle between the rays to a point; 0: none, and a rotation may explain it
   double ambiguity = 0.75;        ///< a candidate stays when it explains this share of what the best one explains
 
   void declare(OptionSet& set);
@@ -44,7 +45,8 @@ struct TwoViewResult {
 /// for planar scenes, and the homography, which holds for planes only and has two solutions there. All that explain
 /// the data about as well are returned, each refined by least squares on the epipolar distance; more views than two
 /// decide between them. None is returned when a rotation alone explains the matches (pure rotation, or no parallax
-/// yet). Deterministic: the RANSAC of OpenCV draws from a generator with a fixed seed.
+/// yet), unless no parallax is asked for: then others decide what the candidates are worth. Deterministic: the RANSAC
+/// of OpenCV draws from a generator with a fixed seed.
 TwoViewResult relative_pose(std::span<const Vector2> first, std::span<const Vector2> second,
                             const PinholeCamera& camera, const TwoViewOptions& options = {});
 

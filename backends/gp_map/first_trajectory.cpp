@@ -1,0 +1,92 @@
+#include "backends/gp_map/first_trajectory.hpp"
+
+#include <algorithm>
+
+#include "core/structure/resection.hpp"
+#include "core/structure/triangulation.hpp"
+#include "core/support/index.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kLongestGap = 1.0;  ///< [s] that the motion is continued over, back to where enough is seen again
+
+/// The pose at t on the way from view to view.
+SE3 pose_between(std::span<const SE3> views, std::span<const double> times, double t) {
+  const auto later = std::ranges::upper_bound(times, t);
+  const auto k = std::clamp<std::ptrdiff_t>(later - times.begin(), 1, std::ssize(times) - 1);
+  const SE3 &a = views[index(k - 1)], &b = views[index(k)];
+  const double share = (t - times[index(k - 1)]) / (times[index(k)] - times[index(k - 1)]);
+  return a * se3::exp(share * se3::log(a.inverse() * b));
+}
+
+}  // namespace
+
+void FirstTrajectory::go_along(std::span<const SE3> views, std::span<const double> view_times,
+                               std::span<const double> state_times) {
+  const auto first = std::ranges::lower_bound(state_times, view_times.front());
+  for (auto t = state_times.end(); t != first;) {
+    const SE3 guess = pose_between(views, view_times, *--t);
+    const Sightings seen = sightings(*t);
+    const auto found = resect(guess, seen.points, seen.pixels, camera_, options_.initialiser.two_view.threshold_px);
+    states_.push_back({*t, found && found->median_px <= options_.max_initial_error ? found->T : guess});
+  }
+  for (auto t = first; t != state_times.begin() && states_.back().t - *--t < kLongestGap && go_back_to(*t);) {
+  }
+  std::ranges::reverse(states_);
+  take_velocities();
+}
+
+/// No state stands there where too little is seen. False where what is seen can't be explained.
+bool FirstTrajectory::go_back_to(double t) {
+  const auto enough = index(options_.health.min_landmarks);
+  if (sightings(t).points.size() < 2 * enough) triangulate_at(t);
+  const Sightings seen = sightings(t);
+  if (seen.points.size() < enough) return true;
+  const ControlState &newer = states_[states_.size() - 2], &next = states_.back();
+  const double share = (t - next.t) / (newer.t - next.t);
+  const SE3 guess = next.T * se3::exp(share * se3::log(next.T.inverse() * newer.T));
+  const auto found = resect(guess, seen.points, seen.pixels, camera_, options_.initialiser.two_view.threshold_px);
+  if (!found || !(found->median_px <= options_.max_initial_error)) return false;
+  states_.push_back({t, found->T});
+  return true;
+}
+
+/// The landmarks of tracks that are alive at t, from where the states so far saw them.
+void FirstTrajectory::triangulate_at(double t) {
+  for (const TrackId track : tracks_.alive(t, 0.5 * options_.initialiser.window)) {
+    if (landmarks_.contains(track)) continue;
+    std::vector<SE3> poses;
+    std::vector<Vector2> pixels;
+    for (const ControlState& state : states_) {
+      const auto place = tracks_.position(track, state.t, options_.initialiser.window);
+      if (!place) continue;
+      poses.push_back(state.T);
+      pixels.push_back(*place);
+    }
+    const Triangulation point = triangulate(poses, pixels, camera_, options_.map.triangulation);
+    if (point.ok()) landmarks_[track] = {point.point.normalized(), 1.0 / point.point.norm()};
+  }
+}
+
+FirstTrajectory::Sightings FirstTrajectory::sightings(double t) const {
+  Sightings result;
+  for (const auto& [track, point] : landmarks_) {
+    const auto place = tracks_.position(track, t, options_.initialiser.window);
+    if (!place) continue;
+    result.points.push_back(point);
+    result.pixels.push_back(*place);
+  }
+  return result;
+}
+
+/// From the states before and after.
+void FirstTrajectory::take_velocities() {
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const ControlState& a = states_[i > 0 ? i - 1 : i];
+    const ControlState& b = states_[i + 1 < states_.size() ? i + 1 : i];
+    states_[i].velocity = se3::log(a.T.inverse() * b.T) / (b.t - a.t);
+  }
+}
+
+}  // namespace evbench::gp_map

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include "backends/gp_map/options.hpp"
+#include "core/motion/gp_interval.hpp"
+#include "core/structure/point_image.hpp"
+#include "core/structure/track_buffer.hpp"
+
+namespace evbench::gp_map {
+
+/// The control states of a first map, each by resection: along the views that it was found from, then back in time as
+/// far as tracks that are landmarks, or that can be triangulated on the way, reach.
+class FirstTrajectory {
+ public:
+  FirstTrajectory(const TrackBuffer& tracks, const PinholeCamera& camera, const Options& options)
+      : tracks_(tracks), camera_(camera), options_(options) {}
+
+  void add_landmark(TrackId track, const InversePoint& point) { landmarks_[track] = point; }
+
+  /// The states stand at some of these times, which end with the last view's.
+  void go_along(std::span<const SE3> views, std::span<const double> view_times, std::span<const double> state_times);
+
+  const std::vector<ControlState>& states() const { return states_; }
+  const std::map<TrackId, InversePoint>& landmarks() const { return landmarks_; }
+
+ private:
+  struct Sightings {
+    std::vector<InversePoint> points;
+    std::vector<Vector2> pixels;
+  };
+  Sightings sightings(double t) const;
+  bool go_back_to(double t);
+  void triangulate_at(double t);
+  void take_velocities();
+
+  const TrackBuffer& tracks_;
+  PinholeCamera camera_;
+  const Options& options_;
+  std::map<TrackId, InversePoint> landmarks_;
+  std::vector<ControlState> states_;  ///< in time order; while going back, the newest first
+};
+
+}  // namespace evbench::gp_map

@@ -1,0 +1,256 @@
+// How gp_map starts: 20 simulated beginnings of each of ten kinds, 240 x 180 pixels, f = 200, one track in ten an
+// outlier.
+//
+//   first_map_starts [--seeds N] [KIND...]
+//
+// One row a kind. "right" is a share of all starts: the estimated motion goes the true way, to within 30 degrees, and
+// half of the landmarks' depths are, up to scale, within 30 %; at the first map and 1.5 s later. "first map" is the
+// time from the first observation, median and 90 % quantile; "reaches back" how much of that time the trajectory
+// covers. "attempt" is what a step costs before there is a first map, "first" the step that finds it, with the engine's
+// first update; wall time.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "backends/gp_map/gp_map.hpp"
+#include "core/plugin/track_player.hpp"
+#include "core/simulation/track_simulator.hpp"
+#include "core/support/index.hpp"
+#include "core/support/median.hpp"
+
+namespace {
+
+using namespace evbench;
+
+constexpr double kDuration = 8.0;    ///< [s] for a start, at most
+constexpr double kAfterwards = 2.5;  ///< [s] until a start is looked at again
+constexpr double kExchange = 0.01;   ///< [s]
+constexpr double kDegrees = 180.0 / M_PI;
+
+/// Pixels wander about their true places: an Ornstein-Uhlenbeck process for each track.
+struct Wander {
+  double sigma = 0.0;  ///< [px]
+  double time = 0.3;   ///< [s] of its correlation
+};
+
+struct Kind {
+  std::string_view name;
+  std::string_view scene;
+  Vector3 velocity;  ///< [m/s], besides the smooth random motion
+  double amplitude;  ///< [m] of that
+  double rotation;   ///< [rad] likewise
+  TrackOptions tracks;
+  Wander wander;
+};
+
+TrackOptions usual_tracks() {
+  TrackOptions tracks;
+  tracks.outlier_share = 0.1;
+  return tracks;
+}
+
+TrackOptions dense_tracks() {
+  TrackOptions tracks;
+  tracks.alive = 96;
+  tracks.lifetime = {4.0, 4.0};
+  tracks.rate = {180.0, 180.0};
+  tracks.noise = 0.1;
+  return tracks;
+}
+
+std::vector<Kind> all_kinds() {
+  const TrackOptions usual = usual_tracks();
+  return {
+      {"hand-held, plane", "plane", Vector3::Zero(), 0.3, 0.15, usual, {}},
+      {"hand-held, boxes", "boxes", Vector3::Zero(), 0.3, 0.15, usual, {}},
+      {"hand-held, cloud", "frustum", Vector3::Zero(), 0.3, 0.15, usual, {}},
+      {"forward, plane", "plane", {0.0, 0.0, 0.4}, 0.03, 0.08, usual, {}},
+      {"forward, cloud", "frustum", {0.0, 0.0, 0.4}, 0.03, 0.08, usual, {}},
+      {"sideways, plane", "plane", {0.3, 0.0, 0.0}, 0.03, 0.08, usual, {}},
+      {"sideways, boxes", "boxes", {0.3, 0.0, 0.0}, 0.03, 0.08, usual, {}},
+      {"turning, plane", "plane", Vector3::Zero(), 0.1, 0.25, usual, {}},
+      {"turning, cloud", "frustum", Vector3::Zero(), 0.1, 0.25, usual, {}},
+      {"dense, slow", "frustum", {0.1, 0.0, 0.0}, 0.01, 0.03, dense_tracks(), {1.2}},
+  };
+}
+
+/// What a kind's camera sees, and the truth.
+struct Beginning {
+  Camera camera;
+  Motion motion;
+  SimulatedTracks tracks;
+};
+
+void add_wander(SimulatedTracks& tracks, const Wander& wander, Random random) {
+  std::vector<TrackObservation> last(tracks.tracks.size());
+  std::vector<Vector2> offset(tracks.tracks.size());
+  const auto normal = [&] { return Vector2(random.normal(), random.normal()); };
+  for (TrackObservation& z : tracks.observations) {
+    Vector2& now = offset[index(z.track)];
+    TrackObservation& before = last[index(z.track)];
+    const double kept = before.sigma > 0.0 && before.t > 0.0 ? std::exp((before.t - z.t) / wander.time) : 0.0;
+    now = kept * now + wander.sigma * std::sqrt(1.0 - kept * kept) * normal();
+    before = z;
+    z.pixel += now;
+    z.sigma = std::hypot(z.sigma, wander.sigma);
+  }
+}
+
+Beginning simulate(const Kind& kind, std::uint64_t seed) {
+  Beginning result;
+  result.camera.width = 240;
+  result.camera.height = 180;
+  result.camera.pinhole = {200.0, 200.0, 119.5, 89.5};
+  MotionOptions motion;
+  motion.kind = "smooth_random";
+  motion.amplitude = kind.amplitude;
+  motion.rotation_amplitude = kind.rotation;
+  const Motion base = make_motion(motion, kDuration, seed, ".", "motion");
+  result.motion = [base, velocity = kind.velocity](double t) {
+    SE3 T = base(t);
+    T.p += t * velocity;
+    return T;
+  };
+  SceneOptions scene_options;
+  scene_options.kind = kind.scene;
+  Scene scene(scene_options, result.camera, result.motion, kDuration, Random(seed, 1));
+  result.tracks = simulate_tracks(kind.tracks, result.camera, result.motion, scene, kDuration, seed, "tracks");
+  if (kind.wander.sigma > 0.0) add_wander(result.tracks, kind.wander, Random(seed, 2));
+  return result;
+}
+
+double angle_deg(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)) * kDegrees; }
+
+/// Does the estimate go the true way, before landmarks at their true depths up to scale?
+bool is_right(const gp_map::GpMap& backend, const Beginning& beginning) {
+  const PoseTrajectory estimate = backend.trajectory();
+  const StampedPose& first = estimate.poses().front();
+  const SE3 T_first = first.T.inverse(), true_first = beginning.motion(first.t).inverse();
+  Vector3 way = Vector3::Zero(), true_way = Vector3::Zero();
+  for (const StampedPose& pose : estimate.poses()) {
+    const Vector3 there = true_first * beginning.motion(pose.t).p;
+    if (there.norm() <= true_way.norm()) continue;
+    true_way = there;
+    way = T_first * pose.T.p;
+  }
+  std::vector<double> ratios;
+  for (const Landmark& landmark : backend.map()) {
+    const auto& track = beginning.tracks.tracks[index(landmark.track)];
+    if (track.kind != TrackKind::inlier) continue;
+    ratios.push_back((T_first * landmark.position).z() / (true_first * track.point).z());
+  }
+  if (ratios.empty() || angle_deg(way, true_way) > 30.0) return false;
+  const double scale = median(ratios);
+  std::vector<double> errors;
+  for (const double ratio : ratios) errors.push_back(std::abs(ratio / scale - 1.0));
+  return median(errors) < 0.3;
+}
+
+struct Start {
+  bool right = false, right_later = false;
+  double seconds = kDuration;    ///< until the first map
+  double reach = 0.0;            ///< share of that time that the trajectory covers
+  std::vector<double> attempts;  ///< [ms]
+  double first = 0.0;            ///< [ms]
+};
+
+Start start(const Beginning& beginning, std::uint64_t seed) {
+  BackEndContext context;
+  context.camera = beginning.camera.pinhole;
+  context.seed = seed;
+  gp_map::GpMap backend({}, context);
+  TrackPlayer player(beginning.tracks.observations);
+  TrackBatch batch;
+  Start result;
+  const double begin = beginning.tracks.observations.front().t;
+  bool found = false;
+  for (double t = kExchange; t < kDuration; t += kExchange) {
+    player.advance({t}, batch);
+    backend.advance(batch);
+    if (!found && !backend.trajectory().empty()) {
+      found = true;
+      result.seconds = backend.trajectory().end() - begin;
+      result.reach = (backend.trajectory().end() - backend.trajectory().start()) / result.seconds;
+      result.right = is_right(backend, beginning);
+    }
+    if (found && t > begin + result.seconds + kAfterwards) break;
+  }
+  if (found) result.right_later = is_right(backend, beginning);
+  for (const UpdateRecord& update : backend.updates()) {
+    if (update.states == 0) {
+      result.attempts.push_back(1e3 * update.seconds);
+    } else {
+      result.first = 1e3 * update.seconds;
+      break;
+    }
+  }
+  return result;
+}
+
+double quantile(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+void report(std::string_view name, const std::vector<Start>& starts) {
+  const auto share = [&](auto member) {
+    return 100.0 * static_cast<double>(std::ranges::count(starts, true, member)) / static_cast<double>(starts.size());
+  };
+  const auto all = [&](auto member) {
+    std::vector<double> values;
+    for (const Start& start : starts) values.push_back(start.*member);
+    return values;
+  };
+  std::vector<double> attempts{0.0};
+  for (const Start& start : starts) attempts.insert(attempts.end(), start.attempts.begin(), start.attempts.end());
+  fmt::print("| {:<16} | {:5.1f} | {:5.1f} | {:5.2f} | {:5.2f} | {:5.1f} | {:6.2f} | {:6.1f} | {:6.1f} | {:6.1f} |\n",
+             name, share(&Start::right), share(&Start::right_later), quantile(all(&Start::seconds), 0.5),
+             quantile(all(&Start::seconds), 0.9), 100.0 * quantile(all(&Start::reach), 0.5), quantile(attempts, 0.5),
+             quantile(attempts, 1.0), quantile(all(&Start::first), 0.5), quantile(all(&Start::first), 1.0));
+  std::fflush(stdout);
+}
+
+int usage() {
+  fmt::print(stderr, "usage: first_map_starts [--seeds N] [KIND...]; kinds:\n");
+  for (const Kind& kind : all_kinds()) fmt::print(stderr, "  \"{}\"\n", kind.name);
+  return 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::string_view> names(argv + 1, argv + argc);
+  int seeds = 20;
+  if (!names.empty() && names.front() == "--seeds") {
+    if (names.size() < 2) return usage();
+    const std::string_view count = names[1];
+    const auto read = std::from_chars(count.data(), count.data() + count.size(), seeds);
+    if (read.ec != std::errc() || read.ptr != count.data() + count.size() || seeds < 1) return usage();
+    names.erase(names.begin(), names.begin() + 2);
+  }
+  std::vector<Kind> kinds = all_kinds();
+  for (const auto name : names) {
+    if (std::ranges::find(kinds, name, &Kind::name) == kinds.end()) return usage();
+  }
+  fmt::print(
+      "| kind | right [%] | later [%] | first map [s] | 90 % [s] | reaches back [%] | attempt, median [ms] | max | "
+      "first, median [ms] | max |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+  std::vector<Start> all;
+  for (const Kind& kind : kinds) {
+    if (!names.empty() && std::ranges::find(names, kind.name) == names.end()) continue;
+    std::vector<Start> starts;
+    for (int seed = 1; seed <= seeds; ++seed) {
+      const auto number = static_cast<std::uint64_t>(seed);
+      starts.push_back(start(simulate(kind, number), number));
+    }
+    report(kind.name, starts);
+    all.insert(all.end(), starts.begin(), starts.end());
+  }
+  report("all", all);
+}
