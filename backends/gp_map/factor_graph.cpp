@@ -46,6 +46,7 @@ void FactorGraph::add_state(const ControlState& state) {
   states.push_back(state);
   intervals.emplace_back();
   qcs.push_back(qc);
+  expansions.push_back(0.0);
 }
 
 void FactorGraph::remove_newest_state() {
@@ -53,6 +54,7 @@ void FactorGraph::remove_newest_state() {
   forget_interval(newest);
   intervals.pop_back();
   qcs.pop_back();
+  expansions.pop_back();
   states.pop_back();
   const auto on_newest = [&](const auto& prior) { return prior.state == newest; };
   std::erase_if(pose_priors, on_newest);

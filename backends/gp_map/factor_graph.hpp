@@ -87,6 +87,10 @@ struct FactorGraph {
   std::vector<Landmark> landmarks;
   std::vector<IntervalObservations> intervals;  ///< intervals[k] ends in state k; intervals[0] is empty
   std::vector<Vector6> qcs;                     ///< qcs[k]: power spectral density of the prior over interval k
+  /// expansions[k] ≥ 0 of interval k: a cost of −expansions[k] log s, s the distance of what it sees
+  /// (scene_distance()). A prior whose density is learnt has no scale, but as a fixed density it draws the world
+  /// together, with a force of eᵀ Q⁻¹ e of its translations an interval: this one is as large and the other way.
+  std::vector<double> expansions;
   std::vector<PosePrior> pose_priors;
   std::vector<VelocityPrior> velocity_priors;
   ScaleAnchor anchor;

@@ -25,6 +25,7 @@ Cost evaluate(const FactorGraph& graph) {
   for (int k = 1; k < static_cast<int>(graph.states.size()); ++k) {
     const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
     cost.motion_prior += motion_prior_cost(interval, graph.qcs[index(k)]);
+    cost.motion_prior += expansion_cost(graph, k);
     cost.measurements += measurement_cost(graph, k, interval);
   }
   for (const PosePrior& prior : graph.pose_priors) {
@@ -107,9 +108,24 @@ void add_state_priors(const FactorGraph& graph, int state, const ControlState& x
   }
 }
 
+double scene_distance(const FactorGraph& graph, int k) {
+  const auto& groups = graph.intervals[index(k)].groups();
+  double nearness = 0.0;
+  for (const auto& group : groups) {
+    nearness += 1.0 / (graph.landmarks[index(group.landmark)].position - graph.states[index(k - 1)].T.p).norm();
+  }
+  return groups.empty() ? 1.0 : static_cast<double>(groups.size()) / nearness;
+}
+
+double expansion_cost(const FactorGraph& graph, int k) {
+  const double expansion = graph.expansions[index(k)];
+  return expansion == 0.0 ? 0.0 : -expansion * std::log(scene_distance(graph, k));
+}
+
 double interval_cost(const FactorGraph& graph, int k) {
   const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
-  return motion_prior_cost(interval, graph.qcs[index(k)]) + measurement_cost(graph, k, interval);
+  return motion_prior_cost(interval, graph.qcs[index(k)]) + expansion_cost(graph, k) +
+         measurement_cost(graph, k, interval);
 }
 
 double state_prior_cost(const FactorGraph& graph, int state) {

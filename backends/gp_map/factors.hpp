@@ -33,6 +33,9 @@ double residual(const ScaleAnchor& anchor, const FactorGraph& graph);   ///< zer
 /// ½ Σ ρ of the observations in interval k, whose states are those of `interval`.
 double measurement_cost(const FactorGraph& graph, int k, const GpInterval& interval);
 /// ½ Σ ρ of an interval's observations and motion prior, and of the priors on a state.
+/// The harmonic mean distance of the landmarks seen in interval k from state k − 1; 1 where none is seen.
+double scene_distance(const FactorGraph& graph, int k);
+double expansion_cost(const FactorGraph& graph, int k);
 double interval_cost(const FactorGraph& graph, int k);
 double state_prior_cost(const FactorGraph& graph, int state);
 double mean_log_distance(const FactorGraph& graph);  ///< of the scale anchor's landmarks; 0 without any
@@ -72,6 +75,7 @@ struct IntervalInput {
   const PinholeCamera& camera;
   const RobustLoss& loss;
   const Vector6& qc;
+  double expansion;
   const ControlState& state0;
   const ControlState& state1;
   const IntervalObservations& observations;

@@ -206,7 +206,8 @@ void GpMap::yield_to_motion() {
   const int first = std::max(engine_->first_state() + 1, newest - kIntervals + 1);
   const std::vector<Vector6> learnt(graph().qcs.begin() + first, graph().qcs.end());
   const auto weaken = [&](double factor) {
-    for (int k = first; k <= newest; ++k) engine_->set_qc(k, factor * learnt[index(k - first)]);
+    for (int k = first; k <= newest; ++k)
+      engine_->set_qc(k, factor * learnt[index(k - first)], graph().expansions[index(k)]);
     last_update_ = engine_->update();
   };
   double error = newest_error(), factor = 1.0;

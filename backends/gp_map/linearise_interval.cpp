@@ -222,6 +222,21 @@ void map_to_states(const LocalSystem& local, const EndMap& blocks, IntervalLinea
   result.gradient.head<12>() += local.g.head<12>();
 }
 
+/// Adds the gradient of the expansion −c log s = c log Σ 1/d_j (its curvature is small beside the observations').
+void add_expansion(const IntervalInput& in, IntervalLinearisation& result) {
+  if (in.expansion == 0.0 || in.positions.empty()) return;
+  const SE3& T = in.state0.T;
+  double nearness = 0.0;
+  for (const Vector3& position : in.positions) nearness += 1.0 / (position - T.p).norm();
+  for (std::size_t j = 0; j < in.positions.size(); ++j) {
+    const Vector3 ray = in.positions[j] - T.p;
+    const Vector3 force = in.expansion / nearness / std::pow(ray.norm(), 3.0) * ray;
+    result.couplings[j].gradient -= force;
+    result.gradient.segment<3>(3) += T.R().transpose() * force;
+  }
+  result.cost += in.expansion * std::log(nearness / static_cast<double>(in.positions.size()));
+}
+
 }  // namespace
 
 void linearise_interval(const IntervalInput& in, IntervalLinearisation& result) {
@@ -245,6 +260,7 @@ void linearise_interval(const IntervalInput& in, IntervalLinearisation& result) 
   LocalSystem local(sums);
   result.cost = sum(sums.cost) + local.add_motion_prior(interval, in.qc);
   map_to_states(local, map, result);
+  add_expansion(in, result);
 }
 
 void linearise_interval(const FactorGraph& graph, int k, IntervalLinearisation& result) {
@@ -254,8 +270,8 @@ void linearise_interval(const FactorGraph& graph, int k, IntervalLinearisation& 
   for (const auto& group : observations.groups()) {
     positions.push_back(graph.landmarks[index(group.landmark)].position);
   }
-  linearise_interval({graph.camera, graph.loss, graph.qcs[index(k)], graph.states[index(k - 1)], graph.states[index(k)],
-                      observations, positions},
+  linearise_interval({graph.camera, graph.loss, graph.qcs[index(k)], graph.expansions[index(k)],
+                      graph.states[index(k - 1)], graph.states[index(k)], observations, positions},
                      result);
 }
 

@@ -17,6 +17,7 @@ constexpr double kPace = 0.1;           ///< [s] between two looks
 constexpr double kLookedBack = 0.4;     ///< [s]
 constexpr int kMostLookedBack = 16;     ///< intervals
 constexpr int kSetAnew = 8;             ///< of the newest intervals
+constexpr double kForce = 1.0;          ///< by which an expansion must change
 constexpr double kChange = 1.5;         ///< by which a density must change to be set anew
 
 /// `joint`: covariance of the states at both ends.
@@ -70,6 +71,8 @@ Vector6 PriorEvidence::common_qc(const Vector6& guess, double weight) const {
   return result;
 }
 
+double PriorEvidence::expansion(const Vector6& qc) const { return square.tail<3>().cwiseQuotient(qc.tail<3>()).sum(); }
+
 void PriorLearner::follow(Engine& engine) {
   const FactorGraph& graph = engine.graph();
   const double now = graph.states.back().t;
@@ -81,7 +84,11 @@ void PriorLearner::follow(Engine& engine) {
   for (const auto& [k, evidence] : recent_) {
     if (k <= newest - kSetAnew) continue;
     const Vector6 qc = qc_at(evidence.t, graph.qc), change = qc.cwiseQuotient(graph.qcs[index(k)]);
-    if (change.maxCoeff() > kChange || change.minCoeff() < 1.0 / kChange) engine.set_qc(k, qc);
+    const double expansion = evidence.expansion(qc);
+    if (change.maxCoeff() > kChange || change.minCoeff() < 1.0 / kChange ||
+        std::abs(expansion - graph.expansions[index(k)]) > kForce) {
+      engine.set_qc(k, qc, expansion);
+    }
   }
   engine.set_next_qc(qc_at(now, graph.qc));
 }
@@ -135,7 +142,8 @@ void learn_prior(Engine& engine) {
     PriorEvidence sum = before[k];
     sum.square += after[k].square - evidence[k].square;
     sum.freedom += after[k].freedom - evidence[k].freedom;
-    engine.set_qc(static_cast<int>(k) + 1, sum.qc(mean, kGuessWeight));
+    const Vector6 qc = sum.qc(mean, kGuessWeight);
+    engine.set_qc(static_cast<int>(k) + 1, qc, evidence[k].expansion(qc));
   }
 }
 

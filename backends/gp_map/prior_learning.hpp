@@ -23,6 +23,9 @@ struct PriorEvidence {
   /// The density, where `weight` degrees of freedom speak for a guess.
   Vector6 qc(const Vector6& guess, double weight) const;
 
+  /// eᵀ Q⁻¹ e of the translations: the force with which the prior draws the world together (FactorGraph::expansions).
+  double expansion(const Vector6& qc) const;
+
   /// The density of all three rotations, and of all three translations: the guess for an axis that shows little.
   Vector6 common_qc(const Vector6& guess, double weight) const;
 };

@@ -76,9 +76,10 @@ void Engine::remove_newest_state() {
   touch(newest);
 }
 
-void Engine::set_qc(int k, const Vector6& qc) {
+void Engine::set_qc(int k, const Vector6& qc, double expansion) {
   if (k <= factorisation_.base()) return;
   graph_.qcs[index(k)] = qc;
+  graph_.expansions[index(k)] = expansion;
   points_.invalidate(k);
   touch(k);
 }

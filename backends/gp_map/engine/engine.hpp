@@ -98,8 +98,9 @@ class Engine {
   /// first_state().
   void remove_newest_state();
 
-  /// Power spectral density of the motion prior over interval k, and over the intervals to come.
-  void set_qc(int k, const Vector6& qc);
+  /// Power spectral density of the motion prior over interval k, with its expansion (factor_graph.hpp), and over the
+  /// intervals to come.
+  void set_qc(int k, const Vector6& qc, double expansion = 0.0);
   void set_next_qc(const Vector6& qc) { graph_.qc = qc; }
 
   /// The robust loss from now on; intervals that are not linearised anew keep the one that they were linearised with.
