@@ -62,6 +62,7 @@ void GpMap::step(double t) {
     if (had_map) reconsider(t);
     check_support();
     tell_online(t);
+    tell_smoothed();
     predict_tracks();
   }
   forget_ended_tracks(t);
@@ -193,7 +194,7 @@ bool GpMap::is_outlier(int landmark, double error_px) const {
 
 void GpMap::optimise() {
   last_update_ = engine_->update();
-  if (options_.learn.prior) yield_to_motion();
+  if (options_.learn.prior == LearnPrior::always) yield_to_motion();
 }
 
 /// Where most tracks are far from where they should be, the prior is too strong for what the camera does, and the
@@ -205,9 +206,11 @@ void GpMap::yield_to_motion() {
   const int newest = static_cast<int>(graph().states.size()) - 1;
   const int first = std::max(engine_->first_state() + 1, newest - kIntervals + 1);
   const std::vector<Vector6> learnt(graph().qcs.begin() + first, graph().qcs.end());
+  const std::vector<double> expansions(graph().expansions.begin() + first, graph().expansions.end());
   const auto weaken = [&](double factor) {
-    for (int k = first; k <= newest; ++k)
-      engine_->set_qc(k, factor * learnt[index(k - first)], graph().expansions[index(k)]);
+    for (std::size_t i = 0; i < learnt.size(); ++i) {
+      engine_->set_qc(first + static_cast<int>(i), factor * learnt[i], expansions[i] / factor);
+    }
     last_update_ = engine_->update();
   };
   double error = newest_error(), factor = 1.0;
@@ -244,7 +247,7 @@ void GpMap::learn() {
     noise_scale_ = noise_.scale();
     engine_->set_loss(noise_.loss(options_.loss, options_.loss_width));
   }
-  if (options_.learn.prior) prior_.follow(*engine_);
+  if (options_.learn.prior == LearnPrior::always) prior_.follow(*engine_);
 }
 
 /// What is seen next is compared with the newest state's constant velocity.
@@ -397,6 +400,17 @@ void GpMap::tell_online(double t) {
   online_ = t;
 }
 
+/// What is seen now tells of the states before, too: those of late are told anew.
+void GpMap::tell_smoothed() {
+  constexpr double kTold = 0.4;  // [s]
+  const double now = graph().states.back().t;
+  if (online_ < now) return;
+  for (std::size_t i = graph().states.size() - 1; i-- > 0 && graph().states[i].t > now - kTold;) {
+    const ControlState& state = graph().states[i];
+    context_.online({{state.t, state.T}, now, state.velocity});
+  }
+}
+
 void GpMap::add_record(double t, double seconds, int iterations, std::optional<double> cost) {
   UpdateRecord record{t, seconds, 0, 0, 0, iterations, cost};
   if (engine_) {
@@ -435,7 +449,8 @@ void GpMap::finish() {
 
 /// Prior and noise follow from the estimate, and it from them.
 Engine::OptimiseSummary GpMap::estimate_everything() {
-  const bool learns = options_.learn.prior || options_.learn.noise;
+  const bool learns_prior = options_.learn.prior != LearnPrior::never;
+  const bool learns = learns_prior || options_.learn.noise;
   constexpr int kIterationsARound = 3;
   constexpr double kRoughly = 1e-4, kLearnt = 1e-6, kFixed = 1e-9;  // what is learnt is known no better
   if (learns) engine_->optimise(kIterationsARound, kRoughly);
@@ -446,7 +461,7 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
       noise_scale_ = noise_.scale();
       engine_->set_loss(noise_.loss(options_.loss, options_.loss_width));
     }
-    if (options_.learn.prior) learn_prior(*engine_);
+    if (learns_prior) learn_prior(*engine_);
     engine_->optimise(kIterationsARound, kRoughly);
   }
   return engine_->optimise(options_.final_iterations, learns ? kLearnt : kFixed);
@@ -543,7 +558,8 @@ std::vector<Landmark> GpMap::map() const {
 }
 
 std::optional<Problem> GpMap::problem() const {
-  if (!engine_ || options_.lag > 0.0 || options_.learn.prior || options_.learn.noise) return std::nullopt;
+  if (!engine_ || options_.lag > 0.0 || options_.learn.prior != LearnPrior::never || options_.learn.noise)
+    return std::nullopt;
   return to_problem(graph());
 }
 

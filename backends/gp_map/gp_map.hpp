@@ -90,6 +90,7 @@ class GpMap : public BackEnd {
   bool is_outlier(int landmark, double error_px) const;
   int landmarks_in_view() const;
   void tell_online(double t);
+  void tell_smoothed();
   Engine::OptimiseSummary estimate_everything();
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
 

@@ -3,9 +3,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "backends/gp_map/factors.hpp"
+#include "core/geometry/so3.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -13,26 +15,53 @@ namespace {
 constexpr double kMedianNorm = 1.17741;           ///< of a two-dimensional standard normal
 constexpr double kBlock = 0.2, kForgotten = 1.0;  ///< [s]
 constexpr int kFewest = 4;                        ///< observations in a block that tells of drift
-constexpr std::size_t kFewestTracks = 6;
+constexpr std::size_t kFewestTracks = 8;
 constexpr double kBinsPerOctave = 16.0;
 constexpr double kLeastShare = 0.01;
 constexpr int kAge = 3;  ///< states after which an interval's residuals are looked at
 
-/// A vector field over the image, affine, by weighted least squares.
-class AffineField {
+/// An error of the pose that changes linearly over an interval, by weighted least squares from what it does to the
+/// image of each landmark.
+class PoseError {
  public:
-  void add(const Vector2& place, const Vector2& value, double weight) {
-    const Vector3 row(1.0, place.x(), place.y());
-    H_ += weight * row * row.transpose();
-    g_ += weight * row * value.transpose();
+  using Rows = Eigen::Matrix<double, 2, 12>;
+
+  void add(const Rows& J, const Vector2& residual, double weight) {
+    H_.noalias() += weight * J.transpose() * J;
+    g_.noalias() += weight * J.transpose() * residual;
   }
-  void solve() { field_ = H_.ldlt().solve(g_); }
-  Vector2 at(const Vector2& place) const { return field_.transpose() * Vector3(1.0, place.x(), place.y()); }
+  void solve() { error_ = H_.ldlt().solve(g_); }
+  Vector2 at(const Rows& J) const { return J * error_; }
 
  private:
-  Matrix3 H_ = 1e-3 * Matrix3::Identity();  // tracks on one point or line leave it determined
-  Eigen::Matrix<double, 3, 2> g_ = Eigen::Matrix<double, 3, 2>::Zero(), field_ = g_;
+  Matrix12 H_ = 1e-3 * Matrix12::Identity();  // what the tracks leave undetermined is none
+  Vector12 g_ = Vector12::Zero(), error_ = g_;
 };
+
+/// A residual [stated sigmas] and what it would change by with the pose at the interval's middle and its rate.
+struct Residual {
+  int landmark = 0;
+  double t = 0.0;
+  Vector2 value = Vector2::Zero();
+  PoseError::Rows J = PoseError::Rows::Zero();
+};
+
+Residual residual_of(const GpInterval& interval, int landmark, const Vector3& position, const Observation& z,
+                     const PinholeCamera& camera) {
+  Residual result{.landmark = landmark, .t = z.t};
+  const Vector3 q = interval.pose(z.t).inverse() * position;
+  if (!(q.z() > 0.0)) {
+    result.value.setConstant(std::numeric_limits<double>::infinity());
+    return result;
+  }
+  result.value = z.inverse_sigma * (camera.project(q) - z.pixel);
+  Eigen::Matrix<double, 3, 6> of_pose;  // q ← Exp(−δ) q
+  of_pose << so3::hat(q), -Matrix3::Identity();
+  const Matrix26 J = z.inverse_sigma * camera.project_jacobian(q) * of_pose;
+  const double s = 2.0 * (z.t - interval.t0()) / interval.dt() - 1.0;
+  result.J << J, s * J;
+  return result;
+}
 
 }  // namespace
 
@@ -70,32 +99,26 @@ void NoiseLearner::follow(const FactorGraph& graph, double memory) {
 }
 
 void NoiseLearner::add(const FactorGraph& graph, int k) {
-  struct Residual {
-    int landmark;
-    double t;
-    Vector2 place, value;
-  };
   const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
   const IntervalObservations& observations = graph.intervals[index(k)];
   const std::size_t tracks = observations.groups().size();
   if (tracks < kFewestTracks) return;
   std::vector<Residual> residuals;
-  AffineField common;
+  PoseError common;
   for (const auto& group : observations.groups()) {
-    const Vector3& landmark = graph.landmarks[index(group.landmark)].position;
+    const Vector3& position = graph.landmarks[index(group.landmark)].position;
     for (const Observation& z : observations.of(group)) {
-      const Vector2 place((z.pixel.x() - graph.camera.cx) / graph.camera.fx,
-                          (z.pixel.y() - graph.camera.cy) / graph.camera.fy);
-      const Vector2 value = reprojection_residual(interval, landmark, z, graph.camera);
-      residuals.push_back({group.landmark, z.t, place, value});
-      common.add(place, value, graph.loss.weight(value.squaredNorm()) / graph.loss.share());
+      const Residual r = residual_of(interval, group.landmark, position, z, graph.camera);
+      if (!r.value.allFinite()) continue;
+      residuals.push_back(r);
+      common.add(r.J, r.value, graph.loss.weight(r.value.squaredNorm()) / graph.loss.share());
     }
   }
   common.solve();
   std::erase_if(open_, [&](const auto& block) { return block.second.since < interval.t0() - kForgotten; });
   const auto n = static_cast<double>(tracks);
-  const double taken_away = std::sqrt(n / (n - 3.0));
-  for (const Residual& r : residuals) add(r.landmark, r.t, taken_away * (r.value - common.at(r.place)));
+  const double taken_away = std::sqrt(n / (n - 3.0));  // 6 of 2 n components of the means
+  for (const Residual& r : residuals) add(r.landmark, r.t, taken_away * (r.value - common.at(r.J)));
 }
 
 void NoiseLearner::add(int landmark, double t, const Vector2& residual) {

@@ -10,8 +10,9 @@ namespace evbench::gp_map {
 /// counts, as a tracker's errors drift. The mean of n independent errors over a block of time has a variance of
 /// sigma²/n an axis; that of errors which hang together is larger, and they count as so many observations less.
 ///
-/// What the tracks of an interval have in common (an affine field over the image) tells of the motion, not of their
-/// noise, and is taken away first: a motion model that is wrong must not pass for noise.
+/// What a pose error, linear over an interval, explains of its residuals tells of the motion, not of noise, and is
+/// taken away first: a motion model that is wrong must not pass for noise, which would then make the prior stronger
+/// still.
 class NoiseLearner {
  public:
   /// Takes the intervals since the last call that are a few states old; what was taken before fades over `memory` [s].

@@ -61,17 +61,26 @@ struct MapOptions {
   }
 };
 
+/// When the prior's power spectral density is learnt from the data.
+enum class LearnPrior { never, final, always };
+
 /// What is learnt from the data.
 struct LearningOptions {
-  bool prior = true, noise = true;
+  LearnPrior prior = LearnPrior::final;
+  bool noise = true;
   double window = 0.3, memory = 3.0;
   int rounds = 2;
 
   void declare(OptionSet& set) {
-    set.add("prior", prior, "learn the prior's power spectral density, which begins with qc; false: qc is kept");
+    set.add(
+        "prior", prior, {"never", "final", "always"},
+        "when the prior's power spectral density is learnt from the data, beginning with qc: never; for the final "
+        "estimate, from everything; always, so also while running, which is better where the scale is held well and "
+        "can lose it where landmarks live for less than a second or the motion is violent");
     set.add("noise", noise,
             "learn a scale of the observations' sigmas, and how much of their information counts, as trackers drift");
-    set.add("window", window, "while running, the prior follows what the last seconds show [s]").range(0.01, 100.0);
+    set.add("window", window, "\"always\": while running, the prior follows what the last seconds show [s]")
+        .range(0.01, 100.0);
     set.add("memory", memory, "and falls back to what these show, where that is little; the noise follows these [s]")
         .range(0.1, 1000.0);
     set.add("rounds", rounds, "of learning from everything, in the final estimate").range(0, 100);

@@ -78,19 +78,20 @@ void PriorLearner::follow(Engine& engine) {
   const double now = graph.states.back().t;
   if (now < followed_until_ + kPace) return;
   followed_until_ = now;
+  if (!begin_) begin_ = graph.qc;
   take_evidence(engine);
   if (recent_.empty()) return;
   const int newest = static_cast<int>(graph.states.size()) - 1;
   for (const auto& [k, evidence] : recent_) {
     if (k <= newest - kSetAnew) continue;
-    const Vector6 qc = qc_at(evidence.t, graph.qc), change = qc.cwiseQuotient(graph.qcs[index(k)]);
+    const Vector6 qc = qc_at(evidence.t), change = qc.cwiseQuotient(graph.qcs[index(k)]);
     const double expansion = evidence.expansion(qc);
     if (change.maxCoeff() > kChange || change.minCoeff() < 1.0 / kChange ||
         std::abs(expansion - graph.expansions[index(k)]) > kForce) {
       engine.set_qc(k, qc, expansion);
     }
   }
-  engine.set_next_qc(qc_at(now, graph.qc));
+  engine.set_next_qc(qc_at(now));
 }
 
 void PriorLearner::take_evidence(Engine& engine) {
@@ -115,7 +116,7 @@ void PriorLearner::take_evidence(Engine& engine) {
   }
 }
 
-Vector6 PriorLearner::qc_at(double t, const Vector6& guess) const {
+Vector6 PriorLearner::qc_at(double t) const {
   PriorEvidence window{t, Vector6::Zero(), Vector6::Zero()}, memory = window;
   window.add(settled_, window_);
   memory.add(remembered_, memory_);
@@ -123,7 +124,7 @@ Vector6 PriorLearner::qc_at(double t, const Vector6& guess) const {
     window.add(evidence, window_);
     memory.add(evidence, memory_);
   }
-  return window.qc(memory.qc(memory.common_qc(guess, kBegin), kCommonWeight), kGuessWeight);
+  return window.qc(memory.qc(memory.common_qc(*begin_, kBegin), kCommonWeight), kGuessWeight);
 }
 
 void learn_prior(Engine& engine) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "backends/gp_map/engine/engine.hpp"
@@ -42,10 +43,11 @@ class PriorLearner {
 
  private:
   void take_evidence(Engine& engine);
-  Vector6 qc_at(double t, const Vector6& guess) const;
+  Vector6 qc_at(double t) const;
 
   double window_, memory_;
   PriorEvidence settled_, remembered_;   ///< of intervals that are not looked at any more
+  std::optional<Vector6> begin_;         ///< the density that was set before there was any evidence
   std::map<int, PriorEvidence> recent_;  ///< by interval
   double followed_until_ = -1e300;       ///< [s]
 };
