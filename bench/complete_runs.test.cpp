@@ -265,7 +265,7 @@ TEST_CASE("A run that is ended leaves what is complete, prints its table, and go
   Json config = short_comparison();
   config["source"]["duration"] = 60;
   config["backends"][0] = {{"type", "bundle_adjustment"}, {"label", "quick"}, {"frame_duration", 0.4}};
-  config["backends"][1] = {{"type", "gp_map"}, {"label", "slow"}, {"placement", {{"rate", 400}}}};
+  config["backends"][1] = {{"type", "gp_map"}, {"label", "slow"}, {"placement", {{"rule", "rate"}, {"rate", 400}}}};
   folder.write("c.json", config.dump());
   const Outcome outcome = testing::shell(folder, R"(
     "$evbench" run c.json & until ls results/short/*/metrics.json > /dev/null 2>&1; do sleep 0.05; done

@@ -196,4 +196,39 @@ TEST_CASE("An observation behind the camera costs a constant and moves nothing")
   CHECK(evaluate(graph).measurements == Approx(3 * 4.0 * 200.0 * 200.0 / (0.7 * 0.7)));
 }
 
+TEST_CASE(
+    "An expansion's gradient is the derivative of its cost, and a world twice as large is cheaper by its share of log "
+    "2") {
+  RandomTangents random(7);
+  FactorGraph graph = random_interval(random, 1, 6);
+  IntervalLinearisation with, without;
+  linearise_interval(graph, 1, without);
+  graph.expansions[1] = 3.0;
+  linearise_interval(graph, 1, with);
+  CHECK(with.cost - without.cost == Approx(expansion_cost(graph, 1)));
+  const auto cost = [&](int variable, const Vector3& delta) {  // −1: where state 0 is
+    FactorGraph moved = graph;
+    Vector12 step = Vector12::Zero();
+    step.segment<3>(3) = delta;
+    if (variable < 0) {
+      moved.states[0] = moved.states[0].retract(step);
+    } else {
+      moved.landmarks[index(variable)].position += delta;
+    }
+    return expansion_cost(moved, 1);
+  };
+  for (int j = -1; j < 6; ++j) {
+    const Vector3 gradient = j < 0 ? Vector3(with.gradient.segment<3>(3) - without.gradient.segment<3>(3))
+                                   : Vector3(with.couplings[index(j)].gradient - without.couplings[index(j)].gradient);
+    for (int i = 0; i < 3; ++i) {
+      const Vector3 step = 1e-5 * Vector3::Unit(i);
+      CHECK(gradient[i] == Approx((cost(j, step) - cost(j, -step)) / 2e-5).margin(1e-7));
+    }
+  }
+  FactorGraph larger = graph;
+  for (auto& landmark : larger.landmarks) landmark.position *= 2.0;
+  for (auto& state : larger.states) state.T.p *= 2.0;
+  CHECK(expansion_cost(larger, 1) == Approx(expansion_cost(graph, 1) - 3.0 * std::log(2.0)));
+}
+
 }  // namespace evbench::gp_map

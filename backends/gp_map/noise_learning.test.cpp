@@ -42,7 +42,8 @@ TEST_CASE("White noise is learnt as it is, though a tenth of the tracks are outl
   for (const double sigma : {0.1, 1.0, 5.0}) {
     Random random(1);
     const NoiseLearner noise = learnt(seen([&](int track, double) {
-      return white(random, sigma) + (track % 10 == 0 ? 20.0 * sigma * Vector2::Ones() : Vector2(Vector2::Zero()));
+      const double off = track % 10 == 0 ? 20.0 * sigma : 0.0;
+      return Vector2(white(random, sigma) + off * Vector2::Ones());
     }));
     CAPTURE(sigma);
     CHECK(noise.scale() == Approx(sigma).epsilon(0.15));
@@ -65,9 +66,8 @@ TEST_CASE("Of errors that drift, as much counts as their means over a fifth of a
 
 TEST_CASE("What all tracks have in common tells of the motion: it passes for no noise") {
   Random random(3);
-  const NoiseLearner noise = learnt(seen([&](int track, double t) {
-    return Vector2(white(random, 0.3) + Vector2(5.0 * std::sin(20.0 * t) + 0.1 * (track % 5), 2.0));
-  }));
+  const NoiseLearner noise =
+      learnt(seen([&](int, double t) { return Vector2(white(random, 0.3) + Vector2(5.0 * std::sin(5.0 * t), 2.0)); }));
   CHECK(noise.scale() == Approx(0.3).epsilon(0.15));
   CHECK(noise.share() > 0.7);
 }

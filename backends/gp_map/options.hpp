@@ -69,7 +69,7 @@ struct LearningOptions {
   LearnPrior prior = LearnPrior::final;
   bool noise = true;
   double window = 0.3, memory = 3.0;
-  int rounds = 2;
+  int rounds = 6;
 
   void declare(OptionSet& set) {
     set.add(

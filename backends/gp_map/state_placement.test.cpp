@@ -77,6 +77,8 @@ TEST_CASE("By rate, control states stand evenly from the first observation past 
 TEST_CASE("By observations, a control state stands where their number is reached, within the spacings") {
   PlacementOptions options;
   options.rule = Rule::observations;
+  options.min_spacing = 0.01;
+  options.max_spacing = 0.1;
   options.observations = 40;
   CHECK(placed(options, moving(0.0, 0.25), 0.01)[1] == Approx(0.04));
   options.observations = 4;
@@ -88,6 +90,8 @@ TEST_CASE("By observations, a control state stands where their number is reached
 TEST_CASE("By motion, the states' spacing follows the median speed in the image") {
   PlacementOptions options;
   options.rule = Rule::motion;
+  options.min_spacing = 0.01;
+  options.max_spacing = 0.1;
   options.motion = 2.0;
   const auto spacing = [&](double speed) {
     const auto times = placed(options, moving(speed, 0.5), 0.01);

@@ -35,7 +35,9 @@ Run run(const TrackedScene& scene, const RunOptions& options) {
   BackEndContext context;
   context.camera = scene.camera();
   std::vector<StampedPose> online;
-  context.online = [&](const StampedPose& pose) { online.push_back(pose); };
+  context.online = [&](const StampedPose& pose) {  // not those that are told anew
+    if (online.empty() || pose.t > online.back().t) online.push_back(pose);
+  };
   Run result;
   result.backend = std::make_unique<GpMap>(read_options<Options>(Json::parse(options.backend), "backend"), context);
   TrackPlayer player(scene.observations());
