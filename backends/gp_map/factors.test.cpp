@@ -199,7 +199,7 @@ TEST_CASE("An observation behind the camera costs a constant and moves nothing")
 TEST_CASE(
     "An expansion's gradient is the derivative of its cost, and a world twice as large is cheaper by its share of log "
     "2") {
-  RandomTangents random(7);
+  RandomTangents random;
   FactorGraph graph = random_interval(random, 1, 6);
   IntervalLinearisation with, without;
   linearise_interval(graph, 1, without);

@@ -8,6 +8,7 @@
 
 #include "backends/gp_map/factors.hpp"
 #include "core/geometry/so3.hpp"
+#include "core/support/median.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -16,6 +17,7 @@ constexpr double kMedianNorm = 1.17741;           ///< of a two-dimensional stan
 constexpr double kBlock = 0.2, kForgotten = 1.0;  ///< [s]
 constexpr int kFewest = 4;                        ///< observations in a block that tells of drift
 constexpr std::size_t kFewestTracks = 8;
+constexpr double kWidth = 2.0;  ///< of the loss against outliers [medians]
 constexpr double kBinsPerOctave = 16.0;
 constexpr double kLeastShare = 0.01;
 constexpr int kAge = 3;  ///< states after which an interval's residuals are looked at
@@ -104,16 +106,20 @@ void NoiseLearner::add(const FactorGraph& graph, int k) {
   const std::size_t tracks = observations.groups().size();
   if (tracks < kFewestTracks) return;
   std::vector<Residual> residuals;
-  PoseError common;
+  std::vector<double> norms;
   for (const auto& group : observations.groups()) {
     const Vector3& position = graph.landmarks[index(group.landmark)].position;
     for (const Observation& z : observations.of(group)) {
       const Residual r = residual_of(interval, group.landmark, position, z, graph.camera);
       if (!r.value.allFinite()) continue;
       residuals.push_back(r);
-      common.add(r.J, r.value, graph.loss.weight(r.value.squaredNorm()) / graph.loss.share());
+      norms.push_back(r.value.norm());
     }
   }
+  if (residuals.empty()) return;
+  const RobustLoss loss(RobustLoss::Kind::cauchy, kWidth * median(std::move(norms)));
+  PoseError common;
+  for (const Residual& r : residuals) common.add(r.J, r.value, loss.weight(r.value.squaredNorm()));
   common.solve();
   std::erase_if(open_, [&](const auto& block) { return block.second.since < interval.t0() - kForgotten; });
   const auto n = static_cast<double>(tracks);

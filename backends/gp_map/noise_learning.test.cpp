@@ -12,8 +12,10 @@ namespace {
 constexpr double kRate = 100.0, kInterval = 0.05, kEnd = 10.0;  // [Hz], [s]
 constexpr int kTracks = 20;
 
-/// A camera at rest that sees points all over the image at each of its times, off by error(track, t) [px].
-FactorGraph seen(const std::function<Vector2(int track, double t)>& error) {
+/// A camera that sees points all over the image, off by error(track, t) [px], and that is taken to rest.
+FactorGraph seen(
+    const std::function<Vector2(int track, double t)>& error,
+    const std::function<SE3(double t)>& motion = [](double) { return SE3{}; }) {
   FactorGraph graph;
   graph.camera = {200.0, 200.0, 119.5, 89.5};
   graph.loss = RobustLoss(RobustLoss::Kind::cauchy, 2.0);
@@ -21,7 +23,8 @@ FactorGraph seen(const std::function<Vector2(int track, double t)>& error) {
   for (int j = 0; j < kTracks; ++j) graph.add_landmark({0.4 * (j % 5 - 2), 0.3 * (j / 5 - 1.5), 1.0 + 0.1 * (j % 3)});
   for (double t = 0.5 / kRate; t < kEnd; t += 1.0 / kRate) {
     for (int j = 0; j < kTracks; ++j) {
-      const Vector2 pixel = graph.camera.project(graph.landmarks[index(j)].position) + error(j, t);
+      const Vector3 point = motion(t).inverse() * graph.landmarks[index(j)].position;
+      const Vector2 pixel = graph.camera.project(point) + error(j, t);
       graph.add_observation(j, {t, pixel, 1.0});
     }
   }
@@ -66,8 +69,13 @@ TEST_CASE("Of errors that drift, as much counts as their means over a fifth of a
 
 TEST_CASE("What all tracks have in common tells of the motion: it passes for no noise") {
   Random random(3);
-  const NoiseLearner noise =
-      learnt(seen([&](int, double t) { return Vector2(white(random, 0.3) + Vector2(5.0 * std::sin(5.0 * t), 2.0)); }));
+  const FactorGraph shaken = seen([&](int, double) { return white(random, 0.3); },
+                                  [](double t) {
+                                    Vector6 step;
+                                    step << 0.02, -0.01, 0.03, 0.02, 0.03, -0.01;
+                                    return se3::exp(std::sin(5.0 * t) * step);
+                                  });
+  const NoiseLearner noise = learnt(shaken);
   CHECK(noise.scale() == Approx(0.3).epsilon(0.15));
   CHECK(noise.share() > 0.7);
 }
