@@ -404,7 +404,7 @@ void GpMap::tell_online(double t) {
 void GpMap::tell_smoothed() {
   constexpr double kTold = 0.4;  // [s]
   const double now = graph().states.back().t;
-  if (online_ < now) return;
+  if (online_ != now) return;  // no pose has been told now, or the newest state has been taken back since
   for (std::size_t i = graph().states.size() - 1; i-- > 0 && graph().states[i].t > now - kTold;) {
     const ControlState& state = graph().states[i];
     context_.online({{state.t, state.T}, now, state.velocity});
