@@ -558,8 +558,7 @@ std::vector<Landmark> GpMap::map() const {
 }
 
 std::optional<Problem> GpMap::problem() const {
-  if (!engine_ || options_.lag > 0.0 || options_.learn.prior != LearnPrior::never || options_.learn.noise)
-    return std::nullopt;
+  if (!engine_ || options_.lag > 0.0) return std::nullopt;
   return to_problem(graph());
 }
 

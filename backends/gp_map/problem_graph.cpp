@@ -28,10 +28,24 @@ FactorGraph to_graph(const Problem& problem) {
   return graph;
 }
 
+namespace {
+
+/// The geometric mean over the intervals.
+Vector6 mean_qc(const FactorGraph& graph) {
+  if (graph.qcs.size() < 2) return graph.qc;
+  const Vector6& first = graph.qcs[1];
+  Vector6 logs = Vector6::Zero();
+  for (std::size_t k = 1; k < graph.qcs.size(); ++k) logs += graph.qcs[k].cwiseQuotient(first).array().log().matrix();
+  const auto intervals = static_cast<double>(graph.qcs.size() - 1);
+  return first.cwiseProduct((logs / intervals).array().exp().matrix());
+}
+
+}  // namespace
+
 Problem to_problem(const FactorGraph& graph) {
   Problem problem;
   problem.camera = graph.camera;
-  problem.qc = graph.qc;
+  problem.qc = mean_qc(graph);
   problem.states = graph.states;
   std::vector<int> number(graph.landmarks.size(), -1);
   for (std::size_t j = 0; j < graph.landmarks.size(); ++j) {
@@ -49,11 +63,13 @@ Problem to_problem(const FactorGraph& graph) {
     const double sigma = kShareOfDistance * (position - graph.anchor.origin).norm();
     problem.landmark_priors.push_back({number[index(j)], position, sigma});
   }
+  const double counted = std::sqrt(graph.loss.share());
   for (const IntervalObservations& interval : graph.intervals) {
     for (const auto& group : interval.groups()) {
       for (int i = group.begin; i < group.end; ++i) {
         const Observation& z = interval.all()[index(i)];
-        problem.observations.push_back({z.t, number[index(group.landmark)], z.pixel, 1.0 / z.inverse_sigma});
+        problem.observations.push_back(
+            {z.t, number[index(group.landmark)], z.pixel, 1.0 / (counted * z.inverse_sigma)});
       }
     }
   }

@@ -13,6 +13,7 @@ FactorGraph to_graph(const Problem& problem);
 /// The problem file's form of what a run ended with: present estimates as initial guess. Landmarks that were removed
 /// are left out, the others numbered anew. The format has no robust loss and no scale anchor: the loss is dropped, and
 /// each of the anchor's landmarks gets a prior at its present estimate, with a sigma of 5 % of its distance.
+/// Densities of the prior become their geometric mean; sigmas are larger by what counts of the observations (the loss).
 Problem to_problem(const FactorGraph& graph);
 
 inline Observation to_observation(const TrackObservation& z, double sigma_scale) {
