@@ -19,6 +19,7 @@ namespace {
 const Registration<BackEnd, GpMap> registration("gp_map",
                                                 "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 3);
 
+constexpr double kYoung = 5.0;    ///< [s] for which another first map is looked for
 constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -129,7 +130,7 @@ void GpMap::reconsider(double t) {
     new_.clear();
     begin_from(std::move(*other));
   }
-  if (first_map_.settled()) young_ = TrackBuffer();
+  if (first_map_.settled() || t > graph().states.front().t + kYoung) young_ = TrackBuffer();
 }
 
 /// The world is the camera at t0, the unit the landmarks' median distance.
