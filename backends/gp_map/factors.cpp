@@ -7,18 +7,6 @@
 #include "core/motion/wnoa.hpp"
 
 namespace evbench::gp_map {
-namespace {
-
-/// Calls visit(interval, observation) for each of a landmark's observations.
-template <class Visit>
-void for_each_observation(const FactorGraph& graph, int landmark, Visit visit) {
-  for (const int k : graph.landmarks[index(landmark)].intervals) {
-    const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
-    for (const Observation& z : graph.intervals[index(k)].of(landmark)) visit(interval, z);
-  }
-}
-
-}  // namespace
 
 Cost evaluate(const FactorGraph& graph) {
   Cost cost;

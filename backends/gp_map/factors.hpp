@@ -20,6 +20,15 @@ double reprojection_error(const GpInterval& interval, const Vector3& landmark, c
 /// Mean of a landmark's over all its observations.
 double reprojection_mean(const FactorGraph& graph, int landmark);
 
+/// Calls visit(interval, observation) for each of a landmark's observations.
+template <class Visit>
+void for_each_observation(const FactorGraph& graph, int landmark, Visit visit) {
+  for (const int k : graph.landmarks[index(landmark)].intervals) {
+    const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
+    for (const Observation& z : graph.intervals[index(k)].of(landmark)) visit(interval, z);
+  }
+}
+
 /// Whitened residuals of the problem's factors.
 /// Behind the camera both components are 2 fx/σ, constant.
 Vector2 reprojection_residual(const GpInterval& interval, const Vector3& landmark, const Observation& z,

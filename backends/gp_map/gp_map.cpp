@@ -8,8 +8,6 @@
 #include <utility>
 
 #include "backends/gp_map/problem_graph.hpp"
-#include "core/geometry/so3.hpp"
-#include "core/motion/wnoa.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/median.hpp"
 
@@ -190,7 +188,7 @@ bool GpMap::is_outlier(int landmark, double error_px) const {
   const auto& seen = graph().landmarks[index(landmark)].intervals;
   if (seen.empty()) return false;
   const double inverse_sigma = graph().intervals[index(seen.back())].of(landmark).back().inverse_sigma;
-  return error_px * inverse_sigma > options_.map.outlier_threshold * noise_scale_;
+  return error_px * inverse_sigma > options_.map.outlier_threshold * noise_.scale();
 }
 
 void GpMap::optimise() {
@@ -232,11 +230,12 @@ void GpMap::yield_to_motion() {
 double GpMap::newest_error() const {
   const std::size_t k = graph().states.size() - 1;
   const GpInterval interval(graph().states[k - 1], graph().states[k]);
+  const double noise = noise_.scale();
   std::vector<double> errors;
   for (const auto& group : graph().intervals[k].groups()) {
     const Observation& z = graph().intervals[k].of(group).back();
     const Vector3& position = graph().landmarks[index(group.landmark)].position;
-    errors.push_back(reprojection_error(interval, position, z, graph().camera) * z.inverse_sigma / noise_scale_);
+    errors.push_back(reprojection_error(interval, position, z, graph().camera) * z.inverse_sigma / noise);
   }
   return std::ssize(errors) < options_.health.min_landmarks ? 0.0 : median(std::move(errors));
 }
@@ -245,7 +244,6 @@ double GpMap::newest_error() const {
 void GpMap::learn() {
   if (options_.learn.noise) {
     noise_.follow(graph(), options_.learn.memory);
-    noise_scale_ = noise_.scale();
     engine_->set_loss(noise_.loss(options_.loss, options_.loss_width));
   }
   if (options_.learn.prior == LearnPrior::always) prior_.follow(*engine_);
@@ -255,15 +253,15 @@ void GpMap::learn() {
 void GpMap::predict_tracks() {
   constexpr double kLargestSpread = 2.0;
   const double spread = std::min(kLargestSpread, 1.0 / std::sqrt(noise_.share()));  // errors that drift
-  placement_.predict([this, spread, newest = graph().states.back()](const TrackObservation& z) {
+  const double noise = spread * noise_.scale() * options_.sigma_scale;
+  placement_.predict([this, noise, newest = graph().states.back()](const TrackObservation& z) {
     std::optional<double> deviation;
     const auto track = tracks_.find(z.track);
     if (track == tracks_.end() || track->second.role != Track::Role::landmark) return deviation;
     const SE3 T = extrapolate(newest, z.t - newest.t).T;
     const Vector3 point = T.inverse() * graph().landmarks[index(track->second.landmark)].position;
     if (point.z() > 0.0) {
-      deviation =
-          (graph().camera.project(point) - z.pixel).norm() / (spread * noise_scale_ * options_.sigma_scale * z.sigma);
+      deviation = (graph().camera.project(point) - z.pixel).norm() / (noise * z.sigma);
     }
     return deviation;
   });
@@ -394,39 +392,24 @@ void GpMap::hold_scale_without(int leaving) {
   engine_->anchor_scale(graph().anchor.origin, {anchors.begin(), anchors.end()});
 }
 
-void GpMap::tell_online(double t) {
-  const std::optional<SE3> T = pose(t);  // none where the state has been taken back
-  if (!T || t <= online_) return;
-  context_.online({{t, *T}, t, velocity(t)});
-  online_ = t;
-}
-
-/// What is seen now tells of the states before, too: those of late are told anew.
-void GpMap::tell_smoothed() {
-  constexpr double kTold = 0.4;  // [s]
-  const double now = graph().states.back().t;
-  if (online_ != now) return;  // no pose has been told now, or the newest state has been taken back since
-  for (std::size_t i = graph().states.size() - 1; i-- > 0 && graph().states[i].t > now - kTold;) {
-    const ControlState& state = graph().states[i];
-    context_.online({{state.t, state.T}, now, state.velocity});
-  }
-}
-
 void GpMap::add_record(double t, double seconds, int iterations, std::optional<double> cost) {
   UpdateRecord record{t, seconds, 0, 0, 0, iterations, cost};
   if (engine_) {
     record.states = static_cast<int>(graph().states.size());
     record.landmarks = landmarks_;
     record.observations = graph().observation_count();
-    record.learnt = {noise_scale_, noise_.share()};
+    record.learnt = {noise_.scale(), noise_.share()};
     record.learnt.insert(record.learnt.end(), graph().qc.begin(), graph().qc.end());
   }
   updates_.push_back(record);
 }
 
-std::vector<std::string> GpMap::learnt() const {
-  return {"noise_scale",   "noise_share",      "qc_rotation_x",    "qc_rotation_y",
-          "qc_rotation_z", "qc_translation_x", "qc_translation_y", "qc_translation_z"};
+/// Of each control state's update, in place of the density that it began with: that of the interval which ends there.
+void GpMap::record_final_prior() {
+  for (UpdateRecord& record : updates_) {
+    const int k = graph().interval_of(record.t);
+    if (k > 0 && !record.learnt.empty()) std::ranges::copy(graph().qcs[index(k)], record.learnt.end() - 6);
+  }
 }
 
 void GpMap::finish() {
@@ -443,6 +426,7 @@ void GpMap::finish() {
     if (is_outlier(track.landmark, reprojection_mean(graph(), track.landmark))) become_outlier(track.landmark);
   }
   const Engine::OptimiseSummary summary = estimate_everything();
+  record_final_prior();
   context_.log(fmt::format("final estimate: cost {:.2f} after {:.2f}, {} iterations{}", summary.final_cost,
                            summary.initial_cost, summary.iterations, summary.converged ? "" : ", not converged"));
   add_record(graph().states.back().t, seconds_since(start), summary.iterations, summary.final_cost);
@@ -457,110 +441,13 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
   if (learns) engine_->optimise(kIterationsARound, kRoughly);
   for (int round = 0; learns && round < options_.learn.rounds; ++round) {
     if (options_.learn.noise) {
-      noise_ = NoiseLearner();
-      for (int k = 1; k < static_cast<int>(graph().states.size()); ++k) noise_.add(graph(), k);
-      noise_scale_ = noise_.scale();
+      noise_ = learn_noise(graph());
       engine_->set_loss(noise_.loss(options_.loss, options_.loss_width));
     }
     if (learns_prior) learn_prior(*engine_);
     engine_->optimise(kIterationsARound, kRoughly);
   }
   return engine_->optimise(options_.final_iterations, learns ? kLearnt : kFixed);
-}
-
-Feedback GpMap::feedback(const FeedbackNeeds& needs) {
-  Feedback feedback{until_, monitor_.state(), {}, {}, std::exchange(new_outliers_, {}), {}};
-  if (!engine_ || monitor_.lost()) return feedback;
-  feedback.newest = newest_seen();
-  if (needs.covariance) feedback.covariance = covariance(feedback.newest->t);
-  if (needs.expected) feedback.expected = expected_features();
-  return feedback;
-}
-
-/// The newest state, or, where that stands ahead of the data (per-observation mode), the estimate at their end.
-ControlState GpMap::newest_seen() const {
-  const ControlState& newest = graph().states.back();
-  if (newest.t <= until_) return newest;
-  return {until_, *pose(until_), *velocity(until_)};
-}
-
-/// Landmarks of live tracks, predicted with constant velocity.
-std::vector<ExpectedFeature> GpMap::expected_features() {
-  constexpr double kNear = 1e-3;  // [units] before the camera: nearer has no image
-  const ControlState& newest = graph().states.back();
-  const double dt = until_ - newest.t;
-  const SE3 motion = se3::exp(dt * newest.velocity), T_camera_world = (newest.T * motion).inverse();
-  Eigen::Matrix<double, 6, 12> J_pose;  // of the predicted pose's increment
-  J_pose << se3::adjoint(motion.inverse()), dt * se3::right_jacobian(dt * newest.velocity);
-  const Matrix6 drift = wnoa::process_covariance(std::abs(dt), graph().qc).topLeftCorner<6, 6>();
-  std::vector<ExpectedFeature> result;
-  for (const TrackId id : live_) {
-    const Track& track = tracks_.at(id);
-    if (track.role != Track::Role::landmark || track.ended) continue;
-    const Vector3 position = graph().landmarks[index(track.landmark)].position;
-    const Vector3 point = T_camera_world * position;
-    if (point.z() < kNear) continue;
-    const Matrix23 J_point = context_.camera.project_jacobian(point);
-    Eigen::Matrix<double, 3, 6> point_of_pose;  // T ← T Exp(δ): Rᵀ(l − p) changes by [q]× δφ − δρ
-    point_of_pose << so3::hat(point), -Matrix3::Identity();
-    const Matrix26 J_image = J_point * point_of_pose;
-    const auto covariance =
-        engine_->predicted_covariance(track.landmark, J_image * J_pose, J_point * T_camera_world.R());
-    if (!covariance) continue;
-    result.push_back(
-        {id, position, context_.camera.project(point), *covariance + J_image * drift * J_image.transpose()});
-  }
-  return result;
-}
-
-PoseTrajectory GpMap::trajectory() const {
-  std::vector<StampedPose> poses;
-  if (!engine_) return {};
-  for (const ControlState& state : graph().states) poses.push_back({state.t, state.T});
-  return PoseTrajectory(std::move(poses));
-}
-
-std::optional<SE3> GpMap::pose(double t) const {
-  const int k = engine_ ? graph().interval_of(t) : -1;
-  if (k < 0) return std::nullopt;
-  return GpInterval(graph().states[index(k - 1)], graph().states[index(k)]).pose(t);
-}
-
-std::optional<Vector6> GpMap::velocity(double t) const {
-  const int k = engine_ ? graph().interval_of(t) : -1;
-  if (k < 0) return std::nullopt;
-  return GpInterval(graph().states[index(k - 1)], graph().states[index(k)]).velocity(t);
-}
-
-std::optional<Matrix12> GpMap::covariance(double t) { return engine_ ? engine_->covariance(t) : std::nullopt; }
-
-std::optional<Matrix6> GpMap::relative_covariance(double t0, double t1) {
-  if (!engine_) return std::nullopt;
-  const auto state_at = [&](double t) {
-    const auto found = std::ranges::lower_bound(graph().states, t, {}, &ControlState::t);
-    return static_cast<int>(found - graph().states.begin());
-  };
-  const int i = state_at(t0), j = state_at(t1);
-  const std::optional<Matrix12> joint = engine_->poses(i, j);
-  if (!joint) return std::nullopt;
-  const SE3 inverse = graph().states[index(j)].T.inverse() * graph().states[index(i)].T;
-  Eigen::Matrix<double, 6, 12> J;  // (T_i Exp δ_i)⁻¹ T_j Exp δ_j = T_i⁻¹ T_j Exp(δ_j − Ad(T_j⁻¹ T_i) δ_i)
-  J << -se3::adjoint(inverse), Matrix6::Identity();
-  return Matrix6(J * *joint * J.transpose());
-}
-
-std::vector<Landmark> GpMap::map() const {
-  std::vector<Landmark> result;
-  for (const auto& [id, track] : tracks_) {
-    if (track.role != Track::Role::landmark) continue;
-    result.push_back({id, graph().landmarks[index(track.landmark)].position});
-  }
-  return result;
-}
-
-std::optional<Problem> GpMap::problem() const {
-  if (!engine_ || options_.lag > 0.0) return std::nullopt;
-  return to_problem(graph());
 }
 
 }  // namespace evbench::gp_map

@@ -92,6 +92,7 @@ class GpMap : public BackEnd {
   void tell_online(double t);
   void tell_smoothed();
   Engine::OptimiseSummary estimate_everything();
+  void record_final_prior();
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
 
   Options options_;
@@ -113,7 +114,6 @@ class GpMap : public BackEnd {
   UpdateSummary last_update_;
   PriorLearner prior_;
   NoiseLearner noise_;
-  double noise_scale_ = 1.0;         ///< true sigmas over the stated ones
   double seconds_since_step_ = 0.0;  ///< spent on single observations
   TrackingMonitor monitor_;
   double until_ = 0.0;                                        ///< [s] of the last batch

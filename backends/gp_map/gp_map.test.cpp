@@ -98,7 +98,8 @@ TEST_CASE("The first landmarks keep the mean log distance that they were given")
 
 TEST_CASE("When most landmarks that hold the scale turn out to be outliers, others hold it too") {
   // Only 25 tracks make the first map; 40 others come at 0.6 s; from 0.9 s on the first ones jump away in turn.
-  const TrackedScene scene(6.0, R"({"motion": {"max_frequency": 0.3}, "tracks": {"lifetime": [7.0, 8.0], "alive": 65}})");
+  const TrackedScene scene(6.0,
+                           R"({"motion": {"max_frequency": 0.3}, "tracks": {"lifetime": [7.0, 8.0], "alive": 65}})");
   constexpr TrackId kFirst = 25;
   std::vector<TrackObservation> observations;
   for (TrackObservation z : scene.observations()) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "backends/gp_map/factors.hpp"
-#include "core/geometry/so3.hpp"
+#include "core/geometry/seen_point.hpp"
 #include "core/support/median.hpp"
 
 namespace evbench::gp_map {
@@ -57,9 +57,7 @@ Residual residual_of(const GpInterval& interval, int landmark, const Vector3& po
     return result;
   }
   result.value = z.inverse_sigma * (camera.project(q) - z.pixel);
-  Eigen::Matrix<double, 3, 6> of_pose;  // q ← Exp(−δ) q
-  of_pose << so3::hat(q), -Matrix3::Identity();
-  const Matrix26 J = z.inverse_sigma * camera.project_jacobian(q) * of_pose;
+  const Matrix26 J = z.inverse_sigma * camera.project_jacobian(q) * seen_point_jacobian(q);
   const double s = 2.0 * (z.t - interval.t0()) / interval.dt() - 1.0;
   result.J << J, s * J;
   return result;
@@ -148,6 +146,12 @@ double NoiseLearner::scale() const {
 double NoiseLearner::share() const {
   const double single = norms_.value() * norms_.value(), mean = means_.value();
   return mean > 0.0 ? std::clamp(single / mean, kLeastShare, 1.0) : 1.0;
+}
+
+NoiseLearner learn_noise(const FactorGraph& graph) {
+  NoiseLearner result;
+  for (int k = 1; k < static_cast<int>(graph.states.size()); ++k) result.add(graph, k);
+  return result;
 }
 
 RobustLoss NoiseLearner::loss(RobustLoss::Kind kind, double width) const {

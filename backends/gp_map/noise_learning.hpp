@@ -52,4 +52,7 @@ class NoiseLearner {
   int taken_ = 0;              ///< the last interval of follow()
 };
 
+/// The noise of a whole history, from all of it.
+NoiseLearner learn_noise(const FactorGraph& graph);
+
 }  // namespace evbench::gp_map

@@ -31,12 +31,6 @@ FactorGraph seen(
   return graph;
 }
 
-NoiseLearner learnt(const FactorGraph& graph) {
-  NoiseLearner learner;
-  for (int k = 1; k < static_cast<int>(graph.states.size()); ++k) learner.add(graph, k);
-  return learner;
-}
-
 Vector2 white(Random& random, double sigma) { return sigma * Vector2(random.normal(), random.normal()); }
 
 }  // namespace
@@ -44,7 +38,7 @@ Vector2 white(Random& random, double sigma) { return sigma * Vector2(random.norm
 TEST_CASE("White noise is learnt as it is, though a tenth of the tracks are outliers") {
   for (const double sigma : {0.1, 1.0, 5.0}) {
     Random random(1);
-    const NoiseLearner noise = learnt(seen([&](int track, double) {
+    const NoiseLearner noise = learn_noise(seen([&](int track, double) {
       const double off = track % 10 == 0 ? 20.0 * sigma : 0.0;
       return Vector2(white(random, sigma) + off * Vector2::Ones());
     }));
@@ -59,7 +53,7 @@ TEST_CASE("Of errors that drift, as much counts as their means over a fifth of a
   Random random(2);
   std::vector<Vector2> drift(kTracks, Vector2::Zero());
   const double keep = std::exp(-1.0 / (kRate * kCorrelationTime));
-  const NoiseLearner noise = learnt(seen([&](int track, double) {
+  const NoiseLearner noise = learn_noise(seen([&](int track, double) {
     drift[index(track)] = keep * drift[index(track)] + white(random, kSigma * std::sqrt(1.0 - keep * keep));
     return drift[index(track)];
   }));
@@ -75,7 +69,7 @@ TEST_CASE("What all tracks have in common tells of the motion: it passes for no 
                                     step << 0.02, -0.01, 0.03, 0.02, 0.03, -0.01;
                                     return se3::exp(std::sin(5.0 * t) * step);
                                   });
-  const NoiseLearner noise = learnt(shaken);
+  const NoiseLearner noise = learn_noise(shaken);
   CHECK(noise.scale() == Approx(0.3).epsilon(0.15));
   CHECK(noise.share() > 0.7);
 }

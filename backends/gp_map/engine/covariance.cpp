@@ -162,7 +162,9 @@ std::optional<Matrix24> Engine::neighbours(int k) {
 
 std::vector<Matrix24> Engine::chain_covariances(int first) {
   if (first < 1 || first <= first_state() || !factorise_undamped()) return {};
-  return factorisation_.chain(first);
+  std::vector<Matrix24> chain = factorisation_.chain(first);
+  if (!std::ranges::all_of(chain, [](const Matrix24& joint) { return joint.allFinite(); })) return {};
+  return chain;
 }
 
 std::optional<Matrix12> Engine::poses(int i, int j) {

@@ -9,15 +9,6 @@
 namespace evbench::gp_map {
 namespace {
 
-/// Calls visit(interval, observation) for each of a landmark's.
-template <class Visit>
-void for_each_observation(const FactorGraph& graph, int landmark, Visit visit) {
-  for (const int k : graph.landmarks[index(landmark)].intervals) {
-    const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
-    for (const Observation& z : graph.intervals[index(k)].of(landmark)) visit(interval, z);
-  }
-}
-
 /// A solved problem whose landmarks are seen in up to 20 intervals, with another loss.
 FactorGraph solved_problem(const RobustLoss& loss) {
   FactorGraph graph = testing::DrawnProblem({.pixel_sigma = 1.0}, 1).solve_incrementally().graph();

@@ -64,8 +64,8 @@ const IntervalLinearisation& LinearisationPoints::interval(const FactorGraph& gr
     nearest = std::min(nearest, (positions_.back() - states_[index(k)].T.p).squaredNorm());
   }
   nearest_[index(k)] = std::sqrt(nearest);
-  linearise_interval({graph.camera, graph.loss, graph.qcs[index(k)], graph.expansions[index(k)], states_[index(k - 1)], states_[index(k)],
-                      observations, positions_},
+  linearise_interval({graph.camera, graph.loss, graph.qcs[index(k)], graph.expansions[index(k)], states_[index(k - 1)],
+                      states_[index(k)], observations, positions_},
                      kept.linear);
   linearised_observations_ += static_cast<std::int64_t>(observations.all().size());
   errors_.set(k, kept.linear.couplings);

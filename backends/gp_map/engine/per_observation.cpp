@@ -1,5 +1,5 @@
 #include "backends/gp_map/engine/engine.hpp"
-#include "core/geometry/so3.hpp"
+#include "core/geometry/seen_point.hpp"
 
 // Per-observation updates: the newest two states follow each observation of the interval between them.
 namespace evbench::gp_map {
@@ -14,8 +14,7 @@ ObservationRows linearise(const GpInterval& interval, const GpInterval::Derivati
   const Matrix23 D = z.inverse_sigma * camera.project_jacobian(q);
   rows.e = z.inverse_sigma * (camera.project(q) - z.pixel);
   rows.landmark = D * at_z.T.R().transpose();
-  Matrix26 pose;  // q ← Exp(−δ) q
-  pose << D * so3::hat(q), -D;
+  const Matrix26 pose = D * seen_point_jacobian(q);
   rows.states << pose * at_z.J0.topRows<6>(), pose * at_z.J1.topRows<6>();
   return rows;
 }

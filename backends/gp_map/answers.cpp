@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "backends/gp_map/gp_map.hpp"
+#include "backends/gp_map/problem_graph.hpp"
+#include "core/geometry/seen_point.hpp"
+#include "core/motion/wnoa.hpp"
+
+// What the back-end tells of its estimate: poses as they are made, feedback, and answers afterwards.
+namespace evbench::gp_map {
+
+void GpMap::tell_online(double t) {
+  const std::optional<SE3> T = pose(t);  // none where the state has been taken back
+  if (!T || t <= online_) return;
+  context_.online({{t, *T}, t, velocity(t)});
+  online_ = t;
+}
+
+/// What is seen now tells of the states before, too: those of late are told anew.
+void GpMap::tell_smoothed() {
+  constexpr double kTold = 0.4;  // [s]
+  const double now = graph().states.back().t;
+  if (online_ != now) return;  // no pose has been told now, or the newest state has been taken back since
+  for (std::size_t i = graph().states.size() - 1; i-- > 0 && graph().states[i].t > now - kTold;) {
+    const ControlState& state = graph().states[i];
+    context_.online({{state.t, state.T}, now, state.velocity});
+  }
+}
+
+Feedback GpMap::feedback(const FeedbackNeeds& needs) {
+  Feedback feedback{until_, monitor_.state(), {}, {}, std::exchange(new_outliers_, {}), {}};
+  if (!engine_ || monitor_.lost()) return feedback;
+  feedback.newest = newest_seen();
+  if (needs.covariance) feedback.covariance = covariance(feedback.newest->t);
+  if (needs.expected) feedback.expected = expected_features();
+  return feedback;
+}
+
+/// The newest state, or, where that stands ahead of the data (per-observation mode), the estimate at their end.
+ControlState GpMap::newest_seen() const {
+  const ControlState& newest = graph().states.back();
+  if (newest.t <= until_) return newest;
+  return {until_, *pose(until_), *velocity(until_)};
+}
+
+/// Landmarks of live tracks, predicted with constant velocity.
+std::vector<ExpectedFeature> GpMap::expected_features() {
+  constexpr double kNear = 1e-3;  // [units] before the camera: nearer has no image
+  const ControlState& newest = graph().states.back();
+  const double dt = until_ - newest.t;
+  const SE3 motion = se3::exp(dt * newest.velocity), T_camera_world = (newest.T * motion).inverse();
+  Eigen::Matrix<double, 6, 12> J_pose;  // of the predicted pose's increment
+  J_pose << se3::adjoint(motion.inverse()), dt * se3::right_jacobian(dt * newest.velocity);
+  const Matrix6 drift = wnoa::process_covariance(std::abs(dt), graph().qc).topLeftCorner<6, 6>();
+  std::vector<ExpectedFeature> result;
+  for (const TrackId id : live_) {
+    const Track& track = tracks_.at(id);
+    if (track.role != Track::Role::landmark || track.ended) continue;
+    const Vector3 position = graph().landmarks[index(track.landmark)].position;
+    const Vector3 point = T_camera_world * position;
+    if (point.z() < kNear) continue;
+    const Matrix23 J_point = context_.camera.project_jacobian(point);
+    const Matrix26 J_image = J_point * seen_point_jacobian(point);
+    const auto covariance =
+        engine_->predicted_covariance(track.landmark, J_image * J_pose, J_point * T_camera_world.R());
+    if (!covariance) continue;
+    result.push_back(
+        {id, position, context_.camera.project(point), *covariance + J_image * drift * J_image.transpose()});
+  }
+  return result;
+}
+
+PoseTrajectory GpMap::trajectory() const {
+  std::vector<StampedPose> poses;
+  if (!engine_) return {};
+  for (const ControlState& state : graph().states) poses.push_back({state.t, state.T});
+  return PoseTrajectory(std::move(poses));
+}
+
+std::optional<SE3> GpMap::pose(double t) const {
+  const int k = engine_ ? graph().interval_of(t) : -1;
+  if (k < 0) return std::nullopt;
+  return GpInterval(graph().states[index(k - 1)], graph().states[index(k)]).pose(t);
+}
+
+std::optional<Vector6> GpMap::velocity(double t) const {
+  const int k = engine_ ? graph().interval_of(t) : -1;
+  if (k < 0) return std::nullopt;
+  return GpInterval(graph().states[index(k - 1)], graph().states[index(k)]).velocity(t);
+}
+
+std::optional<Matrix12> GpMap::covariance(double t) { return engine_ ? engine_->covariance(t) : std::nullopt; }
+
+std::optional<Matrix6> GpMap::relative_covariance(double t0, double t1) {
+  if (!engine_) return std::nullopt;
+  const auto state_at = [&](double t) {
+    const auto found = std::ranges::lower_bound(graph().states, t, {}, &ControlState::t);
+    return static_cast<int>(found - graph().states.begin());
+  };
+  const int i = state_at(t0), j = state_at(t1);
+  const std::optional<Matrix12> joint = engine_->poses(i, j);
+  if (!joint) return std::nullopt;
+  const SE3 inverse = graph().states[index(j)].T.inverse() * graph().states[index(i)].T;
+  Eigen::Matrix<double, 6, 12> J;  // (T_i Exp δ_i)⁻¹ T_j Exp δ_j = T_i⁻¹ T_j Exp(δ_j − Ad(T_j⁻¹ T_i) δ_i)
+  J << -se3::adjoint(inverse), Matrix6::Identity();
+  return Matrix6(J * *joint * J.transpose());
+}
+
+std::vector<Landmark> GpMap::map() const {
+  std::vector<Landmark> result;
+  for (const auto& [id, track] : tracks_) {
+    if (track.role != Track::Role::landmark) continue;
+    result.push_back({id, graph().landmarks[index(track.landmark)].position});
+  }
+  return result;
+}
+
+std::vector<std::string> GpMap::learnt() const {
+  return {"noise_scale",   "noise_share",      "qc_rotation_x",    "qc_rotation_y",
+          "qc_rotation_z", "qc_translation_x", "qc_translation_y", "qc_translation_z"};
+}
+
+std::optional<Problem> GpMap::problem() const {
+  if (!engine_ || options_.lag > 0.0) return std::nullopt;
+  return to_problem(graph());
+}
+
+}  // namespace evbench::gp_map
