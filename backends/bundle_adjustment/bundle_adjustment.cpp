@@ -368,16 +368,15 @@ Feedback BundleAdjustment::feedback(const FeedbackNeeds& needs) {
   return result;
 }
 
-/// Landmarks of live tracks, where constant velocity predicts them; how well is not estimated: within outlier_px.
+/// All landmarks, where constant velocity predicts them; how well is not estimated: within outlier_px.
 std::vector<ExpectedFeature> BundleAdjustment::expected_features() const {
   const SE3 T_camera_world = predict(until_, static_cast<int>(map_.views.size()) - 1).inverse();
   std::vector<ExpectedFeature> result;
-  for (const TrackId id : live_) {
-    const auto track = map_.tracks.find(id);
-    if (track == map_.tracks.end() || !track->second.position) continue;
-    const Vector3 point = T_camera_world * *track->second.position;
+  for (const auto& [id, track] : map_.tracks) {
+    if (!track.position) continue;
+    const Vector3 point = T_camera_world * *track.position;
     if (point.z() <= 0.0) continue;
-    result.push_back({id, *track->second.position, context_.camera.project(point),
+    result.push_back({id, *track.position, context_.camera.project(point),
                       options_.outlier_px * options_.outlier_px * Matrix2::Identity()});
   }
   return result;

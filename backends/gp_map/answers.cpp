@@ -44,31 +44,48 @@ ControlState GpMap::newest_seen() const {
   return {until_, *pose(until_), *velocity(until_)};
 }
 
-/// Landmarks of live tracks, predicted with constant velocity.
+/// All landmarks in view, predicted with constant velocity. One whose track has ended counts as independent of the
+/// newest state.
 std::vector<ExpectedFeature> GpMap::expected_features() {
   constexpr double kNear = 1e-3;  // [units] before the camera: nearer has no image
+  constexpr double kView = 1.5;   // of the principal point's distance from the border: lenses see farther than pinholes
+  const PinholeCamera& camera = context_.camera;
   const ControlState& newest = graph().states.back();
   const double dt = until_ - newest.t;
   const SE3 motion = se3::exp(dt * newest.velocity), T_camera_world = (newest.T * motion).inverse();
   Eigen::Matrix<double, 6, 12> J_pose;  // of the predicted pose's increment
   J_pose << se3::adjoint(motion.inverse()), dt * se3::right_jacobian(dt * newest.velocity);
   const Matrix6 drift = wnoa::process_covariance(std::abs(dt), graph().qc).topLeftCorner<6, 6>();
+  const std::optional<Matrix12> state = covariance(newest.t);
   std::vector<ExpectedFeature> result;
-  for (const TrackId id : live_) {
-    const Track& track = tracks_.at(id);
-    if (track.role != Track::Role::landmark || track.ended) continue;
+  if (!state) return result;
+  const Matrix6 pose = J_pose * *state * J_pose.transpose();
+  for (auto& [id, track] : tracks_) {
+    if (track.role != Track::Role::landmark) continue;
     const Vector3 position = graph().landmarks[index(track.landmark)].position;
     const Vector3 point = T_camera_world * position;
     if (point.z() < kNear) continue;
-    const Matrix23 J_point = context_.camera.project_jacobian(point);
+    const Vector2 pixel = camera.project(point);
+    if (std::abs(pixel.x() - camera.cx) > kView * camera.cx || std::abs(pixel.y() - camera.cy) > kView * camera.cy)
+      continue;
+    const Matrix23 J_point = camera.project_jacobian(point), J_landmark = J_point * T_camera_world.R();
     const Matrix26 J_image = J_point * seen_point_jacobian(point);
-    const auto covariance =
-        engine_->predicted_covariance(track.landmark, J_image * J_pose, J_point * T_camera_world.R());
-    if (!covariance) continue;
-    result.push_back(
-        {id, position, context_.camera.project(point), *covariance + J_image * drift * J_image.transpose()});
+    std::optional<Matrix2> image;
+    if (!track.ended) {
+      track.covariance.reset();
+      image = engine_->predicted_covariance(track.landmark, J_image * J_pose, J_landmark);
+    } else if (const std::optional<Matrix3> own = covariance_of_ended(track)) {
+      image = J_image * pose * J_image.transpose() + J_landmark * *own * J_landmark.transpose();
+    }
+    if (image) result.push_back({id, position, pixel, *image + J_image * drift * J_image.transpose()});
   }
   return result;
+}
+
+/// As it was when the track had ended: what is learnt of it afterwards is little, and finding it takes a walk back.
+std::optional<Matrix3> GpMap::covariance_of_ended(Track& track) {
+  if (!track.covariance) track.covariance = engine_->landmark_covariance(track.landmark);
+  return track.covariance;
 }
 
 PoseTrajectory GpMap::trajectory() const {

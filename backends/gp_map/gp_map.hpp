@@ -57,6 +57,7 @@ class GpMap : public BackEnd {
     int landmark = -1;   ///< the engine's number
     int tried_with = 0;  ///< observations at the last vain attempt to locate it
     bool ended = false;
+    std::optional<Matrix3> covariance = {};  ///< of the landmark, once it is asked for after the track's end
   };
 
   // Algorithm 1, a line each.
@@ -86,6 +87,7 @@ class GpMap : public BackEnd {
   double median_depth() const;
   ControlState newest_seen() const;
   std::vector<ExpectedFeature> expected_features();
+  std::optional<Matrix3> covariance_of_ended(Track& track);
   double newest_error() const;
   bool is_outlier(int landmark, double error_px) const;
   int landmarks_in_view() const;

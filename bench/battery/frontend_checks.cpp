@@ -32,9 +32,21 @@ class Candidate {
   std::string folder_, name_;
 };
 
-void check_batch(const TrackBatch& batch, double before, bool first, const FrontEnd::Horizon& horizon) {
-  require(batch.until <= horizon.t && (batch.until > before || (first && batch.until == before)),
-          "asked for up to {} s, from {} s on, it tells up to {} s", horizon.t, before, batch.until);
+/// How far the front-end has told, and looked.
+struct Progress {
+  double until, seen;
+  bool first = true;
+
+  void go_on(const TrackBatch& batch) { *this = {batch.until, batch.known_at(), false}; }
+};
+
+void check_batch(const TrackBatch& batch, const Progress& progress, const FrontEnd::Horizon& horizon) {
+  const auto& [before, clock, first] = progress;
+  const double seen = batch.known_at();
+  const bool goes_on = batch.until > before || seen > clock || first;
+  require(batch.until >= before && batch.until <= seen && seen >= clock && seen <= horizon.t && goes_on,
+          "asked for up to {} s, from {} s on, it tells up to {} s, having looked up to {} s", horizon.t, before,
+          batch.until, seen);
   double t = before;
   for (const TrackObservation& z : batch.observations) {
     require(z.t >= t, "its observation at {} s comes after one at {} s", z.t, t);
@@ -53,18 +65,18 @@ TrackBatch Candidate::all(double interval, std::size_t most) const {
   const auto frontend = make();
   const Source::TimeRange range = source_.time_range();
   TrackBatch everything, batch;
-  double now = range.from;
+  Progress progress{range.from, range.from};
   bool more = true;
-  for (std::int64_t k = 1; more && now < range.to;) {
+  for (std::int64_t k = 1; more && progress.until < range.to;) {
     const double t = std::min(range.to, range.from + static_cast<double>(k) * interval);
     more = frontend->advance({t, most}, batch);
-    check_batch(batch, now, now == range.from, {t, most});
+    check_batch(batch, progress, {t, most});
     everything.observations.insert(everything.observations.end(), batch.observations.begin(), batch.observations.end());
     everything.ended.insert(everything.ended.end(), batch.ended.begin(), batch.ended.end());
-    now = batch.until;
-    if (now >= t) ++k;
+    progress.go_on(batch);
+    if (progress.seen >= t) ++k;
   }
-  everything.until = now;
+  everything.until = progress.until;
   return everything;
 }
 
@@ -108,16 +120,17 @@ void bears_any_feedback(const Candidate& candidate) {
   const auto frontend = candidate.make();
   const Source::TimeRange range = candidate.source().time_range();
   TrackBatch batch;
-  double now = range.from;
-  for (int k = 1; k <= 100 && now < range.to; ++k) {
+  Progress progress{range.from, range.from};
+  for (int k = 1; k <= 100 && progress.until < range.to; ++k) {
     const double t = std::min(range.to, range.from + 0.01 * k);
     const bool more = frontend->advance({t}, batch);
-    check_batch(batch, now, k == 1, {t});
-    now = batch.until;
+    check_batch(batch, progress, {t});
+    progress.go_on(batch);
     Feedback feedback;
-    feedback.t = now;
+    feedback.t = batch.until;
     feedback.state = static_cast<TrackingState>(k % 5);
-    if (k % 3 == 0) feedback.newest = ControlState{now, {Eigen::Quaterniond::Identity(), {1e9, 0, 0}}, Vector6::Ones()};
+    if (k % 3 == 0)
+      feedback.newest = ControlState{batch.until, {Eigen::Quaterniond::Identity(), {1e9, 0, 0}}, Vector6::Ones()};
     if (!batch.observations.empty()) {
       feedback.outliers = {batch.observations.front().track, -17};
       feedback.expected.push_back(

@@ -49,7 +49,12 @@ double length(const Piece& piece) { return piece.final_trajectory.end() - piece.
 
 BackSide::BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera, double from,
                    const PipelineOptions& options)
-    : make_(make), context_(std::move(context)), camera_(camera), standstill_(options.still_after), until_(from) {
+    : make_(make),
+      context_(std::move(context)),
+      camera_(camera),
+      standstill_(options.still_after),
+      until_(from),
+      seen_(from) {
   context_.camera = camera.pinhole;
   context_.patience = options.patience;
   begin();
@@ -68,7 +73,7 @@ void BackSide::hear(OnlinePose pose, Estimator& estimator) const {
   if (!std::isfinite(pose.t) || !is_finite(pose) || (pose.velocity && !pose.velocity->allFinite())) {
     throw std::runtime_error(fmt::format("the back-end's pose at {:.6f} s is not finite", pose.t));
   }
-  pose.known_at = std::max(pose.t, pose.known_at.value_or(until_));
+  pose.known_at = std::max(pose.t, pose.known_at.value_or(seen_));
   std::vector<OnlinePose>& told = estimator.told;
   if (!told.empty() && !(*pose.known_at >= *told.back().known_at)) {
     throw std::runtime_error(
@@ -89,6 +94,7 @@ void BackSide::take(TrackBatch batch) {
     begin();
   }
   until_ = batch.until;
+  seen_ = batch.known_at();
   Estimator& estimator = *estimators_.back();
   watch_.time([&] { estimator.backend->advance(batch); });
   if (estimator.newest) estimator.covariances.take(*estimator.newest, *estimator.backend);
@@ -101,6 +107,7 @@ Feedback BackSide::feedback(const FeedbackNeeds& needs) {
   for (ExpectedFeature& feature : feedback.expected) {
     feature.pixel = camera_.project(camera_.pinhole.ray(feature.pixel));
   }
+  std::erase_if(feedback.expected, [&](const ExpectedFeature& feature) { return !camera_.contains(feature.pixel); });
   return feedback;
 }
 

@@ -54,7 +54,7 @@ class BackSide {
   const Camera& camera_;
   Standstill standstill_;
   std::vector<std::unique_ptr<Estimator>> estimators_;  ///< the last one is at work
-  double until_;                                        ///< [s] of the last batch
+  double until_, seen_;                                 ///< [s] of the last batch
   Sha256 hash_;
   std::string digested_;  ///< what is to be hashed
   std::size_t observations_ = 0, left_out_ = 0;

@@ -4,15 +4,15 @@
 
 namespace evbench {
 
-void FeedbackLine::expect(double until) {
+void FeedbackLine::expect(double t) {
   const std::lock_guard lock(mutex_);
-  expected_.push_back(until);
+  expected_.push_back(t);
 }
 
 void FeedbackLine::answer(Feedback feedback) {
   const std::lock_guard lock(mutex_);
+  answers_.push_back({expected_.front(), std::move(feedback)});
   expected_.pop_front();
-  answers_.push_back(std::move(feedback));
   answered_.notify_one();
 }
 
@@ -21,7 +21,7 @@ std::vector<Feedback> FeedbackLine::due(double now) {
   if (!free_) answered_.wait(lock, [&] { return closed_ || expected_.empty() || !is_due(expected_.front(), now); });
   std::vector<Feedback> result;
   for (; !answers_.empty() && (free_ || is_due(answers_.front().t, now)); answers_.pop_front()) {
-    result.push_back(std::move(answers_.front()));
+    result.push_back(std::move(answers_.front().feedback));
   }
   return result;
 }

@@ -16,8 +16,8 @@ class FeedbackLine {
  public:
   FeedbackLine(double latency, bool free) : latency_(latency), free_(free) {}
 
-  /// The front-end has sent a batch that ends at `until`: an answer is to come.
-  void expect(double until);
+  /// The front-end has sent a batch that was known at t [s]: an answer is to come.
+  void expect(double t);
 
   /// The back-end's answer to the oldest batch that has none.
   void answer(Feedback feedback);
@@ -35,8 +35,12 @@ class FeedbackLine {
   bool free_;
   std::mutex mutex_;
   std::condition_variable answered_;
+  struct Answer {
+    double t;  ///< [s] when its batch was known
+    Feedback feedback;
+  };
   std::deque<double> expected_;  ///< [s], of batches without an answer
-  std::deque<Feedback> answers_;
+  std::deque<Answer> answers_;
   bool closed_ = false;
 };
 

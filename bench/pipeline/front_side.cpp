@@ -16,13 +16,27 @@ FrontSide::FrontSide(FrontEnd& frontend, const Source::TimeRange& range, const P
       options_(options),
       feedback_(feedback),
       needs_(frontend.needs()),
-      now_(range.from) {}
+      clock_(range.from),
+      until_(range.from) {}
 
 std::optional<TrackBatch> FrontSide::next() {
-  check_interruption();
-  if (begun_ && now_ >= range_.to) return std::nullopt;
+  while (!begun_ || until_ < range_.to) {
+    check_interruption();
+    TrackBatch batch = exchange();
+    const bool tells = !begun_ || batch.until > until_;
+    begun_ = true;
+    clock_ = *batch.seen;
+    until_ = batch.until;
+    if (!tells) continue;
+    if (needs_.any) feedback_.expect(clock_);
+    return batch;
+  }
+  return std::nullopt;
+}
+
+TrackBatch FrontSide::exchange() {
   if (needs_.any) {
-    for (const Feedback& feedback : feedback_.due(now_)) watch_.time([&] { frontend_.receive(feedback); });
+    for (const Feedback& feedback : feedback_.due(clock_)) watch_.time([&] { frontend_.receive(feedback); });
   }
   const double horizon = next_time();
   TrackBatch batch;
@@ -33,33 +47,33 @@ std::optional<TrackBatch> FrontSide::next() {
     check(batch, horizon);
     count(batch);
   }
-  begun_ = true;
-  now_ = batch.until;
-  if (needs_.any) feedback_.expect(now_);
+  batch.seen = batch.known_at();
   return batch;
 }
 
 /// The end of the interval that is being gone through.
 double FrontSide::next_time() {
   const auto end = [&] { return range_.from + static_cast<double>(exchanges_) * options_.interval; };
-  while (exchanges_ == 0 || end() <= now_) ++exchanges_;
+  while (exchanges_ == 0 || end() <= clock_) ++exchanges_;
   return std::min(end(), range_.to);
 }
 
 void FrontSide::check(const TrackBatch& batch, double horizon) const {
   const auto fail = [&](const std::string& what) {
     throw std::runtime_error(
-        fmt::format("the front-end's batch from {:.6f} s to {:.6f} s (up to {:.6f} s were asked for) {}", now_,
+        fmt::format("the front-end's batch from {:.6f} s to {:.6f} s (up to {:.6f} s were asked for) {}", until_,
                     batch.until, horizon, what));
   };
-  if (!(batch.until <= horizon) || batch.until < now_ || (begun_ && batch.until == now_)) {
+  const double seen = batch.known_at();
+  if (!(batch.until <= seen && seen <= horizon) || batch.until < until_ || seen < clock_ ||
+      (begun_ && batch.until == until_ && seen == clock_)) {
     fail("ends at a wrong time; expected one after the last batch's end and not after what was asked for");
   }
   if (!std::ranges::is_sorted(batch.observations, {}, &TrackObservation::t)) {
     fail("has observations out of time order; expected each not before the one in front of it");
   }
   for (const TrackObservation& z : batch.observations) {
-    if (z.t <= batch.until && (z.t > now_ || (!begun_ && z.t >= now_))) continue;
+    if (z.t <= batch.until && (z.t > until_ || (!begun_ && z.t >= until_))) continue;
     fail(fmt::format("has an observation at {:.6f} s; expected times within the batch", z.t));
   }
   for (const TrackEnd& ended : batch.ended) {

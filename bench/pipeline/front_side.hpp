@@ -18,7 +18,8 @@ class FrontSide {
  public:
   FrontSide(FrontEnd& frontend, const Source::TimeRange& range, const PipelineOptions& options, FeedbackLine& feedback);
 
-  /// The next batch, raw pixels; hands over what feedback is due before. None at the end of the range. Throws
+  /// The next batch that tells of new time, raw pixels, `seen` set; hands over what feedback is due before. None at the
+  /// end of the range. Throws
   /// std::runtime_error for a front-end that breaks its contract (frontend.hpp), saying how.
   std::optional<TrackBatch> next();
 
@@ -28,6 +29,7 @@ class FrontSide {
   double data_s() const { return first_ ? last_ - *first_ : 0.0; }
 
  private:
+  TrackBatch exchange();
   double next_time();
   void check(const TrackBatch& batch, double horizon) const;
   void count(TrackBatch& batch);
@@ -38,7 +40,8 @@ class FrontSide {
   FeedbackLine& feedback_;
   FeedbackNeeds needs_;
   bool more_ = true;
-  double now_;
+  double clock_;  ///< [s] the front-end has looked at the data up to here
+  double until_;  ///< [s] of the last batch
   bool begun_ = false;
   std::int64_t exchanges_ = 0;  ///< whole intervals since the beginning of the range
   std::set<TrackId> live_;

@@ -169,6 +169,39 @@ TEST_CASE("Sequential and concurrent runs give the same bytes, whatever the feed
   }
 }
 
+/// Tells of a time only when it has looked at what comes 30 ms later.
+class LateListener : public Listener {
+ public:
+  static constexpr double kDelay = 0.03;
+  using Listener::Listener;
+
+  bool advance(const Horizon& horizon, TrackBatch& batch) override {
+    const double end = 1.0;
+    const Horizon earlier{horizon.t < end ? std::max(0.0, horizon.t - kDelay) : end, 0};
+    Listener::advance(earlier, batch);
+    batch.seen = horizon.t;
+    return true;
+  }
+};
+
+TEST_CASE("What a front-end tells late is known late, and feedback waits for it, in one thread and in two") {
+  PipelineOptions options;
+  LateListener one(tracks({{0.0, 1.0}}), {true, false, false}), two(tracks({{0.0, 1.0}}), {true, false, false});
+  const RunResult sequential = run(one, 1.0, options);
+  options.mode = "concurrent";
+  const RunResult concurrent = run(two, 1.0, options);
+  CHECK(sequential.tracks_sha256 == concurrent.tracks_sha256);
+  CHECK(one.heard == two.heard);
+  REQUIRE(sequential.pieces.size() == 1);
+  const auto& told = sequential.pieces[0].told;
+  REQUIRE(told.size() > 50);
+  for (std::size_t i = 0; i + 4 < told.size(); ++i) {
+    CHECK(*told[i].known_at == Approx(told[i].t + LateListener::kDelay).margin(1e-9));
+  }
+  CHECK(told.back().t == Approx(1.0));
+  CHECK(sequential.observations == tracks({{0.0, 1.0}}).size());
+}
+
 TEST_CASE("Feedback reaches the front-end after the latency in data time, in order, each once") {
   PipelineOptions options;
   options.latency = 0.025;

@@ -19,6 +19,11 @@ struct TrackBatch {
   std::vector<TrackEnd> ended;
   /// [s] Everything up to here has been seen: this batch holds nothing later, the next one nothing that is not later.
   double until = 0.0;
+  /// [s] The data have been looked at up to here, which is when this batch is known. Later than `until` for a front-end
+  /// whose observations stand for times that have passed; none: `until`.
+  std::optional<double> seen = {};
+
+  double known_at() const { return seen.value_or(until); }
 };
 
 /// Where the estimate stands at an exchange. Worse is larger.
@@ -43,10 +48,12 @@ struct ExpectedFeature {
 struct Feedback {
   double t = 0.0;  ///< [s], the time it stands for: what was observed up to here is in it, nothing later
   TrackingState state = TrackingState::no_map;
-  std::optional<ControlState> newest;     ///< pose and velocity at newest->t ≤ t: extrapolate to predict
-  std::optional<Matrix12> covariance;     ///< of (δpose, δvelocity) of `newest`, T ← T Exp(δpose)
-  std::vector<TrackId> outliers;          ///< tracks dropped as outliers since the last feedback
-  std::vector<ExpectedFeature> expected;  ///< landmarks of live tracks in view, predicted at t
+  std::optional<ControlState> newest;  ///< pose and velocity at newest->t ≤ t: extrapolate to predict
+  std::optional<Matrix12> covariance;  ///< of (δpose, δvelocity) of `newest`, T ← T Exp(δpose)
+  std::vector<TrackId> outliers;       ///< tracks dropped as outliers since the last feedback
+  /// Landmarks in view, predicted at t: those of live tracks and those that were seen before. A front-end that finds
+  /// one of these again goes on with its track.
+  std::vector<ExpectedFeature> expected;
 };
 
 /// What of the feedback a front-end makes use of: the rest is not computed. None: the back-end is not asked at all, and

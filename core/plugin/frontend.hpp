@@ -30,7 +30,9 @@ class FrontEnd {
 
   /// Replaces `batch` by what happened since the last call, raw pixels, up to the horizon: batch.until is the horizon's
   /// time, or the time of the observation with which its number was reached (others of that same time belong to the
-  /// batch). Returns false when nothing more will come at any time; the run then goes on without observations.
+  /// batch). One whose observations come late says how far it has looked (batch.seen ≤ horizon.t) and ends the batch
+  /// earlier: it may do so by as much as it likes, but at the end of the time range nothing is left. Returns false when
+  /// nothing more will come at any time; the run then goes on without observations.
   virtual bool advance(const Horizon& horizon, TrackBatch& batch) = 0;
 
   /// What of the feedback is made use of.

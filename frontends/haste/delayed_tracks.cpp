@@ -1,0 +1,28 @@
+#include "frontends/haste/delayed_tracks.hpp"
+
+#include <algorithm>
+
+namespace evbench::haste {
+
+void DelayedTracks::add(TrackObservation z) {
+  constexpr double kAfter = 1e-6;  // [s]
+  if (z.t <= until_) {
+    z.t = until_ + kAfter;
+    ++late_;
+  }
+  waiting_.insert(std::ranges::upper_bound(waiting_, z.t, {}, &TrackObservation::t), z);
+}
+
+void DelayedTracks::tell(double t, std::size_t most, TrackBatch& batch) {
+  batch.until = std::max(until_, t);
+  if (most > 0 && has(most, batch.until)) batch.until = waiting_[most - 1].t;
+  batch.observations.clear();
+  for (; !waiting_.empty() && waiting_.front().t <= batch.until; waiting_.pop_front()) {
+    batch.observations.push_back(waiting_.front());
+  }
+  batch.ended.clear();
+  for (; !ended_.empty() && ended_.front().t <= batch.until; ended_.pop_front()) batch.ended.push_back(ended_.front());
+  until_ = batch.until;
+}
+
+}  // namespace evbench::haste

@@ -1,0 +1,19 @@
+#include "frontends/haste/event_feed.hpp"
+
+#include <algorithm>
+
+namespace evbench::haste {
+
+std::span<const Event> EventFeed::until(std::int64_t t) {
+  while (next_ == events_.size() && !ended_) {
+    ended_ = !stream_->read(events_);
+    next_ = 0;
+  }
+  const auto left = std::span(events_).subspan(next_);
+  const auto piece =
+      left.first(static_cast<std::size_t>(std::ranges::upper_bound(left, t, {}, &Event::t) - left.begin()));
+  next_ += piece.size();
+  return piece;
+}
+
+}  // namespace evbench::haste

@@ -1,0 +1,257 @@
+#include "frontends/haste/haste.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/plugin/registration.hpp"
+#include "core/support/error.hpp"
+#include "core/support/index.hpp"
+
+namespace evbench::haste {
+namespace {
+
+const Registration<FrontEnd, Haste> registration(
+    "haste",
+    "tracks features in events asynchronously by hypotheses (Alzugaray and "
+    "Chli 2020), finds lost landmarks again");
+
+constexpr double kTick = 0.005;  ///< [s] between two looks after the trackers
+
+double seconds(std::int64_t t) { return static_cast<double>(t) / 1e6; }
+std::int64_t microseconds(double t) { return static_cast<std::int64_t>(std::floor(t * 1e6 + 1e-3)); }
+
+std::unique_ptr<EventStream> events_of(const FrontEndContext& context) {
+  auto events = context.source.events();
+  if (!events) {
+    throw InputError(
+        fmt::format("{}: haste tracks in events, and this source has none; expected a recording of events or "
+                    "the source event_simulation",
+                    context.place));
+  }
+  return events;
+}
+
+}  // namespace
+
+Haste::Haste(const Options& options, const FrontEndContext& context)
+    : options_(options),
+      camera_(context.source.camera()),
+      range_(context.source.time_range()),
+      feed_(events_of(context)),
+      recent_(static_cast<std::size_t>(options.detection.events)),
+      trackers_(camera_.width, camera_.height),
+      told_(range_.from),
+      guidance_(camera_),
+      lost_(options.guidance),
+      clock_(range_.from),
+      detected_(range_.from) {}
+
+bool Haste::advance(const Horizon& horizon, TrackBatch& batch) {
+  const auto complete = [&] { return clock_ - options_.delay; };
+  const auto enough = [&] { return horizon.observations > 0 && told_.has(horizon.observations, complete()); };
+  while (clock_ < horizon.t && !enough()) {
+    const double tick = range_.from + static_cast<double>(ticks_ + 1) * kTick;
+    follow(std::min(tick, horizon.t));
+    if (clock_ < tick) continue;
+    ++ticks_;
+    maintain();
+  }
+  const bool ended = feed_.ended() || clock_ >= range_.to;
+  told_.tell(ended ? clock_ : complete(), horizon.observations, batch);
+  batch.seen = clock_;
+  return !(ended && told_.empty());
+}
+
+/// All events up to t.
+void Haste::follow(double t) {
+  const std::int64_t until = microseconds(t);
+  for (auto events = feed_.until(until); !events.empty(); events = feed_.until(until)) {
+    recent_.add(events);
+    changes_.clear();
+    trackers_.push(events, changes_);
+    for (const Change& change : changes_) observe(change);
+  }
+  clock_ = t;
+}
+
+void Haste::observe(const Change& change) {
+  const auto found = tracks_.find(change.tracker);
+  Track& track = found->second;
+  odometer_ += (change.after.position - change.before.position).norm() / static_cast<double>(tracks_.size());
+  track.odometer = odometer_;
+  track.pixel = change.after.position;
+  TrackObservation z{track.id, seconds(change.after.t), change.after.position, options_.sigma};
+  if (options_.subpixel) {
+    z.pixel = refined_position(change);
+  } else if (options_.midpoint) {
+    z.pixel = midpoint(change);
+  }
+  if (track.probation > 0) {
+    if (!moves_as_expected(track, z.pixel, z.t)) {
+      lost_.disappoint(track.id, clock_);
+      track = {next_id_++, track.odometer, 0, {}, track.pixel};
+      z.track = track.id;
+    } else if (--track.probation > 0) {
+      return;
+    } else {
+      lost_.forget(track.id);
+      ++went_on_;
+    }
+  }
+  told_.add(z);
+}
+
+bool Haste::moves_as_expected(Track& track, const Vector2& pixel, double t) const {
+  const auto expected = guidance_.predict(track.id, t);
+  return expected && (pixel - expected->pixel - track.offset).norm() < options_.guidance.tolerance;
+}
+
+void Haste::maintain() {
+  end_trackers();
+  correct_guidance();
+  if (options_.guidance.veto) veto_strays();
+  if (options_.guidance.reacquire) reacquire();
+  if (clock_ - detected_ >= options_.detection.interval) replenish();
+}
+
+void Haste::end_trackers() {
+  const LifeOptions& life = options_.life;
+  const auto crowded = [&](std::int64_t tracker, const Vector2& pixel) {
+    return std::ranges::any_of(tracks_, [&](const auto& other) {
+      return other.first < tracker && (other.second.pixel - pixel).norm() < life.crowding;
+    });
+  };
+  for (const std::int64_t id : trackers_.ids()) {
+    const Tracker& tracker = trackers_.tracker(id);
+    const Track& track = tracks_.at(id);
+    if (!camera_.contains(track.pixel, life.border)) {
+      end(id, End::border);
+    } else if (tracker.running() && tracker.scores().spread() < life.spread) {
+      end(id, End::spread);
+    } else if (life.starvation > 0.0 && odometer_ - track.odometer > life.starvation) {
+      end(id, End::starvation);
+    } else if (crowded(id, track.pixel)) {
+      end(id, End::crowding);
+    }
+  }
+}
+
+void Haste::correct_guidance() {
+  std::vector<Guidance::Sighting> sightings;
+  for (const auto& [tracker, track] : tracks_) {
+    const TrackerState& state = trackers_.tracker(tracker).state();
+    if (track.probation == 0) sightings.push_back({track.id, seconds(state.t), state.position});
+  }
+  guidance_.correct(sightings);
+}
+
+/// Trackers far from where their landmarks are expected; but when many are, it is the expectation that is wrong.
+void Haste::veto_strays() {
+  const GuidanceOptions& guidance = options_.guidance;
+  std::vector<std::int64_t> strays;
+  std::size_t expected = 0;
+  for (const auto& [tracker, track] : tracks_) {
+    const TrackerState& state = trackers_.tracker(tracker).state();
+    const auto prediction = track.probation > 0 ? std::nullopt : guidance_.predict(track.id, seconds(state.t));
+    if (!prediction) continue;
+    ++expected;
+    const Vector2 error = state.position - prediction->pixel;
+    const Matrix2 covariance = prediction->covariance + options_.sigma * options_.sigma * Matrix2::Identity();
+    const double distance = std::sqrt(error.dot(covariance.inverse() * error));
+    if (error.norm() > guidance.veto_distance && distance > guidance.gate) strays.push_back(tracker);
+  }
+  if (3 * strays.size() > expected) return;
+  for (const std::int64_t tracker : strays) end(tracker, End::veto);
+}
+
+/// Landmarks that come back into view, as long as there is room for them.
+void Haste::reacquire() {
+  if (trackers_.size() >= static_cast<std::size_t>(2 * options_.tracks)) return;
+  const auto found = lost_.find(guidance_, clock_, recent_, taken(), options_.life.crowding + 1.0, camera_);
+  for (const LostLandmarks::Found& landmark : found) {
+    ++found_;
+    begin(Tracker(options_.tracker, {0, landmark.pixel, 0.0}, landmark.look),
+          {landmark.track, odometer_, options_.guidance.probation, landmark.offset, landmark.pixel});
+  }
+}
+
+/// New features where there are too few.
+void Haste::replenish() {
+  const auto wanted = static_cast<std::size_t>(options_.tracks);
+  if (trackers_.size() >= wanted || 5 * recent_.events().size() < static_cast<std::size_t>(options_.detection.events)) {
+    return;
+  }
+  detected_ = clock_;
+  const auto features = detect_features(options_.detection, recent_.events(), camera_.width, camera_.height, taken(),
+                                        wanted - trackers_.size());
+  for (const Vector2& pixel : features) {
+    ++begun_;
+    begin(Tracker(options_.tracker, {0, pixel, 0.0}), {next_id_++, odometer_, 0, {}, pixel});
+  }
+}
+
+/// With the events that have been around there of late, so that it need not wait for its window to be full.
+void Haste::begin(Tracker tracker, const Track& track) {
+  for (const Event& event : recent_.window(track.pixel)) tracker.push(event);
+  const bool runs = tracker.running();
+  Change start = tracker.change();
+  start.tracker = trackers_.add(std::move(tracker));
+  tracks_.emplace(start.tracker, track);
+  if (runs) observe(start);
+}
+
+/// One whose track is the back-end's landmark is remembered as it looks now, unless it is not that any more.
+void Haste::end(std::int64_t tracker, End why) {
+  const auto found = tracks_.find(tracker);
+  const Track& track = found->second;
+  ++ended_[index(static_cast<int>(why))];
+  if (track.probation > 0) {
+    lost_.disappoint(track.id, clock_);
+  } else {
+    told_.end({track.id, clock_});
+    const Tracker& state = trackers_.tracker(tracker);
+    const bool itself = why == End::border || why == End::starvation;
+    if (options_.guidance.reacquire && itself && guidance_.position(track.id)) {
+      lost_.remember(track.id, clock_, state.learnt_template(), state.state().angle, guidance_.pose(clock_));
+    }
+  }
+  trackers_.remove(tracker);
+  tracks_.erase(found);
+}
+
+std::vector<Vector2> Haste::taken() const {
+  std::vector<Vector2> result;
+  for (const auto& [tracker, track] : tracks_) result.push_back(track.pixel);
+  return result;
+}
+
+FeedbackNeeds Haste::needs() const {
+  const GuidanceOptions& guidance = options_.guidance;
+  const bool expects = guidance.veto || guidance.reacquire;
+  return {guidance.outliers || expects, false, expects};
+}
+
+void Haste::receive(const Feedback& feedback) {
+  guidance_.receive(feedback);
+  if (!options_.guidance.outliers || feedback.outliers.empty()) return;
+  for (const std::int64_t tracker : trackers_.ids()) {
+    const Track& track = tracks_.at(tracker);
+    if (std::ranges::find(feedback.outliers, track.id) != feedback.outliers.end()) end(tracker, End::outlier);
+  }
+}
+
+std::vector<std::string> Haste::remarks() const {
+  const auto ended = [&](End why) { return ended_[index(static_cast<int>(why))]; };
+  return {
+      fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
+      fmt::format("trackers that ended: {} at the border, {} as their hypotheses were alike, {} starved, {} crowded, "
+                  "{} far from where they were expected, {} as outliers",
+                  ended(End::border), ended(End::spread), ended(End::starvation), ended(End::crowding),
+                  ended(End::veto), ended(End::outlier)),
+      fmt::format("{} landmarks found again, of which {} went on", found_, went_on_),
+      fmt::format("{} observations came later than the delay", told_.late())};
+}
+
+}  // namespace evbench::haste

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/plugin/frontend.hpp"
+#include "frontends/haste/delayed_tracks.hpp"
+#include "frontends/haste/event_feed.hpp"
+#include "frontends/haste/guidance.hpp"
+#include "frontends/haste/lost_landmarks.hpp"
+#include "frontends/haste/options.hpp"
+#include "frontends/haste/recent_events.hpp"
+#include "frontends/haste/tracking/tracker_set.hpp"
+
+namespace evbench::haste {
+
+/// Tracks features in the events themselves, each asynchronously by hypotheses about its motion (Alzugaray and Chli,
+/// 3DV 2019 and BMVC 2020), detects new ones where there are too few, and looks for lost landmarks where the back-end
+/// expects them: the front-end of Algorithm 1 of Liu et al., ICRA 2022. Throws InputError for a source without events.
+class Haste : public FrontEnd {
+ public:
+  using Options = haste::Options;
+
+  Haste(const Options& options, const FrontEndContext& context);
+
+  bool advance(const Horizon& horizon, TrackBatch& batch) override;
+  FeedbackNeeds needs() const override;
+  void receive(const Feedback& feedback) override;
+  std::vector<std::string> remarks() const override;
+
+ private:
+  /// What a tracker is followed for.
+  struct Track {
+    TrackId id;
+    double odometer;                   ///< the image's way when the tracker last changed its state [px]
+    int probation = 0;                 ///< changes of state until a found landmark's track goes on
+    Vector2 offset = Vector2::Zero();  ///< of the found place from the expected one [px]
+    Vector2 pixel = Vector2::Zero();   ///< newest place [px]
+  };
+
+  /// Why tracks end.
+  enum class End { border, spread, starvation, crowding, veto, outlier };
+
+  void follow(double t);
+  void observe(const Change& change);
+  bool moves_as_expected(Track& track, const Vector2& pixel, double t) const;
+  void maintain();
+  void end_trackers();
+  void correct_guidance();
+  void veto_strays();
+  void reacquire();
+  void replenish();
+  void end(std::int64_t tracker, End why);
+  void begin(Tracker tracker, const Track& track);
+  std::vector<Vector2> taken() const;
+
+  Options options_;
+  Camera camera_;
+  Source::TimeRange range_;
+  EventFeed feed_;
+  RecentEvents recent_;
+  TrackerSet trackers_;
+  std::map<std::int64_t, Track> tracks_;  ///< by tracker
+  DelayedTracks told_;
+  Guidance guidance_;
+  LostLandmarks lost_;
+  std::vector<Change> changes_;  ///< of the events at hand
+  double clock_;                 ///< [s] events up to here have been followed
+  std::int64_t ticks_ = 0;       ///< maintained so often
+  double detected_;              ///< [s] when features were last looked for
+  double odometer_ = 0.0;        ///< the image's way: the trackers' mean one [px]
+  TrackId next_id_ = 0;
+  std::array<std::size_t, 6> ended_{};  ///< by End
+  std::size_t begun_ = 0, found_ = 0, went_on_ = 0;
+};
+
+}  // namespace evbench::haste

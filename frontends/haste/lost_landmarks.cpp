@@ -1,0 +1,86 @@
+#include "frontends/haste/lost_landmarks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "frontends/haste/tracking/alignment.hpp"
+
+namespace evbench::haste {
+
+void LostLandmarks::remember(TrackId track, double t, const Template& look, double angle, const SE3& T_world_camera) {
+  if (look.mass() > 0.0) lost_.insert_or_assign(track, Lost{t, t, look, angle, T_world_camera});
+}
+
+void LostLandmarks::disappoint(TrackId track, double t) {
+  constexpr double kPause = 0.5;  // [s]
+  if (const auto lost = lost_.find(track); lost != lost_.end()) lost->second.tried = t + kPause;
+}
+
+std::vector<LostLandmarks::Found> LostLandmarks::find(const Guidance& guidance, double t, const RecentEvents& recent,
+                                                      std::span<const Vector2> taken, double distance,
+                                                      const Camera& camera) {
+  constexpr std::size_t kAtATime = 4;  // a search costs as much as thousands of events
+  constexpr double kPause = 0.02;      // [s] between two searches for one
+  std::vector<Found> result;
+  if (!guidance.available() || recent.events().empty()) return result;
+  std::erase_if(lost_, [&](const auto& entry) { return t - entry.second.t > options_.memory; });
+
+  struct Candidate {
+    TrackId track;
+    Guidance::Prediction expected;
+    double tried;
+  };
+  std::vector<Candidate> candidates;
+  for (const auto& [track, lost] : lost_) {
+    if (t - lost.tried < kPause) continue;
+    const std::optional<Guidance::Prediction> expected = guidance.predict(track, t);
+    if (!expected || !camera.contains(expected->pixel, kPatchRadius)) continue;
+    const auto is_near = [&](const Vector2& p) { return (p - expected->pixel).norm() < distance; };
+    if (!std::ranges::any_of(taken, is_near)) candidates.push_back({track, *expected, lost.tried});
+  }
+  std::ranges::stable_sort(candidates, {}, &Candidate::tried);
+  if (candidates.size() > kAtATime) candidates.resize(kAtATime);
+  for (const Candidate& candidate : candidates) {
+    Lost& lost = lost_.at(candidate.track);
+    lost.tried = t;
+    auto found = look_for(candidate.track, lost, guidance, candidate.expected.pixel, recent);
+    if (!found) continue;
+    const auto is_near = [&](const Found& other) { return (other.pixel - found->pixel).norm() < distance; };
+    if (std::ranges::none_of(result, is_near)) result.push_back(std::move(*found));
+  }
+  return result;
+}
+
+/// Where the events `about` a place look most like it, if nothing else in reach looks as much so.
+std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const Lost& lost, const Guidance& guidance,
+                                                            const Vector2& about, const RecentEvents& recent) const {
+  constexpr double kBeside = 3.0;      // [px] a second place is farther than this from the best one,
+  constexpr double kAmbiguous = 0.95;  // and as good if its score is more than this share of the best one
+  constexpr double kNearest = 2.0;     // [px] looked at anyway
+  // The events that a tracker looks at stand for the time of the middle one.
+  const std::span<const Event> window = recent.window(about);
+  const double t = static_cast<double>(window[window.size() / 2].t) / 1e6;
+  const auto expected = guidance.predict(track, t);
+  if (!expected) return std::nullopt;
+  const double sigma = std::sqrt(expected->covariance.diagonal().maxCoeff());
+  const int radius = std::min(options_.search, static_cast<int>(std::ceil(kNearest + options_.gate * sigma)));
+  const AppearanceChange change = appearance_change(lost.T_world_camera, guidance.pose(t), *guidance.position(track));
+  Found found{track, {}, {}, lost.look.warped(lost.angle + change.angle, change.scale)};
+  const GridState place{static_cast<int>(std::lround(expected->pixel.x())),
+                        static_cast<int>(std::lround(expected->pixel.y())), 0};
+  const std::vector<Alignment> places = align_around(found.look, recent.events(), place, radius);
+  const auto best = std::ranges::max_element(places, {}, &Alignment::score);
+  if (best == places.end() || best->event_count < kWindowSize || best->score < options_.similarity) return std::nullopt;
+  // One at the edge of what was looked at is no maximum.
+  if (std::abs(best->x - place.x) == radius || std::abs(best->y - place.y) == radius) return std::nullopt;
+  for (const Alignment& other : places) {
+    const bool beside = std::hypot(other.x - best->x, other.y - best->y) > kBeside;
+    if (beside && other.score > kAmbiguous * best->score) return std::nullopt;
+  }
+  found.pixel = Vector2(best->x, best->y);
+  found.offset = found.pixel - expected->pixel;
+  return found;
+}
+
+}  // namespace evbench::haste

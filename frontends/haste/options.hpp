@@ -1,0 +1,99 @@
+#pragma once
+
+#include "core/plugin/options.hpp"
+#include "frontends/haste/detection.hpp"
+#include "frontends/haste/tracking/tracker_options.hpp"
+
+namespace evbench::haste {
+
+/// When a tracker is given up.
+struct LifeOptions {
+  double spread = 0.1;
+  double border = 8.0;
+  double starvation = 15.0;
+  double crowding = 5.0;
+
+  void declare(OptionSet& set) {
+    set.add("spread", spread,
+            "its hypotheses' scores differ by less than this share of the best one: it follows nothing")
+        .range(0.0, 1.0);
+    set.add("border", border, "it comes this near to the image's border [px]").range(0.0, 1000.0);
+    set.add("starvation", starvation,
+            "the others have moved by this much (mean) since it last changed its state [px]: a standing camera starves "
+            "nobody; 0: never")
+        .range(0.0, 10000.0);
+    set.add("crowding", crowding, "an older one is this near [px]; 0: never").range(0.0, 1000.0);
+  }
+};
+
+/// What is made of the back-end's knowledge.
+struct GuidanceOptions {
+  bool outliers = true;
+  bool veto = true;
+  bool reacquire = true;
+  double gate = 4.0;
+  double veto_distance = 5.0;
+  int search = 6;
+  double similarity = 0.6;
+  int probation = 4;
+  double tolerance = 1.5;
+  double memory = 30.0;
+
+  void declare(OptionSet& set) {
+    set.add("outliers", outliers, "tracks that the back-end holds for outliers end");
+    set.add("veto", veto, "tracks end that are far from where the back-end expects their landmarks");
+    set.add("reacquire", reacquire,
+            "landmarks that come back into view are looked for where they are expected, and their tracks go on");
+    set.add("gate", gate, "far is more than this [standard deviations of what is expected]").above(0.0);
+    set.add("veto_distance", veto_distance, "and more than this [px]").range(0.0, 1000.0);
+    set.add("search", search,
+            "a landmark is looked for within this of its expected place along each axis, at most [px]")
+        .range(1, 50);
+    set.add("similarity", similarity, "it is found where the events look at least this much like its template [cosine]")
+        .range(0.0, 1.0);
+    set.add("probation", probation,
+            "changes of state through which a found one must move as expected before its track goes on; else it is "
+            "another track")
+        .range(1, 1000);
+    set.add("tolerance", tolerance, "and how far it may stray meanwhile [px]").above(0.0);
+    set.add("memory", memory, "landmarks are looked for that were lost less than this ago [s]").range(0.0, 1e6);
+  }
+};
+
+struct Options {
+  TrackerOptions tracker;
+  DetectionOptions detection;
+  LifeOptions life;
+  GuidanceOptions guidance;
+  int tracks = 60;
+  double sigma = 0.5;
+  bool midpoint = true;
+  bool subpixel = false;
+  double delay = 0.03;
+
+  void declare(OptionSet& set) {
+    set.add("tracks", tracks, "trackers alive, as far as there is something to track").range(1, 100'000);
+    set.add("variant", tracker.variant,
+            {"correlation", "haste_correlation", "haste_correlation_star", "haste_difference", "haste_difference_star"},
+            "how hypotheses are scored, by the published names");
+    set.add("change_threshold", tracker.change_threshold,
+            "a tracker changes its state when (best - null) / (best - worst) of its hypotheses' scores is above this")
+        .range(0.0, 1.0);
+    set.add("template_learning", tracker.template_learning, "what an event adds to its tracker's template")
+        .range(0.0, 1.0);
+    set.add("sigma", sigma, "standard deviation of an observation [px]").above(0.0);
+    set.add("midpoint", midpoint,
+            "a track is observed half-way between the old and the new state; false: at the new state, which leads by "
+            "half a step");
+    set.add("subpixel", subpixel, "it is observed where a paraboloid through the hypotheses' scores is highest");
+    set.add("delay", delay,
+            "an observation stands for the middle of the events that a tracker looks at, and is told this much later; "
+            "one that comes later still counts as of then [s]")
+        .range(0.0, 1.0);
+    set.group("detection", detection, "new features");
+    set.group("life", life, "when trackers are given up");
+    set.group("guidance", guidance, "what is made of the back-end's knowledge");
+  }
+};
+
+}  // namespace evbench::haste

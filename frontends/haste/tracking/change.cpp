@@ -1,0 +1,26 @@
+#include "frontends/haste/tracking/change.hpp"
+
+namespace evbench::haste {
+
+Vector2 refined_position(const Change& change) {
+  // f = a + b·(x, y) + (c x² + 2 d x y + e y²) / 2 through the nine scores; on this grid the least-squares solution
+  // falls apart into differences.
+  double b_x = 0.0, b_y = 0.0, d = 0.0, column[3] = {}, row[3] = {};
+  for (std::size_t h = 0; h < kHypotheses; ++h) {
+    const auto [x, y, angle] = kSteps[h];
+    if (angle != 0) continue;
+    const double f = change.scores.of[h];
+    b_x += x * f / 6.0;
+    b_y += y * f / 6.0;
+    d += x * y * f / 4.0;
+    column[x + 1] += f / 3.0;
+    row[y + 1] += f / 3.0;
+  }
+  const double c = column[0] - 2.0 * column[1] + column[2], e = row[0] - 2.0 * row[1] + row[2];
+  const double determinant = c * e - d * d;
+  if (!(c < 0.0 && determinant > 0.0)) return midpoint(change);
+  const Vector2 peak((d * b_y - e * b_x) / determinant, (d * b_x - c * b_y) / determinant);
+  return change.before.position + peak.cwiseMax(-1.0).cwiseMin(1.0);
+}
+
+}  // namespace evbench::haste

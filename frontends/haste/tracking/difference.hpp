@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+
+#include "frontends/haste/tracking/hypothesis_lanes.hpp"
+#include "frontends/haste/tracking/quantised_template.hpp"
+#include "frontends/haste/tracking/scoring_input.hpp"
+
+namespace evbench::haste {
+
+/// Scores of the variants haste_difference and haste_difference_star: −Σ over the patch of (template − model)², where
+/// the model of a hypothesis is what it sees of the window, both with the mass of a full window. With t = the
+/// template's cells and m = the model's,
+///   Σ (t − m)² = Σ t² − 2 Σ t m + Σ m²,
+/// and an event changes Σ t m and Σ m² by what is in its four cells. All are integers, so that what an event adds and
+/// later takes away is nothing, and a hypothesis' model survives a change of state that leaves the hypothesis in place.
+class Difference {
+ public:
+  /// follow_template: the template is the newest at each event, not that of the last change of state
+  /// (haste_difference).
+  explicit Difference(bool follow_template);
+
+  void start(const ScoringInput& input);
+  void change_to(std::size_t h, const ScoringInput& input);
+  void update(int slot, const Event& replaced, const ScoringInput& input);
+
+  const Lanes<Double4>& raw() const { return scores_; }
+  double unit(const ScoringInput& /*input*/) const {
+    constexpr double kCells = double{kWindowSize} * kUnit * QuantisedTemplate::kTemplateUnit;
+    return 1.0 / (kCells * kCells);
+  }
+
+ private:
+  using Model = std::array<int, kPatchCells>;  ///< in weights of Footprints
+
+  void make_model(std::size_t h, const ScoringInput& input);
+  void set_template(const Template& learnt);
+  void compare(const ScoringInput& input);
+  void score();
+
+  bool follow_template_;
+  QuantisedTemplate template_;
+  double template_square_ = 0.0;  ///< Σ t²
+  HypothesisFootprints footprints_;
+  std::unique_ptr<std::array<Model, kHypotheses>> models_;
+  std::array<std::uint8_t, kHypotheses> model_of_{};  ///< which of the models is a hypothesis'
+  Lanes<Double4> squares_;                            ///< Σ m²
+  Lanes<Double4> products_;                           ///< Σ t m
+  std::array<Lanes<Int4>, kWindowSize> samples_{};    ///< by slot: what the events have in products_
+  Lanes<Double4> scores_;
+};
+
+}  // namespace evbench::haste

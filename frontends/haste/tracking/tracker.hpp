@@ -1,0 +1,88 @@
+#pragma once
+
+#include <variant>
+
+#include "core/events/event.hpp"
+#include "frontends/haste/tracking/change.hpp"
+#include "frontends/haste/tracking/difference.hpp"
+#include "frontends/haste/tracking/event_window.hpp"
+#include "frontends/haste/tracking/star_correlation.hpp"
+#include "frontends/haste/tracking/template.hpp"
+#include "frontends/haste/tracking/tracker_options.hpp"
+#include "frontends/haste/tracking/weighted_correlation.hpp"
+
+namespace evbench::haste {
+
+/// What the i-th event of a window (the 0th the oldest) weighs in a template and a score.
+float event_weight(Variant variant, int i);
+
+/// Follows one point through the events around it (Alzugaray and Chli: "Asynchronous Multi-Hypothesis Tracking of
+/// Features with Event Cameras", 3DV 2019; "HASTE: multi-Hypothesis Asynchronous Speeded-up Tracking of Events", BMVC
+/// 2020). The last kWindowSize events in range are compared with a template, as if the tracker were where it is, a
+/// pixel beside, or turned by a step; when one of these explains them better by a margin, the tracker goes there.
+/// Polarity is ignored. The template is made of the first full window, unless one is given, and learns slowly.
+///
+/// States are whole pixels and whole steps of angle. A seed between them keeps its remainder: the patch stands on the
+/// nearest pixel, and the reported position is off that by what it was at the start.
+///
+/// It knows no image: near or beyond the border it goes on with what events there are; to end it is the user's
+/// business. Two trackers share nothing that changes. No allocation after construction.
+///
+/// Scores are sums of integers (Footprints), or of products that are exact in double and added in the window's order:
+/// they don't depend on the width of vectors or on the compiler's choice of multiply-add, and are those of the plain
+/// transcription of the published rules in testing/, bit by bit. Against the published code, which works in float,
+/// places in the patch are rounded to 1/32 of a cell, and star variants' templates to 1/8192 of an event.
+class Tracker {
+ public:
+  enum class Update {
+    out_of_range,  ///< the event is not near: nothing happened
+    collecting,    ///< the window is not full yet
+    started,       ///< now it is
+    regular,       ///< the state is as it was
+    changed,       ///< the state has changed
+  };
+
+  /// A seed, whose time is ignored: events must come in time order from then on.
+  Tracker(const TrackerOptions& options, const TrackerState& seed);
+  /// Where a point with a known template is seen again.
+  Tracker(const TrackerOptions& options, const TrackerState& seed, const Template& given);
+
+  Update push(const Event& event);
+
+  bool running() const { return running_; }  ///< has its window been full?
+  const TrackerState& state() const { return state_; }
+  const GridState& grid_state() const { return grid_; }
+  Scores scores() const;  ///< the newest; all zero until it runs
+  /// The newest change of state, or start; its `tracker` is −1.
+  const Change& change() const { return change_; }
+  std::int64_t event_count() const { return event_count_; }         ///< in range so far
+  std::int64_t t_last_event() const { return window_.newest().t; }  ///< [µs], in range; 0 before the first
+  const EventWindow& window() const { return window_; }
+  /// Empty until it runs, unless one was given.
+  const Template& learnt_template() const { return learnt_; }
+
+  /// Sets it elsewhere, as many whole pixels and steps of angle from where it is as come nearest, with its window and
+  /// template: for who knows better where it should be. No change is reported.
+  void move_by(const Vector2& translation, double angle);
+
+ private:
+  ScoringInput input() const { return {window_, grid_, learnt_}; }
+  void start();
+  void change_to(std::size_t h);
+  void learn(int i, double part);
+  void set_grid(const GridState& grid, std::int64_t t);
+
+  TrackerOptions options_;
+  GridState grid_;
+  Vector2 remainder_;       ///< of the position and
+  double angle_remainder_;  ///< of the angle, that the grid leaves
+  TrackerState state_;
+  bool running_ = false, template_given_ = false;
+  std::int64_t event_count_ = 0;
+  EventWindow window_;
+  Template learnt_;
+  std::variant<StarCorrelation, WeightedCorrelation, Difference> scoring_;
+  Change change_;
+};
+
+}  // namespace evbench::haste
