@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "bench/version.hpp"
+#include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/sha256.hpp"
 #include "eval/score_run.hpp"
@@ -166,6 +167,7 @@ RunRecord RunFolder::write(const RunConfig& config, const JobIdentity& identity,
   if (problem && !result.pieces.empty() && result.pieces[result.longest].problem) {
     folder_.write("problem.txt", format_problem(*result.pieces[result.longest].problem));
   }
+  if (!result.tracks.empty()) folder_.write("tracks.txt", format_tracks(result.tracks));
   RunRecord record = record_of(config, identity, source, execution);
   score_run(folder_.part(), config.evaluation, record);
   folder_.write("status.json", pretty(to_json(*record.status)));

@@ -45,7 +45,8 @@ class RunFolder {
   RunFolder(const std::string& out, const std::string& experiment, const std::string& key);
 
   /// Writes a run, scored by its config. `ground_truth` is what ground_truth_tum() gives. With `problem`, also
-  /// problem.txt, the estimation problem that the run ended with, where the back-end has one.
+  /// problem.txt, the estimation problem that the run ended with, where the back-end has one. Tracks that were kept are
+  /// tracks.txt.
   RunRecord write(const RunConfig& config, const JobIdentity& identity, const Source& source,
                   const std::string& ground_truth, const Execution& execution, bool problem = false);
   const std::string& path() const { return path_; }

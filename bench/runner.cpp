@@ -36,7 +36,8 @@ Execution broken_off(double t, const std::string& error) {
 
 }  // namespace
 
-Execution execute(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress) {
+Execution execute(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress,
+                  bool keep_tracks) {
   std::unique_ptr<FrontEnd> frontend;
   try {
     frontend = make_frontend(job, source, plugins);
@@ -64,7 +65,9 @@ Execution execute(const Job& job, const Source& source, const Plugins& plugins, 
     if (progress) progress(t, end);
   };
   try {
-    return {run_pipeline(source, *frontend, make, context_of(job), job.pipeline, job.trajectory_rate, tell), true};
+    return {
+        run_pipeline(source, *frontend, make, context_of(job), job.pipeline, job.trajectory_rate, tell, keep_tracks),
+        true};
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception& error) {

@@ -17,7 +17,8 @@ struct Execution {
 /// be told before any work, a front-end or back-end that can't be made of its options and files, and Interrupted.
 ///
 /// The one place where runs are done: a run that is to have a process of its own gets it here.
-Execution execute(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress);
+Execution execute(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress,
+                  bool keep_tracks = false);
 
 /// Throws InputError where execute() would do so before any work.
 void check_job(const Job& job, const Source& source, const Plugins& plugins);

@@ -29,7 +29,7 @@ struct RunArguments {
   std::string out = "results";
   bool quiet = false;
   bool check = false;
-  bool problem = false;
+  bool problem = false, tracks = false;
   bool force = false;
 };
 
@@ -94,16 +94,20 @@ class Runs {
   std::optional<std::string> complete_run(const PlannedRun& run) const {
     if (arguments_.force) return std::nullopt;
     auto folder = find_complete_run(arguments_.out, run.config.experiment, run.identity);
-    const bool enough = !folder || !arguments_.problem || std::filesystem::exists(*folder + "/problem.txt");
-    return enough ? folder : std::nullopt;
+    const auto lacks = [&](bool wanted, const char* file) {
+      return wanted && folder && !std::filesystem::exists(*folder + file);
+    };
+    if (lacks(arguments_.problem, "/problem.txt") || lacks(arguments_.tracks, "/tracks.txt")) return std::nullopt;
+    return folder;
   }
 
   RunRecord do_run(const PlannedRun& run) const {
     RunFolder folder(arguments_.out, run.config.experiment, run.identity.key);
     ProgressLine line(fmt::format("[{}/{}] {}", records_.size() + 1, runs_.size(), run.config.label), arguments_.quiet);
-    const Execution execution = execute(run.config.job, source_, plugins_, [&](double t, double end) {
+    const auto tell = [&](double t, double end) {
       line.update(fmt::format("{:.2f} of {:.2f} s", std::min(t, end), end));
-    });
+    };
+    const Execution execution = execute(run.config.job, source_, plugins_, tell, arguments_.tracks);
     return folder.write(run.config, run.identity, source_, ground_truth_, execution, arguments_.problem);
   }
 
@@ -193,6 +197,8 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->add_flag("--problem", arguments->problem,
                     "Also write problem.txt: the problem that gp_map ended with, for evbench solve and other solvers");
+  command->add_flag("--tracks", arguments->tracks,
+                    "Also write tracks.txt: what the front-end told, for evbench render and the front-end recorded");
   command->add_flag("--check", arguments->check, "Check the config, and that its files can be read, and stop");
   command->footer(
       "Each run writes OUT/EXPERIMENT/KEY: config.json, job.json, manifest.json, final.tum, online.tum, told.txt,\n"

@@ -10,11 +10,12 @@
 namespace evbench {
 
 FrontSide::FrontSide(FrontEnd& frontend, const Source::TimeRange& range, const PipelineOptions& options,
-                     FeedbackLine& feedback)
+                     FeedbackLine& feedback, std::vector<TrackObservation>* kept)
     : frontend_(frontend),
       range_(range),
       options_(options),
       feedback_(feedback),
+      kept_(kept),
       needs_(frontend.needs()),
       clock_(range.from),
       until_(range.from) {}
@@ -84,6 +85,7 @@ void FrontSide::check(const TrackBatch& batch, double horizon) const {
 /// What was given, and, when nothing more comes, that all tracks have ended.
 void FrontSide::count(TrackBatch& batch) {
   for (const TrackObservation& z : batch.observations) live_.insert(z.track);
+  if (kept_) kept_->insert(kept_->end(), batch.observations.begin(), batch.observations.end());
   for (const TrackEnd& ended : batch.ended) live_.erase(ended.track);
   if (!batch.observations.empty()) {
     if (!first_) first_ = batch.observations.front().t;

@@ -16,7 +16,9 @@ namespace evbench {
 /// where the front-end has nothing more to give: time passes all the same.
 class FrontSide {
  public:
-  FrontSide(FrontEnd& frontend, const Source::TimeRange& range, const PipelineOptions& options, FeedbackLine& feedback);
+  /// `kept`: where all observations are to be appended; may be none.
+  FrontSide(FrontEnd& frontend, const Source::TimeRange& range, const PipelineOptions& options, FeedbackLine& feedback,
+            std::vector<TrackObservation>* kept = nullptr);
 
   /// The next batch that tells of new time, raw pixels, `seen` set; hands over what feedback is due before. None at the
   /// end of the range. Throws
@@ -38,6 +40,7 @@ class FrontSide {
   Source::TimeRange range_;
   const PipelineOptions& options_;
   FeedbackLine& feedback_;
+  std::vector<TrackObservation>* kept_;
   FeedbackNeeds needs_;
   bool more_ = true;
   double clock_;  ///< [s] the front-end has looked at the data up to here

@@ -66,14 +66,14 @@ double run_concurrent(FrontSide& front, BackSide& back, const FeedbackNeeds& nee
 
 RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackEnd& make_backend,
                        BackEndContext context, const PipelineOptions& options, double trajectory_rate,
-                       const Progress& progress) {
+                       const Progress& progress, bool keep_tracks) {
   RunResult result;
   reset_peak_memory();
   context.log = [&](const std::string& line) { result.log.push_back(line); };
   const Source::TimeRange range = source.time_range();
   const FeedbackNeeds needs = frontend.needs();
   FeedbackLine feedback(options.latency, options.mode == "free");
-  FrontSide front(frontend, range, options, feedback);
+  FrontSide front(frontend, range, options, feedback, keep_tracks ? &result.tracks : nullptr);
   BackSide back(make_backend, std::move(context), source.camera(), range.from, options);
   const auto tell = [&](double t) {
     if (progress) progress(t, range.to);

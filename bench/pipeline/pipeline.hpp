@@ -49,6 +49,7 @@ struct RunResult {
   double peak_rss_mib = 0.0;  ///< of the process during the run, source and tracks included
   std::string tracks_sha256;  ///< of all that the back-end was given: equal for runs that can be compared
   std::size_t observations = 0;
+  std::vector<TrackObservation> tracks;  ///< all that the front-end told, raw pixels; where it is to be kept
   std::vector<std::string> log;
 };
 
@@ -60,8 +61,9 @@ using MakeBackEnd = std::function<std::unique_ptr<BackEnd>(const BackEndContext&
 
 /// Front-end and back-end from the beginning of the source's time range to its end. `context` has the camera's pinhole,
 /// patience, sink and log set here. `trajectory_rate`: of the final trajectories [Hz]; 0: the back-end's own poses.
+/// `keep_tracks`: in RunResult::tracks.
 RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackEnd& make_backend,
                        BackEndContext context, const PipelineOptions& options, double trajectory_rate,
-                       const Progress& progress = {});
+                       const Progress& progress = {}, bool keep_tracks = false);
 
 }  // namespace evbench

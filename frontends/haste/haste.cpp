@@ -89,9 +89,9 @@ void Haste::observe(const Change& change) {
     z.pixel = midpoint(change);
   }
   if (track.probation > 0) {
-    if (!moves_as_expected(track, z.pixel, z.t)) {
+    if (!is_as_expected(track.id, z.pixel, z.t)) {
       lost_.disappoint(track.id, clock_);
-      track = {next_id_++, track.odometer, 0, {}, track.pixel};
+      track = {next_id_++, track.odometer, 0, track.pixel};
       z.track = track.id;
     } else if (--track.probation > 0) {
       return;
@@ -103,9 +103,9 @@ void Haste::observe(const Change& change) {
   told_.add(z);
 }
 
-bool Haste::moves_as_expected(Track& track, const Vector2& pixel, double t) const {
-  const auto expected = guidance_.predict(track.id, t);
-  return expected && (pixel - expected->pixel - track.offset).norm() < options_.guidance.tolerance;
+bool Haste::is_as_expected(TrackId track, const Vector2& pixel, double t) const {
+  const auto expected = guidance_.predict(track, t);
+  return expected && (pixel - expected->pixel).norm() < options_.guidance.tolerance;
 }
 
 void Haste::maintain() {
@@ -173,7 +173,7 @@ void Haste::reacquire() {
   for (const LostLandmarks::Found& landmark : found) {
     ++found_;
     begin(Tracker(options_.tracker, {0, landmark.pixel, 0.0}, landmark.look),
-          {landmark.track, odometer_, options_.guidance.probation, landmark.offset, landmark.pixel});
+          {landmark.track, odometer_, options_.guidance.probation, landmark.pixel});
   }
 }
 
@@ -188,7 +188,7 @@ void Haste::replenish() {
                                         wanted - trackers_.size());
   for (const Vector2& pixel : features) {
     ++begun_;
-    begin(Tracker(options_.tracker, {0, pixel, 0.0}), {next_id_++, odometer_, 0, {}, pixel});
+    begin(Tracker(options_.tracker, {0, pixel, 0.0}), {next_id_++, odometer_, 0, pixel});
   }
 }
 

@@ -34,10 +34,9 @@ class Haste : public FrontEnd {
   /// What a tracker is followed for.
   struct Track {
     TrackId id;
-    double odometer;                   ///< the image's way when the tracker last changed its state [px]
-    int probation = 0;                 ///< changes of state until a found landmark's track goes on
-    Vector2 offset = Vector2::Zero();  ///< of the found place from the expected one [px]
-    Vector2 pixel = Vector2::Zero();   ///< newest place [px]
+    double odometer;                  ///< the image's way when the tracker last changed its state [px]
+    int probation = 0;                ///< changes of state until a found landmark's track goes on
+    Vector2 pixel = Vector2::Zero();  ///< newest place [px]
   };
 
   /// Why tracks end.
@@ -45,7 +44,7 @@ class Haste : public FrontEnd {
 
   void follow(double t);
   void observe(const Change& change);
-  bool moves_as_expected(Track& track, const Vector2& pixel, double t) const;
+  bool is_as_expected(TrackId track, const Vector2& pixel, double t) const;
   void maintain();
   void end_trackers();
   void correct_guidance();

@@ -66,7 +66,7 @@ std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const
   const double sigma = std::sqrt(expected->covariance.diagonal().maxCoeff());
   const int radius = std::min(options_.search, static_cast<int>(std::ceil(kNearest + options_.gate * sigma)));
   const AppearanceChange change = appearance_change(lost.T_world_camera, guidance.pose(t), *guidance.position(track));
-  Found found{track, {}, {}, lost.look.warped(lost.angle + change.angle, change.scale)};
+  Found found{track, {}, lost.look.warped(lost.angle + change.angle, change.scale)};
   const GridState place{static_cast<int>(std::lround(expected->pixel.x())),
                         static_cast<int>(std::lround(expected->pixel.y())), 0};
   const std::vector<Alignment> places = align_around(found.look, recent.events(), place, radius);
@@ -79,7 +79,6 @@ std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const
     if (beside && other.score > kAmbiguous * best->score) return std::nullopt;
   }
   found.pixel = Vector2(best->x, best->y);
-  found.offset = found.pixel - expected->pixel;
   return found;
 }
 

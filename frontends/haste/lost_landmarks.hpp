@@ -25,9 +25,8 @@ class LostLandmarks {
   /// A landmark that has been found.
   struct Found {
     TrackId track;
-    Vector2 pixel;   ///< [px]
-    Vector2 offset;  ///< of that from where it is expected [px]
-    Template look;   ///< as it is expected now
+    Vector2 pixel;  ///< [px]
+    Template look;  ///< as it is expected now
   };
   /// Looks for some of the landmarks in view at t, in turn, those first that were not looked for the longest. None
   /// within `distance` of what is `taken` [px].

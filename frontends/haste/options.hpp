@@ -33,10 +33,10 @@ struct GuidanceOptions {
   bool reacquire = true;
   double gate = 4.0;
   double veto_distance = 5.0;
-  int search = 6;
-  double similarity = 0.6;
+  int search = 4;
+  double similarity = 0.45;
   int probation = 4;
-  double tolerance = 1.5;
+  double tolerance = 3.0;
   double memory = 30.0;
 
   void declare(OptionSet& set) {
@@ -52,10 +52,10 @@ struct GuidanceOptions {
     set.add("similarity", similarity, "it is found where the events look at least this much like its template [cosine]")
         .range(0.0, 1.0);
     set.add("probation", probation,
-            "changes of state through which a found one must move as expected before its track goes on; else it is "
-            "another track")
+            "changes of state through which a found one must be where it is expected before its track goes on; else "
+            "it is another track")
         .range(1, 1000);
-    set.add("tolerance", tolerance, "and how far it may stray meanwhile [px]").above(0.0);
+    set.add("tolerance", tolerance, "and how far off that is meanwhile, at most [px]").above(0.0);
     set.add("memory", memory, "landmarks are looked for that were lost less than this ago [s]").range(0.0, 1e6);
   }
 };

@@ -1,10 +1,12 @@
 #include "frontends/haste/tracking/difference.hpp"
 
+#include <algorithm>
+
 namespace evbench::haste {
 
 namespace {
 
-/// What Σ m² gains when an event adds its weights to four cells of a model.
+/// What Σ m² gains, before it is summed up, when an event adds its weights to four cells of a model.
 Int4 add_event(int* cell, Int4 weights) {
   const Int4 before = Block<int>::load(cell), after = before + weights;
   Block<int>::store(cell, after);
@@ -36,7 +38,7 @@ Difference::Difference(bool follow_template)
 void Difference::start(const ScoringInput& input) {
   footprints_ = HypothesisFootprints(input.grid.angle);
   for (std::size_t h = 0; h < kHypotheses; ++h) {
-    model_of_[h] = static_cast<std::uint8_t>(h);
+    model_of_[h] = (*models_)[h].data();
     make_model(h, input);
   }
   compare(input);
@@ -46,86 +48,74 @@ void Difference::change_to(std::size_t h, const ScoringInput& input) {
   footprints_ = HypothesisFootprints(input.grid.angle);
   const auto former_models = model_of_;
   const Lanes<Double4> former_squares = squares_;
-  std::array<bool, kHypotheses> kept{}, known{};
+  std::array<bool, kHypotheses> known{}, kept{};
   for (std::size_t i = 0; i < kHypotheses; ++i) {
     const std::size_t former = hypothesis_at(kSteps[h], kSteps[i]);
     if (former == kHypotheses) continue;
-    known[i] = true;
-    kept[former_models[former]] = true;
+    known[i] = kept[former] = true;
     model_of_[i] = former_models[former];
-    squares_.quads[i / 4][i % 4] = former_squares.quads[former / 4][former % 4];
+    squares_.set(i, former_squares.of(former));
   }
-  std::uint8_t free = 0;
+  std::size_t free = 0;
   for (std::size_t i = 0; i < kHypotheses; ++i) {
     if (known[i]) continue;
     while (kept[free]) ++free;
-    model_of_[i] = free++;
+    model_of_[i] = former_models[free++];
     make_model(i, input);
   }
   compare(input);
 }
 
 void Difference::make_model(std::size_t h, const ScoringInput& input) {
-  Model& model = (*models_)[model_of_[h]];
-  model.fill(0);
+  int* model = model_of_[h];
+  std::fill_n(model, kPatchCells, 0);
   Double4 square{};
   for (int slot = 0; slot < kWindowSize; ++slot) {
-    const int place = input.place(input.window.slot(slot));
-    square += footprints_.visit(h, place, [&](int cell, Int4 weights) {
-      return __builtin_convertvector(add_event(&model[index(cell)], weights), Double4);
-    });
+    const auto [cell, weights] = footprints_.of(h, input.place(input.window.slot(slot)));
+    square += __builtin_convertvector(add_event(model + cell, weights), Double4);
   }
-  squares_.quads[h / 4][h % 4] = square[0] + square[1] + square[2] + square[3];
-}
-
-void Difference::set_template(const Template& learnt) {
-  template_ = QuantisedTemplate(learnt);
-  template_square_ = 0.0;
-  for (const int cell : template_.cells()) template_square_ += static_cast<double>(cell) * cell;
+  squares_.set(h, square[0] + square[1] + square[2] + square[3]);
 }
 
 void Difference::compare(const ScoringInput& input) {
-  set_template(input.learnt);
-  products_ = {};
+  const QuantisedTemplate compared(input.learnt);
+  template_square_ = 0.0;
+  for (const int cell : compared.cells()) template_square_ += static_cast<double>(cell) * cell;
   if (follow_template_) {
     for (std::size_t h = 0; h < kHypotheses; ++h) {
-      const Model& model = (*models_)[model_of_[h]];
       double sum = 0.0;
-      for (std::size_t i = 0; i < model.size(); ++i) sum += static_cast<double>(template_.cells()[i]) * model[i];
-      products_.quads[h / 4][h % 4] = sum;
+      for (std::size_t i = 0; i < kPatchCells; ++i) sum += static_cast<double>(compared.cells()[i]) * model_of_[h][i];
+      products_.set(h, sum);
     }
   } else {
-    for (int slot = 0; slot < kWindowSize; ++slot) {
-      samples_[index(slot)] = template_.sample(footprints_, input.place(input.window.slot(slot)));
-      const Lanes<Double4> sampled = to_double(samples_[index(slot)]);
-      for (std::size_t i = 0; i < 3; ++i) products_.quads[i] += sampled.quads[i];
-    }
+    samples_.make(footprints_, compared);
+    products_ = samples_.sum(input);
   }
   score();
 }
 
-void Difference::update(int slot, const Event& replaced, const ScoringInput& input) {
-  const int newest = input.place(input.window.slot(slot)), oldest = input.place(replaced);
-  const auto change_models = [&](int place, auto change) {
-    return to_double(sums_of_hypotheses([&](std::size_t h) {
-      return footprints_.visit(h, place, [&](int cell, Int4 weights) -> Int4 {
-        return change(&(*models_)[model_of_[h]][index(cell)], weights);
-      });
-    }));
-  };
-  const Lanes<Double4> gained = change_models(newest, add_event), lost = change_models(oldest, remove_event);
-  for (std::size_t i = 0; i < 3; ++i) squares_.quads[i] += gained.quads[i] - lost.quads[i];
+void Difference::update(const Event& newest, const Event& replaced, const ScoringInput& input) {
+  const int place = input.place(newest), former = input.place(replaced);
+  std::array<Int4, kHypotheses> gained;
+  for (std::size_t h = 0; h < kHypotheses; ++h) {
+    const auto arrives = footprints_.of(h, place), leaves = footprints_.of(h, former);
+    gained[h] = add_event(model_of_[h] + arrives.first, arrives.weights);
+    gained[h] -= remove_event(model_of_[h] + leaves.first, leaves.weights);
+  }
+  add(squares_, sums_of_hypotheses([&](std::size_t h) { return gained[h]; }));
   if (follow_template_) {
     compare(input);
     return;
   }
-  const Lanes<Int4> sampled = template_.sample(footprints_, newest);
-  Lanes<Int4>& former = samples_[index(slot)];
-  for (std::size_t i = 0; i < 3; ++i) {
-    products_.quads[i] += __builtin_convertvector(sampled.quads[i] - former.quads[i], Double4);
-  }
-  former = sampled;
+  add(products_, samples_.at(place) - samples_.at(former));
   score();
+}
+
+void Difference::prefetch(int place) const {
+  for (std::size_t h = 0; h < kHypotheses; ++h) {
+    __builtin_prefetch(model_of_[h] + footprints_.of(h, place).first, 1);
+  }
+  if (!follow_template_) samples_.prefetch(place);
 }
 
 void Difference::score() {
@@ -134,7 +124,7 @@ void Difference::score() {
     scores_.quads[i] =
         2.0 * kTemplate * products_.quads[i] - kTemplate * kTemplate * squares_.quads[i] - template_square_;
   }
-  scores_.quads[2][3] = scores_.quads[0][0];
+  scores_.quads[2][3] = scores_.of(0);
 }
 
 }  // namespace evbench::haste

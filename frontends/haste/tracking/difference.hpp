@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "frontends/haste/tracking/hypothesis_lanes.hpp"
-#include "frontends/haste/tracking/quantised_template.hpp"
+#include "frontends/haste/tracking/sample_table.hpp"
 #include "frontends/haste/tracking/scoring_input.hpp"
 
 namespace evbench::haste {
@@ -22,7 +22,9 @@ class Difference {
 
   void start(const ScoringInput& input);
   void change_to(std::size_t h, const ScoringInput& input);
-  void update(int slot, const Event& replaced, const ScoringInput& input);
+  void update(const Event& newest, const Event& replaced, const ScoringInput& input);
+
+  void prefetch(int place) const;
 
   const Lanes<Double4>& raw() const { return scores_; }
   double unit(const ScoringInput& /*input*/) const {
@@ -34,19 +36,17 @@ class Difference {
   using Model = std::array<int, kPatchCells>;  ///< in weights of Footprints
 
   void make_model(std::size_t h, const ScoringInput& input);
-  void set_template(const Template& learnt);
   void compare(const ScoringInput& input);
   void score();
 
   bool follow_template_;
-  QuantisedTemplate template_;
   double template_square_ = 0.0;  ///< Σ t²
   HypothesisFootprints footprints_;
   std::unique_ptr<std::array<Model, kHypotheses>> models_;
-  std::array<std::uint8_t, kHypotheses> model_of_{};  ///< which of the models is a hypothesis'
-  Lanes<Double4> squares_;                            ///< Σ m²
-  Lanes<Double4> products_;                           ///< Σ t m
-  std::array<Lanes<Int4>, kWindowSize> samples_{};    ///< by slot: what the events have in products_
+  std::array<int*, kHypotheses> model_of_{};  ///< the cells of each hypothesis' model
+  Lanes<Double4> squares_;                    ///< Σ m²
+  Lanes<Double4> products_;                   ///< Σ t m
+  SampleTable samples_;                       ///< unless the template is followed
   Lanes<Double4> scores_;
 };
 

@@ -30,11 +30,15 @@ Footprint footprint(int dx, int dy, int angle) {
 
 Footprints::Footprints(int angle) {
   for (int y = 0; y < kSide; ++y) {
+    Run& run = runs_[index(y)];
     for (int x = 0; x < kSide; ++x) {
       const Footprint f = footprint(x - kReach - 1, y - kReach - 1, angle);
       const std::size_t i = index(y * kSide + x);
       cells_[i] = static_cast<std::int16_t>(f.cell);
-      for (std::size_t k = 0; k < 4; ++k) weights_[i][k] = static_cast<std::int16_t>(f.weights[k]);
+      weights_[i] = f.weights;
+      if (!f.inside()) continue;
+      if (run.end == 0) run.begin = y * kSide + x;
+      run.end = y * kSide + x + 1;
     }
   }
 }

@@ -34,6 +34,9 @@ class Footprints {
   /// So far an event can be from the tracker, along each axis, and be in the patch of one of its hypotheses [px].
   static constexpr int kReach = 22;
 
+  /// The table's rows and columns: a tracker's neighbours see one more.
+  static constexpr int kSide = 2 * kReach + 3;
+
   /// The table of an angle, in steps; all are made at the first call.
   static const Footprints& of(int angle);
 
@@ -45,15 +48,21 @@ class Footprints {
   /// What is to be added to an event's place for its place seen from a tracker that is moved by a step.
   static constexpr int shift(const Step& step) { return -(step.y * kSide + step.x); }
 
+  /// Places [begin, end) of a row of the table: outside of them nothing is inside the patch.
+  struct Run {
+    int begin = 0, end = 0;
+  };
+  const auto& runs() const { return runs_; }
+
   int cell(int place) const { return cells_[index(place)]; }
-  const std::int16_t* weights(int place) const { return weights_[index(place)].data(); }  ///< four of them
+  const std::array<int, 4>& weights(int place) const { return weights_[index(place)]; }
 
  private:
   explicit Footprints(int angle);
 
-  static constexpr int kSide = 2 * kReach + 3;  ///< a tracker's neighbours see one more
   std::array<std::int16_t, kSide * kSide> cells_{};
-  std::array<std::array<std::int16_t, 4>, kSide * kSide> weights_{};
+  alignas(16) std::array<std::array<int, 4>, kSide * kSide> weights_{};
+  std::array<Run, kSide> runs_{};
 };
 
 }  // namespace evbench::haste

@@ -15,18 +15,34 @@ using Int4 [[gnu::vector_size(16)]] = int;
 using Double4 [[gnu::vector_size(32)]] = double;
 using Float4 [[gnu::vector_size(16)]] = float;
 
-/// A number of each hypothesis; the last lane repeats that of the null hypothesis.
+/// A footprint's weights.
+inline Int4 quad(const std::array<int, 4>& weights) {
+  using Int4At [[gnu::vector_size(16), gnu::aligned(4), gnu::may_alias]] = int;
+  return *reinterpret_cast<const Int4At*>(weights.data());
+}
+
+/// A number of each hypothesis. A quad has the three hypotheses that are a step down, none, or up; they come from right
+/// to left, as events' places from left to right. In the last lanes are the two that are turned and the null hypothesis
+/// again.
 template <class Quad>
 struct Lanes {
   std::array<Quad, 3> quads{};
-};
-inline constexpr int kLanes = 12;
-constexpr int hypothesis_of_lane(int lane) { return lane < kHypotheses ? lane : 0; }
 
-inline Lanes<Double4> to_double(const Lanes<Int4>& lanes) {
-  Lanes<Double4> result;
-  for (std::size_t i = 0; i < 3; ++i) result.quads[i] = __builtin_convertvector(lanes.quads[i], Double4);
-  return result;
+  auto of(std::size_t hypothesis) const { return quads[kLane[hypothesis] / 4][kLane[hypothesis] % 4]; }
+
+  template <class Number>
+  void set(std::size_t hypothesis, Number value) {
+    quads[kLane[hypothesis] / 4][kLane[hypothesis] % 4] = value;
+  }
+
+  static constexpr std::array<std::uint8_t, kHypotheses> kLane{5, 4, 6, 1, 9, 0, 2, 10, 8, 3, 7};
+};
+
+inline void add(Lanes<Double4>& sum, const Lanes<Int4>& lanes) {
+  for (std::size_t i = 0; i < 3; ++i) sum.quads[i] += __builtin_convertvector(lanes.quads[i], Double4);
+}
+inline Lanes<Int4> operator-(const Lanes<Int4>& a, const Lanes<Int4>& b) {
+  return {{a.quads[0] - b.quads[0], a.quads[1] - b.quads[1], a.quads[2] - b.quads[2]}};
 }
 
 /// The sums of four quads.
@@ -58,24 +74,29 @@ struct Block {
 class HypothesisFootprints {
  public:
   HypothesisFootprints() : HypothesisFootprints(0) {}
-  explicit HypothesisFootprints(int angle)
-      : null_(&Footprints::of(angle)), plus_(&Footprints::of(angle + 1)), minus_(&Footprints::of(angle - 1)) {}
+  explicit HypothesisFootprints(int angle) {
+    for (std::size_t h = 0; h < kHypotheses; ++h) tables_[h] = &Footprints::of(angle + kSteps[h].angle);
+  }
 
-  const Footprints& null() const { return *null_; }
+  const Footprints& table(std::size_t hypothesis) const { return *tables_[hypothesis]; }
 
-  /// Calls visit(cell, weights) for a hypothesis and an event's place (Footprints::place from the state).
-  template <class Visit>
-  [[gnu::always_inline]] auto visit(std::size_t hypothesis, int place, Visit visit) const {
-    const Step& step = kSteps[hypothesis];
-    const Footprints& table = step.angle == 0 ? *null_ : step.angle > 0 ? *plus_ : *minus_;
-    const int seen = place + Footprints::shift(step);
-    using Short4At [[gnu::vector_size(8), gnu::aligned(2), gnu::may_alias]] = std::int16_t;
-    const auto weights = *reinterpret_cast<const Short4At*>(table.weights(seen));
-    return visit(table.cell(seen), __builtin_convertvector(weights, Int4));
+  struct Cells {
+    int first;  ///< Footprint::cell
+    Int4 weights;
+  };
+  /// For an event's place (Footprints::place from the state).
+  Cells of(std::size_t hypothesis, int place) const {
+    const int seen = place + kShifts[hypothesis];
+    return {tables_[hypothesis]->cell(seen), quad(tables_[hypothesis]->weights(seen))};
   }
 
  private:
-  const Footprints *null_, *plus_, *minus_;
+  static constexpr auto kShifts = [] {
+    std::array<int, kHypotheses> shifts{};
+    for (std::size_t h = 0; h < kHypotheses; ++h) shifts[h] = Footprints::shift(kSteps[h]);
+    return shifts;
+  }();
+  std::array<const Footprints*, kHypotheses> tables_;
 };
 
 /// The sums over all hypotheses' quads, which quad(h) makes.
@@ -84,9 +105,9 @@ template <class MakeQuad>
   using Quad = decltype(quad(std::size_t{0}));
   const Quad null = quad(0);
   Lanes<Quad> result;
-  result.quads[0] = sums<Quad>(null, quad(1), quad(2), quad(3));
-  result.quads[1] = sums<Quad>(quad(4), quad(5), quad(6), quad(7));
-  result.quads[2] = sums<Quad>(quad(8), quad(9), quad(10), null);
+  result.quads[0] = sums<Quad>(quad(5), quad(3), quad(6), quad(9));
+  result.quads[1] = sums<Quad>(quad(1), null, quad(2), quad(10));
+  result.quads[2] = sums<Quad>(quad(8), quad(4), quad(7), null);
   return result;
 }
 
@@ -101,15 +122,15 @@ inline std::size_t chosen(const Lanes<Double4>& scores, double threshold) {
   const auto less = [](double p, double q) { return p < q ? p : q; };
   const double best = greater(greater(most[0], most[1]), greater(most[2], most[3]));
   const double worst = less(less(least[0], least[1]), less(least[2], least[3]));
-  if (!(best - a[0] > threshold * (best - worst))) return 0;
+  if (!(best - scores.of(0) > threshold * (best - worst))) return 0;
   std::size_t h = 0;
-  while (scores.quads[h / 4][h % 4] != best) ++h;
+  while (scores.of(h) != best) ++h;
   return h;
 }
 
 inline Scores scaled(const Lanes<Double4>& raw, double unit) {
   Scores scores;
-  for (std::size_t h = 0; h < scores.of.size(); ++h) scores.of[h] = unit * raw.quads[h / 4][h % 4];
+  for (std::size_t h = 0; h < scores.of.size(); ++h) scores.of[h] = unit * raw.of(h);
   return scores;
 }
 

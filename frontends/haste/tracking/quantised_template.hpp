@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "frontends/haste/tracking/hypothesis_lanes.hpp"
 #include "frontends/haste/tracking/template.hpp"
 
 namespace evbench::haste {
@@ -19,14 +18,6 @@ class QuantisedTemplate {
     const double mass = original.mass();
     const auto scale = static_cast<float>(mass > 0.0 ? double{kWindowSize} * kUnit * kTemplateUnit / mass : 0.0);
     for (std::size_t i = 0; i < cells_.size(); ++i) cells_[i] = static_cast<int>(original.cells()[i] * scale);
-  }
-
-  /// Where the hypotheses around a state see an event, times the weights' sum.
-  [[gnu::always_inline]] Lanes<Int4> sample(const HypothesisFootprints& footprints, int place) const {
-    return sums_of_hypotheses([&](std::size_t h) {
-      return footprints.visit(
-          h, place, [&](int cell, Int4 weights) -> Int4 { return weights * Block<int>::load(&cells_[index(cell)]); });
-    });
   }
 
   const std::array<int, kPatchCells>& cells() const { return cells_; }

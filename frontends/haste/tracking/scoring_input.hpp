@@ -9,7 +9,8 @@ namespace evbench::haste {
 /// What hypotheses are scored by: a tracker's window, state and template. Every way of scoring has
 ///   start(input)                      at the start, or anew anywhere,
 ///   change_to(h, input)               after a change of state to hypothesis h, to which input.grid is set,
-///   update(slot, replaced, input)     after an event has come into a slot of the window, where another was,
+///   update(newest, replaced, input)   after an event has come into the window in the place of another,
+///   prefetch(place)                   some events before one at that place comes or goes,
 ///   raw()                             the scores up to a factor, which is
 ///   unit(input).
 struct ScoringInput {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "frontends/haste/tracking/hypothesis_lanes.hpp"
-#include "frontends/haste/tracking/quantised_template.hpp"
+#include "frontends/haste/tracking/sample_table.hpp"
 #include "frontends/haste/tracking/scoring_input.hpp"
 
 namespace evbench::haste {
@@ -12,21 +12,18 @@ class StarCorrelation {
  public:
   void start(const ScoringInput& input);
   void change_to(std::size_t /*h*/, const ScoringInput& input) { start(input); }
-  void update(int slot, const Event& /*replaced*/, const ScoringInput& input) {
-    sample(slot, input.place(input.window.slot(slot)));
-  }
+  void update(const Event& newest, const Event& replaced, const ScoringInput& input);
+
+  void prefetch(int place) const { samples_.prefetch(place); }
+
   const Lanes<Double4>& raw() const { return scores_; }
   double unit(const ScoringInput& /*input*/) const {
     return 1.0 / (double{kWindowSize} * kWindowSize * kUnit * kUnit * QuantisedTemplate::kTemplateUnit);
   }
 
  private:
-  void sample(int slot, int place);
-
-  QuantisedTemplate template_;
-  HypothesisFootprints footprints_;
+  SampleTable samples_;
   Lanes<Double4> scores_;
-  std::array<Lanes<Int4>, kWindowSize> samples_{};  ///< by slot: what the events have in the scores
 };
 
 }  // namespace evbench::haste

@@ -7,8 +7,7 @@
 namespace evbench::haste {
 
 void Template::add(const Footprints& footprints, int place, float weight) {
-  using Short4At [[gnu::vector_size(8), gnu::aligned(2), gnu::may_alias]] = std::int16_t;
-  const auto weights = __builtin_convertvector(*reinterpret_cast<const Short4At*>(footprints.weights(place)), Double4);
+  const Double4 weights = __builtin_convertvector(quad(footprints.weights(place)), Double4);
   if (weights[0] == 0.0 && weights[1] == 0.0 && weights[2] == 0.0 && weights[3] == 0.0) return;
   // Products of a float and a weight are exact in double: the same with and without fused multiply-add.
   float* cell = &cells_[index(footprints.cell(place))];

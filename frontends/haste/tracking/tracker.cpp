@@ -19,11 +19,32 @@ Scoring make_scoring(Variant variant) {
   return StarCorrelation();
 }
 
+/// Is the template needed at changes of state only?
+bool starred(Variant variant) {
+  return variant == Variant::haste_correlation_star || variant == Variant::haste_difference_star;
+}
+
+constexpr int kMiddle = kWindowSize / 2;
+constexpr int kMostWaiting = kMiddle;  // that many are still in the window
+
 bool weighted(Variant variant) { return variant == Variant::correlation || variant == Variant::haste_correlation; }
 
 }  // namespace
 
 float event_weight(Variant variant, int i) { return weighted(variant) ? gaussian_weights()[index(i)] : 1.0F; }
+
+namespace {
+
+/// Events from the window's [begin, end), as much of them as `part` says.
+void learn(Template& learnt, const ScoringInput& input, Variant variant, int begin, int end, double part) {
+  const Footprints& footprints = Footprints::of(input.grid.angle);
+  for (int i = begin; i < end; ++i) {
+    const auto weight = static_cast<float>(part * double{event_weight(variant, i)});
+    learnt.add(footprints, input.place(input.window.event(i)), weight);
+  }
+}
+
+}  // namespace
 
 Tracker::Tracker(const TrackerOptions& options, const TrackerState& seed)
     : options_(options),
@@ -40,10 +61,9 @@ Tracker::Tracker(const TrackerOptions& options, const TrackerState& seed, const 
   learnt_ = given;
 }
 
-Tracker::Update Tracker::push(const Event& event) {
-  if (!in_range(event.x - grid_.x, event.y - grid_.y)) return Update::out_of_range;
-  const Event replaced = window_.slot(window_.oldest_slot());
-  const int slot = window_.push(event);
+/// An event in range.
+Tracker::Update Tracker::take(const Event& event) {
+  const Event replaced = window_.push(event);
   ++event_count_;
   if (!running_) {
     if (event_count_ < kWindowSize) return Update::collecting;
@@ -52,25 +72,41 @@ Tracker::Update Tracker::push(const Event& event) {
   }
   const std::size_t h = std::visit(
       [&](auto& scoring) {
-        scoring.update(slot, replaced, input());
+        scoring.update(event, replaced, input());
         return chosen(scoring.raw(), options_.change_threshold);
       },
       scoring_);
   if (h != 0) change_to(h);
-  learn(kWindowSize / 2, options_.template_learning);
+  // The window's middle event is learnt; where nothing asks for the template until the next change of state, later on
+  // and together with others, which finds it in the cache.
+  ++waiting_;
+  if (!starred(options_.variant) || waiting_ == kMostWaiting) learn_waiting(kMiddle + 1);
   return h != 0 ? Update::changed : Update::regular;
 }
 
-/// The i-th event of the window, as much of it as `part` says.
-void Tracker::learn(int i, double part) {
-  const auto weight = static_cast<float>(part * double{event_weight(options_.variant, i)});
-  learnt_.add(Footprints::of(grid_.angle), input().place(window_.event(i)), weight);
+void Tracker::expect(const Event& event) const {
+  std::visit(
+      [&](const auto& scoring) {
+        scoring.prefetch(input().place(event));
+        scoring.prefetch(input().place(window_.event(kAhead)));
+      },
+      scoring_);
+}
+
+/// The window's events before `end`, as many as are waiting.
+void Tracker::learn_waiting(int end) {
+  learn(learnt_, input(), options_.variant, end - waiting_, end, options_.template_learning);
+  waiting_ = 0;
+}
+
+Template Tracker::learnt_template() const {
+  Template result = learnt_;
+  learn(result, input(), options_.variant, kMiddle + 1 - waiting_, kMiddle + 1, options_.template_learning);
+  return result;
 }
 
 void Tracker::start() {
-  if (!template_given_) {
-    for (int i = 0; i < kWindowSize; ++i) learn(i, 1.0);
-  }
+  if (!template_given_) learn(learnt_, input(), options_.variant, 0, kWindowSize, 1.0);
   running_ = true;
   state_.t = window_.middle().t;
   std::visit([&](auto& scoring) { scoring.start(input()); }, scoring_);
@@ -79,6 +115,7 @@ void Tracker::start() {
 
 void Tracker::change_to(std::size_t h) {
   change_ = {-1, window_.newest().t, state_, {}, scores()};
+  learn_waiting(kMiddle);
   set_grid(grid_ + kSteps[h], window_.middle().t);
   change_.after = state_;
   std::visit([&](auto& scoring) { scoring.change_to(h, input()); }, scoring_);
@@ -87,6 +124,7 @@ void Tracker::change_to(std::size_t h) {
 void Tracker::move_by(const Vector2& translation, double angle) {
   const Step step{static_cast<int>(std::lround(translation.x())), static_cast<int>(std::lround(translation.y())),
                   static_cast<int>(std::lround(angle / kAngleStep))};
+  learn_waiting(kMiddle + 1);
   set_grid(grid_ + step, state_.t);
   if (running_) std::visit([&](auto& scoring) { scoring.start(input()); }, scoring_);
 }

@@ -47,7 +47,13 @@ class Tracker {
   /// Where a point with a known template is seen again.
   Tracker(const TrackerOptions& options, const TrackerState& seed, const Template& given);
 
-  Update push(const Event& event);
+  Update push(const Event& event) {
+    return in_range(event.x - grid_.x, event.y - grid_.y) ? take(event) : Update::out_of_range;
+  }
+
+  /// An event which will be pushed after about kAhead others: what it needs is brought into the cache. Changes nothing.
+  void expect(const Event& event) const;
+  static constexpr int kAhead = 4;
 
   bool running() const { return running_; }  ///< has its window been full?
   const TrackerState& state() const { return state_; }
@@ -59,7 +65,7 @@ class Tracker {
   std::int64_t t_last_event() const { return window_.newest().t; }  ///< [µs], in range; 0 before the first
   const EventWindow& window() const { return window_; }
   /// Empty until it runs, unless one was given.
-  const Template& learnt_template() const { return learnt_; }
+  Template learnt_template() const;
 
   /// Sets it elsewhere, as many whole pixels and steps of angle from where it is as come nearest, with its window and
   /// template: for who knows better where it should be. No change is reported.
@@ -67,9 +73,10 @@ class Tracker {
 
  private:
   ScoringInput input() const { return {window_, grid_, learnt_}; }
+  Update take(const Event& event);
   void start();
   void change_to(std::size_t h);
-  void learn(int i, double part);
+  void learn_waiting(int end);
   void set_grid(const GridState& grid, std::int64_t t);
 
   TrackerOptions options_;
@@ -81,6 +88,7 @@ class Tracker {
   std::int64_t event_count_ = 0;
   EventWindow window_;
   Template learnt_;
+  int waiting_ = 0;  ///< that many events up to the middle one are still to be learnt, all at the present state
   std::variant<StarCorrelation, WeightedCorrelation, Difference> scoring_;
   Change change_;
 };

@@ -7,7 +7,13 @@ namespace evbench::haste {
 
 namespace {
 
-constexpr std::size_t kBits = 64;  // of a word
+constexpr std::size_t kBits = 64;     // of a word
+constexpr int kCellBits = 2;          // cells of 4 × 4 px
+constexpr std::size_t kBatch = 4096;  // events
+constexpr int kSlack = 4;             // [px] that a tracker may go in a batch before it has to look at all the rest
+constexpr int kNear = kPatchRadius + kSlack;
+
+constexpr int square(int x, int y) { return x * x + y * y; }
 
 }  // namespace
 
@@ -21,17 +27,17 @@ TrackerSet::TrackerSet(int width, int height)
 template <class CellChange>
 void TrackerSet::for_cells_around(const Centre& centre, CellChange change) {
   const auto cell = [](int pixel, int count) { return std::clamp(pixel >> kCellBits, 0, count - 1); };
-  constexpr int kFar = kPatchRadius - 1;  // the farthest whole pixel in range
-  // Beyond the sensor there are no events: a cell at its border that is not in range does no harm.
-  const int left = cell(centre.x - kFar, columns_), right = cell(centre.x + kFar, columns_);
-  const int top = cell(centre.y - kFar, rows_), bottom = cell(centre.y + kFar, rows_);
+  // A tracker far outside is known to the cells at the border, which does no harm.
+  const int left = cell(centre.x - kNear, columns_), right = cell(centre.x + kNear, columns_);
+  const int top = cell(centre.y - kNear, rows_), bottom = cell(centre.y + kNear, rows_);
   for (int row = top; row <= bottom; ++row) {
     for (int column = left; column <= right; ++column) change(cells_[index(row * columns_ + column) * words_]);
   }
 }
 
-void TrackerSet::enter(std::size_t slot, const GridState& at) {
-  centres_[slot] = {at.x, at.y};
+void TrackerSet::enter(std::size_t slot) {
+  const GridState& grid = slots_[slot].tracker->grid_state();
+  centres_[slot] = {grid.x, grid.y};
   for_cells_around(centres_[slot], [&](std::uint64_t& first) { (&first)[slot / kBits] |= 1ULL << slot % kBits; });
 }
 
@@ -55,16 +61,17 @@ std::int64_t TrackerSet::add(Tracker tracker) {
     centres_.emplace_back();
     if (slots_.size() > kBits * words_) grow();
   }
-  slots_[slot] = {std::make_unique<Tracker>(std::move(tracker)), next_id_};
+  slots_[slot].tracker = std::make_unique<Tracker>(std::move(tracker));
+  slots_[slot].id = next_id_;
   slots_by_id_[next_id_] = slot;
-  enter(slot, slots_[slot].tracker->grid_state());
+  enter(slot);
   return next_id_++;
 }
 
 void TrackerSet::remove(std::int64_t id) {
   const std::size_t slot = slots_by_id_.at(id);
   leave(slot);
-  slots_[slot] = {};
+  slots_[slot].tracker.reset();
   slots_by_id_.erase(id);
 }
 
@@ -72,7 +79,7 @@ void TrackerSet::move_by(std::int64_t id, const Vector2& translation, double ang
   const std::size_t slot = slots_by_id_.at(id);
   leave(slot);
   slots_[slot].tracker->move_by(translation, angle);
-  enter(slot, slots_[slot].tracker->grid_state());
+  enter(slot);
 }
 
 std::vector<std::int64_t> TrackerSet::ids() const {
@@ -85,27 +92,66 @@ std::vector<std::int64_t> TrackerSet::ids() const {
 }
 
 void TrackerSet::push(std::span<const Event> events, std::vector<Change>& changes) {
-  for (const Event& event : events) {
+  for (std::size_t i = 0; i < events.size(); i += kBatch) {
+    push_batch(events.subspan(i, std::min(kBatch, events.size() - i)), changes);
+  }
+}
+
+void TrackerSet::push_batch(std::span<const Event> events, std::vector<Change>& changes) {
+  sort_by_trackers(events);
+  found_.clear();
+  for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
+    if (!slots_[slot].near.empty()) track(slot, events);
+  }
+  std::ranges::sort(found_, {}, [](const Found& found) { return std::pair(found.event, found.change.tracker); });
+  for (const Found& found : found_) changes.push_back(found.change);
+}
+
+void TrackerSet::sort_by_trackers(std::span<const Event> events) {
+  for (Slot& slot : slots_) slot.near.clear();
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Event& event = events[i];
     if (event.x >= width_ || event.y >= height_) continue;
     const std::size_t cell = (index(event.y >> kCellBits) * index(columns_) + index(event.x >> kCellBits)) * words_;
     for (std::size_t word = 0; word < words_; ++word) {
       for (std::uint64_t near = cells_[cell + word]; near != 0; near &= near - 1) {
         const std::size_t slot = kBits * word + static_cast<std::size_t>(std::countr_zero(near));
         const auto [x, y] = centres_[slot];
-        if (in_range(event.x - x, event.y - y)) push(event, slot, changes);
+        if (square(event.x - x, event.y - y) < kNear * kNear)
+          slots_[slot].near.push_back(static_cast<std::uint16_t>(i));
       }
     }
   }
 }
 
-void TrackerSet::push(const Event& event, std::size_t slot, std::vector<Change>& changes) {
+/// Hands its events to a tracker.
+void TrackerSet::track(std::size_t slot, std::span<const Event> events) {
   Tracker& tracker = *slots_[slot].tracker;
-  const Tracker::Update update = tracker.push(event);
-  if (update != Tracker::Update::changed && update != Tracker::Update::started) return;
-  changes.push_back(tracker.change());
-  changes.back().tracker = slots_[slot].id;
+  const Centre centre = centres_[slot];
+  bool moved = false, far = false;
+  const auto push = [&](std::size_t i) {
+    const Tracker::Update update = tracker.push(events[i]);
+    if (update != Tracker::Update::changed && update != Tracker::Update::started) return;
+    found_.push_back({i, tracker.change()});
+    found_.back().change.tracker = slots_[slot].id;
+    const GridState& grid = tracker.grid_state();
+    moved = true;
+    far = square(grid.x - centre.x, grid.y - centre.y) > kSlack * kSlack;
+  };
+  const std::vector<std::uint16_t>& near = slots_[slot].near;
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    if (k + Tracker::kAhead < near.size()) tracker.expect(events[near[k + Tracker::kAhead]]);
+    const std::size_t i = near[k];
+    push(i);
+    if (!far) continue;
+    for (std::size_t rest = i + 1; rest < events.size(); ++rest) {
+      if (events[rest].x < width_ && events[rest].y < height_) push(rest);
+    }
+    break;
+  }
+  if (!moved) return;
   leave(slot);
-  enter(slot, tracker.grid_state());
+  enter(slot);
 }
 
 }  // namespace evbench::haste

@@ -23,11 +23,10 @@ const std::array<float, kWindowSize>& gaussian_weights() {
 Lanes<Float4> WeightedCorrelation::sample(const Event& event, const ScoringInput& input) const {
   const int place = input.place(event);
   // Products of a float and a weight are exact in double: the same with and without fused multiply-add.
-  const Lanes<Double4> exact = sums_of_hypotheses([&](std::size_t h) {
-    return footprints_.visit(h, place, [&](int cell, Int4 weights) -> Double4 {
-      return __builtin_convertvector(weights, Double4) *
-             __builtin_convertvector(Block<float>::load(&input.learnt.cells()[index(cell)]), Double4);
-    });
+  const Lanes<Double4> exact = sums_of_hypotheses([&](std::size_t h) -> Double4 {
+    const auto [cell, weights] = footprints_.of(h, place);
+    return __builtin_convertvector(weights, Double4) *
+           __builtin_convertvector(Block<float>::load(&input.learnt.cells()[index(cell)]), Double4);
   });
   Lanes<Float4> result;
   for (std::size_t i = 0; i < 3; ++i) result.quads[i] = __builtin_convertvector(exact.quads[i], Float4);
@@ -52,12 +51,12 @@ void WeightedCorrelation::start(const ScoringInput& input) {
   sum_up(input.window);
 }
 
-void WeightedCorrelation::update(int slot, const Event& /*replaced*/, const ScoringInput& input) {
+void WeightedCorrelation::update(const Event& newest, const Event& /*replaced*/, const ScoringInput& input) {
   if (resample_) {
     start(input);
     return;
   }
-  samples_[index(slot)] = sample(input.window.slot(slot), input);
+  samples_[index(input.window.slot_of(kWindowSize - 1))] = sample(newest, input);
   sum_up(input.window);
 }
 

@@ -19,10 +19,15 @@ class WeightedCorrelation {
 
   void start(const ScoringInput& input);
   void change_to(std::size_t /*h*/, const ScoringInput& input) { start(input); }
-  void update(int slot, const Event& replaced, const ScoringInput& input);
+  void update(const Event& newest, const Event& replaced, const ScoringInput& input);
+
+  void prefetch(int /*place*/) const {}
 
   const Lanes<Double4>& raw() const { return scores_; }
-  double unit(const ScoringInput& input) const { return 1.0 / (double{kWindowSize} * kUnit * input.learnt.mass()); }
+  double unit(const ScoringInput& input) const {
+    const double mass = input.learnt.mass();
+    return mass > 0.0 ? 1.0 / (double{kWindowSize} * kUnit * mass) : 0.0;
+  }
 
  private:
   Lanes<Float4> sample(const Event& event, const ScoringInput& input) const;

@@ -1,0 +1,152 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/events/event_stream.hpp"
+#include "core/plugin/source.hpp"
+#include "core/simulation/random.hpp"
+
+namespace evbench::testing {
+
+/// Events in memory as a recording.
+class EventList : public EventReader {
+ public:
+  EventList(const std::vector<Event>& events, int width, int height) : events_(events) {
+    info_.width = width;
+    info_.height = height;
+  }
+  const StreamInfo& info() const override { return info_; }
+  bool read(std::vector<Event>& events) override {
+    constexpr std::size_t kChunk = 10'000;
+    const std::size_t end = std::min(events_.size(), next_ + kChunk);
+    events.assign(events_.begin() + static_cast<std::ptrdiff_t>(next_),
+                  events_.begin() + static_cast<std::ptrdiff_t>(end));
+    next_ = end;
+    return !events.empty();
+  }
+  void seek(std::int64_t) override { next_ = 0; }
+  const Faults& faults() const override { return faults_; }
+
+ private:
+  const std::vector<Event>& events_;
+  StreamInfo info_;
+  Faults faults_;
+  std::size_t next_ = 0;
+};
+
+/// A wall of outlines, 2 m before the camera's path, as an event camera of 240 x 180 pixels sees it: an outline is made
+/// of points, and a point emits an event when its image comes into another pixel. Quickly made, and of events as they
+/// may be that no sensor model would give: for tests.
+class EventScene : public Source {
+ public:
+  using Motion = std::function<SE3(double)>;  ///< T_world_camera at t [s]
+  /// A closed line on the wall [m].
+  using Outline = std::vector<Vector2>;
+
+  static constexpr double kDistance = 2.0;  ///< [m], of the wall from the world's origin, along z
+
+  EventScene(const Motion& motion, double duration, const std::vector<Outline>& outlines) : to_(duration) {
+    camera_.width = 240;
+    camera_.height = 180;
+    camera_.pinhole = {200.0, 200.0, 119.5, 89.5};
+    see(motion, points_of(outlines));
+    std::vector<StampedPose> poses;
+    for (int i = 0; i / 200.0 <= duration; ++i) poses.push_back({i / 200.0, motion(i / 200.0)});
+    truth_ = PoseTrajectory(std::move(poses));
+  }
+
+  /// Quadrangles of all kinds over the wall.
+  static std::vector<Outline> quadrangles(int count, std::uint64_t seed, double size = 0.2) {
+    Random random(seed);
+    std::vector<Outline> result;
+    for (int i = 0; i < count; ++i) {
+      const Vector2 centre(random.uniform(-2.0, 2.0), random.uniform(-1.5, 1.5));
+      Outline outline;
+      for (int k = 0; k < 4; ++k) {
+        const double angle = 1.5708 * k + random.uniform(-0.5, 0.5), radius = size * random.uniform(0.4, 1.0);
+        outline.push_back(centre + radius * Vector2(std::cos(angle), std::sin(angle)));
+      }
+      result.push_back(outline);
+    }
+    return result;
+  }
+
+  const Camera& camera() const override { return camera_; }
+  TimeRange time_range() const override { return {0.0, to_}; }
+  const PoseTrajectory& ground_truth() const override { return truth_; }
+  std::unique_ptr<EventReader> all_events() const override {
+    return std::make_unique<EventList>(list, camera_.width, camera_.height);
+  }
+
+  /// Adds events, in any order.
+  void add(const std::vector<Event>& more) {
+    list.insert(list.end(), more.begin(), more.end());
+    std::ranges::stable_sort(list, {}, &Event::t);
+  }
+  /// Takes those between two times [s] away.
+  void silence(double from, double to) {
+    std::erase_if(list, [&](const Event& event) { return event.t >= 1e6 * from && event.t < 1e6 * to; });
+  }
+
+  std::vector<Event> list;  ///< in time order, unless a test wants them otherwise
+
+ private:
+  static std::vector<Vector3> points_of(const std::vector<Outline>& outlines) {
+    constexpr double kSpacing = 0.004;  // [m]: 0.4 px
+    std::vector<Vector3> points;
+    for (const Outline& outline : outlines) {
+      for (std::size_t i = 0; i < outline.size(); ++i) {
+        const Vector2 &from = outline[i], &to = outline[(i + 1) % outline.size()];
+        const double length = (to - from).norm();
+        for (double s = 0.0; s < length; s += kSpacing) {
+          const Vector2 p = from + (s / length) * (to - from);
+          points.emplace_back(p.x(), p.y(), kDistance);
+        }
+      }
+    }
+    return points;
+  }
+
+  void see(const Motion& motion, const std::vector<Vector3>& points) {
+    constexpr std::int64_t kStep = 1000;  // [µs]
+    std::vector<int> pixel_of(points.size(), -1);
+    for (std::int64_t t = 0; t <= static_cast<std::int64_t>(1e6 * to_); t += kStep) {
+      const SE3 T_camera_world = motion(static_cast<double>(t) / 1e6).inverse();
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vector3 q = T_camera_world * points[i];
+        int pixel = -1;
+        if (q.z() > 0.1) {
+          const Vector2 image = camera_.pinhole.project(q);
+          const auto x = static_cast<int>(std::lround(image.x())), y = static_cast<int>(std::lround(image.y()));
+          if (x >= 0 && y >= 0 && x < camera_.width && y < camera_.height) pixel = y * camera_.width + x;
+        }
+        if (pixel >= 0 && pixel_of[i] >= 0 && pixel != pixel_of[i]) {
+          // Within the step in an order of their own.
+          const auto within = static_cast<std::int64_t>((i * 7919) % static_cast<std::size_t>(kStep));
+          list.push_back({t + within, static_cast<std::uint16_t>(pixel % camera_.width),
+                          static_cast<std::uint16_t>(pixel / camera_.width), i % 2 == 0});
+        }
+        pixel_of[i] = pixel;
+      }
+    }
+    std::ranges::stable_sort(list, {}, &Event::t);
+  }
+
+  Camera camera_;
+  double to_;
+  PoseTrajectory truth_;
+};
+
+/// Swings to and fro, with a little rotation: as a hand moves a camera before a wall.
+inline SE3 swing(double t) {
+  Vector6 twist;
+  twist << 0.06 * std::sin(1.1 * t), 0.08 * std::sin(0.9 * t + 0.5) - 0.08 * std::sin(0.5), 0.05 * std::sin(1.3 * t),
+      0.35 * std::sin(1.6 * t), 0.2 * std::sin(1.2 * t), 0.15 * std::sin(0.8 * t);
+  return se3::exp(twist);
+}
+
+}  // namespace evbench::testing

@@ -1,0 +1,152 @@
+#include "frontends/haste/haste.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "core/support/error.hpp"
+#include "core/testing/event_scene.hpp"
+
+using namespace evbench;
+using namespace evbench::haste;
+using evbench::testing::EventScene;
+using evbench::testing::swing;
+
+namespace {
+
+const EventScene& scene() {
+  static const EventScene result(swing, 1.5, EventScene::quadrangles(150, 1));
+  return result;
+}
+
+/// All that it tells, asked every `interval` [s].
+TrackBatch track(const Source& source, const Options& options = {}, double interval = 0.01, std::size_t most = 0) {
+  Haste haste(options, {source});
+  const double to = source.time_range().to;
+  TrackBatch all, batch;
+  all.until = 0.0;
+  for (int k = 1; all.until < to;) {
+    const double horizon = std::min(to, interval * k);
+    haste.advance({horizon, most}, batch);
+    REQUIRE(batch.until >= all.until);
+    all.observations.insert(all.observations.end(), batch.observations.begin(), batch.observations.end());
+    all.ended.insert(all.ended.end(), batch.ended.begin(), batch.ended.end());
+    all.until = batch.until;
+    if (batch.known_at() >= horizon) ++k;
+  }
+  return all;
+}
+
+/// Median distance of the observations from where the track's first observation, a point of the wall, is by then [px].
+double median_error(const EventScene& source, const std::vector<TrackObservation>& observations) {
+  std::map<TrackId, Vector3> points;
+  std::vector<double> errors;
+  for (const TrackObservation& z : observations) {
+    const SE3 T = swing(z.t);
+    if (const auto point = points.find(z.track); point != points.end()) {
+      errors.push_back((source.camera().project(T.inverse() * point->second) - z.pixel).norm());
+    } else {
+      const Vector3 ray = T.R() * source.camera().pinhole.ray(z.pixel);
+      points.emplace(z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray);
+    }
+  }
+  std::ranges::sort(errors);
+  return errors[errors.size() / 2];
+}
+
+bool same(const TrackBatch& a, const TrackBatch& b) {
+  return std::ranges::equal(a.observations, b.observations, [](const TrackObservation& x, const TrackObservation& y) {
+    return x.track == y.track && x.t == y.t && x.pixel == y.pixel;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("Points of a wall are followed as the camera moves, the midpoints closer than the new states") {
+  const TrackBatch midpoints = track(scene());
+  std::map<TrackId, int> tracks;
+  for (const TrackObservation& z : midpoints.observations) ++tracks[z.track];
+  CHECK(tracks.size() > 40);
+  CHECK(midpoints.observations.size() > 2000);
+  const double error = median_error(scene(), midpoints.observations);
+  CHECK(error < 0.8);
+  Options leading;
+  leading.midpoint = false;
+  CHECK(median_error(scene(), track(scene(), leading).observations) > error);
+}
+
+TEST_CASE("Tracks do not depend on how they are asked for") {
+  const TrackBatch usual = track(scene());
+  CHECK(same(usual, track(scene(), {}, 0.037)));
+  CHECK(same(usual, track(scene(), {}, 0.01, 7)));
+}
+
+TEST_CASE("Observations come in time order, and not later than the delay but for those that are counted") {
+  Options prompt;
+  prompt.delay = 0.0;
+  for (const Options& options : {Options(), prompt}) {
+    const TrackBatch all = track(scene(), options);
+    CHECK(std::ranges::is_sorted(all.observations, {}, &TrackObservation::t));
+    std::map<TrackId, double> last;
+    for (const TrackObservation& z : all.observations) {
+      if (last.contains(z.track)) CHECK(z.t > last.at(z.track));
+      last[z.track] = z.t;
+    }
+  }
+}
+
+TEST_CASE("Features are spread over the image and keep their distance") {
+  Haste haste({}, {scene()});
+  TrackBatch batch;
+  haste.advance({0.3}, batch);
+  std::map<TrackId, Vector2> first;
+  for (const TrackObservation& z : batch.observations) first.emplace(z.track, z.pixel);
+  REQUIRE(first.size() > 20);
+  int left = 0, top = 0;
+  for (const auto& [id, pixel] : first) {
+    left += pixel.x() < 120.0;
+    top += pixel.y() < 90.0;
+  }
+  const auto count = static_cast<int>(first.size());
+  CHECK(left > count / 4);
+  CHECK(left < 3 * count / 4);
+  CHECK(top > count / 4);
+  CHECK(top < 3 * count / 4);
+}
+
+TEST_CASE("A standing camera starves nobody, and its tracks go on when it moves") {
+  const auto motion = [](double t) { return swing(t < 0.5 ? t : std::max(0.5, t - 3.0)); };
+  const EventScene source(motion, 4.5, EventScene::quadrangles(150, 1));
+  const TrackBatch all = track(source);
+  std::map<TrackId, std::pair<double, double>> lives;
+  for (const TrackObservation& z : all.observations) {
+    const auto life = lives.try_emplace(z.track, z.t, z.t).first;
+    life->second.second = z.t;
+  }
+  const auto go_on = std::ranges::count_if(
+      lives, [](const auto& life) { return life.second.first < 0.5 && life.second.second > 3.7; });
+  CHECK(go_on > 20);
+}
+
+TEST_CASE("A tracker in a place where nothing happens any more is starved by the others' motion") {
+  EventScene source(swing, 1.5, EventScene::quadrangles(150, 1));
+  std::erase_if(source.list, [](const Event& event) { return event.t > 700'000 && event.x < 80; });
+  Haste haste({}, {source});
+  TrackBatch batch;
+  std::size_t ended = 0;
+  for (int k = 1; k <= 150; ++k) {
+    haste.advance({0.01 * k}, batch);
+    ended += batch.ended.size();
+  }
+  const std::vector<std::string> remarks = haste.remarks();
+  CHECK(ended > 0);
+  CHECK_THAT(remarks.at(1), !Catch::Matchers::Contains(" 0 starved"));
+}
+
+TEST_CASE("What is no source of events is refused with a sentence") {
+  class Nothing : public EventScene {
+   public:
+    Nothing() : EventScene(swing, 0.01, {}) {}
+    std::unique_ptr<EventReader> all_events() const override { return nullptr; }
+  };
+  CHECK_THROWS_WITH(Haste({}, {Nothing()}), Catch::Matchers::Contains("event_simulation"));
+}

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+
+#include "frontends/haste/tracking/hypothesis_lanes.hpp"
+#include "frontends/haste/tracking/quantised_template.hpp"
+#include "frontends/haste/tracking/scoring_input.hpp"
+
+namespace evbench::haste {
+
+/// What the hypotheses around a state see of a template at every place where an event may be. A pixel beside is the
+/// next place: nine hypotheses share one table, in which their values for an event are neighbours.
+class SampleTable {
+ public:
+  /// Values are samples of the template times the weights' sum (kUnit).
+  void make(const HypothesisFootprints& footprints, const QuantisedTemplate& sampled);
+
+  /// Of all events in a window.
+  Lanes<Double4> sum(const ScoringInput& input) const;
+
+  /// Brings what at(place) will read into the cache.
+  void prefetch(int place) const {
+    for (const int row : {-Footprints::kSide, 0, Footprints::kSide}) __builtin_prefetch(&null_[index(place + row)]);
+    __builtin_prefetch(&turned_[index(place)]);
+  }
+
+  /// Of an event's place (Footprints::place).
+  [[gnu::always_inline]] Lanes<Int4> at(int place) const {
+    const int* null = &null_[index(place)];
+    Lanes<Int4> result;
+    result.quads[0] = load(null - Footprints::kSide - 1);
+    result.quads[1] = load(null - 1);
+    result.quads[2] = load(null + Footprints::kSide - 1);
+    result.quads[0][3] = turned_[index(place)].plus;
+    result.quads[1][3] = turned_[index(place)].minus;
+    result.quads[2][3] = *null;
+    return result;
+  }
+
+ private:
+  static constexpr int kPlaces = Footprints::kSide * Footprints::kSide + 4;  ///< quads reach beyond the last
+  struct Turned {
+    int plus = 0, minus = 0;
+  };
+
+  using Int4At [[gnu::vector_size(16), gnu::aligned(4), gnu::may_alias]] = int;
+  static Int4 load(const int* from) { return *reinterpret_cast<const Int4At*>(from); }
+
+  std::array<int, kPlaces> null_{};
+  std::array<Turned, kPlaces> turned_{};
+};
+
+}  // namespace evbench::haste
