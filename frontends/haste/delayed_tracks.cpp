@@ -4,12 +4,7 @@
 
 namespace evbench::haste {
 
-void DelayedTracks::add(TrackObservation z) {
-  constexpr double kAfter = 1e-6;  // [s]
-  if (z.t <= until_) {
-    z.t = until_ + kAfter;
-    ++late_;
-  }
+void DelayedTracks::add(const TrackObservation& z) {
   waiting_.insert(std::ranges::upper_bound(waiting_, z.t, {}, &TrackObservation::t), z);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -35,8 +36,9 @@ class Haste : public FrontEnd {
   struct Track {
     TrackId id;
     double odometer;                  ///< the image's way when the tracker last changed its state [px]
-    int probation = 0;                ///< changes of state until a found landmark's track goes on
     Vector2 pixel = Vector2::Zero();  ///< newest place [px]
+    int probation = 0;                ///< changes of state until a found landmark's track goes on
+    double told = -std::numeric_limits<double>::infinity();  ///< [s] of its last observation
   };
 
   /// Why tracks end.
@@ -72,7 +74,7 @@ class Haste : public FrontEnd {
   double odometer_ = 0.0;        ///< the image's way: the trackers' mean one [px]
   TrackId next_id_ = 0;
   std::array<std::size_t, 6> ended_{};  ///< by End
-  std::size_t begun_ = 0, found_ = 0, went_on_ = 0;
+  std::size_t begun_ = 0, found_ = 0, went_on_ = 0, late_ = 0;
 };
 
 }  // namespace evbench::haste

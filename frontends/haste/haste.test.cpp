@@ -20,7 +20,7 @@ const EventScene& scene() {
 
 /// All that it tells, asked every `interval` [s].
 TrackBatch track(const Source& source, const Options& options = {}, double interval = 0.01, std::size_t most = 0) {
-  Haste haste(options, {source});
+  Haste haste(options, {source, 0, ""});
   const double to = source.time_range().to;
   TrackBatch all, batch;
   all.until = 0.0;
@@ -95,7 +95,7 @@ TEST_CASE("Observations come in time order, and not later than the delay but for
 }
 
 TEST_CASE("Features are spread over the image and keep their distance") {
-  Haste haste({}, {scene()});
+  Haste haste({}, {scene(), 0, ""});
   TrackBatch batch;
   haste.advance({0.3}, batch);
   std::map<TrackId, Vector2> first;
@@ -130,7 +130,7 @@ TEST_CASE("A standing camera starves nobody, and its tracks go on when it moves"
 TEST_CASE("A tracker in a place where nothing happens any more is starved by the others' motion") {
   EventScene source(swing, 1.5, EventScene::quadrangles(150, 1));
   std::erase_if(source.list, [](const Event& event) { return event.t > 700'000 && event.x < 80; });
-  Haste haste({}, {source});
+  Haste haste({}, {source, 0, ""});
   TrackBatch batch;
   std::size_t ended = 0;
   for (int k = 1; k <= 150; ++k) {
@@ -148,5 +148,5 @@ TEST_CASE("What is no source of events is refused with a sentence") {
     Nothing() : EventScene(swing, 0.01, {}) {}
     std::unique_ptr<EventReader> all_events() const override { return nullptr; }
   };
-  CHECK_THROWS_WITH(Haste({}, {Nothing()}), Catch::Matchers::Contains("event_simulation"));
+  CHECK_THROWS_WITH(Haste({}, {Nothing(), 0, ""}), Catch::Matchers::Contains("event_simulation"));
 }
