@@ -115,7 +115,7 @@ class EventScene : public Source {
   }
 
   void see(const Motion& motion, const std::vector<Vector3>& points) {
-    constexpr std::int64_t kStep = 1000;  // [µs]
+    constexpr std::int64_t kStep = 2000;  // [µs]
     std::vector<int> pixel_of(points.size(), -1);
     for (std::int64_t t = 0; t <= static_cast<std::int64_t>(1e6 * to_); t += kStep) {
       const SE3 T_camera_world = motion(static_cast<double>(t) / 1e6).inverse();

@@ -1,0 +1,230 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "bench/runner.hpp"
+#include "core/plugin/registration.hpp"
+#include "core/testing/event_scene.hpp"
+#include "eval/alignment.hpp"
+
+// From events to a trajectory, by haste and gp_map, with what the world throws at a camera.
+using namespace evbench;
+using evbench::testing::EventScene;
+using evbench::testing::swing;
+
+namespace {
+
+Execution run(const Source& source, const Json& frontend = Json::object(), const std::string& mode = "sequential") {
+  const Plugins plugins = registered_plugins();
+  Job job;
+  job.frontend = {"haste", plugins.of<FrontEnd>().find("haste", "").resolve(frontend, "haste", ""), "frontend"};
+  job.backend = {"gp_map", plugins.of<BackEnd>().find("gp_map", "").resolve(Json::object(), "gp_map", ""), "backend"};
+  job.pipeline.mode = mode;
+  return execute(job, source, plugins, {});
+}
+
+/// Root mean square distance from the truth after a Sim(3) alignment, as a share of the path, within a span of time
+/// [s].
+double error(const Source& source, const Execution& execution, double from = 0.0, double to = 1e9) {
+  constexpr double kNone = 1e9;
+  const RunResult& result = execution.result;
+  if (result.pieces.empty()) return kNone;
+  std::vector<PosePair> pairs;
+  double path = 0.0;
+  for (const StampedPose& pose : result.pieces[result.longest].final_trajectory.poses()) {
+    const auto T = source.ground_truth().pose(pose.t);
+    if (!T || pose.t < from || pose.t > to) continue;
+    if (!pairs.empty()) path += (pairs.back().ground_truth.p - T->p).norm();
+    pairs.push_back({pose.t, *T, pose.T});
+  }
+  if (pairs.size() < 20) return kNone;
+  const Alignment alignment = align(pairs, AlignmentMethod::sim3);
+  double sum = 0.0;
+  for (const PosePair& pair : pairs) sum += ((alignment.transform * pair.estimate).p - pair.ground_truth.p).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(pairs.size())) / path;
+}
+
+const std::vector<EventScene::Outline>& wall() {
+  static const auto result = EventScene::quadrangles(150, 1);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "From events to a trajectory: a swinging camera before a wall, in one thread and in two with the same bytes") {
+  const EventScene scene(swing, 4.0, wall());
+  const Execution sequential = run(scene);
+  CHECK(sequential.result.status.state == RunState::ok);
+  CHECK(error(scene, sequential) < 0.01);
+  const Execution concurrent = run(scene, Json::object(), "concurrent");
+  CHECK(concurrent.result.tracks_sha256 == sequential.result.tracks_sha256);
+  REQUIRE(concurrent.result.pieces.size() == 1);
+  CHECK(std::ranges::equal(
+      concurrent.result.pieces[0].final_trajectory.poses(), sequential.result.pieces[0].final_trajectory.poses(), {},
+      [](const StampedPose& pose) { return std::pair(pose.t, pose.T.p); },
+      [](const StampedPose& pose) { return std::pair(pose.t, pose.T.p); }));
+}
+
+TEST_CASE("Landmarks that come back into view are found again, and their tracks go on") {
+  // Away to the right, and back: what was seen at first is out of view in between.
+  const auto motion = [](double t) {
+    SE3 T = swing(t);
+    T.p.x() += 0.9 * (1.0 - std::cos(1.6 * t));
+    return T;
+  };
+  const EventScene scene(motion, 6.0, wall());
+  const Execution with = run(scene), without = run(scene, Json::parse(R"({"guidance": {"reacquire": false}})"));
+  const auto tracks = [&](const Execution& execution) { return execution.result.pieces.at(0).map.size(); };
+  CHECK(tracks(with) < tracks(without));
+  CHECK(error(scene, with) < error(scene, without));
+}
+
+TEST_CASE("Five seconds without events: the camera stands still, and its trajectory goes on") {
+  const auto motion = [](double t) { return swing(t < 2.0 ? t : std::max(2.0, t - 5.0)); };
+  const EventScene scene(motion, 9.0, wall());
+  const Execution execution = run(scene);
+  CHECK(execution.result.status.state == RunState::ok);
+  CHECK(execution.result.pieces.size() == 1);
+  CHECK_FALSE(execution.result.still.empty());
+  CHECK(error(scene, execution) < 0.02);
+}
+
+TEST_CASE(
+    "A sensor that tells nothing while the camera moves on: the run says so, and there is a trajectory afterwards") {
+  EventScene scene(swing, 8.0, wall());
+  scene.silence(2.5, 5.0);
+  const Execution execution = run(scene);
+  REQUIRE(execution.complete);
+  REQUIRE_FALSE(execution.result.pieces.empty());
+  CHECK(execution.result.pieces.back().final_trajectory.end() > 7.0);
+}
+
+TEST_CASE("A burst of a million events in 10 ms does no lasting harm") {
+  EventScene scene(swing, 4.0, wall());
+  Random random(3);
+  std::vector<Event> burst(1'000'000);
+  for (std::size_t i = 0; i < burst.size(); ++i) {
+    burst[i] = {2'000'000 + static_cast<std::int64_t>(i / 100), static_cast<std::uint16_t>(random.index(240)),
+                static_cast<std::uint16_t>(random.index(180)), i % 2 == 0};
+  }
+  scene.add(burst);
+  const Execution execution = run(scene);
+  REQUIRE(execution.complete);
+  REQUIRE_FALSE(execution.result.pieces.empty());
+  CHECK(execution.result.pieces.back().final_trajectory.end() > 3.5);
+}
+
+TEST_CASE("Hot pixels and a light that flickers for a second over half of the image") {
+  EventScene scene(swing, 5.0, wall());
+  std::vector<Event> more;
+  for (int i = 0; i < 20; ++i) {
+    for (std::int64_t t = 137 * i; t < 5'000'000; t += 2'000) {
+      more.push_back({t, static_cast<std::uint16_t>(11 * i % 240), static_cast<std::uint16_t>(37 * i % 180), true});
+    }
+  }
+  for (std::int64_t t = 2'000'000; t < 3'000'000; t += 10'000) {  // at 100 Hz
+    for (int y = 0; y < 180; y += 2) {
+      for (int x = 120; x < 240; x += 2) {
+        more.push_back({t + (x * 7 + y * 13) % 1000, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                        t % 20'000 == 0});
+      }
+    }
+  }
+  scene.add(more);
+  const Execution execution = run(scene);
+  REQUIRE(execution.complete);
+  REQUIRE_FALSE(execution.result.pieces.empty());
+  CHECK(execution.result.pieces.back().final_trajectory.end() > 4.5);
+}
+
+TEST_CASE("A camera that stands still for ten seconds first has its trajectory when it moves") {
+  const auto motion = [](double t) { return swing(std::max(0.0, t - 10.0)); };
+  const EventScene scene(motion, 13.0, wall());
+  const Execution execution = run(scene);
+  CHECK(execution.result.status.state == RunState::ok);
+  CHECK(error(scene, execution, 10.0) < 0.02);
+}
+
+TEST_CASE("Pure rotation gives no map, and says why; when the camera translates, there is one") {
+  const auto turn = [](double t) {
+    Vector6 twist = Vector6::Zero();
+    twist.head<3>() = Vector3(0.1 * std::sin(2.0 * t), 0.15 * std::sin(1.5 * t), 0.2 * std::sin(t));
+    return se3::exp(twist);
+  };
+  const EventScene rotating(turn, 3.0, wall());
+  const Execution nothing = run(rotating);
+  REQUIRE(nothing.complete);
+  CHECK(nothing.result.status.state == RunState::failed);
+  CHECK_FALSE(nothing.result.status.reason.empty());
+
+  const auto later = [&](double t) { return turn(t) * swing(std::max(0.0, t - 2.0)); };
+  const EventScene translating(later, 6.0, wall());
+  const Execution execution = run(translating);
+  REQUIRE_FALSE(execution.result.pieces.empty());
+  CHECK(error(translating, execution, 2.5) < 0.02);
+}
+
+TEST_CASE("An empty scene and a single straight edge end with a reason") {
+  const EventScene empty(swing, 1.0, {});
+  const EventScene edge(swing, 3.0, {{{-4.0, -0.2}, {4.0, 0.3}}});
+  for (const EventScene* scene : {&empty, &edge}) {
+    const Execution execution = run(*scene);
+    REQUIRE(execution.complete);
+    CHECK(execution.result.status.state != RunState::ok);
+    CHECK_FALSE(execution.result.status.reason.empty());
+  }
+}
+
+TEST_CASE("A texture that repeats itself does not fool re-acquisition") {
+  std::vector<EventScene::Outline> tiles;
+  for (int i = -12; i <= 12; ++i) {
+    for (int k = -9; k <= 9; ++k) {
+      const Vector2 c(0.25 * i, 0.25 * k);
+      tiles.push_back(
+          {c + Vector2(-0.06, -0.06), c + Vector2(0.06, -0.06), c + Vector2(0.06, 0.06), c + Vector2(-0.06, 0.06)});
+    }
+  }
+  const auto motion = [](double t) {
+    SE3 T = swing(t);
+    T.p.x() += 0.6 * (1.0 - std::cos(1.6 * t));
+    return T;
+  };
+  const EventScene scene(motion, 5.0, tiles);
+  const Execution execution = run(scene);
+  CHECK(execution.result.status.state == RunState::ok);
+  CHECK(error(scene, execution) < 0.02);
+}
+
+TEST_CASE("A hand that moves before the camera is not taken for the world") {
+  EventScene scene(swing, 4.0, wall());
+  // Seen from a camera that swings faster: 30 quadrangles in the image's left part.
+  const auto other = [](double t) { return swing(2.5 * t + 1.0); };
+  const EventScene hand(other, 3.0, EventScene::quadrangles(60, 9));
+  std::vector<Event> moving;
+  for (const Event& event : hand.list) {
+    if (event.t > 1'500'000 && event.x < 70) moving.push_back(event);
+  }
+  std::erase_if(scene.list,
+                [](const Event& event) { return event.t > 1'500'000 && event.t < 3'000'000 && event.x < 70; });
+  scene.add(moving);
+  const Execution execution = run(scene);
+  REQUIRE(execution.complete);
+  CHECK(execution.result.status.state == RunState::ok);
+  CHECK(error(scene, execution) < 0.03);
+}
+
+TEST_CASE("Events out of order, twice, at the border and outside the sensor are borne") {
+  EventScene scene(swing, 3.0, wall());
+  std::vector<Event> more;
+  for (std::size_t i = 0; i < scene.list.size(); i += 50) {
+    more.push_back(scene.list[i]);                                                      // twice
+    more.push_back({scene.list[i].t, 239, static_cast<std::uint16_t>(i % 180), true});  // at the border
+    more.push_back({scene.list[i].t, 400, 3, true});                                    // outside
+  }
+  scene.add(more);
+  for (std::size_t i = 1000; i + 1 < scene.list.size(); i += 1000) std::swap(scene.list[i], scene.list[i - 200]);
+  const Execution execution = run(scene);
+  CHECK(execution.result.status.state == RunState::ok);
+  CHECK(error(scene, execution) < 0.01);
+}
