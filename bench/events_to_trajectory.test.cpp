@@ -40,7 +40,8 @@ double error(const Source& source, const Execution& execution, double from = 0.0
   if (pairs.size() < 20) return kNone;
   const Alignment alignment = align(pairs, AlignmentMethod::sim3);
   double sum = 0.0;
-  for (const PosePair& pair : pairs) sum += ((alignment.transform * pair.estimate).p - pair.ground_truth.p).squaredNorm();
+  for (const PosePair& pair : pairs)
+    sum += ((alignment.transform * pair.estimate).p - pair.ground_truth.p).squaredNorm();
   return std::sqrt(sum / static_cast<double>(pairs.size())) / path;
 }
 

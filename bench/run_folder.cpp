@@ -113,7 +113,7 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
   record.data_s = result.data_s;
   record.runtime_s = times.frontend + times.backend;
   if (*record.runtime_s > 0.0) record.realtime_factor = *record.data_s / *record.runtime_s;
-  record.times = {times.frontend, times.backend, times.waiting, times.harness, times.total};
+  record.times = {times.source, times.frontend, times.backend, times.waiting, times.harness, times.total};
   record.peak_rss_mib = result.peak_rss_mib;
   return record;
 }

@@ -59,10 +59,10 @@ Execution execute(const Job& job, const Source& source, const Plugins& plugins, 
     }
   };
   double reached = source.time_range().from;
-  const auto tell = [&](double t, double end) {
+  const auto tell = [&](const RunProgress& now) {
     check_interruption();
-    reached = t;
-    if (progress) progress(t, end);
+    reached = now.t;
+    if (progress) progress(now);
   };
   try {
     return {

@@ -1,6 +1,9 @@
 #include "eval/latency.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <map>
+#include <vector>
 
 namespace evbench {
 namespace {
@@ -32,6 +35,19 @@ std::optional<SE3> estimate(const KnownPoses& known, double t) {
 }
 
 }  // namespace
+
+std::optional<Delay> delay_of(std::span<const OnlinePose> told) {
+  std::vector<double> delays;
+  double newest = -std::numeric_limits<double>::infinity();
+  for (const OnlinePose& pose : told) {
+    if (pose.t <= newest) continue;
+    newest = pose.t;
+    delays.push_back(pose.known_at.value_or(pose.t) - pose.t);
+  }
+  if (delays.empty()) return std::nullopt;
+  std::ranges::sort(delays);
+  return Delay{delays[delays.size() / 2], delays[delays.size() * 99 / 100], delays.back()};
+}
 
 PoseTrajectory estimates_at_latency(std::span<const OnlinePose> told, std::span<const double> times, double latency) {
   KnownPoses known;

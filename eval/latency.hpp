@@ -1,11 +1,20 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/data/online_poses.hpp"
 
 namespace evbench {
+
+/// How old the newest pose was whenever one was told that was newer than all before [s]: the time between an event and
+/// a trajectory that has seen it, data time.
+struct Delay {
+  double median = 0.0, p99 = 0.0, max = 0.0;
+};
+/// None where nothing was told.
+std::optional<Delay> delay_of(std::span<const OnlinePose> told);
 
 /// What a back-end would have given at each of the times t (rising) for t itself, `latency` [s] later: from the poses
 /// that it had told as known by t + latency, of each time as it was told last. By the same rule for every back-end:

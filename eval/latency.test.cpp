@@ -43,7 +43,7 @@ TEST_CASE("A latency lets later poses and better estimates of older times count,
   for (int i = 0; i <= 100; ++i) {
     const double t = 0.02 * i;
     told.push_back({{t, {Eigen::Quaterniond::Identity(), {0.0, 1.0, 0.0}}}, t});  // rough
-    if (i >= 5) told.push_back({{0.02 * (i - 5), straight(0.02 * (i - 5))}, t});                // smoothed
+    if (i >= 5) told.push_back({{0.02 * (i - 5), straight(0.02 * (i - 5))}, t});  // smoothed
   }
   const auto rough = [&](const PoseTrajectory& poses, double t) { return poses.pose(t)->p.y() > 0.5; };
   CHECK(rough(estimates_at_latency(told, grid(0.0, 1.8), 0.0), 1.0));

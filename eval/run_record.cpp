@@ -18,11 +18,8 @@ Json or_null(const std::optional<double>& value) { return value && std::isfinite
 Json to_json(const TimeRange& span) { return {{"from", span.from}, {"to", span.to}}; }
 
 Json to_json(const RecordedTimes& times) {
-  return {{"frontend_s", times.frontend},
-          {"backend_s", times.backend},
-          {"waiting_s", times.waiting},
-          {"harness_s", times.harness},
-          {"total_s", times.total}};
+  return {{"source_s", times.source},   {"frontend_s", times.frontend}, {"backend_s", times.backend},
+          {"waiting_s", times.waiting}, {"harness_s", times.harness},   {"total_s", times.total}};
 }
 
 RunState read_state(const RecordReader& status) {
@@ -138,8 +135,12 @@ RunRecord read_record(const Json& metrics, const std::string& place) {
   record.realtime_factor = json.number_or_null("realtime_factor");
   if (const Json& times = json.at("times"); !times.is_null()) {
     const RecordReader reader(times, place + ": times");
-    record.times = {reader.number("frontend_s"), reader.number("backend_s"), reader.number("waiting_s"),
-                    reader.number("harness_s"), reader.number("total_s")};
+    record.times = {reader.number_or_null("source_s").value_or(0.0),
+                    reader.number("frontend_s"),
+                    reader.number("backend_s"),
+                    reader.number("waiting_s"),
+                    reader.number("harness_s"),
+                    reader.number("total_s")};
   }
   record.peak_rss_mib = json.number_or_null("peak_rss_mib");
   if (const Json& status = json.at("status"); !status.is_null()) {

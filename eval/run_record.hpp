@@ -31,6 +31,7 @@ struct RunStatus {
 
 /// Where the time of a run went [s], wall clock.
 struct RecordedTimes {
+  double source = 0.0;    ///< the front-end's waiting for events
   double frontend = 0.0;  ///< making observations
   double backend = 0.0;   ///< estimating
   double waiting = 0.0;   ///< the back-end's thread, for the front-end's

@@ -151,6 +151,8 @@ TEST_CASE("A run is scored at a latency by what it told, and by its covariances,
   const auto ate = [&](const char* latency) {
     return record.online_scores.at(latency).at("ate").at("trans_m").at("rmse").get<double>();
   };
+  CHECK(record.online_scores.at("delay_s").at("median").get<double>() == Approx(0.05));
+  CHECK(record.online_scores.at("delay_s").at("max").get<double>() == Approx(0.05));
   CHECK(ate("zero_latency") > 0.005);
   CHECK(ate("equal_latency") < 0.3 * ate("zero_latency"));
   CHECK(record.online_scores.at("equal_latency").at("latency_s") == 0.3);

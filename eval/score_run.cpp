@@ -99,6 +99,9 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
   if (const std::string path = folder + "/told.txt"; exists(path) && !record.online_scores.is_null()) {
     const PoseTrajectory ground_truth = read_tum(folder + "/groundtruth.tum");
     const std::vector<OnlinePose> told = read_online_poses(path);
+    if (const std::optional<Delay> delay = delay_of(told)) {
+      record.online_scores["delay_s"] = {{"median", delay->median}, {"p99", delay->p99}, {"max", delay->max}};
+    }
     record.online_scores["zero_latency"] = scores_at_latency(ground_truth, told, 0.0, options, record);
     record.online_scores["equal_latency"] = scores_at_latency(ground_truth, told, options.latency, options, record);
   }

@@ -9,33 +9,34 @@
 
 namespace evbench {
 
-/// One line that rewrites itself, on a terminal only.
+/// How far long work is, on the standard error: one line that rewrites itself, on a terminal only; or, for who wants to
+/// watch from anywhere, a new line each second.
 class ProgressLine {
  public:
-  ProgressLine(std::string title, bool quiet)
-      : title_(std::move(title)), shown_(!quiet && ::isatty(STDERR_FILENO) != 0) {}
+  ProgressLine(std::string title, bool quiet, bool watch = false)
+      : title_(std::move(title)), rewritten_(!watch && !quiet && ::isatty(STDERR_FILENO) != 0), watched_(watch) {}
   ~ProgressLine() { clear(); }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   /// Makes room for other text; the next update shows the line again.
   void clear() {
-    if (shown_) fmt::print(stderr, "\r\033[K");
+    if (rewritten_) fmt::print(stderr, "\r\033[K");
     std::fflush(stderr);
   }
 
-  /// At most ten times a second, so that it may be called as often as one likes.
+  /// May be called as often as one likes: shown ten times a second at most, once where it is watched.
   void update(const std::string& text) {
     const auto now = std::chrono::steady_clock::now();
-    if (!shown_ || now - last_ < std::chrono::milliseconds(100)) return;
+    if (!(rewritten_ || watched_) || now - last_ < std::chrono::milliseconds(watched_ ? 1000 : 100)) return;
     last_ = now;
-    fmt::print(stderr, "\r\033[K{}  {}", title_, text);
+    fmt::print(stderr, "{}{}  {}{}", rewritten_ ? "\r\033[K" : "", title_, text, rewritten_ ? "" : "\n");
     std::fflush(stderr);
   }
 
  private:
   std::string title_;
-  bool shown_;
+  bool rewritten_, watched_;
   std::chrono::steady_clock::time_point last_ = {};
 };
 

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -29,7 +30,7 @@ struct RunArguments {
   std::string out = "results";
   bool quiet = false;
   bool check = false;
-  bool problem = false, tracks = false;
+  bool problem = false, tracks = false, watch = false;
   bool force = false;
 };
 
@@ -103,9 +104,15 @@ class Runs {
 
   RunRecord do_run(const PlannedRun& run) const {
     RunFolder folder(arguments_.out, run.config.experiment, run.identity.key);
-    ProgressLine line(fmt::format("[{}/{}] {}", records_.size() + 1, runs_.size(), run.config.label), arguments_.quiet);
-    const auto tell = [&](double t, double end) {
-      line.update(fmt::format("{:.2f} of {:.2f} s", std::min(t, end), end));
+    ProgressLine line(fmt::format("[{}/{}] {}", records_.size() + 1, runs_.size(), run.config.label), arguments_.quiet,
+                      arguments_.watch);
+    const auto start = std::chrono::steady_clock::now();
+    const auto tell = [&](const RunProgress& now) {
+      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const double pace = (now.t - source_.time_range().from) / std::max(seconds, 1e-9);
+      line.update(
+          fmt::format("{:.2f} of {:.2f} s, {} tracks, {} landmarks, {} states, delay {:.0f} ms, {:.2f} x real time",
+                      std::min(now.t, now.end), now.end, now.tracks, now.landmarks, now.states, 1e3 * now.delay, pace));
     };
     const Execution execution = execute(run.config.job, source_, plugins_, tell, arguments_.tracks);
     return folder.write(run.config, run.identity, source_, ground_truth_, execution, arguments_.problem);
@@ -199,6 +206,8 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
                     "Also write problem.txt: the problem that gp_map ended with, for evbench solve and other solvers");
   command->add_flag("--tracks", arguments->tracks,
                     "Also write tracks.txt: what the front-end told, for evbench render and the front-end recorded");
+  command->add_flag("--watch", arguments->watch,
+                    "Print a line each second, on the standard error: how far, tracks, landmarks, states, delay, pace");
   command->add_flag("--check", arguments->check, "Check the config, and that its files can be read, and stop");
   command->footer(
       "Each run writes OUT/EXPERIMENT/KEY: config.json, job.json, manifest.json, final.tum, online.tum, told.txt,\n"

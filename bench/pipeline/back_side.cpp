@@ -47,14 +47,15 @@ double length(const Piece& piece) { return piece.final_trajectory.end() - piece.
 
 }  // namespace
 
-BackSide::BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera, double from,
-                   const PipelineOptions& options)
+BackSide::BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera,
+                   const Source::TimeRange& range, const PipelineOptions& options)
     : make_(make),
       context_(std::move(context)),
       camera_(camera),
+      range_(range),
       standstill_(options.still_after),
-      until_(from),
-      seen_(from) {
+      until_(range.from),
+      seen_(range.from) {
   context_.camera = camera.pinhole;
   context_.patience = options.patience;
   begin();
@@ -138,7 +139,18 @@ void BackSide::digest(const TrackBatch& batch) {
   digested_.clear();
 }
 
-void BackSide::finish(double rate, double end, RunResult& result) {
+RunProgress BackSide::progress() const {
+  RunProgress result{until_, range_.to, standstill_.tracks()};
+  const Estimator& estimator = *estimators_.back();
+  if (const auto updates = estimator.backend->updates(); !updates.empty()) {
+    result.states = updates.back().states;
+    result.landmarks = updates.back().landmarks;
+  }
+  if (estimator.newest) result.delay = seen_ - estimator.newest->t;
+  return result;
+}
+
+void BackSide::finish(double rate, RunResult& result) {
   std::vector<bool> has_piece;
   for (const auto& estimator : estimators_) {
     watch_.time([&] { estimator->backend->finish(); });
@@ -146,7 +158,7 @@ void BackSide::finish(double rate, double end, RunResult& result) {
     add_piece(*estimator, rate, result);
     has_piece.push_back(result.pieces.size() > before);
   }
-  result.status = merged_status(has_piece, end);
+  result.status = merged_status(has_piece);
   for (std::size_t i = 1; i < result.pieces.size(); ++i) {
     if (length(result.pieces[i]) > length(result.pieces[result.longest])) result.longest = i;
   }
@@ -183,14 +195,14 @@ void BackSide::add_piece(Estimator& estimator, double rate, RunResult& result) c
 }
 
 /// One back-end's status is the run's; with several, the run was lost when the first was, and parts are missing.
-Status BackSide::merged_status(const std::vector<bool>& has_piece, double end) const {
+Status BackSide::merged_status(const std::vector<bool>& has_piece) const {
   Status merged = estimators_.front()->backend->status();
   for (std::size_t i = 0; i + 1 < estimators_.size(); ++i) {
     const Status lost = estimators_[i]->backend->status();
     const Status next = estimators_[i + 1]->backend->status();
     const bool anew = has_piece[i + 1];
     merged.degraded.push_back(
-        {lost.time, anew ? estimators_[i + 1]->backend->trajectory().start() : end, "lost: " + lost.reason});
+        {lost.time, anew ? estimators_[i + 1]->backend->trajectory().start() : range_.to, "lost: " + lost.reason});
     merged.degraded.insert(merged.degraded.end(), next.degraded.begin(), next.degraded.end());
   }
   if (std::ranges::none_of(has_piece, std::identity{})) {

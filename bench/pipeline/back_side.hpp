@@ -17,8 +17,7 @@ namespace evbench {
 /// gives a back-end that is lost a successor. Pixels are raw on the front-end's side of it, undistorted on the other.
 class BackSide {
  public:
-  /// `from` [s]: beginning of the time range.
-  BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera, double from,
+  BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera, const Source::TimeRange& range,
            const PipelineOptions& options);
 
   /// Brings the estimate up to the batch's end.
@@ -27,9 +26,11 @@ class BackSide {
   /// What it then knows.
   Feedback feedback(const FeedbackNeeds& needs);
 
+  RunProgress progress() const;
+
   /// Makes the final estimates and writes all of it into the result, but for what the front-end's side knows. `rate`:
-  /// of the final trajectories [Hz]; 0: the back-end's own poses. `end` [s] of the time range.
-  void finish(double rate, double end, RunResult& result);
+  /// of the final trajectories [Hz]; 0: the back-end's own poses.
+  void finish(double rate, RunResult& result);
 
   double seconds() const { return watch_.seconds(); }  ///< in the back-ends
 
@@ -47,11 +48,12 @@ class BackSide {
   void undistort(TrackBatch& batch);
   void digest(const TrackBatch& batch);
   void add_piece(Estimator& estimator, double rate, RunResult& result) const;
-  Status merged_status(const std::vector<bool>& has_piece, double end) const;
+  Status merged_status(const std::vector<bool>& has_piece) const;
 
   const MakeBackEnd& make_;
   BackEndContext context_;
   const Camera& camera_;
+  Source::TimeRange range_;
   Standstill standstill_;
   std::vector<std::unique_ptr<Estimator>> estimators_;  ///< the last one is at work
   double until_, seen_;                                 ///< [s] of the last batch

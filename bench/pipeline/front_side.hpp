@@ -25,7 +25,7 @@ class FrontSide {
   /// std::runtime_error for a front-end that breaks its contract (frontend.hpp), saying how.
   std::optional<TrackBatch> next();
 
-  double seconds() const { return watch_.seconds(); }  ///< in the front-end
+  double seconds() const { return watch_.seconds() - frontend_.waited(); }  ///< in the front-end
 
   /// [s] between the first and the last observation that it gave.
   double data_s() const { return first_ ? last_ - *first_ : 0.0; }

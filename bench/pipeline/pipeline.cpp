@@ -23,21 +23,20 @@ void reset_peak_memory() {
 
 /// One exchange on the back-end's side.
 void exchange(TrackBatch batch, const FeedbackNeeds& needs, BackSide& back, FeedbackLine& feedback,
-              const std::function<void(double)>& progress) {
-  const double until = batch.until;
+              const Progress& progress) {
   back.take(std::move(batch));
   if (needs.any) feedback.answer(back.feedback(needs));
-  progress(until);
+  if (progress) progress(back.progress());
 }
 
 void run_sequential(FrontSide& front, BackSide& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
-                    const std::function<void(double)>& progress) {
+                    const Progress& progress) {
   while (std::optional<TrackBatch> batch = front.next()) exchange(std::move(*batch), needs, back, feedback, progress);
 }
 
 /// The front-end in a thread of its own. Returns how long the back-end's waited for it [s].
 double run_concurrent(FrontSide& front, BackSide& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
-                      std::size_t capacity, const std::function<void(double)>& progress) {
+                      std::size_t capacity, const Progress& progress) {
   BatchQueue queue(capacity);
   std::jthread thread([&] {
     try {
@@ -74,25 +73,22 @@ RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackE
   const FeedbackNeeds needs = frontend.needs();
   FeedbackLine feedback(options.latency, options.mode == "free");
   FrontSide front(frontend, range, options, feedback, keep_tracks ? &result.tracks : nullptr);
-  BackSide back(make_backend, std::move(context), source.camera(), range.from, options);
-  const auto tell = [&](double t) {
-    if (progress) progress(t, range.to);
-  };
-
+  BackSide back(make_backend, std::move(context), source.camera(), range, options);
   Stopwatch total;
   total.time([&] {
     if (options.mode == "sequential") {
-      run_sequential(front, back, needs, feedback, tell);
+      run_sequential(front, back, needs, feedback, progress);
     } else {
       const auto capacity = static_cast<std::size_t>(options.queue);
-      result.times.waiting = run_concurrent(front, back, needs, feedback, capacity, tell);
+      result.times.waiting = run_concurrent(front, back, needs, feedback, capacity, progress);
     }
-    back.finish(trajectory_rate, range.to, result);
+    back.finish(trajectory_rate, result);
   });
+  result.times.source = frontend.waited();
   result.times.frontend = front.seconds();
   result.times.backend = back.seconds();
   result.times.total = total.seconds();
-  const double elsewhere = options.mode == "sequential" ? front.seconds() : result.times.waiting;
+  const double elsewhere = options.mode == "sequential" ? front.seconds() + frontend.waited() : result.times.waiting;
   result.times.harness = std::max(0.0, total.seconds() - back.seconds() - elsewhere);
   result.data_s = front.data_s();
   result.peak_rss_mib = peak_memory_mib();

@@ -29,6 +29,7 @@ struct Piece {
 
 /// Where the time of a run went [s], wall clock.
 struct RunTimes {
+  double source = 0.0;    ///< the front-end's waiting for events that are read, decoded or simulated
   double frontend = 0.0;  ///< making observations
   double backend = 0.0;   ///< estimating
   double waiting = 0.0;   ///< the back-end's thread, for the front-end's
@@ -53,8 +54,16 @@ struct RunResult {
   std::vector<std::string> log;
 };
 
-/// Called now and then with the sequence time that has been reached and the range's end [s].
-using Progress = std::function<void(double t, double end)>;
+/// How far a run is.
+struct RunProgress {
+  double t = 0.0, end = 0.0;  ///< [s] sequence time that the estimate has reached; the range's end
+  std::size_t tracks = 0;     ///< alive
+  int states = 0, landmarks = 0;
+  double delay = 0.0;  ///< [s] data time by which the newest pose is behind what has been looked at
+};
+
+/// Called after each exchange.
+using Progress = std::function<void(const RunProgress&)>;
 
 /// Makes a back-end; called again after a loss.
 using MakeBackEnd = std::function<std::unique_ptr<BackEnd>(const BackEndContext&)>;

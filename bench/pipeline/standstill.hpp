@@ -25,6 +25,8 @@ class Standstill {
   /// Takes a batch in undistorted pixels, and adds the observations that silence stands for.
   void apply(TrackBatch& batch);
 
+  std::size_t tracks() const { return live_.size(); }  ///< alive
+
   /// The camera stands still at the last batch's end.
   bool holds() const { return still_; }
   const std::vector<StillSpan>& spans() const { return spans_; }

@@ -42,6 +42,10 @@ class FrontEnd {
   /// the run's latency has passed in data time.
   virtual void receive(const Feedback& /*feedback*/) {}
 
+  /// [s] It has waited for its source's events so far, which are read, decoded or simulated meanwhile: no work of its
+  /// own.
+  virtual double waited() const { return 0.0; }
+
   /// What a user should know of the tracks: counts, oddities, what was left out. For the run's log.
   virtual std::vector<std::string> remarks() const { return {}; }
 };

@@ -18,6 +18,8 @@ class EventFeed {
   /// more. None: later ones alone are left, or no events at all.
   std::span<const Event> until(std::int64_t t);
 
+  double seconds() const { return seconds_; }  ///< [s] it took to read them
+
   /// Nothing is left.
   bool ended() const { return ended_ && next_ == events_.size(); }
 
@@ -26,6 +28,7 @@ class EventFeed {
   std::vector<Event> events_;
   std::size_t next_ = 0;
   bool ended_ = false;
+  double seconds_ = 0.0;
 };
 
 }  // namespace evbench::haste

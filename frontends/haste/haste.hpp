@@ -29,6 +29,7 @@ class Haste : public FrontEnd {
   bool advance(const Horizon& horizon, TrackBatch& batch) override;
   FeedbackNeeds needs() const override;
   void receive(const Feedback& feedback) override;
+  double waited() const override { return feed_.seconds(); }
   std::vector<std::string> remarks() const override;
 
  private:

@@ -24,8 +24,6 @@ class Difference {
   void change_to(std::size_t h, const ScoringInput& input);
   void update(const Event& newest, const Event& replaced, const ScoringInput& input);
 
-  void prefetch(int place) const;
-
   const Lanes<Double4>& raw() const { return scores_; }
   double unit(const ScoringInput& /*input*/) const {
     constexpr double kCells = double{kWindowSize} * kUnit * QuantisedTemplate::kTemplateUnit;

@@ -18,12 +18,6 @@ class SampleTable {
   /// Of all events in a window.
   Lanes<Double4> sum(const ScoringInput& input) const;
 
-  /// Brings what at(place) will read into the cache.
-  void prefetch(int place) const {
-    for (const int row : {-Footprints::kSide, 0, Footprints::kSide}) __builtin_prefetch(&null_[index(place + row)]);
-    __builtin_prefetch(&turned_[index(place)]);
-  }
-
   /// Of an event's place (Footprints::place).
   [[gnu::always_inline]] Lanes<Int4> at(int place) const {
     const int* null = &null_[index(place)];
@@ -46,6 +40,9 @@ class SampleTable {
   using Int4At [[gnu::vector_size(16), gnu::aligned(4), gnu::may_alias]] = int;
   static Int4 load(const int* from) { return *reinterpret_cast<const Int4At*>(from); }
 
+  static void store(int* to, Int4 values) { *reinterpret_cast<Int4At*>(to) = values; }
+
+  const Footprints* made_for_ = nullptr;  ///< the null hypothesis' table
   std::array<int, kPlaces> null_{};
   std::array<Turned, kPlaces> turned_{};
 };

@@ -10,7 +10,6 @@ namespace evbench::haste {
 ///   start(input)                      at the start, or anew anywhere,
 ///   change_to(h, input)               after a change of state to hypothesis h, to which input.grid is set,
 ///   update(newest, replaced, input)   after an event has come into the window in the place of another,
-///   prefetch(place)                   some events before one at that place comes or goes,
 ///   raw()                             the scores up to a factor, which is
 ///   unit(input).
 struct ScoringInput {

@@ -14,8 +14,6 @@ class StarCorrelation {
   void change_to(std::size_t /*h*/, const ScoringInput& input) { start(input); }
   void update(const Event& newest, const Event& replaced, const ScoringInput& input);
 
-  void prefetch(int place) const { samples_.prefetch(place); }
-
   const Lanes<Double4>& raw() const { return scores_; }
   double unit(const ScoringInput& /*input*/) const {
     return 1.0 / (double{kWindowSize} * kWindowSize * kUnit * kUnit * QuantisedTemplate::kTemplateUnit);

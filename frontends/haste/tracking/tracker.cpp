@@ -84,15 +84,6 @@ Tracker::Update Tracker::take(const Event& event) {
   return h != 0 ? Update::changed : Update::regular;
 }
 
-void Tracker::expect(const Event& event) const {
-  std::visit(
-      [&](const auto& scoring) {
-        scoring.prefetch(input().place(event));
-        scoring.prefetch(input().place(window_.event(kAhead)));
-      },
-      scoring_);
-}
-
 /// The window's events before `end`, as many as are waiting.
 void Tracker::learn_waiting(int end) {
   learn(learnt_, input(), options_.variant, end - waiting_, end, options_.template_learning);

@@ -51,10 +51,6 @@ class Tracker {
     return in_range(event.x - grid_.x, event.y - grid_.y) ? take(event) : Update::out_of_range;
   }
 
-  /// An event which will be pushed after about kAhead others: what it needs is brought into the cache. Changes nothing.
-  void expect(const Event& event) const;
-  static constexpr int kAhead = 4;
-
   bool running() const { return running_; }  ///< has its window been full?
   const TrackerState& state() const { return state_; }
   const GridState& grid_state() const { return grid_; }

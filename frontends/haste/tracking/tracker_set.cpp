@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kBits = 64;     // of a word
 constexpr int kCellBits = 2;          // cells of 4 × 4 px
 constexpr std::size_t kBatch = 4096;  // events
-constexpr int kSlack = 4;             // [px] that a tracker may go in a batch before it has to look at all the rest
+constexpr int kSlack = 2;             // [px] that a tracker may go in a batch before it has to look at all the rest
 constexpr int kNear = kPatchRadius + kSlack;
 
 constexpr int square(int x, int y) { return x * x + y * y; }
@@ -57,7 +57,7 @@ std::int64_t TrackerSet::add(Tracker tracker) {
   const auto free = std::ranges::find_if(slots_, [](const Slot& slot) { return !slot.tracker; });
   const auto slot = static_cast<std::size_t>(free - slots_.begin());
   if (free == slots_.end()) {
-    slots_.emplace_back();
+    slots_.emplace_back().near.resize(kBatch);
     centres_.emplace_back();
     if (slots_.size() > kBits * words_) grow();
   }
@@ -101,14 +101,14 @@ void TrackerSet::push_batch(std::span<const Event> events, std::vector<Change>& 
   sort_by_trackers(events);
   found_.clear();
   for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
-    if (!slots_[slot].near.empty()) track(slot, events);
+    if (slots_[slot].near_count > 0) track(slot, events);
   }
   std::ranges::sort(found_, {}, [](const Found& found) { return std::pair(found.event, found.change.tracker); });
   for (const Found& found : found_) changes.push_back(found.change);
 }
 
 void TrackerSet::sort_by_trackers(std::span<const Event> events) {
-  for (Slot& slot : slots_) slot.near.clear();
+  for (Slot& slot : slots_) slot.near_count = 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
     if (event.x >= width_ || event.y >= height_) continue;
@@ -117,8 +117,10 @@ void TrackerSet::sort_by_trackers(std::span<const Event> events) {
       for (std::uint64_t near = cells_[cell + word]; near != 0; near &= near - 1) {
         const std::size_t slot = kBits * word + static_cast<std::size_t>(std::countr_zero(near));
         const auto [x, y] = centres_[slot];
-        if (square(event.x - x, event.y - y) < kNear * kNear)
-          slots_[slot].near.push_back(static_cast<std::uint16_t>(i));
+        // Without a branch, which could not be predicted.
+        Slot& candidate = slots_[slot];
+        candidate.near[candidate.near_count] = static_cast<std::uint16_t>(i);
+        candidate.near_count += square(event.x - x, event.y - y) < kNear * kNear;
       }
     }
   }
@@ -138,10 +140,7 @@ void TrackerSet::track(std::size_t slot, std::span<const Event> events) {
     moved = true;
     far = square(grid.x - centre.x, grid.y - centre.y) > kSlack * kSlack;
   };
-  const std::vector<std::uint16_t>& near = slots_[slot].near;
-  for (std::size_t k = 0; k < near.size(); ++k) {
-    if (k + Tracker::kAhead < near.size()) tracker.expect(events[near[k + Tracker::kAhead]]);
-    const std::size_t i = near[k];
+  for (const std::size_t i : std::span(slots_[slot].near).first(slots_[slot].near_count)) {
     push(i);
     if (!far) continue;
     for (std::size_t rest = i + 1; rest < events.size(); ++rest) {

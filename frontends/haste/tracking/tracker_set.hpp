@@ -41,7 +41,8 @@ class TrackerSet {
   struct Slot {
     std::unique_ptr<Tracker> tracker;  ///< none: the slot is free
     std::int64_t id = -1;
-    std::vector<std::uint16_t> near;  ///< the batch's events that may be in range
+    std::vector<std::uint16_t> near;  ///< the batch's events that may be in range: the first near_count
+    std::size_t near_count = 0;
   };
   struct Found {
     std::size_t event;  ///< its place in the batch

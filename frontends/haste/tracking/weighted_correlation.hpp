@@ -21,8 +21,6 @@ class WeightedCorrelation {
   void change_to(std::size_t /*h*/, const ScoringInput& input) { start(input); }
   void update(const Event& newest, const Event& replaced, const ScoringInput& input);
 
-  void prefetch(int /*place*/) const {}
-
   const Lanes<Double4>& raw() const { return scores_; }
   double unit(const ScoringInput& input) const {
     const double mass = input.learnt.mass();

@@ -1,0 +1,51 @@
+#include "frontends/haste/tracking/change.hpp"
+
+#include <catch2/catch.hpp>
+#include <functional>
+
+using namespace evbench;
+using namespace evbench::haste;
+
+namespace {
+
+Change with_scores(const std::function<double(double x, double y)>& score) {
+  Change change;
+  change.before.position = {50, 40};
+  change.after.position = {51, 40};
+  for (std::size_t h = 0; h < kHypotheses; ++h) change.scores.of[h] = score(kSteps[h].x, kSteps[h].y);
+  return change;
+}
+
+}  // namespace
+
+TEST_CASE("The refined position is the maximum of a paraboloid through the scores") {
+  const Change change = with_scores([](double x, double y) {
+    const double u = x - 0.4, v = y + 0.2;
+    return 3.0 - 2.0 * u * u - u * v - v * v;
+  });
+  CHECK(refined_position(change).isApprox(Vector2(50.4, 39.8)));
+  CHECK(midpoint(change) == Vector2(50.5, 40));
+}
+
+TEST_CASE("The refined position is no more than a pixel away, and the midpoint where there is no maximum") {
+  const Change far = with_scores([](double x, double y) { return 8.0 * x - x * x - y * y; });
+  CHECK(refined_position(far).isApprox(Vector2(51, 40)));
+  const Change valley = with_scores([](double x, double y) { return x * x + y * y; });
+  CHECK(refined_position(valley) == Vector2(50.5, 40));
+  const Change flat = with_scores([](double, double) { return 1.0; });
+  CHECK(refined_position(flat) == Vector2(50.5, 40));
+}
+
+TEST_CASE("Scores tell the best, the worst and their spread, of either sign") {
+  Scores scores;
+  CHECK(scores.spread() == 0.0);
+  scores.of.fill(2.0);
+  scores.of[3] = 4.0;
+  scores.of[5] = 1.0;
+  CHECK(scores.null() == 2.0);
+  CHECK(scores.best() == 4.0);
+  CHECK(scores.worst() == 1.0);
+  CHECK(scores.spread() == Approx(0.75));
+  for (double& score : scores.of) score = -score;
+  CHECK(scores.spread() == Approx(0.75));
+}
