@@ -34,7 +34,7 @@ Json run(const std::string& experiment, const std::string& label, const Json& fi
   record.runtime_s = 2.0;
   record.data_s = 3.0;
   record.realtime_factor = 1.5;
-  record.times = {0.25, 1.75, 0.5, 0.125, 2.5};
+  record.times = {0.75, 0.25, 1.75, 0.5, 0.125, 2.5};
   record.peak_rss_mib = 30.0;
   Json json = to_json(record);
   json["status"] = {{"state", state}, {"reason", ""}, {"time", 3.25}};

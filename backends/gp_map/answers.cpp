@@ -56,10 +56,7 @@ std::vector<ExpectedFeature> GpMap::expected_features() {
   Eigen::Matrix<double, 6, 12> J_pose;  // of the predicted pose's increment
   J_pose << se3::adjoint(motion.inverse()), dt * se3::right_jacobian(dt * newest.velocity);
   const Matrix6 drift = wnoa::process_covariance(std::abs(dt), graph().qc).topLeftCorner<6, 6>();
-  const std::optional<Matrix12> state = covariance(newest.t);
   std::vector<ExpectedFeature> result;
-  if (!state) return result;
-  const Matrix6 pose = J_pose * *state * J_pose.transpose();
   for (auto& [id, track] : tracks_) {
     if (track.role != Track::Role::landmark) continue;
     const Vector3 position = graph().landmarks[index(track.landmark)].position;
@@ -70,16 +67,37 @@ std::vector<ExpectedFeature> GpMap::expected_features() {
       continue;
     const Matrix23 J_point = camera.project_jacobian(point), J_landmark = J_point * T_camera_world.R();
     const Matrix26 J_image = J_point * seen_point_jacobian(point);
-    std::optional<Matrix2> image;
-    if (!track.ended) {
-      track.covariance.reset();
-      image = engine_->predicted_covariance(track.landmark, J_image * J_pose, J_landmark);
-    } else if (const std::optional<Matrix3> own = covariance_of_ended(track)) {
-      image = J_image * pose * J_image.transpose() + J_landmark * *own * J_landmark.transpose();
-    }
-    if (image) result.push_back({id, position, pixel, *image + J_image * drift * J_image.transpose()});
+    const auto& known = image_covariance(track, J_image * J_pose, J_landmark);
+    if (known) result.push_back({id, position, pixel, *known + J_image * drift * J_image.transpose()});
   }
   return result;
+}
+
+/// How well a landmark's image is known but for the motion since the newest state. Found once a state: it is dear, and
+/// hardly changes before the next.
+const std::optional<Matrix2>& GpMap::image_covariance(Track& track, const Eigen::Matrix<double, 2, 12>& J_state,
+                                                      const Matrix23& J_landmark) {
+  if (track.expected_at == graph().states.size()) return track.image_covariance;
+  track.expected_at = graph().states.size();
+  track.image_covariance.reset();
+  if (!track.ended) {
+    track.covariance.reset();
+    track.image_covariance = engine_->predicted_covariance(track.landmark, J_state, J_landmark);
+  } else {
+    const std::optional<Matrix12>& state = newest_covariance();
+    const std::optional<Matrix3> own = covariance_of_ended(track);
+    if (state && own) {
+      track.image_covariance = J_state * *state * J_state.transpose() + J_landmark * *own * J_landmark.transpose();
+    }
+  }
+  return track.image_covariance;
+}
+
+const std::optional<Matrix12>& GpMap::newest_covariance() {
+  if (newest_covariance_.first != graph().states.size()) {
+    newest_covariance_ = {graph().states.size(), covariance(graph().states.back().t)};
+  }
+  return newest_covariance_.second;
 }
 
 /// As it was when the track had ended: what is learnt of it afterwards is little, and finding it takes a walk back.

@@ -57,7 +57,9 @@ class GpMap : public BackEnd {
     int landmark = -1;   ///< the engine's number
     int tried_with = 0;  ///< observations at the last vain attempt to locate it
     bool ended = false;
-    std::optional<Matrix3> covariance = {};  ///< of the landmark, once it is asked for after the track's end
+    std::optional<Matrix3> covariance = {};        ///< of the landmark, once it is asked for after the track's end
+    std::optional<Matrix2> image_covariance = {};  ///< of where it is expected in the image [px²], as of
+    std::size_t expected_at = 0;                   ///< so many states
   };
 
   // Algorithm 1, a line each.
@@ -88,6 +90,9 @@ class GpMap : public BackEnd {
   ControlState newest_seen() const;
   std::vector<ExpectedFeature> expected_features();
   std::optional<Matrix3> covariance_of_ended(Track& track);
+  const std::optional<Matrix12>& newest_covariance();
+  const std::optional<Matrix2>& image_covariance(Track& track, const Eigen::Matrix<double, 2, 12>& J_state,
+                                                 const Matrix23& J_landmark);
   double newest_error() const;
   bool is_outlier(int landmark, double error_px) const;
   int landmarks_in_view() const;
@@ -112,6 +117,7 @@ class GpMap : public BackEnd {
   std::vector<TrackObservation> pending_;         ///< later than the newest state
   std::deque<TrackEnd> ending_;                   ///< likewise
   std::vector<std::pair<int, Observation>> new_;  ///< of landmarks, not in the engine yet
+  std::pair<std::size_t, std::optional<Matrix12>> newest_covariance_;  ///< and the number of states then
   std::vector<TrackId> new_outliers_;
   UpdateSummary last_update_;
   PriorLearner prior_;
