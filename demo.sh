@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Sets everything up and runs the main job: the paper's Table I on a simulated sequence and, where the recordings are at
-# hand (EVBENCH_DATA), on real tracks. Writes results/.
+# Sets everything up and runs the main jobs: from simulated events to a trajectory; the paper's Table I on a simulated
+# sequence and, where the recordings are at hand (EVBENCH_DATA), on real tracks. Writes results/.
 set -euo pipefail
 cd "$(dirname "$0")"
 ./setup.sh release evbench
 evbench=build/release/bin/evbench
 
+echo "== From events to a trajectory: 10 s before a textured wall, simulated"
+"$evbench" run configs/examples/events_to_trajectory.json
 echo "== Table I, simulated: 30 s of a robot arm in front of dots"
 "$evbench" run configs/paper/table1_simulated.json
 if [ -n "${EVBENCH_DATA:-}" ]; then

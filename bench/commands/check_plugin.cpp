@@ -73,6 +73,12 @@ std::unique_ptr<Source> make_source(const Plugins& plugins, const std::string& t
   return entry.make(entry.resolve(json, place, "."), {1, ".", place});
 }
 
+/// For front-ends that read events.
+constexpr const char* kSimulatedEvents = R"({
+  "type": "event_simulation", "duration": 0.6, "camera": {"width": 160, "height": 120, "focal_length": 140},
+  "motion": {"kind": "smooth_random", "max_frequency": 1.0}, "scene": {"kind": "shapes"}
+})";
+
 /// Leaves of the plugins those that are asked for: the named ones; without a name those from outside, or all where
 /// there are none.
 void choose(std::vector<Kind>& kinds, const std::vector<std::string>& names) {
@@ -118,11 +124,15 @@ Count try_plugin(const std::vector<Check>& checks) {
 bool check_plugins(const Plugins& plugins, const Arguments& arguments) {
   const Json options = parse(arguments.options, "check-plugin: --options");
   const auto given = arguments.source.empty() ? nullptr : make_source(plugins, arguments.source);
-  const Source& source = given ? *given : usual_source();
+  const auto events = make_source(plugins, kSimulatedEvents);
+  const auto source_for = [&](const std::string& name) -> const Source& {
+    if (given) return *given;
+    return plugins.of<FrontEnd>().find(name, "check-plugin").reads_events ? *events : usual_source();
+  };
   std::vector<Kind> kinds = {
       kind_of<Source>(plugins, [&](const std::string& name) { return source_checks(plugins, name, options); }),
-      kind_of<FrontEnd>(plugins,
-                        [&](const std::string& name) { return frontend_checks(plugins, name, options, source); }),
+      kind_of<FrontEnd>(
+          plugins, [&](const std::string& name) { return frontend_checks(plugins, name, options, source_for(name)); }),
       kind_of<BackEnd>(plugins, [&](const std::string& name) { return backend_checks(plugins, name, options); })};
   std::erase_if(kinds, [&](const Kind& kind) { return !arguments.kind.empty() && kind.name != arguments.kind; });
   choose(kinds, arguments.names);
@@ -157,7 +167,7 @@ void add_check_plugin(CLI::App& app, const Plugins& plugins, int& exit_code) {
   command->add_option("--options", arguments->options, "The plugin's options, a JSON object")->capture_default_str();
   command->add_option("--source", arguments->source,
                       "What front-ends are tried on, as in a config: {\"type\": NAME, options}; by default simulated "
-                      "tracks, without events");
+                      "tracks, and for those that read events simulated events with tracks");
   command->footer("A line a check. Exit codes: 0 all hold, 2 bad input, 3 one fails.");
   command->callback([arguments, &plugins, &exit_code] {
     if (!check_plugins(plugins, *arguments)) exit_code = kExitFailed;
