@@ -23,6 +23,15 @@ constexpr double kApart = 1e-6;  ///< [s] between two observations of a track, a
 double seconds(std::int64_t t) { return static_cast<double>(t) / 1e6; }
 std::int64_t microseconds(double t) { return static_cast<std::int64_t>(std::floor(t * 1e6 + 1e-3)); }
 
+Vector2 place_of(const Change& change, Options::Place place) {
+  switch (place) {
+    case Options::Place::new_state: return change.after.position;
+    case Options::Place::midpoint: return midpoint(change);
+    case Options::Place::refined: return refined_position(change);
+  }
+  return change.after.position;
+}
+
 std::unique_ptr<EventStream> events_of(const FrontEndContext& context) {
   auto events = context.source.events();
   if (!events) {
@@ -83,12 +92,7 @@ void Haste::observe(const Change& change) {
   odometer_ += (change.after.position - change.before.position).norm() / static_cast<double>(tracks_.size());
   track.odometer = odometer_;
   track.pixel = change.after.position;
-  TrackObservation z{track.id, seconds(change.after.t), change.after.position, options_.sigma};
-  if (options_.subpixel) {
-    z.pixel = refined_position(change);
-  } else if (options_.midpoint) {
-    z.pixel = midpoint(change);
-  }
+  TrackObservation z{track.id, seconds(change.after.t), place_of(change, options_.place), options_.sigma};
   const double told = std::max(seconds(change.t_event), clock_) - options_.delay;  // what stands for times up to then
   if (z.t <= told) ++late_;
   z.t = std::max({z.t, told, track.told + kApart});

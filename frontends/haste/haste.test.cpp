@@ -61,16 +61,16 @@ bool same(const TrackBatch& a, const TrackBatch& b) {
 
 }  // namespace
 
-TEST_CASE("Points of a wall are followed as the camera moves, the midpoints closer than the new states") {
-  const TrackBatch midpoints = track(scene());
+TEST_CASE("Points of a wall are followed as the camera moves, between the states closer than at the new ones") {
+  const TrackBatch refined = track(scene());
   std::map<TrackId, int> tracks;
-  for (const TrackObservation& z : midpoints.observations) ++tracks[z.track];
+  for (const TrackObservation& z : refined.observations) ++tracks[z.track];
   CHECK(tracks.size() > 40);
-  CHECK(midpoints.observations.size() > 2000);
-  const double error = median_error(scene(), midpoints.observations);
+  CHECK(refined.observations.size() > 2000);
+  const double error = median_error(scene(), refined.observations);
   CHECK(error < 0.8);
   Options leading;
-  leading.midpoint = false;
+  leading.place = Options::Place::new_state;
   CHECK(median_error(scene(), track(scene(), leading).observations) > error);
 }
 

@@ -67,8 +67,7 @@ struct Options {
   GuidanceOptions guidance;
   int tracks = 60;
   double sigma = 0.5;
-  bool midpoint = true;
-  bool subpixel = false;
+  enum class Place { new_state, midpoint, refined } place = Place::refined;
   double delay = 0.03;
 
   void declare(OptionSet& set) {
@@ -82,10 +81,10 @@ struct Options {
     set.add("template_learning", tracker.template_learning, "what an event adds to its tracker's template")
         .range(0.0, 1.0);
     set.add("sigma", sigma, "standard deviation of an observation [px]").above(0.0);
-    set.add("midpoint", midpoint,
-            "a track is observed half-way between the old and the new state; false: at the new state, which leads by "
-            "half a step");
-    set.add("subpixel", subpixel, "it is observed where a paraboloid through the hypotheses' scores is highest");
+    set.add(
+        "place", place, {"new_state", "midpoint", "refined"},
+        "where a tracker that changes its state is observed: at the new state, which leads by half a step; half-way "
+        "between the old and the new one; where a paraboloid through its hypotheses' scores is highest");
     set.add("delay", delay,
             "an observation stands for the middle of the events that a tracker looks at, and is told this much later; "
             "one that comes later still counts as of then [s]")
