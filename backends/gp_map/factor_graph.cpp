@@ -24,16 +24,26 @@ void IntervalObservations::add(int landmark, const Observation& observation) {
   }
 }
 
-int IntervalObservations::remove(int landmark) {
+int IntervalObservations::remove(int landmark, double from) {
   const auto group = std::ranges::find(groups_, landmark, &Group::landmark);
   if (group == groups_.end()) return 0;
-  const int count = group->end - group->begin;
-  observations_.erase(observations_.begin() + group->begin, observations_.begin() + group->end);
-  for (auto later = groups_.erase(group); later != groups_.end(); ++later) {
+  const auto end = observations_.begin() + group->end;
+  const auto begin = std::lower_bound(observations_.begin() + group->begin, end, from,
+                                      [](const Observation& z, double t) { return z.t < t; });
+  const int count = static_cast<int>(end - begin);
+  observations_.erase(begin, end);
+  group->end -= count;
+  for (auto later = group + 1; later != groups_.end(); ++later) {
     later->begin -= count;
     later->end -= count;
   }
+  if (group->begin == group->end) groups_.erase(group);
   return count;
+}
+
+void IntervalObservations::scale_sigmas(int landmark, double factor) {
+  const auto group = std::ranges::find(groups_, landmark, &Group::landmark);
+  for (int i = group->begin; i < group->end; ++i) observations_[index(i)].inverse_sigma /= factor;
 }
 
 std::span<const Observation> IntervalObservations::of(int landmark) const {
@@ -78,6 +88,20 @@ void FactorGraph::anchor_scale(const Vector3& origin, std::vector<int> anchors) 
   anchor.origin = origin;
   anchor.landmarks = std::move(anchors);
   anchor.mean_log_distance = mean_log_distance(*this);
+}
+
+void FactorGraph::remove_observations(int landmark, double from) {
+  std::erase_if(landmarks[index(landmark)].intervals, [&](int k) {
+    if (states[index(k)].t < from) return false;
+    observation_count_ -= intervals[index(k)].remove(landmark, from);
+    return intervals[index(k)].of(landmark).empty();
+  });
+}
+
+void FactorGraph::scale_sigmas(int landmark, double scale) {
+  Landmark& scaled = landmarks[index(landmark)];
+  for (const int k : scaled.intervals) intervals[index(k)].scale_sigmas(landmark, scale / scaled.sigma_scale);
+  scaled.sigma_scale = scale;
 }
 
 int FactorGraph::interval_of(double t) const {

@@ -28,7 +28,9 @@ class IntervalObservations {
   };
 
   void add(int landmark, const Observation& observation);
-  int remove(int landmark);  ///< returns how many there were
+  /// A landmark's from a time on; returns how many there were.
+  int remove(int landmark, double from = -std::numeric_limits<double>::infinity());
+  void scale_sigmas(int landmark, double factor);
 
   const std::vector<Observation>& all() const { return observations_; }
   const std::vector<Group>& groups() const { return groups_; }  ///< ordered by landmark
@@ -77,6 +79,7 @@ struct FactorGraph {
     LandmarkPrior prior;
     std::vector<int> intervals;  ///< in which it is observed, ascending
     bool alive = true;           ///< false once removed; its index is not used again
+    double sigma_scale = 1.0;    ///< that has multiplied its observations' sigmas
   };
 
   PinholeCamera camera;
@@ -108,6 +111,12 @@ struct FactorGraph {
 
   /// Removes a landmark with its observations. The scale anchor goes on without it, at the scale of now.
   void remove_landmark(int landmark);
+
+  /// Removes a landmark's observations from a time on.
+  void remove_observations(int landmark, double from);
+
+  /// Makes the sigmas of a landmark's observations so many times those that they were given.
+  void scale_sigmas(int landmark, double scale);
 
   /// The interval k with t in (t_{k−1}, t_k]; t = t_0 belongs to the first. −1 outside.
   int interval_of(double t) const;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "backends/gp_map/problem_graph.hpp"
+#include "backends/gp_map/track_errors.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/median.hpp"
 
@@ -15,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 3);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 4);
 
 constexpr double kYoung = 5.0;    ///< [s] for which another first map is looked for
 constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
@@ -421,10 +422,6 @@ void GpMap::finish() {
   }
   if (options_.final_iterations == 0 || options_.lag > 0.0) return;
   const auto start = std::chrono::steady_clock::now();
-  for (const auto& [id, track] : tracks_) {
-    if (track.role != Track::Role::landmark) continue;
-    if (is_outlier(track.landmark, reprojection_mean(graph(), track.landmark))) become_outlier(track.landmark);
-  }
   const Engine::OptimiseSummary summary = estimate_everything();
   record_final_prior();
   context_.log(fmt::format("final estimate: cost {:.2f} after {:.2f}, {} iterations{}", summary.final_cost,
@@ -432,22 +429,43 @@ void GpMap::finish() {
   add_record(graph().states.back().t, seconds_since(start), summary.iterations, summary.final_cost);
 }
 
-/// Prior and noise follow from the estimate, and it from them.
+/// Prior, noise, and what each track is worth follow from the estimate, and it from them.
 Engine::OptimiseSummary GpMap::estimate_everything() {
   const bool learns_prior = options_.learn.prior != LearnPrior::never;
   const bool learns = learns_prior || options_.learn.noise;
+  const int rounds = learns ? options_.learn.rounds : 1;
   constexpr int kIterationsARound = 3;
   constexpr double kRoughly = 1e-4, kLearnt = 1e-6, kFixed = 1e-9;  // what is learnt is known no better
-  if (learns) engine_->optimise(kIterationsARound, kRoughly);
-  for (int round = 0; learns && round < options_.learn.rounds; ++round) {
+  engine_->optimise(kIterationsARound, kRoughly);
+  for (int round = 0; round < rounds; ++round) {
+    const NoiseLearner noise = learn_noise(graph());
     if (options_.learn.noise) {
-      noise_ = learn_noise(graph());
+      noise_ = noise;
       engine_->set_loss(noise_.loss(options_.loss, options_.loss_width));
     }
     if (learns_prior) learn_prior(*engine_);
+    judge_tracks(noise);
     engine_->optimise(kIterationsARound, kRoughly);
   }
   return engine_->optimise(options_.final_iterations, learns ? kLearnt : kFixed);
+}
+
+/// Of a full history. Outliers go, a track that slid keeps its landmark up to there, and each counts with its own
+/// noise.
+void GpMap::judge_tracks(const NoiseLearner& noise) {
+  const double threshold = options_.map.outlier_threshold;
+  for (const auto& [id, track] : tracks_) {
+    if (track.role != Track::Role::landmark) continue;
+    if (TrackErrors(graph(), track.landmark, noise).is_outlier(threshold)) become_outlier(track.landmark);
+  }
+  FactorGraph judged = graph();
+  for (const auto& [id, track] : tracks_) {
+    if (track.role != Track::Role::landmark) continue;
+    const TrackErrors errors(judged, track.landmark, noise);
+    if (options_.learn.noise) judged.scale_sigmas(track.landmark, errors.sigma_scale());
+    if (const auto from = errors.slides_from(threshold)) judged.remove_observations(track.landmark, *from);
+  }
+  engine_.emplace(std::move(judged), EngineOptions());
 }
 
 }  // namespace evbench::gp_map

@@ -56,7 +56,9 @@ struct MapOptions {
         .range(0.0);
     set.add("depth_sigma", depth_sigma, "standard deviation of that guess, as a share of the depth").above(0.0);
     set.add("outlier_threshold", outlier_threshold,
-            "tracks whose average reprojection error over all their observations is larger are dropped [sigmas]")
+            "tracks whose average reprojection error over all their observations is larger are dropped [sigmas]; the "
+            "final estimate drops a track from where its error, averaged over 0.15 s, stays larger [sigmas of such "
+            "averages]")
         .above(0.0);
   }
 };

@@ -1,0 +1,53 @@
+#include "backends/gp_map/track_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "backends/gp_map/factors.hpp"
+#include "core/support/median.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kBlock = 0.15;            ///< [s]
+constexpr int kFewest = 4;                 ///< observations in a block that is judged
+constexpr double kMedianSquare = 1.38629;  ///< of a two-dimensional standard normal
+constexpr double kOthers = 10.0;           ///< blocks that the noise of all tracks counts for
+
+}  // namespace
+
+TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, const NoiseLearner& noise)
+    : given_scale_(graph.landmarks[index(landmark)].sigma_scale) {
+  const Vector3& position = graph.landmarks[index(landmark)].position;
+  for_each_observation(graph, landmark, [&](const GpInterval& interval, const Observation& z) {
+    if (blocks_.empty() || z.t > blocks_.back().since + kBlock) blocks_.push_back({.since = z.t});
+    ++blocks_.back().count;
+    blocks_.back().sum += reprojection_residual(interval, position, z, graph.camera);
+  });
+  if (!blocks_.empty() && blocks_.back().count < kFewest) blocks_.pop_back();
+  const double usual = noise.scale() * noise.scale() / noise.share();
+  for (Block& block : blocks_) block.square = block.sum.squaredNorm() / (block.count * usual);
+}
+
+double TrackErrors::sigma_scale() const {
+  if (blocks_.empty()) return given_scale_;
+  std::vector<double> squares;
+  for (const Block& block : blocks_) squares.push_back(block.square);
+  const auto n = static_cast<double>(blocks_.size());
+  const double own = given_scale_ * given_scale_ * median(std::move(squares)) / kMedianSquare;
+  return std::sqrt(std::max(1.0, (kOthers + n * own) / (kOthers + n)));
+}
+
+bool TrackErrors::is_outlier(double threshold) const {
+  const auto far = std::ranges::count_if(blocks_, [&](const Block& b) { return b.square > threshold * threshold; });
+  return 2 * far > std::ssize(blocks_);
+}
+
+std::optional<double> TrackErrors::slides_from(double threshold) const {
+  std::size_t good = blocks_.size();
+  while (good > 0 && blocks_[good - 1].square > threshold * threshold) --good;
+  if (good == 0 || good == blocks_.size()) return std::nullopt;
+  return blocks_[good].since;
+}
+
+}  // namespace evbench::gp_map
