@@ -64,6 +64,7 @@ void Engine::solve_back(UpdateSummary& summary) {
   const Root& root = factorisation_.root();
   const int newest = factorisation_.done();
   slot_change_.assign(index(Root::slot_of_row(root.stride()) + 1), 0.0);
+  return_change_.resize(graph_.landmarks.size());
   set_state(newest, delta_.data() + Root::row_of_state(newest));
   int landmarks = 0;
   for (int slot = 0; slot < root.slots(); ++slot) {
@@ -71,6 +72,7 @@ void Engine::solve_back(UpdateSummary& summary) {
     set_landmark(root.occupant(slot), delta_.data() + Root::row_of_slot(slot), slot);
     ++landmarks;
   }
+  note_returns(newest + 1);
   const double tolerance = options_.solve_tolerance / std::sqrt(std::max(1, landmarks));
   for (int k = newest; k > std::max(0, factorisation_.base()); --k) {
     Factorisation::Stage& stage = factorisation_.stage(k);
@@ -78,23 +80,43 @@ void Engine::solve_back(UpdateSummary& summary) {
     if (stage.skipped < tolerance) break;
     stage.skipped = 0.0;
     ++summary.solved_back;
-    for (auto conditional = stage.conditionals.rbegin(); conditional != stage.conditionals.rend(); ++conditional) {
-      conditional->back_substitute(delta_.data());
-      for (std::size_t i = 0; i < conditional->landmarks.size(); ++i) {
-        const int row = conditional->rows[i];
-        set_landmark(conditional->landmarks[i], delta_.data() + row, Root::slot_of_row(row));
+    factorisation_.solve_stage(k, delta_.data());
+    for (const Conditional& conditional : stage.conditionals) {
+      for (std::size_t i = 0; i < conditional.landmarks.size(); ++i) {
+        const int j = conditional.landmarks[i], row = conditional.rows[i], slot = Root::slot_of_row(row);
+        if (factorisation_.eliminated_at(j) == k) {
+          set_landmark(j, delta_.data() + row, slot);
+        } else {
+          slot_change_[index(slot)] = return_change_[index(j)];  // it came back later
+        }
       }
-      if (conditional->state >= 0) set_state(conditional->state, delta_.data() + conditional->rows.back());
+      if (conditional.state >= 0) set_state(conditional.state, delta_.data() + conditional.rows.back());
     }
     for (const int slot : stage.entered_slots) slot_change_[index(slot)] = 0.0;
+    note_returns(k);
   }
 }
 
-/// The largest change among what stage k is solved from: state k and the landmarks alive after it.
+/// Landmarks that came back before stage k are part of what stages up to the one that had eliminated them are solved
+/// from, but not in a slot.
+void Engine::note_returns(int k) {
+  const Returns& returns = factorisation_.returns();
+  for (int i = returns.first_after(k - 1); i < returns.size() && returns[i].before == k; ++i) {
+    double& change = slot_change_[index(returns[i].slot)];
+    return_change_[index(returns[i].landmark)] = change;
+    change = 0.0;
+  }
+}
+
+/// The largest change among what stage k is solved from: state k, the landmarks alive after it, and those that came back.
 double Engine::separator_change(int k) const {
   const int slots = Root::slot_of_row(factorisation_.stage(k).conditionals.back().extent);
   double change = state_change_;
   for (int slot = 0; slot < slots; ++slot) change = std::max(change, slot_change_[index(slot)]);
+  const Returns& returns = factorisation_.returns();
+  for (const int id : factorisation_.stage(k).returned.ids) {
+    change = std::max(change, return_change_[index(returns[returns.position_of(id)].landmark)]);
+  }
   return change;
 }
 

@@ -32,22 +32,29 @@ std::optional<std::pair<int, int>> Factorisation::find_landmark(int j) const {
 /// when x is in the layout before stage k, from the one after the last done (the root as it is now) down to `stage`.
 template <class Visit>
 void Factorisation::solve_from(int stage, Buffer& x, Buffer& z, const Visit& visit) const {
+  const int stride = static_cast<int>(x.size());
+  ForwardPass pass(returns_, stage, 1);
   z.clear();
   for (int k = stage; k <= done_; ++k) {
-    for (const Conditional& c : stages_[index(k)].conditionals) {
-      z.resize(z.size() + index(c.pivots));
-      c.eliminate(x.data(), z.data() + z.size() - c.pivots);
-    }
+    pass.cross(k, x.data(), stride);
+    const int pivots = stages_[index(k)].pivots();
+    z.resize(z.size() + index(pivots));
+    stages_[index(k)].eliminate(x.data(), stride, z.data() + z.size() - pivots, 1);
+    pass.add(stages_[index(k)].returned, z.data() + z.size() - pivots, pivots);
   }
+  pass.cross(done_ + 1, x.data(), stride);
   solve_with_root_factor(x.data());
   visit(done_ + 1);
+  BackwardPass back;
+  back.start(returns_, pass.first(), pass.g());
+  back.cross(returns_, done_ + 1, x.data());
   double* end = z.data() + z.size();
   for (int k = done_; k >= stage; --k) {
-    const auto& conditionals = stages_[index(k)].conditionals;
-    for (auto c = conditionals.rbegin(); c != conditionals.rend(); ++c) {
-      end -= c->pivots;
-      c->back_substitute(end, x.data());
-    }
+    const int pivots = stages_[index(k)].pivots();
+    end -= pivots;
+    back.shift(stages_[index(k)].returned, end, pivots);
+    stages_[index(k)].back_substitute(end, x.data());
+    back.cross(returns_, k, x.data());
     visit(k);
   }
 }

@@ -29,6 +29,9 @@ inline int padded(int n) { return (n + kPadding - 1) / kPadding * kPadding; }
 inline auto as_matrix(const double* A, int rows, int columns, int stride) {
   return Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>(A, rows, columns, Eigen::OuterStride<>(stride));
 }
+inline auto as_matrix(double* A, int rows, int columns, int stride) {
+  return Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(A, rows, columns, Eigen::OuterStride<>(stride));
+}
 inline auto as_vector(double* x, int size) { return Eigen::Map<Eigen::VectorXd>(x, size); }
 inline auto as_vector(const double* x, int size) { return Eigen::Map<const Eigen::VectorXd>(x, size); }
 

@@ -63,7 +63,13 @@ bool Engine::insert(int landmark, const Observation& observation) {
   if (k <= factorisation_.base() || !graph_.add_observation(landmark, observation)) return false;
   points_.invalidate(k);
   invalidate(k);
-  if (const auto eliminated = factorisation_.eliminated_at(landmark)) invalidate(*eliminated);
+  if (const auto eliminated = factorisation_.eliminated_at(landmark)) {
+    if (options_.lag > 0.0 || k <= *eliminated + options_.redone_for_return) {
+      invalidate(*eliminated);
+    } else {
+      factorisation_.bring_back(landmark);
+    }
+  }
   return true;
 }
 

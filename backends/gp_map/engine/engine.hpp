@@ -19,6 +19,9 @@ struct EngineOptions {
   /// ... unless more than this many stages would have to be redone: what is older stays linear until observations make
   /// its stages be redone, or until optimise(). Bounds the time of an update.
   int reach = 128;
+  /// A landmark seen again within this many states after it was eliminated has them redone; later it comes back
+  /// into the root without that (returns.hpp). With a lag they are always redone.
+  int redone_for_return = 16;
   /// The same for variables in stages that are redone anyway: only their intervals have to be linearised anew.
   double relinearise_redone = 0.0015;
   /// Back-substitution ends where the change of what a stage is solved from is below this over √n with n landmarks in
@@ -166,6 +169,7 @@ class Engine {
   bool factorise_undamped();
   bool open_live_factor();
   void solve_back(UpdateSummary& summary);
+  void note_returns(int k);
   double separator_change(int k) const;
   void set_state(int i, const double* delta);
   void set_landmark(int j, const double* delta, int slot);
@@ -187,6 +191,7 @@ class Engine {
   int restart_ = 0;                   ///< the oldest stage that has changed
   Buffer delta_;                      ///< increments in the root's layout, while solving back
   std::vector<double> slot_change_;   ///< of the landmark in each slot, in the solve at hand
+  std::vector<double> return_change_;  ///< of landmarks that have come back
   double state_change_ = 0.0;         ///< of the newest state solved for
   std::vector<Change> changes_;       ///< of the last solve
   std::vector<Variable> candidates_;  ///< whose increments have grown beyond the threshold

@@ -22,6 +22,28 @@ constexpr int kThinnedUpTo = 136;  ///< age beyond which spacing doesn't change 
 
 std::string Variable::name() const { return fmt::format("{} {}", kind == Kind::state ? "state" : "landmark", index); }
 
+int Factorisation::Stage::pivots() const {
+  int sum = 0;
+  for (const Conditional& c : conditionals) sum += c.pivots;
+  return sum;
+}
+
+void Factorisation::Stage::eliminate(double* r, int r_stride, double* z, int columns) const {
+  const int z_stride = pivots();
+  for (const Conditional& c : conditionals) {
+    c.eliminate(r, r_stride, z, z_stride, columns);
+    z += c.pivots;
+  }
+}
+
+void Factorisation::Stage::back_substitute(const double* z, double* delta) const {
+  z += pivots();
+  for (auto c = conditionals.rbegin(); c != conditionals.rend(); ++c) {
+    z -= c->pivots;
+    c->back_substitute(z, delta);
+  }
+}
+
 void Factorisation::add_landmark() { landmarks_.emplace_back(); }
 
 std::optional<int> Factorisation::eliminated_at(int j) const {
@@ -51,7 +73,13 @@ std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph,
   if (done_ > newest) first = std::min(first, newest + 1);  // states were taken back
   stages_.resize(graph.states.size());
   first = std::min(first, place_anchor(graph));
-  for (int k = go_back_to(first); k <= newest; ++k) {
+  go_back_to(first);
+  while (const std::optional<int> earlier = bring_all_back(graph)) {
+    first = std::min(first, *earlier);
+    go_back_to(first);
+  }
+  if (returns_.first_after(done_) < returns_.size()) first = done_ + 1;
+  for (int k = done_ + 1; k <= newest; ++k) {
     if (const auto singular = do_stage(k, graph, points, damping)) {
       done_ = k;  // nothing after it is usable, and it itself must be redone
       go_back_to(k);
@@ -62,6 +90,7 @@ std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph,
     keep_snapshot(k, newest);
   }
   thin_snapshots(newest);
+  returns_.thin(newest - kThinnedUpTo);
   return std::nullopt;
 }
 
@@ -79,9 +108,9 @@ int Factorisation::place_anchor(const FactorGraph& graph) {
   return std::max(base_ + 1, older < 0 ? std::max(before, anchor_stage_) : older);
 }
 
-/// Makes the root what it was before stage `first` or an earlier one; returns the stage that is to be done next.
-int Factorisation::go_back_to(int first) {
-  if (first > done_) return done_ + 1;
+/// Makes the root what it was before stage `first` or an earlier one.
+void Factorisation::go_back_to(int first) {
+  if (first > done_) return;
   const auto after = snapshots_.lower_bound(first);
   for (auto i = after; i != snapshots_.end(); ++i) spare_.push_back(std::move(i->second));
   snapshots_.erase(after, snapshots_.end());
@@ -92,7 +121,115 @@ int Factorisation::go_back_to(int first) {
     root_.restore(snapshots_.rbegin()->second);
     done_ = snapshots_.rbegin()->first;
   }
-  return done_ + 1;
+  take_back_returns();
+}
+
+/// Landmarks that had come back after the last stage that is still done will come back now, unless they are in the root
+/// still.
+void Factorisation::take_back_returns() {
+  std::vector<Return> taken = returns_.take_after(done_);
+  std::ranges::move(taken_back_, std::back_inserter(taken));
+  taken_back_.clear();
+  for (auto i = taken.rbegin(); i != taken.rend(); ++i) landmarks_[index(i->landmark)].eliminated_at = i->from;
+  for (Return& known : taken) {
+    if (known.from <= done_) {
+      taken_back_.push_back(std::move(known));
+    } else {
+      returns_.free_id(known.id);
+    }
+  }
+}
+
+/// Brings landmarks back into the root as it is now. If that can't be done, the stage that has to be redone instead.
+std::optional<int> Factorisation::bring_all_back(const FactorGraph& graph) {
+  for (auto i = taken_back_.begin(); i != taken_back_.end(); ++i) {
+    const int from = i->from;
+    if (bring_back_again(std::move(*i))) continue;
+    taken_back_.erase(taken_back_.begin(), i + 1);
+    return from;
+  }
+  taken_back_.clear();
+  while (!called_back_.empty()) {
+    const int j = called_back_.back();
+    called_back_.pop_back();
+    const std::optional<int> from = eliminated_at(j);
+    if (!from || last_interval(j, graph) <= done_) continue;  // it is in the root, or its observations were taken back
+    if (!walk_and_bring_back(j)) return from;
+  }
+  return std::nullopt;
+}
+
+/// A landmark that had come back in a stage that is being redone.
+bool Factorisation::bring_back_again(Return&& known) {
+  auto& checkpoints = known.checkpoints;
+  while (!checkpoints.empty() && checkpoints.back().stage > done_) checkpoints.pop_back();
+  if (checkpoints.empty() || checkpoints.back().stage < done_) {
+    returns_.free_id(known.id);
+    return false;
+  }
+  const Return::Checkpoint& start = checkpoints.back();
+  Walk walk(returns_, known.from, root_.stride());
+  walk.x.topRows(start.x.rows()) = start.x;
+  walk.square = start.square;
+  walk.with_y = start.with_y;
+  for (const auto& [id, sum] : start.sums) walk.pass.sum(id) = sum;
+  walk.pass.resume(done_ + 1, known.g);
+  return bring_back(std::move(known), walk);
+}
+
+/// A landmark that comes back for the first time since it was eliminated.
+bool Factorisation::walk_and_bring_back(int j) {
+  const auto [from, row] = *find_landmark(j);
+  Return result;
+  result.id = returns_.new_id();
+  result.landmark = j;
+  result.from = from;
+  const int stride = root_.stride();
+  Walk walk(returns_, from, stride);
+  walk.x.middleRows<3>(row).setIdentity();
+  Buffer z;
+  for (int k = from; k <= done_; ++k) {
+    walk.pass.cross(k, walk.x.data(), stride);
+    Stage& stage = stages_[index(k)];
+    const int pivots = stage.pivots();
+    z.resize(3 * index(pivots));
+    stage.eliminate(walk.x.data(), stride, z.data(), 3);
+    walk.pass.add(stage.returned, z.data(), pivots);
+    const auto Z = as_matrix(z.data(), pivots, 3, pivots);
+    walk.square.noalias() += Z.transpose() * Z;
+    int at = 0;
+    for (const Conditional& c : stage.conditionals) {
+      walk.with_y.noalias() += Z.middleRows(at, c.pivots).transpose() * as_vector(c.y.data(), c.pivots);
+      at += c.pivots;
+    }
+    stage.returned.append(result.id, z);
+    if (snapshots_.contains(k) && k >= done_ - kThinnedUpTo) keep_checkpoint(k, walk, result);
+  }
+  return bring_back(std::move(result), walk);
+}
+
+void Factorisation::keep_checkpoint(int k, Walk& walk, Return& result) const {
+  const int rows = stages_[index(k)].conditionals.back().extent;
+  result.checkpoints.push_back({k, walk.x.topRows(rows), walk.square, walk.with_y, {}});
+  auto& sums = result.checkpoints.back().sums;
+  for (int i = returns_.first_after(k); i < returns_.size(); ++i) {
+    if (returns_[i].from <= k) sums.emplace_back(returns_[i].id, walk.pass.sum(returns_[i].id));
+  }
+}
+
+bool Factorisation::bring_back(Return&& result, Walk& walk) {
+  const int j = result.landmark, id = result.id;
+  result.before = done_ + 1;
+  walk.pass.cross(result.before, walk.x.data(), static_cast<int>(walk.x.rows()));
+  result.slot = root_.enter(j);
+  const Return* appended = returns_.append(std::move(result), walk, root_.extent());
+  if (appended == nullptr) {
+    returns_.free_id(id);
+    return false;
+  }
+  landmarks_[index(j)].eliminated_at = -1;
+  root_.add_factor(appended->R, appended->mean);
+  return true;
 }
 
 std::optional<Variable> Factorisation::do_stage(int k, const FactorGraph& graph, LinearisationPoints& points,
@@ -100,6 +237,7 @@ std::optional<Variable> Factorisation::do_stage(int k, const FactorGraph& graph,
   ++stages_done_;
   stage(k).entered.clear();
   stage(k).entered_slots.clear();
+  stage(k).returned.clear();
   add_factors(k, graph, points);
   if (k == 0) return std::nullopt;
   find_finished(k, graph);
@@ -210,6 +348,19 @@ void Factorisation::solve_root(Buffer& delta) {
   factor_.solve_forward(factor_.b());
   factor_.solve_back(factor_.b());
   factor_.copy_to_root(factor_.b(), delta.data());
+  back_.start(returns_, 0, returns_.means());
+  back_.cross(returns_, done_ + 1, delta.data());
+}
+
+void Factorisation::solve_stage(int k, double* delta) {
+  const Stage& stage = stages_[index(k)];
+  right_hand_side_.clear();
+  for (const Conditional& c : stage.conditionals) {
+    right_hand_side_.insert(right_hand_side_.end(), c.y.begin(), c.y.end());
+  }
+  back_.shift(stage.returned, right_hand_side_.data(), stage.pivots());
+  stage.back_substitute(right_hand_side_.data(), delta);
+  back_.cross(returns_, k, delta);
 }
 
 void Factorisation::keep_snapshot(int k, int newest) {

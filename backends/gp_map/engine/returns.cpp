@@ -1,0 +1,146 @@
+#include "backends/gp_map/engine/returns.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <iterator>
+
+namespace evbench::gp_map {
+
+void ReturnColumns::clear() {
+  ids.clear();
+  Z.clear();
+}
+
+void ReturnColumns::append(int id, const Buffer& z) {
+  ids.push_back(id);
+  Z.insert(Z.end(), z.begin(), z.end());
+}
+
+ForwardPass::ForwardPass(const Returns& returns, int stage, int columns)
+    : returns_(returns), first_(returns.first_after(stage)), next_(first_) {
+  sums_.setZero(3 * returns.ids(), columns);
+  g_.resize(3 * (returns.size() - first_), columns);
+}
+
+void ForwardPass::add(const ReturnColumns& stage, const double* z, int pivots) {
+  if (stage.ids.empty()) return;
+  product_.noalias() =
+      stage.matrix(pivots).transpose() * as_matrix(z, pivots, static_cast<int>(sums_.cols()), pivots);
+  for (std::size_t i = 0; i < stage.ids.size(); ++i) {
+    sums_.middleRows<3>(3 * stage.ids[i]) += product_.middleRows<3>(3 * static_cast<int>(i));
+  }
+}
+
+void ForwardPass::cross(int k, double* x, int stride) {
+  for (; next_ < returns_.size() && returns_[next_].before <= k; ++next_) {
+    const Return& other = returns_[next_];
+    const int common = std::max(first_, other.first);
+    Eigen::MatrixXd g = sums_.middleRows<3>(3 * other.id);
+    g.noalias() -= other.g.bottomRows(3 * (next_ - common)).transpose() *
+                   g_.middleRows(3 * (common - first_), 3 * (next_ - common));
+    other.L.triangularView<Eigen::Lower>().solveInPlace(g);
+    g_.middleRows<3>(3 * (next_ - first_)) = g;
+    Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>> to(x, other.R.rows(), g.cols(), Eigen::OuterStride<>(stride));
+    to.noalias() += other.R * g;
+  }
+}
+
+void ForwardPass::resume(int k, const Eigen::Ref<const Eigen::MatrixXd>& g) {
+  next_ = returns_.first_after(k - 1);
+  const int known = 3 * (next_ - first_);
+  g_.topRows(known) = g.topRows(known);
+}
+
+void BackwardPass::start(const Returns& returns, int first, Eigen::VectorXd g) {
+  first_ = first;
+  next_ = returns.size();
+  g_ = std::move(g);
+  mu_.resize(3 * returns.ids());
+}
+
+void BackwardPass::cross(const Returns& returns, int k, const double* delta) {
+  for (; next_ > first_ && returns[next_ - 1].before == k; --next_) {
+    const Return& last = returns[next_ - 1];
+    Vector3 mu = last.R.transpose() * as_vector(delta, static_cast<int>(last.R.rows()));
+    mu -= g_.segment<3>(3 * (next_ - 1 - first_));
+    last.L.transpose().triangularView<Eigen::Upper>().solveInPlace(mu);
+    mu_.segment<3>(3 * last.id) = mu;
+    const int common = std::max(first_, last.first);
+    const int rows = 3 * (next_ - 1 - common);
+    g_.segment(3 * (common - first_), rows).noalias() += last.g.bottomRows(rows) * mu;
+  }
+}
+
+void BackwardPass::shift(const ReturnColumns& stage, double* z, int pivots) {
+  if (stage.ids.empty()) return;
+  gathered_.resize(3 * std::ssize(stage.ids));
+  for (std::size_t i = 0; i < stage.ids.size(); ++i) {
+    gathered_.segment<3>(3 * static_cast<int>(i)) = mu_.segment<3>(3 * stage.ids[i]);
+  }
+  as_vector(z, pivots).noalias() += stage.matrix(pivots) * gathered_;
+}
+
+Walk::Walk(const Returns& returns, int stage, int rows) : pass(returns, stage, 3), x(MatrixX3::Zero(rows, 3)) {}
+
+int Returns::first_after(int stage) const {
+  const auto later = std::ranges::upper_bound(returns_, stage, {}, &Return::before);
+  return static_cast<int>(later - returns_.begin());
+}
+
+Eigen::VectorXd Returns::means() const {
+  Eigen::VectorXd result(3 * size());
+  for (int i = 0; i < size(); ++i) result.segment<3>(3 * i) = returns_[index(i)].mean;
+  return result;
+}
+
+int Returns::new_id() {
+  if (!free_.empty()) {
+    const int id = free_.back();
+    free_.pop_back();
+    return id;
+  }
+  positions_.push_back(-1);
+  return ids_++;
+}
+
+const Return* Returns::append(Return&& result, const Walk& walk, int extent) {
+  constexpr double kLeastUnknown = 1e-8;
+  const auto g = walk.pass.g();
+  const Matrix3 covariance = walk.square - g.transpose() * g;
+  const Eigen::LLT<Matrix3> factor(covariance);
+  if (factor.info() != Eigen::Success) return nullptr;
+  result.L = factor.matrixL();
+  for (int i = 0; i < 3; ++i) {
+    if (!(result.L(i, i) * result.L(i, i) > kLeastUnknown * walk.square(i, i))) return nullptr;
+  }
+  result.first = walk.pass.first();
+  result.g = g;
+  result.mean = walk.with_y;
+  for (int i = result.first; i < size(); ++i) {
+    result.mean -= result.g.middleRows<3>(3 * (i - result.first)).transpose() * returns_[index(i)].mean;
+  }
+  result.L.triangularView<Eigen::Lower>().solveInPlace(result.mean);
+  result.R.setZero(extent, 3);
+  const auto rows = std::min<Eigen::Index>(extent, walk.x.rows());
+  result.R.topRows(rows) = -walk.x.topRows(rows);
+  result.R.middleRows<3>(Root::row_of_slot(result.slot)).setIdentity();
+  result.L.transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(result.R);
+  positions_[index(result.id)] = size();
+  returns_.push_back(std::move(result));
+  return &returns_.back();
+}
+
+std::vector<Return> Returns::take_after(int done) {
+  const auto first = returns_.begin() + first_after(done);
+  std::vector<Return> result(std::make_move_iterator(first), std::make_move_iterator(returns_.end()));
+  returns_.erase(first, returns_.end());
+  return result;
+}
+
+void Returns::thin(int stage) {
+  for (auto i = returns_.rbegin(); i != returns_.rend() && !i->checkpoints.empty(); ++i) {
+    std::erase_if(i->checkpoints, [&](const Return::Checkpoint& c) { return c.stage < stage; });
+  }
+}
+
+}  // namespace evbench::gp_map
