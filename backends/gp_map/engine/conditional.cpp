@@ -93,7 +93,7 @@ void Conditional::eliminate(double* r, int r_stride, double* z, int z_stride, in
     to += size;
   });
   as_matrix(L.data(), pivots, pivots, pivots).triangularView<Eigen::Lower>().solveInPlace(taken);
-  rest.noalias() -= as_matrix(A.data(), extent, pivots, extent) * taken;
+  add_product(r, r_stride, -1.0, A.data(), extent, extent, z, z_stride, pivots, columns);
 }
 
 }  // namespace evbench::gp_map

@@ -169,7 +169,7 @@ class Engine {
   bool factorise_undamped();
   bool open_live_factor();
   void solve_back(UpdateSummary& summary);
-  void note_returns(int k);
+  void clear_returns(int k);
   double separator_change(int k) const;
   void set_state(int i, const double* delta);
   void set_landmark(int j, const double* delta, int slot);
@@ -191,7 +191,6 @@ class Engine {
   int restart_ = 0;                   ///< the oldest stage that has changed
   Buffer delta_;                      ///< increments in the root's layout, while solving back
   std::vector<double> slot_change_;   ///< of the landmark in each slot, in the solve at hand
-  std::vector<double> return_change_;  ///< of landmarks that have come back
   double state_change_ = 0.0;         ///< of the newest state solved for
   std::vector<Change> changes_;       ///< of the last solve
   std::vector<Variable> candidates_;  ///< whose increments have grown beyond the threshold

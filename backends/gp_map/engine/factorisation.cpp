@@ -74,7 +74,7 @@ std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph,
   stages_.resize(graph.states.size());
   first = std::min(first, place_anchor(graph));
   go_back_to(first);
-  while (const std::optional<int> earlier = bring_all_back(graph)) {
+  while (const std::optional<int> earlier = bring_all_back(graph, points)) {
     first = std::min(first, *earlier);
     go_back_to(first);
   }
@@ -141,10 +141,10 @@ void Factorisation::take_back_returns() {
 }
 
 /// Brings landmarks back into the root as it is now. If that can't be done, the stage that has to be redone instead.
-std::optional<int> Factorisation::bring_all_back(const FactorGraph& graph) {
+std::optional<int> Factorisation::bring_all_back(const FactorGraph& graph, const LinearisationPoints& points) {
   for (auto i = taken_back_.begin(); i != taken_back_.end(); ++i) {
     const int from = i->from;
-    if (bring_back_again(std::move(*i))) continue;
+    if (bring_back_again(std::move(*i), points)) continue;
     taken_back_.erase(taken_back_.begin(), i + 1);
     return from;
   }
@@ -154,13 +154,13 @@ std::optional<int> Factorisation::bring_all_back(const FactorGraph& graph) {
     called_back_.pop_back();
     const std::optional<int> from = eliminated_at(j);
     if (!from || last_interval(j, graph) <= done_) continue;  // it is in the root, or its observations were taken back
-    if (!walk_and_bring_back(j)) return from;
+    if (!walk_and_bring_back(j, points)) return from;
   }
   return std::nullopt;
 }
 
 /// A landmark that had come back in a stage that is being redone.
-bool Factorisation::bring_back_again(Return&& known) {
+bool Factorisation::bring_back_again(Return&& known, const LinearisationPoints& points) {
   auto& checkpoints = known.checkpoints;
   while (!checkpoints.empty() && checkpoints.back().stage > done_) checkpoints.pop_back();
   if (checkpoints.empty() || checkpoints.back().stage < done_) {
@@ -174,16 +174,21 @@ bool Factorisation::bring_back_again(Return&& known) {
   walk.with_y = start.with_y;
   for (const auto& [id, sum] : start.sums) walk.pass.sum(id) = sum;
   walk.pass.resume(done_ + 1, known.g);
-  return bring_back(std::move(known), walk);
+  Return* result = bring_back(std::move(known), walk);
+  if (result == nullptr) return false;
+  const Buffer now = increments_of_root(points);
+  result->known = result->R.transpose() * as_vector(now.data(), static_cast<int>(result->R.rows())) - result->mean;
+  return true;
 }
 
 /// A landmark that comes back for the first time since it was eliminated.
-bool Factorisation::walk_and_bring_back(int j) {
+bool Factorisation::walk_and_bring_back(int j, const LinearisationPoints& points) {
   const auto [from, row] = *find_landmark(j);
   Return result;
   result.id = returns_.new_id();
   result.landmark = j;
   result.from = from;
+  result.delta_before = points.landmark_delta(j);
   const int stride = root_.stride();
   Walk walk(returns_, from, stride);
   walk.x.middleRows<3>(row).setIdentity();
@@ -202,10 +207,10 @@ bool Factorisation::walk_and_bring_back(int j) {
       walk.with_y.noalias() += Z.middleRows(at, c.pivots).transpose() * as_vector(c.y.data(), c.pivots);
       at += c.pivots;
     }
-    stage.returned.append(result.id, z);
+    stage.returned.append(result.id, z.data(), pivots);
     if (snapshots_.contains(k) && k >= done_ - kThinnedUpTo) keep_checkpoint(k, walk, result);
   }
-  return bring_back(std::move(result), walk);
+  return bring_back(std::move(result), walk) != nullptr;
 }
 
 void Factorisation::keep_checkpoint(int k, Walk& walk, Return& result) const {
@@ -217,19 +222,29 @@ void Factorisation::keep_checkpoint(int k, Walk& walk, Return& result) const {
   }
 }
 
-bool Factorisation::bring_back(Return&& result, Walk& walk) {
+Return* Factorisation::bring_back(Return&& result, Walk& walk) {
   const int j = result.landmark, id = result.id;
   result.before = done_ + 1;
   walk.pass.cross(result.before, walk.x.data(), static_cast<int>(walk.x.rows()));
   result.slot = root_.enter(j);
-  const Return* appended = returns_.append(std::move(result), walk, root_.extent());
+  Return* appended = returns_.append(std::move(result), walk, root_.extent());
   if (appended == nullptr) {
     returns_.free_id(id);
-    return false;
+    return nullptr;
   }
   landmarks_[index(j)].eliminated_at = -1;
   root_.add_factor(appended->R, appended->mean);
-  return true;
+  return appended;
+}
+
+Buffer Factorisation::increments_of_root(const LinearisationPoints& points) const {
+  Buffer result(index(root_.stride()), 0.0);
+  as_vector(result.data() + Root::row_of_state(done_), 12) = points.state_delta(done_);
+  for (int slot = 0; slot < root_.slots(); ++slot) {
+    const int j = root_.occupant(slot);
+    if (j >= 0) as_vector(result.data() + Root::row_of_slot(slot), 3) = points.landmark_delta(j);
+  }
+  return result;
 }
 
 std::optional<Variable> Factorisation::do_stage(int k, const FactorGraph& graph, LinearisationPoints& points,
@@ -349,7 +364,7 @@ void Factorisation::solve_root(Buffer& delta) {
   factor_.solve_back(factor_.b());
   factor_.copy_to_root(factor_.b(), delta.data());
   back_.start(returns_, 0, returns_.means());
-  back_.cross(returns_, done_ + 1, delta.data());
+  back_.cross_and_keep(returns_, done_ + 1, delta.data());
 }
 
 void Factorisation::solve_stage(int k, double* delta) {
@@ -360,7 +375,7 @@ void Factorisation::solve_stage(int k, double* delta) {
   }
   back_.shift(stage.returned, right_hand_side_.data(), stage.pivots());
   stage.back_substitute(right_hand_side_.data(), delta);
-  back_.cross(returns_, k, delta);
+  back_.cross_and_keep(returns_, k, delta);
 }
 
 void Factorisation::keep_snapshot(int k, int newest) {

@@ -36,7 +36,7 @@ class Factorisation {
     std::vector<Conditional> conditionals;  ///< in the order of elimination
     std::vector<int> entered;               ///< landmarks that came into the root in this stage
     std::vector<int> entered_slots;         ///< and where
-    ReturnColumns returned;                 ///< landmarks that had been eliminated in this stage or before, and came back
+    ReturnRows returned;                 ///< landmarks that had been eliminated in this stage or before, and came back
     /// Change of the separator since the stage was last solved back (see Engine); infinite once it has been redone.
     double skipped = 0.0;
 
@@ -63,7 +63,7 @@ class Factorisation {
   /// the root without redoing the stages since its elimination. Of a full history only.
   void bring_back(int j) { called_back_.push_back(j); }
   bool awaits_return() const { return !called_back_.empty(); }
-  const Returns& returns() const { return returns_; }
+  Returns& returns() { return returns_; }
 
   /// Adds this share to the diagonal when the variable is eliminated: for what its factors leave undetermined.
   void hold(const Variable& variable);
@@ -80,6 +80,8 @@ class Factorisation {
   void solve_root(Buffer& delta);
   /// Then those of the variables that stage k eliminated, from the newest stage backwards.
   void solve_stage(int k, double* delta);
+  /// How much what was learnt from landmarks that came back changes the stages that are not solved yet (returns.hpp).
+  double change_by_returns() const { return back_.change(); }
 
   /// Covariance of rows in the layout that the root had before stage `stage` eliminated them (or later ones).
   Eigen::MatrixXd marginal(int stage, std::span<const int> rows) const;
@@ -119,16 +121,18 @@ class Factorisation {
   };
   void solve_with_root_factor(double* x) const;
   Eigen::MatrixXd root_covariance() const;
+  void add_return_moments(int position, Eigen::MatrixXd& S) const;
   template <class Visit>
   void solve_from(int stage, Buffer& x, Buffer& z, const Visit& visit) const;
   int place_anchor(const FactorGraph& graph);
   void go_back_to(int first);
   void take_back_returns();
-  std::optional<int> bring_all_back(const FactorGraph& graph);
-  bool bring_back_again(Return&& known);
-  bool walk_and_bring_back(int j);
+  std::optional<int> bring_all_back(const FactorGraph& graph, const LinearisationPoints& points);
+  bool bring_back_again(Return&& known, const LinearisationPoints& points);
+  bool walk_and_bring_back(int j, const LinearisationPoints& points);
   void keep_checkpoint(int k, Walk& walk, Return& result) const;
-  bool bring_back(Return&& result, Walk& walk);
+  Return* bring_back(Return&& result, Walk& walk);
+  Buffer increments_of_root(const LinearisationPoints& points) const;
   std::optional<Variable> do_stage(int k, const FactorGraph& graph, LinearisationPoints& points, double damping);
   void add_factors(int k, const FactorGraph& graph, LinearisationPoints& points);
   void add_anchor(const FactorGraph& graph, const LinearisationPoints& points);

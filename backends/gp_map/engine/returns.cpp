@@ -3,17 +3,28 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace evbench::gp_map {
 
-void ReturnColumns::clear() {
+void ReturnRows::clear() {
   ids.clear();
-  Z.clear();
+  stride = 0;
 }
 
-void ReturnColumns::append(int id, const Buffer& z) {
+void ReturnRows::append(int id, const double* Z, int pivots) {
+  const int row = 3 * static_cast<int>(ids.size());
+  if (row + 3 > stride) {
+    const int wider = padded(row + 3 + row / 2);
+    Buffer moved(index(wider * pivots), 0.0);
+    for (int p = 0; p < pivots; ++p) std::copy_n(Zt.begin() + p * stride, row, moved.begin() + p * wider);
+    Zt = std::move(moved);
+    stride = wider;
+  }
+  for (int p = 0; p < pivots; ++p) {
+    for (int i = 0; i < 3; ++i) Zt[index(p * stride + row + i)] = Z[i * pivots + p];
+  }
   ids.push_back(id);
-  Z.insert(Z.end(), z.begin(), z.end());
 }
 
 ForwardPass::ForwardPass(const Returns& returns, int stage, int columns)
@@ -22,12 +33,14 @@ ForwardPass::ForwardPass(const Returns& returns, int stage, int columns)
   g_.resize(3 * (returns.size() - first_), columns);
 }
 
-void ForwardPass::add(const ReturnColumns& stage, const double* z, int pivots) {
+void ForwardPass::add(const ReturnRows& stage, const double* z, int pivots) {
   if (stage.ids.empty()) return;
-  product_.noalias() =
-      stage.matrix(pivots).transpose() * as_matrix(z, pivots, static_cast<int>(sums_.cols()), pivots);
+  const int rows = padded(3 * static_cast<int>(stage.ids.size())), columns = static_cast<int>(sums_.cols());
+  product_.assign(index(rows * columns), 0.0);
+  add_product(product_.data(), rows, 1.0, stage.Zt.data(), stage.stride, rows, z, pivots, pivots, columns);
+  const auto product = as_matrix(product_.data(), rows, columns, rows);
   for (std::size_t i = 0; i < stage.ids.size(); ++i) {
-    sums_.middleRows<3>(3 * stage.ids[i]) += product_.middleRows<3>(3 * static_cast<int>(i));
+    sums_.middleRows<3>(3 * stage.ids[i]) += product.middleRows<3>(3 * static_cast<int>(i));
   }
 }
 
@@ -54,30 +67,53 @@ void ForwardPass::resume(int k, const Eigen::Ref<const Eigen::MatrixXd>& g) {
 void BackwardPass::start(const Returns& returns, int first, Eigen::VectorXd g) {
   first_ = first;
   next_ = returns.size();
-  g_ = std::move(g);
-  mu_.resize(3 * returns.ids());
+  g_.setZero(g.size(), 2);
+  g_.col(0) = g;
+  mu_.resize(3 * returns.ids(), 2);
+  change2_ = 0.0;
+}
+
+template <class Known>
+void BackwardPass::cross(const Returns& returns, int k, const double* delta, Known known) {
+  for (; next_ > first_ && returns[next_ - 1].before == k; --next_) {
+    const Return& last = returns[next_ - 1];
+    Eigen::Matrix<double, 3, 2> mu;
+    mu.col(0) = last.R.transpose() * as_vector(delta, static_cast<int>(last.R.rows()));
+    mu.col(0) -= last.mean;
+    mu.col(1) = known(next_ - 1, mu.col(0));
+    mu.col(0) += last.mean;
+    change2_ += mu.col(1).squaredNorm();
+    mu -= g_.middleRows<3>(3 * (next_ - 1 - first_));
+    last.L.transpose().triangularView<Eigen::Upper>().solveInPlace(mu);
+    mu_.middleRows<3>(3 * last.id) = mu;
+    const int common = std::max(first_, last.first);
+    const int rows = 3 * (next_ - 1 - common);
+    g_.middleRows(3 * (common - first_), rows).noalias() += last.g.bottomRows(rows) * mu;
+  }
 }
 
 void BackwardPass::cross(const Returns& returns, int k, const double* delta) {
-  for (; next_ > first_ && returns[next_ - 1].before == k; --next_) {
-    const Return& last = returns[next_ - 1];
-    Vector3 mu = last.R.transpose() * as_vector(delta, static_cast<int>(last.R.rows()));
-    mu -= g_.segment<3>(3 * (next_ - 1 - first_));
-    last.L.transpose().triangularView<Eigen::Upper>().solveInPlace(mu);
-    mu_.segment<3>(3 * last.id) = mu;
-    const int common = std::max(first_, last.first);
-    const int rows = 3 * (next_ - 1 - common);
-    g_.segment(3 * (common - first_), rows).noalias() += last.g.bottomRows(rows) * mu;
-  }
+  cross(returns, k, delta, [](int, const Vector3&) { return Vector3::Zero(); });
 }
 
-void BackwardPass::shift(const ReturnColumns& stage, double* z, int pivots) {
+void BackwardPass::cross_and_keep(Returns& returns, int k, const double* delta) {
+  cross(returns, k, delta, [&](int position, const Vector3& known) -> Vector3 {
+    return known - std::exchange(returns[position].known, known);
+  });
+}
+
+void BackwardPass::shift(const ReturnRows& stage, double* z, int pivots) {
   if (stage.ids.empty()) return;
-  gathered_.resize(3 * std::ssize(stage.ids));
+  const int rows = 3 * static_cast<int>(stage.ids.size());
+  gathered_.resize(rows, 2);
   for (std::size_t i = 0; i < stage.ids.size(); ++i) {
-    gathered_.segment<3>(3 * static_cast<int>(i)) = mu_.segment<3>(3 * stage.ids[i]);
+    gathered_.middleRows<3>(3 * static_cast<int>(i)) = mu_.middleRows<3>(3 * stage.ids[i]);
   }
-  as_vector(z, pivots).noalias() += stage.matrix(pivots) * gathered_;
+  const auto Z = as_matrix(stage.Zt.data(), rows, pivots, stage.stride).transpose();
+  as_vector(z, pivots).noalias() += Z * gathered_.col(0);
+  if (change2_ <= 0.0) return;
+  shift_change_.noalias() = Z * gathered_.col(1);
+  change2_ -= shift_change_.squaredNorm();
 }
 
 Walk::Walk(const Returns& returns, int stage, int rows) : pass(returns, stage, 3), x(MatrixX3::Zero(rows, 3)) {}
@@ -93,17 +129,22 @@ Eigen::VectorXd Returns::means() const {
   return result;
 }
 
+Return* Returns::find(int landmark, int from) {
+  const auto found = std::ranges::find_if(
+      returns_, [&](const Return& r) { return r.landmark == landmark && r.from == from; });
+  return found == returns_.end() ? nullptr : &*found;
+}
+
 int Returns::new_id() {
   if (!free_.empty()) {
     const int id = free_.back();
     free_.pop_back();
     return id;
   }
-  positions_.push_back(-1);
   return ids_++;
 }
 
-const Return* Returns::append(Return&& result, const Walk& walk, int extent) {
+Return* Returns::append(Return&& result, const Walk& walk, int extent) {
   constexpr double kLeastUnknown = 1e-8;
   const auto g = walk.pass.g();
   const Matrix3 covariance = walk.square - g.transpose() * g;
@@ -125,7 +166,6 @@ const Return* Returns::append(Return&& result, const Walk& walk, int extent) {
   result.R.topRows(rows) = -walk.x.topRows(rows);
   result.R.middleRows<3>(Root::row_of_slot(result.slot)).setIdentity();
   result.L.transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(result.R);
-  positions_[index(result.id)] = size();
   returns_.push_back(std::move(result));
   return &returns_.back();
 }

@@ -9,15 +9,14 @@ namespace evbench::gp_map {
 
 using MatrixX3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-/// What the noise of a stage has to do with landmarks that came back later (see Returns): 3 columns for each, of as
-/// many rows as the stage has pivots.
-struct ReturnColumns {
+/// What the noise of a stage has to do with landmarks that came back later (see Returns): Zᵀ, 3 rows for each of them.
+struct ReturnRows {
   std::vector<int> ids;
-  Buffer Z;
+  Buffer Zt;       ///< by columns, of which there are as many as the stage has pivots
+  int stride = 0;  ///< padded; rows beyond those in use are zero
 
   void clear();
-  void append(int id, const Buffer& z);
-  auto matrix(int pivots) const { return as_matrix(Z.data(), pivots, 3 * static_cast<int>(ids.size()), pivots); }
+  void append(int id, const double* Z, int pivots);
 };
 
 class Returns;
@@ -29,12 +28,11 @@ class ForwardPass {
   ForwardPass(const Returns& returns, int stage, int columns);
 
   /// z: what the stage's pivots took of the right-hand sides, pivots × columns.
-  void add(const ReturnColumns& stage, const double* z, int pivots);
+  void add(const ReturnRows& stage, const double* z, int pivots);
   /// Crosses the returns before stage k; x in the root's layout there, with this stride between right-hand sides.
   void cross(int k, double* x, int stride);
 
   int first() const { return first_; }  ///< position of the first return that may be crossed
-  int next() const { return next_; }    ///< and of the next one
   auto g() const { return g_.topRows(3 * (next_ - first_)); }
   auto sum(int id) { return sums_.middleRows<3>(3 * id); }  ///< Σ Zᵀ z with the noise that the return has to do with
   /// As it was before the returns before stage k; g begins with what it was then.
@@ -43,7 +41,8 @@ class ForwardPass {
  private:
   const Returns& returns_;
   int first_, next_;
-  Eigen::MatrixXd sums_, g_, product_;
+  Eigen::MatrixXd sums_, g_;
+  Buffer product_;
 };
 
 /// The way back: solves for μ, the latest return first.
@@ -53,13 +52,25 @@ class BackwardPass {
   void start(const Returns& returns, int first, Eigen::VectorXd g);
   /// Crosses the returns before stage k; delta in the root's layout there.
   void cross(const Returns& returns, int k, const double* delta);
+  /// The same, and keeps what is known of each return for the next time.
+  void cross_and_keep(Returns& returns, int k, const double* delta);
   /// z += Z μ.
-  void shift(const ReturnColumns& stage, double* z, int pivots);
+  void shift(const ReturnRows& stage, double* z, int pivots);
+
+  /// How much what is known of the returns changes the noise of the stages that have not been shifted yet [standard
+  /// deviations, its norm over all of them].
+  double change() const { return std::sqrt(std::max(0.0, change2_)); }
 
  private:
+  template <class Known>
+  void cross(const Returns& returns, int k, const double* delta, Known known);
+
   int first_ = 0, next_ = 0;
-  Eigen::VectorXd g_;  ///< increased by what later returns have explained
-  Eigen::VectorXd mu_, gathered_;
+  Eigen::MatrixX2d g_;         ///< increased by what later returns have explained
+  Eigen::MatrixX2d mu_;        ///< by id; second column: its change
+  Eigen::MatrixX2d gathered_;  ///< of a stage
+  Eigen::VectorXd shift_change_;
+  double change2_ = 0.0;
 };
 
 /// An eliminated landmark carried forward: ℓ = xᵀ δ_root + Σ_k Z_kᵀ (y_k + w_k).
@@ -68,7 +79,7 @@ struct Walk {
 
   ForwardPass pass;
   MatrixX3 x;
-  Matrix3 square = Matrix3::Zero();   ///< Σ Zᵀ Z
+  Matrix3 square = Matrix3::Zero();  ///< Σ Zᵀ Z
   Vector3 with_y = Vector3::Zero();  ///< Σ Zᵀ y
 };
 
@@ -94,6 +105,9 @@ struct Return {
   MatrixX3 R;                           ///< in the root's layout
   Vector3 mean = Vector3::Zero();       ///< L⁻¹ Σ Zᵀ w = Rᵀ δ − mean
   std::vector<Checkpoint> checkpoints;  ///< by stage
+
+  Vector3 known = Vector3::Zero();  ///< Rᵀ δ − mean when the stages before were last solved
+  Vector3 delta_before = Vector3::Zero();  ///< increment of the eliminated self when it was last solved for
 };
 
 /// Landmarks that were seen again long after they had been eliminated. Be w = Lᵀ δ_p + Aᵀ δ_r − y the noise of a stage:
@@ -109,19 +123,21 @@ struct Return {
 class Returns {
  public:
   const Return& operator[](int position) const { return returns_[index(position)]; }
+  Return& operator[](int position) { return returns_[index(position)]; }
   int size() const { return static_cast<int>(returns_.size()); }
   int ids() const { return ids_; }
-  int position_of(int id) const { return positions_[index(id)]; }
   /// The position of the first return before a stage later than this.
   int first_after(int stage) const;
   Eigen::VectorXd means() const;
+  /// The return of a landmark that this stage had eliminated before.
+  Return* find(int landmark, int from);
 
   int new_id();
   void free_id(int id) { free_.push_back(id); }
 
   /// The landmark has come back with this walk, which has crossed all others, into this slot; R has `extent` rows. Null,
   /// and nothing done, when the others leave too little unknown of it to tell that from rounding.
-  const Return* append(Return&& result, const Walk& walk, int extent);
+  Return* append(Return&& result, const Walk& walk, int extent);
 
   /// Takes out those before stages later than `done`, in order.
   std::vector<Return> take_after(int done);
@@ -131,7 +147,6 @@ class Returns {
 
  private:
   std::vector<Return> returns_;  ///< by stage
-  std::vector<int> positions_;   ///< by id
   std::vector<int> free_;        ///< ids to use again
   int ids_ = 0;
 };
