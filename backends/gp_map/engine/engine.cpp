@@ -139,9 +139,10 @@ double Engine::size_of_landmark(int j, const Vector3& delta) const {
   return std::sqrt(std::sqrt(largest));
 }
 
-int Engine::first_stage(const Variable& variable) const {
+int Engine::first_stage(const Variable& variable) {
   if (factorisation_.in_base(variable)) return factorisation_.base() + 1;
   if (variable.kind == Variable::Kind::state) return variable.index;
+  if (const Return* came_back = factorisation_.returns().last_of(variable.index)) return came_back->before;
   const auto& seen = graph_.landmarks[index(variable.index)].intervals;
   return seen.empty() ? restart_ : seen.front();
 }
@@ -154,6 +155,7 @@ void Engine::move(const Variable& variable) {
     factorisation_.shift_base(variable, delta.data());
   } else {
     const Vector3 delta = points_.landmark_delta(variable.index);
+    if (Return* came_back = factorisation_.returns().last_of(variable.index)) came_back->offset += delta;
     points_.move_landmark(graph_, variable.index);
     factorisation_.shift_base(variable, delta.data());
   }
@@ -192,7 +194,12 @@ void Engine::choose_points() {
   const auto move_if_far = [&](const Variable& variable) {
     if (size(variable) > options_.relinearise_redone) move(variable);
   };
-  // Nothing moved here can touch an older stage: a state comes in with its own stage, a landmark with its first one.
+  // Nothing moved here can touch an older stage: a state comes in with its own stage, a landmark with its first one or
+  // where it came back.
+  Returns& returns = factorisation_.returns();
+  for (int i = returns.first_after(restart_ - 1); i < returns.size(); ++i) {
+    if (returns.last_of(returns[i].landmark) == &returns[i]) move_if_far({Variable::Kind::landmark, returns[i].landmark});
+  }
   for (int k = std::max(restart_, 0); k <= factorisation_.done(); ++k) {
     move_if_far({Variable::Kind::state, k});
     for (const int j : factorisation_.stage(k).entered) move_if_far({Variable::Kind::landmark, j});

@@ -162,7 +162,7 @@ class Engine {
   void forget_old();
   double size_of_state(int i, const Vector12& delta) const;
   double size_of_landmark(int j, const Vector3& delta) const;
-  int first_stage(const Variable& variable) const;
+  int first_stage(const Variable& variable);
   void choose_points();
   void move(const Variable& variable);
   bool solve(double damping, UpdateSummary& summary);

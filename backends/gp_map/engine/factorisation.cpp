@@ -73,16 +73,15 @@ std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph,
   if (done_ > newest) first = std::min(first, newest + 1);  // states were taken back
   stages_.resize(graph.states.size());
   first = std::min(first, place_anchor(graph));
-  go_back_to(first);
+  first = go_back_to(first, graph);
   while (const std::optional<int> earlier = bring_all_back(graph, points)) {
-    first = std::min(first, *earlier);
-    go_back_to(first);
+    first = std::min(first, go_back_to(*earlier, graph));
   }
   if (returns_.first_after(done_) < returns_.size()) first = done_ + 1;
   for (int k = done_ + 1; k <= newest; ++k) {
     if (const auto singular = do_stage(k, graph, points, damping)) {
       done_ = k;  // nothing after it is usable, and it itself must be redone
-      go_back_to(k);
+      go_back_to(k, graph);
       return singular;
     }
     done_ = k;
@@ -108,9 +107,10 @@ int Factorisation::place_anchor(const FactorGraph& graph) {
   return std::max(base_ + 1, older < 0 ? std::max(before, anchor_stage_) : older);
 }
 
-/// Makes the root what it was before stage `first` or an earlier one.
-void Factorisation::go_back_to(int first) {
-  if (first > done_) return;
+/// Makes the root what it was before stage `first` or an earlier one. Returns the oldest stage that will not be what it
+/// was: an older one if landmarks have moved.
+int Factorisation::go_back_to(int first, const FactorGraph& graph) {
+  if (first > done_) return first;
   const auto after = snapshots_.lower_bound(first);
   for (auto i = after; i != snapshots_.end(); ++i) spare_.push_back(std::move(i->second));
   snapshots_.erase(after, snapshots_.end());
@@ -121,23 +121,33 @@ void Factorisation::go_back_to(int first) {
     root_.restore(snapshots_.rbegin()->second);
     done_ = snapshots_.rbegin()->first;
   }
-  take_back_returns();
+  const int oldest = take_back_returns(graph);
+  return oldest <= done_ ? go_back_to(oldest, graph) : first;
 }
 
-/// Landmarks that had come back after the last stage that is still done will come back now, unless they are in the root
-/// still.
-void Factorisation::take_back_returns() {
+/// Landmarks that had come back after the last stage that is still done will come back now. Those that are still in the
+/// root now, or that have not been seen, will not leave it: if they have moved since they came back, all stages are to
+/// be redone that know them. Returns the oldest of these.
+int Factorisation::take_back_returns(const FactorGraph& graph) {
   std::vector<Return> taken = returns_.take_after(done_);
   std::ranges::move(taken_back_, std::back_inserter(taken));
   taken_back_.clear();
-  for (auto i = taken.rbegin(); i != taken.rend(); ++i) landmarks_[index(i->landmark)].eliminated_at = i->from;
-  for (Return& known : taken) {
-    if (known.from <= done_) {
-      taken_back_.push_back(std::move(known));
-    } else {
-      returns_.free_id(known.id);
-    }
+  int oldest = std::numeric_limits<int>::max();
+  for (auto i = taken.rbegin(); i != taken.rend(); ++i) {
+    landmarks_[index(i->landmark)].eliminated_at = i->from;
+    if (i->from <= done_) continue;
+    const auto same = std::find_if(i + 1, taken.rend(), [&](const Return& r) { return r.landmark == i->landmark; });
+    Return* earlier = same != taken.rend() ? &*same : returns_.last_of(i->landmark);
+    if (earlier != nullptr) earlier->offset += i->offset;
+    returns_.free_id(i->id);
+    if (same != taken.rend() || i->offset.isZero(0.0)) continue;
+    const auto& seen = graph.landmarks[index(i->landmark)].intervals;
+    if (earlier != nullptr) oldest = std::min(oldest, earlier->before);
+    else if (!seen.empty()) oldest = std::min(oldest, seen.front());
   }
+  std::ranges::copy_if(std::make_move_iterator(taken.begin()), std::make_move_iterator(taken.end()),
+                       std::back_inserter(taken_back_), [&](const Return& r) { return r.from <= done_; });
+  return oldest;
 }
 
 /// Brings landmarks back into the root as it is now. If that can't be done, the stage that has to be redone instead.
@@ -145,7 +155,7 @@ std::optional<int> Factorisation::bring_all_back(const FactorGraph& graph, const
   for (auto i = taken_back_.begin(); i != taken_back_.end(); ++i) {
     const int from = i->from;
     if (bring_back_again(std::move(*i), points)) continue;
-    taken_back_.erase(taken_back_.begin(), i + 1);
+    taken_back_.erase(taken_back_.begin(), i);
     return from;
   }
   taken_back_.clear();
@@ -163,10 +173,7 @@ std::optional<int> Factorisation::bring_all_back(const FactorGraph& graph, const
 bool Factorisation::bring_back_again(Return&& known, const LinearisationPoints& points) {
   auto& checkpoints = known.checkpoints;
   while (!checkpoints.empty() && checkpoints.back().stage > done_) checkpoints.pop_back();
-  if (checkpoints.empty() || checkpoints.back().stage < done_) {
-    returns_.free_id(known.id);
-    return false;
-  }
+  if (checkpoints.empty() || checkpoints.back().stage < done_) return false;
   const Return::Checkpoint& start = checkpoints.back();
   Walk walk(returns_, known.from, root_.stride());
   walk.x.topRows(start.x.rows()) = start.x;
@@ -210,7 +217,9 @@ bool Factorisation::walk_and_bring_back(int j, const LinearisationPoints& points
     stage.returned.append(result.id, z.data(), pivots);
     if (snapshots_.contains(k) && k >= done_ - kThinnedUpTo) keep_checkpoint(k, walk, result);
   }
-  return bring_back(std::move(result), walk) != nullptr;
+  if (bring_back(std::move(result), walk) != nullptr) return true;
+  returns_.free_id(result.id);
+  return false;
 }
 
 void Factorisation::keep_checkpoint(int k, Walk& walk, Return& result) const {
@@ -223,15 +232,12 @@ void Factorisation::keep_checkpoint(int k, Walk& walk, Return& result) const {
 }
 
 Return* Factorisation::bring_back(Return&& result, Walk& walk) {
-  const int j = result.landmark, id = result.id;
+  const int j = result.landmark;
   result.before = done_ + 1;
   walk.pass.cross(result.before, walk.x.data(), static_cast<int>(walk.x.rows()));
   result.slot = root_.enter(j);
   Return* appended = returns_.append(std::move(result), walk, root_.extent());
-  if (appended == nullptr) {
-    returns_.free_id(id);
-    return nullptr;
-  }
+  if (appended == nullptr) return nullptr;
   landmarks_[index(j)].eliminated_at = -1;
   root_.add_factor(appended->R, appended->mean);
   return appended;

@@ -125,8 +125,8 @@ class Factorisation {
   template <class Visit>
   void solve_from(int stage, Buffer& x, Buffer& z, const Visit& visit) const;
   int place_anchor(const FactorGraph& graph);
-  void go_back_to(int first);
-  void take_back_returns();
+  int go_back_to(int first, const FactorGraph& graph);
+  int take_back_returns(const FactorGraph& graph);
   std::optional<int> bring_all_back(const FactorGraph& graph, const LinearisationPoints& points);
   bool bring_back_again(Return&& known, const LinearisationPoints& points);
   bool walk_and_bring_back(int j, const LinearisationPoints& points);

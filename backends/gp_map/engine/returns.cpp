@@ -135,6 +135,12 @@ Return* Returns::find(int landmark, int from) {
   return found == returns_.end() ? nullptr : &*found;
 }
 
+Return* Returns::last_of(int landmark) {
+  const auto found = std::find_if(returns_.rbegin(), returns_.rend(),
+                                  [&](const Return& r) { return r.landmark == landmark; });
+  return found == returns_.rend() ? nullptr : &*found;
+}
+
 int Returns::new_id() {
   if (!free_.empty()) {
     const int id = free_.back();
@@ -160,6 +166,7 @@ Return* Returns::append(Return&& result, const Walk& walk, int extent) {
   for (int i = result.first; i < size(); ++i) {
     result.mean -= result.g.middleRows<3>(3 * (i - result.first)).transpose() * returns_[index(i)].mean;
   }
+  result.mean -= result.offset;
   result.L.triangularView<Eigen::Lower>().solveInPlace(result.mean);
   result.R.setZero(extent, 3);
   const auto rows = std::min<Eigen::Index>(extent, walk.x.rows());

@@ -106,6 +106,8 @@ struct Return {
   Vector3 mean = Vector3::Zero();       ///< L⁻¹ Σ Zᵀ w = Rᵀ δ − mean
   std::vector<Checkpoint> checkpoints;  ///< by stage
 
+  /// Of the landmark's linearisation point since it came back from what it was before.
+  Vector3 offset = Vector3::Zero();
   Vector3 known = Vector3::Zero();  ///< Rᵀ δ − mean when the stages before were last solved
   Vector3 delta_before = Vector3::Zero();  ///< increment of the eliminated self when it was last solved for
 };
@@ -131,6 +133,8 @@ class Returns {
   Eigen::VectorXd means() const;
   /// The return of a landmark that this stage had eliminated before.
   Return* find(int landmark, int from);
+  /// The last return of a landmark; null: none.
+  Return* last_of(int landmark);
 
   int new_id();
   void free_id(int id) { free_.push_back(id); }
