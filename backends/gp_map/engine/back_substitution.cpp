@@ -58,6 +58,10 @@ void Engine::set_landmark(int j, const double* delta, int slot) {
   points_.set_landmark_delta(graph_, j, now);
 }
 
+/// What landmarks that came back have taught about older stages may change by this before these are solved anew
+/// [standard deviations of their noise]: as much as `solve_tolerance` is worth, in cost.
+constexpr double kNoiseTolerance = 0.3;
+
 /// Solves back from the root through the stages. All stages that were redone are solved; older ones as long as the
 /// change of the separator, added up over the updates since the stage was last solved, is above the tolerance: so what
 /// is skipped stays bounded however long it goes on.
@@ -74,7 +78,6 @@ void Engine::solve_back(UpdateSummary& summary) {
   }
   clear_returns(newest + 1);
   const double tolerance = options_.solve_tolerance / std::sqrt(std::max(1, landmarks));
-  static const double kNoiseTolerance = getenv("NT") ? atof(getenv("NT")) : 0.1;
   for (int k = newest; k > std::max(0, factorisation_.base()); --k) {
     Factorisation::Stage& stage = factorisation_.stage(k);
     stage.skipped += separator_change(k) + tolerance / kNoiseTolerance * factorisation_.change_by_returns();
@@ -173,6 +176,7 @@ double Engine::concerned_cost(const std::vector<int>& intervals) const {
 
 /// Exchanges the increments with those of before the last solve, of which each variable was part once.
 void Engine::swap_changes() {
+  factorisation_.swap_known();
   for (Change& change : changes_) {
     const int i = change.variable.index;
     if (change.variable.kind == Variable::Kind::state) {

@@ -119,7 +119,8 @@ void Factorisation::add_return_moments(int position, Eigen::MatrixXd& S) const {
 }
 
 /// Σ of what is left in the root gives that of what a conditional took out: with X = A L⁻¹, δ_p = L⁻ᵀ y − Xᵀ δ_r and
-/// Σ_rp = −Σ_rr X, Σ_pp = (L Lᵀ)⁻¹ − Xᵀ Σ_rp. Landmarks that came back are more of the rest, with −Zᵀ for their rows of A.
+/// Σ_rp = −Σ_rr X, Σ_pp = (L Lᵀ)⁻¹ − Xᵀ Σ_rp. Landmarks that came back are more of the rest, with −Zᵀ for their rows of
+/// A.
 std::vector<Matrix24> Factorisation::chain(int first) const {
   std::vector<Matrix24> result(index(std::max(0, done_ - first + 1)));
   const int size = root_.stride() + 3 * returns_.ids();
@@ -141,18 +142,21 @@ std::vector<Matrix24> Factorisation::chain(int first) const {
       const auto L = as_matrix(c->L.data(), p, p, p);
       X.resize(n + returned_rows, p);
       X.topRows(n) = as_matrix(c->A.data(), n, p, n);
-      X.bottomRows(returned_rows) = -as_matrix(returned.Zt.data() + end * returned.stride, returned_rows, p, returned.stride);
+      X.bottomRows(returned_rows) =
+          -as_matrix(returned.Zt.data() + end * returned.stride, returned_rows, p, returned.stride);
       L.triangularView<Eigen::Lower>().solveInPlace<Eigen::OnTheRight>(X);
       S_rp.noalias() = -S.topLeftCorner(rows, n) * X.topRows(n);
       for (std::size_t i = 0; i < returned.ids.size(); ++i) {
-        S_rp.noalias() -= S.middleCols<3>(root_.stride() + 3 * returned.ids[i]) * X.middleRows<3>(n + 3 * static_cast<int>(i));
+        S_rp.noalias() -=
+            S.middleCols<3>(root_.stride() + 3 * returned.ids[i]) * X.middleRows<3>(n + 3 * static_cast<int>(i));
       }
       Eigen::MatrixXd half = Eigen::MatrixXd::Identity(p, p);
       L.triangularView<Eigen::Lower>().solveInPlace(half);
       Eigen::MatrixXd S_pp = half.transpose() * half;
       S_pp.noalias() -= X.topRows(n).transpose() * S_rp.topRows(n);
       for (std::size_t i = 0; i < returned.ids.size(); ++i) {
-        S_pp.noalias() -= X.middleRows<3>(n + 3 * static_cast<int>(i)).transpose() * S_rp.middleRows<3>(root_.stride() + 3 * returned.ids[i]);
+        S_pp.noalias() -= X.middleRows<3>(n + 3 * static_cast<int>(i)).transpose() *
+                          S_rp.middleRows<3>(root_.stride() + 3 * returned.ids[i]);
       }
       std::vector<int> places;
       c->for_each_pivot([&](int row, int count) {

@@ -64,10 +64,12 @@ bool Engine::insert(int landmark, const Observation& observation) {
   points_.invalidate(k);
   invalidate(k);
   if (const auto eliminated = factorisation_.eliminated_at(landmark)) {
-    if (options_.lag > 0.0 || k <= *eliminated + options_.redone_for_return) {
-      invalidate(*eliminated);
-    } else {
+    const bool far = k > *eliminated + options_.redone_for_return ||
+                     (k > *eliminated && factorisation_.oldest_redone(*eliminated, graph_) < *eliminated);
+    if (far && options_.lag == 0.0) {
       factorisation_.bring_back(landmark);
+    } else {
+      invalidate(*eliminated);
     }
   }
   return true;
@@ -142,7 +144,8 @@ double Engine::size_of_landmark(int j, const Vector3& delta) const {
 int Engine::first_stage(const Variable& variable) {
   if (factorisation_.in_base(variable)) return factorisation_.base() + 1;
   if (variable.kind == Variable::Kind::state) return variable.index;
-  if (const Return* came_back = factorisation_.returns().last_of(variable.index)) return came_back->before;
+  const Return* came_back = factorisation_.returns().last_of(variable.index);
+  if (came_back != nullptr && came_back->from <= factorisation_.snapshot_before(restart_)) return came_back->before;
   const auto& seen = graph_.landmarks[index(variable.index)].intervals;
   return seen.empty() ? restart_ : seen.front();
 }
@@ -188,7 +191,10 @@ void Engine::choose_points() {
   };
   const int oldest = static_cast<int>(graph_.states.size()) - options_.reach;
   for (const Variable& variable : candidates_) {
-    if (first_stage(variable) >= std::min(restart_, oldest)) move(variable);
+    const int first = first_stage(variable);
+    if (first >= restart_ || (first >= oldest && factorisation_.oldest_redone(first, graph_) >= oldest)) {
+      move(variable);
+    }
   }
   candidates_.clear();
   const auto move_if_far = [&](const Variable& variable) {
@@ -198,7 +204,8 @@ void Engine::choose_points() {
   // where it came back.
   Returns& returns = factorisation_.returns();
   for (int i = returns.first_after(restart_ - 1); i < returns.size(); ++i) {
-    if (returns.last_of(returns[i].landmark) == &returns[i]) move_if_far({Variable::Kind::landmark, returns[i].landmark});
+    const Variable landmark{Variable::Kind::landmark, returns[i].landmark};
+    if (first_stage(landmark) == returns[i].before) move_if_far(landmark);
   }
   for (int k = std::max(restart_, 0); k <= factorisation_.done(); ++k) {
     move_if_far({Variable::Kind::state, k});

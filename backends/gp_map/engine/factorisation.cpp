@@ -125,6 +125,29 @@ int Factorisation::go_back_to(int first, const FactorGraph& graph) {
   return oldest <= done_ ? go_back_to(oldest, graph) : first;
 }
 
+int Factorisation::snapshot_before(int first) const {
+  if (first > done_) return done_;
+  const auto snapshot = snapshots_.lower_bound(first);
+  return snapshot == snapshots_.begin() ? -1 : std::prev(snapshot)->first;
+}
+
+int Factorisation::oldest_redone(int first, const FactorGraph& graph) const {
+  for (int i = returns_.size() - 1; i >= 0 && returns_[i].before >= first; --i) {
+    const Return& known = returns_[i];
+    if (known.offset.isZero(0.0)) continue;
+    const int done = snapshot_before(first);
+    if (known.from <= done) continue;
+    int earlier = i - 1;
+    while (earlier >= 0 && returns_[earlier].landmark != known.landmark) --earlier;
+    const auto& seen = graph.landmarks[index(known.landmark)].intervals;
+    const int start = earlier >= 0 ? returns_[earlier].before : seen.empty() ? first : seen.front();
+    if (start > done || start >= first) continue;
+    first = start;
+    i = returns_.size();  // more returns may be concerned
+  }
+  return first;
+}
+
 /// Landmarks that had come back after the last stage that is still done will come back now. Those that are still in the
 /// root now, or that have not been seen, will not leave it: if they have moved since they came back, all stages are to
 /// be redone that know them. Returns the oldest of these.
@@ -142,8 +165,10 @@ int Factorisation::take_back_returns(const FactorGraph& graph) {
     returns_.free_id(i->id);
     if (same != taken.rend() || i->offset.isZero(0.0)) continue;
     const auto& seen = graph.landmarks[index(i->landmark)].intervals;
-    if (earlier != nullptr) oldest = std::min(oldest, earlier->before);
-    else if (!seen.empty()) oldest = std::min(oldest, seen.front());
+    if (earlier != nullptr)
+      oldest = std::min(oldest, earlier->before);
+    else if (!seen.empty())
+      oldest = std::min(oldest, seen.front());
   }
   std::ranges::copy_if(std::make_move_iterator(taken.begin()), std::make_move_iterator(taken.end()),
                        std::back_inserter(taken_back_), [&](const Return& r) { return r.from <= done_; });

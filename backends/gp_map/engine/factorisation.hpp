@@ -28,15 +28,15 @@ inline constexpr double kHoldDamping = 1e-9;
 /// The block Cholesky factorisation of the normal equations in the order of time. Stage k adds interval k (k−1 → k) and
 /// the priors on state k to the root, eliminates the landmarks that are seen for the last time in k or before, then
 /// state k−1. What remains after stage k is the root: state k and the landmarks alive there. Stages form a chain: the
-/// separator of stage k is the root after it, and a change in interval k leaves the stages before k as they are. So does
-/// an old landmark that is seen again (returns.hpp).
+/// separator of stage k is the root after it, and a change in interval k leaves the stages before k as they are. So
+/// does an old landmark that is seen again (returns.hpp).
 class Factorisation {
  public:
   struct Stage {
     std::vector<Conditional> conditionals;  ///< in the order of elimination
     std::vector<int> entered;               ///< landmarks that came into the root in this stage
     std::vector<int> entered_slots;         ///< and where
-    ReturnRows returned;                 ///< landmarks that had been eliminated in this stage or before, and came back
+    ReturnRows returned;  ///< landmarks that had been eliminated in this stage or before, and came back
     /// Change of the separator since the stage was last solved back (see Engine); infinite once it has been redone.
     double skipped = 0.0;
 
@@ -59,9 +59,13 @@ class Factorisation {
   /// The stage that eliminates it; none while it is in the root or before it has been seen.
   std::optional<int> eliminated_at(int j) const;
 
-  /// An eliminated landmark has been observed again in an interval that is going to be redone: redo() brings it back into
-  /// the root without redoing the stages since its elimination. Of a full history only.
+  /// An eliminated landmark has been observed again in an interval that is going to be redone: redo() brings it back
+  /// into the root without redoing the stages since its elimination. Of a full history only.
   void bring_back(int j) { called_back_.push_back(j); }
+  /// The last stage before this one from which redo() can go on; −1: none.
+  int snapshot_before(int first) const;
+  /// The oldest stage that is redone if this one is, because landmarks have moved since they came back.
+  int oldest_redone(int first, const FactorGraph& graph) const;
   bool awaits_return() const { return !called_back_.empty(); }
   Returns& returns() { return returns_; }
 
@@ -80,6 +84,8 @@ class Factorisation {
   void solve_root(Buffer& delta);
   /// Then those of the variables that stage k eliminated, from the newest stage backwards.
   void solve_stage(int k, double* delta);
+  /// Exchanges what is known of landmarks that came back with that of before the last solve.
+  void swap_known() { back_.swap_known(returns_); }
   /// How much what was learnt from landmarks that came back changes the stages that are not solved yet (returns.hpp).
   double change_by_returns() const { return back_.change(); }
 

@@ -98,8 +98,13 @@ void BackwardPass::cross(const Returns& returns, int k, const double* delta) {
 
 void BackwardPass::cross_and_keep(Returns& returns, int k, const double* delta) {
   cross(returns, k, delta, [&](int position, const Vector3& known) -> Vector3 {
-    return known - std::exchange(returns[position].known, known);
+    returns[position].known_before = std::exchange(returns[position].known, known);
+    return known - returns[position].known_before;
   });
+}
+
+void BackwardPass::swap_known(Returns& returns) const {
+  for (int i = next_; i < returns.size(); ++i) std::swap(returns[i].known, returns[i].known_before);
 }
 
 void BackwardPass::shift(const ReturnRows& stage, double* z, int pivots) {
@@ -130,14 +135,14 @@ Eigen::VectorXd Returns::means() const {
 }
 
 Return* Returns::find(int landmark, int from) {
-  const auto found = std::ranges::find_if(
-      returns_, [&](const Return& r) { return r.landmark == landmark && r.from == from; });
+  const auto found =
+      std::ranges::find_if(returns_, [&](const Return& r) { return r.landmark == landmark && r.from == from; });
   return found == returns_.end() ? nullptr : &*found;
 }
 
 Return* Returns::last_of(int landmark) {
-  const auto found = std::find_if(returns_.rbegin(), returns_.rend(),
-                                  [&](const Return& r) { return r.landmark == landmark; });
+  const auto found =
+      std::find_if(returns_.rbegin(), returns_.rend(), [&](const Return& r) { return r.landmark == landmark; });
   return found == returns_.rend() ? nullptr : &*found;
 }
 

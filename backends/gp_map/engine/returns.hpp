@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "backends/gp_map/engine/conditional.hpp"
@@ -54,6 +56,8 @@ class BackwardPass {
   void cross(const Returns& returns, int k, const double* delta);
   /// The same, and keeps what is known of each return for the next time.
   void cross_and_keep(Returns& returns, int k, const double* delta);
+  /// Exchanges what cross_and_keep() has kept with what it has replaced.
+  void swap_known(Returns& returns) const;
   /// z += Z μ.
   void shift(const ReturnRows& stage, double* z, int pivots);
 
@@ -108,7 +112,8 @@ struct Return {
 
   /// Of the landmark's linearisation point since it came back from what it was before.
   Vector3 offset = Vector3::Zero();
-  Vector3 known = Vector3::Zero();  ///< Rᵀ δ − mean when the stages before were last solved
+  Vector3 known_before = Vector3::Zero();  ///< the last time but one
+  Vector3 known = Vector3::Zero();         ///< Rᵀ δ − mean when the stages before were last solved
   Vector3 delta_before = Vector3::Zero();  ///< increment of the eliminated self when it was last solved for
 };
 
@@ -120,8 +125,8 @@ struct Return {
 ///
 /// For all returns f, in their order: K_ef = Σ_k Z_ekᵀ Z_fk (over the stages before the earlier one), K = L Lᵀ by
 /// blocks of 3. L⁻¹ Σ Zᵀ w, again of unit covariance, is known from the root's variables at each return: Rᵀ δ − mean.
-/// Then μ = L⁻ᵀ (Rᵀ δ − mean). Whatever is carried forward across a return, with z where a walk has Z, adds R g to its x,
-/// g = L⁻¹ Σ Zᵀ z. For a later return this g is its row of L, for y the mean.
+/// Then μ = L⁻ᵀ (Rᵀ δ − mean). Whatever is carried forward across a return, with z where a walk has Z, adds R g to its
+/// x, g = L⁻¹ Σ Zᵀ z. For a later return this g is its row of L, for y the mean.
 class Returns {
  public:
   const Return& operator[](int position) const { return returns_[index(position)]; }
@@ -139,8 +144,8 @@ class Returns {
   int new_id();
   void free_id(int id) { free_.push_back(id); }
 
-  /// The landmark has come back with this walk, which has crossed all others, into this slot; R has `extent` rows. Null,
-  /// and nothing done, when the others leave too little unknown of it to tell that from rounding.
+  /// The landmark has come back with this walk, which has crossed all others, into this slot; R has `extent` rows.
+  /// Null, and nothing done, when the others leave too little unknown of it to tell that from rounding.
   Return* append(Return&& result, const Walk& walk, int extent);
 
   /// Takes out those before stages later than `done`, in order.
