@@ -1,6 +1,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/engine/landmark_views.hpp"
@@ -57,6 +58,10 @@ void Engine::set_landmark(int j, const double* delta, int slot) {
   points_.set_landmark_delta(graph_, j, now);
 }
 
+/// What landmarks that came back have taught about older stages may change by this before these are solved anew
+/// [standard deviations of their noise]: as much as `solve_tolerance` is worth, in cost.
+constexpr double kNoiseTolerance = 0.3;
+
 /// Solves back from the root through the stages. All stages that were redone are solved; older ones as long as the
 /// change of the separator, added up over the updates since the stage was last solved, is above the tolerance: so what
 /// is skipped stays bounded however long it goes on.
@@ -71,22 +76,38 @@ void Engine::solve_back(UpdateSummary& summary) {
     set_landmark(root.occupant(slot), delta_.data() + Root::row_of_slot(slot), slot);
     ++landmarks;
   }
+  clear_returns(newest + 1);
   const double tolerance = options_.solve_tolerance / std::sqrt(std::max(1, landmarks));
   for (int k = newest; k > std::max(0, factorisation_.base()); --k) {
     Factorisation::Stage& stage = factorisation_.stage(k);
-    stage.skipped += separator_change(k);
+    stage.skipped += separator_change(k) + tolerance / kNoiseTolerance * factorisation_.change_by_returns();
     if (stage.skipped < tolerance) break;
     stage.skipped = 0.0;
     ++summary.solved_back;
-    for (auto conditional = stage.conditionals.rbegin(); conditional != stage.conditionals.rend(); ++conditional) {
-      conditional->back_substitute(delta_.data());
-      for (std::size_t i = 0; i < conditional->landmarks.size(); ++i) {
-        const int row = conditional->rows[i];
-        set_landmark(conditional->landmarks[i], delta_.data() + row, Root::slot_of_row(row));
+    factorisation_.solve_stage(k, delta_.data());
+    for (const Conditional& conditional : stage.conditionals) {
+      for (std::size_t i = 0; i < conditional.landmarks.size(); ++i) {
+        const int j = conditional.landmarks[i], row = conditional.rows[i], slot = Root::slot_of_row(row);
+        if (factorisation_.eliminated_at(j) == k) {
+          set_landmark(j, delta_.data() + row, slot);
+        } else {
+          Vector3& before = factorisation_.returns().find(j, k)->delta_before;  // it came back later
+          const Vector3 now = Eigen::Map<const Vector3>(delta_.data() + row);
+          slot_change_[index(slot)] = size_of_landmark(j, now - std::exchange(before, now));
+        }
       }
-      if (conditional->state >= 0) set_state(conditional->state, delta_.data() + conditional->rows.back());
+      if (conditional.state >= 0) set_state(conditional.state, delta_.data() + conditional.rows.back());
     }
     for (const int slot : stage.entered_slots) slot_change_[index(slot)] = 0.0;
+    clear_returns(k);
+  }
+}
+
+/// Landmarks that came back before stage k are in no slot before it.
+void Engine::clear_returns(int k) {
+  const Returns& returns = factorisation_.returns();
+  for (int i = returns.first_after(k - 1); i < returns.size() && returns[i].before == k; ++i) {
+    slot_change_[index(returns[i].slot)] = 0.0;
   }
 }
 
@@ -155,6 +176,7 @@ double Engine::concerned_cost(const std::vector<int>& intervals) const {
 
 /// Exchanges the increments with those of before the last solve, of which each variable was part once.
 void Engine::swap_changes() {
+  factorisation_.swap_known();
   for (Change& change : changes_) {
     const int i = change.variable.index;
     if (change.variable.kind == Variable::Kind::state) {

@@ -83,14 +83,17 @@ void Conditional::back_substitute(const double* z, double* delta) const {
   });
 }
 
-void Conditional::eliminate(double* r, double* z) const {
-  double* to = z;
+void Conditional::eliminate(double* r, int r_stride, double* z, int z_stride, int columns) const {
+  auto rest = as_matrix(r, extent, columns, r_stride);
+  auto taken = as_matrix(z, pivots, columns, z_stride);
+  int to = 0;
   for_each_pivot([&](int row, int size) {
-    to = std::copy(r + row, r + row + size, to);
-    std::fill(r + row, r + row + size, 0.0);
+    taken.middleRows(to, size) = rest.middleRows(row, size);
+    rest.middleRows(row, size).setZero();
+    to += size;
   });
-  as_matrix(L.data(), pivots, pivots, pivots).triangularView<Eigen::Lower>().solveInPlace(as_vector(z, pivots));
-  as_vector(r, extent).noalias() -= as_matrix(A.data(), extent, pivots, extent) * as_vector(z, pivots);
+  as_matrix(L.data(), pivots, pivots, pivots).triangularView<Eigen::Lower>().solveInPlace(taken);
+  add_product(r, r_stride, -1.0, A.data(), extent, extent, z, z_stride, pivots, columns);
 }
 
 }  // namespace evbench::gp_map

@@ -24,12 +24,11 @@ struct Conditional {
     for (std::size_t i = 0; i < rows.size(); ++i) visit(rows[i], i < landmarks.size() ? 3 : 12);
   }
 
-  /// δ_p from the increments in the root's layout, into their places there.
-  void back_substitute(double* delta) const { back_substitute(y.data(), delta); }
-  /// The same for another right-hand side: δ_p = L⁻ᵀ (z − Aᵀ δ_r).
+  /// δ_p = L⁻ᵀ (z − Aᵀ δ_r) from the increments in the root's layout, into their places there.
   void back_substitute(const double* z, double* delta) const;
-  /// Eliminates from a right-hand side r in the root's layout: z = L⁻¹ r_p; r_p ← 0; r ← r − A z.
-  void eliminate(double* r, double* z) const;
+  /// Eliminates from right-hand sides r in the root's layout: z = L⁻¹ r_p; r_p ← 0; r ← r − A z. All are stored by
+  /// columns, with these strides.
+  void eliminate(double* r, int r_stride, double* z, int z_stride, int columns) const;
 };
 
 /// Pivot columns of one conditional at most, so that a panel stays in the first-level cache.

@@ -32,22 +32,29 @@ std::optional<std::pair<int, int>> Factorisation::find_landmark(int j) const {
 /// when x is in the layout before stage k, from the one after the last done (the root as it is now) down to `stage`.
 template <class Visit>
 void Factorisation::solve_from(int stage, Buffer& x, Buffer& z, const Visit& visit) const {
+  const int stride = static_cast<int>(x.size());
+  ForwardPass pass(returns_, stage, 1);
   z.clear();
   for (int k = stage; k <= done_; ++k) {
-    for (const Conditional& c : stages_[index(k)].conditionals) {
-      z.resize(z.size() + index(c.pivots));
-      c.eliminate(x.data(), z.data() + z.size() - c.pivots);
-    }
+    pass.cross(k, x.data(), stride);
+    const int pivots = stages_[index(k)].pivots();
+    z.resize(z.size() + index(pivots));
+    stages_[index(k)].eliminate(x.data(), stride, z.data() + z.size() - pivots, 1);
+    pass.add(stages_[index(k)].returned, z.data() + z.size() - pivots, pivots);
   }
+  pass.cross(done_ + 1, x.data(), stride);
   solve_with_root_factor(x.data());
   visit(done_ + 1);
+  BackwardPass back;
+  back.start(returns_, pass.first(), pass.g());
+  back.cross(returns_, done_ + 1, x.data());
   double* end = z.data() + z.size();
   for (int k = done_; k >= stage; --k) {
-    const auto& conditionals = stages_[index(k)].conditionals;
-    for (auto c = conditionals.rbegin(); c != conditionals.rend(); ++c) {
-      end -= c->pivots;
-      c->back_substitute(end, x.data());
-    }
+    const int pivots = stages_[index(k)].pivots();
+    end -= pivots;
+    back.shift(stages_[index(k)].returned, end, pivots);
+    stages_[index(k)].back_substitute(end, x.data());
+    back.cross(returns_, k, x.data());
     visit(k);
   }
 }
@@ -87,35 +94,83 @@ Eigen::MatrixXd Factorisation::root_covariance() const {
   return result;
 }
 
+/// S: second moments of everything in the root's layout and, after that, by id of the μ of landmarks that came back.
+/// μ = L⁻ᵀ (Rᵀ δ − mean − ...), but counted with a covariance that is less by what the noise of the stages before has
+/// by itself: with it that noise can be taken for independent (in the mean it is Z μ).
+void Factorisation::add_return_moments(int position, Eigen::MatrixXd& S) const {
+  const Return& e = returns_[position];
+  MatrixX3 W = MatrixX3::Zero(S.rows(), 3);
+  W.topRows(e.R.rows()) = e.R;
+  for (int later = position + 1; later < returns_.size(); ++later) {
+    const Return& f = returns_[later];
+    if (f.first > position) continue;
+    W.middleRows<3>(root_.stride() + 3 * f.id) = -f.g.middleRows<3>(3 * (position - f.first)).transpose();
+  }
+  MatrixX3 moments = S * W;
+  Matrix3 own = W.transpose() * moments - Matrix3::Identity();
+  const auto L = e.L.triangularView<Eigen::Lower>();
+  L.solveInPlace<Eigen::OnTheRight>(moments);
+  L.solveInPlace<Eigen::OnTheRight>(own);
+  L.transpose().solveInPlace(own);
+  const int row = root_.stride() + 3 * e.id;
+  S.middleCols<3>(row) = moments;
+  S.middleRows<3>(row) = moments.transpose();
+  S.block<3, 3>(row, row) = 0.5 * (own + own.transpose());
+}
+
 /// Σ of what is left in the root gives that of what a conditional took out: with X = A L⁻¹, δ_p = L⁻ᵀ y − Xᵀ δ_r and
-/// Σ_rp = −Σ_rr X, Σ_pp = (L Lᵀ)⁻¹ − Xᵀ Σ_rp.
+/// Σ_rp = −Σ_rr X, Σ_pp = (L Lᵀ)⁻¹ − Xᵀ Σ_rp. Landmarks that came back are more of the rest, with −Zᵀ for their rows of
+/// A.
 std::vector<Matrix24> Factorisation::chain(int first) const {
   std::vector<Matrix24> result(index(std::max(0, done_ - first + 1)));
-  Eigen::MatrixXd S = root_covariance(), X, S_rp;
+  const int size = root_.stride() + 3 * returns_.ids();
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(size, size), X, S_rp;
+  S.topLeftCorner(root_.stride(), root_.stride()) = root_covariance();
+  int met = returns_.size();
+  const auto meet = [&](int k) {
+    while (met > 0 && returns_[met - 1].before == k) add_return_moments(--met, S);
+  };
+  meet(done_ + 1);
   for (int k = done_; k >= first; --k) {
     const auto& conditionals = stages_[index(k)].conditionals;
+    const ReturnRows& returned = stages_[index(k)].returned;
+    const int returned_rows = 3 * static_cast<int>(returned.ids.size());
+    int end = stages_[index(k)].pivots();
     for (auto c = conditionals.rbegin(); c != conditionals.rend(); ++c) {
-      const int n = c->extent, p = c->pivots;
+      const int n = c->extent, p = c->pivots, rows = returned.ids.empty() ? n : size;
+      end -= p;
       const auto L = as_matrix(c->L.data(), p, p, p);
-      X = as_matrix(c->A.data(), n, p, n);
+      X.resize(n + returned_rows, p);
+      X.topRows(n) = as_matrix(c->A.data(), n, p, n);
+      X.bottomRows(returned_rows) =
+          -as_matrix(returned.Zt.data() + end * returned.stride, returned_rows, p, returned.stride);
       L.triangularView<Eigen::Lower>().solveInPlace<Eigen::OnTheRight>(X);
-      S_rp.noalias() = -S.topLeftCorner(n, n) * X;
+      S_rp.noalias() = -S.topLeftCorner(rows, n) * X.topRows(n);
+      for (std::size_t i = 0; i < returned.ids.size(); ++i) {
+        S_rp.noalias() -=
+            S.middleCols<3>(root_.stride() + 3 * returned.ids[i]) * X.middleRows<3>(n + 3 * static_cast<int>(i));
+      }
       Eigen::MatrixXd half = Eigen::MatrixXd::Identity(p, p);
       L.triangularView<Eigen::Lower>().solveInPlace(half);
       Eigen::MatrixXd S_pp = half.transpose() * half;
-      S_pp.noalias() -= X.transpose() * S_rp;
-      std::vector<int> rows;
-      c->for_each_pivot([&](int row, int size) {
-        for (int i = 0; i < size; ++i) rows.push_back(row + i);
+      S_pp.noalias() -= X.topRows(n).transpose() * S_rp.topRows(n);
+      for (std::size_t i = 0; i < returned.ids.size(); ++i) {
+        S_pp.noalias() -= X.middleRows<3>(n + 3 * static_cast<int>(i)).transpose() *
+                          S_rp.middleRows<3>(root_.stride() + 3 * returned.ids[i]);
+      }
+      std::vector<int> places;
+      c->for_each_pivot([&](int row, int count) {
+        for (int i = 0; i < count; ++i) places.push_back(row + i);
       });
       for (int i = 0; i < p; ++i) {
-        S.col(rows[index(i)]).head(n) = S_rp.col(i);
-        S.row(rows[index(i)]).head(n) = S_rp.col(i).transpose();
+        S.col(places[index(i)]).head(rows) = S_rp.col(i);
+        S.row(places[index(i)]).head(rows) = S_rp.col(i).transpose();
       }
       for (int i = 0; i < p; ++i) {
-        for (int j = 0; j < p; ++j) S(rows[index(i)], rows[index(j)]) = 0.5 * (S_pp(i, j) + S_pp(j, i));
+        for (int j = 0; j < p; ++j) S(places[index(i)], places[index(j)]) = 0.5 * (S_pp(i, j) + S_pp(j, i));
       }
     }
+    meet(k);
     const int older = Root::row_of_state(k - 1), newer = Root::row_of_state(k);
     Matrix24& joint = result[index(k - first)];
     joint << S.block<12, 12>(older, older), S.block<12, 12>(older, newer), S.block<12, 12>(newer, older),

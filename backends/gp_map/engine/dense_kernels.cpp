@@ -36,6 +36,32 @@ void subtract_tile(double* C, int ldc, const double* rows, const double* columns
   }
 }
 
+template <int Columns, int Vectors>
+void add_product_rows(double* C, int ldc, double factor, const double* A, int lda, const double* B, int ldb, int p) {
+  std::array<std::array<Lane, Vectors>, Columns> sums{};
+  for (int k = 0; k < p; ++k, A += lda) {
+    for (int v = 0; v < Vectors; ++v) {
+      const Lane a = load(A + v * kLanes);
+      for (int c = 0; c < Columns; ++c) sums[c][v] += a * B[c * ldb + k];
+    }
+  }
+  for (int c = 0; c < Columns; ++c) {
+    for (int v = 0; v < Vectors; ++v) {
+      double* at = C + c * ldc + v * kLanes;
+      store(at, load(at) + factor * sums[c][v]);
+    }
+  }
+}
+
+template <int Columns>
+void add_product_columns(double* C, int ldc, double factor, const double* A, int lda, int n, const double* B, int ldb,
+                         int p) {
+  constexpr int kRows = 4 * kLanes;
+  int r = 0;
+  for (; r + kRows <= n; r += kRows) add_product_rows<Columns, 4>(C + r, ldc, factor, A + r, lda, B, ldb, p);
+  for (; r < n; r += kLanes) add_product_rows<Columns, 1>(C + r, ldc, factor, A + r, lda, B, ldb, p);
+}
+
 template <int Vectors>
 void solve_right_rows(double* A, int lda, const double* L, int ldl, int p) {
   for (int k = 0; k < p; ++k) {
@@ -61,6 +87,13 @@ void subtract_outer_product(double* C, int ldc, const double* A, int lda, int n,
     }
     for (; r < n; r += kLanes) subtract_tile<1>(column + r, ldc, A + r, A + c, lda, p);
   }
+}
+
+void add_product(double* C, int ldc, double factor, const double* A, int lda, int n, const double* B, int ldb, int p,
+                 int columns) {
+  int c = 0;
+  for (; c + 3 <= columns; c += 3) add_product_columns<3>(C + c * ldc, ldc, factor, A, lda, n, B + c * ldb, ldb, p);
+  for (; c < columns; ++c) add_product_columns<1>(C + c * ldc, ldc, factor, A, lda, n, B + c * ldb, ldb, p);
 }
 
 void solve_right_transposed(double* A, int lda, int n, const double* L, int ldl, int p) {

@@ -29,6 +29,9 @@ inline int padded(int n) { return (n + kPadding - 1) / kPadding * kPadding; }
 inline auto as_matrix(const double* A, int rows, int columns, int stride) {
   return Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>(A, rows, columns, Eigen::OuterStride<>(stride));
 }
+inline auto as_matrix(double* A, int rows, int columns, int stride) {
+  return Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(A, rows, columns, Eigen::OuterStride<>(stride));
+}
 inline auto as_vector(double* x, int size) { return Eigen::Map<Eigen::VectorXd>(x, size); }
 inline auto as_vector(const double* x, int size) { return Eigen::Map<const Eigen::VectorXd>(x, size); }
 
@@ -37,6 +40,10 @@ inline auto as_vector(const double* x, int size) { return Eigen::Map<const Eigen
 
 /// C −= A Aᵀ: C n × n symmetric, A n × p, n padded.
 void subtract_outer_product(double* C, int ldc, const double* A, int lda, int n, int p);
+
+/// C += factor A B: C n × columns, A n × p, B p × columns, n padded. For few columns, where Eigen copies A first.
+void add_product(double* C, int ldc, double factor, const double* A, int lda, int n, const double* B, int ldb, int p,
+                 int columns);
 
 /// A ← A L⁻ᵀ: A n × p, n padded, L p × p lower.
 void solve_right_transposed(double* A, int lda, int n, const double* L, int ldl, int p);

@@ -23,6 +23,11 @@ TEST_CASE("Dense kernels do what Eigen does, at sizes on both sides of their blo
       subtract_outer_product(C.data(), n, A.data(), n, n, p);
       CHECK((lower(C) - lower(start - A * A.transpose())).norm() < 1e-12 * n * p);
 
+      const Matrix B = Matrix::Random(p, 4);
+      Matrix D = start.leftCols(4);
+      add_product(D.data(), n, -2.0, A.data(), n, n, B.data(), p, p, 4);
+      CHECK((D - (start.leftCols(4) - 2.0 * A * B)).norm() < 1e-12 * n * p);
+
       const Matrix S = Matrix::Identity(p, p) * 4.0 + Matrix::Random(p, p) / p;
       const Matrix L = lower(S);
       Matrix X = A;

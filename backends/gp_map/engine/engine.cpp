@@ -63,7 +63,15 @@ bool Engine::insert(int landmark, const Observation& observation) {
   if (k <= factorisation_.base() || !graph_.add_observation(landmark, observation)) return false;
   points_.invalidate(k);
   invalidate(k);
-  if (const auto eliminated = factorisation_.eliminated_at(landmark)) invalidate(*eliminated);
+  if (const auto eliminated = factorisation_.eliminated_at(landmark)) {
+    const bool far = k > *eliminated + options_.redone_for_return ||
+                     (k > *eliminated && factorisation_.oldest_redone(*eliminated, graph_) < *eliminated);
+    if (far && options_.lag == 0.0) {
+      factorisation_.bring_back(landmark);
+    } else {
+      invalidate(*eliminated);
+    }
+  }
   return true;
 }
 
@@ -133,9 +141,11 @@ double Engine::size_of_landmark(int j, const Vector3& delta) const {
   return std::sqrt(std::sqrt(largest));
 }
 
-int Engine::first_stage(const Variable& variable) const {
+int Engine::first_stage(const Variable& variable) {
   if (factorisation_.in_base(variable)) return factorisation_.base() + 1;
   if (variable.kind == Variable::Kind::state) return variable.index;
+  const Return* came_back = factorisation_.returns().last_of(variable.index);
+  if (came_back != nullptr && came_back->from <= factorisation_.snapshot_before(restart_)) return came_back->before;
   const auto& seen = graph_.landmarks[index(variable.index)].intervals;
   return seen.empty() ? restart_ : seen.front();
 }
@@ -148,6 +158,7 @@ void Engine::move(const Variable& variable) {
     factorisation_.shift_base(variable, delta.data());
   } else {
     const Vector3 delta = points_.landmark_delta(variable.index);
+    if (Return* came_back = factorisation_.returns().last_of(variable.index)) came_back->offset += delta;
     points_.move_landmark(graph_, variable.index);
     factorisation_.shift_base(variable, delta.data());
   }
@@ -180,13 +191,22 @@ void Engine::choose_points() {
   };
   const int oldest = static_cast<int>(graph_.states.size()) - options_.reach;
   for (const Variable& variable : candidates_) {
-    if (first_stage(variable) >= std::min(restart_, oldest)) move(variable);
+    const int first = first_stage(variable);
+    if (first >= restart_ || (first >= oldest && factorisation_.oldest_redone(first, graph_) >= oldest)) {
+      move(variable);
+    }
   }
   candidates_.clear();
   const auto move_if_far = [&](const Variable& variable) {
     if (size(variable) > options_.relinearise_redone) move(variable);
   };
-  // Nothing moved here can touch an older stage: a state comes in with its own stage, a landmark with its first one.
+  // Nothing moved here can touch an older stage: a state comes in with its own stage, a landmark with its first one or
+  // where it came back.
+  Returns& returns = factorisation_.returns();
+  for (int i = returns.first_after(restart_ - 1); i < returns.size(); ++i) {
+    const Variable landmark{Variable::Kind::landmark, returns[i].landmark};
+    if (first_stage(landmark) == returns[i].before) move_if_far(landmark);
+  }
   for (int k = std::max(restart_, 0); k <= factorisation_.done(); ++k) {
     move_if_far({Variable::Kind::state, k});
     for (const int j : factorisation_.stage(k).entered) move_if_far({Variable::Kind::landmark, j});

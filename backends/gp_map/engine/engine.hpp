@@ -19,6 +19,9 @@ struct EngineOptions {
   /// ... unless more than this many stages would have to be redone: what is older stays linear until observations make
   /// its stages be redone, or until optimise(). Bounds the time of an update.
   int reach = 128;
+  /// A landmark seen again within this many states after it was eliminated has them redone; later it comes back
+  /// into the root without that (returns.hpp). With a lag they are always redone.
+  int redone_for_return = 16;
   /// The same for variables in stages that are redone anyway: only their intervals have to be linearised anew.
   double relinearise_redone = 0.0015;
   /// Back-substitution ends where the change of what a stage is solved from is below this over √n with n landmarks in
@@ -159,13 +162,14 @@ class Engine {
   void forget_old();
   double size_of_state(int i, const Vector12& delta) const;
   double size_of_landmark(int j, const Vector3& delta) const;
-  int first_stage(const Variable& variable) const;
+  int first_stage(const Variable& variable);
   void choose_points();
   void move(const Variable& variable);
   bool solve(double damping, UpdateSummary& summary);
   bool factorise_undamped();
   bool open_live_factor();
   void solve_back(UpdateSummary& summary);
+  void clear_returns(int k);
   double separator_change(int k) const;
   void set_state(int i, const double* delta);
   void set_landmark(int j, const double* delta, int slot);

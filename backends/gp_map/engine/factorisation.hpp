@@ -7,6 +7,7 @@
 
 #include "backends/gp_map/engine/conditional.hpp"
 #include "backends/gp_map/engine/linearisation_points.hpp"
+#include "backends/gp_map/engine/returns.hpp"
 #include "backends/gp_map/engine/root_factor.hpp"
 
 namespace evbench::gp_map {
@@ -27,15 +28,22 @@ inline constexpr double kHoldDamping = 1e-9;
 /// The block Cholesky factorisation of the normal equations in the order of time. Stage k adds interval k (k−1 → k) and
 /// the priors on state k to the root, eliminates the landmarks that are seen for the last time in k or before, then
 /// state k−1. What remains after stage k is the root: state k and the landmarks alive there. Stages form a chain: the
-/// separator of stage k is the root after it, and a change in interval k leaves the stages before k as they are.
+/// separator of stage k is the root after it, and a change in interval k leaves the stages before k as they are. So
+/// does an old landmark that is seen again (returns.hpp).
 class Factorisation {
  public:
   struct Stage {
     std::vector<Conditional> conditionals;  ///< in the order of elimination
     std::vector<int> entered;               ///< landmarks that came into the root in this stage
     std::vector<int> entered_slots;         ///< and where
+    ReturnRows returned;  ///< landmarks that had been eliminated in this stage or before, and came back
     /// Change of the separator since the stage was last solved back (see Engine); infinite once it has been redone.
     double skipped = 0.0;
+
+    int pivots() const;
+    /// Of all conditionals, one after the other; z is pivots × columns.
+    void eliminate(double* r, int r_stride, double* z, int columns) const;
+    void back_substitute(const double* z, double* delta) const;
   };
 
   /// A landmark that is not observed any more stays in the root for this many states [≥ 1].
@@ -51,6 +59,16 @@ class Factorisation {
   /// The stage that eliminates it; none while it is in the root or before it has been seen.
   std::optional<int> eliminated_at(int j) const;
 
+  /// An eliminated landmark has been observed again in an interval that is going to be redone: redo() brings it back
+  /// into the root without redoing the stages since its elimination. Of a full history only.
+  void bring_back(int j) { called_back_.push_back(j); }
+  /// The last stage before this one from which redo() can go on; −1: none.
+  int snapshot_before(int first) const;
+  /// The oldest stage that is redone if this one is, because landmarks have moved since they came back.
+  int oldest_redone(int first, const FactorGraph& graph) const;
+  bool awaits_return() const { return !called_back_.empty(); }
+  Returns& returns() { return returns_; }
+
   /// Adds this share to the diagonal when the variable is eliminated: for what its factors leave undetermined.
   void hold(const Variable& variable);
   bool is_held(const Variable& variable) const;
@@ -64,6 +82,12 @@ class Factorisation {
 
   /// The increments of the root's variables, in the root's layout; `delta` grows to the root's extent.
   void solve_root(Buffer& delta);
+  /// Then those of the variables that stage k eliminated, from the newest stage backwards.
+  void solve_stage(int k, double* delta);
+  /// Exchanges what is known of landmarks that came back with that of before the last solve.
+  void swap_known() { back_.swap_known(returns_); }
+  /// How much what was learnt from landmarks that came back changes the stages that are not solved yet (returns.hpp).
+  double change_by_returns() const { return back_.change(); }
 
   /// Covariance of rows in the layout that the root had before stage `stage` eliminated them (or later ones).
   Eigen::MatrixXd marginal(int stage, std::span<const int> rows) const;
@@ -103,10 +127,18 @@ class Factorisation {
   };
   void solve_with_root_factor(double* x) const;
   Eigen::MatrixXd root_covariance() const;
+  void add_return_moments(int position, Eigen::MatrixXd& S) const;
   template <class Visit>
   void solve_from(int stage, Buffer& x, Buffer& z, const Visit& visit) const;
   int place_anchor(const FactorGraph& graph);
-  int go_back_to(int first);
+  int go_back_to(int first, const FactorGraph& graph);
+  int take_back_returns(const FactorGraph& graph);
+  std::optional<int> bring_all_back(const FactorGraph& graph, const LinearisationPoints& points);
+  bool bring_back_again(Return&& known, const LinearisationPoints& points);
+  bool walk_and_bring_back(int j, const LinearisationPoints& points);
+  void keep_checkpoint(int k, Walk& walk, Return& result) const;
+  Return* bring_back(Return&& result, Walk& walk);
+  Buffer increments_of_root(const LinearisationPoints& points) const;
   std::optional<Variable> do_stage(int k, const FactorGraph& graph, LinearisationPoints& points, double damping);
   void add_factors(int k, const FactorGraph& graph, LinearisationPoints& points);
   void add_anchor(const FactorGraph& graph, const LinearisationPoints& points);
@@ -133,6 +165,11 @@ class Factorisation {
   std::vector<Root::Snapshot> spare_;        ///< their memory, to use again
   std::vector<int> finished_;                ///< landmarks to eliminate in the stage at hand
   RootFactor factor_;
+  Returns returns_;
+  std::vector<Return> taken_back_;  ///< of stages that are being redone
+  std::vector<int> called_back_;    ///< landmarks that have not come back yet
+  BackwardPass back_;
+  Buffer right_hand_side_;
   std::int64_t stages_done_ = 0;
 };
 

@@ -26,6 +26,7 @@ bool Engine::open_live_factor() {
   const int newest = static_cast<int>(graph_.states.size()) - 1;
   if (live_.is_of(newest)) return true;
   if (newest < 1 || factorisation_.done() != newest - 1 || restart_ < newest) return false;
+  if (factorisation_.awaits_return()) return false;
   const ControlState& older = points_.state(newest - 1);
   const ControlState& newer = points_.state(newest);
   live_interval_.emplace(older, newer);

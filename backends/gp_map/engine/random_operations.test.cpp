@@ -50,6 +50,7 @@ EngineOptions draw_options(EngineOptions options, std::uint64_t seed) {
   options.grace = 1 + static_cast<int>(seed % 3);
   options.kept_intervals = seed % 2 == 0 ? 64 : 3;
   options.reach = seed % 5 == 0 ? 4 : 128;
+  options.redone_for_return = static_cast<int>(seed / 5 % 3);
   return options;
 }
 

@@ -65,6 +65,12 @@ void Root::add_interval(int k, const IntervalLinearisation& linear) {
   }
 }
 
+void Root::add_factor(const Eigen::Ref<const Eigen::MatrixXd>& R, const Eigen::Ref<const Eigen::VectorXd>& mean) {
+  const int n = static_cast<int>(R.rows());
+  as_matrix(H(), n, n, stride_).selfadjointView<Eigen::Lower>().rankUpdate(R);
+  as_vector(b(), n).noalias() += R * mean;
+}
+
 void Root::add_landmark_factor(std::span<const int> landmarks, const AnchorLinearisation& linear) {
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     if (slot_of(landmarks[i]) < 0) continue;  // never observed: constant

@@ -59,6 +59,8 @@ class Root {
   void add_landmark(int landmark, const Matrix3& H, const Vector3& b);
   /// An interval that ends in state k; all its landmarks are in the root.
   void add_interval(int k, const IntervalLinearisation& linear);
+  /// A factor |Rᵀ δ − mean|² of any variables; R in the root's layout.
+  void add_factor(const Eigen::Ref<const Eigen::MatrixXd>& R, const Eigen::Ref<const Eigen::VectorXd>& mean);
   /// A residual e of landmarks alone with one row J per landmark.
   void add_landmark_factor(std::span<const int> landmarks, const AnchorLinearisation& linear);
   void damp(int row, int rows, double lambda, const double* delta) {

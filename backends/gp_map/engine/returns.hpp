@@ -1,0 +1,163 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "backends/gp_map/engine/conditional.hpp"
+
+namespace evbench::gp_map {
+
+using MatrixX3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+/// What the noise of a stage has to do with landmarks that came back later (see Returns): Zᵀ, 3 rows for each of them.
+struct ReturnRows {
+  std::vector<int> ids;
+  Buffer Zt;       ///< by columns, of which there are as many as the stage has pivots
+  int stride = 0;  ///< padded; rows beyond those in use are zero
+
+  void clear();
+  void append(int id, const double* Z, int pivots);
+};
+
+class Returns;
+
+/// Right-hand sides on their way forward through the stages, across the returns.
+class ForwardPass {
+ public:
+  /// From this stage on.
+  ForwardPass(const Returns& returns, int stage, int columns);
+
+  /// z: what the stage's pivots took of the right-hand sides, pivots × columns.
+  void add(const ReturnRows& stage, const double* z, int pivots);
+  /// Crosses the returns before stage k; x in the root's layout there, with this stride between right-hand sides.
+  void cross(int k, double* x, int stride);
+
+  int first() const { return first_; }  ///< position of the first return that may be crossed
+  auto g() const { return g_.topRows(3 * (next_ - first_)); }
+  auto sum(int id) { return sums_.middleRows<3>(3 * id); }  ///< Σ Zᵀ z with the noise that the return has to do with
+  /// As it was before the returns before stage k; g begins with what it was then.
+  void resume(int k, const Eigen::Ref<const Eigen::MatrixXd>& g);
+
+ private:
+  const Returns& returns_;
+  int first_, next_;
+  Eigen::MatrixXd sums_, g_;
+  Buffer product_;
+};
+
+/// The way back: solves for μ, the latest return first.
+class BackwardPass {
+ public:
+  /// g: of the returns from position `first` on; those before are not met.
+  void start(const Returns& returns, int first, Eigen::VectorXd g);
+  /// Crosses the returns before stage k; delta in the root's layout there.
+  void cross(const Returns& returns, int k, const double* delta);
+  /// The same, and keeps what is known of each return for the next time.
+  void cross_and_keep(Returns& returns, int k, const double* delta);
+  /// Exchanges what cross_and_keep() has kept with what it has replaced.
+  void swap_known(Returns& returns) const;
+  /// z += Z μ.
+  void shift(const ReturnRows& stage, double* z, int pivots);
+
+  /// How much what is known of the returns changes the noise of the stages that have not been shifted yet [standard
+  /// deviations, its norm over all of them].
+  double change() const { return std::sqrt(std::max(0.0, change2_)); }
+
+ private:
+  template <class Known>
+  void cross(const Returns& returns, int k, const double* delta, Known known);
+
+  int first_ = 0, next_ = 0;
+  Eigen::MatrixX2d g_;         ///< increased by what later returns have explained
+  Eigen::MatrixX2d mu_;        ///< by id; second column: its change
+  Eigen::MatrixX2d gathered_;  ///< of a stage
+  Eigen::VectorXd shift_change_;
+  double change2_ = 0.0;
+};
+
+/// An eliminated landmark carried forward: ℓ = xᵀ δ_root + Σ_k Z_kᵀ (y_k + w_k).
+struct Walk {
+  Walk(const Returns& returns, int stage, int rows);
+
+  ForwardPass pass;
+  MatrixX3 x;
+  Matrix3 square = Matrix3::Zero();  ///< Σ Zᵀ Z
+  Vector3 with_y = Vector3::Zero();  ///< Σ Zᵀ y
+};
+
+/// A landmark that had been eliminated and came back into the root.
+struct Return {
+  /// The walk up to an earlier stage, so that the landmark can come back there instead.
+  struct Checkpoint {
+    int stage = 0;
+    MatrixX3 x;
+    Matrix3 square;
+    Vector3 with_y;
+    std::vector<std::pair<int, Matrix3>> sums;  ///< by the ids of returns that had not been crossed
+  };
+
+  int id = 0;
+  int landmark = 0;
+  int from = 0;                         ///< the stage that had eliminated it
+  int before = 0;                       ///< it is in the root again from before this stage on
+  int slot = 0;                         ///< there
+  int first = 0;                        ///< position of the first return that its walk crossed
+  MatrixX3 g;                           ///< row f of L, transposed, from `first` on
+  Matrix3 L;                            ///< and its diagonal block
+  MatrixX3 R;                           ///< in the root's layout
+  Vector3 mean = Vector3::Zero();       ///< L⁻¹ Σ Zᵀ w = Rᵀ δ − mean
+  std::vector<Checkpoint> checkpoints;  ///< by stage
+
+  /// Of the landmark's linearisation point since it came back from what it was before.
+  Vector3 offset = Vector3::Zero();
+  Vector3 known_before = Vector3::Zero();  ///< the last time but one
+  Vector3 known = Vector3::Zero();         ///< Rᵀ δ − mean when the stages before were last solved
+  Vector3 delta_before = Vector3::Zero();  ///< increment of the eliminated self when it was last solved for
+};
+
+/// Landmarks that were seen again long after they had been eliminated. Be w = Lᵀ δ_p + Aᵀ δ_r − y the noise of a stage:
+/// given the root after it, of zero mean and unit covariance, independent from stage to stage. Carried forward through
+/// the stages, an eliminated landmark is a linear function of the root and of such noise (Walk). With that,
+/// p(ℓ | root) comes into the root as a factor, and the root is what it would be had the landmark never left. Older
+/// stages stay as they are, but their noise is not of zero mean any more: given ℓ and the root it is Z μ.
+///
+/// For all returns f, in their order: K_ef = Σ_k Z_ekᵀ Z_fk (over the stages before the earlier one), K = L Lᵀ by
+/// blocks of 3. L⁻¹ Σ Zᵀ w, again of unit covariance, is known from the root's variables at each return: Rᵀ δ − mean.
+/// Then μ = L⁻ᵀ (Rᵀ δ − mean). Whatever is carried forward across a return, with z where a walk has Z, adds R g to its
+/// x, g = L⁻¹ Σ Zᵀ z. For a later return this g is its row of L, for y the mean.
+class Returns {
+ public:
+  const Return& operator[](int position) const { return returns_[index(position)]; }
+  Return& operator[](int position) { return returns_[index(position)]; }
+  int size() const { return static_cast<int>(returns_.size()); }
+  int ids() const { return ids_; }
+  /// The position of the first return before a stage later than this.
+  int first_after(int stage) const;
+  Eigen::VectorXd means() const;
+  /// The return of a landmark that this stage had eliminated before.
+  Return* find(int landmark, int from);
+  /// The last return of a landmark; null: none.
+  Return* last_of(int landmark);
+
+  int new_id();
+  void free_id(int id) { free_.push_back(id); }
+
+  /// The landmark has come back with this walk, which has crossed all others, into this slot; R has `extent` rows.
+  /// Null, and nothing done, when the others leave too little unknown of it to tell that from rounding.
+  Return* append(Return&& result, const Walk& walk, int extent);
+
+  /// Takes out those before stages later than `done`, in order.
+  std::vector<Return> take_after(int done);
+
+  /// Drops checkpoints before this stage.
+  void thin(int stage);
+
+ private:
+  std::vector<Return> returns_;  ///< by stage
+  std::vector<int> free_;        ///< ids to use again
+  int ids_ = 0;
+};
+
+}  // namespace evbench::gp_map

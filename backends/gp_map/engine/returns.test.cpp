@@ -1,0 +1,170 @@
+#include "backends/gp_map/engine/returns.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "backends/gp_map/engine/engine.hpp"
+#include "backends/gp_map/testing/random_session.hpp"
+#include "core/support/index.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kStep = 0.05;  ///< [s] between states
+const PinholeCamera kCamera{200.0, 200.0, 120.0, 90.0};
+
+/// A camera that goes to and fro past a wall of landmarks, so that all of them are seen again and again.
+class Patrol {
+ public:
+  explicit Patrol(const EngineOptions& options) : engine(graph(), options) {
+    for (int j = 0; j < kLandmarks; ++j) {
+      const Vector3 guess = 1.03 * landmark(j);
+      engine.add_landmark(guess, {guess, 1.0});
+    }
+    engine.add_state(guess(0));
+    engine.add_pose_prior({0, guess(0).T, Vector6::Constant(0.01)});
+    engine.add_velocity_prior({0, guess(0).velocity, Vector6::Constant(0.5)});
+  }
+
+  static constexpr int kLandmarks = 40;
+  static Vector3 landmark(int j) { return {0.15 * j, 0.3 * (j % 3) - 0.3, 1.5 + 0.2 * (j % 5)}; }
+  static double place(double t) { return 2.5 - 2.0 * std::cos(1.1 * t); }
+  static ControlState guess(int k) {
+    ControlState state;
+    state.t = kStep * k;
+    state.T.p = {place(state.t) + 0.01 * (k % 3), 0.01 * (k % 4), 0.0};
+    state.velocity(3) = 2.2 * std::sin(1.1 * state.t);
+    return state;
+  }
+  bool observe(int j, double t) {
+    const Vector3 q = landmark(j) - Vector3(place(t), 0.0, 0.0);
+    const Vector2 noise(0.5 * std::sin(97.0 * t + j), 0.5 * std::cos(61.0 * t + 2.0 * j));
+    return engine.add_observation(j, {t, kCamera.project(q) + noise, 1.0});
+  }
+  /// One state more; what is in view is observed twice, by a follower as far as it was accepted here.
+  void step(Patrol* follower = nullptr) {
+    const int k = static_cast<int>(engine.graph().states.size());
+    engine.add_state(guess(k));
+    if (follower != nullptr) follower->engine.add_state(guess(k));
+    for (int j = 0; j < kLandmarks; ++j) {
+      if (std::abs(landmark(j).x() - place(kStep * k)) > 0.7) continue;
+      for (const double back : {0.6, 0.1}) {
+        if (observe(j, kStep * (k - back)) && follower != nullptr) CHECK(follower->observe(j, kStep * (k - back)));
+      }
+    }
+  }
+  void fly(int states) {
+    for (int i = 0; i < states; ++i) {
+      step();
+      const UpdateSummary update = engine.update();
+      CHECK(update.reason.empty());
+      stages += update.stages;
+    }
+  }
+
+  Engine engine;
+  int stages = 0;  ///< redone so far
+
+ private:
+  static FactorGraph graph() {
+    FactorGraph empty;
+    empty.camera = kCamera;
+    empty.qc = Vector6::Constant(0.2);
+    return empty;
+  }
+};
+
+EngineOptions options(int redone_for_return) {
+  EngineOptions result = testing::linear_options();
+  result.redone_for_return = redone_for_return;
+  return result;
+}
+const int kAlways = 1'000'000;
+
+void check_same(Engine& a, Engine& b) {
+  const int newest = static_cast<int>(a.graph().states.size()) - 1;
+  for (int k = a.first_state(); k <= newest; ++k) {
+    CAPTURE(k);
+    CHECK((a.graph().states[index(k)].T.p - b.graph().states[index(k)].T.p).norm() < 1e-8);
+    CHECK((a.graph().states[index(k)].velocity - b.graph().states[index(k)].velocity).norm() < 1e-7);
+  }
+  for (int j = 0; j < Patrol::kLandmarks; ++j) {
+    CAPTURE(j);
+    if (a.forgotten(j)) continue;
+    CHECK((a.graph().landmarks[index(j)].position - b.graph().landmarks[index(j)].position).norm() < 1e-8);
+  }
+}
+
+template <class Matrix>
+void check_close(const Matrix& a, const Matrix& b) {
+  CHECK((a - b).norm() < 1e-7 * b.norm());
+}
+
+void check_same_covariances(Engine& a, Engine& b) {
+  const int newest = static_cast<int>(a.graph().states.size()) - 1;
+  const std::vector<Matrix24> chain = a.chain_covariances(1);
+  REQUIRE(std::ssize(chain) == newest);
+  for (int k = 0; k < newest; k += 7) {
+    CAPTURE(k);
+    check_close(*a.neighbours(k), *b.neighbours(k));
+    check_close(chain[index(k)], *b.neighbours(k));
+  }
+  for (const int i : {0, newest / 3, newest - 5}) check_close(*a.poses(i, newest), *b.poses(i, newest));
+  for (int j = 0; j < Patrol::kLandmarks; j += 3) check_close(*a.landmark_covariance(j), *b.landmark_covariance(j));
+}
+
+}  // namespace
+
+TEST_CASE("Landmarks that come back, again and again, end as if all stages had been redone each time") {
+  Patrol back(options(0)), redone(options(kAlways));
+  for (Patrol* patrol : {&back, &redone}) patrol->fly(260);
+  CHECK(back.engine.graph().observation_count() > 3000);
+  CHECK(back.stages < redone.stages / 5);
+  check_same(back.engine, redone.engine);
+  check_same_covariances(back.engine, redone.engine);
+}
+
+TEST_CASE("Stages before and after a return can be redone, and states taken back") {
+  Patrol back(options(0)), redone(options(kAlways));
+  for (Patrol* patrol : {&back, &redone}) {
+    patrol->fly(130);
+    patrol->observe(3, kStep * 100.5);  // out of view: any number will do
+    patrol->fly(1);
+    patrol->observe(30, kStep * 2.5);
+    patrol->fly(9);
+    for (int i = 0; i < 12; ++i) patrol->engine.remove_newest_state();
+    patrol->engine.update();
+    patrol->fly(20);
+    patrol->engine.remove_landmark(7);
+    patrol->observe(20, kStep * 130.5);
+    patrol->observe(20, kStep * 60.5);
+    patrol->fly(30);
+  }
+  check_same(back.engine, redone.engine);
+  check_same_covariances(back.engine, redone.engine);
+}
+
+TEST_CASE("With a lag what comes back within it ends as in full history") {
+  EngineOptions lagged = options(0);
+  lagged.lag = 3.5;
+  Patrol lag(lagged), full(options(0));
+  for (int k = 0; k < 200; ++k) {
+    lag.step(&full);
+    lag.engine.update();
+    full.engine.update();
+  }
+  CHECK(lag.engine.first_state() > 50);
+  CHECK(full.engine.graph().observation_count() > 2000);
+  check_same(lag.engine, full.engine);
+}
+
+TEST_CASE("Where the problem is far from linear, coming back costs accuracy, but not much") {
+  EngineOptions always;
+  always.redone_for_return = kAlways;
+  Patrol back({}), redone(always);
+  for (Patrol* patrol : {&back, &redone}) patrol->fly(260);
+  const double cost = evaluate(back.engine.graph()).total(), expected = evaluate(redone.engine.graph()).total();
+  CHECK(cost < 1.4 * expected);
+}
+
+}  // namespace evbench::gp_map
