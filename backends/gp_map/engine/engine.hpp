@@ -21,7 +21,7 @@ struct EngineOptions {
   int reach = 128;
   /// A landmark seen again within this many states after it was eliminated has them redone; later it comes back
   /// into the root without that (returns.hpp). With a lag they are always redone.
-  int redone_for_return = 16;
+  int redone_for_return = 100;
   /// The same for variables in stages that are redone anyway: only their intervals have to be linearised anew.
   double relinearise_redone = 0.0015;
   /// Back-substitution ends where the change of what a stage is solved from is below this over √n with n landmarks in
