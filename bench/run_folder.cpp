@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "bench/version.hpp"
+#include "core/data/map_file.hpp"
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/sha256.hpp"
@@ -44,17 +45,6 @@ Json manifest_json(const RunConfig& config, const JobIdentity& identity, const R
           {"inputs_sha256", inputs},
           {"tracks_sha256", result.tracks_sha256},
           {"observations", result.observations}};
-}
-
-std::string map_ply(const std::vector<Landmark>& map) {
-  std::string text = fmt::format(
-      "ply\nformat ascii 1.0\ncomment landmarks in the back-end's world frame\nelement vertex {}\n"
-      "property double x\nproperty double y\nproperty double z\nproperty int64 track\nend_header\n",
-      map.size());
-  for (const Landmark& l : map) {
-    text += fmt::format("{:.9g} {:.9g} {:.9g} {}\n", l.position.x(), l.position.y(), l.position.z(), l.track);
-  }
-  return text;
 }
 
 std::string timing_csv(const std::vector<UpdateRecord>& updates) {
@@ -123,7 +113,7 @@ void write_piece(const AtomicFolder& folder, const Piece& piece, const std::stri
   folder.write("online" + suffix + ".tum", format_tum(piece.online_trajectory));
   folder.write("told" + suffix + ".txt", format_online_poses(piece.told));
   if (!piece.relative.empty()) folder.write("covariance" + suffix + ".txt", format_relative_poses(piece.relative));
-  folder.write("map" + suffix + ".ply", map_ply(piece.map));
+  folder.write("map" + suffix + ".ply", format_map(piece.map));
 }
 
 void write_pieces(const AtomicFolder& folder, const RunResult& result) {

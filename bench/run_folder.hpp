@@ -33,6 +33,7 @@ class EmptyFolders {
 ///   groundtruth.tum  the source's, in the time range of the run (and 1 s around it), where there is one
 ///   metrics.json, status.json        eval/metrics.md
 ///   timing.csv       a line an update
+///   tracks.txt       what the front-end told, raw pixels, where it was asked for
 ///   learnt.csv       what the back-end has learnt of its parameters by then, where it does
 ///   log.txt
 ///

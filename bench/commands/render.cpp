@@ -41,7 +41,8 @@ RenderOptions render_options(const RenderArguments& arguments) {
 
 void execute(const RenderArguments& arguments) {
   const RenderOptions& files = arguments.options;
-  check_outputs({arguments.out}, {arguments.in, files.tracks, files.trajectory, files.calibration, files.beside},
+  check_outputs({arguments.out},
+                {arguments.in, files.tracks, files.trajectory, files.calibration, files.run, files.beside},
                 arguments.force);
   if (arguments.decay && arguments.mode != "time_surface") throw InputError("--decay: is for --mode time_surface");
   RenderReport report;
@@ -113,6 +114,13 @@ void add_picture_options(CLI::App& command, RenderArguments& arguments) {
   command.add_option("--tail", arguments.tail, "How long a track's tail is [ms]; default: 100")
       ->check(CLI::Range(0.001, 1e9))
       ->needs(tracks);
+  command
+      .add_option(
+          "--run", options.run,
+          "Draw a run (its folder, made by evbench run --tracks): tracks, landmarks that are tracked (rings), found "
+          "again (bold rings) and lost (crosses), the trajectory beside the truth")
+      ->type_name("DIR")
+      ->excludes(tracks);
   command.add_option("--beside", options.beside, "Another recording, at the right at the same times")
       ->type_name("FILE");
   command

@@ -38,6 +38,20 @@ PoseTrajectory motion_of(const std::string& path, const RenderOptions& options, 
   throw InputError(fmt::format("{}: has no ground truth; compensation needs --trajectory", path));
 }
 
+Camera camera_of(const std::string& path, const RenderOptions& options, EventStream& stream, const cv::Size& sensor,
+                 const std::string& what) {
+  const std::optional<Camera> camera = options.calibration.empty()
+                                           ? stream.reader().calibration()
+                                           : read_calib(options.calibration, sensor.width, sensor.height,
+                                                        DistortionModel::radial_tangential, options.camera);
+  if (!camera) throw InputError(fmt::format("{}: has no calibration; {} needs --calib", path, what));
+  if (camera->width != sensor.width || camera->height != sensor.height) {
+    throw InputError(fmt::format("{}: calibration of {}x{} pixels; expected the sensor's {}x{}", path, camera->width,
+                                 camera->height, sensor.width, sensor.height));
+  }
+  return *camera;
+}
+
 EventView::EventView(const std::string& path, const RenderOptions& options, const WindowExtent& extent)
     : stream_(path, options.stream),
       size_(sensor_size(path, options.stream, stream_.info())),
@@ -51,16 +65,8 @@ EventView::EventView(const std::string& path, const RenderOptions& options, cons
 void EventView::prepare_compensation(const std::string& path, const RenderOptions& options) {
   const std::string whose = options.trajectory.empty() ? path : options.trajectory;
   trajectory_ = motion_of(path, options, stream_);
-  const std::optional<Camera> camera = options.calibration.empty()
-                                           ? stream_.reader().calibration()
-                                           : read_calib(options.calibration, size_.width, size_.height,
-                                                        DistortionModel::radial_tangential, options.camera);
-  if (!camera) throw InputError(fmt::format("{}: has no calibration; compensation needs --calib", path));
-  if (camera->width != size_.width || camera->height != size_.height) {
-    throw InputError(fmt::format("{}: calibration of {}x{} pixels; expected the sensor's {}x{}", path, camera->width,
-                                 camera->height, size_.width, size_.height));
-  }
-  compensation_.emplace(trajectory_, *camera, options.depth, whose);
+  const Camera camera = camera_of(path, options, stream_, size_, "compensation");
+  compensation_.emplace(trajectory_, camera, options.depth, whose);
 }
 
 EventView::Sight EventView::before(std::int64_t t) {

@@ -15,6 +15,11 @@ namespace evbench {
 /// is neither.
 PoseTrajectory motion_of(const std::string& path, const RenderOptions& options, EventStream& stream);
 
+/// The camera: of the file that the options name, or the recording's own. Throws InputError where there is neither, and
+/// where it is not of the sensor's size. `what` needs it, for the message.
+Camera camera_of(const std::string& path, const RenderOptions& options, EventStream& stream, const cv::Size& sensor,
+                 const std::string& what);
+
 /// One recording as it is seen at a time: reads what it needs, time moves forward.
 class EventView {
  public:

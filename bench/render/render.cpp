@@ -8,6 +8,7 @@
 
 #include "bench/render/event_view.hpp"
 #include "bench/render/picture_sink.hpp"
+#include "bench/render/run_overlay.hpp"
 #include "bench/render/time_label.hpp"
 #include "bench/render/track_overlay.hpp"
 #include "core/data/tracks.hpp"
@@ -96,6 +97,11 @@ class Renderer {
     if (!options.tracks.empty()) {
       tracks_.emplace(read_tracks(options.tracks, main_.size().width, main_.size().height).observations, options.tail);
     }
+    if (!options.run.empty()) {
+      const Camera camera = camera_of(in, options, main_.stream(), main_.size(), "a run");
+      run_.emplace(options.run, camera);
+      tracks_.emplace(run_->tracks(), options.tail);
+    }
     if (!options.beside.empty()) beside_.emplace(options.beside, options, extent);
   }
 
@@ -103,11 +109,13 @@ class Renderer {
     const EventView::Sight sight = main_.before(t);
     drawn_ |= sight.has_events;
     Picture picture = enlarge(sight.picture, scale_);
+    const double now = static_cast<double>(sight.t + main_.stream().zero()) * 1e-6;
+    if (run_) run_->draw_landmarks(now, scale_, palette_, picture);
     if (tracks_) {
-      const double now = static_cast<double>(sight.t + main_.stream().zero()) * 1e-6;
       drawn_tracks_ |= tracks_->draw(now, scale_, palette_, picture);
     }
     if (with_time_) draw_time(sight.t, palette_, picture);
+    if (run_) picture = side_by_side(picture, run_->draw_trajectory(now, picture.rows, palette_), palette_);
     if (!beside_) return picture;
     const EventView::Sight other = beside_->before(t);
     drawn_beside_ |= other.has_events;
@@ -142,6 +150,7 @@ class Renderer {
   std::string in_, beside_path_;
   EventView main_;
   int scale_;
+  std::optional<RunOverlay> run_;
   std::optional<TrackOverlay> tracks_;
   std::optional<EventView> beside_;
   bool drawn_ = false, drawn_beside_ = false;  ///< any event?

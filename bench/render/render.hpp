@@ -36,6 +36,7 @@ struct RenderOptions {
   std::string calibration;      ///< likewise
   std::string camera;           ///< of a calibration of several; empty: the only one
   std::optional<double> depth;  ///< of the plane [m]; none: only the rotation is compensated
+  std::string run;              ///< folder of a run with tracks, to be drawn over `in` and beside it; empty: none
   std::string beside;           ///< another recording, at the right; empty: none
 };
 

@@ -10,9 +10,13 @@
 namespace evbench {
 namespace {
 
-constexpr int kFractionBits = 4;  // of the coordinates of OpenCV's drawing functions
+cv::Scalar scalar(const Colour& colour) { return {double(colour[0]), double(colour[1]), double(colour[2])}; }
 
-/// The sensor's pixel in an enlarged picture, whose pixel (0, 0) has its centre at (0, 0), too.
+int thickness(int scale) { return std::max(1, (2 * scale + 1) / 3); }  // [px] of a tail
+int radius(int scale) { return std::max(2, (4 * scale + 1) / 3); }     // [px] of a dot
+
+}  // namespace
+
 cv::Point enlarged(const Vector2& pixel, int scale) {
   const double limit = 1e6;  // observations may lie far outside
   const auto coordinate = [&](double value) {
@@ -21,13 +25,6 @@ cv::Point enlarged(const Vector2& pixel, int scale) {
   };
   return {coordinate(pixel.x()), coordinate(pixel.y())};
 }
-
-cv::Scalar scalar(const Colour& colour) { return {double(colour[0]), double(colour[1]), double(colour[2])}; }
-
-int thickness(int scale) { return std::max(1, (2 * scale + 1) / 3); }  // [px] of a tail
-int radius(int scale) { return std::max(2, (4 * scale + 1) / 3); }     // [px] of a dot
-
-}  // namespace
 
 Colour track_colour(TrackId track, const Palette& palette) {
   constexpr double kGoldenRatio = 0.6180339887498949;

@@ -26,6 +26,10 @@ class TrackOverlay {
   double tail_;
 };
 
+/// A sensor's pixel in a picture that is enlarged by `scale`, in OpenCV's fixed point with kFractionBits.
+inline constexpr int kFractionBits = 4;
+cv::Point enlarged(const Vector2& pixel, int scale);
+
 /// Neither the red nor the blue of events; neighbouring ids differ most.
 Colour track_colour(TrackId track, const Palette& palette);
 

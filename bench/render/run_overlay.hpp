@@ -1,0 +1,45 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bench/render/palette.hpp"
+#include "core/data/landmark.hpp"
+#include "core/data/track.hpp"
+#include "core/geometry/camera.hpp"
+#include "core/motion/pose_trajectory.hpp"
+
+namespace evbench {
+
+/// A run as one sees it beside its events: where its final estimate says that its landmarks are in the image, which of
+/// them are tracked, and where the camera has been.
+class RunOverlay {
+ public:
+  /// Throws InputError for a folder that is not a run's, or was made without --tracks.
+  RunOverlay(const std::string& folder, const Camera& camera);
+
+  /// In time order.
+  const std::vector<TrackObservation>& tracks() const { return tracks_; }
+
+  /// Landmarks over a picture of the sensor at t [s], each pixel of it `scale` pixels wide: a ring where it is tracked,
+  /// a bold one for a while when it has been found again, a cross where it was seen before and is not now.
+  void draw_landmarks(double t, int scale, const Palette& palette, Picture& picture) const;
+
+  /// A square picture of so many pixels: ground truth, where there is one, and the estimate up to t, aligned by Sim(3),
+  /// in the two directions in which they are widest.
+  Picture draw_trajectory(double t, int size, const Palette& palette) const;
+
+ private:
+  enum class Sight { unseen, tracked, found_again, lost };
+  Sight sight_of(TrackId track, double t) const;
+
+  Camera camera_;
+  std::vector<TrackObservation> tracks_;
+  std::map<TrackId, std::vector<double>> times_;  ///< [s] of each track's observations
+  std::vector<Landmark> map_;
+  PoseTrajectory estimate_;  ///< as the back-end has it
+  std::vector<StampedPose> aligned_, truth_;
+};
+
+}  // namespace evbench

@@ -1,0 +1,30 @@
+#include "core/data/map_file.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/io/atomic_file.hpp"
+#include "core/testing/data.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+
+TEST_CASE("A map that was written is read back as it was") {
+  const TemporaryFolder folder;
+  const std::vector<Landmark> map = {{17, {0.5, -1.25, 3.0}}, {1234567890123, {1e-3, 2.0, 1e6}}};
+  write_file(folder.file("map.ply"), format_map(map));
+  const std::vector<Landmark> read = read_map(folder.file("map.ply"));
+  REQUIRE(read.size() == 2);
+  CHECK(read[1].track == 1234567890123);
+  CHECK(read[0].position == map[0].position);
+  CHECK(read[1].position == map[1].position);
+}
+
+TEST_CASE("What is no map is refused with the place") {
+  const TemporaryFolder folder;
+  write_file(folder.file("a.ply"), "solid\n1 2 3\n");
+  CHECK_THROWS_WITH(read_map(folder.file("a.ply")), Catch::Matchers::Contains("a.ply:1"));
+  write_file(folder.file("b.ply"), "ply\nformat ascii 1.0\n");
+  CHECK_THROWS_WITH(read_map(folder.file("b.ply")), Catch::Matchers::Contains("end_header"));
+  write_file(folder.file("c.ply"), "ply\nend_header\n1 2 x 4\n");
+  CHECK_THROWS_WITH(read_map(folder.file("c.ply")), Catch::Matchers::Contains("c.ply:3"));
+}
