@@ -8,7 +8,7 @@ namespace evbench::haste {
 
 /// When a tracker is given up.
 struct LifeOptions {
-  double spread = 0.1;
+  double spread = 0.2;
   double border = 8.0;
   double starvation = 15.0;
   double crowding = 5.0;
