@@ -13,6 +13,8 @@ Palette dark_palette() {
   return {.background = {22, 17, 14}, .on = {84, 94, 255}, .off = {255, 168, 76}, .frame = {96, 90, 84}};
 }
 
+cv::Scalar scalar(const Colour& colour) { return {double(colour[0]), double(colour[1]), double(colour[2])}; }
+
 Colour blend(const Colour& a, const Colour& b, double share) {
   share = std::clamp(share, 0.0, 1.0);
   Colour mixed;

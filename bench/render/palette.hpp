@@ -17,6 +17,9 @@ Palette light_palette();
 /// Lighter red and blue on almost black.
 Palette dark_palette();
 
+/// For OpenCV's drawing functions.
+cv::Scalar scalar(const Colour& colour);
+
 /// `share` of `b` in `a`, from 0 (a) to 1 (b).
 Colour blend(const Colour& a, const Colour& b, double share);
 

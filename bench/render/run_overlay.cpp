@@ -21,8 +21,6 @@ namespace {
 constexpr double kAlive = 0.25;      ///< [s] without an observation after which a track counts as lost
 constexpr double kFoundAgain = 0.7;  ///< [s] for which it is shown that it was found
 
-cv::Scalar scalar(const Colour& colour) { return {double(colour[0]), double(colour[1]), double(colour[2])}; }
-
 std::string file_of(const std::string& folder, const char* name, const char* hint) {
   const std::string path = folder + "/" + name;
   if (!std::filesystem::is_regular_file(path)) {

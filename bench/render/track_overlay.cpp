@@ -10,8 +10,6 @@
 namespace evbench {
 namespace {
 
-cv::Scalar scalar(const Colour& colour) { return {double(colour[0]), double(colour[1]), double(colour[2])}; }
-
 int thickness(int scale) { return std::max(1, (2 * scale + 1) / 3); }  // [px] of a tail
 int radius(int scale) { return std::max(2, (4 * scale + 1) / 3); }     // [px] of a dot
 

@@ -6,37 +6,11 @@
 #include <memory>
 #include <vector>
 
-#include "core/events/event_stream.hpp"
 #include "core/plugin/source.hpp"
 #include "core/simulation/random.hpp"
+#include "core/testing/event_list.hpp"
 
 namespace evbench::testing {
-
-/// Events in memory as a recording.
-class EventList : public EventReader {
- public:
-  EventList(const std::vector<Event>& events, int width, int height) : events_(events) {
-    info_.width = width;
-    info_.height = height;
-  }
-  const StreamInfo& info() const override { return info_; }
-  bool read(std::vector<Event>& events) override {
-    constexpr std::size_t kChunk = 10'000;
-    const std::size_t end = std::min(events_.size(), next_ + kChunk);
-    events.assign(events_.begin() + static_cast<std::ptrdiff_t>(next_),
-                  events_.begin() + static_cast<std::ptrdiff_t>(end));
-    next_ = end;
-    return !events.empty();
-  }
-  void seek(std::int64_t) override { next_ = 0; }
-  const Faults& faults() const override { return faults_; }
-
- private:
-  const std::vector<Event>& events_;
-  StreamInfo info_;
-  Faults faults_{"events in memory", false};
-  std::size_t next_ = 0;
-};
 
 /// A wall of outlines, 2 m before the camera's path, as an event camera of 240 x 180 pixels sees it: an outline is made
 /// of points, and a point emits an event when its image comes into another pixel. Quickly made, and of events as they

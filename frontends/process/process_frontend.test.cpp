@@ -5,37 +5,13 @@
 
 #include "core/support/error.hpp"
 #include "core/testing/data.hpp"
+#include "core/testing/event_list.hpp"
 
 using namespace evbench;
 using namespace evbench::process;
 using Catch::Matchers::Contains;
 
 namespace {
-
-/// Hands out events a few at a time.
-class FakeReader : public EventReader {
- public:
-  FakeReader(std::vector<Event> events, const Camera& camera) : events_(std::move(events)) {
-    info_.width = camera.width;
-    info_.height = camera.height;
-  }
-  const StreamInfo& info() const override { return info_; }
-  bool read(std::vector<Event>& events) override {
-    const std::size_t end = std::min(next_ + 3, events_.size());
-    events.assign(events_.begin() + static_cast<std::ptrdiff_t>(next_),
-                  events_.begin() + static_cast<std::ptrdiff_t>(end));
-    next_ = end;
-    return !events.empty();
-  }
-  void seek(std::int64_t) override { next_ = 0; }
-  const Faults& faults() const override { return faults_; }
-
- private:
-  std::vector<Event> events_;
-  std::size_t next_ = 0;
-  StreamInfo info_;
-  Faults faults_{"", false};
-};
 
 class FakeSource : public Source {
  public:
@@ -51,7 +27,7 @@ class FakeSource : public Source {
   const PoseTrajectory& ground_truth() const override { return trajectory_; }
   std::unique_ptr<EventReader> all_events() const override {
     if (events_.empty()) return nullptr;
-    return std::make_unique<FakeReader>(events_, camera_);
+    return std::make_unique<testing::EventList>(events_, camera_.width, camera_.height, 3);  // a few at a time
   }
 
  private:
