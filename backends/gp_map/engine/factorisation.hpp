@@ -121,6 +121,8 @@ class Factorisation {
   std::int64_t stages_done() const { return stages_done_; }
 
  private:
+  static constexpr int kThinnedUpTo = 136;  ///< age of snapshots beyond which their spacing doesn't change any more
+
   struct LandmarkStatus {
     int eliminated_at = -1;
     bool held = false, forgotten = false;
