@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 4);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 5);
 
 constexpr double kYoung = 5.0;    ///< [s] for which another first map is looked for
 constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
@@ -248,6 +248,18 @@ void GpMap::learn() {
     engine_->set_loss(noise_.loss(options_.loss, options_.loss_width));
   }
   if (options_.learn.prior == LearnPrior::always) prior_.follow(*engine_);
+  if (options_.learn.prior == LearnPrior::final && options_.lag > 0.0) learn_before_settling();
+}
+
+/// With a lag there is no final estimate: the prior is learnt from both sides while there is time. What is newest knows
+/// one side alone.
+void GpMap::learn_before_settling() {
+  constexpr double kPace = 0.25, kOneSided = 0.1;  // of the lag
+  const double now = graph().states.back().t, oldest = graph().states[index(engine_->first_state())].t;
+  if (now < oldest + (1.0 - kPace) * options_.lag || now < learnt_until_ + kPace * options_.lag) return;
+  learnt_until_ = now;
+  learn_prior(*engine_, now - kOneSided * options_.lag);
+  last_update_ = engine_->update();
 }
 
 /// What is seen next is compared with the newest state's constant velocity.
@@ -420,8 +432,17 @@ void GpMap::finish() {
                   first_map_.reason().empty() ? "no observations" : "no first map: " + first_map_.reason());
     return;
   }
-  if (options_.final_iterations == 0 || options_.lag > 0.0) return;
+  if (options_.final_iterations == 0) return;
   const auto start = std::chrono::steady_clock::now();
+  if (options_.lag > 0.0) {
+    for (int round = 0; options_.learn.prior != LearnPrior::never && round < options_.learn.rounds; ++round) {
+      learn_prior(*engine_);
+      engine_->update();
+    }
+    record_final_prior();
+    add_record(graph().states.back().t, seconds_since(start), options_.learn.rounds, {});
+    return;
+  }
   const Engine::OptimiseSummary summary = estimate_everything();
   record_final_prior();
   context_.log(fmt::format("final estimate: cost {:.2f} after {:.2f}, {} iterations{}", summary.final_cost,

@@ -74,6 +74,7 @@ class GpMap : public BackEnd {
   void optimise();
   void yield_to_motion();
   void learn();
+  void learn_before_settling();
   void check_support();
   void forget_ended_tracks(double t);
   void predict_tracks();
@@ -123,6 +124,7 @@ class GpMap : public BackEnd {
   UpdateSummary last_update_;
   PriorLearner prior_;
   NoiseLearner noise_;
+  double learnt_until_ = -std::numeric_limits<double>::infinity();  ///< [s], with a lag
   double seconds_since_step_ = 0.0;  ///< spent on single observations
   TrackingMonitor monitor_;
   double until_ = 0.0;                                        ///< [s] of the last batch

@@ -74,11 +74,11 @@ struct LearningOptions {
   int rounds = 6;
 
   void declare(OptionSet& set) {
-    set.add(
-        "prior", prior, {"never", "final", "always"},
-        "when the prior's power spectral density is learnt from the data, beginning with qc: never; for the final "
-        "estimate, from everything; always, so also while running, which is better where the scale is held well and "
-        "can lose it where landmarks live for less than a second or the motion is violent");
+    set.add("prior", prior, {"never", "final", "always"},
+            "when the prior's power spectral density is learnt from the data, beginning with qc: never; for the final "
+            "estimate, from everything, with a lag before states are marginalised; always, so also while running, "
+            "which is better where the scale is held well and "
+            "can lose it where landmarks live for less than a second or the motion is violent");
     set.add("noise", noise,
             "learn a scale of the observations' sigmas, and how much of their information counts, as trackers drift");
     set.add("window", window, "\"always\": while running, the prior follows what the last seconds show [s]")

@@ -127,8 +127,9 @@ Vector6 PriorLearner::qc_at(double t) const {
   return window.qc(memory.qc(memory.common_qc(*begin_, kBegin), kCommonWeight), kGuessWeight);
 }
 
-void learn_prior(Engine& engine) {
-  const std::vector<PriorEvidence> evidence = evidence_from(engine, 1);
+void learn_prior(Engine& engine, double until) {
+  const int first = engine.first_state() + 1;
+  const std::vector<PriorEvidence> evidence = evidence_from(engine, first);
   PriorEvidence all;
   for (const PriorEvidence& one : evidence) {
     all.square += one.square;
@@ -139,12 +140,12 @@ void learn_prior(Engine& engine) {
   std::vector<PriorEvidence> before = evidence, after = evidence;
   for (std::size_t k = 1; k < evidence.size(); ++k) before[k].add(before[k - 1], kHistoryWindow);
   for (std::size_t k = evidence.size(); k-- > 1;) after[k - 1].add(after[k], kHistoryWindow);
-  for (std::size_t k = 0; k < evidence.size(); ++k) {
+  for (std::size_t k = 0; k < evidence.size() && evidence[k].t <= until; ++k) {
     PriorEvidence sum = before[k];
     sum.square += after[k].square - evidence[k].square;
     sum.freedom += after[k].freedom - evidence[k].freedom;
     const Vector6 qc = sum.qc(mean, kGuessWeight);
-    engine.set_qc(static_cast<int>(k) + 1, qc, evidence[k].expansion(qc));
+    engine.set_qc(first + static_cast<int>(k), qc, evidence[k].expansion(qc));
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -52,7 +53,8 @@ class PriorLearner {
   double followed_until_ = -1e300;       ///< [s]
 };
 
-/// Learns the prior of a whole history from all of it.
-void learn_prior(Engine& engine);
+/// Learns the prior of the intervals that are still estimated, with a lag those within it, from all of them, and sets it
+/// up to the time `until` [s].
+void learn_prior(Engine& engine, double until = std::numeric_limits<double>::infinity());
 
 }  // namespace evbench::gp_map
