@@ -78,6 +78,19 @@ std::vector<StampedPose> knots_of(const PoseTrajectory& file, double rate) {
   return knots;
 }
 
+/// The motion's own time, which runs at the pace that the options say.
+class PaceClock {
+ public:
+  PaceClock(const std::vector<double>& pace, double duration)
+      : from_(pace[0]), growth_(duration > 0.0 ? std::log(pace[1] / pace[0]) / duration : 0.0) {}
+
+  double operator()(double t) const { return growth_ == 0.0 ? from_ * t : from_ * std::expm1(growth_ * t) / growth_; }
+
+ private:
+  double from_;    ///< pace at the beginning
+  double growth_;  ///< of its logarithm [1/s]
+};
+
 Motion from_trajectory(const MotionOptions& options, double duration, const std::string& folder,
                        const std::string& place) {
   if (options.trajectory.empty()) {
@@ -86,8 +99,9 @@ Motion from_trajectory(const MotionOptions& options, double duration, const std:
   const PoseTrajectory file = read_poses(resolve_path(options.trajectory, folder)).trajectory;
   const double begin = file.start() + options.start;
   if (begin + duration > file.end()) {
-    throw InputError(fmt::format("{}.trajectory: {} lasts {:.3f} s; expected at least start + duration = {:.3f} s",
-                                 place, options.trajectory, file.end() - file.start(), options.start + duration));
+    throw InputError(
+        fmt::format("{}.trajectory: {} lasts {:.3f} s; expected at least start and duration at its pace = {:.3f} s",
+                    place, options.trajectory, file.end() - file.start(), options.start + duration));
   }
   std::vector<StampedPose> knots = knots_of(file, options.knot_rate);
   for (StampedPose& knot : knots) knot.T.p *= options.scale;
@@ -118,6 +132,9 @@ void MotionOptions::declare(OptionSet& set) {
   set.add("knot_rate", knot_rate, "poses of the trajectory that are used [Hz]; fewer smooth its noise; 0: all")
       .range(0.0, 1e4);
   set.add("scale", scale, "factor on the trajectory's positions").above(0.0);
+  set.add("pace", pace, "how fast it is run through, [at the beginning, at the end]: a slowing camera is [4, 0.5]")
+      .size(2)
+      .range(1e-3, 1e3);
   set.add("hold", hold, "spans without any motion [from, to, from, to, ...] [s]");
   set.add("rotation_only", rotation_only, "spans in which the camera only rotates [from, to, ...] [s]");
 }
@@ -131,9 +148,10 @@ Motion make_motion(const MotionOptions& options, double duration, std::uint64_t 
                        place + ".hold and .rotation_only", kGap);
   // The position rests in both kinds of spans, the rotation in the first only.
   const StoppingClock rotation_clock(hold), position_clock(no_translation);
-  const Motion base = base_motion(options, duration, seed, folder, place);
-  return [base, rotation_clock, position_clock](double t) {
-    return SE3{base(rotation_clock(t)).q, base(position_clock(t)).p};
+  const PaceClock own_time(options.pace, duration);
+  const Motion base = base_motion(options, own_time(duration), seed, folder, place);
+  return [base, own_time, rotation_clock, position_clock](double t) {
+    return SE3{base(own_time(rotation_clock(t))).q, base(own_time(position_clock(t))).p};
   };
 }
 

@@ -24,6 +24,7 @@ struct MotionOptions {
   double start = 0.0;
   double knot_rate = 20.0;
   double scale = 1.0;
+  std::vector<double> pace = {1.0, 1.0};
   std::vector<double> hold, rotation_only;
 
   void declare(OptionSet& set);
@@ -35,6 +36,8 @@ struct MotionOptions {
 ///   point at `distance` in front of the path's centre, with a gentle roll;
 /// - trajectory: the poses of a file (relative to `folder`), sampled at knot_rate and joined by a spline (PoseSpline).
 ///   What joins them must be no back-end's motion model, which it would favour.
+/// Each is run through faster or slower by `pace`, which goes from its first value to its second over the sequence, by
+/// the same factor each second.
 /// Throws InputError, naming `place`, when a trajectory file is missing, too short for `duration` [s], or damaged.
 Motion make_motion(const MotionOptions& options, double duration, std::uint64_t seed, const std::string& folder,
                    const std::string& place);

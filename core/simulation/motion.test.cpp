@@ -62,6 +62,22 @@ TEST_CASE("The robot arm's motion repeats after its period") {
   CHECK(se3::log(motion(1.3).inverse() * motion(7.3)).norm() < 1e-9);
 }
 
+TEST_CASE("A pace takes the camera the same way in another time, and a falling one slows it down") {
+  MotionOptions options;
+  const Motion usual = motion_of(options);
+  options.pace = {2.0, 2.0};
+  const Motion twice = motion_of(options);
+  for (double t = 0.0; t < 5.0; t += 0.1) REQUIRE((twice(t).p - usual(2.0 * t).p).norm() < 1e-12);
+  options.pace = {4.0, 0.5};
+  const Motion slowing = motion_of(options);
+  check_smooth(slowing, 10.0, 0.05);
+  // The pace is 4 (1/8)^(t/10): the motion's time is its integral.
+  const auto own_time = [](double t) { return 40.0 / std::log(0.125) * (std::pow(0.125, t / 10.0) - 1.0); };
+  for (double t = 0.0; t <= 10.0; t += 0.5) CHECK((slowing(t).p - usual(own_time(t)).p).norm() < 1e-9);
+  CHECK(velocity(slowing, 0.01).norm() == Approx(4.0 * velocity(usual, own_time(0.01)).norm()).epsilon(0.01));
+  CHECK(velocity(slowing, 9.99).norm() == Approx(0.5 * velocity(usual, own_time(9.99)).norm()).epsilon(0.01));
+}
+
 TEST_CASE("A trajectory file is followed, with continuous velocity") {
   const testing::TemporaryFolder folder;
   const Motion truth = motion_of({});
