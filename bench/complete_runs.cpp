@@ -26,20 +26,9 @@ std::optional<std::string> content_of(const std::string& path) {
   return text.str();
 }
 
-/// Does a complete run of this job lie there?
 bool is_complete(const std::string& folder, const JobIdentity& identity) {
-  if (content_of(folder + "/job.json") != identity.text) return false;
-  for (const char* name :
-       {"config.json", "manifest.json", "final.tum", "online.tum", "told.txt", "map.ply", "log.txt"}) {
-    std::error_code error;
-    if (!fs::is_regular_file(folder + "/" + name, error)) return false;
-  }
-  try {
-    const RunRecord record = read_record(folder);
-    return record.key == identity.key && record.status && record.status->complete;
-  } catch (const InputError&) {  // damaged: it is done again
-    return false;
-  }
+  std::string ignored;
+  return condition_of(folder, identity, ignored) == RunCondition::complete;
 }
 
 Json parse(const std::string& path) {
@@ -73,6 +62,33 @@ RunRecord rewrite(const std::string& from, const std::string& to, const Json& co
 }
 
 }  // namespace
+
+RunCondition condition_of(const std::string& folder, const JobIdentity& identity, std::string& why) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) return RunCondition::absent;
+  if (content_of(folder + "/job.json") != identity.text) {
+    why = fmt::format("{}/job.json: is not that of the job; expected what {} stands for", folder, identity.key);
+    return RunCondition::damaged;
+  }
+  for (const char* name :
+       {"config.json", "manifest.json", "final.tum", "online.tum", "told.txt", "map.ply", "log.txt"}) {
+    if (fs::is_regular_file(folder + "/" + name, error)) continue;
+    why = fmt::format("{}/{}: is missing", folder, name);
+    return RunCondition::damaged;
+  }
+  try {
+    const RunRecord record = read_record(folder);
+    if (record.key == identity.key && record.status) {
+      if (record.status->complete) return RunCondition::complete;
+      why = record.status->status.reason;
+      return RunCondition::broken_off;
+    }
+    why = fmt::format("{}/metrics.json: has no status, or the key of another run", folder);
+  } catch (const InputError& damage) {
+    why = damage.what();
+  }
+  return RunCondition::damaged;
+}
 
 std::optional<std::string> find_complete_run(const std::string& out, const std::string& experiment,
                                              const JobIdentity& identity) {

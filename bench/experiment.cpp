@@ -46,23 +46,6 @@ struct ExperimentOptions {
   }
 };
 
-Json parse_file(const std::string& path) {
-  std::error_code none;
-  if (std::filesystem::is_directory(path, none)) {
-    throw InputError(fmt::format("{}: is a folder; expected a JSON config", path));
-  }
-  if (path != "-" && !std::filesystem::exists(path, none)) throw InputError(fmt::format("{}: no such file", path));
-  std::ifstream file(seekable_path(path), std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: can't be read; expected a JSON config", path));
-  std::ostringstream text;
-  text << file.rdbuf();
-  try {
-    return Json::parse(text.str(), nullptr, true, true);  // comments allowed
-  } catch (const Json::exception& error) {                // also for numbers out of range
-    throw InputError(fmt::format("{}: is not JSON: {}", path, json_reason(error)));
-  }
-}
-
 /// What a schema says of the key `part` of `value`; nullptr: nothing.
 const Json* schema_below(const Json* schema, const Json& value, const std::string& part) {
   if (schema == nullptr) return nullptr;
@@ -78,12 +61,13 @@ const Json* schema_below(const Json* schema, const Json& value, const std::strin
   return properties != schema->end() && properties->contains(part) ? &properties->at(part) : nullptr;
 }
 
-/// Does KEY=VALUE of --set. The schema tells what is text, whatever it looks like, and a list's default, of which a
-/// position may be set.
-void set_value(Json& config, const std::string& assignment, const Json& of_config) {
+/// Does KEY=VALUE. The schema tells what is text, whatever it looks like, and a list's default, of which a position may
+/// be set.
+void set_value(Json& config, const std::string& assignment, const Json& of_config,
+               const std::string& origin = "--set") {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw InputError(fmt::format("--set {}: expected KEY=VALUE", assignment));
+    throw InputError(fmt::format("{} {}: expected KEY=VALUE", origin, assignment));
   }
   Json* target = &config;
   const Json* schema = &of_config;
@@ -99,13 +83,14 @@ void set_value(Json& config, const std::string& assignment, const Json& of_confi
       const std::size_t index = number ? std::stoul(part) : target->size();
       if (index >= target->size()) {
         throw InputError(
-            fmt::format("--set {}: \"{}\" is not a position in a list of {}", assignment, part, target->size()));
+            fmt::format("{} {}: \"{}\" is not a position in a list of {}", origin, assignment, part, target->size()));
       }
       target = &(*target)[index];
     } else if (target->is_object() || target->is_null()) {
       target = &(*target)[part];
     } else {
-      throw InputError(fmt::format("--set {}: what stands before \"{}\" is a value, not an object", assignment, part));
+      throw InputError(
+          fmt::format("{} {}: what stands before \"{}\" is a value, not an object", origin, assignment, part));
     }
   }
   const std::string text = assignment.substr(equals + 1);
@@ -114,7 +99,8 @@ void set_value(Json& config, const std::string& assignment, const Json& of_confi
   *target = is_text || value.is_discarded() ? Json(text) : value;
 }
 
-/// Is the error of what --set gave: its place or one below, the list that it is in, or a key that nobody knows there?
+/// Is the error of what an override gave: its place or one below, the list that it is in, or a key that nobody knows
+/// there?
 bool is_about(const std::string& error, const std::string& path, const std::string& assignment) {
   const std::string key = assignment.substr(0, assignment.find('='));
   const std::size_t dot = key.rfind('.');
@@ -129,9 +115,10 @@ bool is_about(const std::string& error, const std::string& path, const std::stri
          error.starts_with(fmt::format("{}: unknown key \"{}\"", path, key.substr(0, key.find('.'))));
 }
 
-/// Calls `read`; an error in a value that --set gave says so.
+/// Calls `read`; an error in a value that an override gave says so.
 template <class Read>
-auto naming_overrides(const std::string& path, const std::vector<std::string>& overrides, const Read& read) {
+auto naming_overrides(const std::string& path, const std::vector<std::string>& overrides, const Read& read,
+                      const std::string& origin = "--set") {
   try {
     return read();
   } catch (const Interrupted&) {
@@ -139,14 +126,14 @@ auto naming_overrides(const std::string& path, const std::vector<std::string>& o
   } catch (const InputError& error) {
     for (const std::string& assignment : overrides) {
       if (!is_about(error.what(), path, assignment)) continue;
-      throw InputError(fmt::format("{} (from --set {})", error.what(), assignment));
+      throw InputError(fmt::format("{} (from {} {})", error.what(), origin, assignment));
     }
     throw;
   }
 }
 
 Json parse_config(const std::string& path, const std::vector<std::string>& overrides, const Json& schema) {
-  Json json = parse_file(path);
+  Json json = read_json(path);
   for (const std::string& assignment : overrides) set_value(json, assignment, schema);
   return json;
 }
@@ -283,9 +270,37 @@ Json RunConfig::resolved() const {
           {"evaluation", write_options(evaluation)}};
 }
 
+Json read_json(const std::string& path) {
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) {
+    throw InputError(fmt::format("{}: is a folder; expected a JSON config", path));
+  }
+  if (path != "-" && !std::filesystem::exists(path, none)) throw InputError(fmt::format("{}: no such file", path));
+  std::ifstream file(seekable_path(path), std::ios::binary);
+  if (!file) throw InputError(fmt::format("{}: can't be read; expected a JSON config", path));
+  std::ostringstream text;
+  text << file.rdbuf();
+  try {
+    return Json::parse(text.str(), nullptr, true, true);  // comments allowed
+  } catch (const Json::exception& error) {                // also for numbers out of range
+    throw InputError(fmt::format("{}: is not JSON: {}", path, json_reason(error)));
+  }
+}
+
+ConfigFile::ConfigFile(const std::string& path, const Plugins& plugins) : ConfigFile(path, read_json(path), plugins) {}
+
+ConfigFile::ConfigFile(std::string path, Json config, const Plugins& plugins)
+    : path_(std::move(path)), config_(std::move(config)), schema_(experiment_schema(plugins)), plugins_(plugins) {}
+
+Experiment ConfigFile::experiment(const std::vector<std::string>& overrides, const std::string& origin) const {
+  Json config = config_;
+  for (const std::string& assignment : overrides) set_value(config, assignment, schema_, origin);
+  return naming_overrides(
+      path_, overrides, [&] { return read_config(config, path_, plugins_); }, origin);
+}
+
 Experiment read_experiment(const std::string& path, const std::vector<std::string>& overrides, const Plugins& plugins) {
-  const Json json = parse_config(path, overrides, experiment_schema(plugins));
-  return naming_overrides(path, overrides, [&] { return read_config(json, path, plugins); });
+  return ConfigFile(path, plugins).experiment(overrides);
 }
 
 std::vector<std::string> read_plugin_paths(const std::string& path, const std::vector<std::string>& overrides) {
@@ -304,7 +319,7 @@ ScoreOptions read_evaluation(const std::string& path, const Json& otherwise, con
   defaults.declare(set);
   const Json schema = {{"properties", {{"evaluation", set.schema()}}}};
   if (!path.empty()) {
-    const Json file = parse_file(path);
+    const Json file = read_json(path);
     if (!file.is_object()) throw InputError(fmt::format("{}: expected a config with an \"evaluation\"", path));
     json["evaluation"] = file.value("evaluation", Json::object());
   }

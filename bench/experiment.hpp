@@ -33,6 +33,26 @@ struct Experiment {
   std::vector<RunConfig> runs;
 };
 
+/// A file of JSON, with comments if need be. Throws InputError when it can't be read or is none.
+Json read_json(const std::string& path);
+
+/// A config that is parsed once, and of which experiments are made with one set of overrides after another.
+class ConfigFile {
+ public:
+  /// Parses a config file. Throws InputError when that can't be done.
+  ConfigFile(const std::string& path, const Plugins& plugins);
+  /// A config that stands in another file: `path` is its place, for messages and for relative paths.
+  ConfigFile(std::string path, Json config, const Plugins& plugins);
+
+  /// As read_experiment() gives it. `origin` says in messages where the overrides come from.
+  Experiment experiment(const std::vector<std::string>& overrides, const std::string& origin = "--set") const;
+
+ private:
+  std::string path_;
+  Json config_, schema_;
+  const Plugins& plugins_;
+};
+
 /// Reads a config file. `overrides` are "key=value" with the key a path of names and list positions
 /// ("backends.0.frame_duration=0.1") and the value JSON, or text where it is not JSON.
 /// Throws InputError with the place for anything that is not as expected; nothing has been run or written then.

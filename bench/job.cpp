@@ -33,10 +33,10 @@ std::string digest_of_folder(const std::string& path) {
 }
 
 /// What a source reads: events only where the front-end does.
-std::vector<std::string> source_files(const Job& job, const Source& source, const Plugins& plugins) {
-  std::vector<std::string> files = source.files();
+std::vector<std::string> source_files(const Job& job, const SourceFiles& source, const Plugins& plugins) {
+  std::vector<std::string> files = source.files;
   if (plugins.of<FrontEnd>().find(job.frontend.type, job.frontend.place + ".type").reads_events) {
-    std::ranges::move(source.event_files(), std::back_inserter(files));
+    std::ranges::copy(source.events, std::back_inserter(files));
   }
   return files;
 }
@@ -101,7 +101,7 @@ const std::string& Digests::of(const std::string& path) {
   return known_.emplace(path, digest).first->second;
 }
 
-JobIdentity identify(const Job& job, const Source& source, const Plugins& plugins, Digests& digests) {
+JobIdentity identify(const Job& job, const SourceFiles& source, const Plugins& plugins, Digests& digests) {
   Identifier identifier(job, plugins, digests);
   Json json = {{"pipeline_version", kPipelineVersion},
                {"seed", job.seed},

@@ -54,8 +54,16 @@ struct JobIdentity {
   std::vector<std::pair<std::string, std::string>> files;  ///< path and SHA-256 of what is read, each once
 };
 
+/// What a source reads.
+struct SourceFiles {
+  SourceFiles(const Source& source)  // NOLINT(google-explicit-constructor): a source stands for its files
+      : files(source.files()), events(source.event_files()) {}
+
+  std::vector<std::string> files, events;  ///< as Source::files() and event_files()
+};
+
 /// Throws InputError for a file that is missing. `source` is the job's.
-JobIdentity identify(const Job& job, const Source& source, const Plugins& plugins, Digests& digests);
+JobIdentity identify(const Job& job, const SourceFiles& source, const Plugins& plugins, Digests& digests);
 
 /// Makes the source of a job; the jobs of an experiment share it.
 std::unique_ptr<Source> make_source(const Job& job, const Plugins& plugins);

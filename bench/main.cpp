@@ -57,6 +57,9 @@ int run_program(int argc, char** argv) {
   app.parse_complete_callback([&] { evbench::load_plugins(plugins, libraries); });  // before any command's
   int exit_code = evbench::kExitDone;
   evbench::add_run(app, plugins, exit_code);
+  evbench::add_sweep(app, plugins, exit_code);
+  evbench::add_status(app, exit_code);
+  evbench::add_task(app, plugins, exit_code);
   evbench::add_eval(app);
   evbench::add_score(app);
   evbench::add_table(app);

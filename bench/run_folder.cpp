@@ -85,9 +85,8 @@ RunStatus status_of(const Execution& execution) {
   return status;
 }
 
-/// All but the scores.
-RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const Source& source,
-                    const Execution& execution) {
+/// All but the scores and the sequence's time range.
+RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const Execution& execution) {
   const RunResult& result = execution.result;
   const RunTimes& times = result.times;
   RunRecord record;
@@ -97,7 +96,6 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
   record.key = identity.key;
   record.position = config.position;
   record.settings = settings_of(config.resolved());
-  record.range = {source.time_range().from, source.time_range().to};
   record.status = status_of(execution);
   if (!execution.complete) return record;
   record.data_s = result.data_s;
@@ -146,19 +144,40 @@ RunFolder::RunFolder(const std::string& out, const std::string& experiment, cons
 RunRecord RunFolder::write(const RunConfig& config, const JobIdentity& identity, const Source& source,
                            const std::string& ground_truth, const Execution& execution, bool problem) {
   const RunResult& result = execution.result;
-  folder_.write("config.json", pretty(config.resolved()));
-  folder_.write("job.json", identity.text);
-  folder_.write("manifest.json", pretty(manifest_json(config, identity, result)));
-  write_pieces(folder_, result);
+  write_files(config, identity, result);
   if (!ground_truth.empty()) folder_.write("groundtruth.tum", ground_truth);
-  folder_.write("timing.csv", timing_csv(result.updates));
   if (!result.learnt.empty()) folder_.write("learnt.csv", learnt_csv(result));
-  folder_.write("log.txt", log_text(config, result));
   if (problem && !result.pieces.empty() && result.pieces[result.longest].problem) {
     folder_.write("problem.txt", format_problem(*result.pieces[result.longest].problem));
   }
   if (!result.tracks.empty()) folder_.write("tracks.txt", format_tracks(result.tracks));
-  RunRecord record = record_of(config, identity, source, execution);
+  RunRecord record = record_of(config, identity, execution);
+  record.range = {source.time_range().from, source.time_range().to};
+  return finish(config, std::move(record));
+}
+
+RunRecord RunFolder::write_broken_off(const RunConfig& config, const JobIdentity& identity, const std::string& reason,
+                                      const std::vector<std::string>& log) {
+  folder_.clear();
+  Execution execution;
+  execution.complete = false;
+  execution.result.status = {RunState::failed, reason, 0.0, {}};
+  execution.result.log = log;
+  write_files(config, identity, execution.result);
+  return finish(config, record_of(config, identity, execution));
+}
+
+/// What every run has, but for its scores.
+void RunFolder::write_files(const RunConfig& config, const JobIdentity& identity, const RunResult& result) const {
+  folder_.write("config.json", pretty(config.resolved()));
+  folder_.write("job.json", identity.text);
+  folder_.write("manifest.json", pretty(manifest_json(config, identity, result)));
+  write_pieces(folder_, result);
+  folder_.write("timing.csv", timing_csv(result.updates));
+  folder_.write("log.txt", log_text(config, result));
+}
+
+RunRecord RunFolder::finish(const RunConfig& config, RunRecord record) {
   score_run(folder_.part(), config.evaluation, record);
   folder_.write("status.json", pretty(to_json(*record.status)));
   folder_.write("metrics.json", pretty(to_json(record)));

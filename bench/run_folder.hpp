@@ -42,7 +42,8 @@ class EmptyFolders {
 /// older run of the same key is replaced.
 class RunFolder {
  public:
-  /// Takes the folder: throws InputError when it can't be made or another run is writing to it, before any work.
+  /// Takes the folder: throws OutputError when it can't be made and FolderTaken when another run is writing to it,
+  /// before any work.
   RunFolder(const std::string& out, const std::string& experiment, const std::string& key);
 
   /// Writes a run, scored by its config. `ground_truth` is what ground_truth_tum() gives. With `problem`, also
@@ -50,9 +51,18 @@ class RunFolder {
   /// tracks.txt.
   RunRecord write(const RunConfig& config, const JobIdentity& identity, const Source& source,
                   const std::string& ground_truth, const Execution& execution, bool problem = false);
+
+  /// Writes a run that ended without telling anything, in place of what has been written of it: failed for this reason,
+  /// not complete. `log`: what is known of how it ended.
+  RunRecord write_broken_off(const RunConfig& config, const JobIdentity& identity, const std::string& reason,
+                             const std::vector<std::string>& log);
+
   const std::string& path() const { return path_; }
 
  private:
+  void write_files(const RunConfig& config, const JobIdentity& identity, const RunResult& result) const;
+  RunRecord finish(const RunConfig& config, RunRecord record);
+
   std::string path_;
   EmptyFolders made_;  // before the folder: it must be gone by then
   AtomicFolder folder_;
@@ -60,6 +70,17 @@ class RunFolder {
 
 /// The text of groundtruth.tum; empty where there is no ground truth.
 std::string ground_truth_tum(const Source& source);
+
+/// What lies in a run's folder.
+enum class RunCondition {
+  absent,
+  complete,
+  broken_off,  ///< the run's failure: it did not come to its end
+  damaged,     ///< files are missing or can't be read
+};
+
+/// What lies in a folder of this job. `why`: of a run that broke off its reason, of a damaged one what is wrong.
+RunCondition condition_of(const std::string& folder, const JobIdentity& identity, std::string& why);
 
 /// Where a complete run of this job lies below `out`: of this experiment or, where there is none, of another one.
 std::optional<std::string> find_complete_run(const std::string& out, const std::string& experiment,

@@ -28,6 +28,13 @@ void add_export(CLI::App& app, Plugins& plugins);
 /// `exit_code` is set to what the program returns: 0, or 3 when a run failed. Plugins are added likewise.
 void add_run(CLI::App& app, Plugins& plugins, int& exit_code);
 
+/// Likewise.
+void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code);
+void add_task(CLI::App& app, Plugins& plugins, int& exit_code);
+
+/// `exit_code` likewise: 3 when runs failed or are still to be done.
+void add_status(CLI::App& app, int& exit_code);
+
 /// `exit_code` likewise: 3 when a check fails.
 void add_check_plugin(CLI::App& app, const Plugins& plugins, int& exit_code);
 

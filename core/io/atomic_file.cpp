@@ -107,7 +107,7 @@ AtomicFolder::AtomicFolder(const std::string& path)
   if (error) throw OutputError(fmt::format("{}: can't be made: {}", parent.string(), error.message()));
   lock_ = open_locked(lock_path_, path);
   if (lock_ < 0) {
-    throw InputError(fmt::format("{}: another run is writing to this folder; wait for it, or write elsewhere", path));
+    throw FolderTaken(fmt::format("{}: another run is writing to this folder; wait for it, or write elsewhere", path));
   }
   std::error_code removal;
   fs::remove_all(part_, removal);  // what a killed run left
@@ -120,6 +120,14 @@ AtomicFolder::AtomicFolder(const std::string& path)
   }
 }
 
+bool AtomicFolder::is_taken(const std::string& path) {
+  const int file = ::open((follow_links(path) + ".evbench.lock").c_str(), O_RDWR | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool free = ::flock(file, LOCK_EX | LOCK_NB) == 0;
+  ::close(file);
+  return !free;
+}
+
 AtomicFolder::~AtomicFolder() {
   std::error_code ignored;
   fs::remove_all(part_, ignored);
@@ -129,6 +137,13 @@ AtomicFolder::~AtomicFolder() {
 
 void AtomicFolder::write(const std::string& name, std::string_view content) const {
   write_whole(part_ + "/" + name, content, path_ + "/" + name, flush_data);
+}
+
+void AtomicFolder::clear() const {
+  std::error_code error;
+  fs::remove_all(part_, error);
+  if (!error) fs::create_directory(part_, error);
+  if (error) throw OutputError(fmt::format("{}: can't be cleared: {}", path_, error.message()));
 }
 
 void AtomicFolder::commit() {

@@ -98,13 +98,27 @@ TEST_CASE("A folder takes the place of what a link leads to, and leaves alone wh
   CHECK(count_entries(folder.file("disk")) == 2);
 }
 
+TEST_CASE("A folder that is cleared holds what is written afterwards alone") {
+  const testing::TemporaryFolder folder;
+  AtomicFolder run(folder.file("run"));
+  run.write("a", "half");
+  run.clear();
+  run.write("b", "whole");
+  run.commit();
+  CHECK(count_entries(folder.file("run")) == 1);
+  CHECK(read_file(folder.file("run/b")) == "whole");
+}
+
 TEST_CASE("A folder has one writer at a time") {
   const testing::TemporaryFolder folder;
   {
     const AtomicFolder first(folder.file("run"));
-    CHECK_THROWS_AS(AtomicFolder(folder.file("run")), InputError);
+    CHECK_THROWS_AS(AtomicFolder(folder.file("run")), FolderTaken);
     CHECK_NOTHROW(AtomicFolder(folder.file("other")));
+    CHECK(AtomicFolder::is_taken(folder.file("run")));
+    CHECK_FALSE(AtomicFolder::is_taken(folder.file("other")));
   }
+  CHECK_FALSE(AtomicFolder::is_taken(folder.file("run")));
   CHECK_NOTHROW(AtomicFolder(folder.file("run")));
 }
 

@@ -1,0 +1,250 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bench/commands/commands.hpp"
+#include "bench/commands/exit_code.hpp"
+#include "bench/commands/progress_line.hpp"
+#include "bench/run_folder.hpp"
+#include "bench/sweep/local_executor.hpp"
+#include "bench/sweep/manifest.hpp"
+#include "bench/sweep/slurm_executor.hpp"
+#include "bench/sweep/sweep_status.hpp"
+#include "core/io/atomic_file.hpp"
+#include "core/support/interruption.hpp"
+
+namespace evbench {
+namespace {
+
+struct SweepArguments {
+  std::string file;
+  std::vector<std::string> over, only, overrides;
+  ExecutorOptions options;
+  std::optional<double> seconds, memory_mib;
+  std::optional<int> at_a_time;
+  SlurmOptions slurm;
+  std::string executor = "local";
+  bool dry_run = false, quiet = false;
+};
+
+std::string shown_duration(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  return fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
+std::string shown_progress(const SweepProgress& now) {
+  std::string text = fmt::format("{} of {} done", now.done, now.runs);
+  if (now.failed > 0) text += fmt::format(", {} failed", now.failed);
+  text += fmt::format(", {} running", now.running);
+  if (now.elsewhere > 0) text += fmt::format(", {} elsewhere", now.elsewhere);
+  if (now.seconds_left > 0.0) text += fmt::format(", about {} left", shown_duration(now.seconds_left));
+  return text;
+}
+
+std::string shown(const TroubledRun& run) {
+  return fmt::format("{}: {}{}{}: {}", run.lost ? "lost" : "failed", run.label, run.place.empty() ? "" : ", ",
+                     run.place, run.reason);
+}
+
+void print_plan(const std::vector<PlannedRun>& runs, const SweepPlan& plan, const ExecutorOptions& options) {
+  constexpr const char* kConditions[] = {"to do", "complete", "broken off", "damaged"};
+  std::size_t to_do = 0;
+  for (const PlannedRun& run : runs) {
+    std::string why;
+    auto condition = condition_of(fmt::format("{}/{}/{}", options.out, plan.name, run.identity.key), run.identity, why);
+    if (condition == RunCondition::absent && find_complete_run(options.out, plan.name, run.identity)) {
+      condition = RunCondition::complete;
+    }
+    const bool failed = condition == RunCondition::broken_off || condition == RunCondition::damaged;
+    if (condition == RunCondition::absent || (failed && options.retry_failed)) ++to_do;
+    fmt::print("{:<10}  {}  {}{}{}\n", kConditions[static_cast<int>(condition)], run.identity.key, run.config.label,
+               run.axes.empty() ? "" : ", ", place_of(run));
+  }
+  fmt::print("{} runs, {} to do\n", runs.size(), to_do);
+}
+
+int do_locally(const std::vector<PlannedRun>& runs, const SweepArguments& arguments, const std::string& folder,
+               const Plugins& plugins) {
+  ProgressLine line(folder, arguments.quiet);
+  SweepProgress now;
+  std::size_t told = 0;
+  const auto tell = [&](const SweepProgress& progress) {
+    for (; told < progress.troubled.size() && !arguments.quiet; ++told) {
+      line.clear();
+      fmt::print("{}\n", shown(progress.troubled[told]));
+      std::fflush(stdout);
+    }
+    line.update(shown_progress(progress));
+    now = progress;
+  };
+  try {
+    now = do_runs(runs, plugins, arguments.options, tell);
+    tell(now);
+    line.clear();
+  } catch (const Interrupted& interrupted) {
+    throw Interrupted(fmt::format("{}: interrupted; {} of {} runs are complete, the same command goes on from there",
+                                  folder, now.done, now.runs),
+                      interrupted.signal());
+  }
+  if (!arguments.quiet) {
+    fmt::print("{}: {} runs, {} of them complete before, {} failed{}\n", folder, now.runs, now.before, now.failed,
+               now.failed == 0 ? "" : " (--retry-failed does again those that broke off)");
+    fmt::print("evbench table {}\n", folder);
+  }
+  return now.failed == 0 ? kExitDone : kExitFailed;
+}
+
+/// With --wait what came of it counts.
+int exit_code_of(const std::string& folder) {
+  for (const SweepStatus& sweep : read_sweep_status(folder)) {
+    if (sweep.done < sweep.runs) return kExitFailed;
+  }
+  return kExitDone;
+}
+
+int hand_to_slurm(const std::vector<PlannedRun>& runs, SweepArguments& arguments, const std::string& folder) {
+  if (runs.empty()) {
+    if (!arguments.quiet) fmt::print("{}: nothing is to be done\n", folder);
+    return exit_code_of(folder);
+  }
+  arguments.slurm.width = arguments.at_a_time.value_or(0);
+  const SlurmSubmission submission = submit_to_slurm(runs, arguments.options, arguments.slurm, folder);
+  if (!arguments.quiet) {
+    fmt::print("{}: {} runs in {} tasks of job {}; job {} makes {}/table.md then\nlogs: {}\nevbench status {}\n",
+               folder, runs.size(), submission.tasks, submission.array_job, submission.table_job, folder,
+               submission.folder, folder);
+  }
+  return arguments.slurm.wait ? exit_code_of(folder) : kExitDone;
+}
+
+int write_manifest(const std::vector<PlannedRun>& runs, const SweepArguments& arguments, const std::string& folder) {
+  const std::string manifest = folder + "/manifest.jsonl";
+  write_file(manifest, format_manifest(runs, arguments.options));
+  if (!arguments.quiet) {
+    fmt::print("{}: {} lines; evbench task {} LINE does one\n", manifest, runs.size(), manifest);
+  }
+  return kExitDone;
+}
+
+int execute(SweepArguments& arguments, Plugins& plugins) {
+  const Interruption interruption(arguments.file + ": interrupted; no run was begun");
+  const Sweep sweep = read_sweep(arguments.file, arguments.overrides, arguments.over, plugins);
+  ExecutorOptions& options = arguments.options;
+  options.limits.seconds = arguments.seconds.value_or(sweep.limits.seconds);
+  options.limits.memory_mib = arguments.memory_mib.value_or(sweep.limits.memory_mib);
+  options.processes = arguments.at_a_time.value_or(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  const SweepPlan plan = plan_sweep(sweep, plugins);
+  const std::vector<PlannedRun> runs = select_runs(plan, arguments.only);
+  if (runs.empty()) throw InputError(fmt::format("{}: no run has all the values of --only", sweep.place));
+  if (arguments.dry_run) {
+    print_plan(runs, plan, options);
+    return kExitDone;
+  }
+  const std::string folder = (std::filesystem::path(options.out) / plan.name).string();
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw OutputError(fmt::format("{}: can't be made: {}", folder, error.message()));
+  write_file(folder + "/sweep.json", plan.to_json().dump(1) + "\n");
+  if (arguments.executor == "local") return do_locally(runs, arguments, folder, plugins);
+  const std::vector<PlannedRun> left = runs_to_do(runs, plugins, options);
+  return arguments.executor == "slurm" ? hand_to_slurm(left, arguments, folder)
+                                       : write_manifest(left, arguments, folder);
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code) {
+  auto arguments = std::make_shared<SweepArguments>();
+  CLI::App* command = app.add_subcommand("sweep", "Vary a config along axes: many runs, each in a process of its own");
+  command->add_option("file", arguments->file, "JSON: a sweep, or a config (then with --over)")->required();
+  command
+      ->add_option("--over", arguments->over, "Another axis: KEY=VALUES, e.g. seed=1..5 or KEY=a,b or KEY=0.01..1:7log")
+      ->type_name("KEY=VALUES")
+      ->allow_extra_args(false);
+  add_overrides(*command, arguments->overrides, "Override a value of the base config: KEY=VALUE");
+  command
+      ->add_option("--only", arguments->only, "Only runs with this value on an axis; several of one axis: any of them")
+      ->type_name("AXIS=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--out", arguments->options.out, "Folder for results")->capture_default_str();
+  command
+      ->add_option("-j,--jobs", arguments->at_a_time,
+                   "Runs at a time: by default one a processor, or as many as Slurm likes; 1 where times are compared")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("--timeout", arguments->seconds, "Time that a run may take [s]; 0: no limit")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--memory", arguments->memory_mib, "Memory that a run may take [MiB]; 0: no limit")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--retry-failed", arguments->options.retry_failed,
+                    "Do runs again that crashed, hung or took too much, and damaged ones");
+  command->add_flag("--dry-run", arguments->dry_run, "Print the plan, and what of it is complete, and stop");
+  command
+      ->add_option("--executor", arguments->executor,
+                   "local: here; slurm: a job array; none: only write OUT/NAME/manifest.jsonl, of which evbench task "
+                   "does a line")
+      ->check(CLI::IsMember({"local", "slurm", "none"}))
+      ->capture_default_str();
+  command->add_option("--partition", arguments->slurm.partition, "Slurm: partition");
+  command->add_option("--time", arguments->slurm.time, "Slurm: time of a task, e.g. 30 or 2:00:00; else by --timeout");
+  command->add_option("--setup", arguments->slurm.setup,
+                      "Slurm: a line of shell before each task, e.g. \"module load gcc\", or around it: "
+                      "\"apptainer exec evbench.sif {}\"");
+  command->add_flag("--wait", arguments->slurm.wait, "Slurm: return when the table is made");
+  command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+  command->footer([] {
+    return "A sweep's file:\n\n" + describe_sweep() +
+           "bench/sweep/sweep.md says what an axis is.\n"
+           "A run that is complete below OUT is not done again; a sweep that was killed goes on from there. Several\n"
+           "processes may do the same sweep. Exit codes: as of evbench run.";
+  });
+  command->callback([arguments, &plugins, &exit_code] { exit_code = execute(*arguments, plugins); });
+}
+
+void add_task(CLI::App& app, Plugins& plugins, int& exit_code) {
+  struct TaskArguments {
+    std::string manifest;
+    std::size_t line = 1, stride = 0;
+  };
+  auto arguments = std::make_shared<TaskArguments>();
+  CLI::App* command = app.add_subcommand("task", "Do a line of the manifest that evbench sweep wrote");
+  command->add_option("manifest", arguments->manifest, "manifest.jsonl")->required();
+  command->add_option("line", arguments->line, "Number of the line, from 1")->required()->check(CLI::PositiveNumber);
+  command->add_option("--stride", arguments->stride, "And every so many lines after it; 0: that line alone");
+  command->callback([arguments, &plugins, &exit_code] {
+    const Interruption interruption(arguments->manifest + ": interrupted; what was complete stays");
+    const std::size_t stride = arguments->stride == 0 ? std::size_t{1} << 40U : arguments->stride;
+    for (const ManifestLine& line : read_manifest(arguments->manifest, arguments->line, stride, plugins)) {
+      const SweepProgress now = do_runs({line.run}, plugins, line.options, [](const SweepProgress&) {});
+      for (const TroubledRun& run : now.troubled) fmt::print("{}\n", shown(run));
+      std::fflush(stdout);
+      if (now.failed > 0) exit_code = kExitFailed;
+    }
+  });
+}
+
+void add_status(CLI::App& app, int& exit_code) {
+  auto folder = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("status", "How far sweeps are, and what failed");
+  command->add_option("folder", *folder, "Folder of a sweep, OUT/NAME, or of several, OUT")
+      ->required()
+      ->type_name("DIR");
+  command->footer("Exit codes: 0 all done, 2 bad input, 3 some failed or are still to be done.");
+  command->callback([folder, &exit_code] {
+    for (const SweepStatus& sweep : read_sweep_status(*folder)) {
+      fmt::print("{}: {} of {} done, {} failed, {} running, {} to do\n", sweep.folder, sweep.done, sweep.runs,
+                 sweep.failed, sweep.running, sweep.missing);
+      for (const TroubledRun& run : sweep.troubled) fmt::print("  {}\n", shown(run));
+      if (sweep.done < sweep.runs) exit_code = kExitFailed;
+    }
+  });
+}
+
+}  // namespace evbench

@@ -1,0 +1,82 @@
+#include "bench/sweep/manifest.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "bench/experiment.hpp"
+#include "core/io/path.hpp"
+#include "core/plugin/library.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+ManifestLine read_line(const std::string& text, const std::string& place, Plugins& plugins, Digests& digests) {
+  const Json json = Json::parse(text, nullptr, false);
+  ManifestLine line;
+  try {
+    line.options.out = json.at("out").get<std::string>();
+    line.options.limits.seconds = json.at("timeout").get<double>();
+    line.options.limits.memory_mib = json.at("memory").get<double>();
+    line.options.retry_failed = json.at("retry_failed").get<bool>();
+    for (const Json& library : json.at("config").at("plugins")) {
+      load_plugin_libraries(plugins, resolve_path(library.get<std::string>(), "."));
+    }
+    for (const auto& [axis, value] : json.at("axes").items())
+      line.run.axes.emplace_back(axis, value.get<std::string>());
+    line.run.config = ConfigFile(place, json.at("config"), plugins).experiment({}).runs.at(0);
+    if (!json.at("position").is_null()) line.run.config.position = json.at("position").get<std::size_t>();
+    const Job& job = line.run.config.job;
+    line.run.identity = identify(job, *make_source(job, plugins), plugins, digests);
+    const auto key = json.at("key").get<std::string>();
+    if (line.run.identity.key != key) {
+      throw InputError(
+          fmt::format("{}: what the run reads has changed since the manifest was written: its key was {} "
+                      "and is {}; start the sweep again",
+                      place, key, line.run.identity.key));
+    }
+  } catch (const Json::exception&) {
+    throw InputError(fmt::format("{}: is no run of a sweep's manifest", place));
+  }
+  return line;
+}
+
+}  // namespace
+
+std::string format_manifest(const std::vector<PlannedRun>& runs, const ExecutorOptions& options) {
+  std::string text;
+  for (const PlannedRun& run : runs) {
+    Json axes = Json::object();
+    for (const auto& [axis, value] : run.axes) axes[axis] = value;
+    const Json line = {{"key", run.identity.key},
+                       {"axes", axes},
+                       {"position", run.config.position ? Json(*run.config.position) : Json()},
+                       {"config", run.config.resolved()},
+                       {"out", std::filesystem::absolute(options.out).string()},
+                       {"timeout", options.limits.seconds},
+                       {"memory", options.limits.memory_mib},
+                       {"retry_failed", options.retry_failed}};
+    text += line.dump() + "\n";
+  }
+  return text;
+}
+
+std::vector<ManifestLine> read_manifest(const std::string& path, std::size_t first, std::size_t stride,
+                                        Plugins& plugins) {
+  std::ifstream file(path);
+  if (!file) throw InputError(fmt::format("{}: can't be read; expected the manifest of a sweep", path));
+  Digests digests;
+  std::vector<ManifestLine> lines;
+  std::size_t number = 0;
+  for (std::string text; std::getline(file, text);) {
+    ++number;
+    if (number < first || (number - first) % stride != 0) continue;
+    lines.push_back(read_line(text, fmt::format("{}:{}", path, number), plugins, digests));
+  }
+  if (lines.empty()) throw InputError(fmt::format("{}: has {} lines; expected a line {}", path, number, first));
+  return lines;
+}
+
+}  // namespace evbench

@@ -1,0 +1,159 @@
+#include "bench/sweep/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/support/error.hpp"
+#include "core/support/interruption.hpp"
+#include "core/support/nearest.hpp"
+
+namespace evbench {
+namespace {
+
+/// One point of a grid: what it changes in the config, and its place on the axes.
+struct Point {
+  std::vector<std::string> overrides;
+  std::vector<std::pair<std::string, std::string>> axes;
+};
+
+std::vector<Point> points_of(const Grid& grid) {
+  std::vector<Point> points(1);
+  for (const ZippedAxes& zipped : grid) {
+    std::vector<Point> finer;
+    for (const Point& point : points) {
+      for (std::size_t i = 0; i < zipped.front().values.size(); ++i) {
+        Point& next = finer.emplace_back(point);
+        for (const Axis& axis : zipped) {
+          const AxisValue& value = axis.values[i];
+          next.overrides.insert(next.overrides.end(), value.overrides.begin(), value.overrides.end());
+          next.axes.emplace_back(axis.name, value.text);
+        }
+      }
+    }
+    points = std::move(finer);
+  }
+  return points;
+}
+
+/// Makes the plan, run by run.
+class Planner {
+ public:
+  Planner(const Sweep& sweep, const Plugins& plugins)
+      : sweep_(sweep), plugins_(plugins), config_(sweep.config, plugins) {}
+
+  SweepPlan plan() {
+    for (const Grid& grid : sweep_.grids) {
+      for (const Point& point : points_of(grid)) add(point);
+    }
+    return std::move(plan_);
+  }
+
+ private:
+  void add(const Point& point) {
+    check_interruption();
+    std::vector<std::string> overrides = sweep_.overrides;
+    overrides.insert(overrides.end(), point.overrides.begin(), point.overrides.end());
+    try {
+      if (!sweep_.name.empty()) overrides.push_back("name=" + sweep_.name);
+      const Experiment experiment = config_.experiment(overrides, "the sweep's");
+      plan_.name = experiment.name;
+      for (const RunConfig& config : experiment.runs) add(config, point);
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const InputError& error) {
+      if (sweep_.place == sweep_.config) throw;
+      throw InputError(fmt::format("{}: {}", sweep_.place, error.what()));
+    }
+    for (const auto& [axis, value] : point.axes) note(axis, value);
+  }
+
+  void add(const RunConfig& config, const Point& point) {
+    PlannedRun run{config, identify(config.job, source_files(config.job), plugins_, digests_), point.axes};
+    const auto [twin, is_new] = by_key_.emplace(run.identity.key, plan_.runs.size());
+    if (!is_new) check_twin(plan_.runs[twin->second], run);
+    plan_.runs.push_back(std::move(run));
+  }
+
+  void check_twin(const PlannedRun& a, const PlannedRun& b) const {
+    if (a.config.resolved() == b.config.resolved()) return;
+    throw InputError(
+        fmt::format("the runs \"{}\" ({}) and \"{}\" ({}) are the same job, {}, and differ in name or protocol alone: "
+                    "they would be one run; evbench score compares protocols",
+                    a.config.label, place_of(a), b.config.label, place_of(b), a.identity.key));
+  }
+
+  const SourceFiles& source_files(const Job& job) {
+    const std::string what = fmt::format("{} {}", job.seed, job.source.with_type().dump());
+    const auto known = sources_.find(what);
+    return known != sources_.end() ? known->second : sources_.emplace(what, *make_source(job, plugins_)).first->second;
+  }
+
+  void note(const std::string& axis, const std::string& value) {
+    auto found = std::ranges::find(plan_.axes, axis, &decltype(plan_.axes)::value_type::first);
+    if (found == plan_.axes.end()) found = plan_.axes.insert(found, {axis, {}});
+    if (std::ranges::find(found->second, value) == found->second.end()) found->second.push_back(value);
+  }
+
+  const Sweep& sweep_;
+  const Plugins& plugins_;
+  ConfigFile config_;
+  Digests digests_;
+  std::map<std::string, SourceFiles> sources_;
+  std::map<std::string, std::size_t> by_key_;
+  SweepPlan plan_;
+};
+
+}  // namespace
+
+std::string place_of(const PlannedRun& run) {
+  std::string text;
+  for (const auto& [axis, value] : run.axes) text += fmt::format("{}{}={}", text.empty() ? "" : ", ", axis, value);
+  return text;
+}
+
+Json SweepPlan::to_json() const {
+  Json json = {{"name", name}, {"axes", Json::array()}, {"runs", Json::array()}};
+  for (const auto& [axis, values] : axes) json["axes"].push_back({{"name", axis}, {"values", values}});
+  for (const PlannedRun& run : runs) {
+    Json at = Json::object();
+    for (const auto& [axis, value] : run.axes) at[axis] = value;
+    json["runs"].push_back({{"key", run.identity.key}, {"label", run.config.label}, {"axes", std::move(at)}});
+  }
+  return json;
+}
+
+SweepPlan plan_sweep(const Sweep& sweep, const Plugins& plugins) { return Planner(sweep, plugins).plan(); }
+
+std::vector<PlannedRun> select_runs(const SweepPlan& plan, const std::vector<std::string>& only) {
+  std::map<std::string, std::set<std::string>> wanted;
+  for (const std::string& text : only) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    std::vector<std::string> names;
+    for (const auto& axis : plan.axes) names.push_back(axis.first);
+    const auto axis = std::ranges::find(plan.axes, name, &decltype(plan.axes)::value_type::first);
+    if (equals == std::string::npos || axis == plan.axes.end()) {
+      throw InputError(fmt::format("--only {}: expected AXIS=VALUE; no axis is called \"{}\"{}", text, name,
+                                   suggestion(name, names)));
+    }
+    const std::string value = text.substr(equals + 1);
+    if (std::ranges::find(axis->second, value) == axis->second.end()) {
+      throw InputError(
+          fmt::format("--only {}: the axis \"{}\" has no such value{}", text, name, suggestion(value, axis->second)));
+    }
+    wanted[name].insert(value);
+  }
+  std::vector<PlannedRun> runs;
+  for (const PlannedRun& run : plan.runs) {
+    const bool chosen = std::ranges::all_of(wanted, [&](const auto& axis) {
+      return std::ranges::any_of(
+          run.axes, [&](const auto& at) { return at.first == axis.first && axis.second.contains(at.second); });
+    });
+    if (chosen) runs.push_back(run);
+  }
+  return runs;
+}
+
+}  // namespace evbench

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/experiment.hpp"
+#include "bench/sweep/sweep_file.hpp"
+
+namespace evbench {
+
+/// A run of a sweep, and what determines its result.
+struct PlannedRun {
+  RunConfig config;
+  JobIdentity identity;
+  std::vector<std::pair<std::string, std::string>> axes;  ///< axis and value, in the axes' order
+};
+
+/// Its values on the axes: "seed=3, frames=0.1".
+std::string place_of(const PlannedRun& run);
+
+/// All runs of a sweep, in order: grid by grid, the last axis varies fastest, then the config's back-ends.
+struct SweepPlan {
+  std::string name;                                                    ///< of the experiment
+  std::vector<std::pair<std::string, std::vector<std::string>>> axes;  ///< and all of their values
+  std::vector<PlannedRun> runs;
+
+  /// The sweep as JSON, {"name", "axes": [{"name", "values"}], "runs": [{"key", "label", "axes": {AXIS: VALUE}}]}: what
+  /// is written as sweep.json, so that tables know the axes, and that nothing is missing.
+  Json to_json() const;
+};
+
+/// Makes every config of the sweep, checks it, and finds the keys; each source is made once, for the files that it
+/// reads. Throws InputError, with the sweep's place, for a value that can't be, and for two points with one job that
+/// differ in name or protocol alone: they would be one run.
+SweepPlan plan_sweep(const Sweep& sweep, const Plugins& plugins);
+
+/// The runs with one of these values, "AXIS=VALUE", on each axis that is named. Throws InputError for an axis or value
+/// that the plan doesn't have, with the nearest one.
+std::vector<PlannedRun> select_runs(const SweepPlan& plan, const std::vector<std::string>& only);
+
+}  // namespace evbench

@@ -1,0 +1,129 @@
+#include "bench/sweep/sweep_file.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <set>
+
+#include "bench/experiment.hpp"
+#include "bench/plugins.hpp"
+#include "core/io/path.hpp"
+#include "core/plugin/library.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace fs = std::filesystem;
+namespace {
+
+struct SweepOptions {
+  std::string name, description, config;
+  Json plugins = Json::array(), set = Json::object(), axes = Json::array(), grids;
+  RunLimits limits;
+
+  void declare(OptionSet& options) {
+    options.add("name", name, "its folder below --out; by default the file's name");
+    options.add("description", description, "what it is for");
+    options.add("config", config, "base config: its path from this file's folder").required().path();
+    options.add("plugins", plugins, "libraries that plugins come from: a list of paths");
+    options.add("set", set, "values that differ from the base config's: {KEY: VALUE}");
+    options.add("axes", axes, "what is varied: a list of axes");
+    options.add("grids", grids, "several sets of axes, one after the other: a list of {\"axes\": [...]}");
+    limits.declare(options);
+  }
+};
+
+struct GridOptions {
+  Json axes = Json::array();
+  void declare(OptionSet& set) { set.add("axes", axes, "a list of axes").required(); }
+};
+
+void add_axes(const Json& axes, const std::string& place, Grid& grid) {
+  if (!axes.is_array()) throw InputError(fmt::format("{}: expected a list of axes", place));
+  for (std::size_t i = 0; i < axes.size(); ++i) grid.push_back(read_axis(axes[i], fmt::format("{}.{}", place, i)));
+}
+
+void check_names(const Sweep& sweep) {
+  for (const Grid& grid : sweep.grids) {
+    std::set<std::string> names;
+    for (const ZippedAxes& zipped : grid) {
+      for (const Axis& axis : zipped) {
+        if (names.insert(axis.name).second) continue;
+        throw InputError(
+            fmt::format("{}: two axes are called \"{}\"; give one another \"name\"", sweep.place, axis.name));
+      }
+    }
+  }
+}
+
+void load_libraries(const Json& list, const std::string& place, const std::string& folder, Plugins& plugins) {
+  if (!list.is_array()) throw InputError(fmt::format("{}: plugins: expected a list of paths", place));
+  for (const Json& item : list) {
+    if (!item.is_string()) throw InputError(fmt::format("{}: plugins: expected paths, found {}", place, item.dump()));
+    try {
+      load_plugin_libraries(plugins, resolve_path(item.get<std::string>(), folder));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: plugins: {}", place, error.what()));
+    }
+  }
+}
+
+Sweep read_file(const Json& json, const std::string& path, Plugins& plugins) {
+  const auto options = read_options<SweepOptions>(json, path);
+  const std::string folder = fs::absolute(path).parent_path().string();
+  Sweep sweep;
+  sweep.place = path;
+  sweep.name = options.name.empty() ? fs::path(path).stem().string() : options.name;
+  sweep.config = resolve_path(options.config, folder);
+  sweep.limits = options.limits;
+  load_libraries(options.plugins, path, folder, plugins);
+  if (!options.set.is_object()) throw InputError(fmt::format("{}: set: expected an object {{KEY: VALUE}}", path));
+  for (const auto& [key, value] : options.set.items()) {
+    sweep.overrides.push_back(key + "=" + (value.is_string() ? value.get<std::string>() : value.dump()));
+  }
+  Grid common;
+  add_axes(options.axes, path + ": axes", common);
+  if (options.grids.is_null()) {
+    sweep.grids.push_back(common);
+    return sweep;
+  }
+  if (!options.grids.is_array() || options.grids.empty()) {
+    throw InputError(fmt::format("{}: grids: expected a list of at least one {{\"axes\": [...]}}", path));
+  }
+  for (std::size_t i = 0; i < options.grids.size(); ++i) {
+    const std::string place = fmt::format("{}: grids.{}", path, i);
+    Grid grid = common;
+    add_axes(read_options<GridOptions>(options.grids[i], place).axes, place + ".axes", grid);
+    sweep.grids.push_back(std::move(grid));
+  }
+  return sweep;
+}
+
+}  // namespace
+
+Sweep read_sweep(const std::string& path, const std::vector<std::string>& overrides,
+                 const std::vector<std::string>& over, Plugins& plugins) {
+  const Json json = read_json(path);
+  Sweep sweep;
+  if (json.is_object() && json.contains("config")) {
+    sweep = read_file(json, path, plugins);
+  } else {
+    sweep.place = sweep.config = path;
+    sweep.grids.emplace_back();
+  }
+  sweep.overrides.insert(sweep.overrides.end(), overrides.begin(), overrides.end());
+  load_plugins_of(plugins, sweep.config, sweep.overrides);
+  for (const std::string& text : over) {
+    for (Grid& grid : sweep.grids) grid.push_back({parse_axis(text)});
+  }
+  check_names(sweep);
+  return sweep;
+}
+
+std::string describe_sweep() {
+  SweepOptions options;
+  OptionSet set;
+  options.declare(set);
+  return set.describe();
+}
+
+}  // namespace evbench

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/sweep/axis.hpp"
+#include "core/plugin/registry.hpp"
+
+namespace evbench {
+
+/// What a run may use.
+struct RunLimits {
+  double seconds = 0.0;     ///< wall clock; 0: no limit
+  double memory_mib = 0.0;  ///< resident memory of all its processes together; 0: no limit
+
+  void declare(OptionSet& set) {
+    set.add("timeout", seconds, "wall-clock time that a run may take [s]; 0: no limit").range(0.0);
+    set.add("memory", memory_mib, "memory that a run may take [MiB]; 0: no limit").range(0.0);
+  }
+};
+
+/// Axes that vary on their own: their product. The first one varies slowest.
+using Grid = std::vector<ZippedAxes>;
+
+/// A base config and what is varied in it.
+struct Sweep {
+  std::string place;                   ///< the file, for messages
+  std::string name;                    ///< its folder below --out; empty: the config's name
+  std::string config;                  ///< path of the base config
+  std::vector<std::string> overrides;  ///< "KEY=VALUE", before those of the axes
+  std::vector<Grid> grids;             ///< at least one; the sweep is all of them, one after the other
+  RunLimits limits;
+};
+
+/// Reads the file of a sweep, or takes a config for one whose only point is the config itself, and loads the libraries
+/// that either names. A sweep's file is an object with
+///
+///   "config"   path of the base config, from the sweep's folder
+///   "name", "description", "timeout", "memory"
+///   "plugins"  list of libraries, as in a config; paths from the sweep's folder
+///   "set"      {KEY: VALUE, ...} in the base config
+///   "axes"     list of axes (axis.hpp) that all runs have
+///   "grids"    list of {"axes": [...]}: each is multiplied by "axes"; without them there is one
+///
+/// `overrides` and `over` (axis.hpp: parse_axis()) come from the command line and are added to what the file says.
+/// Throws InputError for anything that is not as expected, with the place.
+Sweep read_sweep(const std::string& path, const std::vector<std::string>& overrides,
+                 const std::vector<std::string>& over, Plugins& plugins);
+
+/// The keys of a sweep's file, for people.
+std::string describe_sweep();
+
+}  // namespace evbench

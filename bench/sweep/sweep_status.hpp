@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/sweep/local_executor.hpp"
+
+namespace evbench {
+
+/// How far a sweep's folder is, whoever works on it: each run of its sweep.json once.
+struct SweepStatus {
+  std::string folder, name;
+  std::size_t runs = 0, done = 0, failed = 0, running = 0, missing = 0;
+  std::vector<TroubledRun> troubled;  ///< failed, damaged ones among them, or lost, which are done
+};
+
+/// The sweeps in a folder: its own or those of the folders in it. Throws InputError where there is none, and for a
+/// sweep.json that can't be read.
+std::vector<SweepStatus> read_sweep_status(const std::string& folder);
+
+}  // namespace evbench
