@@ -68,7 +68,9 @@ std::string submit(const std::string& arguments, const std::string& script) {
   const std::string last = answer.text.substr(answer.text.rfind('\n') + 1);
   const std::string number = last.substr(0, last.find(';'));
   if (number.empty() || number.find_first_not_of("0123456789") != std::string::npos) {
-    throw InputError(fmt::format("--executor slurm: Slurm refuses {}: {}", script, answer.text));
+    std::string said = answer.text;
+    std::ranges::replace(said, '\n', ' ');
+    throw InputError(fmt::format("--executor slurm: Slurm refuses {}: {}", script, said));
   }
   return number;
 }
@@ -134,8 +136,14 @@ SlurmSubmission submit_to_slurm(const std::vector<PlannedRun>& runs, const Execu
                         set_up(slurm.setup, fmt::format("{} table {} --format markdown --out {}/table.md --force",
                                                         program, sweep, sweep)) +
                         set_up(slurm.setup, fmt::format("{} status {} > {}/status.txt", program, sweep, sweep)));
-  submission.array_job =
-      submit(fmt::format("{} {}", everywhere, task_options(options, slurm, submission, runs.size())), tasks);
+  try {
+    submission.array_job =
+        submit(fmt::format("{} {}", everywhere, task_options(options, slurm, submission, runs.size())), tasks);
+  } catch (const InputError&) {
+    std::error_code ignored;
+    fs::remove_all(submission.folder, ignored);
+    throw;
+  }
   submission.table_job =
       submit(fmt::format("{} --dependency=afterany:{} --output={} {}", everywhere, submission.array_job,
                          quoted(submission.folder + "/table.log"), slurm.wait ? "--wait" : ""),

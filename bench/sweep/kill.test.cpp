@@ -1,0 +1,105 @@
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <random>
+
+#include "bench/sweep/process_tree.hpp"
+#include "bench/testing/sweeps.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// A sweep of six runs in `folder`, below `out`.
+const std::string kSweep = "sweep c.json --over seed=1..6 --quiet --out ";
+
+/// Starts the program; its process.
+pid_t start(const TemporaryFolder& folder, const std::string& out) {
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  const int null = ::open("/dev/null", O_RDWR);
+  for (int stream = 0; stream < 3; ++stream) ::dup2(null, stream);
+  if (::chdir(folder.path().c_str()) == 0) {
+    ::execl(EVBENCH_PROGRAM, "evbench", "sweep", "c.json", "--over", "seed=1..6", "--quiet", "--out", out.c_str(),
+            nullptr);
+  }
+  ::_exit(127);
+}
+
+int wait_for(pid_t process) {
+  int status = 0;
+  REQUIRE(::waitpid(process, &status, 0) == process);
+  return status;
+}
+
+/// How many moments: EVBENCH_KILLS, else 20.
+int kills() {
+  const char* const variable = std::getenv("EVBENCH_KILLS");  // NOLINT(concurrency-mt-unsafe): no thread sets it
+  return variable == nullptr ? 20 : std::atoi(variable);      // NOLINT(cert-err34-c): 0 where it is no number
+}
+
+}  // namespace
+
+TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the same bytes once it is done again") {
+  const TemporaryFolder folder;
+  folder.write("c.json", tiny_config().dump());
+  REQUIRE(testing::evbench(folder, kSweep + "undisturbed").exit_code == 0);
+  const auto expected = results_of(folder.file("undisturbed/tiny"));
+  REQUIRE(expected.size() > 60);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> moment(0.05, 0.9);
+  int of_sweeps = 0, of_runs = 0, sweeps = 0;
+  while (of_sweeps + of_runs < kills()) {
+    const std::string out = "killed" + std::to_string(sweeps);
+    const pid_t sweep = start(folder, out);
+    ::usleep(static_cast<useconds_t>(1e6 * moment(random)));
+    const std::vector<pid_t> runs = descendants(sweep);
+    if (random() % 2 == 0 && !runs.empty()) {
+      of_runs += ::kill(runs[random() % runs.size()], SIGKILL) == 0;
+      wait_for(sweep);
+    } else {
+      ::kill(sweep, SIGKILL);
+      of_sweeps += WIFSIGNALED(wait_for(sweep));
+    }
+    if (random() % 3 != 0) continue;  // the next one goes on here
+    // A run that was killed twice is told as failed: it is asked for again.
+    REQUIRE(testing::evbench(folder, kSweep + out + " --retry-failed").exit_code == 0);
+    CHECK(difference(expected, results_of(folder.file(out + "/tiny"))) == "");
+    ++sweeps;
+  }
+  REQUIRE(testing::evbench(folder, kSweep + "killed" + std::to_string(sweeps) + " --retry-failed").exit_code == 0);
+  CHECK(difference(expected, results_of(folder.file("killed" + std::to_string(sweeps) + "/tiny"))) == "");
+  CHECK(of_sweeps > 0);
+}
+
+TEST_CASE("A sweep onto a full disk says so and loses nothing: with more room it ends with the same bytes") {
+  const TemporaryFolder folder;
+  folder.write("c.json", tiny_config().dump());
+  const std::string disk = folder.file("disk");
+  std::filesystem::create_directory(disk);
+  if (testing::shell(folder, "mount -t tmpfs -o size=64k none disk").exit_code != 0) {
+    std::printf("SKIPPED: no tmpfs can be mounted here\n");
+    return;
+  }
+  REQUIRE(testing::evbench(folder, kSweep + "undisturbed").exit_code == 0);
+  int full = 0;
+  for (int size = 64; full < 20; size += 96) {
+    const Outcome outcome = testing::shell(
+        folder, "mount -o remount,size=" + std::to_string(size) + "k disk && \"$evbench\" " + kSweep + "disk");
+    if (outcome.exit_code == 0) break;
+    ++full;
+    CHECK(outcome.exit_code == 4);
+    CHECK_THAT(outcome.err, Contains("No space left on device"));
+  }
+  const auto made = results_of(disk + "/tiny");
+  CHECK(testing::shell(folder, "umount disk").exit_code == 0);
+  CHECK(full >= 4);
+  CHECK(difference(results_of(folder.file("undisturbed/tiny")), made) == "");
+}

@@ -1,0 +1,183 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "bench/sweep/plan.hpp"
+#include "bench/testing/keys.hpp"
+#include "bench/testing/sweeps.hpp"
+#include "core/support/error.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+using Catch::Matchers::Contains;
+
+namespace {
+
+SweepPlan plan(const TemporaryFolder& folder, const std::string& file, const std::vector<std::string>& over = {}) {
+  Plugins plugins = known_plugins();
+  return plan_sweep(read_sweep(folder.file(file), {}, over, plugins), known_plugins());
+}
+
+std::vector<std::string> places(const std::vector<PlannedRun>& runs) {
+  std::vector<std::string> result;
+  for (const PlannedRun& run : runs) result.push_back(run.config.label + ": " + place_of(run));
+  return result;
+}
+
+const char* const kSweep = R"({
+  "name": "both", "config": "c.json", "set": {"source.duration": 0.5},
+  "axes": [{"name": "motion", "overlays": {"slow": {"source.motion.period": 6}, "fast": {"source.motion.period": 2}}}],
+  "grids": [
+    {"axes": [{"name": "back-end", "overlays": {"asynchronous": {"backend": {"type": "gp_map"}}}}]},
+    {"axes": [{"name": "back-end", "overlays": {"frames": {"backend": {"type": "bundle_adjustment", "label": "BA"}}}},
+              {"zip": [{"key": "backend.frame_duration", "name": "frame", "values": [0.1, 0.2]},
+                       {"key": "backend.window", "values": [10, 5]}]}]}
+  ]})";
+
+}  // namespace
+
+TEST_CASE("A sweep is the product of its axes, grid by grid; its plan names each run's values") {
+  const TemporaryFolder folder;
+  folder.write("c.json", tiny_config().dump());
+  folder.write("sweep.json", kSweep);
+  const SweepPlan made = plan(folder, "sweep.json");
+  CHECK(made.name == "both");
+  CHECK(places(made.runs) == std::vector<std::string>{
+                                 "gp_map: motion=slow, back-end=asynchronous",
+                                 "gp_map: motion=fast, back-end=asynchronous",
+                                 "BA: motion=slow, back-end=frames, frame=0.1, backend.window=10",
+                                 "BA: motion=slow, back-end=frames, frame=0.2, backend.window=5",
+                                 "BA: motion=fast, back-end=frames, frame=0.1, backend.window=10",
+                                 "BA: motion=fast, back-end=frames, frame=0.2, backend.window=5",
+                             });
+  CHECK(made.runs[3].config.job.source.options.at("duration") == 0.5);
+  CHECK(made.runs[3].config.job.source.options.at("motion").at("period") == 6.0);
+  CHECK(made.runs[3].config.job.backend.options.at("window") == 5);
+  const Json json = made.to_json();
+  REQUIRE(json.at("axes").size() == 4);
+  CHECK(json.at("axes")[1] == Json{{"name", "back-end"}, {"values", {"asynchronous", "frames"}}});
+  REQUIRE(json.at("runs").size() == 6);
+  CHECK(json.at("runs")[0].at("axes") == Json{{"motion", "slow"}, {"back-end", "asynchronous"}});
+  CHECK(json.at("runs")[5].at("key") == made.runs[5].identity.key);
+  CHECK(json.at("runs")[5].at("label") == "BA");
+
+  CHECK(select_runs(made, {"frame=0.1", "motion=fast"}).size() == 1);
+  CHECK(select_runs(made, {"frame=0.1", "frame=0.2"}).size() == 4);
+  CHECK_THROWS_WITH(select_runs(made, {"motoin=fast"}), Contains("did you mean \"motion\"?"));
+  CHECK_THROWS_WITH(select_runs(made, {"motion=fats"}), Contains("did you mean \"fast\"?"));
+}
+
+TEST_CASE("The same config has the same key in a sweep as alone; points of one job are one run, or refused") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("c.json", tiny_config().dump());
+  const SweepPlan made = plan(folder, "c.json", {"seed=1,2"});
+  CHECK(made.name == "tiny");
+  CHECK(made.runs.at(0).identity.key == key_of(read_experiment(path, {}, known_plugins()).runs[0]));
+  CHECK(made.runs.at(1).identity.key == key_of(read_experiment(path, {"seed=2"}, known_plugins()).runs[0]));
+  const SweepPlan same = plan(folder, "c.json", {"backend.frame_duration=0.1,0.10"});
+  CHECK(same.runs.at(0).identity.key == same.runs.at(1).identity.key);
+  CHECK_THROWS_WITH(plan(folder, "c.json", {"evaluation.alignment=se3,sim3"}),
+                    Contains("evaluation.alignment=se3") && Contains("differ in name or protocol alone"));
+}
+
+TEST_CASE("A sweep that can't be is refused before anything is written, with place and nearest name") {
+  const TemporaryFolder folder;
+  folder.write("c.json", tiny_config().dump());
+  const auto refused = [&](const std::string& sweep, const std::string& message) {
+    folder.write("s.json", sweep);
+    INFO(sweep);
+    CHECK_THROWS_WITH(plan(folder, "s.json"), Contains("s.json: ") && Contains(message));
+  };
+  refused(R"({"config": "c.json", "axis": []})", "unknown key \"axis\"; did you mean \"axes\"?");
+  refused(R"({"config": "d.json"})", "d.json: no such file");
+  refused(R"({"config": "c.json", "axes": [{"key": "backend.frame_durations", "values": [1]}]})",
+          "unknown key \"frame_durations\"; did you mean \"frame_duration\"? (from the sweep's "
+          "backend.frame_durations=1)");
+  refused(R"({"config": "c.json", "axes": [{"key": "seed", "values": []}]})",
+          "axes.0: the axis \"seed\" has no values");
+  refused(R"({"config": "c.json", "axes": [{"key": "seed", "values": [1]}, {"key": "seed", "values": [1]}]})",
+          "two axes are called \"seed\"");
+  refused(R"({"config": "c.json", "grids": [{"axes": [{"key": "seed"}]}]})", "grids.0.axes.0: expected one of");
+  refused(R"({"config": "c.json", "plugins": ["no.so"]})", "plugins: ");
+  refused(R"({"config": "c.json", "timeout": -1})", "timeout: ");
+  refused("{", "is not JSON");
+  for (const auto& [arguments, message] :
+       std::map<std::string, std::string>{{"sweep c.json --over sede=1", "did you mean \"seed\"?"},
+                                          {"sweep c.json --over seed=1 --only seed=2", "has no such value"},
+                                          {"sweep c.json --over seed=1 --out c.json", "c.json/tiny: can't be made"},
+                                          {"status .", "no sweep.json in it"},
+                                          {"task c.json 5", "has 1 lines; expected a line 5"},
+                                          {"task c.json 1", "is no run of a sweep's manifest"}}) {
+    const Outcome outcome = testing::evbench(folder, arguments);
+    INFO(arguments);
+    CHECK(outcome.exit_code == (arguments.find("--out") == std::string::npos ? 2 : 4));
+    CHECK_THAT(outcome.err, Contains(message));
+  }
+  const Outcome slurm = testing::shell(folder, "PATH=/nowhere:/bin \"$evbench\" sweep c.json --executor slurm");
+  if (!std::filesystem::exists("/bin/sbatch")) {
+    CHECK(slurm.exit_code == 2);
+    CHECK_THAT(slurm.err, Contains("there is no sbatch"));
+  }
+}
+
+TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on request; renaming runs nothing") {
+  const TemporaryFolder folder;
+  folder.write("c.json", tiny_config().dump());
+  const auto sweep = [&](const std::string& arguments) {
+    return testing::evbench(folder, "sweep c.json " + arguments);
+  };
+  const Outcome planned = sweep("--over seed=1..2 --dry-run");
+  CHECK(planned.exit_code == 0);
+  CHECK_THAT(planned.out, Contains("seed=1\n") && Contains("2 runs, 2 to do"));
+  CHECK_FALSE(std::filesystem::exists(folder.file("results")));
+
+  const Outcome first = sweep("--over seed=1..2");
+  CHECK(first.exit_code == 0);
+  CHECK_THAT(first.out, Contains("results/tiny: 2 runs, 0 of them complete before, 0 failed"));
+  const auto before = results_of(folder.file("results/tiny"));
+  CHECK_THAT(sweep("--over seed=1..3").out, Contains("3 runs, 2 of them complete before"));
+  CHECK_THAT(sweep("--over seed=1..3 --set name=other").out,
+             Contains("results/other: 3 runs, 3 of them complete before"));
+  CHECK_THAT(sweep("--over seed=1..3 --set evaluation.rpe_delta=0.2").out, Contains("3 of them complete before"));
+  CHECK_THAT(sweep("--over seed=1..2").out, Contains("2 of them complete before"));
+  CHECK_THAT(testing::evbench(folder, "status results").out,
+             Contains("results/other: 3 of 3 done") && Contains("results/tiny: 2 of 2 done, 0 failed"));
+
+  // The file of a config and evbench run give the same.
+  REQUIRE(testing::evbench(folder, "run c.json --quiet --out alone").exit_code == 0);
+  for (const auto& [path, content] : results_of(folder.file("alone/tiny"))) CHECK(before.at(path) == content);
+
+  REQUIRE(testing::shell(folder, "rm -r results/other; rm $(ls -d results/tiny/b*/final.tum | head -1)").exit_code ==
+          0);
+  const Outcome damaged = sweep("--over seed=1..2");
+  CHECK(damaged.exit_code == 3);
+  CHECK_THAT(damaged.out, Contains("damaged: ") && Contains("final.tum: is missing") && Contains("1 failed"));
+  CHECK(sweep("--over seed=1..2 --retry-failed").exit_code == 0);
+  auto after = results_of(folder.file("results/tiny"));
+  for (const auto& [path, content] : before) {
+    INFO(path);
+    CHECK(after.at(path).size() == content.size());  // a log tells that a protocol or name was another one
+  }
+}
+
+TEST_CASE("Two processes share a sweep; lines of its manifest, done one by one, give the same bytes") {
+  const TemporaryFolder folder;
+  folder.write("c.json", tiny_config().dump());
+  REQUIRE(testing::evbench(folder, "sweep c.json --over seed=1..6 --out one").exit_code == 0);
+  const Outcome both = testing::shell(folder,
+                                      "\"$evbench\" sweep c.json --over seed=1..6 --out two > a & first=$!;"
+                                      "\"$evbench\" sweep c.json --over seed=1..6 --out two > b && wait $first");
+  CHECK(both.exit_code == 0);
+  CHECK_THAT(read_file(folder.file("a")), Contains("6 runs"));
+  CHECK_THAT(read_file(folder.file("b")), Contains("6 runs"));
+  const auto expected = results_of(folder.file("one/tiny"));
+  CHECK(difference(expected, results_of(folder.file("two/tiny"))).empty());
+
+  REQUIRE(testing::evbench(folder, "sweep c.json --over seed=1..6 --out three --executor none").exit_code == 0);
+  CHECK(testing::evbench(folder, "status three").exit_code == 3);
+  const std::string task = "\"$evbench\" task three/tiny/manifest.jsonl ";
+  CHECK(testing::shell(folder, task + "1 --stride 2 &&" + task + "2 && " + task + "4 && " + task + "6").exit_code == 0);
+  CHECK(testing::evbench(folder, "status three").exit_code == 0);
+  auto made = results_of(folder.file("three/tiny"));
+  made.erase("manifest.jsonl");
+  CHECK(difference(expected, made).empty());
+}

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "bench/testing/program.hpp"
+
+namespace evbench::testing {
+
+/// A run that takes no time worth speaking of.
+inline Json tiny_config() {
+  Json config = short_config();
+  config["name"] = "tiny";
+  config["source"]["duration"] = 1;
+  config["backend"]["frame_duration"] = 0.1;
+  return config;
+}
+
+/// All that the runs of an experiment wrote, but for what was measured, by folder and file.
+inline std::map<std::string, std::string> results_of(const std::string& experiment) {
+  std::map<std::string, std::string> results;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(experiment)) {
+    const std::string path = entry.path().lexically_relative(experiment).string(), name = entry.path().filename();
+    if (!entry.is_regular_file() || name == "timing.csv" || path.starts_with("slurm/")) continue;
+    std::string content = read_file(entry.path().string());
+    if (name == "metrics.json") {
+      Json metrics = Json::parse(content);
+      for (const char* const measured : {"runtime_s", "realtime_factor", "times", "peak_rss_mib"})
+        metrics.erase(measured);
+      content = metrics.dump();
+    }
+    results[path] = content;
+  }
+  return results;
+}
+
+/// Where two sets of results differ, for messages; empty where they don't.
+inline std::string difference(const std::map<std::string, std::string>& a,
+                              const std::map<std::string, std::string>& b) {
+  std::string text;
+  for (const auto& [path, content] : a) {
+    const auto other = b.find(path);
+    if (other == b.end()) {
+      text += path + " is missing; ";
+    } else if (other->second != content) {
+      text += path + " differs; ";
+    }
+  }
+  for (const auto& [path, content] : b) {
+    if (!a.contains(path)) text += path + " is too many; ";
+  }
+  return text;
+}
+
+}  // namespace evbench::testing
