@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace evbench {
+
+struct Interval {
+  double from, to;
+};
+
+struct BootstrapOptions {
+  double level = 0.95;
+  int samples = 10'000;
+  std::uint64_t seed = 1;  ///< the same values and seed give the same digits
+};
+
+/// The interval in which the median of what the values were drawn from lies with the probability `level`: percentiles
+/// of the medians of `samples` draws with replacement (Efron 1979). Values may be infinite, none NaN. With fewer than
+/// two values nothing is known: −∞ to ∞.
+Interval bootstrap_median(std::span<const double> values, const BootstrapOptions& options = {});
+
+}  // namespace evbench

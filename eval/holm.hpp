@@ -1,0 +1,12 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace evbench {
+
+/// p-values of several comparisons, each made as large as it must be so that together they are wrong about any one with
+/// no more than the probability that is tested for (Holm 1979). In the same order.
+std::vector<double> holm(std::span<const double> p);
+
+}  // namespace evbench

@@ -1,0 +1,32 @@
+#include "eval/quantile.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+namespace evbench {
+
+TEST_CASE("Quartiles are numpy's") {
+  const Quartiles q = quartiles({7.0, 1.0, 3.0, 15.0});  // numpy.percentile([1, 3, 7, 15], [25, 50, 75])
+  CHECK(q.lower == 2.5);
+  CHECK(q.median == 5.0);
+  CHECK(q.upper == 9.0);
+  CHECK(quartiles({4.0}).upper == 4.0);
+  const std::vector<double> sorted = {0.0, 1.0, 2.0, 3.0, 10.0};
+  CHECK(quantile(sorted, 0.99) == Approx(9.72));  // numpy.percentile(..., 99)
+  CHECK(quantile(sorted, 0.0) == 0.0);
+  CHECK(quantile(sorted, 1.0) == 10.0);
+  CHECK(std::isnan(quantile({}, 0.5)));
+}
+
+TEST_CASE("Infinite values take part in quartiles, as those of failed runs do") {
+  const double inf = std::numeric_limits<double>::infinity();
+  const Quartiles q = quartiles({1.0, inf, 2.0, 3.0});
+  CHECK(q.lower == 1.75);
+  CHECK(q.median == 2.5);
+  CHECK(q.upper == inf);
+  CHECK(quartiles({inf, inf}).lower == inf);
+  CHECK(quartiles({-inf, inf}).median == 0.0);
+}
+
+}  // namespace evbench
