@@ -1,10 +1,16 @@
 #include "bench/common_time.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include "bench/run_folder.hpp"
 #include "core/support/error.hpp"
+#include "core/support/index.hpp"
+#include "core/support/parallel.hpp"
+#include "eval/run_columns.hpp"
 #include "eval/score_run.hpp"
 
 namespace evbench {
@@ -48,13 +54,27 @@ Json score_within(const TimeRange& range, const RunRecord& run, bool online) {
 }  // namespace
 
 void score_common_time(std::span<RunRecord> runs, bool online) {
-  std::map<std::string, std::vector<RunRecord*>> experiments;
-  for (RunRecord& run : runs) experiments[run.experiment].push_back(&run);
-  for (const auto& [name, of_one] : experiments) {
+  std::map<std::pair<std::string, std::string>, std::vector<RunRecord*>> sequences;
+  for (RunRecord& run : runs) sequences[{run.experiment, sequence_of(run)}].push_back(&run);
+  std::vector<std::pair<RunRecord*, TimeRange>> work;
+  for (const auto& [name, of_one] : sequences) {
     const TimeRange common = common_time(of_one, online);
     for (RunRecord* run : of_one) {
-      run->common_scores = common.from < common.to ? score_within(common, *run, online) : Json();
+      run->common_scores = nullptr;
+      if (common.from < common.to) work.emplace_back(run, common);
     }
+  }
+  std::vector<std::exception_ptr> errors(work.size());
+  parallel_for(0, static_cast<int>(work.size()), [&](int i) {
+    auto& [run, common] = work[index(i)];
+    try {
+      run->common_scores = score_within(common, *run, online);
+    } catch (...) {
+      errors[index(i)] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
   }
 }
 

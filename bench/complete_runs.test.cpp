@@ -8,6 +8,7 @@
 #include "bench/testing/program.hpp"
 #include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
+#include "eval/find_runs.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;

@@ -102,6 +102,10 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
   record.runtime_s = times.frontend + times.backend;
   if (*record.runtime_s > 0.0) record.realtime_factor = *record.data_s / *record.runtime_s;
   record.times = {times.source, times.frontend, times.backend, times.waiting, times.harness, times.total};
+  std::vector<double> updates;
+  for (const UpdateRecord& update : result.updates) updates.push_back(update.seconds);
+  record.times->frontend_ms = step_times(times.frontend_batches);
+  record.times->backend_ms = step_times(updates);
   record.peak_rss_mib = result.peak_rss_mib;
   return record;
 }

@@ -10,6 +10,7 @@
 #include "core/data/tum.hpp"
 #include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
+#include "eval/find_runs.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;

@@ -1,11 +1,19 @@
+#include "eval/find_runs.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
+#include <map>
+#include <numeric>
 #include <set>
+#include <tuple>
 
 #include "core/support/error.hpp"
-#include "eval/run_record.hpp"
+#include "core/support/index.hpp"
+#include "core/support/parallel.hpp"
+#include "eval/sweep_plan.hpp"
 
 namespace evbench {
 namespace fs = std::filesystem;
@@ -21,27 +29,131 @@ std::string take_number(const std::string& text, std::size_t& at) {
   return text.substr(begin, at - begin);
 }
 
-/// Every folder with a metrics.json in and below a folder; `missing`: those of runs that have none.
-std::vector<fs::path> find_folders(const std::string& folder, std::vector<fs::path>& missing) {
+/// A folder as it was come by, and its one true name.
+struct Place {
+  std::string path, canonical;
+};
+
+/// What lies in and below the folders that are searched, each once.
+struct Places {
+  std::vector<Place> runs;     ///< with a metrics.json
+  std::vector<Place> missing;  ///< of runs without
+  std::vector<Place> sweeps;   ///< with a sweep.json
+};
+
+/// In and below one folder.
+Places find_places(const std::string& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) throw InputError(fmt::format("{}: is not a folder", folder));
-  std::vector<fs::path> folders;
+  const fs::path canonical = fs::canonical(folder);
+  Places places;
   const auto options = fs::directory_options::skip_permission_denied;
   // Sweeps write while tables are made: what vanishes in between is passed over.
   for (auto entry = fs::recursive_directory_iterator(folder, options, error); entry != fs::end(entry);
        entry.increment(error)) {
-    const fs::path extension = entry->path().extension();
-    if (extension == ".part" || extension == ".old") entry.disable_recursion_pending();
+    const std::string name = entry->path().filename().string();
+    if (name.ends_with(".part") || name.ends_with(".old")) entry.disable_recursion_pending();
+    const bool metrics = name == "metrics.json", job = name == "job.json", sweep = name == "sweep.json";
+    if (!(metrics || job || sweep) || !entry->is_regular_file(error)) continue;
     const fs::path within = entry->path().parent_path();
-    if (entry->path().filename() == "metrics.json" && entry->is_regular_file(error)) folders.push_back(within);
-    if (entry->path().filename() == "job.json" && !fs::exists(within / "metrics.json", error))
-      missing.push_back(within);
+    const Place place{within.string(), (canonical / within.lexically_relative(folder)).lexically_normal().string()};
+    if (metrics) places.runs.push_back(place);
+    if (job && !fs::exists(within / "metrics.json", error)) places.missing.push_back(place);
+    if (sweep) places.sweeps.push_back(place);
   }
-  if (folders.empty() && missing.empty()) {
+  if (places.runs.empty() && places.missing.empty() && places.sweeps.empty()) {
     throw InputError(
         fmt::format("{}: no metrics.json in it or below; expected the folder of a run or of several", folder));
   }
-  return folders;
+  return places;
+}
+
+Places find_places(std::span<const std::string> folders) {
+  Places all;
+  std::set<std::string> seen[3];
+  for (const std::string& folder : folders) {
+    const Places places = find_places(folder);
+    const auto add = [](const std::vector<Place>& from, std::set<std::string>& known, std::vector<Place>& to) {
+      std::ranges::copy_if(from, std::back_inserter(to),
+                           [&](const Place& place) { return known.insert(place.canonical).second; });
+    };
+    add(places.runs, seen[0], all.runs);
+    add(places.missing, seen[1], all.missing);
+    add(places.sweeps, seen[2], all.sweeps);
+  }
+  return all;
+}
+
+/// A run, and where it stands in its sweep's plan.
+struct FoundRun {
+  RunRecord record;
+  std::size_t planned = 0;
+};
+
+/// Files are read by as many threads as there are processors. Runs that can't be read are left out, with a sentence.
+std::map<std::string, RunRecord> read_records(const std::vector<Place>& places, std::vector<std::string>& unreadable) {
+  std::vector<RunRecord> records(places.size());
+  std::vector<std::string> failures(places.size());
+  std::vector<std::exception_ptr> errors(places.size());
+  parallel_for(0, static_cast<int>(places.size()), [&](int i) {
+    try {
+      records[index(i)] = read_record(places[index(i)].path);
+    } catch (const InputError& error) {
+      failures[index(i)] = error.what();
+    } catch (...) {
+      errors[index(i)] = std::current_exception();
+    }
+  });
+  std::map<std::string, RunRecord> by_folder;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (errors[i]) std::rethrow_exception(errors[i]);
+    if (failures[i].empty()) by_folder.emplace(places[i].canonical, std::move(records[i]));
+    if (!failures[i].empty()) unreadable.push_back(failures[i]);
+  }
+  return by_folder;
+}
+
+RunRecord not_run(const PlannedRun& run, const std::string& folder) {
+  RunRecord record;
+  const auto seed = std::ranges::find(run.axes, "seed", &RunAxes::value_type::first);
+  if (seed != run.axes.end()) record.seed = std::strtoull(seed->second.c_str(), nullptr, 10);
+  record.key = run.key;
+  record.folder = folder;
+  record.done = false;
+  return record;
+}
+
+/// Moves the records of a sweep's runs out of `records`, in the order of its plan.
+void take_sweep(const Place& sweep, const std::set<std::string>& unreadable, std::map<std::string, RunRecord>& records,
+                std::vector<FoundRun>& runs) {
+  const SweepPlan plan = read_sweep_plan(sweep.path + "/sweep.json");
+  std::map<std::string, RunRecord> own;  // several places of a sweep may need the same run
+  const std::string prefix = sweep.canonical + "/";
+  for (auto it = records.lower_bound(prefix); it != records.end() && it->first.starts_with(prefix);) {
+    own.insert(records.extract(it++));
+  }
+  for (std::size_t i = 0; i < plan.runs.size(); ++i) {
+    const PlannedRun& planned = plan.runs[i];
+    const std::string folder = prefix + planned.key;
+    if (unreadable.contains(folder)) continue;
+    const auto found = own.find(folder);
+    RunRecord record = found != own.end() ? found->second : not_run(planned, sweep.path + "/" + planned.key);
+    record.experiment = plan.name;
+    record.label = planned.label;
+    record.axes = planned.axes;
+    runs.push_back({std::move(record), i});
+  }
+}
+
+bool comes_before(const FoundRun& x, const FoundRun& y) {
+  const RunRecord &a = x.record, &b = y.record;
+  if (a.experiment != b.experiment) return natural_less(a.experiment, b.experiment);
+  if (x.planned != y.planned) return x.planned < y.planned;
+  if (a.position != b.position) return a.position < b.position;
+  if (a.label != b.label) return natural_less(a.label, b.label);
+  if (a.settings != b.settings) return settings_less(a.settings, b.settings);
+  if (a.seed != b.seed) return a.seed < b.seed;
+  return a.folder < b.folder;
 }
 
 }  // namespace
@@ -64,35 +176,26 @@ bool natural_less(const std::string& a, const std::string& b) {
 }
 
 std::vector<RunRecord> find_runs(std::span<const std::string> folders, std::vector<std::string>* unreadable) {
-  std::vector<RunRecord> runs;
-  std::vector<fs::path> missing;
-  std::set<fs::path> seen;
-  for (const std::string& folder : folders) {
-    for (const fs::path& run : find_folders(folder, missing)) {
-      if (!seen.insert(fs::canonical(run)).second) continue;
-      try {
-        runs.push_back(read_record(run.string()));
-      } catch (const InputError& error) {
-        if (unreadable == nullptr) throw;
-        unreadable->emplace_back(error.what());
-      }
-    }
+  const Places places = find_places(folders);
+  std::vector<std::string> failures;
+  std::map<std::string, RunRecord> records = read_records(places.runs, failures);
+  std::set<std::string> known_bad;
+  for (const Place& run : places.runs) {
+    if (!records.contains(run.canonical)) known_bad.insert(run.canonical);
   }
-  if (unreadable != nullptr) {
-    for (const fs::path& run : missing) {
-      if (!seen.insert(fs::canonical(run)).second) continue;
-      unreadable->push_back(fmt::format("{}: is the folder of a run without metrics.json; run it again", run.string()));
-    }
+  if (!failures.empty() && unreadable == nullptr) throw InputError(failures.front());
+  for (const Place& run : places.missing) {
+    failures.push_back(fmt::format("{}: is the folder of a run without metrics.json; run it again", run.path));
+    known_bad.insert(run.canonical);
   }
-  std::ranges::sort(runs, [](const RunRecord& a, const RunRecord& b) {
-    if (a.experiment != b.experiment) return natural_less(a.experiment, b.experiment);
-    if (a.position != b.position) return a.position < b.position;
-    if (a.label != b.label) return natural_less(a.label, b.label);
-    if (a.settings != b.settings) return settings_less(a.settings, b.settings);
-    if (a.seed != b.seed) return a.seed < b.seed;
-    return a.folder < b.folder;
-  });
-  return runs;
+  std::vector<FoundRun> runs;
+  for (const Place& sweep : places.sweeps) take_sweep(sweep, known_bad, records, runs);
+  for (auto& [folder, record] : records) runs.push_back({std::move(record)});
+  std::ranges::sort(runs, comes_before);
+  std::vector<RunRecord> result;
+  for (FoundRun& run : runs) result.push_back(std::move(run.record));
+  if (unreadable != nullptr) *unreadable = std::move(failures);
+  return result;
 }
 
 }  // namespace evbench

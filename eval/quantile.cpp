@@ -15,7 +15,7 @@ double quantile(std::span<const double> sorted, double p) {
   const double share = place - static_cast<double>(below);
   const double low = sorted[below], high = sorted[std::min(below + 1, sorted.size() - 1)];
   if (share == 0.0 || low == high) return low;
-  if (std::isinf(low) && std::isinf(high)) return 0.0;
+  if (std::isinf(low)) return std::isinf(high) ? 0.0 : low;
   return low + share * (high - low);
 }
 

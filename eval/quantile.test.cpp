@@ -27,6 +27,7 @@ TEST_CASE("Infinite values take part in quartiles, as those of failed runs do") 
   CHECK(q.upper == inf);
   CHECK(quartiles({inf, inf}).lower == inf);
   CHECK(quartiles({-inf, inf}).median == 0.0);
+  CHECK(quartiles({-inf, 1.0}).median == -inf);
 }
 
 }  // namespace evbench

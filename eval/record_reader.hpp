@@ -12,12 +12,14 @@
 
 namespace evbench {
 
-/// An object of metrics.json, read key by key. Errors name the place, the key and what was expected.
+/// An object of metrics.json or of sweep.json, read key by key. Errors name the place, the key and what was expected.
 class RecordReader {
  public:
   RecordReader(const Json& object, std::string place) : object_(object), place_(std::move(place)) {
-    if (!object.is_object()) throw InputError(fmt::format("{}: expected a JSON object, the metrics of a run", place_));
+    if (!object.is_object()) throw InputError(fmt::format("{}: expected a JSON object", place_));
   }
+
+  const std::string& place() const { return place_; }
 
   /// Null where the key is missing.
   const Json& at(const char* key) const {
@@ -28,9 +30,7 @@ class RecordReader {
 
   /// Text that must be there.
   std::string text(const char* key) const {
-    if (!at(key).is_string()) {
-      throw InputError(fmt::format("{}: \"{}\" is missing or not text; expected the metrics of a run", place_, key));
-    }
+    if (!at(key).is_string()) fail(key, "text");
     return at(key).get<std::string>();
   }
   std::string text_or(const char* key, const std::string& otherwise) const {

@@ -1,11 +1,12 @@
 #include "eval/run_record.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
-#include "core/support/json_reason.hpp"
+#include "eval/json_file.hpp"
+#include "eval/quantile.hpp"
 #include "eval/record_reader.hpp"
 
 namespace evbench {
@@ -17,9 +18,38 @@ Json or_null(const std::optional<double>& value) { return value && std::isfinite
 
 Json to_json(const TimeRange& span) { return {{"from", span.from}, {"to", span.to}}; }
 
+Json to_json(const std::optional<StepTimes>& times) {
+  if (!times) return nullptr;
+  return {{"median", times->median}, {"p99", times->p99}, {"max", times->max}};
+}
+
 Json to_json(const RecordedTimes& times) {
-  return {{"source_s", times.source},   {"frontend_s", times.frontend}, {"backend_s", times.backend},
-          {"waiting_s", times.waiting}, {"harness_s", times.harness},   {"total_s", times.total}};
+  return {{"source_s", times.source},
+          {"frontend_s", times.frontend},
+          {"backend_s", times.backend},
+          {"waiting_s", times.waiting},
+          {"harness_s", times.harness},
+          {"total_s", times.total},
+          {"frontend_ms", to_json(times.frontend_ms)},
+          {"backend_ms", to_json(times.backend_ms)}};
+}
+
+std::optional<StepTimes> read_step_times(const RecordReader& times, const char* key) {
+  const Json& json = times.at(key);
+  if (json.is_null()) return std::nullopt;
+  const RecordReader reader(json, times.place() + "." + key);
+  return StepTimes{reader.number("median"), reader.number("p99"), reader.number("max")};
+}
+
+RecordedTimes read_times(const RecordReader& json) {
+  return {json.number_or_null("source_s").value_or(0.0),
+          json.number("frontend_s"),
+          json.number("backend_s"),
+          json.number("waiting_s"),
+          json.number("harness_s"),
+          json.number("total_s"),
+          read_step_times(json, "frontend_ms"),
+          read_step_times(json, "backend_ms")};
 }
 
 RunState read_state(const RecordReader& status) {
@@ -59,14 +89,26 @@ std::optional<TimeRange> read_range(const RecordReader& json) {
   return TimeRange{range[0].get<double>(), range[1].get<double>()};
 }
 
-Json parse_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: can't be opened", path));
-  try {
-    return Json::parse(file);
-  } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: is not JSON: {}", path, json_reason(error)));
+Json metrics_json(const RunRecord& record, bool scores) {
+  Json json = {{"experiment", record.experiment}, {"label", record.label}};
+  json["seed"] = record.seed ? Json(*record.seed) : Json();
+  json["key"] = record.key.empty() ? Json() : Json(record.key);
+  json["position"] = record.position ? Json(*record.position) : Json();
+  if (scores) {
+    json["final"] = record.final_scores;
+    json["online"] = record.online_scores;
+    json["covariance"] = record.covariance;
   }
+  if (!record.final_unscored.empty()) json["final_unscored"] = record.final_unscored;
+  if (!record.online_unscored.empty()) json["online_unscored"] = record.online_unscored;
+  json["range_s"] = record.range ? Json{record.range->from, record.range->to} : Json();
+  json["runtime_s"] = or_null(record.runtime_s);
+  json["data_s"] = or_null(record.data_s);
+  json["realtime_factor"] = or_null(record.realtime_factor);
+  json["times"] = record.times ? to_json(*record.times) : Json();
+  json["peak_rss_mib"] = or_null(record.peak_rss_mib);
+  json["status"] = record.status ? to_json(*record.status) : Json();
+  return json;
 }
 
 }  // namespace
@@ -92,25 +134,15 @@ Json to_json(const RunStatus& run) {
   return json;
 }
 
-Json to_json(const RunRecord& record) {
-  Json json = {{"experiment", record.experiment}, {"label", record.label}};
-  json["seed"] = record.seed ? Json(*record.seed) : Json();
-  json["key"] = record.key.empty() ? Json() : Json(record.key);
-  json["position"] = record.position ? Json(*record.position) : Json();
-  json["final"] = record.final_scores;
-  json["online"] = record.online_scores;
-  json["covariance"] = record.covariance;
-  if (!record.final_unscored.empty()) json["final_unscored"] = record.final_unscored;
-  if (!record.online_unscored.empty()) json["online_unscored"] = record.online_unscored;
-  json["range_s"] = record.range ? Json{record.range->from, record.range->to} : Json();
-  json["runtime_s"] = or_null(record.runtime_s);
-  json["data_s"] = or_null(record.data_s);
-  json["realtime_factor"] = or_null(record.realtime_factor);
-  json["times"] = record.times ? to_json(*record.times) : Json();
-  json["peak_rss_mib"] = or_null(record.peak_rss_mib);
-  json["status"] = record.status ? to_json(*record.status) : Json();
-  return json;
+std::optional<StepTimes> step_times(std::vector<double> seconds) {
+  if (seconds.empty()) return std::nullopt;
+  std::ranges::sort(seconds);
+  return StepTimes{1e3 * quantile(seconds, 0.5), 1e3 * quantile(seconds, 0.99), 1e3 * seconds.back()};
 }
+
+Json to_json_without_scores(const RunRecord& record) { return metrics_json(record, false); }
+
+Json to_json(const RunRecord& record) { return metrics_json(record, true); }
 
 RunRecord read_record(const Json& metrics, const std::string& place) {
   const RecordReader json(metrics, place);
@@ -134,13 +166,7 @@ RunRecord read_record(const Json& metrics, const std::string& place) {
   record.data_s = json.number_or_null("data_s");
   record.realtime_factor = json.number_or_null("realtime_factor");
   if (const Json& times = json.at("times"); !times.is_null()) {
-    const RecordReader reader(times, place + ": times");
-    record.times = {reader.number_or_null("source_s").value_or(0.0),
-                    reader.number("frontend_s"),
-                    reader.number("backend_s"),
-                    reader.number("waiting_s"),
-                    reader.number("harness_s"),
-                    reader.number("total_s")};
+    record.times = read_times(RecordReader(times, place + ": times"));
   }
   record.peak_rss_mib = json.number_or_null("peak_rss_mib");
   if (const Json& status = json.at("status"); !status.is_null()) {
@@ -151,10 +177,10 @@ RunRecord read_record(const Json& metrics, const std::string& place) {
 
 RunRecord read_record(const std::string& folder) {
   const std::string path = folder + "/metrics.json";
-  RunRecord record = read_record(parse_file(path), path);
+  RunRecord record = read_record(read_json_file(path), path);
   record.folder = folder;
   const std::string config = folder + "/config.json";
-  if (std::filesystem::exists(config)) record.settings = settings_of(parse_file(config));
+  if (std::filesystem::exists(config)) record.settings = settings_of(read_json_file(config));
   return record;
 }
 

@@ -31,7 +31,7 @@ RunRecord full_record() {
   record.runtime_s = 1.0 / 7.0;
   record.data_s = 29.9;
   record.realtime_factor = *record.data_s / *record.runtime_s;
-  record.times = {0.05, 0.1, 0.2, 0.3, 0.4, 1.0};
+  record.times = {0.05, 0.1, 0.2, 0.3, 0.4, 1.0, std::nullopt, StepTimes{1.5, 2.5, 4.0}};
   record.peak_rss_mib = 31.25;
   RunStatus status;
   status.status = {RunState::lost, "2 tracks, 15 needed", 3.051, {{1.0, 1.5, "8 tracks"}}};
@@ -63,12 +63,25 @@ TEST_CASE("A record that was read is written again with the same bytes") {
   CHECK(read.seed == 18446744073709551615U);
   CHECK(read.key == "mine-0123456789");
   CHECK(read.times->waiting == 0.3);
+  CHECK_FALSE(read.times->frontend_ms);
+  CHECK(read.times->backend_ms->p99 == 2.5);
   REQUIRE(read.status);
   CHECK(read.status->status.state == RunState::lost);
   CHECK(read.status->status.time == 3.051);
   CHECK(read.status->pieces.at(1).landmarks == 77);
   CHECK(read.status->scored == 2);
   CHECK_FALSE(read.status->complete);
+}
+
+TEST_CASE("Times of steps are told in milliseconds, by median, 99th percentile and maximum") {
+  std::vector<double> seconds(100, 0.002);
+  seconds[7] = 0.05;
+  seconds[8] = 0.01;
+  const StepTimes times = step_times(seconds).value();
+  CHECK(times.median == Approx(2.0));
+  CHECK(times.p99 == Approx(10.4));  // numpy.percentile(..., 99)
+  CHECK(times.max == Approx(50.0));
+  CHECK_FALSE(step_times({}));
 }
 
 TEST_CASE("What an older version did not write yet is not known, and keys of a newer one are passed over") {

@@ -11,6 +11,9 @@ namespace evbench {
 /// Values by their paths in a config ("backend.frame_duration"), in its order.
 using RunSettings = std::vector<std::pair<std::string, Json>>;
 
+/// A run's place in a sweep: the names of its axes, and its values on them as text.
+using RunAxes = std::vector<std::pair<std::string, std::string>>;
+
 /// What a run's config.json says of source, front-end, back-end and pipeline: what may make two runs of one name
 /// differ, besides the seed.
 RunSettings settings_of(const Json& config);

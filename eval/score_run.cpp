@@ -41,7 +41,7 @@ RunTrajectories read_trajectories(const std::string& folder, bool online) {
 
 /// Throws InputError with the reason where there are no scores.
 Scores compare(const RunTrajectories& trajectories, ScoreOptions options, const RunRecord& record) {
-  if (trajectories.ground_truth.empty()) throw InputError("no ground truth");
+  if (trajectories.ground_truth.empty()) throw InputError(kNoGroundTruth);
   if (trajectories.estimate.empty()) {
     const std::string reason = record.status ? record.status->status.reason : "";
     throw InputError(reason.empty() ? "no trajectory" : "no trajectory: " + reason);

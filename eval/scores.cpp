@@ -23,14 +23,6 @@ AssociationOptions association_options(const ScoreOptions& options) {
           .min_pairs = static_cast<std::size_t>(options.min_pairs)};
 }
 
-RelativeOptions relative_options(const ScoreOptions& options) {
-  return {.delta = options.rpe_delta,
-          .unit = parse_name<DeltaUnit>(kDeltaUnitNames, options.rpe_unit, "unit of the RPE delta"),
-          .pairing = parse_name<Pairing>(kPairingNames, options.rpe_pairing, "RPE pairing"),
-          .tolerance = options.rpe_tolerance,
-          .source = parse_name<PairSource>(kPairSourceNames, options.rpe_pairs_from, "source of RPE pairs")};
-}
-
 SegmentOptions segment_options(const ScoreOptions& options) {
   return with_own_lengths({.rule = parse_name<SegmentRule>(kSegmentRuleNames, options.segments, "rule of segments"),
                            .lengths = options.segment_lengths,
@@ -69,6 +61,14 @@ double path_length(const std::vector<PosePair>& pairs) {
 }
 
 }  // namespace
+
+RelativeOptions relative_options(const ScoreOptions& options) {
+  return {.delta = options.rpe_delta,
+          .unit = parse_name<DeltaUnit>(kDeltaUnitNames, options.rpe_unit, "unit of the RPE delta"),
+          .pairing = parse_name<Pairing>(kPairingNames, options.rpe_pairing, "RPE pairing"),
+          .tolerance = options.rpe_tolerance,
+          .source = parse_name<PairSource>(kPairSourceNames, options.rpe_pairs_from, "source of RPE pairs")};
+}
 
 Scores score(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, const ScoreOptions& options) {
   const auto method = parse_name<AlignmentMethod>(kAlignmentNames, options.alignment, "alignment");

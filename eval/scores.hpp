@@ -97,6 +97,9 @@ struct Scores {
   ScoreOptions options;                  ///< the protocol
 };
 
+/// How such a protocol takes relative errors. Throws InputError for names that are not known.
+RelativeOptions relative_options(const ScoreOptions& options);
+
 /// Associates, aligns, and takes the errors. Throws InputError for options that contradict one another or are out of
 /// range, and for trajectories that can't be compared (association.hpp, alignment.hpp). The same input gives the same
 /// digits.

@@ -9,8 +9,8 @@
 
 namespace evbench {
 
-enum class TableFormat { text, markdown, csv, latex };
-inline constexpr NameList<4> kTableFormatNames = {"text", "markdown", "csv", "latex"};
+enum class TableFormat { text, markdown, csv, latex, long_csv };
+inline constexpr NameList<5> kTableFormatNames = {"text", "markdown", "csv", "latex", "long"};
 
 struct TableOptions {
   TableFormat format = TableFormat::text;
@@ -18,19 +18,39 @@ struct TableOptions {
   /// Columns: paths into metrics.json ("realtime_factor", "times.waiting_s") or into its scores ("rpe.trans_m.median");
   /// empty: the default columns.
   std::vector<std::string> metrics = {};
+  /// What rows are summarised over, e.g. {"seed"}: names of run_columns(). Empty: a row a run.
+  std::vector<std::string> over = {};
 };
 
 /// A table of runs, a row each, in the order given. What tells them apart are columns: the label, the experiment and
 /// the seed where they vary, settings in which runs of one label differ, named as in a config; the key, and the folder,
 /// where these do not suffice. CSV has label, experiment, seed, key and folder always.
 ///
-/// The protocol stands below (CSV: in columns), and whether the final or the online trajectory is scored; runs of
-/// different protocols are marked with its number. LaTeX has fewer default columns, for a page. Pairs, coverage and
-/// scale are columns, or, where `metrics` leaves them out, ranges below. The best value of a column, among runs of the
-/// same experiment and protocol, is bold in Markdown and LaTeX and marked with * in text; runs that were lost or failed
-/// do not compete. A value that a run does not have is "-" (CSV: empty). Why runs have no scores, or were lost, stands
-/// below. Throws InputError when there is no run, when no run has a column's value at all, with the nearest known name,
-/// and when no run has online scores but they are asked for.
+/// The protocol stands below (CSV: in columns; LaTeX: in the caption), and whether the final or the online trajectory
+/// is scored; runs of different protocols are marked with its number. LaTeX has fewer default columns, for a page.
+/// Pairs, coverage and scale are columns, or, where `metrics` leaves them out, ranges below. The best value of a
+/// column, among runs of the same experiment and protocol, is bold in Markdown and LaTeX and marked with * in text;
+/// runs that were lost or failed do not compete. A value that a run does not have is "-" (CSV: empty). Why runs have no
+/// scores, or were lost, stands below.
+///
+/// With `over`, runs that differ in nothing else are a row: median and quartiles of each number, and how many of them
+/// succeeded, that is, have scores and were neither lost nor failed. Those that did not count as worse than all others
+/// in every number of which lower or higher is better ("fails"). Bold is what significantly differs from all other rows
+/// of the same experiment and protocol: Wilcoxon's test on pairs of the same data, corrected by Holm for the number of
+/// rows, p < 0.05 (paired_comparison.hpp). CSV has columns KEY.lower, KEY.median and KEY.upper, infinite where that is
+/// of a run that did not succeed.
+///
+/// The format "long" is a CSV with a line a run and metric, of all known ones where none are asked for, and what tells
+/// runs apart as columns: what pandas and R read at once.
+///
+/// Throws InputError when there is no run, when no run has a column's value at all, with the nearest known name, when
+/// no run has online scores but they are asked for, and with `over` when runs do not differ in what it names or when
+/// two of a row have the same seed (or whatever `over` names) but are not the same job.
 std::string make_table(std::span<const RunRecord> runs, const TableOptions& options);
+
+/// Does such a table of so many runs show scores over common time (bench/common_time.hpp)? They take long: the runs'
+/// trajectories are scored again. So tables of more than kCommonTimeRuns runs have them only where they are asked for.
+bool shows_common_time(const TableOptions& options, std::size_t runs);
+inline constexpr std::size_t kCommonTimeRuns = 500;
 
 }  // namespace evbench

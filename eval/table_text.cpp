@@ -44,7 +44,7 @@ std::string pad(const std::string& text, std::size_t width, bool right) {
 std::vector<std::vector<std::string>> padded_rows(const TextTable& table,
                                                   const std::function<std::string(const Cell&)>& write) {
   std::vector<std::vector<std::string>> rows(1);
-  for (const TextTable::Column& column : table.columns) rows[0].push_back(write({column.header, false}));
+  for (const TextTable::Column& column : table.columns) rows[0].push_back(write({column.header}));
   for (const auto& cells : table.rows) {
     rows.emplace_back();
     for (const Cell& cell : cells) rows.back().push_back(write(cell));
@@ -58,7 +58,10 @@ std::vector<std::vector<std::string>> padded_rows(const TextTable& table,
 }
 
 std::string format_text(const TextTable& table) {
-  const auto rows = padded_rows(table, [](const Cell& cell) { return cell.text + (cell.best ? "*" : " "); });
+  const auto rows = padded_rows(table, [](const Cell& cell) {
+    if (cell.aside.empty()) return cell.text + (cell.best ? "*" : " ");
+    return fmt::format("{}{} {} ", cell.text, cell.best ? "*" : "", cell.aside);
+  });
   std::string text;
   for (const auto& row : rows) {
     std::string line = fmt::format("{}", fmt::join(row, " "));
@@ -71,7 +74,8 @@ std::string format_text(const TextTable& table) {
 
 std::string format_markdown(const TextTable& table) {
   const auto rows = padded_rows(table, [](const Cell& cell) {
-    return cell.best ? fmt::format("**{}**", escape_markdown(cell.text)) : escape_markdown(cell.text);
+    const std::string text = escape_markdown(cell.text), aside = escape_markdown(cell.aside);
+    return (cell.best ? fmt::format("**{}**", text) : text) + (aside.empty() ? "" : " " + aside);
   });
   std::string text;
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -86,17 +90,13 @@ std::string format_markdown(const TextTable& table) {
 }
 
 std::string format_csv(const TextTable& table) {
-  std::string text;
-  const auto add_line = [&](const std::vector<std::string>& cells) {
-    text += fmt::format("{}\n", fmt::join(cells, ","));
-  };
   std::vector<std::string> line;
-  for (const TextTable::Column& column : table.columns) line.push_back(escape_csv(column.header));
-  add_line(line);
+  for (const TextTable::Column& column : table.columns) line.push_back(column.header);
+  std::string text = csv_line(line);
   for (const auto& row : table.rows) {
     line.clear();
-    for (const Cell& cell : row) line.push_back(escape_csv(cell.text));
-    add_line(line);
+    for (const Cell& cell : row) line.push_back(cell.text);
+    text += csv_line(line);
   }
   return text;
 }
@@ -113,24 +113,36 @@ std::string label_of(const TextTable& table) {
 
 std::string format_latex(const TextTable& table) {
   const auto rows = padded_rows(table, [](const Cell& cell) {
-    return cell.best ? fmt::format("\\textbf{{{}}}", escape_latex(cell.text)) : escape_latex(cell.text);
+    const std::string text = escape_latex(cell.text), aside = escape_latex(cell.aside);
+    return (cell.best ? fmt::format("\\textbf{{{}}}", text) : text) +
+           (aside.empty() ? "" : fmt::format(" {{\\scriptsize {}}}", aside));
   });
   std::string alignment;
   for (const TextTable::Column& column : table.columns) alignment += column.number ? 'r' : 'l';
   std::string text = "\\begin{table}  % \\usepackage{booktabs}\n  \\centering\n";
-  text += fmt::format("  \\caption{{{}}}\n", escape_latex(fmt::format("{}", fmt::join(table.experiments, ", "))));
+  const std::string title = escape_latex(fmt::format("{}", fmt::join(table.experiments, ", ")));
+  text += fmt::format("  \\caption[{{{0}}}]{{{0}.", title);
+  for (const std::string& note : table.notes) text += fmt::format("\n    {}", escape_latex(note));
+  text += "}\n";
   text += fmt::format("  \\label{{{}}}\n", label_of(table));
   text += fmt::format("  \\begin{{tabular}}{{{}}}\n    \\toprule\n", alignment);
   for (std::size_t r = 0; r < rows.size(); ++r) {
     text += fmt::format("    {} \\\\\n", fmt::join(rows[r], " & "));
     if (r == 0) text += "    \\midrule\n";
   }
-  text += "    \\bottomrule\n  \\end{tabular}\n\n  \\smallskip\n  \\parbox{\\linewidth}{\\footnotesize\n";
-  for (const std::string& note : table.notes) text += fmt::format("    {}\n", escape_latex(note));
-  return text + "  }\n\\end{table}\n";
+  return text + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
 }
 
 }  // namespace
+
+std::string csv_line(const std::vector<std::string>& cells) {
+  std::string line;
+  for (const std::string& cell : cells) {
+    if (&cell != &cells.front()) line += ',';
+    line += escape_csv(cell);
+  }
+  return line + "\n";
+}
 
 std::string escape_latex(const std::string& text) {
   std::string result;
@@ -164,7 +176,8 @@ std::string format_table(const TextTable& table, TableFormat format) {
     case TableFormat::text: return format_text(table);
     case TableFormat::markdown: return format_markdown(table);
     case TableFormat::csv: return format_csv(table);
-    case TableFormat::latex: break;
+    case TableFormat::latex:
+    case TableFormat::long_csv: break;
   }
   return format_latex(table);
 }

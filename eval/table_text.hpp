@@ -15,7 +15,8 @@ struct TextTable {
   };
   struct Cell {
     std::string text;
-    bool best = false;
+    bool best = false;       ///< of the text
+    std::string aside = {};  ///< behind it, small in print
   };
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;
@@ -23,9 +24,12 @@ struct TextTable {
   std::vector<std::string> experiments;  ///< what it is of
 };
 
-/// Written out; characters with a meaning in the format are escaped. LaTeX is a float with caption, label and notes
-/// that needs the package booktabs.
+/// Written out; characters with a meaning in the format are escaped. LaTeX is a float that needs the package booktabs,
+/// with a label, and the notes in its caption. Not for the format long.
 std::string format_table(const TextTable& table, TableFormat format);
+
+/// A line of CSV.
+std::string csv_line(const std::vector<std::string>& cells);
 
 std::string escape_latex(const std::string& text);
 

@@ -11,6 +11,7 @@
 #include "bench/common_time.hpp"
 #include "bench/run_folder.hpp"
 #include "core/support/interruption.hpp"
+#include "eval/find_runs.hpp"
 #include "eval/table.hpp"
 
 namespace evbench {

@@ -9,6 +9,7 @@
 #include "bench/commands/failures.hpp"
 #include "bench/common_time.hpp"
 #include "core/io/atomic_file.hpp"
+#include "eval/find_runs.hpp"
 
 namespace evbench {
 namespace {
@@ -29,7 +30,7 @@ void execute(const TableArguments& arguments) {
   std::vector<std::string> unreadable;
   std::vector<RunRecord> runs = find_runs(arguments.folders, &unreadable);
   if (runs.empty()) throw_together(unreadable);
-  score_common_time(runs, options.online);
+  if (shows_common_time(options, runs.size())) score_common_time(runs, options.online);
   const std::string table = make_table(runs, options);
   if (arguments.out.empty()) {
     fmt::print("{}", table);
@@ -43,11 +44,15 @@ void execute(const TableArguments& arguments) {
 
 void add_table(CLI::App& app) {
   auto arguments = std::make_shared<TableArguments>();
-  CLI::App* command = app.add_subcommand("table", "Make a table of runs: text, Markdown, CSV, LaTeX");
+  CLI::App* command =
+      app.add_subcommand("table", "Make a table of runs: text, Markdown, CSV, LaTeX; with statistics over seeds");
   command->add_option("folders", arguments->folders, "Folders of runs, searched with all folders below")
       ->required()
       ->type_name("DIR");
-  command->add_option("--format", arguments->format, "Format; latex has few columns, see --metrics, and needs booktabs")
+  command
+      ->add_option(
+          "--format", arguments->format,
+          "Format; latex has few columns, see --metrics, and needs booktabs; long: CSV, a line a run and metric")
       ->check(CLI::IsMember(to_strings(kTableFormatNames)))
       ->capture_default_str();
   command->add_option("--out", arguments->out, "Write to this file instead of the terminal")->type_name("FILE");
@@ -58,6 +63,12 @@ void add_table(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("KEY,...");
+  command
+      ->add_option("--over", arguments->options.over,
+                   "Summarise: a row for all runs that differ in nothing else, e.g. seed, or seed,experiment")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,...");
   command->add_flag("--online", arguments->options.online, "Scores of the poses as estimated when they were made");
   command->callback([arguments] { execute(*arguments); });
 }

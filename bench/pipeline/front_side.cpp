@@ -36,6 +36,7 @@ std::optional<TrackBatch> FrontSide::next() {
 }
 
 TrackBatch FrontSide::exchange() {
+  const double before = seconds();
   if (needs_.any) {
     for (const Feedback& feedback : feedback_.due(clock_)) watch_.time([&] { frontend_.receive(feedback); });
   }
@@ -49,6 +50,7 @@ TrackBatch FrontSide::exchange() {
     count(batch);
   }
   batch.seen = batch.known_at();
+  batch_seconds_.push_back(seconds() - before);
   return batch;
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <set>
+#include <vector>
 
 #include "bench/pipeline/feedback_line.hpp"
 #include "bench/pipeline/options.hpp"
@@ -25,7 +26,8 @@ class FrontSide {
   /// std::runtime_error for a front-end that breaks its contract (frontend.hpp), saying how.
   std::optional<TrackBatch> next();
 
-  double seconds() const { return watch_.seconds() - frontend_.waited(); }  ///< in the front-end
+  double seconds() const { return watch_.seconds() - frontend_.waited(); }     ///< in the front-end
+  const std::vector<double>& batch_seconds() const { return batch_seconds_; }  ///< of them, of each exchange
 
   /// [s] between the first and the last observation that it gave.
   double data_s() const { return first_ ? last_ - *first_ : 0.0; }
@@ -51,6 +53,7 @@ class FrontSide {
   std::optional<double> first_;
   double last_ = 0.0;
   Stopwatch watch_;
+  std::vector<double> batch_seconds_;
 };
 
 }  // namespace evbench

@@ -86,6 +86,7 @@ RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackE
   });
   result.times.source = frontend.waited();
   result.times.frontend = front.seconds();
+  result.times.frontend_batches = front.batch_seconds();
   result.times.backend = back.seconds();
   result.times.total = total.seconds();
   const double elsewhere = options.mode == "sequential" ? front.seconds() + frontend.waited() : result.times.waiting;

@@ -35,6 +35,8 @@ struct RunTimes {
   double waiting = 0.0;   ///< the back-end's thread, for the front-end's
   double harness = 0.0;   ///< the rest of the loop: exchanges, undistortion, hashing, sampling
   double total = 0.0;     ///< of the loop, from the first exchange to the last estimate
+  /// Making observations, of each exchange.
+  std::vector<double> frontend_batches;
 };
 
 /// What a run of front-end and back-end ended with.

@@ -1,0 +1,186 @@
+#include "eval/comparison_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include "core/support/error.hpp"
+#include "core/support/nearest.hpp"
+#include "eval/holm.hpp"
+#include "eval/methods.hpp"
+#include "eval/paired_comparison.hpp"
+#include "eval/run_columns.hpp"
+#include "eval/table_notes.hpp"
+#include "eval/table_text.hpp"
+
+namespace evbench {
+namespace {
+
+using Cell = TextTable::Cell;
+
+constexpr double kSignificant = 0.05;
+
+std::size_t find_base(const std::vector<Method>& methods, const std::string& name) {
+  if (name.empty()) return 0;
+  std::vector<std::string> names;
+  for (const Method& method : methods) names.push_back(method.name);
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) throw InputError(fmt::format("there is no method \"{}\"{}", name, suggestion(name, names)));
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+std::vector<Metric> compared_metrics(const ComparisonOptions& options, const std::vector<RunNumbers>& runs) {
+  if (options.metrics.empty()) {
+    std::vector<Metric> metrics;
+    for (const char* key : {"ate.trans_m.rmse", "rpe.trans_m.rmse", "realtime_factor"}) {
+      if (any_has(runs, key)) metrics.push_back(metric_of(key));
+    }
+    return metrics;
+  }
+  std::vector<Metric> metrics = metrics_of(options.metrics, runs);
+  for (const Metric& metric : metrics) {
+    if (metric.better != Better::neither) continue;
+    throw InputError(
+        fmt::format("\"{}\" can't be compared: neither lower nor higher is better; expected an error or a "
+                    "time, e.g. ate.trans_m.rmse",
+                    metric.key));
+  }
+  return metrics;
+}
+
+/// The SHA-256 of the observations that a run was given; empty where it is not known.
+std::string observations_of(const RunRecord& run) {
+  std::ifstream file(run.folder + "/manifest.json");
+  const Json manifest = Json::parse(file, nullptr, false);
+  if (!manifest.is_object()) return "";
+  const auto found = manifest.find("tracks_sha256");
+  return found != manifest.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+std::string ratio_text(double ratio) {
+  if (std::isinf(ratio)) return "inf";
+  return fmt::format("{:.3g}", ratio);
+}
+
+/// Compares and writes row by row.
+class Comparison {
+ public:
+  Comparison(std::span<const RunRecord> runs, const ComparisonOptions& options)
+      : options_(options),
+        csv_(options.format == TableFormat::csv),
+        numbers_(numbers_of(runs, options.online)),
+        data_(number_data(numbers_)),
+        protocols_(collect_protocols(numbers_)),
+        methods_(methods_of(numbers_, run_columns(runs))) {
+    if (methods_.size() < 2) throw InputError("all runs are of one method; expected two or more to compare");
+    base_ = find_base(methods_, options.base);
+    metrics_ = compared_metrics(options, numbers_);
+    for (const char* name :
+         {"", "metric", "pairs", "failed", "base failed", "ratio", "better in", "p", "p, Holm", "effect"}) {
+      table_.columns.push_back(
+          {csv_ && *name == '\0' ? "method" : name, *name != '\0' && std::string(name) != "metric"});
+    }
+    if (csv_) table_.columns.insert(table_.columns.begin() + 6, {{"from", true}, {"to", true}});
+  }
+
+  std::string write() {
+    for (const Metric& metric : metrics_) add_rows(metric);
+    if (table_.rows.empty()) {
+      throw InputError(
+          fmt::format("no run is of the same data as one of \"{}\"; expected the same source, front-end and "
+                      "seed",
+                      methods_[base_].name));
+    }
+    add_notes();
+    return format_table(table_, options_.format);
+  }
+
+ private:
+  void add_rows(const Metric& metric) {
+    std::vector<std::size_t> others;
+    std::vector<PairedComparison> comparisons;
+    const auto costs = [&](std::size_t method) {
+      return costs_of(methods_[method].runs, numbers_, metric, data_, protocols_.of_run);
+    };
+    for (std::size_t m = 0; m < methods_.size(); ++m) {
+      if (m == base_) continue;
+      const std::vector<CostPair> pairs = pair_up(costs(m), costs(base_));
+      if (pairs.empty()) continue;
+      for (const CostPair& pair : pairs) paired_.insert({pair.own_run, pair.other_run});
+      others.push_back(m);
+      comparisons.push_back(compare_pairs(pairs));
+    }
+    std::vector<double> p;
+    for (const PairedComparison& comparison : comparisons) p.push_back(comparison.test.p);
+    const std::vector<double> corrected = holm(p);
+    for (std::size_t i = 0; i < others.size(); ++i) add_row(metric, others[i], comparisons[i], corrected[i]);
+  }
+
+  void add_row(const Metric& metric, std::size_t method, const PairedComparison& c, double corrected) {
+    const auto p_text = [&](double p) { return csv_ ? fmt::format("{}", p) : fmt::format("{:.2g}", p); };
+    std::vector<Cell> row = {{methods_[method].name},
+                             {csv_ ? metric.key : metric.header},
+                             {fmt::format("{}", c.pairs)},
+                             {fmt::format("{}", c.own_failed)},
+                             {fmt::format("{}", c.other_failed)}};
+    if (csv_) {
+      for (const double value : {c.ratio, c.interval.from, c.interval.to}) row.push_back({fmt::format("{}", value)});
+    } else {
+      row.push_back({ratio_text(c.ratio), corrected < kSignificant && c.test.rank_biserial < 0.0,
+                     fmt::format("[{}, {}]", ratio_text(c.interval.from), ratio_text(c.interval.to))});
+    }
+    row.push_back({fmt::format("{}", c.better)});
+    row.push_back({p_text(c.test.p)});
+    row.push_back({p_text(corrected)});
+    row.push_back({csv_ ? fmt::format("{}", c.test.rank_biserial) : fmt::format("{:.2f}", c.test.rank_biserial)});
+    table_.rows.push_back(std::move(row));
+  }
+
+  void add_notes() {
+    table_.experiments = {fmt::format("compared with {}", methods_[base_].name)};
+    std::vector<std::string>& notes = table_.notes;
+    notes.push_back(
+        fmt::format("Compared with: {}. Pairs are runs of the same source, front-end and seed.", methods_[base_].name));
+    std::size_t identical = 0, known = 0;
+    for (const auto& [own, other] : paired_) {
+      const std::string a = observations_of(numbers_[own].run()), b = observations_of(numbers_[other].run());
+      known += !a.empty() && !b.empty() ? 1 : 0;
+      identical += !a.empty() && a == b ? 1 : 0;
+    }
+    notes.push_back(
+        fmt::format("Observations were identical in {} of {} pairs{}.", identical, paired_.size(),
+                    known < paired_.size() ? fmt::format(" (not known of {})", paired_.size() - known) : ""));
+    notes.emplace_back(
+        "Ratio: median of own / base (where higher is better, of base / own) with its 95 % interval (bootstrap); below "
+        "1 "
+        "the method is better. A failed run is infinitely worse than any other, two failed ones are equal.");
+    notes.push_back(
+        fmt::format("p: Wilcoxon's signed-rank test, two-sided; Holm: corrected for the comparisons of a "
+                    "metric; bold (*): better with p < {} after correction. Effect: matched-pairs rank-biserial "
+                    "correlation, -1: better in all pairs.",
+                    kSignificant));
+    for (const std::string& protocol : protocols_.texts) notes.push_back(fmt::format("Protocol: {}.", protocol));
+  }
+
+  const ComparisonOptions& options_;
+  bool csv_;
+  std::vector<RunNumbers> numbers_;
+  std::vector<std::size_t> data_;
+  Protocols protocols_;
+  std::vector<Method> methods_;
+  std::size_t base_ = 0;
+  std::vector<Metric> metrics_;
+  std::set<std::pair<std::size_t, std::size_t>> paired_;  ///< own and base's run of each pair of any metric
+  TextTable table_;
+};
+
+}  // namespace
+
+std::string make_comparison_table(std::span<const RunRecord> runs, const ComparisonOptions& options) {
+  return Comparison(runs, options).write();
+}
+
+}  // namespace evbench

@@ -1,0 +1,90 @@
+#include "eval/comparison_table.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "core/support/error.hpp"
+#include "eval/methods.hpp"
+#include "eval/testing/runs.hpp"
+
+namespace evbench {
+namespace {
+
+using namespace testing;
+using Catch::Matchers::Contains;
+
+/// Eight seeds of "base", of "half" with half its error, and of "same" with an error near it.
+struct Compared : Results {
+  Compared() {
+    for (int seed = 1; seed <= 8; ++seed) {
+      add_seed("base", seed, 0.02 + 0.001 * seed);
+      add_seed("half", seed, 0.01 + 0.0005 * seed);
+      add_seed("same", seed, (0.02 + 0.001 * seed) * (seed % 2 == 0 ? 1.01 : 0.99));
+    }
+  }
+  std::string table(ComparisonOptions options = {}) const {
+    if (options.metrics.empty()) options.metrics = {"ate.trans_m.rmse"};
+    return make_comparison_table(find(), options);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Back-ends are compared pair by pair: ratio, interval, p, correction, effect") {
+  const Compared results;
+  const std::string text = results.table();
+  CHECK_THAT(line_with(text, "half "), Contains(" 8 ") && Contains("0.5* [0.5, 0.5]") && Contains("0.0078") &&
+                                           Contains("0.016") && Contains("-1.00"));
+  CHECK_THAT(line_with(text, "same "), Contains("[0.99, 1.01]") && !Contains("*"));
+  CHECK_THAT(text, Contains("Compared with: base.") && Contains("not known of 16") && Contains("Protocol: Sim(3)"));
+  CHECK(results.table() == text);
+  CHECK_THAT(results.table({.base = "half"}), Contains("Compared with: half.") && Contains("2 [2, 2]"));
+  CHECK_THAT(results.table({.format = TableFormat::csv}),
+             Contains("method,metric,pairs,failed,base failed,ratio,from,to,better in,p,\"p, Holm\",effect\n") &&
+                 Contains("half,ate.trans_m.rmse,8,0,0,0.5"));
+}
+
+TEST_CASE("Observations that were identical are counted") {
+  const Compared results;
+  int n = 0;
+  for (const RunRecord& run : results.find()) {
+    const std::string tracks = run.label == "half" ? std::to_string(n++) : fmt::format("of seed {}", *run.seed);
+    std::ofstream(run.folder + "/manifest.json") << Json{{"tracks_sha256", tracks}}.dump();
+  }
+  CHECK_THAT(results.table(), Contains("Observations were identical in 8 of 16 pairs."));
+}
+
+TEST_CASE("Failures count in comparisons, and are shown") {
+  Compared results;
+  results.add_seed("base", 9, 0.03);
+  results.add_seed("half", 9, std::nullopt);
+  CHECK_THAT(line_with(results.table(), "half "), Contains(" 9 ") && Contains(" 1 ") && Contains("0.5"));
+}
+
+TEST_CASE("Settings that differ on the same data are part of a method's name") {
+  Results results;
+  for (const double frame : {0.1, 0.2}) {
+    for (int seed = 1; seed <= 3; ++seed) results.add_seed("bundle", seed, frame, frame);
+  }
+  const std::vector<RunRecord> runs = results.find();
+  const auto methods = methods_of(numbers_of(runs, false), run_columns(runs));
+  REQUIRE(methods.size() == 2);
+  CHECK(methods[0].name == "bundle, backend.frame_duration 0.1");
+  CHECK(methods[1].runs.size() == 3);
+  CHECK_THAT(make_comparison_table(runs, {}), Contains("bundle, backend.frame_duration 0.2") && Contains("2 [2, 2]"));
+}
+
+TEST_CASE("What can't be compared is refused with what was expected") {
+  const Compared results;
+  CHECK_THROWS_WITH(results.table({.base = "bas"}), "there is no method \"bas\"; did you mean \"base\"?");
+  CHECK_THROWS_WITH(results.table({.metrics = {"coverage"}}),
+                    Contains("\"coverage\" can't be compared: neither lower nor higher is better"));
+  CHECK_THROWS_WITH(results.table({.metrics = {"ate.tans_m.rmse"}}), Contains("did you mean \"ate.trans_m.rmse\"?"));
+  Results one;
+  one.add_seed("base", 1, 0.1);
+  CHECK_THROWS_WITH(make_comparison_table(one.find(), {}), Contains("all runs are of one method"));
+  one.add_seed("other", 2, 0.1);
+  CHECK_THROWS_WITH(make_comparison_table(one.find(), {}), Contains("expected the same source, front-end and seed"));
+}
+
+}  // namespace evbench

@@ -1,0 +1,24 @@
+#include "eval/json_file.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "core/support/error.hpp"
+#include "core/support/json_reason.hpp"
+
+namespace evbench {
+
+Json read_json_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(fmt::format("{}: can't be opened", path));
+  const std::string text{std::istreambuf_iterator<char>(file), {}};  // parsed faster than a stream
+  try {
+    return Json::parse(text);
+  } catch (const Json::exception& error) {
+    throw InputError(fmt::format("{}: is not JSON: {}", path, json_reason(error)));
+  }
+}
+
+}  // namespace evbench

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "eval/bootstrap.hpp"
+#include "eval/run_numbers.hpp"
+#include "eval/wilcoxon.hpp"
+
+namespace evbench {
+
+/// What a run cost (RunNumbers::cost()), on which data and by which protocol.
+struct RunCost {
+  std::size_t run;   ///< its index
+  std::size_t data;  ///< a number for each distinct data_of()
+  int protocol;      ///< a number for each distinct protocol; -1: no scores
+  double cost;
+};
+
+/// What two methods cost on the same data.
+struct CostPair {
+  double own, other;
+  std::size_t own_run = 0, other_run = 0;  ///< indices
+};
+
+/// Numbers for the data of runs: equal where they can be compared pair by pair (data_of() in run_columns.hpp).
+std::vector<std::size_t> number_data(const std::vector<RunNumbers>& runs);
+
+/// The costs of some of the runs, by index; runs that have none (RunNumbers::cost()) are left out.
+std::vector<RunCost> costs_of(std::span<const std::size_t> runs, const std::vector<RunNumbers>& numbers,
+                              const Metric& metric, std::span<const std::size_t> data, std::span<const int> protocols);
+
+/// Pairs of the same data, by it; those that were scored by different protocols are none. Each method has one run for
+/// each data at most.
+std::vector<CostPair> pair_up(std::vector<RunCost> own, std::vector<RunCost> other);
+
+/// Logarithms of own / other; 0 where both failed, infinite where one did.
+std::vector<double> log_ratios(std::span<const CostPair> pairs);
+
+/// One method compared with another on the same data. Costs multiply: what is compared are ratios.
+struct PairedComparison {
+  std::size_t pairs = 0;
+  std::size_t own_failed = 0, other_failed = 0;  ///< of the pairs
+  std::size_t better = 0, worse = 0;             ///< pairs in which the own cost is less, is more
+  double ratio = 1.0;                            ///< median of own / other: below 1 the own method is better
+  Interval interval{0.0, 0.0};                   ///< of the ratio, 95 % (bootstrap.hpp)
+  SignedRanks test;                              ///< of the ratios' logarithms
+};
+
+PairedComparison compare_pairs(std::span<const CostPair> pairs);
+
+}  // namespace evbench

@@ -1,0 +1,203 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "core/support/error.hpp"
+#include "eval/holm.hpp"
+#include "eval/paired_comparison.hpp"
+#include "eval/quantile.hpp"
+#include "eval/table_parts.hpp"
+
+namespace evbench {
+namespace {
+
+using Cell = TextTable::Cell;
+using Group = std::vector<std::size_t>;
+
+constexpr double kSignificant = 0.05;
+
+/// The columns that name rows, and those that they are summarised over.
+struct Columns {
+  std::vector<const RunColumn*> rows, over;
+};
+
+Columns split(const TableRuns& runs, const std::vector<std::string>& over) {
+  Columns columns;
+  for (const std::string& name : over) columns.over.push_back(&find_column(runs.columns, name));
+  for (const RunColumn& column : runs.columns) {
+    if (std::ranges::find(columns.over, &column) == columns.over.end()) columns.rows.push_back(&column);
+  }
+  return columns;
+}
+
+/// The row that is significantly better than every other one that it can be compared with, if there is one.
+std::optional<std::size_t> distinguished(const std::vector<Group>& rows, const TableRuns& runs, const Metric& metric,
+                                         std::span<const std::size_t> data) {
+  if (metric.better == Better::neither) return std::nullopt;
+  std::vector<std::vector<RunCost>> costs;
+  for (const Group& row : rows) costs.push_back(costs_of(row, runs.runs, metric, data, runs.protocols.of_run));
+  const auto median = [&](const std::vector<RunCost>& of_row) {
+    std::vector<double> values;
+    for (const RunCost& cost : of_row) values.push_back(cost.cost);
+    return values.empty() ? std::numeric_limits<double>::infinity() : quartiles(values).median;
+  };
+  const auto best = std::ranges::min_element(costs, {}, median);
+  std::vector<double> p;
+  for (auto other = costs.begin(); other != costs.end(); ++other) {
+    if (other == best) continue;
+    const std::vector<CostPair> pairs = pair_up(*best, *other);
+    if (pairs.empty()) continue;
+    const SignedRanks test = signed_rank_test(log_ratios(pairs));
+    p.push_back(test.rank_biserial < 0.0 ? test.p : 1.0);
+  }
+  const std::vector<double> corrected = holm(p);
+  if (p.empty() || std::ranges::max(corrected) >= kSignificant) return std::nullopt;
+  return best - costs.begin();
+}
+
+/// Rows of one experiment; other settings of the data may still set them apart.
+std::vector<std::vector<std::size_t>> rows_of_experiments(const std::vector<Group>& rows, const TableRuns& runs) {
+  std::map<std::string, std::vector<std::size_t>> experiments;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    experiments[runs.runs[rows[r].front()].run().experiment].push_back(r);
+  }
+  std::vector<std::vector<std::size_t>> result;
+  for (auto& [name, of_one] : experiments) result.push_back(std::move(of_one));
+  return result;
+}
+
+std::string number_text(double value, int decimals) {
+  return std::isinf(value) ? "fails" : fmt::format("{:.{}f}", value, decimals);
+}
+
+void add_metric(TextTable& table, const std::vector<Group>& rows, const TableRuns& runs, const Metric& metric,
+                std::span<const std::size_t> data) {
+  std::vector<std::optional<Quartiles>> quartiles_of_rows;
+  std::vector<std::optional<double>> medians;
+  for (const Group& row : rows) {
+    const std::vector<double> values = values_of(row, runs.runs, metric);
+    quartiles_of_rows.push_back(values.empty() ? std::nullopt : std::optional(quartiles(values)));
+    medians.push_back(std::nullopt);
+    if (!values.empty() && std::isfinite(quartiles_of_rows.back()->median)) {
+      medians.back() = metric.factor * quartiles_of_rows.back()->median;
+    }
+  }
+  const int decimals = metric.decimals.value_or(decimals_of(medians));
+  std::vector<Cell> cells;
+  for (const auto& q : quartiles_of_rows) {
+    cells.push_back({"-"});
+    if (!q) continue;
+    cells.back().text = number_text(metric.factor * q->median, decimals);
+    if (q->lower == q->upper && std::isinf(q->lower)) continue;
+    cells.back().aside = fmt::format("[{}, {}]", number_text(metric.factor * q->lower, decimals),
+                                     number_text(metric.factor * q->upper, decimals));
+  }
+  for (const auto& of_one : rows_of_experiments(rows, runs)) {
+    std::vector<Group> groups;
+    for (const std::size_t r : of_one) groups.push_back(rows[r]);
+    if (const auto best = distinguished(groups, runs, metric, data)) cells[of_one[*best]].best = true;
+  }
+  add_column(table, metric.header, true, std::move(cells));
+}
+
+void add_metric_csv(TextTable& table, const std::vector<Group>& rows, const TableRuns& runs, const Metric& metric) {
+  std::vector<Cell> cells[3];
+  for (const Group& row : rows) {
+    const std::vector<double> values = values_of(row, runs.runs, metric);
+    const Quartiles q = quartiles(values);
+    const double shown[] = {q.lower, q.median, q.upper};
+    for (int k = 0; k < 3; ++k) cells[k].push_back({values.empty() ? "" : fmt::format("{}", shown[k])});
+  }
+  const char* names[] = {"lower", "median", "upper"};
+  for (int k = 0; k < 3; ++k) add_column(table, metric.key + "." + names[k], true, std::move(cells[k]));
+}
+
+void add_names(TextTable& table, const std::vector<Group>& rows, const Columns& columns, bool csv) {
+  for (const RunColumn* column : columns.rows) {
+    const bool label = column->name == "label";
+    if (!csv && !label && !column->varies()) continue;
+    std::vector<Cell> cells;
+    for (const Group& row : rows) cells.push_back({column->values[row.front()]});
+    add_column(table, label && !csv ? "" : column->name, false, std::move(cells));
+  }
+}
+
+void add_success(TextTable& table, const std::vector<Group>& rows, const TableRuns& runs, bool csv) {
+  std::vector<Cell> done, succeeded, both;
+  for (const Group& row : rows) {
+    const auto n = std::ranges::count_if(row, [&](std::size_t i) { return runs.runs[i].run().done; });
+    const auto good = std::ranges::count_if(row, [&](std::size_t i) { return runs.runs[i].succeeded(); });
+    done.push_back({fmt::format("{}", n)});
+    succeeded.push_back({fmt::format("{}", good)});
+    both.push_back({fmt::format("{} of {}", good, n)});
+  }
+  if (csv) add_column(table, "runs", true, std::move(done));
+  add_column(table, "succeeded", true, csv ? std::move(succeeded) : std::move(both));
+}
+
+/// The values of a column, few of them: "seed (1 to 10)".
+std::string extent(const RunColumn& column) {
+  const std::set<std::string> values(column.values.begin(), column.values.end());
+  return fmt::format("{} ({} values)", column.name, values.size());
+}
+
+/// What the cells are, and what bold means.
+std::vector<std::string> summary_notes(const std::vector<Group>& rows, const TableRuns& runs, const Columns& columns) {
+  std::vector<std::string> over;
+  for (const RunColumn* column : columns.over) over.push_back(extent(*column));
+  const auto fails = [](const RunNumbers& run) { return run.run().done && !run.succeeded(); };
+  std::vector<std::string> notes = {
+      fmt::format("Median [lower quartile, upper quartile] over {}.", fmt::join(over, " and "))};
+  if (std::ranges::any_of(runs.runs, fails)) {
+    notes.back() += " Runs that were lost or failed count as worse than all others: fails.";
+  }
+  std::size_t largest = 0, most = 0;
+  for (const Group& row : rows) largest = std::max(largest, row.size());
+  for (const auto& of_one : rows_of_experiments(rows, runs)) most = std::max(most, of_one.size());
+  if (most < 2) return notes;
+  notes.push_back(
+      fmt::format("Bold (*): better than every other row, p < {} (Wilcoxon signed-rank, paired by data, Holm's "
+                  "correction for the number of rows).",
+                  kSignificant));
+  if (smallest_p(largest) * static_cast<double>(most - 1) >= kSignificant) {
+    notes.back() +=
+        fmt::format(" With {} pair{} and {} rows nothing can reach that.", largest, largest == 1 ? "" : "s", most);
+  }
+  return notes;
+}
+
+}  // namespace
+
+TextTable summary_table(const TableRuns& runs, const TableOptions& options) {
+  const bool csv = options.format == TableFormat::csv;
+  const Columns columns = split(runs, options.over);
+  std::vector<Group> rows = equal_runs(columns.rows, runs.runs.size());
+  const auto place = [&](std::size_t i) {
+    std::string text;
+    for (const RunColumn* column : columns.over) (text += column->values[i]) += '\0';
+    return text;
+  };
+  for (Group& row : rows) keep_one_of_each(row, runs.runs, place);
+  const std::vector<std::size_t> data = number_data(runs.runs);
+  TextTable table;
+  table.rows.resize(rows.size());
+  add_names(table, rows, columns, csv);
+  add_success(table, rows, runs, csv);
+  for (const Metric& metric : runs.metrics) {
+    if (csv) add_metric_csv(table, rows, runs, metric);
+    if (!csv) add_metric(table, rows, runs, metric, data);
+  }
+  if (csv)
+    add_column(table, "trajectory", false, std::vector<Cell>(rows.size(), {options.online ? "online" : "final"}));
+  table.notes = summary_notes(rows, runs, columns);
+  std::ranges::move(table_notes(runs.runs, run_names(runs.columns), runs.metrics, runs.protocols, options.online),
+                    std::back_inserter(table.notes));
+  return table;
+}
+
+}  // namespace evbench

@@ -1,0 +1,117 @@
+#include <catch2/catch.hpp>
+
+#include "core/support/error.hpp"
+#include "eval/table.hpp"
+#include "eval/testing/runs.hpp"
+
+namespace evbench {
+namespace {
+
+using namespace testing;
+using Catch::Matchers::Contains;
+
+std::string table(const Results& results, TableOptions options = {}) {
+  options.over = {"seed"};
+  if (options.metrics.empty()) options.metrics = {"ate.trans_m.rmse"};
+  return make_table(results.find(), options);
+}
+
+/// So many seeds: of "good" 0.010, 0.011, ...; of "bad" twice that.
+void add_seeds(const Results& results, int seeds) {
+  for (int seed = 1; seed <= seeds; ++seed) {
+    results.add_seed("good", seed, 0.009 + 0.001 * seed);
+    results.add_seed("bad", seed, 0.018 + 0.002 * seed);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Over seeds a row has median and quartiles, and how many runs succeeded") {
+  Results results;
+  add_seeds(results, 5);
+  const std::string text = table(results);
+  CHECK_THAT(line_with(text, "good "), Contains("5 of 5") && Contains("0.0120") && Contains("[0.0110, 0.0130]"));
+  CHECK_THAT(line_with(text, "bad "), Contains("0.0240") && Contains("[0.0220, 0.0260]"));
+  CHECK_THAT(line_with(text, "ATE [m]"), !Contains("seed") && !Contains("key"));
+  CHECK_THAT(text, Contains("over seed (5 values)") && Contains("Protocol: Sim(3)"));
+}
+
+TEST_CASE("Runs that failed count as worse than all others, and are shown") {
+  Results results;
+  add_seeds(results, 3);
+  results.add_seed("good", 4, std::nullopt);
+  results.add_seed("bad", 4, std::nullopt);
+  results.add_seed("bad", 5, std::nullopt);
+  results.add_seed("bad", 6, std::nullopt);
+  const std::string text = table(results);
+  CHECK_THAT(line_with(text, "good "), Contains("3 of 4") && Contains("0.0115") && Contains(", fails]"));
+  CHECK_THAT(line_with(text, "bad "), Contains("3 of 6") && Contains("fails") && Contains("[0.0225, fails]"));
+  CHECK_THAT(text, Contains("Without scores: bad (seed 4)") && Contains("fails."));
+  const std::string csv = table(results, {.format = TableFormat::csv});
+  CHECK_THAT(csv, Contains("label,runs,succeeded,ate.trans_m.rmse.lower,ate.trans_m.rmse.median") &&
+                      Contains("arm,bad,6,3,0.0225,inf,inf"));
+}
+
+TEST_CASE("Bold is only what differs significantly from all other rows") {
+  Results few, many;
+  add_seeds(few, 5);
+  add_seeds(many, 8);
+  CHECK_THAT(line_with(table(few), "good "), !Contains("*"));
+  CHECK_THAT(table(few), Contains("With 5 pairs and 2 rows nothing can reach that."));
+  CHECK_THAT(line_with(table(many), "good "), Contains("0.0135*"));
+  CHECK_THAT(line_with(table(many), "bad "), !Contains("*"));
+  CHECK_THAT(table(many, {.format = TableFormat::markdown}), Contains("**0.0135** [0.0118, 0.0152]"));
+  CHECK_THAT(table(many, {.format = TableFormat::latex}),
+             Contains("\\textbf{0.0135} {\\scriptsize {[}0.0118, 0.0152]}"));
+  for (int seed = 1; seed <= 8; ++seed) many.add_seed("as good", seed, 0.009 + 0.001 * seed);
+  CHECK_THAT(line_with(table(many), "good "), !Contains("*"));  // better than one of two
+}
+
+TEST_CASE("Settings that vary, and those asked for, set rows apart or are summarised over") {
+  Results results;
+  for (const int seed : {1, 2, 3}) {
+    for (const double frame : {0.1, 0.2}) results.add_seed("bundle", seed, frame * seed, frame);
+  }
+  const auto runs = results.find();
+  const std::string text = table(results);
+  CHECK_THAT(line_with(text, "ATE [m]"), Contains("backend.frame_duration"));
+  CHECK_THAT(text, Contains("0.200 [0.150, 0.250]") && Contains("0.400 [0.300, 0.500]"));
+  TableOptions options{.metrics = {"ate.trans_m.rmse"}, .over = {"seed", "backend.frame_duration"}};
+  CHECK_THAT(make_table(runs, options), Contains("6 of 6") && Contains("0.250 [0.200, 0.375]"));
+  options.over = {"seeds"};
+  CHECK_THROWS_WITH(make_table(runs, options), Contains("runs do not differ in \"seeds\"; did you mean \"seed\"?"));
+}
+
+TEST_CASE("The same job found twice counts once; two jobs that should be one are an error") {
+  Results results;
+  add_seeds(results, 3);
+  Json copy = run("arm", "good", scores_with(0.010));
+  copy["seed"] = 1;
+  copy["key"] = "good1-" + std::to_string(0.1);
+  const Json config = {{"seed", 1},
+                       {"source", {{"type", "simulation"}}},
+                       {"frontend", {{"type", "oracle"}}},
+                       {"backend", {{"type", "good"}, {"frame_duration", 0.1}}}};
+  results.add("copy", copy, config);
+  CHECK_THAT(line_with(table(results), "good "), Contains("3 of 3"));
+  copy["key"] = "another";
+  results.add("copy", copy, config);
+  CHECK_THROWS_WITH(table(results), Contains("/copy") && Contains("are both \"good\", seed 1, and not the same job"));
+}
+
+TEST_CASE("The long format has a line a run and metric, with the settings as columns") {
+  Results results;
+  results.add_seed("bundle", 1, 0.5, 0.1);
+  results.add_seed("bundle", 2, std::nullopt, 0.2);
+  const std::string csv =
+      make_table(results.find(), {.format = TableFormat::long_csv, .metrics = {"ate.trans_m.rmse", "runtime_s"}});
+  CHECK(csv.substr(0, csv.find('\n')) ==
+        "experiment,label,backend.frame_duration,seed,key,folder,status,trajectory,protocol,metric,value");
+  CHECK(std::ranges::count(csv, '\n') == 5);
+  CHECK_THAT(csv, Contains("arm,bundle,0.1,1,") && Contains(",ate.trans_m.rmse,0.5\n"));
+  CHECK_THAT(csv, Contains(",failed,final,,ate.trans_m.rmse,\n") && Contains(",runtime_s,2\n"));
+  CHECK_THAT(make_table(results.find(), {.format = TableFormat::long_csv}),
+             Contains(",peak_rss_mib,30\n") && Contains(",times.backend_s,1.75\n"));
+}
+
+}  // namespace evbench

@@ -1,0 +1,29 @@
+#include "eval/sweep_plan.hpp"
+
+#include "eval/json_file.hpp"
+#include "eval/record_reader.hpp"
+
+namespace evbench {
+namespace {
+
+PlannedRun read_run(const RecordReader& json) {
+  PlannedRun run{json.text("key"), json.text("label"), {}};
+  const Json& axes = json.at("axes");
+  if (!axes.is_object()) json.fail("axes", "an object, a value for each axis");
+  const RecordReader values(axes, json.place() + ".axes");
+  for (const auto& [name, value] : axes.items()) run.axes.emplace_back(name, values.text(name.c_str()));
+  return run;
+}
+
+}  // namespace
+
+SweepPlan read_sweep_plan(const std::string& path) {
+  const Json file = read_json_file(path);
+  const RecordReader json(file, path);
+  SweepPlan plan{json.text("name"), {}};
+  if (json.at("runs").is_null()) json.fail("runs", "the runs that the sweep plans");
+  for (const RecordReader& run : json.list("runs")) plan.runs.push_back(read_run(run));
+  return plan;
+}
+
+}  // namespace evbench

@@ -1,0 +1,158 @@
+#include "eval/table_notes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/support/error.hpp"
+#include "eval/protocol.hpp"
+
+namespace evbench {
+namespace {
+
+constexpr std::size_t kMostTroubles = 20;  // a table of thousands of runs has many
+
+/// Pairs, coverage, scale as ranges, as far as they are no columns.
+std::string ranges_note(const std::vector<RunNumbers>& runs, const std::vector<Metric>& shown) {
+  std::string note;
+  for (const char* key : {"pairs", "coverage", "scale"}) {
+    if (std::ranges::find(shown, key, &Metric::key) != shown.end()) continue;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const RunNumbers& run : runs) {
+      if (const auto value = run.at(key)) {
+        low = std::min(low, *value);
+        high = std::max(high, *value);
+      }
+    }
+    if (low > high) continue;
+    const Metric metric = metric_of(key);
+    note += fmt::format("{}{} {:.{}f} to {:.{}f}", note.empty() ? "" : "; ", metric.header, metric.factor * low,
+                        *metric.decimals, metric.factor * high, *metric.decimals);
+  }
+  return note.empty() ? note : note + ".";
+}
+
+/// What went wrong with a run, and why.
+struct Trouble {
+  std::string what, reason;
+  bool operator==(const Trouble&) const = default;
+};
+
+/// None where a run was neither lost nor left without scores. The reason of its status tells most.
+std::optional<Trouble> trouble_of(const RunNumbers& numbers, bool online) {
+  const RunRecord& run = numbers.run();
+  if (!run.done) return Trouble{"Not run yet", ""};
+  const std::string reason = run.competes() ? "" : run.status->status.reason;
+  const bool scored = !numbers.scores().is_null();
+  const bool degraded = run.status && run.status->status.state == RunState::degraded;
+  if (scored && degraded) return Trouble{"Degraded", run.status->status.reason};
+  if (scored && run.competes()) return std::nullopt;
+  const std::string& unscored = online ? run.online_unscored : run.final_unscored;
+  const std::string what = !scored ? "Without scores" : run.status->status.state == RunState::lost ? "Lost" : "Failed";
+  return Trouble{what, !reason.empty() ? reason : !unscored.empty() ? unscored : "not known"};
+}
+
+/// A sentence for each trouble, with the runs that had it.
+std::vector<std::string> trouble_notes(const std::vector<RunNumbers>& runs, const std::vector<std::string>& names,
+                                       bool online) {
+  std::vector<std::pair<Trouble, std::string>> troubles;
+  std::size_t told = 0, untold = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const std::optional<Trouble> trouble = trouble_of(runs[i], online);
+    if (!trouble) continue;
+    if (told == kMostTroubles) {
+      ++untold;
+      continue;
+    }
+    ++told;
+    const auto found = std::ranges::find(troubles, *trouble, &std::pair<Trouble, std::string>::first);
+    if (found == troubles.end()) {
+      troubles.emplace_back(*trouble, names[i]);
+    } else {
+      found->second += "; " + names[i];
+    }
+  }
+  std::vector<std::string> notes;
+  for (const auto& [trouble, who] : troubles) {
+    notes.push_back(fmt::format("{}: {}{}{}.", trouble.what, who, trouble.reason.empty() ? "" : ": ", trouble.reason));
+  }
+  if (untold > 0) {
+    notes.push_back(
+        fmt::format("{} more runs were degraded, lost, failed or not run: --format csv lists them all.", untold));
+  }
+  return notes;
+}
+
+/// The time that runs of the same data have in common.
+std::vector<std::string> common_time_notes(const std::vector<RunNumbers>& runs) {
+  std::vector<std::string> spans;
+  for (const RunNumbers& run : runs) {
+    if (run.run().common_scores.is_null()) continue;
+    const Json& range = run.run().common_scores.at("association").at("time_range_s");
+    std::string span = fmt::format("{:.2f} to {:.2f} s", range.at(0).get<double>(), range.at(1).get<double>());
+    if (std::ranges::find(spans, span) == spans.end()) spans.push_back(std::move(span));
+  }
+  if (spans.empty()) return {};
+  const std::string span = spans.size() == 1 ? spans.front() + ", which" : "for each seed and sequence what";
+  return {fmt::format("Common time: {} every run covers that was not lost.", span)};
+}
+
+}  // namespace
+
+Protocols collect_protocols(const std::vector<RunNumbers>& runs) {
+  Protocols result;
+  for (const RunNumbers& run : runs) {
+    if (run.scores().is_null()) {
+      result.of_run.push_back(-1);
+      continue;
+    }
+    std::string text = protocol(run.scores(), run.run().folder + "/metrics.json");
+    const auto found = std::ranges::find(result.texts, text);
+    result.of_run.push_back(static_cast<int>(found - result.texts.begin()));
+    if (found == result.texts.end()) result.texts.push_back(std::move(text));
+  }
+  return result;
+}
+
+std::vector<std::string> table_notes(const std::vector<RunNumbers>& runs, const std::vector<std::string>& names,
+                                     const std::vector<Metric>& metrics, const Protocols& protocols, bool online) {
+  const auto shown = [&](const char* key) { return std::ranges::find(metrics, key, &Metric::key) != metrics.end(); };
+  std::vector<std::string> notes;
+  if (protocols.texts.empty()) {
+    notes.emplace_back("No run has scores.");
+  } else {
+    const bool of_runs = std::ranges::any_of(runs, [](const RunNumbers& run) { return run.run().status.has_value(); });
+    notes.emplace_back(online    ? "Online: each pose as estimated at the time it was made. "
+                       : of_runs ? "Final: the trajectory as estimated after the whole sequence. "
+                                 : "");
+    notes.back() += "ATE and RPE columns are root mean squares unless they say otherwise.";
+  }
+  for (std::size_t i = 0; i < protocols.texts.size(); ++i) {
+    const std::string number = protocols.texts.size() > 1 ? fmt::format(" {}", i + 1) : "";
+    notes.push_back(fmt::format("Protocol{}: {}.", number, protocols.texts[i]));
+  }
+  if (const std::string ranges = ranges_note(runs, metrics); !ranges.empty()) notes.push_back(ranges);
+  if (std::ranges::any_of(metrics, [](const Metric& metric) { return metric.key.starts_with("common."); })) {
+    std::ranges::move(common_time_notes(runs), std::back_inserter(notes));
+  }
+  if (shown("realtime_factor")) {
+    notes.emplace_back(
+        "Real-time factor: data time / processing time (front-end and back-end); above 1 is faster than "
+        "real time.");
+  }
+  std::ranges::move(trouble_notes(runs, names, online), std::back_inserter(notes));
+  return notes;
+}
+
+std::string status_text(const RunRecord& run, bool brief) {
+  if (!run.done) return "not run";
+  if (!run.status) return brief ? "" : "-";
+  const Status& status = run.status->status;
+  const std::string state = to_string(status.state);
+  return brief || status.state == RunState::ok ? state : fmt::format("{} at {:.2f} s", state, status.time);
+}
+
+}  // namespace evbench

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/run_numbers.hpp"
+
+namespace evbench {
+
+/// The distinct protocols of runs, and each run's number among them; -1 for a run without scores.
+struct Protocols {
+  std::vector<std::string> texts;
+  std::vector<int> of_run;
+};
+Protocols collect_protocols(const std::vector<RunNumbers>& runs);
+
+/// What is to be said below a table of runs, in sentences: which trajectory, the protocols, pairs, coverage and scale
+/// as far as they are no columns, the common time, what went wrong with which run. `names`: what each run is called.
+std::vector<std::string> table_notes(const std::vector<RunNumbers>& runs, const std::vector<std::string>& names,
+                                     const std::vector<Metric>& metrics, const Protocols& protocols, bool online);
+
+/// "ok", "lost at 3.25 s", "not run"; what it was is enough for programs: "lost".
+std::string status_text(const RunRecord& run, bool brief);
+
+}  // namespace evbench
