@@ -60,9 +60,12 @@ int run_program(int argc, char** argv) {
   evbench::add_sweep(app, plugins, exit_code);
   evbench::add_status(app, exit_code);
   evbench::add_task(app, plugins, exit_code);
+  evbench::add_reproduce(app, plugins, exit_code);
   evbench::add_eval(app);
   evbench::add_score(app);
   evbench::add_table(app);
+  evbench::add_compare(app);
+  evbench::add_figure(app);
   evbench::add_export(app, plugins);
   evbench::add_list(app, plugins);
   evbench::add_describe(app, plugins);

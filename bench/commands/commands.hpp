@@ -12,6 +12,8 @@ namespace evbench {
 /// the program's parsing.
 void add_eval(CLI::App& app);
 void add_table(CLI::App& app);
+void add_compare(CLI::App& app);
+void add_figure(CLI::App& app);
 void add_score(CLI::App& app);
 void add_list(CLI::App& app, const Plugins& plugins);
 void add_describe(CLI::App& app, const Plugins& plugins);
@@ -29,6 +31,7 @@ void add_export(CLI::App& app, Plugins& plugins);
 void add_run(CLI::App& app, Plugins& plugins, int& exit_code);
 
 /// Likewise.
+void add_reproduce(CLI::App& app, Plugins& plugins, int& exit_code);
 void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code);
 void add_task(CLI::App& app, Plugins& plugins, int& exit_code);
 

@@ -16,6 +16,8 @@
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "eval/error_files.hpp"
+#include "eval/evo_result.hpp"
+#include "eval/rpg_layout.hpp"
 #include "eval/score_run.hpp"
 
 namespace evbench {
@@ -24,24 +26,27 @@ namespace {
 struct ExportArguments {
   std::string from;
   std::vector<std::string> overrides;
-  std::string ground_truth, tracks, calibration, aligned, errors;
+  std::string ground_truth, tracks, calibration, aligned, errors, evo, rpg;
+  std::string evo_error = kEvoErrorNames[0];
   bool online = false;
   bool force = false;
 
-  std::vector<std::string> outputs() const { return {ground_truth, tracks, calibration, aligned, errors}; }
+  std::vector<std::string> outputs() const { return {ground_truth, tracks, calibration, aligned, errors, evo, rpg}; }
   bool of_source() const { return !ground_truth.empty() || !tracks.empty() || !calibration.empty(); }
-  bool of_run() const { return !aligned.empty() || !errors.empty(); }
+  bool of_run() const { return !aligned.empty() || !errors.empty() || !evo.empty() || !rpg.empty(); }
 };
 
 void check(const ExportArguments& arguments) {
   if (!arguments.of_source() && !arguments.of_run()) {
     throw InputError(
-        "nothing to export; expected at least one of --groundtruth, --tracks, --calib, --aligned, --errors");
+        "nothing to export; expected at least one of --groundtruth, --tracks, --calib, --aligned, --errors, --evo, "
+        "--rpg");
   }
   std::error_code ignored;
   const bool folder = std::filesystem::is_directory(arguments.from, ignored);
   if (arguments.of_run() && !folder) {
-    throw InputError(fmt::format("{}: --aligned and --errors are of a run; expected its folder", arguments.from));
+    throw InputError(
+        fmt::format("{}: --aligned, --errors, --evo and --rpg are of a run; expected its folder", arguments.from));
   }
   if (folder && !std::filesystem::exists(arguments.from + "/metrics.json")) {
     throw InputError(fmt::format("{}: has no metrics.json; expected the folder of a run", arguments.from));
@@ -76,10 +81,21 @@ void export_source(const std::string& config, const ExportArguments& arguments, 
 }
 
 void export_run(const ExportArguments& arguments) {
-  const auto [estimate, scores] =
-      score_estimate(arguments.from, arguments.online, protocol_of_run(arguments.from), read_record(arguments.from));
+  const ScoreOptions protocol = protocol_of_run(arguments.from);
+  const RunRecord record = read_record(arguments.from);
+  const auto [estimate, scores] = score_estimate(arguments.from, arguments.online, protocol, record);
   if (!arguments.aligned.empty()) write_file(arguments.aligned, format_tum(aligned_estimate(estimate, scores)));
   if (!arguments.errors.empty()) write_file(arguments.errors, errors_csv(scores));
+  if (!arguments.evo.empty()) {
+    const auto error = parse_name<EvoError>(kEvoErrorNames, arguments.evo_error, "error");
+    write_file(arguments.evo, evo_result(scores, error, record.label));
+  }
+  if (arguments.rpg.empty()) return;
+  AtomicFolder folder(arguments.rpg);
+  for (const auto& [name, text] : rpg_layout(read_tum(arguments.from + "/groundtruth.tum"), estimate, protocol)) {
+    folder.write(name, text);
+  }
+  folder.commit();
 }
 
 void execute(const ExportArguments& arguments, Plugins& plugins) {
@@ -107,6 +123,16 @@ void add_export(CLI::App& app, Plugins& plugins) {
   command->add_option("--aligned", arguments->aligned, "The run's estimate, aligned as it was scored (TUM)")
       ->type_name("FILE");
   command->add_option("--errors", arguments->errors, "The error of each of its poses: CSV")->type_name("FILE");
+  command->add_option("--evo", arguments->evo, "Its errors as evo's result archive, for evo_res")
+      ->type_name("FILE.zip");
+  command
+      ->add_option("--evo-error", arguments->evo_error, "Which errors: absolute or relative, translation or rotation")
+      ->check(CLI::IsMember(to_strings(kEvoErrorNames)))
+      ->capture_default_str();
+  command
+      ->add_option("--rpg", arguments->rpg,
+                   "A folder as rpg_trajectory_evaluation reads it: the estimate, the ground truth, the alignment")
+      ->type_name("DIR");
   command->add_flag("--online", arguments->online, "The poses as estimated when they were made, not the final ones");
   add_overrides(*command, arguments->overrides, "Override a value of the config: KEY=VALUE, e.g. seed=3");
   command->add_flag("--force", arguments->force, "Replace files that exist");

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <set>
 
 #include "bench/testing/program.hpp"
 #include "core/data/tracks.hpp"
@@ -69,10 +70,67 @@ TEST_CASE("A run's aligned estimate and errors are those that it was scored by")
   CHECK(read_file(sequence.folder.file("online.txt")) != read_file(sequence.folder.file("a.txt")));
 }
 
+TEST_CASE("A run is exported as evo's result archive, which reads back as evo reads it") {
+  const Sequence sequence;
+  REQUIRE(sequence.run("run c.json --quiet").exit_code == 0);
+  const std::string run =
+      sequence.folder.file("results/short/" + *names_in(sequence.folder.file("results/short")).begin());
+  const Json scores = Json::parse(read_file(run + "/metrics.json")).at("final");
+  const std::pair<std::string, Json> expected[] = {{"ape_trans", scores.at("ate").at("trans_m")},
+                                                   {"ape_rot", scores.at("ate").at("rot_deg")},
+                                                   {"rpe_trans", scores.at("rpe").at("trans_m")},
+                                                   {"rpe_rot", scores.at("rpe").at("rot_deg")}};
+  for (const auto& [name, statistics] : expected) {
+    INFO(name);
+    REQUIRE(sequence.run("export '" + run + "' --evo " + name + ".zip --evo-error " + name).exit_code == 0);
+    const Outcome read =
+        shell(sequence.folder, "/usr/bin/python3 '" EVBENCH_READERS "/evo_result.py' " + name + ".zip");
+    INFO(read.err);
+    REQUIRE(read.exit_code == 0);
+    const Json result = Json::parse(read.out);
+    CHECK(result.at("stats").at("rmse") == statistics.at("rmse"));
+    CHECK(result.at("rmse").get<double>() == Approx(statistics.at("rmse").get<double>()));
+    CHECK(result.at("errors") == statistics.at("n"));
+    CHECK(result.at("info").at("est_name") == "bundle_adjustment");
+    CHECK(result.at("scale").get<double>() == Approx(scores.at("scale").get<double>()));
+    CHECK(result.at("last_time").get<double>() == Approx(scores.at("span_s").at(1).get<double>()));
+    CHECK(result.at("path").get<double>() == Approx(scores.at("path_m").get<double>()));
+  }
+  REQUIRE(sequence.run("export '" + run + "' --evo again.zip").exit_code == 0);
+  CHECK(read_file(sequence.folder.file("again.zip")) == read_file(sequence.folder.file("ape_trans.zip")));
+}
+
+TEST_CASE("A run is exported in rpg_trajectory_evaluation's layout, which gives the same error when read as it does") {
+  const Sequence sequence;
+  REQUIRE(sequence.run("run c.json --quiet").exit_code == 0);
+  const std::string run =
+      sequence.folder.file("results/short/" + *names_in(sequence.folder.file("results/short")).begin());
+  REQUIRE(sequence.run("export '" + run + "' --rpg rpg").exit_code == 0);
+  CHECK(names_in(sequence.folder.file("rpg")) ==
+        std::set<std::string>{"stamped_groundtruth.txt", "stamped_traj_estimate.txt", "eval_cfg.yaml"});
+  const Outcome read = shell(sequence.folder, "/usr/bin/python3 '" EVBENCH_READERS "/rpg_layout.py' rpg");
+  INFO(read.err);
+  REQUIRE(read.exit_code == 0);
+  const Json result = Json::parse(read.out);
+  CHECK(result.at("align_type") == "sim3");
+  CHECK(result.at("align_num_frames") == -1);
+  REQUIRE(sequence.run("eval '" + run + "/groundtruth.tum' '" + run + "/final.tum' -as --t_max_diff 0.02 --json s.json")
+              .exit_code == 0);
+  const Json scores = Json::parse(read_file(sequence.folder.file("s.json"))).at("final");
+  CHECK(result.at("pairs") == scores.at("pairs"));
+  CHECK(result.at("rmse").get<double>() ==
+        Approx(scores.at("ate").at("trans_m").at("rmse").get<double>()).epsilon(1e-6));
+  REQUIRE(sequence.run("score results --set evaluation.alignment=origin --quiet").exit_code == 0);
+  const Outcome refused = sequence.run("export '" + run + "' --rpg other");
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.err, Contains("rpg_trajectory_evaluation does not align by \"origin\""));
+}
+
 TEST_CASE("What can't be exported is refused with what was expected, and no file is replaced") {
   const Sequence sequence;
   sequence.refused("c.json", "nothing to export; expected at least one of --groundtruth");
-  sequence.refused("c.json --errors e.csv", "c.json: --aligned and --errors are of a run; expected its folder");
+  sequence.refused("c.json --errors e.csv",
+                   "c.json: --aligned, --errors, --evo and --rpg are of a run; expected its folder");
   sequence.refused("none.json --tracks t.txt", "none.json: no such file");
   sequence.refused(". --errors e.csv", ".: has no metrics.json; expected the folder of a run");
   sequence.folder.write("t.txt", "mine");

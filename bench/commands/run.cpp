@@ -1,3 +1,5 @@
+#include "bench/commands/run.hpp"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -23,16 +25,6 @@
 
 namespace evbench {
 namespace {
-
-struct RunArguments {
-  std::string config;
-  std::vector<std::string> overrides;
-  std::string out = "results";
-  bool quiet = false;
-  bool check = false;
-  bool problem = false, tracks = false, watch = false;
-  bool force = false;
-};
 
 /// A run of the config, and what determines its result.
 struct PlannedRun {
@@ -155,7 +147,9 @@ void check(const RunArguments& arguments, const Experiment& experiment, const Pl
   fmt::print("{}: fine, {} run{}\n", arguments.config, experiment.runs.size(), experiment.runs.size() == 1 ? "" : "s");
 }
 
-int execute(const RunArguments& arguments, Plugins& plugins) {
+}  // namespace
+
+int run_config(const RunArguments& arguments, Plugins& plugins) {
   const Interruption interruption(arguments.config + ": interrupted; no run was begun");
   load_plugins_of(plugins, arguments.config, arguments.overrides);
   const Experiment experiment = read_experiment(arguments.config, arguments.overrides, plugins);
@@ -182,8 +176,6 @@ int execute(const RunArguments& arguments, Plugins& plugins) {
       runs.records(), [](const RunRecord& run) { return run.status && run.status->status.state == RunState::failed; });
   return failed ? kExitFailed : kExitDone;
 }
-
-}  // namespace
 
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const std::string& text) {
   command.add_option("--set", overrides, text)
@@ -216,7 +208,7 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
       "says; one that broke off with an error is.\n"
       "Exit codes: 0 done (also when a run is degraded or lost: see its status), 2 bad input, 3 a run failed,\n"
       "4 results can't be written (disk full), 130 interrupted (Ctrl-C).");
-  command->callback([arguments, &plugins, &exit_code] { exit_code = execute(*arguments, plugins); });
+  command->callback([arguments, &plugins, &exit_code] { exit_code = run_config(*arguments, plugins); });
 }
 
 }  // namespace evbench

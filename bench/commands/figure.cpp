@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/commands/commands.hpp"
+#include "bench/commands/failures.hpp"
+#include "bench/common_time.hpp"
+#include "bench/figures/run_figures.hpp"
+#include "core/io/atomic_file.hpp"
+#include "eval/find_runs.hpp"
+#include "eval/names.hpp"
+#include "eval/run_columns.hpp"
+
+namespace evbench {
+namespace {
+
+enum class FigureKind { sweep, box, error, trajectory, times, profile };
+constexpr NameList<6> kFigureKindNames = {"sweep", "box", "error", "trajectory", "times", "profile"};
+
+struct FigureArguments {
+  std::string kind;
+  std::vector<std::string> folders, only;
+  std::string out, python;
+  double width_mm = 0.0, height_mm = 0.0;  ///< 0: the figure's own
+  bool keep_script = false, force = false;
+  FigureOptions options;
+};
+
+/// Leaves the runs that have all the values asked for, NAME=VALUE.
+void keep_only(const std::vector<std::string>& only, std::vector<RunRecord>& runs) {
+  const std::vector<RunColumn> columns = run_columns(runs);
+  std::vector<bool> kept(runs.size(), true);
+  for (const std::string& condition : only) {
+    const std::size_t equals = condition.find('=');
+    const RunColumn& column = find_column(columns, condition.substr(0, equals));
+    const std::string value = condition.substr(equals + 1);
+    for (std::size_t i = 0; i < runs.size(); ++i) kept[i] = kept[i] && column.values[i] == value;
+  }
+  std::vector<RunRecord> left;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (kept[i]) left.push_back(std::move(runs[i]));
+  }
+  if (left.empty()) throw InputError(fmt::format("none of {} runs is left by --only", runs.size()));
+  runs = std::move(left);
+}
+
+Figure make_figure(const FigureArguments& arguments, std::span<const RunRecord> runs) {
+  switch (parse_name<FigureKind>(kFigureKindNames, arguments.kind, "kind of figure")) {
+    case FigureKind::sweep: return sweep_figure(runs, arguments.options);
+    case FigureKind::box: return box_figure(runs, arguments.options);
+    case FigureKind::error: return error_figure(runs, arguments.options);
+    case FigureKind::trajectory: return trajectory_figure(runs, arguments.options);
+    case FigureKind::times: return times_figure(runs, arguments.options);
+    case FigureKind::profile: break;
+  }
+  return profile_figure(runs, arguments.options);
+}
+
+void execute(const FigureArguments& arguments) {
+  const std::filesystem::path out(arguments.out);
+  const std::string script = std::filesystem::path(out).replace_extension(".py").string();
+  if (out.extension() != ".svg" && out.extension() != ".pdf" && out.extension() != ".png") {
+    throw InputError(fmt::format("{}: is no .svg, .pdf or .png; expected one of these", arguments.out));
+  }
+  check_outputs({arguments.out, arguments.keep_script ? script : ""}, {}, arguments.force);
+  std::vector<std::string> unreadable;
+  std::vector<RunRecord> runs = find_runs(arguments.folders, &unreadable);
+  if (runs.empty()) throw_together(unreadable);
+  if (!arguments.only.empty()) keep_only(arguments.only, runs);
+  if (std::ranges::any_of(arguments.options.metrics, [](const auto& key) { return key.starts_with("common."); })) {
+    score_common_time(runs, arguments.options.online);
+  }
+  Figure figure = make_figure(arguments, runs);
+  if (arguments.width_mm > 0.0) figure.width_mm = arguments.width_mm;
+  if (arguments.height_mm > 0.0) figure.height_mm = arguments.height_mm;
+  if (arguments.keep_script) write_file(script, drawing_script(figure));
+  draw(figure, arguments.out, arguments.python);
+  throw_together(unreadable);
+}
+
+}  // namespace
+
+void add_figure(CLI::App& app) {
+  auto arguments = std::make_shared<FigureArguments>();
+  CLI::App* command =
+      app.add_subcommand("figure", "Draw runs for a paper: sweeps, boxes, errors, trajectories, profiles");
+  command->add_option("kind", arguments->kind, "What is drawn")
+      ->required()
+      ->check(CLI::IsMember(to_strings(kFigureKindNames)));
+  command->add_option("folders", arguments->folders, "Folders of runs, searched with all folders below")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--out", arguments->out, "The file: .svg, .pdf or .png")->required()->type_name("FILE");
+  command
+      ->add_option("--metrics", arguments->options.metrics,
+                   "What sweep, box and profile show, a panel each; else ATE, RPE")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("KEY,...");
+  command->add_option("--axis", arguments->options.axis, "What a sweep is drawn against, e.g. backend.frame_duration")
+      ->type_name("NAME");
+  command
+      ->add_option("--axis-label", arguments->options.axis_label, "What is written there, e.g. \"frame duration [s]\"")
+      ->type_name("TEXT");
+  command->add_option("--only", arguments->only, "Only runs with this value, e.g. seed=3; can be given often")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false)
+      ->check([](const std::string& value) {
+        return value.find('=') == std::string::npos ? fmt::format("{}: expected NAME=VALUE", value) : std::string();
+      });
+  command->add_flag("--online", arguments->options.online, "The poses as estimated when they were made");
+  command->add_option("--width", arguments->width_mm, "Width [mm]; else 174, a page's")
+      ->check(CLI::Range(20.0, 2000.0));
+  command->add_option("--height", arguments->height_mm, "Height [mm]")->check(CLI::Range(20.0, 2000.0));
+  command->add_flag("--keep-script", arguments->keep_script,
+                    "Also write FILE with the ending .py: the Python script that draws it, to be changed by hand");
+  command->add_option("--python", arguments->python, "A Python with matplotlib; else python3")->type_name("PROGRAM");
+  command->add_flag("--force", arguments->force, "Replace files that exist");
+  command->footer(
+      "sweep       metrics against an axis: medians, and bands between the quartiles of all other runs\n"
+      "box         quartiles and median of each back-end's runs, and the runs\n"
+      "error       errors over time of a sequence's runs\n"
+      "trajectory  from three sides, with the ground truth\n"
+      "times       the distribution of the times of updates\n"
+      "profile     performance profiles: the share of sequences and seeds within a factor of the best");
+  command->callback([arguments] { execute(*arguments); });
+}
+
+}  // namespace evbench

@@ -1,0 +1,67 @@
+#include <catch2/catch.hpp>
+
+#include "bench/testing/program.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// A folder of configs with the paper's numbers: one that runs here, one whose data is not here.
+struct Paper {
+  TemporaryFolder folder;
+
+  Paper() {
+    Json config = short_comparison();
+    config["name"] = "arm";
+    std::filesystem::create_directories(folder.file("paper"));
+    folder.write("paper/arm.json", config.dump());
+    config["name"] = "elsewhere";
+    config["source"] = {{"type", "recording"}, {"folder", "nowhere"}};
+    folder.write("paper/elsewhere.json", config.dump());
+    write({{"config", "arm"},
+           {"what", "Table I"},
+           {"protocol", "not said"},
+           {"not_equal", "The recording is not public."},
+           {"rows", {{{"label", "asynchronous"}, {"values", {{"ate.trans_m.rmse", 0.5}, {"times.backend_s", 60}}}}}}});
+  }
+  void write(const Json& result) const {
+    folder.write("paper/published.json", Json{{"paper", "Somebody, 2022"}, {"results", {result}}}.dump());
+  }
+  Outcome reproduce(const std::string& arguments) const {
+    return testing::evbench(folder, "reproduce --configs paper --quiet " + arguments);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Our numbers and the paper's stand side by side, with both protocols and why they can't be equal") {
+  const Paper paper;
+  const Outcome outcome = paper.reproduce("arm");
+  INFO(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out, Contains("asynchronous") && Contains("ATE [m]") && Contains("0.5") && Contains("60"));
+  CHECK_THAT(outcome.out, Contains("Paper: Somebody, 2022.") && Contains("arm (Table I). Here: Sim(3) alignment") &&
+                              Contains("Paper: not said. The recording is not public."));
+  CHECK_THAT(paper.reproduce("arm --format csv").out,
+             Contains("arm,asynchronous,ate.trans_m.rmse,0.") && Contains(",0.5,") && Contains(",60,"));
+}
+
+TEST_CASE("Configs whose data is not here are left out and named; the others are done") {
+  const Paper paper;
+  const Outcome outcome = paper.reproduce("");
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("elsewhere is left out: ") && Contains("nowhere"));
+  CHECK_THAT(outcome.out, Contains("asynchronous"));
+  CHECK(names_in(paper.folder.file("results")) == std::set<std::string>{"arm"});
+}
+
+TEST_CASE("Names that are no configs and damaged numbers are refused with the place") {
+  const Paper paper;
+  CHECK_THAT(paper.reproduce("arn").err, Contains("paper has no config \"arn\"; did you mean \"arm\"?"));
+  paper.write({{"config", "arm"}, {"what", "Table I"}});
+  CHECK_THAT(paper.reproduce("arm").err, Contains("published.json: results.0: \"protocol\" is missing"));
+  CHECK_THAT(testing::evbench(paper.folder, "reproduce").err,
+             Contains("configs/paper/published.json: can't be opened"));
+}

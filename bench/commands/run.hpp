@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/plugin/registry.hpp"
+
+namespace evbench {
+
+/// What `evbench run` is told.
+struct RunArguments {
+  std::string config;
+  std::vector<std::string> overrides;
+  std::string out = "results";
+  bool quiet = false;
+  bool check = false;
+  bool problem = false, tracks = false, watch = false;
+  bool force = false;
+};
+
+/// Does it: runs a config, writes the folders of its runs below `out`, prints the table. Returns the exit code:
+/// kExitDone, or kExitFailed when a run failed. Throws InputError and Interrupted as the command does.
+int run_config(const RunArguments& arguments, Plugins& plugins);
+
+}  // namespace evbench

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/plugin/options.hpp"
+
+namespace evbench {
+
+/// What a colour and a name in the legend stand for.
+struct Series {
+  std::string label;
+  bool truth = false;  ///< black and thin
+};
+
+/// Something drawn in a panel, of one series.
+struct Mark {
+  enum class Kind {
+    line,    ///< through x, y
+    points,  ///< the same with a marker at each
+    band,    ///< over x, from `low` to `high`
+    level,   ///< all across: a line at y[0], a band from low[0] to high[0]
+    steps,   ///< through x, y, level up to the next x
+    note,    ///< text above the panel at x[0]
+    box,     ///< lying, at height x[0]: quartiles, median, all of the values y
+  };
+  Kind kind;
+  std::size_t series;
+  std::vector<double> x, y = {}, low = {}, high = {};  ///< as long as x, where they are used; of a box y has any length
+  std::string text = {};
+};
+
+struct Axis {
+  std::string label;  ///< with its unit
+  bool log = false;
+};
+
+/// A pair of axes with what is drawn in it.
+struct Panel {
+  Axis x, y;
+  std::vector<Mark> marks;
+  std::vector<std::string> names = {};  ///< of boxes, from above, instead of a y axis
+  bool equal = false;                   ///< a metre is as long on both axes
+};
+
+/// A figure for a page, made of panels in rows.
+struct Figure {
+  std::vector<Series> series;
+  std::vector<Panel> panels;
+  std::string caption;  ///< what it is of, and the protocol, small below
+  std::size_t columns = 1;
+  bool legend = true;
+  double width_mm = 174.0, height_mm = 80.0;
+};
+
+/// The program that draws it: a Python script that needs matplotlib alone, with all data in it
+/// (bench/figures/figure.py). Its arguments are the files to write, .svg, .pdf or .png.
+std::string drawing_script(const Figure& figure);
+
+/// Draws it to a file. `python`: the interpreter; empty: the first of "python3" and "/usr/bin/python3" that has
+/// matplotlib. Throws InputError, with what Python said, where there is none or drawing fails. The file appears
+/// complete or not at all; the same figure gives the same bytes by the same matplotlib.
+void draw(const Figure& figure, const std::string& file, const std::string& python);
+
+}  // namespace evbench

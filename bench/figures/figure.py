@@ -1,0 +1,144 @@
+# Draws what follows as DATA with matplotlib: python3 THIS.py FILE.svg (or .pdf, .png). All numbers, texts and colours
+# are in DATA; how they look is here.
+import json
+import sys
+import textwrap
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+
+# Okabe and Ito's colours, which people with any kind of colour vision tell apart; in grey, lines differ by dash and marker.
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999"]
+DASHES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (3, 1, 1, 1, 1, 1))]
+MARKERS = "osD^vP*X"
+MILLIMETRE = 1 / 25.4
+CAPTION_WIDTH, CAPTION_HEIGHT, LEGEND_HEIGHT = 1.02, 2.3, 4.2  # [mm] of a letter; of a line
+
+plt.rcParams.update({
+    "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 8, "axes.labelsize": 8,
+    "axes.titlesize": 8, "legend.fontsize": 7.5, "xtick.labelsize": 7.5, "ytick.labelsize": 7.5,
+    "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6, "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
+    "grid.color": "#E3E3E3", "grid.linewidth": 0.5, "axes.axisbelow": True, "legend.frameon": False,
+    "lines.linewidth": 1.3, "lines.markersize": 3.5, "svg.hashsalt": "evbench",
+    "pdf.fonttype": 42})
+
+
+def numbers(values):
+    """What is not finite is null in JSON, and not drawn."""
+    return [float("nan") if value is None else value for value in values]
+
+
+def style(series):
+    if series["truth"]:
+        return {"color": "black", "linestyle": "-", "linewidth": 0.9}
+    number = series["number"]
+    return {"color": COLOURS[number % len(COLOURS)], "linestyle": DASHES[number % len(DASHES)]}
+
+
+def marker(series):
+    return MARKERS[series["number"] % len(MARKERS)]
+
+
+def draw(axes, mark, series):
+    look = style(series)
+    colour = look["color"]
+    kind = mark["kind"]
+    mark = {**mark, **{key: numbers(mark[key]) for key in ("x", "y", "low", "high")}}
+    if kind == "line":
+        axes.plot(mark["x"], mark["y"], zorder=3, **look)
+    elif kind == "points":
+        axes.plot(mark["x"], mark["y"], marker=marker(series), markeredgecolor="white", markeredgewidth=0.4, zorder=4, **look)
+    elif kind == "band":
+        axes.fill_between(mark["x"], mark["low"], mark["high"], color=colour, alpha=0.2, linewidth=0, zorder=2)
+    elif kind == "level":
+        axes.axhline(mark["y"][0], zorder=3, **look)
+        axes.axhspan(mark["low"][0], mark["high"][0], color=colour, alpha=0.2, linewidth=0, zorder=2)
+    elif kind == "steps":
+        axes.step(mark["x"], mark["y"], where="post", zorder=3, **look)
+    elif kind == "note":
+        axes.annotate(mark["text"], (mark["x"][0], 1), xycoords=("data", "axes fraction"), xytext=(0, 1),
+                      textcoords="offset points", ha="center", va="bottom", fontsize=6, color=colour)
+    elif kind == "box":
+        box = axes.boxplot([mark["y"]], positions=mark["x"], widths=0.6, vert=False, patch_artist=True, whis=(0, 100),
+                           medianprops={"color": colour, "linewidth": 1.4}, whiskerprops={"color": colour},
+                           capprops={"color": colour}, boxprops={"edgecolor": colour}, manage_ticks=False, zorder=3)
+        box["boxes"][0].set_facecolor(matplotlib.colors.to_rgba(colour, 0.25))
+        axes.plot(mark["y"], mark["x"] * len(mark["y"]), "o", color=colour, markersize=2, alpha=0.6, zorder=4)
+
+
+def plain(value, _):
+    return f"{value:g}"
+
+
+def set_scale(axis, scale, low, high):
+    if scale != "log":
+        axis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 2.5, 5, 10]))
+        return
+    # Ticks at 1, 2, 5 where few decades are spanned: two labelled ones say nothing of what lies between.
+    wide = high / low > 300
+    axis.set_major_locator(LogLocator(subs=(1,) if wide else (1, 2, 5), numticks=20))
+    axis.set_major_formatter(FuncFormatter(plain))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def draw_panel(axes, panel, series):
+    axes.set_xscale(panel["x"]["scale"])
+    axes.set_yscale(panel["y"]["scale"])
+    for mark in panel["marks"]:
+        draw(axes, mark, series[mark["series"]])
+    axes.set_xlabel(panel["x"]["label"])
+    axes.set_ylabel(panel["y"]["label"])
+    set_scale(axes.xaxis, panel["x"]["scale"], *axes.get_xlim())
+    set_scale(axes.yaxis, panel["y"]["scale"], *axes.get_ylim())
+    if panel["names"]:
+        axes.set_yticks(range(len(panel["names"])), panel["names"])
+        axes.invert_yaxis()
+        axes.grid(False, axis="y")
+        axes.tick_params(axis="y", length=0)
+    if panel["equal"]:
+        axes.set_aspect("equal", adjustable="datalim")
+
+
+def legend_line(series, marked):
+    return Line2D([], [], label=series["label"], marker=marker(series) if marked else None, markeredgecolor="white",
+                  markeredgewidth=0.4, **style(series))
+
+
+def main():
+    data = json.loads(DATA)
+    panels, columns = data["panels"], data["columns"]
+    rows = -(-len(panels) // columns)
+    figure, grid = plt.subplots(rows, columns, squeeze=False, layout="constrained",
+                                figsize=(data["width_mm"] * MILLIMETRE, data["height_mm"] * MILLIMETRE))
+    for number, panel in enumerate(panels):
+        draw_panel(grid[number // columns][number % columns], panel, data["series"])
+    for number in range(len(panels), rows * columns):
+        grid[number // columns][number % columns].set_visible(False)
+    height, below, above = data["height_mm"], 1.0, 1.0  # [mm]: what caption and legend take
+    if data["caption"]:
+        lines = textwrap.wrap(data["caption"], int(data["width_mm"] / CAPTION_WIDTH))
+        figure.text(1.5 / data["width_mm"], 1.0 / height, "\n".join(lines), fontsize=5.5, color="#555555", va="bottom")
+        below += CAPTION_HEIGHT * len(lines)
+    if data["legend"]:
+        marked = {mark["series"] for panel in panels for mark in panel["marks"] if mark["kind"] == "points"}
+        lines = [legend_line(series, number in marked) for number, series in enumerate(data["series"])]
+        columns_of_legend = min(len(lines), data["legend_columns"])
+        figure.legend(handles=lines, loc="upper center", bbox_to_anchor=(0.5, 1 - 0.5 / height), borderaxespad=0,
+                      ncols=columns_of_legend, handlelength=2.6, columnspacing=1.4)
+        above += LEGEND_HEIGHT * -(-len(lines) // columns_of_legend)
+    figure.get_layout_engine().set(rect=(0, below / height, 1, 1 - (below + above) / height))
+    for target in sys.argv[1:]:
+        # No dates: the same runs give the same file.
+        none = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(target.rsplit(".", 1)[-1], None)
+        figure.savefig(target, metadata=none, dpi=200)
+    print("drawn:", *sys.argv[1:])
+
+
+DATA = r"""@DATA@"""
+
+main()

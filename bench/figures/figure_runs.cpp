@@ -1,0 +1,50 @@
+#include "bench/figures/figure_runs.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+std::vector<std::string> keys_of(const FigureOptions& options) {
+  return options.metrics.empty() ? std::vector<std::string>{"ate.trans_m.rmse", "rpe.trans_m.rmse"} : options.metrics;
+}
+
+}  // namespace
+
+FigureRuns::FigureRuns(std::span<const RunRecord> records, const FigureOptions& options, const std::string& without)
+    : runs(numbers_of(records, options.online)),
+      columns(run_columns(records)),
+      metrics(metrics_of(keys_of(options), runs)),
+      methods(methods_of(runs, columns, without)) {
+  if (methods.empty()) throw InputError("none of these runs was done yet; expected some to draw");
+}
+
+std::string FigureRuns::caption(const std::string& what, bool online) const {
+  const std::vector<std::string>& names = find_column(columns, "experiment").values;
+  const std::set<std::string> experiments(names.begin(), names.end());
+  std::string text = fmt::format("{}. {} {}", fmt::join(experiments, ", "), what,
+                                 online ? "Online: each pose as estimated at the time it was made."
+                                        : "Final: the trajectory as estimated after the whole sequence.");
+  for (const std::string& protocol : collect_protocols(runs).texts) text += fmt::format(" {}.", protocol);
+  return text;
+}
+
+bool spread_wide(const std::vector<double>& values) {
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    if (value <= 0.0) return false;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return high > 4.0 * low;
+}
+
+}  // namespace evbench

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "bench/figures/run_figures.hpp"
+#include "eval/methods.hpp"
+#include "eval/table_notes.hpp"
+
+// What the figures of runs have in common.
+
+namespace evbench {
+
+/// What every figure is made from.
+struct FigureRuns {
+  FigureRuns(std::span<const RunRecord> runs, const FigureOptions& options, const std::string& without = "");
+
+  std::vector<RunNumbers> runs;
+  std::vector<RunColumn> columns;
+  std::vector<Metric> metrics;
+  std::vector<Method> methods;
+
+  /// Experiments, what is drawn (`what`, a sentence), which trajectory, the protocols.
+  std::string caption(const std::string& what, bool online) const;
+};
+
+/// Are these positive numbers so far apart that their logarithms should be drawn?
+bool spread_wide(const std::vector<double>& values);
+
+}  // namespace evbench

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/figures/figure.hpp"
+#include "eval/run_record.hpp"
+
+namespace evbench {
+
+/// Which runs' figure is made, and of what.
+struct FigureOptions {
+  std::vector<std::string> metrics = {};  ///< a panel each, as in tables; empty: ATE and RPE
+  std::string axis = "";                  ///< of sweeps: a name of run_columns(); empty: the one that has numbers alone
+  std::string axis_label = "";            ///< what is written there; empty: the axis' name
+  bool online = false;                    ///< the scores of the online trajectories, instead of the final ones
+};
+
+// All throw InputError where there is nothing to draw, saying what was expected. What failed is shown: as a number
+// above a sweep's panel or behind a box's name, as a share that is not reached in a profile, in the caption elsewhere.
+
+/// Metrics against an axis: a curve for each method (eval/methods.hpp) through the medians of its other runs, a band
+/// between their quartiles. A method that does not have the axis is a level across.
+Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& options);
+
+/// A box for each method: quartiles, median, and each run.
+Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options);
+
+/// Performance profiles (eval/performance_profile.hpp): a problem is the data of which all methods have a run.
+Figure profile_figure(std::span<const RunRecord> runs, const FigureOptions& options);
+
+/// How long updates took: the share of them that took at most that long, of the runs that succeeded.
+Figure times_figure(std::span<const RunRecord> runs, const FigureOptions& options);
+
+/// Errors over time of the runs of one sequence, translation above rotation, aligned as they were scored. Of several
+/// sequences the first is drawn, and the caption says which.
+Figure error_figure(std::span<const RunRecord> runs, const FigureOptions& options);
+
+/// Trajectories of one sequence from three sides, aligned as they were scored, with the ground truth; of several
+/// likewise.
+Figure trajectory_figure(std::span<const RunRecord> runs, const FigureOptions& options);
+
+}  // namespace evbench

@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/figures/figure_runs.hpp"
+#include "bench/run_folder.hpp"
+#include "core/support/error.hpp"
+#include "eval/score_run.hpp"
+
+namespace evbench {
+namespace {
+
+/// The runs of the first sequence, scored by their own protocols.
+struct ScoredRuns {
+  std::vector<std::string> names;
+  std::vector<Scores> scores;
+  std::string caption;
+};
+
+ScoredRuns score_first_sequence(std::span<const RunRecord> records, const FigureRuns& all, const FigureOptions& options,
+                                const std::string& what) {
+  ScoredRuns result;
+  std::string sequence, missing;
+  std::vector<RunRecord> drawn;
+  for (const Method& method : all.methods) {
+    for (const std::size_t i : method.runs) {
+      const RunRecord& run = records[i];
+      if (sequence.empty()) sequence = sequence_of(run);
+      if (sequence_of(run) != sequence) continue;
+      drawn.push_back(run);
+      if (all.runs[i].scores().is_null()) {
+        const std::string& unscored = options.online ? run.online_unscored : run.final_unscored;
+        missing += fmt::format(" {} is not drawn: {}.", method.name, unscored.empty() ? "it failed" : unscored);
+        continue;
+      }
+      result.names.push_back(method.name);
+      result.scores.push_back(score_estimate(run.folder, options.online, protocol_of_run(run.folder), run).scores);
+    }
+  }
+  if (result.scores.empty())
+    throw InputError("none of these runs has an estimate and ground truth; expected one to draw");
+  const bool others = drawn.size() < records.size();
+  const FigureRuns of_sequence(drawn, options);
+  const std::string seed = others && drawn.front().seed ? fmt::format(", seed {}", *drawn.front().seed) : "";
+  result.caption = of_sequence.caption(what + seed + "." + missing, options.online);
+  return result;
+}
+
+}  // namespace
+
+Figure error_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
+  const ScoredRuns scored =
+      score_first_sequence(runs, FigureRuns(runs, options), options, "Error of each pose after alignment");
+  Figure figure;
+  Panel translation{{"time [s]"}, {"translation [m]"}, {}}, rotation{{"time [s]"}, {"rotation [deg]"}, {}};
+  std::vector<double> trans_m, rot_deg;
+  for (std::size_t i = 0; i < scored.scores.size(); ++i) {
+    figure.series.push_back({scored.names[i]});
+    PoseErrors errors = absolute_errors(scored.scores[i].compared);
+    std::vector<double> times;
+    for (const PosePair& pair : scored.scores[i].compared) times.push_back(pair.t);
+    trans_m.insert(trans_m.end(), errors.trans_m.begin(), errors.trans_m.end());
+    rot_deg.insert(rot_deg.end(), errors.rot_deg.begin(), errors.rot_deg.end());
+    translation.marks.push_back({Mark::Kind::line, i, times, std::move(errors.trans_m)});
+    rotation.marks.push_back({Mark::Kind::line, i, std::move(times), std::move(errors.rot_deg)});
+  }
+  figure.panels = {std::move(translation), std::move(rotation)};
+  figure.height_mm = 110.0;
+  figure.caption = scored.caption;
+  return figure;
+}
+
+Figure trajectory_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
+  const ScoredRuns scored =
+      score_first_sequence(runs, FigureRuns(runs, options), options, "Trajectories after alignment, from three sides");
+  Figure figure;
+  figure.series.push_back({"ground truth", true});
+  for (const std::string& name : scored.names) figure.series.push_back({name});
+  const auto longest = std::ranges::max_element(scored.scores, {}, &Scores::coverage);
+  const char* names[] = {"x [m]", "y [m]", "z [m]"};
+  for (const auto& [across, up] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
+    Panel panel{{names[across]}, {names[up]}, {}};
+    panel.equal = true;
+    const auto add = [&](std::size_t series, const std::vector<PosePair>& pairs, auto pose) {
+      Mark line{Mark::Kind::line, series, {}};
+      for (const PosePair& pair : pairs) {
+        line.x.push_back(pose(pair).p[across]);
+        line.y.push_back(pose(pair).p[up]);
+      }
+      panel.marks.push_back(std::move(line));
+    };
+    for (std::size_t i = 0; i < scored.scores.size(); ++i) {
+      add(i + 1, scored.scores[i].compared, [](const PosePair& pair) { return pair.estimate; });
+    }
+    add(0, longest->compared, [](const PosePair& pair) { return pair.ground_truth; });
+    figure.panels.push_back(std::move(panel));
+  }
+  figure.columns = 3;
+  figure.height_mm = 75.0;
+  figure.caption = scored.caption;
+  return figure;
+}
+
+}  // namespace evbench
