@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/events/event_feed.hpp"
+#include "core/plugin/delayed_tracks.hpp"
 #include "core/plugin/frontend.hpp"
-#include "frontends/haste/delayed_tracks.hpp"
-#include "frontends/haste/event_feed.hpp"
 #include "frontends/haste/guidance.hpp"
 #include "frontends/haste/lost_landmarks.hpp"
 #include "frontends/haste/options.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/features/detection.hpp"
 #include "core/plugin/options.hpp"
-#include "frontends/haste/detection.hpp"
 #include "frontends/haste/tracking/tracker_options.hpp"
 
 namespace evbench::haste {

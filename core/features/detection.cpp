@@ -1,10 +1,10 @@
-#include "frontends/haste/detection.hpp"
+#include "core/features/detection.hpp"
 
 #include <algorithm>
 #include <functional>
 #include <opencv2/imgproc.hpp>
 
-namespace evbench::haste {
+namespace evbench {
 namespace {
 
 struct Peak {
@@ -80,4 +80,4 @@ std::vector<Vector2> detect_features(const DetectionOptions& options, std::span<
   return result;
 }
 
-}  // namespace evbench::haste
+}  // namespace evbench

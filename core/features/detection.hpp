@@ -7,7 +7,7 @@
 #include "core/geometry/types.hpp"
 #include "core/plugin/options.hpp"
 
-namespace evbench::haste {
+namespace evbench {
 
 struct DetectionOptions {
   enum class Method { corners, histogram } method = Method::corners;
@@ -39,4 +39,4 @@ struct DetectionOptions {
 std::vector<Vector2> detect_features(const DetectionOptions& options, std::span<const Event> events, int width,
                                      int height, std::span<const Vector2> taken, std::size_t count);
 
-}  // namespace evbench::haste
+}  // namespace evbench

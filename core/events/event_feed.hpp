@@ -7,7 +7,7 @@
 
 #include "core/events/event_stream.hpp"
 
-namespace evbench::haste {
+namespace evbench {
 
 /// A source's events in pieces that end where one wants them to.
 class EventFeed {
@@ -31,4 +31,4 @@ class EventFeed {
   double seconds_ = 0.0;
 };
 
-}  // namespace evbench::haste
+}  // namespace evbench

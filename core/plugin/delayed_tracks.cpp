@@ -1,8 +1,8 @@
-#include "frontends/haste/delayed_tracks.hpp"
+#include "core/plugin/delayed_tracks.hpp"
 
 #include <algorithm>
 
-namespace evbench::haste {
+namespace evbench {
 
 void DelayedTracks::add(const TrackObservation& z) {
   waiting_.insert(std::ranges::upper_bound(waiting_, z.t, {}, &TrackObservation::t), z);
@@ -20,4 +20,4 @@ void DelayedTracks::tell(double t, std::size_t most, TrackBatch& batch) {
   until_ = batch.until;
 }
 
-}  // namespace evbench::haste
+}  // namespace evbench

@@ -1,9 +1,9 @@
-#include "frontends/haste/event_feed.hpp"
+#include "core/events/event_feed.hpp"
 
 #include <algorithm>
 #include <chrono>
 
-namespace evbench::haste {
+namespace evbench {
 
 std::span<const Event> EventFeed::until(std::int64_t t) {
   while (next_ == events_.size() && !ended_) {
@@ -19,4 +19,4 @@ std::span<const Event> EventFeed::until(std::int64_t t) {
   return piece;
 }
 
-}  // namespace evbench::haste
+}  // namespace evbench

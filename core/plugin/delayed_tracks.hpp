@@ -4,7 +4,7 @@
 
 #include "core/plugin/frontend.hpp"
 
-namespace evbench::haste {
+namespace evbench {
 
 /// Observations on their way to the back-end: they come out of time order, and wait until none before them can come.
 class DelayedTracks {
@@ -30,4 +30,4 @@ class DelayedTracks {
   double until_;                          ///< [s] what was told stands for times up to here
 };
 
-}  // namespace evbench::haste
+}  // namespace evbench
