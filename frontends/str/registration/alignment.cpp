@@ -74,7 +74,8 @@ double Aligner::mean_motion(const EventCloud& cloud, const Matrix3& A, double du
 }
 
 template <int P>
-Alignment Aligner::align_with(const EventCloud& queries, MotionModel model, const Matrix3& start, double duration) {
+Alignment Aligner::align_with(const EventCloud& queries, MotionModel model, const Matrix3& start, double duration,
+                              double gate) {
   using Hessian = Eigen::Matrix<double, P, P>;
   using Vector = Eigen::Matrix<double, P, 1>;
   std::array<Eigen::Matrix3f, P> G;
@@ -85,7 +86,6 @@ Alignment Aligner::align_with(const EventCloud& queries, MotionModel model, cons
   const auto scale2 = static_cast<float>(options_.robust_scale * options_.robust_scale);
 
   Alignment result{.A = start};
-  double gate = options_.gate;
   for (; result.iterations < options_.iterations; ++result.iterations) {
     match(queries, result.A, gate);
     if (matches_.size() < 2 * P) return result;
@@ -146,14 +146,15 @@ Alignment Aligner::align_with(const EventCloud& queries, MotionModel model, cons
   return result;
 }
 
-Alignment Aligner::align(const EventCloud& queries, MotionModel model, const Matrix3& start, double duration) {
+Alignment Aligner::align(const EventCloud& queries, MotionModel model, const Matrix3& start, double duration,
+                         double gate) {
   switch (model) {
-    case MotionModel::rotation: return align_with<3>(queries, model, start, duration);
-    case MotionModel::translation: return align_with<2>(queries, model, start, duration);
-    case MotionModel::planar_4: return align_with<4>(queries, model, start, duration);
+    case MotionModel::rotation: return align_with<3>(queries, model, start, duration, gate);
+    case MotionModel::translation: return align_with<2>(queries, model, start, duration, gate);
+    case MotionModel::planar_4: return align_with<4>(queries, model, start, duration, gate);
     case MotionModel::planar_8: break;
   }
-  return align_with<8>(queries, model, start, duration);
+  return align_with<8>(queries, model, start, duration, gate);
 }
 
 }  // namespace evbench::str

@@ -60,8 +60,9 @@ class Aligner {
   void swap_targets(EventCloud& targets);
 
   /// The motion start + Σ θ_k G_k with the generators of `model` that aligns the queries with the targets. `duration`
-  /// [s]: over which a change of the motion by less than the tolerance is none.
-  Alignment align(const EventCloud& queries, MotionModel model, const Matrix3& start, double duration);
+  /// [s]: over which a change of the motion by less than the tolerance is none. `gate` [px]: over which events are
+  /// matched at first.
+  Alignment align(const EventCloud& queries, MotionModel model, const Matrix3& start, double duration, double gate);
 
   /// Nearest targets under the motion A, within `gate` [px]; in the order of the queries.
   const std::vector<Match>& match(const EventCloud& queries, const Matrix3& A, double gate);
@@ -75,7 +76,8 @@ class Aligner {
   void build(const Matrix3& A);
   bool is_stale(const Matrix3& A) const;
   template <int P>
-  Alignment align_with(const EventCloud& queries, MotionModel model, const Matrix3& start, double duration);
+  Alignment align_with(const EventCloud& queries, MotionModel model, const Matrix3& start, double duration,
+                       double gate);
 
   AlignmentOptions options_;
   double focal_length_;

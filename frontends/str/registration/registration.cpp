@@ -31,7 +31,7 @@ Registration Registrar::try_from(const Batch& batch, const Matrix3& start) {
   const std::int64_t length = batch.to - batch.from;
   const std::int64_t slice = static_cast<std::int64_t>(options_.slice * static_cast<double>(length));
   const std::int64_t reference = batch.from + length / 2;
-  result.reference = static_cast<double>(reference);
+  result.reference = reference;
   make_cloud(between(batch.events, batch.from, batch.from + slice), rays_, reference,
              static_cast<std::size_t>(options_.queries), queries_);
   make_cloud(between(batch.events, batch.to - slice, batch.to), rays_, reference, 0, targets_);
@@ -39,7 +39,7 @@ Registration Registrar::try_from(const Batch& batch, const Matrix3& start) {
   if (queries_.size() < least || targets_.size() < least) return result;
   aligner_.swap_targets(targets_);
   const double duration = 1e-6 * static_cast<double>(length);
-  result.alignment = aligner_.align(queries_, options_.model, start, duration);
+  result.alignment = aligner_.align(queries_, options_.model, start, duration, options_.alignment.gate);
   result.A = result.alignment.A;
   result.motion = aligner_.mean_motion(queries_, result.A, duration);
   if (!result.alignment.converged) {

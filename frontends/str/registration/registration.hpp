@@ -37,7 +37,7 @@ struct Registration {
     poor,            ///< too few events of the first slice found one in the last slice
   } state = State::too_few_events;
   Matrix3 A = Matrix3::Zero();  ///< of the motion [1/s] (motion_model.hpp)
-  double reference = 0.0;       ///< [µs] the batch's middle
+  std::int64_t reference = 0;   ///< [µs] the batch's middle
   double motion = 0.0;          ///< [px] mean, over the batch
   Alignment alignment;
   bool grown = false;  ///< it was not found from the start that was given

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/events/event.hpp"
+#include "core/plugin/options.hpp"
+#include "frontends/str/registration/registration.hpp"
+
+namespace evbench::str {
+
+/// When a batch ends.
+struct BatchOptions {
+  double duration = 0.03;
+  int events = 0;
+
+  void declare(OptionSet& set) {
+    set.add("duration", duration, "a batch ends after this time [s]").range(1e-4, 10.0);
+    set.add("events", events, "and before that when it has so many events; 0: no matter how many")
+        .range(0, 100'000'000);
+  }
+};
+
+/// Events in batches, of which each begins with the last slice of the one before: what was found there is where the
+/// next one goes on. Batches follow one another in time, whether there are events or not.
+class Batches {
+ public:
+  /// `from` [µs]: where the first one begins. `slice`: the share that two batches have in common.
+  Batches(const BatchOptions& options, double slice, std::int64_t from);
+
+  /// The next ones, in time order, not before those that were added.
+  void add(std::span<const Event> events) { events_.insert(events_.end(), events.begin(), events.end()); }
+
+  /// The next batch, if it ends at or before `until` [µs], up to which all events have been added; valid until the
+  /// next call of add() or next(). Call until there is none.
+  std::optional<Batch> next(std::int64_t until);
+
+ private:
+  BatchOptions options_;
+  double slice_;
+  std::int64_t from_;  ///< [µs] of the next one
+  std::vector<Event> events_;
+  std::size_t begin_ = 0;  ///< of the next one, in events_
+};
+
+}  // namespace evbench::str

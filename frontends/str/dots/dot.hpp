@@ -1,0 +1,75 @@
+#pragma once
+
+#include <deque>
+
+#include "core/data/track.hpp"
+#include "core/plugin/options.hpp"
+#include "frontends/str/dots/circle.hpp"
+
+namespace evbench::str {
+
+/// How a dot is followed.
+struct DotOptions {
+  int window = 200;
+  double longest_window = 0.1;
+  int every = 40;
+  double gate = 2.5;
+  double event_noise = 0.5;
+  double acceleration = 5000.0;
+  double radius_change = 0.02;
+
+  void declare(OptionSet& set) {
+    set.add("window", window, "newest events of a dot that tell where it is").range(20, 100'000);
+    set.add("longest_window", longest_window, "which are not older than this [s]").above(0.0);
+    set.add("every", every, "events of a dot from one observation of it to the next; 1: each event is one")
+        .range(1, 100'000);
+    set.add("gate", gate, "an event is a dot's when it is this near to its rim [px]").above(0.0);
+    set.add("event_noise", event_noise, "by how much events lie off the rim, standard deviation [px]").above(0.0);
+    set.add("acceleration", acceleration, "of a dot in the image, standard deviation [px/s²]").above(0.0);
+    set.add("radius_change", radius_change,
+            "of a dot's radius from one observation to the next, standard deviation [px]")
+        .above(0.0);
+  }
+};
+
+/// A round spot that is followed by the events of its rim. As an event lies on the rim and not in the centre, where the
+/// dot is follows from a circle through the newest ones, each moved by the dot's velocity from its own time to the
+/// middle of their times, which the estimate stands for; velocity and radius are estimated along.
+class Dot {
+ public:
+  Dot(const DotOptions& options, const Circle& circle, const Vector2& velocity, double t);
+
+  /// Where its centre is at t [s]: it goes on by at most a pixel without an event, as one that moves makes events.
+  Vector2 centre(double t) const;
+  /// How far from its rim a place is at t [px].
+  double rim_distance(const Vector2& pixel, double t) const;
+  double radius() const { return circle_.radius; }
+  const Vector2& velocity() const { return velocity_; }  ///< [px/s]
+  double newest() const { return newest_; }              ///< [s] of its newest event, or of its beginning
+
+  /// Takes an event of it, in time order. True where an observation is due.
+  bool add(const Vector2& pixel, double t);
+
+  /// A place of its centre at the time of one of its events.
+  struct Sighting {
+    double t;  ///< [s]
+    Vector2 centre;
+    double residual;  ///< [px] of its events from the rim, root mean square
+  };
+  /// From the events at hand; none where they are too few.
+  std::optional<Sighting> locate();
+
+ private:
+  struct Seen {
+    Vector2 pixel;
+    double t;
+  };
+  DotOptions options_;
+  Circle circle_;     ///< at t_
+  Vector2 velocity_;  ///< [px/s]
+  double t_, newest_;
+  std::deque<Seen> window_;
+  int since_ = 0;  ///< events since the last observation
+};
+
+}  // namespace evbench::str

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/events/event_feed.hpp"
+#include "core/plugin/delayed_tracks.hpp"
+#include "core/plugin/frontend.hpp"
+#include "frontends/str/batches.hpp"
+#include "frontends/str/dots/options.hpp"
+#include "frontends/str/dots/plane_map.hpp"
+
+namespace evbench::str {
+
+/// Follows round dots, as in the first experiment of Liu et al., ICRA 2022: batches of events are registered as point
+/// clouds, dots are clusters of events in the image that the registration compensates; from then on each event of a
+/// dot's rim says where its centre is, at its own time. Throws InputError for a source without events.
+class Dots : public FrontEnd {
+ public:
+  using Options = DotsOptions;
+
+  Dots(const Options& options, const FrontEndContext& context);
+
+  bool advance(const Horizon& horizon, TrackBatch& batch) override;
+  double waited() const override { return feed_.seconds(); }
+  std::vector<std::string> remarks() const override;
+
+ private:
+  struct Track {
+    TrackId id;
+    Dot dot;
+    double radius;      ///< [px] when it was found
+    double told;        ///< [s] of its last observation
+    double way = 0.0;   ///< [px] the image's, since its last event
+    double seen = 0.0;  ///< [s] of its newest event at the last batch
+    bool lost = false;
+  };
+
+  void follow(double t);
+  void take(const Event& event);
+  void observe(Track& track);
+  void list_near();
+  void process(const Batch& batch);
+  void give_up(const Batch& batch, const Registration& registration);
+  void find_new(const Batch& batch, const Registration& registration);
+  std::optional<TrackId> known_at(const Vector2& pixel) const;
+  bool leaves(const Dot& dot, double t) const;
+
+  Options options_;
+  Camera camera_;
+  Source::TimeRange range_;
+  EventFeed feed_;
+  Batches batches_;
+  Registrar registrar_;
+  DelayedTracks told_;
+  PlaneMap map_;
+  std::vector<Track> tracks_;
+  std::set<TrackId> out_of_view_;
+  std::optional<Matrix3> last_motion_;
+  int columns_, rows_;
+  std::vector<std::vector<std::uint32_t>> near_;  ///< by cells of the image: the tracks whose rim may be there
+  std::int64_t listed_;                           ///< [µs] near_ is as of then
+  std::vector<Event> free_;                       ///< events that are no dot's, of the batch at hand
+  double clock_;                                  ///< [s] events up to here have been looked at
+  std::int64_t ticks_ = 0;                        ///< looked for batches so often
+  TrackId next_id_ = 0;
+  std::size_t found_again_ = 0, left_ = 0, misfits_ = 0, starved_ = 0, late_ = 0;
+  std::size_t registered_ = 0, unregistered_ = 0;
+};
+
+}  // namespace evbench::str

@@ -1,0 +1,201 @@
+#include "frontends/str/str.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/plugin/registration.hpp"
+#include "core/support/index.hpp"
+#include "frontends/str/event_source.hpp"
+#include "frontends/str/expected_motion.hpp"
+
+namespace evbench::str {
+namespace {
+
+const evbench::Registration<FrontEnd, Str> registration(
+    "str", "registers batches of events as point clouds (after Liu, Parra and Chin 2021); tracks are chains of events");
+
+/// The ray at another time, `dt` [s] later, under the motion A.
+Eigen::Vector2f moved(const Eigen::Vector2f& ray, const Matrix3& A, double dt) {
+  EventCloud one;
+  one.add(ray.x(), ray.y(), static_cast<float>(-dt), false);
+  std::vector<float> x, y;
+  warp(one, A, x, y);
+  return {x[0], y[0]};
+}
+
+}  // namespace
+
+Str::Str(const Options& options, const FrontEndContext& context)
+    : options_(options),
+      camera_(context.source.camera()),
+      range_(context.source.time_range()),
+      feed_(events_of(context, "str")),
+      batches_(options.batch, options.registration.slice, microseconds(range_.from)),
+      registrar_(camera_, options.registration),
+      told_(range_.from),
+      complete_(range_.from),
+      clock_(range_.from) {}
+
+bool Str::advance(const Horizon& horizon, TrackBatch& batch) {
+  constexpr double kStep = 0.005;  // [s]
+  const auto enough = [&] { return horizon.observations > 0 && told_.has(horizon.observations, complete_); };
+  while (clock_ < horizon.t && !enough()) {
+    clock_ = std::min(horizon.t, range_.from + kStep * (std::floor((clock_ - range_.from) / kStep + 1e-6) + 1.0));
+    follow(microseconds(clock_));
+  }
+  const bool ended = feed_.ended() || clock_ >= range_.to;
+  told_.tell(ended ? clock_ : complete_, horizon.observations, batch);
+  batch.seen = clock_;
+  return !(ended && told_.empty());
+}
+
+/// All events up to `until` [µs].
+void Str::follow(std::int64_t until) {
+  for (auto events = feed_.until(until); !events.empty(); events = feed_.until(until)) batches_.add(events);
+  while (const auto batch = batches_.next(until)) process(*batch);
+}
+
+void Str::process(const Batch& batch) {
+  const Registration found = registrar_.align(batch, expected_);
+  ++registered_[index(static_cast<int>(found.state))];
+  grown_ += found.grown ? 1 : 0;
+  expected_.reset();
+  if (found.state == Registration::State::too_few_events) {
+    for (Track& track : tracks_) track.t = batch.to;  // the camera stands still, or nearly: they are where they were
+  } else {
+    go_on(batch, found);  // also with a motion that is not to be believed: each track's own events decide
+  }
+  if (found.good()) {
+    expected_ = found.A;
+    replenish(batch, found);
+  }
+  complete_ = seconds(batch.to - 1);
+}
+
+void Str::go_on(const Batch& batch, const Registration& registration) {
+  const std::int64_t slice =
+      static_cast<std::int64_t>(options_.registration.slice * static_cast<double>(batch.to - batch.from));
+  const auto last = std::ranges::lower_bound(batch.events, batch.from + slice, {}, &Event::t);
+  make_cloud({batch.events.begin(), last}, registrar_.rays(), registration.reference, 0, early_);
+  warp(early_, registration.A, early_x_, early_y_);
+  std::vector<Track> alive;
+  for (Track& track : tracks_) {
+    const bool crowded = std::ranges::any_of(
+        alive, [&](const Track& older) { return (older.pixel - track.pixel).norm() < options_.patch.crowding; });
+    crowded_ += crowded ? 1 : 0;
+    if (!crowded && go_on(track, batch, registration)) {
+      alive.push_back(track);
+    } else {
+      told_.end({track.id, seconds(batch.to - 1)});
+    }
+  }
+  tracks_ = std::move(alive);
+}
+
+/// Aligns the events around a track once more, by translation, and observes it at the time of the event of the last
+/// slice that corresponds to the one of the first slice that is nearest to it. False where it has to end.
+bool Str::go_on(Track& track, const Batch& batch, const Registration& registration) {
+  const double f = registrar_.rays().focal_length();
+  const auto reach = static_cast<float>(options_.patch.radius / f);
+  const auto since = [&](std::int64_t t) { return 1e-6 * static_cast<double>(t - registration.reference); };
+  const Eigen::Vector2f here = moved(track.ray, registration.A, -since(track.t));
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t i = 0; i < early_.size(); ++i) {
+    const float dx = early_x_[i] - here.x(), dy = early_y_[i] - here.y();
+    if (dx * dx + dy * dy < reach * reach) near.push_back(i);
+  }
+  patch_.clear();
+  const std::size_t count = std::min(near.size(), static_cast<std::size_t>(options_.patch.queries));
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t i = near[k * near.size() / count];
+    patch_.add(early_.x[i], early_.y[i], early_.t[i], early_.on[i] != 0);
+  }
+  Aligner& aligner = registrar_.aligner();
+  const double duration = 1e-6 * static_cast<double>(batch.to - batch.from);
+  const double gate = options_.registration.alignment.last_gate;
+  const Alignment found = aligner.align(patch_, MotionModel::translation, registration.A, duration, gate);
+  if (!found.converged || found.fit < options_.patch.least_fit) {
+    ++misfits_;
+    return false;
+  }
+  const Eigen::Vector2f place = moved(track.ray, found.A, -since(track.t));
+  const std::vector<Match>& matches = aligner.match(patch_, found.A, gate);
+  const auto nearest =
+      std::ranges::min_element(matches, {}, [&](const Match& m) { return (m.at - place).squaredNorm(); });
+  if (nearest == matches.end()) return false;
+  const double dt = static_cast<double>(aligner.targets().t[nearest->target]);
+  observe(track, moved(place, found.A, dt), registration.reference + std::llround(1e6 * dt));
+  if (!camera_.contains(track.pixel, options_.patch.border)) {
+    ++left_;
+    return false;
+  }
+  return true;
+}
+
+void Str::observe(Track& track, const Eigen::Vector2f& ray, std::int64_t t) {
+  track.ray = ray;
+  track.t = t;
+  track.pixel = pixel_of(ray);
+  told_.add({track.id, seconds(t), track.pixel, options_.sigma});
+}
+
+Vector2 Str::pixel_of(const Eigen::Vector2f& ray) const {
+  return camera_.project(Vector3(static_cast<double>(ray.x()), static_cast<double>(ray.y()), 1.0));
+}
+
+/// New tracks where there are too few: corners of the image of the last slice, compensated to its middle.
+void Str::replenish(const Batch& batch, const Registration& registration) {
+  const auto wanted = static_cast<std::size_t>(options_.tracks);
+  if (tracks_.size() >= wanted) return;
+  const double length = static_cast<double>(batch.to - batch.from);
+  const std::int64_t middle = batch.to - static_cast<std::int64_t>(0.5 * options_.registration.slice * length);
+  const EventCloud& late = registrar_.aligner().targets();
+  EventCloud shifted = late;
+  const auto offset = 1e-6F * static_cast<float>(middle - registration.reference);
+  for (float& t : shifted.t) t -= offset;
+  std::vector<float> x, y;
+  warp(shifted, registration.A, x, y);
+  std::vector<Event> image;
+  const auto most = static_cast<std::size_t>(options_.detection.events);
+  for (std::size_t i = late.size() > most ? late.size() - most : 0; i < late.size(); ++i) {
+    const Vector2 pixel = pixel_of({x[i], y[i]});
+    if (!camera_.contains(pixel)) continue;
+    image.push_back({middle, static_cast<std::uint16_t>(std::lround(pixel.x())),
+                     static_cast<std::uint16_t>(std::lround(pixel.y())), late.on[i] != 0});
+  }
+  std::vector<Vector2> taken;
+  for (const Track& track : tracks_) taken.push_back(track.pixel);
+  for (const Vector2& pixel :
+       detect_features(options_.detection, image, camera_.width, camera_.height, taken, wanted - tracks_.size())) {
+    const auto ideal = camera_.undistort(pixel);
+    if (!ideal) continue;
+    Track track{next_id_++, {}, 0, pixel};
+    observe(track, camera_.pinhole.ray(*ideal).head<2>().cast<float>(), middle);
+    tracks_.push_back(track);
+  }
+}
+
+FeedbackNeeds Str::needs() const {
+  const bool backend = options_.start == Options::Start::backend;
+  return {backend, false, backend};
+}
+
+void Str::receive(const Feedback& feedback) {
+  if (options_.start != Options::Start::backend) return;
+  if (const auto A = expected_motion(feedback, options_.registration.model)) expected_ = A;
+}
+
+std::vector<std::string> Str::remarks() const {
+  const auto batches = [&](Registration::State state) { return registered_[index(static_cast<int>(state))]; };
+  using State = Registration::State;
+  return {
+      fmt::format("batches: {} registered, {} with too few events, {} not converged, {} poor; {} times from nothing",
+                  batches(State::good), batches(State::too_few_events), batches(State::not_converged),
+                  batches(State::poor), grown_),
+      fmt::format("{} tracks begun, {} alive at the end; ended: {} that fit no more, {} at the border, {} crowded",
+                  next_id_, tracks_.size(), misfits_, left_, crowded_)};
+}
+
+}  // namespace evbench::str

@@ -1,0 +1,198 @@
+#include "frontends/str/str.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+#include <set>
+
+#include "core/geometry/so3.hpp"
+#include "core/testing/event_scene.hpp"
+#include "frontends/str/expected_motion.hpp"
+
+using namespace evbench;
+using namespace evbench::str;
+using evbench::testing::EventScene;
+using evbench::testing::swing;
+
+namespace {
+
+/// Faster than a hand.
+SE3 brisk(double t) { return swing(3.0 * t); }
+
+const EventScene& scene() {
+  static const EventScene result(brisk, 0.6, EventScene::quadrangles(150, 1));
+  return result;
+}
+
+struct Tracked {
+  TrackBatch all;
+  std::vector<std::string> remarks;
+};
+
+/// All that it tells, asked every `interval` [s].
+Tracked track(const Source& source, const Options& options = {}, double interval = 0.01, std::size_t most = 0) {
+  Str str(options, {source, 0, ""});
+  const double to = source.time_range().to;
+  Tracked result;
+  TrackBatch batch;
+  result.all.until = 0.0;
+  for (int k = 1; result.all.until < to;) {
+    const double horizon = std::min(to, interval * k);
+    str.advance({horizon, most}, batch);
+    REQUIRE(batch.until >= result.all.until);
+    result.all.observations.insert(result.all.observations.end(), batch.observations.begin(), batch.observations.end());
+    result.all.ended.insert(result.all.ended.end(), batch.ended.begin(), batch.ended.end());
+    result.all.until = batch.until;
+    if (batch.known_at() >= horizon) ++k;
+  }
+  result.remarks = str.remarks();
+  return result;
+}
+
+/// Median distance of the observations from where the track's first observation, a point of the wall, is by then [px].
+double median_error(const EventScene& source, const std::function<SE3(double)>& motion,
+                    const std::vector<TrackObservation>& observations) {
+  std::map<TrackId, Vector3> points;
+  std::vector<double> errors;
+  for (const TrackObservation& z : observations) {
+    const SE3 T = motion(z.t);
+    if (const auto point = points.find(z.track); point != points.end()) {
+      errors.push_back((source.camera().project(T.inverse() * point->second) - z.pixel).norm());
+    } else {
+      const Vector3 ray = T.R() * source.camera().pinhole.ray(z.pixel);
+      points.emplace(z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray);
+    }
+  }
+  std::ranges::nth_element(errors, errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2));
+  return errors[errors.size() / 2];
+}
+
+bool same(const TrackBatch& a, const TrackBatch& b) {
+  return std::ranges::equal(a.observations, b.observations, [](const TrackObservation& x, const TrackObservation& y) {
+    return x.track == y.track && x.t == y.t && x.pixel == y.pixel;
+  });
+}
+
+std::size_t track_count(const TrackBatch& batch) {
+  std::set<TrackId> ids;
+  for (const TrackObservation& z : batch.observations) ids.insert(z.track);
+  return ids.size();
+}
+
+}  // namespace
+
+TEST_CASE("Points of a wall are followed from batch to batch, each observed at an event's time") {
+  const TrackBatch all = track(scene()).all;
+  CHECK(track_count(all) > 60);
+  CHECK(all.observations.size() > 900);
+  CHECK(median_error(scene(), brisk, all.observations) < 0.5);
+  CHECK(std::ranges::is_sorted(all.observations, {}, &TrackObservation::t));
+  std::map<TrackId, double> last;
+  std::set<double> times;
+  for (const TrackObservation& z : all.observations) {
+    if (last.contains(z.track)) CHECK(z.t > last.at(z.track));
+    last[z.track] = z.t;
+    times.insert(z.t);
+  }
+  CHECK(times.size() > all.observations.size() / 2);  // their own
+}
+
+TEST_CASE("What str tells does not depend on how it is asked, by duration and by count") {
+  Options by_count;
+  by_count.batch.events = 15'000;
+  for (const Options& options : {Options(), by_count}) {
+    const TrackBatch usual = track(scene(), options).all;
+    CHECK(usual.observations.size() > 500);
+    CHECK(same(usual, track(scene(), options, 0.037).all));
+    CHECK(same(usual, track(scene(), options, 0.01, 7).all));
+  }
+}
+
+TEST_CASE("Batches by count are shorter where there are more events") {
+  Options by_count;
+  by_count.batch.events = 2000;
+  by_count.batch.duration = 0.2;
+  Batches batches(by_count.batch, 0.25, 0);
+  batches.add(scene().list);
+  std::size_t count = 0;
+  std::int64_t before = 0;
+  while (const auto batch = batches.next(600'000)) {
+    CHECK((batch->events.size() >= 2000 || batch->to - batch->from >= 199'999));
+    if (count > 0) CHECK(batch->from < before);  // the last slice of the one before
+    before = batch->to;
+    ++count;
+  }
+  CHECK(count > scene().list.size() / 2000);
+}
+
+TEST_CASE("Tracks of a camera that stands still go on when it moves") {
+  const auto motion = [](double t) { return brisk(t < 0.4 ? t : std::max(0.4, t - 0.6)); };
+  const EventScene source(motion, 1.4, EventScene::quadrangles(150, 1));
+  const TrackBatch all = track(source).all;
+  std::map<TrackId, std::pair<double, double>> lives;
+  for (const TrackObservation& z : all.observations) {
+    const auto life = lives.try_emplace(z.track, z.t, z.t).first;
+    life->second.second = z.t;
+  }
+  CHECK(std::ranges::count_if(
+            lives, [](const auto& life) { return life.second.first < 0.4 && life.second.second > 1.2; }) > 10);
+}
+
+TEST_CASE("A source whose events stop, flicker or come all at once neither stops str nor keeps it") {
+  EventScene silent = scene();
+  silent.silence(0.2, 0.4);
+  CHECK(track(silent).remarks.at(0).find(" 0 with too few events") == std::string::npos);
+
+  EventScene flickering = scene();
+  Random random(1);
+  std::vector<Event> more;
+  for (int i = 0; i < 100'000; ++i) {
+    more.push_back({static_cast<std::int64_t>(random.index(600'000)), static_cast<std::uint16_t>(2 * random.index(120)),
+                    static_cast<std::uint16_t>(random.index(180)), random.index(2) == 1});
+  }
+  flickering.add(more);
+  CHECK(track(flickering).all.until == 0.6);
+
+  EventScene burst = scene();
+  for (Event& event : more) event.t = 300'000 + event.t / 100;
+  burst.add(more);
+  Options by_count;
+  by_count.batch.events = 1000;
+  CHECK(track(burst, by_count).all.until == 0.6);
+
+  const EventScene nothing(brisk, 0.5, {});
+  const Tracked none = track(nothing);
+  CHECK(none.all.observations.empty());
+  CHECK(none.all.until == 0.5);
+}
+
+TEST_CASE("A motion that the back-end expects is that of its landmarks") {
+  Feedback feedback;
+  feedback.state = TrackingState::tracking;
+  const Vector3 omega(0.3, -0.2, 0.5), v(0.1, 0.2, -0.3);
+  feedback.newest = ControlState{1.0, SE3(), (Vector6() << omega, v).finished()};
+  CHECK_FALSE(expected_motion(feedback, MotionModel::planar_4));
+  Random random(1);
+  for (int i = 0; i < 40; ++i) {
+    const double depth = 2.0;
+    feedback.expected.push_back(
+        {i, depth * Vector3(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 1.0), {}, {}});
+  }
+  const auto eight = expected_motion(feedback, MotionModel::planar_8);
+  REQUIRE(eight);
+  Matrix3 truth = so3::hat(omega);
+  truth.col(2) += v / 2.0;
+  const MotionParameters error =
+      project_onto(MotionModel::planar_8, *eight) - project_onto(MotionModel::planar_8, truth);
+  CHECK(error.norm() < 1e-9);
+  feedback.state = TrackingState::lost;
+  CHECK_FALSE(expected_motion(feedback, MotionModel::planar_8));
+}
+
+TEST_CASE("A source without events is refused by str, with a sentence") {
+  class Nothing : public EventScene {
+   public:
+    Nothing() : EventScene(swing, 0.01, {}) {}
+    std::unique_ptr<EventReader> all_events() const override { return nullptr; }
+  };
+  CHECK_THROWS_WITH(Str({}, {Nothing(), 0, ""}), Catch::Matchers::Contains("str works on events"));
+}
