@@ -102,6 +102,7 @@ bool GpMap::initialise(double t) {
 }
 
 void GpMap::begin_from(FirstMap map) {
+  qc_ = map.graph.qc;
   engine_.emplace(std::move(map.graph), EngineOptions{.lag = options_.lag});
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
   noise_ = NoiseLearner();
@@ -194,7 +195,7 @@ bool GpMap::is_outlier(int landmark, double error_px) const {
 
 void GpMap::optimise() {
   last_update_ = engine_->update();
-  if (options_.learn.prior == LearnPrior::always) yield_to_motion();
+  yield_to_motion();
 }
 
 /// Where most tracks are far from where they should be, the prior is too strong for what the camera does, and the
@@ -227,6 +228,13 @@ void GpMap::yield_to_motion() {
   if (factor > 1.0) engine_->set_next_qc(graph().qcs.back());
 }
 
+/// A prior that has yielded is as it was again as long after as the learnt one follows the motion.
+void GpMap::recover_prior() {
+  const std::vector<ControlState>& states = graph().states;
+  const double dt = states.back().t - states[states.size() - 2].t;
+  engine_->set_next_qc((std::exp(-dt / options_.learn.window) * graph().qc).cwiseMax(qc_));
+}
+
 /// Median error of the tracks seen in the newest interval, each at its last observation [sigmas]; 0: too few.
 double GpMap::newest_error() const {
   const std::size_t k = graph().states.size() - 1;
@@ -247,7 +255,11 @@ void GpMap::learn() {
     noise_.follow(graph(), options_.learn.memory);
     engine_->set_loss(noise_.loss(options_.loss, options_.loss_width));
   }
-  if (options_.learn.prior == LearnPrior::always) prior_.follow(*engine_);
+  if (options_.learn.prior == LearnPrior::always) {
+    prior_.follow(*engine_);
+  } else {
+    recover_prior();
+  }
   if (options_.learn.prior == LearnPrior::final && options_.lag > 0.0) learn_before_settling();
 }
 

@@ -73,6 +73,7 @@ class GpMap : public BackEnd {
   void add_landmarks();
   void optimise();
   void yield_to_motion();
+  void recover_prior();
   void learn();
   void learn_before_settling();
   void check_support();
@@ -122,6 +123,7 @@ class GpMap : public BackEnd {
   std::pair<std::size_t, std::optional<Matrix12>> newest_covariance_;  ///< and the number of states then
   std::vector<TrackId> new_outliers_;
   UpdateSummary last_update_;
+  Vector6 qc_;  ///< of the prior, where it has not yielded
   PriorLearner prior_;
   NoiseLearner noise_;
   double learnt_until_ = -std::numeric_limits<double>::infinity();  ///< [s], with a lag
