@@ -59,6 +59,7 @@ std::vector<ExpectedFeature> GpMap::expected_features() {
   std::vector<ExpectedFeature> result;
   for (auto& [id, track] : tracks_) {
     if (track.role != Track::Role::landmark) continue;
+    if (track.ended && !covariance_of_ended(track)) continue;  // soon: later it takes a long walk back
     const Vector3 position = graph().landmarks[index(track.landmark)].position;
     const Vector3 point = T_camera_world * position;
     if (point.z() < kNear) continue;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -32,6 +33,7 @@ GpMap::GpMap(const Options& options, const BackEndContext& context)
       context_(context),
       placement_(options.placement),
       first_map_(options, context.camera),
+      returns_(options.map.returns),
       prior_(options.learn.window, options.learn.memory),
       monitor_(context.patience) {}
 
@@ -82,15 +84,36 @@ void GpMap::take_observations(double t) {
 
 void GpMap::take(const TrackObservation& z) {
   Track& track = tracks_[z.track];
-  track.ended = false;
   live_.insert(z.track);
-  if (track.role == Track::Role::landmark && engine_->forgotten(track.landmark)) {  // it becomes another landmark
-    track = Track();
-    --landmarks_;
-  }
+  if (track.role == Track::Role::landmark && !goes_on(track)) split(z.track);
+  track.ended = false;
   if (track.role == Track::Role::waiting) waiting_.add({&z, 1});
   if (!young_.empty()) young_.add({&z, 1});
   if (track.role == Track::Role::landmark) new_.emplace_back(track.landmark, to_observation(z, options_.sigma_scale));
+}
+
+/// Whether the landmark of a track that is seen now is the one that it was.
+bool GpMap::goes_on(const Track& track) {
+  if (engine_->forgotten(track.landmark)) return false;
+  const auto& seen = graph().landmarks[index(track.landmark)].intervals;
+  const int newest = static_cast<int>(graph().states.size()) - 1;
+  return !track.ended || seen.empty() || seen.back() >= newest || returns_.spend(seen.back(), newest + 1);
+}
+
+/// A track that came back becomes another landmark, which is expected where the one is that it was; that one stays as
+/// what it has been seen to be. What is known of it counts as independent of the motion since.
+void GpMap::split(TrackId id) {
+  Track& track = tracks_.at(id);
+  const std::optional<Matrix3> known = covariance_of_ended(track);
+  if (!known) {
+    track = Track();
+    --landmarks_;
+    return;
+  }
+  const Vector3 position = graph().landmarks[index(track.landmark)].position;
+  const double sigma = std::sqrt(known->selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff());
+  track = {.role = Track::Role::landmark, .landmark = engine_->add_landmark(position, {position, sigma})};
+  track_of_.push_back(id);
 }
 
 bool GpMap::initialise(double t) {
@@ -104,6 +127,7 @@ bool GpMap::initialise(double t) {
 void GpMap::begin_from(FirstMap map) {
   qc_ = map.graph.qc;
   engine_.emplace(std::move(map.graph), EngineOptions{.lag = options_.lag});
+  returns_ = ReturnBudget(options_.map.returns);
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
   noise_ = NoiseLearner();
   track_of_.clear();
@@ -201,8 +225,8 @@ void GpMap::optimise() {
 /// Where most tracks are far from where they should be, the prior is too strong for what the camera does, and the
 /// robust loss would take them for outliers: the prior over the newest intervals is weakened as long as that helps.
 void GpMap::yield_to_motion() {
-  constexpr double kFar = 3.0;  // [sigmas]
-  constexpr double kWeaker = 10.0, kWeakest = 1e4, kHelp = 0.8;
+  constexpr double kFar = 3.0;                                   // [sigmas]
+  constexpr double kWeaker = 10.0, kWeakest = 1e4, kHelp = 0.8;  // weakest: over the prior that was given
   constexpr int kIntervals = 3;
   const int newest = static_cast<int>(graph().states.size()) - 1;
   const int first = std::max(engine_->first_state() + 1, newest - kIntervals + 1);
@@ -215,7 +239,8 @@ void GpMap::yield_to_motion() {
     last_update_ = engine_->update();
   };
   double error = newest_error(), factor = 1.0;
-  while (error > kFar && factor < kWeakest) {
+  const double weakest = kWeakest / graph().qc.cwiseQuotient(qc_).maxCoeff();
+  while (error > kFar && factor < weakest) {
     weaken(kWeaker * factor);
     const double now = newest_error();
     if (!(now < kHelp * error)) {
@@ -361,10 +386,11 @@ void GpMap::become_landmark(TrackId id, int landmark) {
 void GpMap::become_outlier(int landmark) {
   hold_scale_without(landmark);
   engine_->remove_landmark(landmark);
-  const TrackId track = track_of_[index(landmark)];
-  tracks_.at(track).role = Track::Role::outlier;
+  const auto track = tracks_.find(track_of_[index(landmark)]);
+  if (track == tracks_.end() || track->second.landmark != landmark) return;  // it came back as another one
+  track->second.role = Track::Role::outlier;
   --landmarks_;
-  new_outliers_.push_back(track);
+  new_outliers_.push_back(track->first);
 }
 
 /// Where a track's landmark is, by triangulation over its observations; in need (`scarce`), at the scene's depth.
@@ -478,7 +504,8 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
     }
     if (learns_prior) learn_prior(*engine_);
     judge_tracks(noise);
-    engine_->optimise(kIterationsARound, kRoughly);
+    const bool settled = engine_->optimise(kIterationsARound, kRoughly).iterations == 1;
+    if (settled && round > 0) break;  // what is learnt does not change the estimate any more
   }
   return engine_->optimise(options_.final_iterations, learns ? kLearnt : kFixed);
 }
@@ -487,16 +514,16 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
 /// noise.
 void GpMap::judge_tracks(const NoiseLearner& noise) {
   const double threshold = options_.map.outlier_threshold;
-  for (const auto& [id, track] : tracks_) {
-    if (track.role != Track::Role::landmark) continue;
-    if (TrackErrors(graph(), track.landmark, noise).is_outlier(threshold)) become_outlier(track.landmark);
+  const auto landmarks = static_cast<int>(graph().landmarks.size());
+  for (int j = 0; j < landmarks; ++j) {
+    if (graph().landmarks[index(j)].alive && TrackErrors(graph(), j, noise).is_outlier(threshold)) become_outlier(j);
   }
   FactorGraph judged = graph();
-  for (const auto& [id, track] : tracks_) {
-    if (track.role != Track::Role::landmark) continue;
-    const TrackErrors errors(judged, track.landmark, noise);
-    if (options_.learn.noise) judged.scale_sigmas(track.landmark, errors.sigma_scale());
-    if (const auto from = errors.slides_from(threshold)) judged.remove_observations(track.landmark, *from);
+  for (int j = 0; j < landmarks; ++j) {
+    if (!judged.landmarks[index(j)].alive) continue;
+    const TrackErrors errors(judged, j, noise);
+    if (options_.learn.noise) judged.scale_sigmas(j, errors.sigma_scale());
+    if (const auto from = errors.slides_from(threshold)) judged.remove_observations(j, *from);
   }
   engine_.emplace(std::move(judged), EngineOptions());
 }

@@ -15,6 +15,7 @@
 #include "backends/gp_map/observation_follower.hpp"
 #include "backends/gp_map/options.hpp"
 #include "backends/gp_map/prior_learning.hpp"
+#include "backends/gp_map/return_budget.hpp"
 #include "backends/gp_map/state_placement.hpp"
 #include "core/plugin/backend.hpp"
 #include "core/plugin/tracking_monitor.hpp"
@@ -82,6 +83,8 @@ class GpMap : public BackEnd {
 
   void follow_observations(double t, double ahead);
   void take(const TrackObservation& z);
+  bool goes_on(const Track& track);
+  void split(TrackId id);
   void begin_from(FirstMap map);
   InitialGuess present_map(double t0, double t1) const;
   void become_landmark(TrackId track, int landmark);
@@ -112,14 +115,15 @@ class GpMap : public BackEnd {
   std::optional<Engine> engine_;  ///< from the first map on
   ObservationFollower follower_;
   std::map<TrackId, Track> tracks_;
-  TrackBuffer waiting_;                           ///< observations of waiting tracks
-  TrackBuffer young_;                             ///< of all tracks, until the first map is settled
-  std::set<TrackId> live_;                        ///< tracks that are alive, or have ended since the last step
-  std::vector<TrackId> track_of_;                 ///< by landmark
-  int landmarks_ = 0;                             ///< tracks that are landmarks
-  std::vector<TrackObservation> pending_;         ///< later than the newest state
-  std::deque<TrackEnd> ending_;                   ///< likewise
-  std::vector<std::pair<int, Observation>> new_;  ///< of landmarks, not in the engine yet
+  TrackBuffer waiting_;            ///< observations of waiting tracks
+  TrackBuffer young_;              ///< of all tracks, until the first map is settled
+  std::set<TrackId> live_;         ///< tracks that are alive, or have ended since the last step
+  std::vector<TrackId> track_of_;  ///< by landmark, of which a track that came back may have several
+  ReturnBudget returns_;
+  int landmarks_ = 0;                                                  ///< tracks that are landmarks
+  std::vector<TrackObservation> pending_;                              ///< later than the newest state
+  std::deque<TrackEnd> ending_;                                        ///< likewise
+  std::vector<std::pair<int, Observation>> new_;                       ///< of landmarks, not in the engine yet
   std::pair<std::size_t, std::optional<Matrix12>> newest_covariance_;  ///< and the number of states then
   std::vector<TrackId> new_outliers_;
   UpdateSummary last_update_;

@@ -107,6 +107,67 @@ TEST_CASE("In the final estimate a track that slides off its point keeps its beg
   CHECK(whole == sound);
 }
 
+TEST_CASE("Of landmarks that come back as many go on as the budget has, the others become new ones at the same place") {
+  const TrackedScene scene(8.0, R"({"tracks": {"lifetime": [6.0, 8.0]}})");
+  constexpr double kPeriod = 2.0, kGone = 0.7;  // [s]
+  const auto phase = [](const TrackObservation& z) { return z.t + 0.37 * static_cast<double>(z.track); };
+  const auto is_seen = [&](const TrackObservation& z) { return std::fmod(phase(z), kPeriod) > kGone; };
+  const auto landmarks_with = [&](int returns) {
+    BackEndContext context;
+    context.camera = scene.camera();
+    Options options;
+    options.map.returns = returns;
+    GpMap backend(options, context);
+    std::map<TrackId, double> last;
+    TrackBatch batch;
+    for (const TrackObservation& z : scene.observations()) {
+      if (!is_seen(z)) continue;
+      last[z.track] = z.t;
+      for (auto i = last.begin(); i != last.end();) {
+        const bool gone = z.t > i->second + 0.2;
+        if (gone) batch.ended.push_back({i->first, z.t});
+        i = gone ? last.erase(i) : std::next(i);
+      }
+      batch.observations.push_back(z);
+      if (z.t < batch.until + 0.05) continue;
+      batch.until = z.t;
+      backend.advance(batch);
+      batch = {{}, {}, batch.until};
+    }
+    backend.finish();
+    CHECK(backend.status().state == RunState::ok);
+    std::vector<StampedPose> poses;
+    for (const StampedPose& pose : backend.trajectory().poses()) poses.push_back(pose);
+    const Scores scores =
+        score(scene.ground_truth(), PoseTrajectory(std::move(poses)), {.association = "interpolated"});
+    CHECK(scores.ate.trans_percent < 0.5);
+    std::vector<int> over(backend.graph().states.size());
+    for (const FactorGraph::Landmark& landmark : backend.graph().landmarks) {
+      for (std::size_t i = 1; i < landmark.intervals.size(); ++i) {
+        const int from = landmark.intervals[i - 1], to = landmark.intervals[i];
+        const double gap = backend.graph().states[index(to - 1)].t - backend.graph().states[index(from)].t;
+        for (int k = from; gap > 0.5 && k < to; ++k) ++over[index(k)];
+      }
+    }
+    CHECK(std::ranges::max(over) <= returns);
+    return backend.graph().landmarks.size();
+  };
+  const std::size_t none = landmarks_with(0), some = landmarks_with(8), all = landmarks_with(1000);
+  CHECK(none > some + 10);
+  CHECK(some > all + 10);
+}
+
+TEST_CASE("A prior that is too strong for violent motion yields to it") {
+  for (const char* scene : {R"({"motion": {"kind": "smooth_random", "max_frequency": 2.5, "rotation_amplitude": 0.5},
+                                "tracks": {"lifetime": [0.3, 1.0]}})",
+                            R"({"motion": {"kind": "smooth_random", "max_frequency": 4.0, "rotation_amplitude": 0.2},
+                                "tracks": {"lifetime": [0.3, 1.0]}})"}) {
+    const auto result = run(TrackedScene(4.0, scene), {.backend = R"({"qc_scale": 0.1})"});
+    CHECK(result.backend->status().state == RunState::ok);
+    CHECK(result.scores.ate.trans_percent < 1.0);
+  }
+}
+
 TEST_CASE("gp_map's estimate does not depend on how its observations are cut into pieces") {
   const TrackedScene scene(3.0);
   const auto fine = run(scene, {.chunk = 0.003});

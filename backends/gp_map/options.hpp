@@ -45,6 +45,7 @@ struct MapOptions {
   double patience = 0.0;
   double depth_sigma = 0.5;
   double outlier_threshold = 5.0;
+  int returns = 60;
 
   void declare(OptionSet& set) {
     set.group("triangulation", triangulation, "when a track becomes a landmark");
@@ -60,6 +61,10 @@ struct MapOptions {
             "final estimate drops a track from where its error, averaged over 0.15 s, stays larger [sigmas of such "
             "averages]")
         .above(0.0);
+    set.add("returns", returns,
+            "landmarks that were out of sight at a time and were found again, at most: what comes back beyond that "
+            "becomes another landmark, expected where the old one is")
+        .range(0);
   }
 };
 

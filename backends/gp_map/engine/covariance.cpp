@@ -179,16 +179,17 @@ std::vector<Matrix24> Factorisation::chain(int first) const {
   return result;
 }
 
+/// J H⁻¹ Jᵀ = Xᵀ X with X = L⁻¹ Jᵀ.
 Eigen::MatrixXd Factorisation::image_in_root(std::span<const int> rows, const Eigen::MatrixXd& J) const {
-  Eigen::MatrixXd solved(static_cast<Eigen::Index>(rows.size()), J.rows());
-  Buffer x(index(root_.stride()));
-  for (Eigen::Index i = 0; i < J.rows(); ++i) {
-    std::ranges::fill(x, 0.0);
-    for (std::size_t k = 0; k < rows.size(); ++k) x[index(rows[k])] = J(i, static_cast<Eigen::Index>(k));
-    solve_with_root_factor(x.data());
-    for (std::size_t k = 0; k < rows.size(); ++k) solved(static_cast<Eigen::Index>(k), i) = x[index(rows[k])];
+  Eigen::MatrixXd X = Eigen::MatrixXd::Zero(factor_.size(), J.rows());
+  int first = factor_.size();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const int row = factor_.row_of_root_row(rows[i]);
+    X.row(row) = J.col(static_cast<Eigen::Index>(i)).transpose();
+    first = std::min(first, row);
   }
-  return J * solved;
+  factor_.solve_forward(X, first);
+  return X.transpose() * X;
 }
 
 /// Factorises what has changed or was damped, as it is at the present linearisation points.
@@ -241,9 +242,19 @@ std::optional<Matrix12> Engine::poses(int i, int j) {
 std::optional<Matrix12> Engine::covariance(double t) {
   const int k = graph_.interval_of(t);
   if (k < 1) return std::nullopt;
+  if (t == graph_.states.back().t) return newest_covariance();
   const std::optional<Matrix24> joint = neighbours(k - 1);
   if (!joint) return std::nullopt;
   return GpInterval(graph_.states[index(k - 1)], graph_.states[index(k)]).covariance(t, *joint, graph_.qcs[index(k)]);
+}
+
+std::optional<Matrix12> Engine::newest_covariance() {
+  if (!factorise_undamped()) return std::nullopt;
+  std::array<int, 12> rows;
+  for (int i = 0; i < 12; ++i) rows[index(i)] = Root::row_of_state(static_cast<int>(graph_.states.size()) - 1) + i;
+  const Matrix12 result = factorisation_.image_in_root(rows, Matrix12::Identity());
+  if (!result.allFinite()) return std::nullopt;
+  return result;
 }
 
 std::optional<Matrix3> Engine::landmark_covariance(int landmark) {
@@ -264,12 +275,12 @@ std::optional<Matrix2> Engine::predicted_covariance(int landmark, const Eigen::M
   const bool in_root = place && place->first == static_cast<int>(graph_.states.size());
   std::vector<int> rows;
   for (int i = 0; i < 12; ++i) rows.push_back(Root::row_of_state(static_cast<int>(graph_.states.size()) - 1) + i);
-  Eigen::MatrixXd J = J_state;
   if (in_root) {
     for (int i = 0; i < 3; ++i) rows.push_back(place->second + i);
-    J.conservativeResize(2, 15);
-    J.rightCols<3>() = J_landmark;
   }
+  Eigen::MatrixXd J(2, rows.size());
+  J.leftCols<12>() = J_state;
+  if (in_root) J.rightCols<3>() = J_landmark;
   Matrix2 result = factorisation_.image_in_root(rows, J);
   if (!in_root) {
     const std::optional<Matrix3> own = landmark_covariance(landmark);

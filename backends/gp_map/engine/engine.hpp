@@ -137,6 +137,8 @@ class Engine {
   std::optional<Matrix12> poses(int i, int j);
   /// Of pose and velocity at any time within the states' span.
   std::optional<Matrix12> covariance(double t);
+  /// Of the newest state, in no time.
+  std::optional<Matrix12> newest_covariance();
   std::optional<Matrix3> landmark_covariance(int landmark);
   /// Of J_state δ_newest + J_landmark δ_landmark, e.g. of where a landmark's image is predicted. A landmark that has
   /// left the root counts as independent of the newest state.

@@ -41,6 +41,12 @@ void RootFactor::solve_back(double* x) const {
   L.transpose().triangularView<Eigen::Upper>().solveInPlace(as_vector(x, size_));
 }
 
+void RootFactor::solve_forward(Eigen::Ref<Eigen::MatrixXd> X, int first) const {
+  const int rows = size_ - first;
+  const auto L = as_matrix(L_.data(), size_, size_, stride());
+  L.bottomRightCorner(rows, rows).triangularView<Eigen::Lower>().solveInPlace(X.bottomRows(rows));
+}
+
 void RootFactor::copy_from_root(const double* root, double* x) const {
   std::copy_n(root + Root::row_of_slot(0), row_of_states(), x);
   std::copy_n(root + state_in_root_, 12, x + row_of_states());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "backends/gp_map/engine/root.hpp"
@@ -16,6 +17,11 @@ class RootFactor {
 
   int row_of_slot(int slot) const { return 3 * slot; }
   int row_of_states() const { return 3 * slots_; }
+  /// Where a row of the root's landmarks or of state `oldest` stands here.
+  int row_of_root_row(int row) const {
+    const int in_slots = row - Root::row_of_slot(0);
+    return in_slots >= 0 ? in_slots : row_of_states() + row - state_in_root_;
+  }
   int size() const { return size_; }  ///< rows, padded; in each column there is room for kPadding more
   double* column(int c) { return L_.data() + static_cast<std::ptrdiff_t>(c) * stride(); }
   const double* column(int c) const { return L_.data() + static_cast<std::ptrdiff_t>(c) * stride(); }
@@ -32,6 +38,8 @@ class RootFactor {
   /// x ← L⁻¹ x and x ← L⁻ᵀ x.
   void solve_forward(double* x) const;
   void solve_back(double* x) const;
+  /// X ← L⁻¹ X, where the rows of X before `first` are zero.
+  void solve_forward(Eigen::Ref<Eigen::MatrixXd> X, int first) const;
 
   /// What belongs to the landmarks and to state `oldest`, from one layout to the other.
   void copy_from_root(const double* root, double* x) const;
