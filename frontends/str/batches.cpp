@@ -9,11 +9,12 @@ Batches::Batches(const BatchOptions& options, double slice, std::int64_t from)
     : options_(options), slice_(slice), from_(from) {}
 
 std::optional<Batch> Batches::next(std::int64_t until) {
-  std::int64_t to = from_ + std::llround(1e6 * options_.duration);
+  double duration = options_.duration;
+  if (options_.motion > 0.0 && speed_ > 0.0) duration = std::min(duration, options_.motion / speed_);
+  std::int64_t to = from_ + std::llround(1e6 * duration);
   const auto most = static_cast<std::size_t>(options_.events);
   if (most > 0 && events_.size() - begin_ >= most) to = std::min(to, events_[begin_ + most - 1].t + 1);
-  // A batch of events that all come at once would not get on.
-  constexpr std::int64_t kShortest = 100;  // [µs]
+  constexpr std::int64_t kShortest = 1000;  // [µs]: a batch of events that all come at once would not get on
   to = std::max(to, from_ + kShortest);
   if (to > until) {
     events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(begin_));

@@ -15,11 +15,16 @@ namespace evbench::str {
 struct BatchOptions {
   double duration = 0.03;
   int events = 0;
+  double motion = 0.0;
 
   void declare(OptionSet& set) {
     set.add("duration", duration, "a batch ends after this time [s]").range(1e-4, 10.0);
     set.add("events", events, "and before that when it has so many events; 0: no matter how many")
         .range(0, 100'000'000);
+    set.add(
+           "motion", motion,
+           "and before that when the image has moved by this, going by the last batch [px, mean]; 0: no matter how far")
+        .range(0.0, 1000.0);
   }
 };
 
@@ -33,6 +38,9 @@ class Batches {
   /// The next ones, in time order, not before those that were added.
   void add(std::span<const Event> events) { events_.insert(events_.end(), events.begin(), events.end()); }
 
+  /// The image moves at this speed [px/s], for batches that end by motion.
+  void expect(double speed) { speed_ = speed; }
+
   /// The next batch, if it ends at or before `until` [µs], up to which all events have been added; valid until the
   /// next call of add() or next(). Call until there is none.
   std::optional<Batch> next(std::int64_t until);
@@ -40,7 +48,8 @@ class Batches {
  private:
   BatchOptions options_;
   double slice_;
-  std::int64_t from_;  ///< [µs] of the next one
+  std::int64_t from_;   ///< [µs] of the next one
+  double speed_ = 0.0;  ///< [px/s]
   std::vector<Event> events_;
   std::size_t begin_ = 0;  ///< of the next one, in events_
 };

@@ -11,7 +11,8 @@ namespace evbench::str {
 struct PatchOptions {
   double radius = 12.0;
   int queries = 100;
-  double least_fit = 0.6;
+  double least_fit = 0.5;
+  double anchor_fit = 0.6;
   double border = 4.0;
   double crowding = 5.0;
 
@@ -20,6 +21,10 @@ struct PatchOptions {
     set.add("queries", queries, "so many of them, at most").range(10, 1'000'000);
     set.add("least_fit", least_fit,
             "how well they must lie on the last slice for the track to go on: mean weight of the queries")
+        .range(0.0, 1.0);
+    set.add("anchor_fit", anchor_fit,
+            "a track is where the events fit that were around it when it was anchored, if they fit so well; else it is "
+            "anchored anew; 1: a chain from batch to batch alone")
         .range(0.0, 1.0);
     set.add("border", border, "a track ends where it comes this near to the image's border [px]").range(0.0, 1000.0);
     set.add("crowding", crowding, "and where an older one is this near [px]; 0: never").range(0.0, 1000.0);
@@ -36,6 +41,8 @@ struct Options {
   enum class Start { last, backend } start = Start::last;
 
   Options() {
+    batch.duration = 0.1;
+    batch.motion = 5.0;
     registration.model = MotionModel::planar_4;
     detection.border = 8.0;
   }

@@ -25,6 +25,13 @@ Eigen::Vector2f moved(const Eigen::Vector2f& ray, const Matrix3& A, double dt) {
   return {x[0], y[0]};
 }
 
+/// All points of a cloud `dt` [s] later, whatever their times, which remain.
+void move(EventCloud& cloud, const Matrix3& A, double dt) {
+  EventCloud at_once = cloud;
+  std::ranges::fill(at_once.t, static_cast<float>(-dt));
+  warp(at_once, A, cloud.x, cloud.y);
+}
+
 }  // namespace
 
 Str::Str(const Options& options, const FrontEndContext& context)
@@ -62,6 +69,7 @@ void Str::process(const Batch& batch) {
   ++registered_[index(static_cast<int>(found.state))];
   grown_ += found.grown ? 1 : 0;
   expected_.reset();
+  batches_.expect(0.0);
   if (found.state == Registration::State::too_few_events) {
     for (Track& track : tracks_) track.t = batch.to;  // the camera stands still, or nearly: they are where they were
   } else {
@@ -69,6 +77,7 @@ void Str::process(const Batch& batch) {
   }
   if (found.good()) {
     expected_ = found.A;
+    batches_.expect(1e6 * found.motion / static_cast<double>(batch.to - batch.from));
     replenish(batch, found);
   }
   complete_ = seconds(batch.to - 1);
@@ -120,18 +129,53 @@ bool Str::go_on(Track& track, const Batch& batch, const Registration& registrati
     ++misfits_;
     return false;
   }
-  const Eigen::Vector2f place = moved(track.ray, found.A, -since(track.t));
+  move(track.anchor, found.A, -since(track.t));
+  const Eigen::Vector2f place = anchored(track, found.A, moved(track.ray, found.A, -since(track.t)), duration);
   const std::vector<Match>& matches = aligner.match(patch_, found.A, gate);
   const auto nearest =
       std::ranges::min_element(matches, {}, [&](const Match& m) { return (m.at - place).squaredNorm(); });
   if (nearest == matches.end()) return false;
   const double dt = static_cast<double>(aligner.targets().t[nearest->target]);
+  move(track.anchor, found.A, dt);
   observe(track, moved(place, found.A, dt), registration.reference + std::llround(1e6 * dt));
   if (!camera_.contains(track.pixel, options_.patch.border)) {
     ++left_;
     return false;
   }
   return true;
+}
+
+/// The track's place at the reference time, corrected by how its anchor, which is there too, lies on the last slice: a
+/// chain alone would add up what each link is off. Where the anchor fits no more it is made anew, of the events that
+/// have been aligned.
+Eigen::Vector2f Str::anchored(Track& track, const Matrix3& A, const Eigen::Vector2f& place, double duration) {
+  Aligner& aligner = registrar_.aligner();
+  const double gate = options_.registration.alignment.last_gate;
+  // What moves the anchor and not the targets is a velocity, too, if all of it is seen half a batch earlier.
+  const auto early = static_cast<float>(-0.5 * duration);
+  EventCloud earlier = track.anchor;
+  move(earlier, A, static_cast<double>(early));
+  std::ranges::fill(earlier.t, early);
+  Alignment found;
+  if (earlier.size() > 0) found = aligner.align(earlier, MotionModel::translation, A, duration, gate);
+  if (found.converged && found.fit >= options_.patch.anchor_fit) {
+    double late = 0.0;  // when the targets have been seen
+    const std::vector<Match>& matches = aligner.match(earlier, found.A, gate);
+    for (const Match& m : matches) late += static_cast<double>(aligner.targets().t[m.target]);
+    late /= static_cast<double>(std::max<std::size_t>(matches.size(), 1));
+    const double between = static_cast<double>(early) - late;
+    const Eigen::Vector2f shift = static_cast<float>(between) * flow((found.A - A).cast<float>(), place.x(), place.y());
+    for (std::uint32_t i = 0; i < track.anchor.size(); ++i) {
+      track.anchor.x[i] += shift.x();
+      track.anchor.y[i] += shift.y();
+    }
+    return place + shift;
+  }
+  track.anchor.clear();
+  std::vector<float> x, y;
+  warp(patch_, A, x, y);
+  for (std::size_t i = 0; i < x.size(); ++i) track.anchor.add(x[i], y[i], 0.0F, patch_.on[i] != 0);
+  return place;
 }
 
 void Str::observe(Track& track, const Eigen::Vector2f& ray, std::int64_t t) {

@@ -32,9 +32,10 @@ class Str : public FrontEnd {
  private:
   struct Track {
     TrackId id;
-    Eigen::Vector2f ray;  ///< where it is (x, y, 1)
-    std::int64_t t;       ///< [µs], when
-    Vector2 pixel;        ///< raw
+    Eigen::Vector2f ray;     ///< where it is (x, y, 1)
+    std::int64_t t;          ///< [µs], when
+    Vector2 pixel;           ///< raw
+    EventCloud anchor = {};  ///< events that were around it once, where they are now
   };
 
   void follow(std::int64_t until);
@@ -42,6 +43,7 @@ class Str : public FrontEnd {
   void go_on(const Batch& batch, const Registration& registration);
   bool go_on(Track& track, const Batch& batch, const Registration& registration);
   void replenish(const Batch& batch, const Registration& registration);
+  Eigen::Vector2f anchored(Track& track, const Matrix3& A, const Eigen::Vector2f& place, double duration);
   void observe(Track& track, const Eigen::Vector2f& ray, std::int64_t t);
   Vector2 pixel_of(const Eigen::Vector2f& ray) const;
 

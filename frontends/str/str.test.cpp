@@ -96,6 +96,14 @@ TEST_CASE("Points of a wall are followed from batch to batch, each observed at a
   CHECK(times.size() > all.observations.size() / 2);  // their own
 }
 
+TEST_CASE("A chain of batches slides; anchored to what was around it once, a track stays where it is") {
+  Options chained;
+  chained.patch.anchor_fit = 1.0;
+  const double anchored = median_error(scene(), brisk, track(scene()).all.observations);
+  CHECK(anchored < 0.3);
+  CHECK(median_error(scene(), brisk, track(scene(), chained).all.observations) > 1.5 * anchored);
+}
+
 TEST_CASE("What str tells does not depend on how it is asked, by duration and by count") {
   Options by_count;
   by_count.batch.events = 15'000;
@@ -111,6 +119,7 @@ TEST_CASE("Batches by count are shorter where there are more events") {
   Options by_count;
   by_count.batch.events = 2000;
   by_count.batch.duration = 0.2;
+  by_count.batch.motion = 0.0;
   Batches batches(by_count.batch, 0.25, 0);
   batches.add(scene().list);
   std::size_t count = 0;

@@ -33,7 +33,7 @@ struct DotsOptions {
   DotOptions dot;
   DotLifeOptions life;
   double sigma = 0.3;
-  double delay = 0.02;
+  double delay = 0.05;
 
   DotsOptions() { registration.model = MotionModel::planar_4; }
 
