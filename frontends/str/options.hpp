@@ -38,6 +38,7 @@ struct Options {
   DetectionOptions detection;
   int tracks = 60;
   double sigma = 0.5;
+  double interval = 0.01;
   enum class Start { last, backend } start = Start::last;
 
   Options() {
@@ -50,6 +51,9 @@ struct Options {
   void declare(OptionSet& set) {
     set.add("tracks", tracks, "tracks alive, as far as there is something to track").range(1, 100'000);
     set.add("sigma", sigma, "standard deviation of an observation [px]").above(0.0);
+    set.add("interval", interval,
+            "a track is observed at events of it that are about this far apart, within a batch [s]")
+        .range(1e-4, 10.0);
     set.add("start", start, {"last", "backend"},
             "what a batch's registration starts from: the last one's motion; what the back-end predicts for its "
             "landmarks, where it predicts: tracks are then each back-end's own");

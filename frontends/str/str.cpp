@@ -137,7 +137,9 @@ bool Str::go_on(Track& track, const Batch& batch, const Registration& registrati
   if (nearest == matches.end()) return false;
   const double dt = static_cast<double>(aligner.targets().t[nearest->target]);
   move(track.anchor, found.A, dt);
-  observe(track, moved(place, found.A, dt), registration.reference + std::llround(1e6 * dt));
+  const std::int64_t t = registration.reference + std::llround(1e6 * dt);
+  observe_between(track, batch, place, found.A, registration.reference, t);
+  observe(track, moved(place, found.A, dt), t);
   if (!camera_.contains(track.pixel, options_.patch.border)) {
     ++left_;
     return false;
@@ -176,6 +178,25 @@ Eigen::Vector2f Str::anchored(Track& track, const Matrix3& A, const Eigen::Vecto
   warp(patch_, A, x, y);
   for (std::size_t i = 0; i < x.size(); ++i) track.anchor.add(x[i], y[i], 0.0F, patch_.on[i] != 0);
   return place;
+}
+
+/// Between what the last batch has told and `until` [µs], at the times of events that are near to the track by then.
+void Str::observe_between(const Track& track, const Batch& batch, const Eigen::Vector2f& place, const Matrix3& A,
+                          std::int64_t reference, std::int64_t until) {
+  constexpr std::ptrdiff_t kTried = 2000;  // events
+  const auto interval = std::llround(1e6 * options_.interval);
+  std::int64_t told = microseconds(complete_);
+  for (std::int64_t wanted = told + interval; wanted + interval / 2 < until; wanted += interval) {
+    auto event = std::ranges::lower_bound(batch.events, wanted, {}, &Event::t);
+    const auto last = event + std::min(kTried, batch.events.end() - event);
+    const Vector2 there = pixel_of(moved(place, A, 1e-6 * static_cast<double>(wanted - reference)));
+    event = std::find_if(event, last,
+                         [&](const Event& e) { return (Vector2(e.x, e.y) - there).norm() < options_.patch.radius; });
+    if (event == last || event->t <= told || event->t >= until) continue;
+    told = event->t;
+    told_.add({track.id, seconds(told), pixel_of(moved(place, A, 1e-6 * static_cast<double>(told - reference))),
+               options_.sigma});
+  }
 }
 
 void Str::observe(Track& track, const Eigen::Vector2f& ray, std::int64_t t) {

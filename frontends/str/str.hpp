@@ -44,6 +44,8 @@ class Str : public FrontEnd {
   bool go_on(Track& track, const Batch& batch, const Registration& registration);
   void replenish(const Batch& batch, const Registration& registration);
   Eigen::Vector2f anchored(Track& track, const Matrix3& A, const Eigen::Vector2f& place, double duration);
+  void observe_between(const Track& track, const Batch& batch, const Eigen::Vector2f& place, const Matrix3& A,
+                       std::int64_t reference, std::int64_t until);
   void observe(Track& track, const Eigen::Vector2f& ray, std::int64_t t);
   Vector2 pixel_of(const Eigen::Vector2f& ray) const;
 

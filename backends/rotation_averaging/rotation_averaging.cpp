@@ -1,0 +1,131 @@
+#include "backends/rotation_averaging/rotation_averaging.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/geometry/so3.hpp"
+#include "core/plugin/registration.hpp"
+
+namespace evbench {
+namespace {
+
+const Registration<BackEnd, RotationAveraging> registration(
+    "rotation_averaging", "rotation-only odometry: averages the relative rotations that tracks say");
+
+}  // namespace
+
+RotationAveraging::RotationAveraging(const Options& options, const BackEndContext& context)
+    : options_(options), context_(context), monitor_(context.patience) {}
+
+void RotationAveraging::advance(const TrackBatch& batch) {
+  const auto begin = std::chrono::steady_clock::now();
+  if (monitor_.lost()) return;
+  for (const TrackObservation& z : batch.observations) take(z);
+  for (const TrackEnd& end : batch.ended) last_.erase(end.track);
+  until_ = batch.until;
+  while (start_ && !monitor_.lost() && time_of(rotations_.size()) + options_.longest_gap <= until_) {
+    close_frame(batch.known_at());
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  updates_.push_back({.t = until_,
+                      .seconds = seconds,
+                      .states = static_cast<int>(rotations_.size()),
+                      .landmarks = static_cast<int>(last_.size()),
+                      .observations = static_cast<int>(batch.observations.size()),
+                      .iterations = 0,
+                      .cost = std::nullopt});
+}
+
+/// The directions at the frames between the track's last observation and this one.
+void RotationAveraging::take(const TrackObservation& z) {
+  if (!start_) start_ = z.t;
+  const auto [found, fresh] = last_.try_emplace(z.track, z);
+  if (fresh) return;
+  const TrackObservation before = std::exchange(found->second, z);
+  if (!(z.t > before.t) || z.t - before.t > options_.longest_gap) return;
+  const auto next = [&](double t) {
+    return static_cast<std::size_t>(std::max(0.0, std::ceil((t - *start_) / options_.interval)));
+  };
+  for (std::size_t k = std::max(next(before.t), rotations_.size()); time_of(k) < z.t; ++k) {
+    while (first_ + frames_.size() <= k) frames_.push_back({time_of(first_ + frames_.size())});
+    const double part = (time_of(k) - before.t) / (z.t - before.t);
+    const Vector2 pixel = before.pixel + part * (z.pixel - before.pixel);
+    if (!pixel.allFinite()) continue;
+    frames_[k - first_].directions[z.track] = context_.camera.ray(pixel).normalized();
+  }
+}
+
+/// The next frame is complete: its pairs with those before, and its rotation from these.
+void RotationAveraging::close_frame(double known_at) {
+  const std::size_t k = rotations_.size();
+  while (first_ + frames_.size() <= k) frames_.push_back({time_of(first_ + frames_.size())});
+  const Frame& frame = frames_[k - first_];
+  const double pixel = 1.0 / context_.camera.fx;  // [rad]
+  std::vector<std::pair<Vector3, Vector3>> pairs;
+  Vector3 mean = Vector3::Zero();
+  double weights = 0.0;
+  const Eigen::Quaterniond last = k == 0 ? Eigen::Quaterniond::Identity() : rotations_.back();
+  for (std::size_t span = 1; span <= static_cast<std::size_t>(options_.reach) && span <= k - first_; span *= 2) {
+    pairs.clear();
+    const Frame& other = frames_[k - span - first_];
+    for (const auto& [track, direction] : frame.directions) {
+      if (const auto there = other.directions.find(track); there != other.directions.end()) {
+        pairs.emplace_back(there->second, direction);
+      }
+    }
+    if (pairs.size() < static_cast<std::size_t>(options_.least_tracks)) continue;
+    const auto found = align_directions(pairs, options_.robust_scale * pixel);
+    if (!found) continue;
+    const double variance = (found->residual * found->residual + 0.01 * pixel * pixel) / found->weight;
+    edges_.push_back({k - span, k, found->R, 1.0 / variance});
+    const Vector3 change = so3::log((last.conjugate() * rotations_[k - span] * found->R).normalized());
+    mean += change / variance;
+    weights += 1.0 / variance;
+  }
+  if (k == 0) {
+    rotations_.push_back(Eigen::Quaterniond::Identity());
+  } else {
+    monitor_.observe(time_of(k - 1), time_of(k),
+                     weights > 0.0 ? TrackingMonitor::Support::full : TrackingMonitor::Support::none,
+                     fmt::format("fewer than {} tracks in common with a frame before", options_.least_tracks));
+    rotations_.push_back(weights > 0.0 ? (last * so3::exp(mean / weights)).normalized() : last);
+  }
+  context_.online({{time_of(k), {rotations_.back(), Vector3::Zero()}}, known_at, std::nullopt});
+  while (first_ + static_cast<std::size_t>(options_.reach) < k) {
+    frames_.pop_front();
+    ++first_;
+  }
+}
+
+Feedback RotationAveraging::feedback(const FeedbackNeeds&) {
+  Feedback result;
+  result.t = until_;
+  result.state = monitor_.state();
+  if (rotations_.size() < 2) return result;
+  const std::size_t k = rotations_.size() - 1;
+  Vector6 velocity = Vector6::Zero();
+  velocity.head<3>() = so3::log((rotations_[k - 1].conjugate() * rotations_[k]).normalized()) / options_.interval;
+  result.newest = ControlState{time_of(k), {rotations_[k], Vector3::Zero()}, velocity};
+  return result;
+}
+
+void RotationAveraging::finish() {
+  if (rotations_.size() < 2) {
+    if (!monitor_.lost()) monitor_.fail(until_, "no two frames have enough tracks in common");
+    return;
+  }
+  average_rotations(edges_, options_.robust_scale / context_.camera.fx, rotations_);
+}
+
+PoseTrajectory RotationAveraging::trajectory() const {
+  std::vector<StampedPose> poses;
+  for (std::size_t k = 0; k < rotations_.size() && rotations_.size() > 1; ++k) {
+    poses.push_back({time_of(k), {rotations_[k], Vector3::Zero()}});
+  }
+  return PoseTrajectory(std::move(poses), "rotation averaging");
+}
+
+}  // namespace evbench

@@ -1,0 +1,120 @@
+#include "backends/rotation_averaging/rotation_averaging.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/geometry/so3.hpp"
+#include "core/simulation/random.hpp"
+
+using namespace evbench;
+
+namespace {
+
+Vector3 random_vector(Random& random, double size) {
+  return size * Vector3(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+}
+
+Eigen::Quaterniond turning(double t) { return so3::exp({0.4 * std::sin(1.3 * t), 0.6 * std::sin(t), 0.5 * t}); }
+
+const PinholeCamera kCamera{200.0, 200.0, 119.5, 89.5};
+
+/// Far points as a camera that turns sees them, each at times of its own, `wrong` of every ten somewhere else.
+std::vector<TrackObservation> observations(double duration, double noise, int wrong) {
+  Random random(1);
+  std::vector<TrackObservation> result;
+  for (TrackId track = 0; track < 400; ++track) {
+    const Vector3 point = random_vector(random, 1.0).normalized();
+    const Vector2 off = track % 10 < wrong ? Vector2(random.uniform(-20, 20), random.uniform(-20, 20)) : Vector2(0, 0);
+    for (double t = random.uniform(0.0, 0.02); t < duration; t += 0.02) {
+      const Vector3 seen = turning(t).conjugate() * point;
+      if (seen.z() < 0.5) continue;
+      const Vector2 pixel = kCamera.project(seen);
+      if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() > 239 || pixel.y() > 179) continue;
+      result.push_back({track, t, pixel + t * off + Vector2(random.normal(), random.normal()) * noise, 0.5});
+    }
+  }
+  std::ranges::stable_sort(result, {}, &TrackObservation::t);
+  return result;
+}
+
+RotationAveraging run(const std::vector<TrackObservation>& all, double duration) {
+  BackEndContext context;
+  context.camera = kCamera;
+  RotationAveraging backend({}, context);
+  std::size_t next = 0;
+  for (double t = 0.05; t < duration + 0.3; t += 0.05) {
+    TrackBatch batch;
+    batch.until = t;
+    for (; next < all.size() && all[next].t <= t; ++next) batch.observations.push_back(all[next]);
+    backend.advance(batch);
+  }
+  backend.finish();
+  return backend;
+}
+
+/// [rad] of the rotation between the first and the last pose.
+double final_error(const PoseTrajectory& trajectory) {
+  const StampedPose &first = trajectory.poses().front(), &last = trajectory.poses().back();
+  const Eigen::Quaterniond truth = turning(first.t).conjugate() * turning(last.t);
+  return so3::log((truth.conjugate() * first.T.q.conjugate() * last.T.q).normalized()).norm();
+}
+
+}  // namespace
+
+TEST_CASE("Directions are aligned though some are wrong") {
+  Random random(3);
+  const Eigen::Quaterniond R = so3::exp({0.3, -0.2, 0.5});
+  std::vector<std::pair<Vector3, Vector3>> pairs;
+  for (int i = 0; i < 40; ++i) {
+    const Vector3 right = random_vector(random, 1.0).normalized();
+    pairs.emplace_back(i % 5 == 0 ? random_vector(random, 1.0).normalized() : Vector3(R * right), right);
+  }
+  const auto found = align_directions(pairs, 0.01);
+  REQUIRE(found);
+  CHECK(found->R.angularDistance(R) < 1e-3);
+  CHECK_FALSE(align_directions(std::span(pairs).first(1), 0.01));
+}
+
+TEST_CASE("Averaged rotations are nearer to the truth than chained ones, and an edge that is wrong does no harm") {
+  constexpr std::size_t kFrames = 200;
+  Random random(1);
+  std::vector<Eigen::Quaterniond> truth, chained(kFrames, Eigen::Quaterniond::Identity());
+  for (std::size_t i = 0; i < kFrames; ++i) truth.push_back(turning(0.02 * static_cast<double>(i)));
+  std::vector<RotationEdge> edges;
+  for (const std::size_t span : {1, 4, 16, 64}) {
+    for (std::size_t i = 0; i + span < kFrames; ++i) {
+      const Eigen::Quaterniond R = truth[i].conjugate() * truth[i + span] * so3::exp(random_vector(random, 0.003));
+      edges.push_back({i, i + span, i == 100 && span == 16 ? so3::exp({1.0, 0.0, 0.0}) : R, 1e5});
+      if (span == 1) chained[i + 1] = chained[i] * R;
+    }
+  }
+  std::vector<Eigen::Quaterniond> averaged = chained;
+  average_rotations(edges, 0.01, averaged);
+  const auto error = [&](const std::vector<Eigen::Quaterniond>& rotations) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < kFrames; ++i) {
+      sum += (truth[0].conjugate() * truth[i]).angularDistance(rotations[0].conjugate() * rotations[i]);
+    }
+    return sum / kFrames;
+  };
+  CHECK(error(averaged) < 0.5 * error(chained));
+  CHECK(error(averaged) < 0.005);
+}
+
+TEST_CASE("A camera that turns is followed by what its tracks say, noise and wrong ones among them") {
+  const RotationAveraging exact = run(observations(4.0, 0.0, 0), 4.0);
+  CHECK(exact.status().state == RunState::ok);
+  CHECK(final_error(exact.trajectory()) < 1e-3);
+  const RotationAveraging noisy = run(observations(4.0, 0.5, 2), 4.0);
+  CHECK(noisy.status().state == RunState::ok);
+  CHECK(final_error(noisy.trajectory()) < 0.02);
+  for (const StampedPose& pose : noisy.trajectory().poses()) CHECK(pose.T.p.isZero());
+}
+
+TEST_CASE("Without tracks there is no rotation, and when they end it is lost") {
+  CHECK(run({}, 1.0).status().state == RunState::failed);
+  std::vector<TrackObservation> early = observations(4.0, 0.0, 0);
+  std::erase_if(early, [](const TrackObservation& z) { return z.t > 1.0; });
+  const RotationAveraging lost = run(early, 4.0);
+  CHECK(lost.status().state == RunState::lost);
+  CHECK(lost.trajectory().end() > 0.9);
+}
