@@ -27,7 +27,8 @@ void RotationAveraging::advance(const TrackBatch& batch) {
   for (const TrackEnd& end : batch.ended) last_.erase(end.track);
   until_ = batch.until;
   while (start_ && !monitor_.lost() && time_of(rotations_.size()) + options_.longest_gap <= until_) {
-    close_frame(batch.known_at());
+    close_frame();
+    context_.online({{time_of(rotations_.size() - 1), {rotations_.back(), Vector3::Zero()}}, batch.known_at(), {}});
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   updates_.push_back({.t = until_,
@@ -42,6 +43,7 @@ void RotationAveraging::advance(const TrackBatch& batch) {
 /// The directions at the frames between the track's last observation and this one.
 void RotationAveraging::take(const TrackObservation& z) {
   if (!start_) start_ = z.t;
+  newest_ = z.t;
   const auto [found, fresh] = last_.try_emplace(z.track, z);
   if (fresh) return;
   const TrackObservation before = std::exchange(found->second, z);
@@ -59,7 +61,7 @@ void RotationAveraging::take(const TrackObservation& z) {
 }
 
 /// The next frame is complete: its pairs with those before, and its rotation from these.
-void RotationAveraging::close_frame(double known_at) {
+void RotationAveraging::close_frame() {
   const std::size_t k = rotations_.size();
   while (first_ + frames_.size() <= k) frames_.push_back({time_of(first_ + frames_.size())});
   const Frame& frame = frames_[k - first_];
@@ -93,7 +95,6 @@ void RotationAveraging::close_frame(double known_at) {
                      fmt::format("fewer than {} tracks in common with a frame before", options_.least_tracks));
     rotations_.push_back(weights > 0.0 ? (last * so3::exp(mean / weights)).normalized() : last);
   }
-  context_.online({{time_of(k), {rotations_.back(), Vector3::Zero()}}, known_at, std::nullopt});
   while (first_ + static_cast<std::size_t>(options_.reach) < k) {
     frames_.pop_front();
     ++first_;
@@ -113,6 +114,7 @@ Feedback RotationAveraging::feedback(const FeedbackNeeds&) {
 }
 
 void RotationAveraging::finish() {
+  while (start_ && !monitor_.lost() && time_of(rotations_.size()) <= newest_) close_frame();
   if (rotations_.size() < 2) {
     if (!monitor_.lost()) monitor_.fail(until_, "no two frames have enough tracks in common");
     return;

@@ -53,7 +53,7 @@ class RotationAveraging : public BackEnd {
     std::map<TrackId, Vector3> directions = {};
   };
   void take(const TrackObservation& z);
-  void close_frame(double known_at);
+  void close_frame();
   double time_of(std::size_t frame) const { return *start_ + options_.interval * static_cast<double>(frame); }
 
   Options options_;
@@ -65,7 +65,7 @@ class RotationAveraging : public BackEnd {
   std::size_t first_ = 0;                      ///< frame that frames_ begins with
   std::vector<Eigen::Quaterniond> rotations_;  ///< of closed frames: R_world_camera
   std::vector<RotationEdge> edges_;
-  double until_ = 0.0;
+  double until_ = 0.0, newest_ = 0.0;  ///< [s] of the last batch, of the last observation
   std::vector<UpdateRecord> updates_;
 };
 

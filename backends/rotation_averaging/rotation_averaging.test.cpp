@@ -41,7 +41,7 @@ RotationAveraging run(const std::vector<TrackObservation>& all, double duration)
   context.camera = kCamera;
   RotationAveraging backend({}, context);
   std::size_t next = 0;
-  for (double t = 0.05; t < duration + 0.3; t += 0.05) {
+  for (double t = 0.05; t < duration + 0.01; t += 0.05) {
     TrackBatch batch;
     batch.until = t;
     for (; next < all.size() && all[next].t <= t; ++next) batch.observations.push_back(all[next]);
