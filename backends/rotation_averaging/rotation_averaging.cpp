@@ -27,8 +27,10 @@ void RotationAveraging::advance(const TrackBatch& batch) {
   for (const TrackEnd& end : batch.ended) last_.erase(end.track);
   until_ = batch.until;
   while (start_ && !monitor_.lost() && time_of(rotations_.size()) + options_.longest_gap <= until_) {
+    const std::size_t before = rotations_.size();
     close_frame();
-    context_.online({{time_of(rotations_.size() - 1), {rotations_.back(), Vector3::Zero()}}, batch.known_at(), {}});
+    if (rotations_.size() == before) continue;
+    context_.online({{time_of(before), {rotations_.back(), Vector3::Zero()}}, batch.known_at(), {}});
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   updates_.push_back({.t = until_,
@@ -43,7 +45,6 @@ void RotationAveraging::advance(const TrackBatch& batch) {
 /// The directions at the frames between the track's last observation and this one.
 void RotationAveraging::take(const TrackObservation& z) {
   if (!start_) start_ = z.t;
-  newest_ = z.t;
   const auto [found, fresh] = last_.try_emplace(z.track, z);
   if (fresh) return;
   const TrackObservation before = std::exchange(found->second, z);
@@ -60,11 +61,17 @@ void RotationAveraging::take(const TrackObservation& z) {
   }
 }
 
-/// The next frame is complete: its pairs with those before, and its rotation from these.
+/// The next frame is complete: its pairs with those before, and its rotation from these. The first one is the first
+/// with enough tracks.
 void RotationAveraging::close_frame() {
   const std::size_t k = rotations_.size();
   while (first_ + frames_.size() <= k) frames_.push_back({time_of(first_ + frames_.size())});
   const Frame& frame = frames_[k - first_];
+  if (k == 0 && frame.directions.size() < static_cast<std::size_t>(options_.least_tracks)) {
+    frames_.pop_front();
+    *start_ += options_.interval;
+    return;
+  }
   const double pixel = 1.0 / context_.camera.fx;  // [rad]
   std::vector<std::pair<Vector3, Vector3>> pairs;
   Vector3 mean = Vector3::Zero();
@@ -114,7 +121,11 @@ Feedback RotationAveraging::feedback(const FeedbackNeeds&) {
 }
 
 void RotationAveraging::finish() {
-  while (start_ && !monitor_.lost() && time_of(rotations_.size()) <= newest_) close_frame();
+  const auto has_tracks = [&](std::size_t frame) {
+    return frame < first_ + frames_.size() &&
+           frames_[frame - first_].directions.size() >= static_cast<std::size_t>(options_.least_tracks);
+  };
+  while (!monitor_.lost() && has_tracks(rotations_.size())) close_frame();
   if (rotations_.size() < 2) {
     if (!monitor_.lost()) monitor_.fail(until_, "no two frames have enough tracks in common");
     return;

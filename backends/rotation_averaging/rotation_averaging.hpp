@@ -65,7 +65,7 @@ class RotationAveraging : public BackEnd {
   std::size_t first_ = 0;                      ///< frame that frames_ begins with
   std::vector<Eigen::Quaterniond> rotations_;  ///< of closed frames: R_world_camera
   std::vector<RotationEdge> edges_;
-  double until_ = 0.0, newest_ = 0.0;  ///< [s] of the last batch, of the last observation
+  double until_ = 0.0;  ///< [s] of the last batch
   std::vector<UpdateRecord> updates_;
 };
 

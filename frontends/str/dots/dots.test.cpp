@@ -95,7 +95,9 @@ bool same(const TrackBatch& a, const TrackBatch& b) {
 }  // namespace
 
 TEST_CASE("The centres of dots that are all alike are observed, and one that comes back is known again") {
-  const Told told = follow(scene());
+  DotsOptions options;
+  options.life.find_again = true;
+  const Told told = follow(scene(), options);
   INFO(told.remarks.at(0) << "; " << told.remarks.at(1) << "; " << told.remarks.at(2));
   REQUIRE(told.all.observations.size() > 1500);
   CHECK(std::ranges::is_sorted(told.all.observations, {}, &TrackObservation::t));
@@ -115,6 +117,15 @@ TEST_CASE("The centres of dots that are all alike are observed, and one that com
   CHECK(strays == 0);
   CHECK(told.remarks.at(1).find(" 0 found again") == std::string::npos);
   CHECK(disc_of.size() < track_of.size() + track_of.size() / 5);  // few dots have a second track
+}
+
+TEST_CASE("By default a dot that comes back is another one: a track that has ended is observed no more") {
+  const TrackBatch all = follow(scene()).all;
+  std::map<TrackId, double> ended;
+  for (const TrackEnd& end : all.ended) CHECK(ended.emplace(end.track, end.t).second);
+  for (const TrackObservation& z : all.observations) {
+    if (ended.contains(z.track)) CHECK(z.t <= ended.at(z.track));
+  }
 }
 
 TEST_CASE("Dots do not depend on how they are asked for") {

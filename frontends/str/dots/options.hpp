@@ -13,7 +13,7 @@ struct DotLifeOptions {
   double residual = 1.2;
   double radius = 0.3;
   double starvation = 15.0;
-  bool find_again = true;
+  bool find_again = false;
   double search = 4.0;
 
   void declare(OptionSet& set) {
@@ -21,7 +21,7 @@ struct DotLifeOptions {
     set.add("radius", radius, "its radius has changed by more than this share since it was found").above(0.0);
     set.add("starvation", starvation, "it has no events while the image moves by this [px]").above(0.0);
     set.add("find_again", find_again,
-            "a dot that comes back goes on as the one that it was, as far as the dots lie on a plane");
+            "a dot that comes back goes on as the one that it was, after its end, as far as the dots lie on a plane");
     set.add("search", search, "it is the one that is expected within this of it, if no other one is [px]").above(0.0);
   }
 };
