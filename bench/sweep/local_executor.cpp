@@ -94,6 +94,7 @@ class Executor {
 
   /// Takes what lies there already, if that is to be taken.
   bool take_result(Job& job) {
+    AtomicFolder::clear_leftovers(folder_of(job));
     std::string why;
     const RunCondition condition = condition_of(folder_of(job), job.run->identity, why);
     if (condition == RunCondition::complete || condition == RunCondition::absent) {

@@ -60,7 +60,7 @@ TEST_CASE("Slurm does a sweep with the same bytes, though a task is killed and a
       "for i in $(seq 200); do squeue -h -t R | grep -q . && ls there/short/*.evbench.lock > /dev/null 2>&1 && break;"
       "sleep 0.05; done; ";
   // The process of a task; its run ends with it.
-  const Outcome killed = cluster.shell(wait_for_run + "pkill -9 -o -f 'evbench task " + folder.path() + "'");
+  const Outcome killed = cluster.shell(wait_for_run + "pkill -9 -o -f '[e]vbench task " + folder.path() + "'");
   CHECK(killed.exit_code == 0);
   // Its tasks go to the other node, by themselves after two minutes.
   const Outcome down = cluster.shell(

@@ -111,7 +111,12 @@ Sweep read_sweep(const std::string& path, const std::vector<std::string>& overri
     sweep.grids.emplace_back();
   }
   sweep.overrides.insert(sweep.overrides.end(), overrides.begin(), overrides.end());
-  load_plugins_of(plugins, sweep.config, sweep.overrides);
+  try {
+    load_plugins_of(plugins, sweep.config, sweep.overrides);
+  } catch (const InputError& error) {
+    if (sweep.place == sweep.config) throw;
+    throw InputError(fmt::format("{}: {}", sweep.place, error.what()));
+  }
   for (const std::string& text : over) {
     for (Grid& grid : sweep.grids) grid.push_back({parse_axis(text)});
   }

@@ -111,7 +111,11 @@ AtomicFolder::AtomicFolder(const std::string& path)
   }
   std::error_code removal;
   fs::remove_all(part_, removal);  // what a killed run left
-  if (!fs::exists(target_, error)) fs::rename(old_, target_, error);
+  if (fs::exists(target_, error)) {
+    fs::remove_all(old_, removal);
+  } else {
+    fs::rename(old_, target_, error);
+  }
   if (!fs::create_directory(part_, error)) {
     const std::string message = fmt::format("{}: can't be made: {}", path, (error ? error : removal).message());
     ::unlink(lock_path_.c_str());
@@ -126,6 +130,15 @@ bool AtomicFolder::is_taken(const std::string& path) {
   const bool free = ::flock(file, LOCK_EX | LOCK_NB) == 0;
   ::close(file);
   return !free;
+}
+
+void AtomicFolder::clear_leftovers(const std::string& path) {
+  std::error_code error;
+  if (!fs::exists(follow_links(path) + ".evbench.lock", error)) return;  // it goes last
+  try {
+    const AtomicFolder folder(path);
+  } catch (const FolderTaken&) {  // whose writer lives
+  }
 }
 
 AtomicFolder::~AtomicFolder() {

@@ -38,6 +38,9 @@ class AtomicFolder {
   /// Is somebody writing to this folder, this process included?
   static bool is_taken(const std::string& path);
 
+  /// Clears away what a killed writer of this folder left beside it, and puts back what that was replacing.
+  static void clear_leftovers(const std::string& path);
+
   /// Writes a file of this name into the folder; throws InputError when it can't.
   void write(const std::string& name, std::string_view content) const;
 

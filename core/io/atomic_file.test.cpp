@@ -129,7 +129,17 @@ TEST_CASE("What a killed writer left is cleared away, and what it was replacing 
   std::filesystem::create_directory(folder.file("run.evbench.old"));
   folder.write("run.evbench.old/a", "old");
   folder.write("run.evbench.lock", "");
-  { const AtomicFolder run(folder.file("run")); }
+  AtomicFolder::clear_leftovers(folder.file("run"));
+  CHECK(read_file(folder.file("run/a")) == "old");
+  CHECK(count_entries(folder.path()) == 1);
+  std::filesystem::create_directory(folder.file("run.evbench.old"));  // it was replaced, but not yet removed
+  folder.write("run.evbench.old/a", "older");
+  folder.write("run.evbench.lock", "");
+  {
+    const AtomicFolder run(folder.file("run"));
+    AtomicFolder::clear_leftovers(folder.file("run"));
+    CHECK(AtomicFolder::is_taken(folder.file("run")));
+  }
   CHECK(read_file(folder.file("run/a")) == "old");
   CHECK(count_entries(folder.path()) == 1);
 }
