@@ -2,6 +2,9 @@
 
 #include <exception>
 
+#include "bench/pipeline/batch_recording.hpp"
+#include "bench/pipeline/feedback_line.hpp"
+#include "bench/pipeline/front_side.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
@@ -34,18 +37,9 @@ Execution broken_off(double t, const std::string& error) {
   return execution;
 }
 
-}  // namespace
-
-Execution execute(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress,
-                  bool keep_tracks) {
-  std::unique_ptr<FrontEnd> frontend;
-  try {
-    frontend = make_frontend(job, source, plugins);
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::exception& error) {  // e.g. a process that ends at once
-    return broken_off(source.time_range().from, error.what());
-  }
+/// Lets `run(make, tell)` do the work: make a back-end, and tell how far it is.
+template <class Run>
+Execution run_job(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress, Run run) {
   std::exception_ptr bad_input;  // of the first back-end: nothing has been done by then
   bool made = false;
   const MakeBackEnd make = [&](const BackEndContext& context) {
@@ -59,21 +53,50 @@ Execution execute(const Job& job, const Source& source, const Plugins& plugins, 
     }
   };
   double reached = source.time_range().from;
-  const auto tell = [&](const RunProgress& now) {
+  const Progress tell = [&](const RunProgress& now) {
     check_interruption();
     reached = now.t;
     if (progress) progress(now);
   };
   try {
-    return {
-        run_pipeline(source, *frontend, make, context_of(job), job.pipeline, job.trajectory_rate, tell, keep_tracks),
-        true};
+    return {run(make, tell), true};
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception& error) {
     if (bad_input) std::rethrow_exception(bad_input);
     return broken_off(reached, error.what());
   }
+}
+
+}  // namespace
+
+Execution execute(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress,
+                  bool keep_tracks) {
+  std::unique_ptr<FrontEnd> frontend;
+  try {
+    frontend = make_frontend(job, source, plugins);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {  // e.g. a process that ends at once
+    return broken_off(source.time_range().from, error.what());
+  }
+  return run_job(job, source, plugins, progress, [&](const MakeBackEnd& make, const Progress& tell) {
+    return run_pipeline(source, *frontend, make, context_of(job), job.pipeline, job.trajectory_rate, tell, keep_tracks);
+  });
+}
+
+Execution execute(const Job& job, const Source& source, const Plugins& plugins, BatchStream& batches) {
+  return run_job(job, source, plugins, {}, [&](const MakeBackEnd& make, const Progress& tell) {
+    return run_pipeline(source, batches, make, context_of(job), job.pipeline, job.trajectory_rate, tell);
+  });
+}
+
+std::optional<std::string> record_front_end(const Job& job, const Source& source, const Plugins& plugins) {
+  const std::unique_ptr<FrontEnd> frontend = make_frontend(job, source, plugins);
+  if (frontend->needs().any) return std::nullopt;
+  FeedbackLine unused(job.pipeline.latency, false);
+  FrontSide front(*frontend, source, job.pipeline, unused);
+  return record_batches(front);
 }
 
 void check_job(const Job& job, const Source& source, const Plugins& plugins) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "bench/job.hpp"
 #include "bench/pipeline/pipeline.hpp"
 
@@ -16,9 +19,17 @@ struct Execution {
 /// job's. What a plugin throws while it works makes the run failed and is no error here. Throws InputError for what can
 /// be told before any work, a front-end or back-end that can't be made of its options and files, and Interrupted.
 ///
-/// The one place where runs are done: a run that is to have a process of its own gets it here.
+/// The one place where runs are done, whatever process they have.
 Execution execute(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress,
                   bool keep_tracks = false);
+
+/// Likewise, with what the front-end gives known beforehand, from record_front_end() of a job that differs in the
+/// back-end alone: with the same result, byte by byte.
+Execution execute(const Job& job, const Source& source, const Plugins& plugins, BatchStream& batches);
+
+/// All that the job's front-end gives, as RecordedBatches reads it; nothing for one that makes use of feedback, and so
+/// gives each back-end something else. Throws what the front-end throws.
+std::optional<std::string> record_front_end(const Job& job, const Source& source, const Plugins& plugins);
 
 /// Throws InputError where execute() would do so before any work.
 void check_job(const Job& job, const Source& source, const Plugins& plugins);

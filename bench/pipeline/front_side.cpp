@@ -9,16 +9,17 @@
 
 namespace evbench {
 
-FrontSide::FrontSide(FrontEnd& frontend, const Source::TimeRange& range, const PipelineOptions& options,
-                     FeedbackLine& feedback, std::vector<TrackObservation>* kept)
+FrontSide::FrontSide(FrontEnd& frontend, const Source& source, const PipelineOptions& options, FeedbackLine& feedback,
+                     std::vector<TrackObservation>* kept)
     : frontend_(frontend),
-      range_(range),
+      source_(source),
+      range_(source.time_range()),
       options_(options),
       feedback_(feedback),
       kept_(kept),
       needs_(frontend.needs()),
-      clock_(range.from),
-      until_(range.from) {}
+      clock_(range_.from),
+      until_(range_.from) {}
 
 std::optional<TrackBatch> FrontSide::next() {
   while (!begun_ || until_ < range_.to) {
@@ -33,6 +34,13 @@ std::optional<TrackBatch> FrontSide::next() {
     return batch;
   }
   return std::nullopt;
+}
+
+FrontFacts FrontSide::facts() const {
+  FrontFacts facts{frontend_.waited(), seconds(), batch_seconds_, first_ ? last_ - *first_ : 0.0, {}};
+  for (const std::string& remark : source_.remarks()) facts.log.push_back("source: " + remark);
+  for (const std::string& remark : frontend_.remarks()) facts.log.push_back("frontend: " + remark);
+  return facts;
 }
 
 TrackBatch FrontSide::exchange() {

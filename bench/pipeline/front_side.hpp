@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "bench/pipeline/batch_stream.hpp"
 #include "bench/pipeline/feedback_line.hpp"
 #include "bench/pipeline/options.hpp"
 #include "bench/pipeline/stopwatch.hpp"
@@ -15,30 +16,28 @@ namespace evbench {
 
 /// The front-end's side of a run: makes a batch an exchange, from the beginning of the time range to its end, also
 /// where the front-end has nothing more to give: time passes all the same.
-class FrontSide {
+class FrontSide : public BatchStream {
  public:
   /// `kept`: where all observations are to be appended; may be none.
-  FrontSide(FrontEnd& frontend, const Source::TimeRange& range, const PipelineOptions& options, FeedbackLine& feedback,
+  FrontSide(FrontEnd& frontend, const Source& source, const PipelineOptions& options, FeedbackLine& feedback,
             std::vector<TrackObservation>* kept = nullptr);
 
-  /// The next batch that tells of new time, raw pixels, `seen` set; hands over what feedback is due before. None at the
-  /// end of the range. Throws
-  /// std::runtime_error for a front-end that breaks its contract (frontend.hpp), saying how.
-  std::optional<TrackBatch> next();
+  /// Hands over what feedback is due before. Throws std::runtime_error for a front-end that breaks its contract
+  /// (frontend.hpp), saying how.
+  std::optional<TrackBatch> next() override;
 
-  double seconds() const { return watch_.seconds() - frontend_.waited(); }     ///< in the front-end
-  const std::vector<double>& batch_seconds() const { return batch_seconds_; }  ///< of them, of each exchange
-
-  /// [s] between the first and the last observation that it gave.
-  double data_s() const { return first_ ? last_ - *first_ : 0.0; }
+  FrontFacts facts() const override;
+  double spent() const override { return watch_.seconds(); }
 
  private:
+  double seconds() const { return watch_.seconds() - frontend_.waited(); }  ///< in the front-end
   TrackBatch exchange();
   double next_time();
   void check(const TrackBatch& batch, double horizon) const;
   void count(TrackBatch& batch);
 
   FrontEnd& frontend_;
+  const Source& source_;
   Source::TimeRange range_;
   const PipelineOptions& options_;
   FeedbackLine& feedback_;

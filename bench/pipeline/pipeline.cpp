@@ -29,13 +29,13 @@ void exchange(TrackBatch batch, const FeedbackNeeds& needs, BackSide& back, Feed
   if (progress) progress(back.progress());
 }
 
-void run_sequential(FrontSide& front, BackSide& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
+void run_sequential(BatchStream& front, BackSide& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
                     const Progress& progress) {
   while (std::optional<TrackBatch> batch = front.next()) exchange(std::move(*batch), needs, back, feedback, progress);
 }
 
 /// The front-end in a thread of its own. Returns how long the back-end's waited for it [s].
-double run_concurrent(FrontSide& front, BackSide& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
+double run_concurrent(BatchStream& front, BackSide& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
                       std::size_t capacity, const Progress& progress) {
   BatchQueue queue(capacity);
   std::jthread thread([&] {
@@ -61,19 +61,13 @@ double run_concurrent(FrontSide& front, BackSide& back, const FeedbackNeeds& nee
   return waiting.seconds();
 }
 
-}  // namespace
-
-RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackEnd& make_backend,
-                       BackEndContext context, const PipelineOptions& options, double trajectory_rate,
-                       const Progress& progress, bool keep_tracks) {
+/// `feedback` is used where the front-end needs any.
+RunResult run(const Source& source, BatchStream& front, const FeedbackNeeds& needs, FeedbackLine& feedback,
+              const MakeBackEnd& make_backend, BackEndContext context, const PipelineOptions& options,
+              double trajectory_rate, const Progress& progress) {
   RunResult result;
-  reset_peak_memory();
   context.log = [&](const std::string& line) { result.log.push_back(line); };
-  const Source::TimeRange range = source.time_range();
-  const FeedbackNeeds needs = frontend.needs();
-  FeedbackLine feedback(options.latency, options.mode == "free");
-  FrontSide front(frontend, range, options, feedback, keep_tracks ? &result.tracks : nullptr);
-  BackSide back(make_backend, std::move(context), source.camera(), range, options);
+  BackSide back(make_backend, std::move(context), source.camera(), source.time_range(), options);
   Stopwatch total;
   total.time([&] {
     if (options.mode == "sequential") {
@@ -84,19 +78,43 @@ RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackE
     }
     back.finish(trajectory_rate, result);
   });
-  result.times.source = frontend.waited();
-  result.times.frontend = front.seconds();
-  result.times.frontend_batches = front.batch_seconds();
+  const FrontFacts facts = front.facts();
+  const bool sequential = options.mode == "sequential";
+  const double elsewhere = sequential ? front.spent() : result.times.waiting;
+  result.times.source = facts.source_s;
+  result.times.frontend = facts.frontend_s;
+  result.times.frontend_batches = facts.batch_s;
   result.times.backend = back.seconds();
-  result.times.total = total.seconds();
-  const double elsewhere = options.mode == "sequential" ? front.seconds() + frontend.waited() : result.times.waiting;
   result.times.harness = std::max(0.0, total.seconds() - back.seconds() - elsewhere);
-  result.data_s = front.data_s();
+  result.times.total = total.seconds() + (sequential ? facts.source_s + facts.frontend_s - front.spent() : 0.0);
+  result.data_s = facts.data_s;
   result.peak_rss_mib = peak_memory_mib();
-  for (const std::string& remark : source.remarks()) result.log.push_back("source: " + remark);
-  for (const std::string& remark : frontend.remarks()) result.log.push_back("frontend: " + remark);
+  result.log.insert(result.log.end(), facts.log.begin(), facts.log.end());
   if (options.mode == "free") result.log.push_back("pipeline: free-running, which is not reproducible");
   return result;
+}
+
+}  // namespace
+
+RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackEnd& make_backend,
+                       BackEndContext context, const PipelineOptions& options, double trajectory_rate,
+                       const Progress& progress, bool keep_tracks) {
+  reset_peak_memory();
+  std::vector<TrackObservation> tracks;
+  FeedbackLine feedback(options.latency, options.mode == "free");
+  FrontSide front(frontend, source, options, feedback, keep_tracks ? &tracks : nullptr);
+  RunResult result = run(source, front, frontend.needs(), feedback, make_backend, std::move(context), options,
+                         trajectory_rate, progress);
+  result.tracks = std::move(tracks);
+  return result;
+}
+
+RunResult run_pipeline(const Source& source, BatchStream& batches, const MakeBackEnd& make_backend,
+                       BackEndContext context, const PipelineOptions& options, double trajectory_rate,
+                       const Progress& progress) {
+  reset_peak_memory();
+  FeedbackLine unused(options.latency, false);
+  return run(source, batches, {}, unused, make_backend, std::move(context), options, trajectory_rate, progress);
 }
 
 }  // namespace evbench

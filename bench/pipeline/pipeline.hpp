@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/pipeline/batch_stream.hpp"
 #include "bench/pipeline/options.hpp"
 #include "bench/pipeline/standstill.hpp"
 #include "core/data/relative_poses.hpp"
@@ -76,5 +77,11 @@ using MakeBackEnd = std::function<std::unique_ptr<BackEnd>(const BackEndContext&
 RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackEnd& make_backend,
                        BackEndContext context, const PipelineOptions& options, double trajectory_rate,
                        const Progress& progress = {}, bool keep_tracks = false);
+
+/// Likewise of batches that are known beforehand (batch_recording.hpp): the same bytes as with the front-end itself,
+/// and its times. The total is then what it would have been, where both work in one thread.
+RunResult run_pipeline(const Source& source, BatchStream& batches, const MakeBackEnd& make_backend,
+                       BackEndContext context, const PipelineOptions& options, double trajectory_rate,
+                       const Progress& progress = {});
 
 }  // namespace evbench

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 
+#include "bench/pipeline/batch_recording.hpp"
 #include "bench/run_folder.hpp"
 #include "bench/runner.hpp"
 #include "bench/sweep/process_pool.hpp"
@@ -23,20 +26,40 @@ using Clock = std::chrono::steady_clock;
 /// How often runs that another process does are looked after.
 constexpr std::chrono::milliseconds kLookElsewhere(500);
 
-/// What a run's process tells. Text after "not written: " and "refused: ".
-const std::string kWritten = "written", kNotWritten = "not written: ", kRefused = "refused: ";
+/// What a process of the pool tells. Text after "not written: " and "refused: ".
+const std::string kWritten = "written",
+                  kNotWritten = "not written: ", kRefused = "refused: ", kNotShared = "not shared";
 
-/// In a process of its own: does the run and writes its folder.
-std::string do_run(const PlannedRun& run, const Plugins& plugins, RunFolder& folder) {
+/// The file in the folder of tracks that runs share.
+constexpr const char* kBatches = "batches.bin";
+
+/// In a process of its own: does the run and writes its folder. `tracks`: the folder of its front-end's, where they are
+/// made already.
+std::string do_run(const PlannedRun& run, const Plugins& plugins, const std::string& tracks, RunFolder& folder) {
   try {
-    const std::unique_ptr<Source> source = make_source(run.config.job, plugins);
-    const Execution execution = execute(run.config.job, *source, plugins, {});
+    const Job& job = run.config.job;
+    const std::unique_ptr<Source> source = make_source(job, plugins);
+    const auto batches = tracks.empty() ? nullptr : RecordedBatches::open(tracks + "/" + kBatches);
+    const Execution execution = batches ? execute(job, *source, plugins, *batches) : execute(job, *source, plugins, {});
     folder.write(run.config, run.identity, *source, ground_truth_tum(*source), execution);
     return kWritten;
   } catch (const OutputError& error) {
     return kNotWritten + error.what();
   } catch (const InputError& error) {
     return kRefused + error.what();
+  }
+}
+
+/// In a process of its own: makes the tracks that runs share.
+std::string make_tracks(const Job& job, const Plugins& plugins, AtomicFolder& folder) {
+  try {
+    const std::optional<std::string> batches = record_front_end(job, *make_source(job, plugins), plugins);
+    if (!batches) return kNotShared;
+    folder.write(kBatches, *batches);
+    folder.commit();
+    return kWritten;
+  } catch (const OutputError& error) {
+    return kNotWritten + error.what();
   }
 }
 
@@ -79,6 +102,15 @@ class Executor {
     bool retry;                         ///< what broke off is done again
     bool killed;                        ///< from outside, once
     std::unique_ptr<RunFolder> folder;  ///< its claim on the run
+  };
+
+  /// What a front-end gives, and several runs need.
+  struct Tracks {
+    std::string path;                      ///< its folder
+    std::size_t id = 0;                    ///< of the process that makes it
+    bool settled = false;                  ///< it is there, or every run makes it for itself
+    std::unique_ptr<AtomicFolder> folder;  ///< the claim on it, while it is made
+    std::vector<std::size_t> waiting;      ///< jobs
   };
 
   std::string folder_of(const Job& job) const {
@@ -129,6 +161,11 @@ class Executor {
   void start(std::size_t i) {
     Job& job = jobs_[i];
     const PlannedRun& run = *job.run;
+    Tracks* const tracks = run.tracks.empty() ? nullptr : &tracks_of(run);
+    if (tracks != nullptr && !tracks->settled) {
+      get_tracks(*tracks, i);
+      return;
+    }
     try {
       job.folder = std::make_unique<RunFolder>(options_.out, run.config.experiment, run.identity.key);
     } catch (const FolderTaken&) {
@@ -142,11 +179,55 @@ class Executor {
       if (!take_result(job)) waiting_.push_back(i);
       return;
     }
-    pool_.start(
-        i, [&] { return do_run(run, plugins_, *job.folder); }, options_.limits);
+    const std::string shared = tracks == nullptr ? "" : tracks->path;
+    const auto work = [&] { return do_run(run, plugins_, shared, *job.folder); };
+    pool_.start(i, work, options_.limits);
+  }
+
+  Tracks& tracks_of(const PlannedRun& run) {
+    const auto known = tracks_.find(run.tracks);
+    if (known != tracks_.end()) return known->second;
+    Tracks& tracks = tracks_[run.tracks];
+    tracks.path = fmt::format("{}/.tracks/{}", options_.out, run.tracks);
+    tracks.id = jobs_.size() + tracks_made_++;
+    AtomicFolder::clear_leftovers(tracks.path);
+    tracks.settled = std::filesystem::exists(tracks.path);
+    return tracks;
+  }
+
+  /// Has tracks made that a job needs; it begins when they are settled.
+  void get_tracks(Tracks& tracks, std::size_t i) {
+    if (!tracks.folder) {
+      try {
+        tracks.folder = std::make_unique<AtomicFolder>(tracks.path);
+      } catch (const FolderTaken&) {  // another process makes them
+        tracks_.erase(jobs_[i].run->tracks);
+        elsewhere_.push_back(i);
+        return;
+      }
+      const auto work = [&] { return make_tracks(jobs_[i].run->config.job, plugins_, *tracks.folder); };
+      pool_.start(tracks.id, work, options_.limits);
+    }
+    tracks.waiting.push_back(i);
+  }
+
+  /// Tracks that could not be made are made by each run, which then says what is wrong.
+  void settle_tracks(const Ending& ending) {
+    if (ending.report.starts_with(kNotWritten)) throw OutputError(ending.report.substr(kNotWritten.size()));
+    for (auto& [name, tracks] : tracks_) {
+      if (tracks.id != ending.id) continue;
+      tracks.settled = true;
+      tracks.folder.reset();
+      waiting_.insert(waiting_.begin(), tracks.waiting.begin(), tracks.waiting.end());
+      tracks.waiting.clear();
+    }
   }
 
   void take_ending(const Ending& ending) {
+    if (ending.id >= jobs_.size()) {
+      settle_tracks(ending);
+      return;
+    }
     Job& job = jobs_[ending.id];
     if (ending.report == kWritten) {
       job.folder.reset();
@@ -205,6 +286,8 @@ class Executor {
   std::vector<Job> jobs_;
   std::deque<std::size_t> waiting_;
   std::vector<std::size_t> elsewhere_;
+  std::map<std::string, Tracks> tracks_;
+  std::size_t tracks_made_ = 0;  ///< numbers of processes that were given to tracks
   Clock::time_point looked_ = {};
   SweepProgress progress_;
   ProcessPool pool_;  // the last one: its processes end before what they use

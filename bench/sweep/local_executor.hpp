@@ -52,6 +52,10 @@ std::vector<PlannedRun> runs_to_do(const std::vector<PlannedRun>& runs, const Pl
 /// killed from outside is tried a second time. Runs that another process is doing are waited for, and taken over when
 /// that process ends without a result: any number of processes on machines that share the folder may do one sweep.
 ///
+/// What a front-end gives that begins with events and takes no feedback is made once for the runs that share it
+/// (PlannedRun::tracks), in a process of its own, and kept in `out`/.tracks/NAME; results are the same, byte by byte,
+/// and their times the front-end's own.
+///
 /// `progress` is called several times a second. Throws OutputError when results can't be written, and Interrupted; what
 /// was complete by then stays, and nothing is half.
 SweepProgress do_runs(const std::vector<PlannedRun>& runs, const Plugins& plugins, const ExecutorOptions& options,

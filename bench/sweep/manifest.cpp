@@ -28,6 +28,7 @@ ManifestLine read_line(const std::string& text, const std::string& place, Plugin
       line.run.axes.emplace_back(axis, value.get<std::string>());
     line.run.config = ConfigFile(place, json.at("config"), plugins).experiment({}).runs.at(0);
     if (!json.at("position").is_null()) line.run.config.position = json.at("position").get<std::size_t>();
+    line.run.tracks = json.at("tracks").get<std::string>();
     const Job& job = line.run.config.job;
     line.run.identity = identify(job, *make_source(job, plugins), plugins, digests);
     const auto key = json.at("key").get<std::string>();
@@ -54,6 +55,7 @@ std::string format_manifest(const std::vector<PlannedRun>& runs, const ExecutorO
                        {"axes", axes},
                        {"position", run.config.position ? Json(*run.config.position) : Json()},
                        {"config", run.config.resolved()},
+                       {"tracks", run.tracks},
                        {"out", std::filesystem::absolute(options.out).string()},
                        {"timeout", options.limits.seconds},
                        {"memory", options.limits.memory_mib},

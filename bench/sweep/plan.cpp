@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 #include "core/support/nearest.hpp"
@@ -47,6 +48,7 @@ class Planner {
     for (const Grid& grid : sweep_.grids) {
       for (const Point& point : points_of(grid)) add(point);
     }
+    share_tracks();
     return std::move(plan_);
   }
 
@@ -70,7 +72,7 @@ class Planner {
   }
 
   void add(const RunConfig& config, const Point& point) {
-    PlannedRun run{config, identify(config.job, source_files(config.job), plugins_, digests_), point.axes};
+    PlannedRun run{config, identify(config.job, source_files(config.job), plugins_, digests_), point.axes, ""};
     const auto [twin, is_new] = by_key_.emplace(run.identity.key, plan_.runs.size());
     if (!is_new) check_twin(plan_.runs[twin->second], run);
     plan_.runs.push_back(std::move(run));
@@ -82,6 +84,22 @@ class Planner {
         fmt::format("the runs \"{}\" ({}) and \"{}\" ({}) are the same job, {}, and differ in name or protocol alone: "
                     "they would be one run; evbench score compares protocols",
                     a.config.label, place_of(a), b.config.label, place_of(b), a.identity.key));
+  }
+
+  void share_tracks() {
+    std::map<std::string, std::set<std::string>> jobs;  // that need the same tracks
+    for (PlannedRun& run : plan_.runs) {
+      const PluginConfig& frontend = run.config.job.frontend;
+      if (!plugins_.of<FrontEnd>().find(frontend.type, frontend.place + ".type").reads_events) continue;
+      Json job = Json::parse(run.identity.text);
+      job.erase("backend");
+      job.erase("trajectory_rate");
+      run.tracks = sha256(job.dump()).substr(0, 10);
+      jobs[run.tracks].insert(run.identity.key);
+    }
+    for (PlannedRun& run : plan_.runs) {
+      if (!run.tracks.empty() && jobs[run.tracks].size() == 1) run.tracks.clear();
+    }
   }
 
   const SourceFiles& source_files(const Job& job) {

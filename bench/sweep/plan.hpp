@@ -16,6 +16,9 @@ struct PlannedRun {
   RunConfig config;
   JobIdentity identity;
   std::vector<std::pair<std::string, std::string>> axes;  ///< axis and value, in the axes' order
+  /// Names what its front-end gives, where that is made from events and other runs of the sweep need the same: the
+  /// SHA-256 of the job without its back-end, ten digits of it. Empty: the run makes it for itself.
+  std::string tracks;
 };
 
 /// Its values on the axes: "seed=3, frames=0.1".

@@ -181,3 +181,47 @@ TEST_CASE("Two processes share a sweep; lines of its manifest, done one by one, 
   made.erase("manifest.jsonl");
   CHECK(difference(expected, made).empty());
 }
+
+TEST_CASE(
+    "Tracks from events are made once for back-ends that share them, and change nothing; not those with feedback") {
+  const TemporaryFolder folder;
+  Json config = tiny_config();
+  config.erase("backend");
+  config["source"] = {{"type", "event_simulation"}, {"duration", 0.5}};
+  config["frontend"] = {{"type", "haste"}, {"guidance", {{"outliers", false}, {"veto", false}, {"reacquire", false}}}};
+  config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "a"}, {"frame_duration", 0.1}},
+                        {{"type", "bundle_adjustment"}, {"label", "b"}, {"frame_duration", 0.05}},
+                        {{"type", "gp_map"}, {"label", "c"}}};
+  folder.write("c.json", config.dump());
+  testing::evbench(folder, "run c.json --quiet --out alone");  // whether or not so short a run has an estimate
+  testing::evbench(folder, "sweep c.json --quiet --out shared");
+  const auto expected = results_of(folder.file("alone/tiny"));
+  CHECK(expected.size() > 30);
+  auto shared = results_of(folder.file("shared/tiny"));
+  shared.erase("sweep.json");
+  CHECK(difference(expected, shared) == "");
+  CHECK(names_in(folder.file("shared/.tracks")).size() == 1);
+
+  // A damaged recording is not believed, and feedback makes tracks a back-end's own.
+  REQUIRE(testing::shell(folder, "rm -r shared/tiny; f=$(ls shared/.tracks/*/*); head -c 50000 $f > x; mv x $f")
+              .exit_code == 0);
+  testing::evbench(folder, "sweep c.json --quiet --out shared");
+  shared = results_of(folder.file("shared/tiny"));
+  shared.erase("sweep.json");
+  CHECK(difference(expected, shared) == "");
+  testing::evbench(folder, "sweep c.json --quiet --out guided --set frontend.guidance.veto=true");
+  CHECK(names_in(folder.file("guided/tiny")).size() == 4);
+  CHECK(names_in(folder.file("guided/.tracks")).empty());
+}
+
+TEST_CASE("The sweeps that come with evbench can be planned") {
+  const TemporaryFolder folder;
+  Json sweep = read_json(EVBENCH_SOURCE "/configs/sweeps/batching.json");
+  sweep.erase("plugins");  // built by whoever wants it
+  sweep["grids"][0]["axes"][0]["overlays"].erase("B-spline");
+  sweep["config"] = EVBENCH_SOURCE "/configs/paper/table1_simulated.json";
+  folder.write("batching.json", sweep.dump());
+  const SweepPlan made = plan(folder, "batching.json");
+  CHECK(made.runs.size() == 3 * 10 * (1 + 8 + 8));
+  CHECK(made.axes.size() == 5);
+}

@@ -1,0 +1,121 @@
+#include "bench/pipeline/batch_recording.hpp"
+
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+#include <type_traits>
+
+#include "core/io/sha256.hpp"
+#include "core/plugin/options.hpp"
+
+namespace evbench {
+namespace {
+
+constexpr std::string_view kBegin = "evbench batches 1\n";
+constexpr std::size_t kDigestLength = 64;
+
+template <class Value>
+void append(std::string& bytes, const Value& value) {
+  static_assert(std::is_arithmetic_v<Value>);
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+void append(std::string& bytes, const TrackBatch& batch) {
+  append(bytes, batch.until);
+  append(bytes, batch.known_at());
+  append(bytes, std::uint64_t{batch.observations.size()});
+  for (const TrackObservation& z : batch.observations) {
+    append(bytes, z.track);
+    append(bytes, z.t);
+    append(bytes, z.pixel.x());
+    append(bytes, z.pixel.y());
+    append(bytes, z.sigma);
+  }
+  append(bytes, std::uint64_t{batch.ended.size()});
+  for (const TrackEnd& end : batch.ended) {
+    append(bytes, end.track);
+    append(bytes, end.t);
+  }
+}
+
+/// Behind the batches: the facts as JSON, their length, the digest.
+std::string format_facts(const FrontFacts& facts) {
+  const Json json = {{"source_s", facts.source_s},
+                     {"frontend_s", facts.frontend_s},
+                     {"batch_s", facts.batch_s},
+                     {"data_s", facts.data_s},
+                     {"log", facts.log}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string record_batches(BatchStream& batches) {
+  std::string bytes(kBegin);
+  while (const std::optional<TrackBatch> batch = batches.next()) append(bytes, *batch);
+  const std::string facts = format_facts(batches.facts());
+  bytes += facts;
+  append(bytes, std::uint64_t{facts.size()});
+  return bytes + sha256(bytes);
+}
+
+std::unique_ptr<RecordedBatches> RecordedBatches::open(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  std::string bytes = text.str();
+  if (bytes.size() < kBegin.size() + sizeof(std::uint64_t) + kDigestLength || !bytes.starts_with(kBegin))
+    return nullptr;
+  const std::string digest = bytes.substr(bytes.size() - kDigestLength);
+  bytes.resize(bytes.size() - kDigestLength);
+  if (sha256(bytes) != digest) return nullptr;
+  return std::unique_ptr<RecordedBatches>(new RecordedBatches(std::move(bytes)));
+}
+
+RecordedBatches::RecordedBatches(std::string bytes) : bytes_(std::move(bytes)) {
+  at_ = bytes_.size() - sizeof(std::uint64_t);
+  const auto length = static_cast<std::size_t>(take<std::uint64_t>());
+  end_ = bytes_.size() - sizeof(std::uint64_t) - length;
+  at_ = kBegin.size();
+  const Json json = Json::parse(bytes_.substr(end_, length));
+  facts_ = {json.at("source_s").get<double>(), json.at("frontend_s").get<double>(),
+            json.at("batch_s").get<std::vector<double>>(), json.at("data_s").get<double>(),
+            json.at("log").get<std::vector<std::string>>()};
+}
+
+template <class Value>
+Value RecordedBatches::take() {
+  Value value;
+  std::memcpy(&value, bytes_.data() + at_, sizeof value);
+  at_ += sizeof value;
+  return value;
+}
+
+TrackBatch RecordedBatches::take_batch() {
+  TrackBatch batch;
+  batch.until = take<double>();
+  batch.seen = take<double>();
+  batch.observations.resize(take<std::uint64_t>());
+  for (TrackObservation& z : batch.observations) {
+    z.track = take<TrackId>();
+    z.t = take<double>();
+    z.pixel.x() = take<double>();
+    z.pixel.y() = take<double>();
+    z.sigma = take<double>();
+  }
+  batch.ended.resize(take<std::uint64_t>());
+  for (TrackEnd& end : batch.ended) {
+    end.track = take<TrackId>();
+    end.t = take<double>();
+  }
+  return batch;
+}
+
+std::optional<TrackBatch> RecordedBatches::next() {
+  if (at_ == end_) return std::nullopt;
+  return watch_.time([&] { return take_batch(); });
+}
+
+}  // namespace evbench
