@@ -76,9 +76,12 @@ std::vector<std::string> distinct_experiments(const TableRuns& runs) {
   return names;
 }
 
+bool any_of_common_time(const std::vector<std::string>& metrics) {
+  return std::ranges::any_of(metrics, [](const std::string& key) { return key.starts_with("common."); });
+}
+
 bool shows_common_time(const TableOptions& options, std::size_t runs) {
-  const auto is_common = [](const std::string& key) { return key.starts_with("common."); };
-  if (!options.metrics.empty()) return std::ranges::any_of(options.metrics, is_common);
+  if (!options.metrics.empty()) return any_of_common_time(options.metrics);
   return options.format != TableFormat::latex && options.format != TableFormat::long_csv && runs <= kCommonTimeRuns;
 }
 

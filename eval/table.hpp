@@ -51,6 +51,8 @@ std::string make_table(std::span<const RunRecord> runs, const TableOptions& opti
 /// Does such a table of so many runs show scores over common time (bench/common_time.hpp)? They take long: the runs'
 /// trajectories are scored again. So tables of more than kCommonTimeRuns runs have them only where they are asked for.
 bool shows_common_time(const TableOptions& options, std::size_t runs);
+/// Is any of these metrics of common time?
+bool any_of_common_time(const std::vector<std::string>& metrics);
 inline constexpr std::size_t kCommonTimeRuns = 500;
 
 }  // namespace evbench

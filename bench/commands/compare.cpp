@@ -29,9 +29,7 @@ void execute(const CompareArguments& arguments) {
   std::vector<std::string> unreadable;
   std::vector<RunRecord> runs = find_runs(arguments.folders, &unreadable);
   if (runs.empty()) throw_together(unreadable);
-  if (shows_common_time({.metrics = options.metrics}, runs.size()) && !options.metrics.empty()) {
-    score_common_time(runs, options.online);
-  }
+  if (any_of_common_time(options.metrics)) score_common_time(runs, options.online);
   const std::string table = make_comparison_table(runs, options);
   if (arguments.out.empty()) {
     fmt::print("{}", table);

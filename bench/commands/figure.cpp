@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -15,6 +14,7 @@
 #include "eval/find_runs.hpp"
 #include "eval/names.hpp"
 #include "eval/run_columns.hpp"
+#include "eval/table.hpp"
 
 namespace evbench {
 namespace {
@@ -72,9 +72,7 @@ void execute(const FigureArguments& arguments) {
   std::vector<RunRecord> runs = find_runs(arguments.folders, &unreadable);
   if (runs.empty()) throw_together(unreadable);
   if (!arguments.only.empty()) keep_only(arguments.only, runs);
-  if (std::ranges::any_of(arguments.options.metrics, [](const auto& key) { return key.starts_with("common."); })) {
-    score_common_time(runs, arguments.options.online);
-  }
+  if (any_of_common_time(arguments.options.metrics)) score_common_time(runs, arguments.options.online);
   Figure figure = make_figure(arguments, runs);
   if (arguments.width_mm > 0.0) figure.width_mm = arguments.width_mm;
   if (arguments.height_mm > 0.0) figure.height_mm = arguments.height_mm;

@@ -34,7 +34,9 @@ Json to_json(const Mark& mark) {
   return json;
 }
 
-Json to_json(const Axis& axis) { return {{"label", axis.label}, {"scale", axis.log ? "log" : "linear"}}; }
+Json to_json(const Axis& axis) {
+  return {{"label", axis.label}, {"scale", axis.log ? "log" : "linear"}, {"share", axis.share}};
+}
 
 Json to_json(const Panel& panel) {
   Json json = {{"x", to_json(panel.x)}, {"y", to_json(panel.y)}, {"names", panel.names}, {"equal", panel.equal}};

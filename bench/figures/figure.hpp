@@ -16,7 +16,7 @@ struct Series {
 /// Something drawn in a panel, of one series.
 struct Mark {
   enum class Kind {
-    line,    ///< through x, y
+    line,    ///< through x, y, many of them
     points,  ///< the same with a marker at each
     band,    ///< over x, from `low` to `high`
     level,   ///< all across: a line at y[0], a band from low[0] to high[0]
@@ -33,6 +33,7 @@ struct Mark {
 struct Axis {
   std::string label;  ///< with its unit
   bool log = false;
+  bool share = false;  ///< from 0 to 1
 };
 
 /// A pair of axes with what is drawn in it.

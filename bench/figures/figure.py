@@ -24,7 +24,7 @@ plt.rcParams.update({
     "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6, "xtick.minor.width": 0.4,
     "ytick.minor.width": 0.4, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
     "grid.color": "#E3E3E3", "grid.linewidth": 0.5, "axes.axisbelow": True, "legend.frameon": False,
-    "lines.linewidth": 1.3, "lines.markersize": 3.5, "svg.hashsalt": "evbench",
+    "lines.markersize": 3.5, "svg.hashsalt": "evbench",
     "pdf.fonttype": 42})
 
 
@@ -33,11 +33,13 @@ def numbers(values):
     return [float("nan") if value is None else value for value in values]
 
 
-def style(series):
+def style(series, dense=False):
+    """Dense lines, which turn and cross, are thin and without dashes."""
     if series["truth"]:
-        return {"color": "black", "linestyle": "-", "linewidth": 0.9}
+        return {"color": "black", "linestyle": "-", "linewidth": 1.2}
     number = series["number"]
-    return {"color": COLOURS[number % len(COLOURS)], "linestyle": DASHES[number % len(DASHES)]}
+    return {"color": COLOURS[number % len(COLOURS)], "linestyle": "-" if dense else DASHES[number % len(DASHES)],
+            "linewidth": 0.8 if dense else 1.3}
 
 
 def marker(series):
@@ -50,7 +52,7 @@ def draw(axes, mark, series):
     kind = mark["kind"]
     mark = {**mark, **{key: numbers(mark[key]) for key in ("x", "y", "low", "high")}}
     if kind == "line":
-        axes.plot(mark["x"], mark["y"], zorder=3, **look)
+        axes.plot(mark["x"], mark["y"], zorder=3, **style(series, dense=True))
     elif kind == "points":
         axes.plot(mark["x"], mark["y"], marker=marker(series), markeredgecolor="white", markeredgewidth=0.4, zorder=4, **look)
     elif kind == "band":
@@ -93,6 +95,8 @@ def draw_panel(axes, panel, series):
         draw(axes, mark, series[mark["series"]])
     axes.set_xlabel(panel["x"]["label"])
     axes.set_ylabel(panel["y"]["label"])
+    if panel["y"]["share"]:
+        axes.set_ylim(0, 1.02)
     set_scale(axes.xaxis, panel["x"]["scale"], *axes.get_xlim())
     set_scale(axes.yaxis, panel["y"]["scale"], *axes.get_ylim())
     if panel["names"]:
@@ -104,9 +108,9 @@ def draw_panel(axes, panel, series):
         axes.set_aspect("equal", adjustable="datalim")
 
 
-def legend_line(series, marked):
-    return Line2D([], [], label=series["label"], marker=marker(series) if marked else None, markeredgecolor="white",
-                  markeredgewidth=0.4, **style(series))
+def legend_line(series, kinds):
+    return Line2D([], [], label=series["label"], marker=marker(series) if "points" in kinds else None,
+                  markeredgecolor="white", markeredgewidth=0.4, **style(series, dense="line" in kinds))
 
 
 def main():
@@ -125,8 +129,9 @@ def main():
         figure.text(1.5 / data["width_mm"], 1.0 / height, "\n".join(lines), fontsize=5.5, color="#555555", va="bottom")
         below += CAPTION_HEIGHT * len(lines)
     if data["legend"]:
-        marked = {mark["series"] for panel in panels for mark in panel["marks"] if mark["kind"] == "points"}
-        lines = [legend_line(series, number in marked) for number, series in enumerate(data["series"])]
+        drawn = {(mark["series"], mark["kind"]) for panel in panels for mark in panel["marks"]}
+        lines = [legend_line(series, {kind for of, kind in drawn if of == number})
+                 for number, series in enumerate(data["series"])]
         columns_of_legend = min(len(lines), data["legend_columns"])
         figure.legend(handles=lines, loc="upper center", bbox_to_anchor=(0.5, 1 - 0.5 / height), borderaxespad=0,
                       ncols=columns_of_legend, handlelength=2.6, columnspacing=1.4)

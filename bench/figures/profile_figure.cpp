@@ -50,7 +50,7 @@ Figure profile_figure(std::span<const RunRecord> runs, const FigureOptions& opti
     for (const PerformanceProfile& profile : profiles) {
       if (!profile.ratios.empty()) end = std::max(end, 1.05 * profile.ratios.back());
     }
-    Panel panel{{metric.header + ": at most this times the best one's", true}, {"share of runs"}, {}};
+    Panel panel{{metric.header + ": at most this times the best one's", true}, {"share of runs", false, true}, {}};
     for (std::size_t m = 0; m < profiles.size(); ++m) {
       Mark steps{Mark::Kind::steps, m, {1.0}, {profiles[m].at(1.0)}};
       for (const double ratio : profiles[m].ratios) {

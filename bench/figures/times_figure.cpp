@@ -25,7 +25,7 @@ void add_times(const std::string& folder, std::vector<double>& times) {
 Figure times_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
   const FigureRuns all(runs, options);
   Figure figure;
-  Panel panel{{"time of an update [ms]", true}, {"share of updates"}, {}};
+  Panel panel{{"time of an update [ms]", true}, {"share of updates", false, true}, {}};
   for (const Method& method : all.methods) {
     std::vector<double> times;
     for (const std::size_t i : method.runs) {

@@ -89,10 +89,10 @@ Figure trajectory_figure(std::span<const RunRecord> runs, const FigureOptions& o
       }
       panel.marks.push_back(std::move(line));
     };
+    add(0, longest->compared, [](const PosePair& pair) { return pair.ground_truth; });
     for (std::size_t i = 0; i < scored.scores.size(); ++i) {
       add(i + 1, scored.scores[i].compared, [](const PosePair& pair) { return pair.estimate; });
     }
-    add(0, longest->compared, [](const PosePair& pair) { return pair.ground_truth; });
     figure.panels.push_back(std::move(panel));
   }
   figure.columns = 3;
