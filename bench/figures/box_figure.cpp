@@ -33,7 +33,7 @@ Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options)
     figure.panels.push_back(std::move(panel));
   }
   figure.columns = figure.panels.size();
-  figure.height_mm = 22.0 + 7.0 * static_cast<double>(all.methods.size());
+  figure.height_mm = 13.0 + 6.5 * static_cast<double>(all.methods.size());
   figure.caption = all.caption("Boxes between quartiles, with the median; each run is a point.", options.online);
   return figure;
 }

@@ -51,7 +51,7 @@ struct Figure {
   std::string caption;  ///< what it is of, and the protocol, small below
   std::size_t columns = 1;
   bool legend = true;
-  double width_mm = 174.0, height_mm = 80.0;
+  double width_mm = 174.0, height_mm = 64.0;  ///< of the whole; of the panels alone, without legend and caption
 };
 
 /// The program that draws it: a Python script that needs matplotlib alone, with all data in it

@@ -81,9 +81,9 @@ def set_scale(axis, scale, low, high):
     if scale != "log":
         axis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 2.5, 5, 10]))
         return
-    # Ticks at 1, 2, 5 where few decades are spanned: two labelled ones say nothing of what lies between.
-    wide = high / low > 300
-    axis.set_major_locator(LogLocator(subs=(1,) if wide else (1, 2, 5), numticks=20))
+    # More labels where few decades are spanned: two say nothing of what lies between.
+    span = high / low
+    axis.set_major_locator(LogLocator(subs=(1,) if span > 300 else (1, 2, 5) if span > 8 else (1, 2, 3, 5), numticks=20))
     axis.set_major_formatter(FuncFormatter(plain))
     axis.set_minor_formatter(NullFormatter())
 
@@ -117,25 +117,27 @@ def main():
     data = json.loads(DATA)
     panels, columns = data["panels"], data["columns"]
     rows = -(-len(panels) // columns)
+    below, above, caption = 1.0, 1.0, []  # [mm]: what caption and legend take
+    if data["caption"]:
+        caption = textwrap.wrap(data["caption"], int(data["width_mm"] / CAPTION_WIDTH))
+        below += CAPTION_HEIGHT * len(caption)
+    columns_of_legend = min(len(data["series"]), data["legend_columns"])
+    if data["legend"]:
+        above += LEGEND_HEIGHT * -(-len(data["series"]) // columns_of_legend)
+    height = data["height_mm"] + below + above
     figure, grid = plt.subplots(rows, columns, squeeze=False, layout="constrained",
-                                figsize=(data["width_mm"] * MILLIMETRE, data["height_mm"] * MILLIMETRE))
+                                figsize=(data["width_mm"] * MILLIMETRE, height * MILLIMETRE))
     for number, panel in enumerate(panels):
         draw_panel(grid[number // columns][number % columns], panel, data["series"])
     for number in range(len(panels), rows * columns):
         grid[number // columns][number % columns].set_visible(False)
-    height, below, above = data["height_mm"], 1.0, 1.0  # [mm]: what caption and legend take
-    if data["caption"]:
-        lines = textwrap.wrap(data["caption"], int(data["width_mm"] / CAPTION_WIDTH))
-        figure.text(1.5 / data["width_mm"], 1.0 / height, "\n".join(lines), fontsize=5.5, color="#555555", va="bottom")
-        below += CAPTION_HEIGHT * len(lines)
+    figure.text(1.5 / data["width_mm"], 1.0 / height, "\n".join(caption), fontsize=5.5, color="#555555", va="bottom")
     if data["legend"]:
         drawn = {(mark["series"], mark["kind"]) for panel in panels for mark in panel["marks"]}
         lines = [legend_line(series, {kind for of, kind in drawn if of == number})
                  for number, series in enumerate(data["series"])]
-        columns_of_legend = min(len(lines), data["legend_columns"])
         figure.legend(handles=lines, loc="upper center", bbox_to_anchor=(0.5, 1 - 0.5 / height), borderaxespad=0,
                       ncols=columns_of_legend, handlelength=2.6, columnspacing=1.4)
-        above += LEGEND_HEIGHT * -(-len(lines) // columns_of_legend)
     figure.get_layout_engine().set(rect=(0, below / height, 1, 1 - (below + above) / height))
     for target in sys.argv[1:]:
         # No dates: the same runs give the same file.

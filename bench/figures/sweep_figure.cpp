@@ -117,7 +117,7 @@ Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& option
     figure.panels.push_back(std::move(panel));
   }
   figure.columns = std::min<std::size_t>(figure.panels.size(), 2);
-  figure.height_mm = 75.0 * std::ceil(static_cast<double>(figure.panels.size()) / 2.0);
+  figure.height_mm = 64.0 * std::ceil(static_cast<double>(figure.panels.size()) / 2.0);
   std::string what = "Medians, and bands between quartiles";
   for (const RunColumn& column : all.columns) {
     const std::set<std::string> values(column.values.begin(), column.values.end());

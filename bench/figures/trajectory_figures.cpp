@@ -39,9 +39,8 @@ ScoredRuns score_first_sequence(std::span<const RunRecord> records, const Figure
   }
   if (result.scores.empty())
     throw InputError("none of these runs has an estimate and ground truth; expected one to draw");
-  const bool others = drawn.size() < records.size();
   const FigureRuns of_sequence(drawn, options);
-  const std::string seed = others && drawn.front().seed ? fmt::format(", seed {}", *drawn.front().seed) : "";
+  const std::string seed = drawn.front().seed ? fmt::format(", seed {}", *drawn.front().seed) : "";
   result.caption = of_sequence.caption(what + seed + "." + missing, options.online);
   return result;
 }
@@ -65,7 +64,7 @@ Figure error_figure(std::span<const RunRecord> runs, const FigureOptions& option
     rotation.marks.push_back({Mark::Kind::line, i, std::move(times), std::move(errors.rot_deg)});
   }
   figure.panels = {std::move(translation), std::move(rotation)};
-  figure.height_mm = 110.0;
+  figure.height_mm = 96.0;
   figure.caption = scored.caption;
   return figure;
 }
@@ -96,7 +95,6 @@ Figure trajectory_figure(std::span<const RunRecord> runs, const FigureOptions& o
     figure.panels.push_back(std::move(panel));
   }
   figure.columns = 3;
-  figure.height_mm = 75.0;
   figure.caption = scored.caption;
   return figure;
 }

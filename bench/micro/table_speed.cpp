@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 
 #include "core/io/atomic_file.hpp"
@@ -42,8 +43,11 @@ void write_runs(const std::string& run, const std::string& folder, int count) {
 template <class Work>
 auto timed(const char* what, const Work& work) {
   const auto start = Clock::now();
+  const std::clock_t processor = std::clock();
   auto result = work();
-  fmt::print("{:<28} {:8.3f} s\n", what, std::chrono::duration<double>(Clock::now() - start).count());
+  fmt::print("{:<28} {:8.3f} s, {:8.3f} s of processors\n", what,
+             std::chrono::duration<double>(Clock::now() - start).count(),
+             static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC);
   return result;
 }
 
