@@ -19,8 +19,8 @@
 namespace evbench {
 namespace {
 
-enum class FigureKind { sweep, box, error, trajectory, times, profile };
-constexpr NameList<6> kFigureKindNames = {"sweep", "box", "error", "trajectory", "times", "profile"};
+enum class FigureKind { sweep, map, box, error, trajectory, times, profile };
+constexpr NameList<7> kFigureKindNames = {"sweep", "map", "box", "error", "trajectory", "times", "profile"};
 
 struct FigureArguments {
   std::string kind;
@@ -52,6 +52,7 @@ void keep_only(const std::vector<std::string>& only, std::vector<RunRecord>& run
 Figure make_figure(const FigureArguments& arguments, std::span<const RunRecord> runs) {
   switch (parse_name<FigureKind>(kFigureKindNames, arguments.kind, "kind of figure")) {
     case FigureKind::sweep: return sweep_figure(runs, arguments.options);
+    case FigureKind::map: return map_figure(runs, arguments.options);
     case FigureKind::box: return box_figure(runs, arguments.options);
     case FigureKind::error: return error_figure(runs, arguments.options);
     case FigureKind::trajectory: return trajectory_figure(runs, arguments.options);
@@ -105,6 +106,9 @@ void add_figure(CLI::App& app) {
   command
       ->add_option("--axis-label", arguments->options.axis_label, "What is written there, e.g. \"frame duration [s]\"")
       ->type_name("TEXT");
+  command->add_option("--across", arguments->options.across, "The other axis of a map")->type_name("NAME");
+  command->add_option("--base", arguments->options.base, "What a map compares with; else the method without the axis")
+      ->type_name("METHOD");
   command->add_option("--only", arguments->only, "Only runs with this value, e.g. seed=3; can be given often")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false)
@@ -122,6 +126,7 @@ void add_figure(CLI::App& app) {
   command->add_flag("--force", arguments->force, "Replace files that exist");
   command->footer(
       "sweep       metrics against an axis: medians, and bands between the quartiles of all other runs\n"
+      "map         against an axis and across another one: the ratio of a metric to that of another method\n"
       "box         quartiles and median of each back-end's runs, and the runs\n"
       "error       errors over time of a sequence's runs\n"
       "trajectory  from three sides, with the ground truth\n"

@@ -15,7 +15,7 @@
 namespace evbench {
 namespace {
 
-constexpr std::array kKindNames = {"line", "points", "band", "level", "steps", "note", "box"};
+constexpr std::array kKindNames = {"line", "points", "band", "level", "steps", "note", "box", "cells"};
 
 /// Python's JSON knows no infinity; what is not finite is not drawn.
 Json numbers(const std::vector<double>& values) {

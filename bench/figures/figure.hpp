@@ -23,6 +23,7 @@ struct Mark {
     steps,   ///< through x, y, level up to the next x
     note,    ///< text above the panel at x[0]
     box,     ///< lying, at height x[0]: quartiles, median, all of the values y
+    cells,   ///< around x, y: coloured by the ratio in `low`, white where it is 1, which is written in them
   };
   Kind kind;
   std::size_t series;

@@ -16,6 +16,7 @@ COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 DASHES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (3, 1, 1, 1, 1, 1))]
 MARKERS = "osD^vP*X"
 MILLIMETRE = 1 / 25.4
+LARGEST_RATIO, DARK_RATIO = 8.0, 4.0  # of cells: where colours end; from where on they are dark
 CAPTION_WIDTH, CAPTION_HEIGHT, LEGEND_HEIGHT = 1.02, 2.3, 4.2  # [mm] of a letter; of a line
 
 plt.rcParams.update({
@@ -71,6 +72,28 @@ def draw(axes, mark, series):
                            capprops={"color": colour}, boxprops={"edgecolor": colour}, manage_ticks=False, zorder=3)
         box["boxes"][0].set_facecolor(matplotlib.colors.to_rgba(colour, 0.25))
         axes.plot(mark["y"], mark["x"] * len(mark["y"]), "o", color=colour, markersize=2, alpha=0.6, zorder=4)
+    elif kind == "cells":
+        draw_cells(axes, mark)
+
+
+def draw_cells(axes, mark):
+    """Cells of equal size, whatever lies between their places. What is infinite or not known is grey."""
+    columns, rows = sorted(set(mark["x"])), sorted(set(mark["y"]))
+    ratios = [[float("nan")] * len(columns) for _ in rows]
+    for x, y, ratio in zip(mark["x"], mark["y"], mark["low"]):
+        ratios[rows.index(y)][columns.index(x)] = ratio
+    colours = matplotlib.colormaps["RdBu_r"].copy()
+    colours.set_bad("#BBBBBB")
+    axes.imshow(ratios, cmap=colours, norm=matplotlib.colors.LogNorm(1 / LARGEST_RATIO, LARGEST_RATIO, clip=True),
+                origin="lower", aspect="auto")
+    for row, values in enumerate(ratios):
+        for column, ratio in enumerate(values):
+            dark = ratio == ratio and not 1 / DARK_RATIO < ratio < DARK_RATIO
+            axes.text(column, row, f"{ratio:.2g}" if ratio == ratio else "fails", ha="center", va="center", fontsize=7,
+                      color="white" if dark else "black")
+    axes.set_xticks(range(len(columns)), [f"{x:g}" for x in columns])
+    axes.set_yticks(range(len(rows)), [f"{y:g}" for y in rows])
+    axes.grid(False)
 
 
 def plain(value, _):
@@ -97,8 +120,9 @@ def draw_panel(axes, panel, series):
     axes.set_ylabel(panel["y"]["label"])
     if panel["y"]["share"]:
         axes.set_ylim(0, 1.02)
-    set_scale(axes.xaxis, panel["x"]["scale"], *axes.get_xlim())
-    set_scale(axes.yaxis, panel["y"]["scale"], *axes.get_ylim())
+    if not any(mark["kind"] == "cells" for mark in panel["marks"]):  # which have ticks of their own
+        set_scale(axes.xaxis, panel["x"]["scale"], *axes.get_xlim())
+        set_scale(axes.yaxis, panel["y"]["scale"], *axes.get_ylim())
     if panel["names"]:
         axes.set_yticks(range(len(panel["names"])), panel["names"])
         axes.invert_yaxis()

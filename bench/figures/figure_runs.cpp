@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <set>
 
@@ -34,6 +35,19 @@ std::string FigureRuns::caption(const std::string& what, bool online) const {
                                         : "Final: the trajectory as estimated after the whole sequence.");
   for (const std::string& protocol : collect_protocols(runs).texts) text += fmt::format(" {}.", protocol);
   return text;
+}
+
+std::optional<double> number_in(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+void check_numbers(const RunColumn& column) {
+  for (const std::string& value : column.values) {
+    if (value.empty() || number_in(value)) continue;
+    throw InputError(fmt::format("the axis \"{}\" has the value \"{}\"; expected numbers", column.name, value));
+  }
 }
 
 bool spread_wide(const std::vector<double>& values) {

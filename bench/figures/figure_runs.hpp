@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "bench/figures/run_figures.hpp"
 #include "eval/methods.hpp"
 #include "eval/table_notes.hpp"
@@ -20,6 +22,12 @@ struct FigureRuns {
   /// Experiments, what is drawn (`what`, a sentence), which trajectory, the protocols.
   std::string caption(const std::string& what, bool online) const;
 };
+
+/// The number that is all of a text, if it is one.
+std::optional<double> number_in(const std::string& text);
+
+/// Throws InputError where a column has something else than numbers.
+void check_numbers(const RunColumn& column);
 
 /// Are these positive numbers so far apart that their logarithms should be drawn?
 bool spread_wide(const std::vector<double>& values);

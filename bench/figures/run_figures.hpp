@@ -14,7 +14,9 @@ struct FigureOptions {
   std::vector<std::string> metrics = {};  ///< a panel each, as in tables; empty: ATE and RPE
   std::string axis = "";                  ///< of sweeps: a name of run_columns(); empty: the one that has numbers alone
   std::string axis_label = "";            ///< what is written there; empty: the axis' name
-  bool online = false;                    ///< the scores of the online trajectories, instead of the final ones
+  std::string across = "";                ///< of maps: the column that is the other axis
+  std::string base = "";  ///< of maps: the method that all is compared with; empty: the one without axis
+  bool online = false;    ///< the scores of the online trajectories, instead of the final ones
 };
 
 // All throw InputError where there is nothing to draw, saying what was expected. What failed is shown: as a number
@@ -23,6 +25,10 @@ struct FigureOptions {
 /// Metrics against an axis: a curve for each method (eval/methods.hpp) through the medians of its other runs, a band
 /// between their quartiles. A method that does not have the axis is a level across.
 Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& options);
+
+/// Where a method is worth how much: against an axis and across another one, both of numbers, the median over all other
+/// runs of what a metric is of the method that has the axis over what it is of the base on the same data.
+Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options);
 
 /// A box for each method: quartiles, median, and each run.
 Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options);

@@ -55,6 +55,23 @@ TEST_CASE("A sweep is a curve of medians with bands, and a level for what does n
   CHECK_THAT(figure.caption, Contains("arm. Medians, and bands between quartiles, of 3 seeds.") && Contains("Sim(3)"));
 }
 
+TEST_CASE("A map has the median ratio to the base on the same data, by two axes") {
+  const Swept results;
+  const FigureOptions options{
+      .metrics = {"ate.trans_m.rmse"}, .axis = "backend.frame_duration", .across = "seed", .base = "asynchronous"};
+  const Figure figure = map_figure(results.find(), options);
+  const Mark& cells = mark_of(figure.panels.at(0), Mark::Kind::cells, 0);
+  REQUIRE(cells.low.size() == 9);  // three frames, three seeds
+  for (std::size_t i = 0; i < cells.low.size(); ++i) CHECK(cells.low[i] == Approx(100.0 * cells.x[i]));
+  CHECK_THAT(figure.caption, Contains("ATE [m] of bundle over that of asynchronous, on the same data"));
+  FigureOptions other = options;
+  other.base = "asynchron";
+  CHECK_THROWS_WITH(map_figure(results.find(), other), Contains("did you mean \"asynchronous\"?"));
+  other = options;
+  other.across = "";
+  CHECK_THROWS_WITH(map_figure(results.find(), other), Contains("expected --axis and --across"));
+}
+
 TEST_CASE("What failed is told above a sweep, behind a box's name, and by a profile") {
   Swept results;
   results.add_seed("bundle", 4, std::nullopt, 0.1);

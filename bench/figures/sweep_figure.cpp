@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -14,12 +13,6 @@
 namespace evbench {
 namespace {
 
-std::optional<double> number_in(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
-
 bool is_numeric_axis(const RunColumn& column) {
   const bool names = column.name == "experiment" || column.name == "label" || column.name == "seed";
   return !names && column.varies() &&
@@ -30,11 +23,7 @@ bool is_numeric_axis(const RunColumn& column) {
 std::string axis_of(std::span<const RunRecord> runs, const FigureOptions& options) {
   const std::vector<RunColumn> columns = run_columns(runs);
   if (!options.axis.empty()) {
-    const RunColumn& column = find_column(columns, options.axis);
-    for (const std::string& value : column.values) {
-      if (value.empty() || number_in(value)) continue;
-      throw InputError(fmt::format("the axis \"{}\" has the value \"{}\"; expected numbers", column.name, value));
-    }
+    check_numbers(find_column(columns, options.axis));
     return options.axis;
   }
   std::vector<std::string> names;

@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "bench/figures/figure_runs.hpp"
+#include "core/support/error.hpp"
+#include "core/support/nearest.hpp"
+#include "eval/paired_comparison.hpp"
+
+namespace evbench {
+namespace {
+
+bool has_axis(const Method& method, const RunColumn& axis) {
+  return std::ranges::any_of(method.runs, [&](std::size_t run) { return !axis.values[run].empty(); });
+}
+
+/// The only one of the methods that has the axis, or has it not.
+const Method& only_method(const FigureRuns& all, const RunColumn& axis, bool with) {
+  const Method* found = nullptr;
+  for (const Method& method : all.methods) {
+    if (has_axis(method, axis) != with) continue;
+    if (found != nullptr) {
+      throw InputError(fmt::format("\"{}\" and \"{}\" both have {} axis \"{}\"; expected {}", found->name, method.name,
+                                   with ? "the" : "no", axis.name,
+                                   with ? "one of them, by --only" : "--base with one"));
+    }
+    found = &method;
+  }
+  if (found == nullptr) {
+    throw InputError(fmt::format("no method has {} axis \"{}\"; expected {}", with ? "the" : "no", axis.name,
+                                 with ? "one that varies along it" : "--base with what is to be compared with"));
+  }
+  return *found;
+}
+
+const Method& base_of(const FigureRuns& all, const RunColumn& axis, const std::string& name) {
+  if (name.empty()) return only_method(all, axis, false);
+  std::vector<std::string> names;
+  for (const Method& method : all.methods) names.push_back(method.name);
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) throw InputError(fmt::format("there is no method \"{}\"{}", name, suggestion(name, names)));
+  return all.methods[static_cast<std::size_t>(found - names.begin())];
+}
+
+}  // namespace
+
+Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
+  if (options.axis.empty() || options.across.empty()) {
+    throw InputError("a map has two axes; expected --axis and --across, each with the name of one");
+  }
+  const FigureRuns all(runs, options, options.axis);
+  const RunColumn &axis = find_column(all.columns, options.axis), &across = find_column(all.columns, options.across);
+  check_numbers(axis);
+  check_numbers(across);
+  const Method& base = base_of(all, axis, options.base);
+  const Method& method = only_method(all, axis, true);
+  const std::vector<std::size_t> data = number_data(all.runs);
+  const Protocols protocols = collect_protocols(all.runs);
+  std::map<std::pair<double, double>, std::vector<std::size_t>> cells;
+  for (const std::size_t run : method.runs) {
+    const std::optional<double> x = number_in(axis.values[run]), y = number_in(across.values[run]);
+    if (x && y) cells[{*x, *y}].push_back(run);
+  }
+  Figure figure;
+  figure.legend = false;
+  figure.series.push_back({method.name});
+  std::size_t pairs = 0;
+  for (const Metric& metric : all.metrics) {
+    if (metric.better == Better::neither) {
+      throw InputError(fmt::format("a map of \"{}\" can't be made: neither lower nor higher is better", metric.key));
+    }
+    Mark mark{Mark::Kind::cells, 0, {}};
+    for (const auto& [place, own] : cells) {
+      const std::vector<CostPair> paired = pair_up(costs_of(own, all.runs, metric, data, protocols.of_run),
+                                                   costs_of(base.runs, all.runs, metric, data, protocols.of_run));
+      if (paired.empty()) continue;
+      pairs = std::max(pairs, paired.size());
+      mark.x.push_back(place.first);
+      mark.y.push_back(place.second);
+      mark.low.push_back(compare_pairs(paired).ratio);
+    }
+    if (mark.x.empty())
+      throw InputError(fmt::format("no run of \"{}\" has one of \"{}\" on the same data", method.name, base.name));
+    const std::string label = options.axis_label.empty() ? axis.name : options.axis_label;
+    figure.panels.push_back(
+        {{fmt::format("{}  (in the cells: {}, ratio)", label, metric.header)}, {across.name}, {std::move(mark)}});
+  }
+  figure.columns = figure.panels.size();
+  std::string shown;
+  for (const Metric& metric : all.metrics) shown += (shown.empty() ? "" : ", ") + metric.header;
+  figure.caption = all.caption(fmt::format("{} of {} over that of {}, on the same data: medians of up to {} pairs.",
+                                           shown, method.name, base.name, pairs),
+                               options.online);
+  return figure;
+}
+
+}  // namespace evbench
