@@ -45,7 +45,7 @@ struct MapOptions {
   double patience = 0.0;
   double depth_sigma = 0.5;
   double outlier_threshold = 5.0;
-  int returns = 60;
+  int returns = 120;
 
   void declare(OptionSet& set) {
     set.group("triangulation", triangulation, "when a track becomes a landmark");
@@ -86,9 +86,12 @@ struct LearningOptions {
             "can lose it where landmarks live for less than a second or the motion is violent");
     set.add("noise", noise,
             "learn a scale of the observations' sigmas, and how much of their information counts, as trackers drift");
-    set.add("window", window, "\"always\": while running, the prior follows what the last seconds show [s]")
+    set.add("window", window,
+            "while running, a prior that has yielded to violent motion is as it was again after a few times this; "
+            "\"always\": it follows what the last seconds show [s]")
         .range(0.01, 100.0);
-    set.add("memory", memory, "and falls back to what these show, where that is little; the noise follows these [s]")
+    set.add("memory", memory,
+            "\"always\": and falls back to what these show, where that is little; the noise follows these [s]")
         .range(0.1, 1000.0);
     set.add("rounds", rounds, "of learning from everything, in the final estimate").range(0, 100);
   }
