@@ -49,11 +49,6 @@ std::string shown_progress(const SweepProgress& now) {
   return text;
 }
 
-std::string shown(const TroubledRun& run) {
-  return fmt::format("{}: {}{}{}: {}", run.lost ? "lost" : "failed", run.label, run.place.empty() ? "" : ", ",
-                     run.place, run.reason);
-}
-
 void print_plan(const std::vector<PlannedRun>& runs, const SweepPlan& plan, const ExecutorOptions& options) {
   constexpr const char* kConditions[] = {"to do", "complete", "broken off", "damaged"};
   std::size_t to_do = 0;
@@ -79,7 +74,7 @@ int do_locally(const std::vector<PlannedRun>& runs, const SweepArguments& argume
   const auto tell = [&](const SweepProgress& progress) {
     for (; told < progress.troubled.size() && !arguments.quiet; ++told) {
       line.clear();
-      fmt::print("{}\n", shown(progress.troubled[told]));
+      fmt::print("{}\n", describe(progress.troubled[told]));
       std::fflush(stdout);
     }
     line.update(shown_progress(progress));
@@ -206,45 +201,6 @@ void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code) {
            "processes may do the same sweep. Exit codes: as of evbench run.";
   });
   command->callback([arguments, &plugins, &exit_code] { exit_code = execute(*arguments, plugins); });
-}
-
-void add_task(CLI::App& app, Plugins& plugins, int& exit_code) {
-  struct TaskArguments {
-    std::string manifest;
-    std::size_t line = 1, stride = 0;
-  };
-  auto arguments = std::make_shared<TaskArguments>();
-  CLI::App* command = app.add_subcommand("task", "Do a line of the manifest that evbench sweep wrote");
-  command->add_option("manifest", arguments->manifest, "manifest.jsonl")->required();
-  command->add_option("line", arguments->line, "Number of the line, from 1")->required()->check(CLI::PositiveNumber);
-  command->add_option("--stride", arguments->stride, "And every so many lines after it; 0: that line alone");
-  command->callback([arguments, &plugins, &exit_code] {
-    const Interruption interruption(arguments->manifest + ": interrupted; what was complete stays");
-    const std::size_t stride = arguments->stride == 0 ? std::size_t{1} << 40U : arguments->stride;
-    for (const ManifestLine& line : read_manifest(arguments->manifest, arguments->line, stride, plugins)) {
-      const SweepProgress now = do_runs({line.run}, plugins, line.options, [](const SweepProgress&) {});
-      for (const TroubledRun& run : now.troubled) fmt::print("{}\n", shown(run));
-      std::fflush(stdout);
-      if (now.failed > 0) exit_code = kExitFailed;
-    }
-  });
-}
-
-void add_status(CLI::App& app, int& exit_code) {
-  auto folder = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("status", "How far sweeps are, and what failed");
-  command->add_option("folder", *folder, "Folder of a sweep, OUT/NAME, or of several, OUT")
-      ->required()
-      ->type_name("DIR");
-  command->footer("Exit codes: 0 all done, 2 bad input, 3 some failed or are still to be done.");
-  command->callback([folder, &exit_code] {
-    for (const SweepStatus& sweep : read_sweep_status(*folder)) {
-      fmt::print("{}: {} of {} done, {} failed, {} running, {} to do\n", sweep.folder, sweep.done, sweep.runs,
-                 sweep.failed, sweep.running, sweep.missing);
-      for (const TroubledRun& run : sweep.troubled) fmt::print("  {}\n", shown(run));
-      if (sweep.done < sweep.runs) exit_code = kExitFailed;
-    }
-  });
 }
 
 }  // namespace evbench

@@ -295,6 +295,11 @@ class Executor {
 
 }  // namespace
 
+std::string describe(const TroubledRun& run) {
+  return fmt::format("{}: {}{}{}: {}", run.lost ? "lost" : "failed", run.label, run.place.empty() ? "" : ", ",
+                     run.place, run.reason);
+}
+
 std::optional<TroubledRun> trouble_of(const RunRecord& record, const std::string& place) {
   if (!record.status || record.status->status.state < RunState::lost) return std::nullopt;
   const Status& status = record.status->status;

@@ -26,6 +26,9 @@ struct TroubledRun {
   bool lost = false;   ///< there is an estimate, but not to the end
 };
 
+/// A line: "failed: LABEL, AXIS=VALUE: reason".
+std::string describe(const TroubledRun& run);
+
 /// Of a run's result; none where all is well.
 std::optional<TroubledRun> trouble_of(const RunRecord& record, const std::string& place);
 

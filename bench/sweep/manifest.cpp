@@ -74,7 +74,8 @@ std::vector<ManifestLine> read_manifest(const std::string& path, std::size_t fir
   std::size_t number = 0;
   for (std::string text; std::getline(file, text);) {
     ++number;
-    if (number < first || (number - first) % stride != 0) continue;
+    const bool wanted = stride == 0 ? number == first : number >= first && (number - first) % stride == 0;
+    if (!wanted) continue;
     lines.push_back(read_line(text, fmt::format("{}:{}", path, number), plugins, digests));
   }
   if (lines.empty()) throw InputError(fmt::format("{}: has {} lines; expected a line {}", path, number, first));

@@ -23,6 +23,7 @@
 
 #include "bench/sweep/process_tree.hpp"
 #include "core/io/write_all.hpp"
+#include "core/process/line_tail.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {

@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/sweep/sweep_file.hpp"
-#include "core/process/line_tail.hpp"
+#include "bench/sweep/run_limits.hpp"
 
 namespace evbench {
 

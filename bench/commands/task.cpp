@@ -1,0 +1,45 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "bench/commands/commands.hpp"
+#include "bench/commands/exit_code.hpp"
+#include "bench/sweep/manifest.hpp"
+#include "core/support/interruption.hpp"
+
+namespace evbench {
+namespace {
+
+struct TaskArguments {
+  std::string manifest;
+  std::size_t line = 1, stride = 0;
+};
+
+int execute(const TaskArguments& arguments, Plugins& plugins) {
+  const Interruption interruption(arguments.manifest + ": interrupted; what was complete stays");
+  int exit_code = kExitDone;
+  for (const ManifestLine& line : read_manifest(arguments.manifest, arguments.line, arguments.stride, plugins)) {
+    const SweepProgress now = do_runs({line.run}, plugins, line.options, [](const SweepProgress&) {});
+    for (const TroubledRun& run : now.troubled) fmt::print("{}\n", describe(run));
+    std::fflush(stdout);
+    if (now.failed > 0) exit_code = kExitFailed;
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+void add_task(CLI::App& app, Plugins& plugins, int& exit_code) {
+  auto arguments = std::make_shared<TaskArguments>();
+  CLI::App* command = app.add_subcommand("task", "Do a line of the manifest that evbench sweep wrote");
+  command->add_option("manifest", arguments->manifest, "manifest.jsonl")->required();
+  command->add_option("line", arguments->line, "Number of the line, from 1")->required()->check(CLI::PositiveNumber);
+  command->add_option("--stride", arguments->stride, "And every so many lines after it; 0: that line alone");
+  command->footer("Exit codes: as of evbench run.");
+  command->callback([arguments, &plugins, &exit_code] { exit_code = execute(*arguments, plugins); });
+}
+
+}  // namespace evbench
