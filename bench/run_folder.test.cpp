@@ -197,6 +197,12 @@ TEST_CASE("Metrics of a run have the documented keys, the same as those of evben
   for (const char* part : {"frontend_s", "backend_s", "waiting_s", "harness_s", "total_s"}) {
     CHECK(metrics.at("times").at(part).is_number());
   }
+  for (const char* steps : {"frontend_ms", "backend_ms"}) {  // of each batch, of each update
+    const Json times = metrics.at("times").at(steps);
+    CHECK(times.at("median") <= times.at("p99"));
+    CHECK(times.at("p99") <= times.at("max"));
+    CHECK(times.at("max") > 0.0);
+  }
   CHECK(metrics.at("status") == json_file(path, "status.json"));
   for (const char* trajectory : {"final", "online"}) {
     for (const char* key : {"/ate/trans_m/rmse", "/ate/rot_deg/rmse", "/ate/trans_percent", "/rpe/trans_m/rmse",

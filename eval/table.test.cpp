@@ -160,6 +160,23 @@ TEST_CASE("Below a table stands why runs have no scores") {
                                      Contains("Without scores: unscored: only 2 of the estimate's poses"));
 }
 
+TEST_CASE("A sweep's axes are columns, and runs that it has planned but not done are rows") {
+  Results results;
+  results.add("batching/a", run("batching", "bundle", scores_with(0.02)));
+  const auto planned = [](const char* key, const char* frame) {
+    return Json{{"key", key}, {"label", "bundle"}, {"axes", {{"frame", frame}, {"seed", "7"}}}};
+  };
+  const Json plan = {
+      {"name", "batching"}, {"axes", Json::array()}, {"runs", {planned("a", "0.1"), planned("b", "0.2")}}};
+  results.folder.write("batching/sweep.json", plan.dump());
+  const std::string text = table(results, {});
+  CHECK_THAT(line_with(text, "ATE [m]"), Contains("frame") && !Contains("seed"));
+  CHECK_THAT(line_with(text, "0.1 "), Contains("0.02") && Contains("ok"));
+  CHECK_THAT(line_with(text, "0.2 "), Contains("-") && Contains("not run"));
+  CHECK_THAT(text, Contains("Not run yet: bundle (frame 0.2)."));
+  CHECK_THAT(table(results, {.over = {"frame"}}), Contains("1 of 1"));
+}
+
 TEST_CASE("CSV has the exact numbers under the keys of metrics.json") {
   Results results;
   results.add("a", run("arm, left", "say \"one\"", scores_with(0.0123456789)));
