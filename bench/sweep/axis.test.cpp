@@ -43,7 +43,7 @@ TEST_CASE("An axis is said on a command line in the same ways") {
   CHECK(axis.values.at(1).overrides == std::vector<std::string>{"backend.rate=3"});
 }
 
-TEST_CASE("Overlays set several keys under one name; zipped axes keep their names") {
+TEST_CASE("Overlays set several keys under one name, and zipped axes keep their names") {
   const ZippedAxes overlay =
       read_axis(Json::parse(R"({"name": "motion", "overlays": {"slow": {"a": 1, "b.c": "x"}, "fast": {}}})"), "s");
   REQUIRE(overlay.size() == 1);

@@ -35,7 +35,7 @@ const char* const kSweep = R"({
 
 }  // namespace
 
-TEST_CASE("A sweep is the product of its axes, grid by grid; its plan names each run's values") {
+TEST_CASE("A sweep is the product of its axes, grid by grid, and its plan names each run's values") {
   const TemporaryFolder folder;
   folder.write("c.json", tiny_config().dump());
   folder.write("sweep.json", kSweep);
@@ -66,7 +66,7 @@ TEST_CASE("A sweep is the product of its axes, grid by grid; its plan names each
   CHECK_THROWS_WITH(select_runs(made, {"motion=fats"}), Contains("did you mean \"fast\"?"));
 }
 
-TEST_CASE("The same config has the same key in a sweep as alone; points of one job are one run, or refused") {
+TEST_CASE("The same config has the same key in a sweep as alone, and points of one job are one run, or refused") {
   const TemporaryFolder folder;
   const std::string path = folder.write("c.json", tiny_config().dump());
   const SweepPlan made = plan(folder, "c.json", {"seed=1,2"});
@@ -119,7 +119,7 @@ TEST_CASE("A sweep that can't be is refused before anything is written, with pla
   }
 }
 
-TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on request; renaming runs nothing") {
+TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on request, and renaming runs nothing") {
   const TemporaryFolder folder;
   folder.write("c.json", tiny_config().dump());
   const auto sweep = [&](const std::string& arguments) {
@@ -159,7 +159,7 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
   }
 }
 
-TEST_CASE("Two processes share a sweep; lines of its manifest, done one by one, give the same bytes") {
+TEST_CASE("Two processes share a sweep, and lines of its manifest, done one by one, give the same bytes") {
   const TemporaryFolder folder;
   folder.write("c.json", tiny_config().dump());
   REQUIRE(testing::evbench(folder, "sweep c.json --over seed=1..6 --out one").exit_code == 0);
