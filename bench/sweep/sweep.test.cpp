@@ -183,7 +183,7 @@ TEST_CASE("Two processes share a sweep, and lines of its manifest, done one by o
 }
 
 TEST_CASE(
-    "Tracks from events are made once for back-ends that share them, and change nothing; not those with feedback") {
+    "Tracks from events are made once for back-ends that share them, and change nothing, but not those with feedback") {
   const TemporaryFolder folder;
   Json config = tiny_config();
   config.erase("backend");
