@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "bench/testing/configs.hpp"
 #include "bench/testing/program.hpp"
 
 using namespace evbench;
@@ -80,11 +81,7 @@ Json with(Json config, const char* pointer, const Json& value) {
 
 TEST_CASE("Every config that comes with evbench, and every one that a run writes, is valid by the schema") {
   const Schema schema;
-  std::vector<std::string> paths;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(EVBENCH_CONFIGS)) {
-    const bool config = entry.path().filename() != "datasets.json" && entry.path().parent_path().filename() != "sweeps";
-    if (entry.path().extension() == ".json" && config) paths.push_back(entry.path());
-  }
+  std::vector<std::string> paths = shipped_configs();
   CHECK(paths.size() >= 2);
   testing::evbench(schema.folder(), "run recording.json --quiet");  // fails, with still points; its config is written
   for (const auto& run : std::filesystem::directory_iterator(schema.folder().file("results/recording"))) {

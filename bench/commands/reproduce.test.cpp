@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "bench/published.hpp"
 #include "bench/testing/program.hpp"
 
 using namespace evbench;
@@ -64,4 +65,20 @@ TEST_CASE("Names that are no configs and damaged numbers are refused with the pl
   CHECK_THAT(paper.reproduce("arm").err, Contains("published.json: results.0: \"protocol\" is missing"));
   CHECK_THAT(testing::evbench(paper.folder, "reproduce").err,
              Contains("configs/paper/published.json: can't be opened"));
+}
+
+TEST_CASE("The paper's numbers are of configs and back-ends that there are") {
+  const Published published = read_published(EVBENCH_CONFIGS "/paper/published.json");
+  CHECK(published.results.size() >= 2);
+  for (const PublishedResult& result : published.results) {
+    INFO(result.config);
+    const Json config = Json::parse(read_file(EVBENCH_CONFIGS "/paper/" + result.config + ".json"));
+    CHECK(config.at("name") == result.config);
+    CHECK_FALSE(result.not_equal.empty());
+    for (const PublishedRow& row : result.rows) {
+      CHECK(std::ranges::any_of(config.at("backends"),
+                                [&](const Json& backend) { return backend.at("label") == row.label; }));
+      CHECK_FALSE(row.values.empty());
+    }
+  }
 }
