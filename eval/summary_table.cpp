@@ -93,7 +93,8 @@ void add_metric(TextTable& table, const std::vector<Group>& rows, const TableRun
     cells.push_back({"-"});
     if (!q) continue;
     cells.back().text = number_text(metric.factor * q->median, decimals);
-    if (q->lower == q->upper && std::isinf(q->lower)) continue;
+    const bool all_fail = std::isinf(q->lower) && q->lower == q->upper;
+    if (all_fail || rows[cells.size() - 1].size() == 1) continue;
     cells.back().aside = fmt::format("[{}, {}]", number_text(metric.factor * q->lower, decimals),
                                      number_text(metric.factor * q->upper, decimals));
   }
@@ -140,10 +141,10 @@ void add_success(TextTable& table, const std::vector<Group>& rows, const TableRu
   add_column(table, "succeeded", true, csv ? std::move(succeeded) : std::move(both));
 }
 
-/// The values of a column, few of them: "seed (1 to 10)".
+/// How many values a column has: "seed (10 values)".
 std::string extent(const RunColumn& column) {
   const std::set<std::string> values(column.values.begin(), column.values.end());
-  return fmt::format("{} ({} values)", column.name, values.size());
+  return fmt::format("{} ({} value{})", column.name, values.size(), values.size() == 1 ? "" : "s");
 }
 
 /// What the cells are, and what bold means.
