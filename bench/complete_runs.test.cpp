@@ -221,7 +221,7 @@ TEST_CASE("Two back-ends that are the same job are refused with both labels, bef
   CHECK(names_in(comparison.folder.path()) == std::set<std::string>{"c.json"});
 }
 
-TEST_CASE("A back-end that throws makes its run failed with the reason; the others go on, and it is tried again") {
+TEST_CASE("A back-end that throws makes its run failed with the reason, the others go on, and it is tried again") {
   const TemporaryFolder folder;
   Json config = short_comparison();
   config["backends"][0] = {{"type", "breaking"}, {"label", "mine"}};

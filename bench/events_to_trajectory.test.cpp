@@ -147,7 +147,7 @@ TEST_CASE("A camera that stands still for ten seconds first has its trajectory w
   CHECK(error(scene, execution, 10.0) < 0.02);
 }
 
-TEST_CASE("Pure rotation gives no map, and says why; when the camera translates, there is one") {
+TEST_CASE("Pure rotation gives no map, and says why, when the camera translates, there is one") {
   const auto turn = [](double t) {
     Vector6 twist = Vector6::Zero();
     twist.head<3>() = Vector3(0.1 * std::sin(2.0 * t), 0.15 * std::sin(1.5 * t), 0.2 * std::sin(t));

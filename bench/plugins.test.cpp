@@ -10,7 +10,7 @@ using Catch::Matchers::Contains;
 
 // Libraries that are plugins: core/plugin/library.test.cpp, and the test of the installation, check_install.cmake.
 
-TEST_CASE("Libraries are named by --plugin before or after a command, a variable, or a config; messages say by which") {
+TEST_CASE("Libraries are named by --plugin before or after a command, a variable, or a config, messages say by which") {
   const TemporaryFolder folder;
   folder.write("a.so", "no library");
   Json config = short_config();

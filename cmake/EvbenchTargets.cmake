@@ -72,7 +72,8 @@ function(evbench_tests name)
   target_link_libraries(${name} PRIVATE ${ARG_LINKS} evbench_test_support evbench_flags)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # what is tested is optimised fully: its libraries
   evbench_precompile(${name} precompiled_test)
-  catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:")
+  catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:"
+                       FAIL_REGULAR_EXPRESSION "No tests ran")  # of a name that ctest takes apart, at a semicolon
 endfunction()
 
 # evbench_fuzz_targets(CORPUS archive LINKS ... [CORPUS_ONLY ...]): each NAME.fuzz.cpp in and below a folder as a

@@ -40,7 +40,7 @@ TEST_CASE("A failure is infinitely worse than any success, and two failures are 
   CHECK(result.test.rank_biserial == Approx(-4.0 / 6.0));
 }
 
-TEST_CASE("Runs are paired by seed and source; different protocols and runs without the number make no pair") {
+TEST_CASE("Runs are paired by seed and source, different protocols and runs without the number make no pair") {
   Results results;
   for (const int seed : {1, 2, 3}) results.add_seed("mine", seed, 0.1 * seed);
   for (const int seed : {2, 3, 4}) results.add_seed("other", seed, 1.0 * seed);

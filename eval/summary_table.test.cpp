@@ -82,7 +82,7 @@ TEST_CASE("Settings that vary, and those asked for, set rows apart or are summar
   CHECK_THROWS_WITH(make_table(runs, options), Contains("runs do not differ in \"seeds\"; did you mean \"seed\"?"));
 }
 
-TEST_CASE("The same job found twice counts once; two jobs that should be one are an error") {
+TEST_CASE("The same job found twice counts once, two jobs that should be one are an error") {
   Results results;
   add_seeds(results, 3);
   Json copy = run("arm", "good", scores_with(0.010));

@@ -58,7 +58,7 @@ TEST_CASE("Runs that could not be scored still make a table") {
   CHECK_THAT(table(results, {}), Contains("No run has scores") && Contains("no ground truth: not known"));
 }
 
-TEST_CASE("Columns can be chosen; pairs, coverage and scale then stand below") {
+TEST_CASE("Columns can be chosen, pairs, coverage and scale then stand below") {
   Results results;
   results.add("a", run("arm", "one", scores_with(0.020)));
   results.add("b", run("arm", "two", scores_with(0.030)));

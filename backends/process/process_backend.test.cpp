@@ -113,7 +113,7 @@ TEST_CASE("A back-end process is told camera, observations and ended tracks, and
 }
 
 TEST_CASE(
-    "A back-end process may tell a velocity, and an older time again; what it tells is known at the batch's end") {
+    "A back-end process may tell a velocity, and an older time again, what it tells is known at the batch's end") {
   Session session(R"(
 say({"evbench": 1})
 while "finish" not in (m := hear()):

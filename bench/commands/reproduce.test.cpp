@@ -49,7 +49,7 @@ TEST_CASE("Our numbers and the paper's stand side by side, with both protocols a
              Contains("arm,asynchronous,ate.trans_m.rmse,0.") && Contains(",0.5,") && Contains(",60,"));
 }
 
-TEST_CASE("Configs whose data is not here are left out and named; the others are done") {
+TEST_CASE("Configs whose data is not here are left out and named, the others are done") {
   const Paper paper;
   const Outcome outcome = paper.reproduce("");
   CHECK(outcome.exit_code == 2);

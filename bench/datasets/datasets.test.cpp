@@ -188,7 +188,7 @@ TEST_CASE("A download whose connection is cut goes on where it stopped, or from 
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.zip"});
 }
 
-TEST_CASE("A download that broke off too often says so; the next call goes on") {
+TEST_CASE("A download that broke off too often says so, the next call goes on") {
   const TemporaryFolder folder;
   Server server(noise(300000));
   server.cuts = 2;
@@ -216,7 +216,7 @@ TEST_CASE("A file that changed on the server since the download broke off is fet
 }
 
 TEST_CASE(
-    "Without a strong tag, the time of the last change tells versions apart; without either all is fetched anew") {
+    "Without a strong tag, the time of the last change tells versions apart, without either all is fetched anew") {
   const TemporaryFolder folder;
   Server server(noise(300000));
   server.cuts = 1;
@@ -247,7 +247,7 @@ TEST_CASE("A download of which all bytes are there, but which was not finished, 
   CHECK(read_file(folder.file("a.zip")) == noise(1000));
 }
 
-TEST_CASE("A web page in the place of a file is an error; a file that begins likewise is not") {
+TEST_CASE("A web page in the place of a file is an error, a file that begins likewise is not") {
   const TemporaryFolder folder;
   Server server("");
   server.more = {{"a.zip", "\n<!DOCTYPE HTML><p>Not found"}, {"b.html", "<?xml?><html>"}, {"c.xml", "<?xml?><a/>"}};
@@ -370,7 +370,7 @@ TEST_CASE("An archive has names of any language") {
   CHECK(read_file(folder.file("out/b.txt")) == "y");
 }
 
-TEST_CASE("What was fetched of a dataset stays until all of it is there; a damaged archive is fetched again") {
+TEST_CASE("What was fetched of a dataset stays until all of it is there, a damaged archive is fetched again") {
   const TemporaryFolder folder;
   Server server("");
   const std::string zip = read_file(make_archive(folder.file("b.zip"), {{"events.txt", noise(5000)}}));
@@ -408,7 +408,7 @@ TEST_CASE("What an earlier call left is fetched again when the checksum tells th
   CHECK(read_file(folder.file("set/a.h5")) == noise(1000));
 }
 
-TEST_CASE("dataset get fetches and unpacks by name, once; dataset list marks what is there") {
+TEST_CASE("dataset get fetches and unpacks by name, once, dataset list marks what is there") {
   const TemporaryFolder folder;
   make_archive(folder.file("sequence.zip"),
                {{"events.txt", "0.1 1 1 1\n"}, {"calib.txt", "200 200 120 90 0 0 0 0 0\n"}});

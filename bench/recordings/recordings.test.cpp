@@ -329,7 +329,7 @@ TEST_CASE("A conversion can be interrupted while no event lies in the range") {
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb"});
 }
 
-TEST_CASE("Text is converted into a pipe; other formats are not") {
+TEST_CASE("Text is converted into a pipe, other formats are not") {
   const TemporaryFolder folder;
   write_native(folder.file("a.evb"), walking_events(3), davis_header());
   const Outcome text = testing::shell(folder, "\"$evbench\" convert a.evb /dev/stdout --format text --quiet | cat");

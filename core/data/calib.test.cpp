@@ -61,7 +61,7 @@ TEST_CASE("A principal point outside the image is refused with the image's size"
                     Contains("calib.txt:1: has the principal point (320, 240), outside the image of 240x180 pixels"));
 }
 
-TEST_CASE("Kalibr's calibration is read with its own size and lens; of several cameras one is named") {
+TEST_CASE("Kalibr's calibration is read with its own size and lens, of several cameras one is named") {
   const std::string cam0 = R"(cam0:
   camera_model: pinhole
   distortion_coeffs: [-0.37, 0.15, -0.0003, -0.0008]
@@ -86,7 +86,8 @@ TEST_CASE("Kalibr's calibration is read with its own size and lens; of several c
   const std::string path = folder.write("camchain.yaml", both);
   CHECK(read_calib(path, 240, 180, DistortionModel::none, "cam1").distortion == DistortionModel::equidistant);
   CHECK_THROWS_WITH(read_calib(path, 240, 180), Contains("camchain.yaml: holds cam0, cam1; expected the name"));
-  CHECK_THROWS_WITH(read_calib(path, 240, 180, DistortionModel::none, "cam2"), Contains("has no camera \"cam2\"; did you mean"));
+  CHECK_THROWS_WITH(read_calib(path, 240, 180, DistortionModel::none, "cam2"),
+                    Contains("has no camera \"cam2\"; did you mean"));
   CHECK_THROWS_WITH(calib("cam0:\n  camera_model: omni\n  distortion_model: none\n"),
                     Contains("\"omni\"; expected pinhole"));
 }

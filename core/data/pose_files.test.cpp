@@ -62,7 +62,7 @@ TEST_CASE("A RobotEvt file reads back as written") {
   CHECK(worst_difference(read_poses(folder.file("a.txt")).trajectory, unix_time_example()) < 1e-9);
 }
 
-TEST_CASE("TUM columns are t px py pz qx qy qz qw; comments and blank lines are skipped") {
+TEST_CASE("TUM columns are t px py pz qx qy qz qw, comments and blank lines are skipped") {
   const PoseTrajectory poses = tum("# comment\n\n0.5 1 2 3 0 0 0.70710678 0.70710678\r\n");
   REQUIRE(poses.size() == 1);
   CHECK(poses.start() == 0.5);

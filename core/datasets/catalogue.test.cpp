@@ -44,7 +44,7 @@ TEST_CASE("The catalogue that comes with the program has the Event-Camera Datase
   CHECK_THROWS_WITH(find_dataset(catalogue, "ecd/dynamic_6d0f"), Contains("did you mean \"ecd/dynamic_6dof\"?"));
 }
 
-TEST_CASE("A dataset that is there is found by its name; for one that isn't, the command that fetches it is named") {
+TEST_CASE("A dataset that is there is found by its name, for one that isn't, the command that fetches it is named") {
   const testing::TemporaryFolder folder;
   const Variable variable("EVBENCH_DATASETS", folder.path());
   CHECK_THROWS_WITH(existing_dataset_folder("ecd/dynamic_6dof", "here"),

@@ -80,7 +80,7 @@ TEST_CASE("A part file replaces what a link leads to, and keeps its permissions"
   }
 }
 
-TEST_CASE("A pipe is written to where that will do, and refused otherwise; it stays a pipe") {
+TEST_CASE("A pipe is written to where that will do, and refused otherwise, it stays a pipe") {
   const testing::TemporaryFolder folder;
   const std::string pipe = folder.file("pipe");
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);

@@ -27,7 +27,7 @@ using Records = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("Records are split at blanks; comments and blank lines are none") {
+TEST_CASE("Records are split at blanks, comments and blank lines are none") {
   CHECK(records("1 2\n\n# no\n  \t\n\t 3 \t 4 \n% no\n") == Records{"1|2|", "3|4|"});
   CHECK(records("").empty());
 }

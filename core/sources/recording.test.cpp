@@ -211,7 +211,7 @@ TEST_CASE("A recording's usual files are read as the options say") {
   CHECK(source.ground_truth().poses()[1].T.p.z() == 4.0);
 }
 
-TEST_CASE("A recording of a calibration alone has no events; a file of them is named in its own option") {
+TEST_CASE("A recording of a calibration alone has no events, a file of them is named in its own option") {
   const testing::TemporaryFolder folder;
   folder.write("calib.txt", kCalibration);
   CHECK(open(R"({"calibration": "calib.txt", "time_range": [0, 1]})", folder.path()).events() == nullptr);

@@ -31,7 +31,7 @@ TEST_CASE("What is thrown then knows the signal, and is told from bad input") {
   }
 }
 
-TEST_CASE("A signal that was ignored stays so, also afterwards; the others are as before") {
+TEST_CASE("A signal that was ignored stays so, also afterwards, the others are as before") {
   const auto before = std::signal(SIGHUP, SIG_IGN);
   const auto terminate = std::signal(SIGTERM, SIG_DFL);
   {

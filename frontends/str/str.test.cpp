@@ -96,7 +96,7 @@ TEST_CASE("Points of a wall are followed from batch to batch, each observed at a
   CHECK(times.size() > all.observations.size() / 2);  // their own
 }
 
-TEST_CASE("A chain of batches slides; anchored to what was around it once, a track stays where it is") {
+TEST_CASE("A chain of batches slides, anchored to what was around it once, a track stays where it is") {
   Options chained;
   chained.patch.anchor_fit = 1.0;
   const double anchored = median_error(scene(), brisk, track(scene()).all.observations);

@@ -72,7 +72,7 @@ TEST_CASE("AEDAT 4: cut short or broken anywhere, it is refused or read as far a
   testing::check_corruption(folder, *path, 200, 4000);
 }
 
-TEST_CASE("AEDAT 4: files without compression and without a table are read; bad packets are passed over and counted") {
+TEST_CASE("AEDAT 4: files without compression and without a table are read, bad packets are passed over and counted") {
   const testing::TemporaryFolder folder;
   const std::string whole =
       packet(5, 100) + packet(6, 105) + packet(5, 110) + packet(5, 120, 1u << 30) + packet(5, 130);

@@ -242,7 +242,7 @@ TEST_CASE("M3ED's cameras are chosen by name and bring their calibration") {
   check_recording(read_all(*right));
 }
 
-TEST_CASE("Events beside a calibration that cannot be used are read; it is refused when it is asked for") {
+TEST_CASE("Events beside a calibration that cannot be used are read, it is refused when it is asked for") {
   const testing::TemporaryFolder folder;
   const std::string path = folder.file("spot.h5");
   {

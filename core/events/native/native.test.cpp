@@ -136,7 +136,7 @@ TEST_CASE("A native file that is truncated anywhere is refused") {
   CHECK_THROWS_AS(read_bytes(bytes + "x"), InputError);
 }
 
-TEST_CASE("A native file that is shortened while it is read is an error; one that is replaced is read to its end") {
+TEST_CASE("A native file that is shortened while it is read is an error, one that is replaced is read to its end") {
   const testing::TemporaryFolder folder;
   const auto events = random_events(100000, 240, 180, 10.0);
   const std::string path = write_native(folder.file("events.evb"), events, davis_header());
@@ -167,7 +167,7 @@ TEST_CASE("A flipped bit anywhere in a native file is noticed") {
   }
 }
 
-TEST_CASE("A damaged chunk of a native file is left out and counted; the others are read") {
+TEST_CASE("A damaged chunk of a native file is left out and counted, the others are read") {
   const testing::TemporaryFolder folder;
   const auto events = random_events(3 * native::kChunkEvents, 240, 180, 10.0);
   std::string bytes = testing::read_file(write_native(folder.file("events.evb"), events, davis_header()));

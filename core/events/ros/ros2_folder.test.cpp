@@ -204,7 +204,7 @@ TEST_CASE("Reading a ROS 2 recording is interrupted, also while a file is unpack
   CHECK(std::filesystem::is_empty(others.path()));
 }
 
-TEST_CASE("A ROS 2 recording lacking one of its files is read without it and says so; lacking all it is refused") {
+TEST_CASE("A ROS 2 recording lacking one of its files is read without it and says so, lacking all it is refused") {
   const testing::TemporaryFolder folder;
   write_recording(folder);
   std::filesystem::remove(folder.file("a_0.mcap"));

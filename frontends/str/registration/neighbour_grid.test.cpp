@@ -55,7 +55,7 @@ TEST_CASE("The nearest point of a kind is found, as by looking at all, wherever 
   }
 }
 
-TEST_CASE("Away from an edge counts across it and not along it; where points lie everywhere it counts little") {
+TEST_CASE("Away from an edge counts across it and not along it, where points lie everywhere it counts little") {
   NeighbourGrid grid;
   Points edge, everywhere;
   for (int i = 0; i < 200; ++i) edge.add(0.1 * i, 0.05 * i, 1, 0.01 * i);
