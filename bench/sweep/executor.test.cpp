@@ -13,6 +13,7 @@
 #include "bench/testing/keys.hpp"
 #include "bench/testing/sweeps.hpp"
 #include "core/plugin/registration.hpp"
+#include "eval/find_runs.hpp"
 #include "eval/table.hpp"
 
 using namespace evbench;
