@@ -146,11 +146,10 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
   REQUIRE(testing::evbench(folder, "run c.json --quiet --out alone").exit_code == 0);
   for (const auto& [path, content] : results_of(folder.file("alone/tiny"))) CHECK(before.at(path) == content);
 
-  REQUIRE(testing::shell(folder, "rm -r results/other; rm $(ls -d results/tiny/b*/final.tum | head -1)").exit_code ==
-          0);
+  REQUIRE(testing::shell(folder, "rm -r results/other; rm results/tiny/*/final.tum").exit_code == 0);
   const Outcome damaged = sweep("--over seed=1..2");
   CHECK(damaged.exit_code == 3);
-  CHECK_THAT(damaged.out, Contains("damaged: ") && Contains("final.tum: is missing") && Contains("1 failed"));
+  CHECK_THAT(damaged.out, Contains("damaged: ") && Contains("final.tum: is missing") && Contains("2 failed"));
   CHECK(sweep("--over seed=1..2 --retry-failed").exit_code == 0);
   auto after = results_of(folder.file("results/tiny"));
   for (const auto& [path, content] : before) {
