@@ -182,7 +182,10 @@ std::vector<std::string> libraries_of(const Job& job, const Plugins& plugins) {
 std::vector<std::pair<std::string, PluginConfig>> backends(const ExperimentOptions& options, const std::string& path,
                                                            const Plugins& plugins) {
   if (options.backend.is_null() == options.backends.is_null()) {
-    throw InputError(fmt::format("{}: expected either \"backend\" (one run) or \"backends\" (a comparison)", path));
+    throw InputError(fmt::format(
+        "{}: {}; expected either \"backend\" (one run) or \"backends\" (a comparison), of which \"backends.0\" is the "
+        "first",
+        path, options.backend.is_null() ? "there is no back-end" : "there are \"backend\" and \"backends\""));
   }
   const bool single = !options.backend.is_null();
   const Json list = single ? Json::array({options.backend}) : options.backends;

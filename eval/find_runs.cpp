@@ -13,7 +13,7 @@
 #include "core/support/error.hpp"
 #include "core/support/index.hpp"
 #include "core/support/parallel.hpp"
-#include "eval/sweep_plan.hpp"
+#include "eval/sweep_record.hpp"
 
 namespace evbench {
 namespace fs = std::filesystem;
@@ -56,7 +56,8 @@ Places find_places(const std::string& folder) {
     const bool metrics = name == "metrics.json", job = name == "job.json", sweep = name == "sweep.json";
     if (!(metrics || job || sweep) || !entry->is_regular_file(error)) continue;
     const fs::path within = entry->path().parent_path();
-    const Place place{within.string(), (canonical / within.lexically_relative(folder)).lexically_normal().string()};
+    const fs::path below = within.lexically_relative(folder);  // "." is the folder itself
+    const Place place{within.string(), (below == "." ? canonical : canonical / below).string()};
     if (metrics) places.runs.push_back(place);
     if (job && !fs::exists(within / "metrics.json", error)) places.missing.push_back(place);
     if (sweep) places.sweeps.push_back(place);
@@ -113,7 +114,7 @@ std::map<std::string, RunRecord> read_records(const std::vector<Place>& places, 
   return by_folder;
 }
 
-RunRecord not_run(const PlannedRun& run, const std::string& folder) {
+RunRecord not_run(const SweepRecordRun& run, const std::string& folder) {
   RunRecord record;
   const auto seed = std::ranges::find(run.axes, "seed", &RunAxes::value_type::first);
   if (seed != run.axes.end()) record.seed = std::strtoull(seed->second.c_str(), nullptr, 10);
@@ -126,14 +127,14 @@ RunRecord not_run(const PlannedRun& run, const std::string& folder) {
 /// Moves the records of a sweep's runs out of `records`, in the order of its plan.
 void take_sweep(const Place& sweep, const std::set<std::string>& unreadable, std::map<std::string, RunRecord>& records,
                 std::vector<FoundRun>& runs) {
-  const SweepPlan plan = read_sweep_plan(sweep.path + "/sweep.json");
+  const SweepRecord plan = read_sweep_record(sweep.path + "/sweep.json");
   std::map<std::string, RunRecord> own;  // several places of a sweep may need the same run
   const std::string prefix = sweep.canonical + "/";
   for (auto it = records.lower_bound(prefix); it != records.end() && it->first.starts_with(prefix);) {
     own.insert(records.extract(it++));
   }
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
-    const PlannedRun& planned = plan.runs[i];
+    const SweepRecordRun& planned = plan.runs[i];
     const std::string folder = prefix + planned.key;
     if (unreadable.contains(folder)) continue;
     const auto found = own.find(folder);

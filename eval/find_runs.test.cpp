@@ -71,6 +71,11 @@ TEST_CASE("Runs of a sweep stand in its order, with their places on its axes, th
                        planned("a", "asynchronous", {{"frame", "0.1"}, {"seed", "3"}}),
                        planned("a", "asynchronous", {{"frame", "0.2"}, {"seed", "3"}})}}};
   results.folder.write("batching/sweep.json", plan.dump());
+  for (const char* folder : {"batching", "batching/", "batching/."}) {
+    INFO(folder);
+    const std::vector<RunRecord> own = find_runs(std::vector{results.folder.file(folder)});
+    CHECK(std::ranges::count(own, true, &RunRecord::done) > 0);
+  }
   const auto runs = results.find();
   REQUIRE(runs.size() == 4);
   CHECK(runs[0].key == "mine-0123456789");

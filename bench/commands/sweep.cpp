@@ -15,6 +15,7 @@
 #include "bench/run_folder.hpp"
 #include "bench/sweep/local_executor.hpp"
 #include "bench/sweep/manifest.hpp"
+#include "bench/sweep/process_pool.hpp"
 #include "bench/sweep/slurm_executor.hpp"
 #include "bench/sweep/sweep_status.hpp"
 #include "core/io/atomic_file.hpp"
@@ -72,10 +73,9 @@ int do_locally(const std::vector<PlannedRun>& runs, const SweepArguments& argume
   SweepProgress now;
   std::size_t told = 0;
   const auto tell = [&](const SweepProgress& progress) {
-    for (; told < progress.troubled.size() && !arguments.quiet; ++told) {
+    for (; told < progress.troubled.size(); ++told) {
       line.clear();
-      fmt::print("{}\n", describe(progress.troubled[told]));
-      std::fflush(stdout);
+      fmt::print(stderr, "{}\n", describe(progress.troubled[told]));
     }
     line.update(shown_progress(progress));
     now = progress;
@@ -131,6 +131,7 @@ int write_manifest(const std::vector<PlannedRun>& runs, const SweepArguments& ar
 
 int execute(SweepArguments& arguments, Plugins& plugins) {
   const Interruption interruption(arguments.file + ": interrupted; no run was begun");
+  stay_without_threads();
   const Sweep sweep = read_sweep(arguments.file, arguments.overrides, arguments.over, plugins);
   ExecutorOptions& options = arguments.options;
   options.limits.seconds = arguments.seconds.value_or(sweep.limits.seconds);

@@ -8,6 +8,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/exit_code.hpp"
 #include "bench/sweep/manifest.hpp"
+#include "bench/sweep/process_pool.hpp"
 #include "core/support/interruption.hpp"
 
 namespace evbench {
@@ -20,6 +21,7 @@ struct TaskArguments {
 
 int execute(const TaskArguments& arguments, Plugins& plugins) {
   const Interruption interruption(arguments.manifest + ": interrupted; what was complete stays");
+  stay_without_threads();
   int exit_code = kExitDone;
   for (const ManifestLine& line : read_manifest(arguments.manifest, arguments.line, arguments.stride, plugins)) {
     const SweepProgress now = do_runs({line.run}, plugins, line.options, [](const SweepProgress&) {});

@@ -34,7 +34,7 @@ Json to_json(const Mark& mark) {
   return json;
 }
 
-Json to_json(const Axis& axis) {
+Json to_json(const PanelAxis& axis) {
   return {{"label", axis.label}, {"scale", axis.log ? "log" : "linear"}, {"share", axis.share}};
 }
 

@@ -31,7 +31,7 @@ struct Mark {
   std::string text = {};
 };
 
-struct Axis {
+struct PanelAxis {
   std::string label;  ///< with its unit
   bool log = false;
   bool share = false;  ///< from 0 to 1
@@ -39,7 +39,7 @@ struct Axis {
 
 /// A pair of axes with what is drawn in it.
 struct Panel {
-  Axis x, y;
+  PanelAxis x, y;
   std::vector<Mark> marks;
   std::vector<std::string> names = {};  ///< of boxes, from above, instead of a y axis
   bool equal = false;                   ///< a metre is as long on both axes

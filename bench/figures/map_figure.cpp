@@ -50,6 +50,9 @@ Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options)
   if (options.axis.empty() || options.across.empty()) {
     throw InputError("a map has two axes; expected --axis and --across, each with the name of one");
   }
+  if (options.axis == options.across) {
+    throw InputError(fmt::format("--axis and --across are both \"{}\"; expected two axes", options.axis));
+  }
   const FigureRuns all(runs, options, options.axis);
   const RunColumn &axis = find_column(all.columns, options.axis), &across = find_column(all.columns, options.across);
   check_numbers(axis);
@@ -90,8 +93,8 @@ Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options)
   figure.columns = figure.panels.size();
   std::string shown;
   for (const Metric& metric : all.metrics) shown += (shown.empty() ? "" : ", ") + metric.header;
-  figure.caption = all.caption(fmt::format("{} of {} over that of {}, on the same data: medians of up to {} pairs.",
-                                           shown, method.name, base.name, pairs),
+  figure.caption = all.caption(fmt::format("{} of {} over that of {}, on the same data: medians of up to {} pair{}.",
+                                           shown, method.name, base.name, pairs, pairs == 1 ? "" : "s"),
                                options.online);
   return figure;
 }

@@ -17,6 +17,7 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
+#include <opencv2/core/utility.hpp>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -94,6 +95,8 @@ void settle(pid_t parent, const Pipe& output) {
 }
 
 }  // namespace
+
+void stay_without_threads() { cv::setNumThreads(0); }
 
 class ProcessPool::Process {
  public:

@@ -13,6 +13,10 @@
 
 namespace evbench {
 
+/// Keeps OpenCV from making threads, here and in the processes of a pool: one that is forked would wait for ever for
+/// those that did not come along. To be called before anything is made of what a config names.
+void stay_without_threads();
+
 /// How a process of a pool ended.
 struct Ending {
   std::size_t id = 0;            ///< that start() was given

@@ -1,4 +1,4 @@
-#include "eval/sweep_plan.hpp"
+#include "eval/sweep_record.hpp"
 
 #include "eval/json_file.hpp"
 #include "eval/record_reader.hpp"
@@ -6,8 +6,8 @@
 namespace evbench {
 namespace {
 
-PlannedRun read_run(const RecordReader& json) {
-  PlannedRun run{json.text("key"), json.text("label"), {}};
+SweepRecordRun read_run(const RecordReader& json) {
+  SweepRecordRun run{json.text("key"), json.text("label"), {}};
   const Json& axes = json.at("axes");
   if (!axes.is_object()) json.fail("axes", "an object, a value for each axis");
   const RecordReader values(axes, json.place() + ".axes");
@@ -17,10 +17,10 @@ PlannedRun read_run(const RecordReader& json) {
 
 }  // namespace
 
-SweepPlan read_sweep_plan(const std::string& path) {
+SweepRecord read_sweep_record(const std::string& path) {
   const Json file = read_json_file(path);
   const RecordReader json(file, path);
-  SweepPlan plan{json.text("name"), {}};
+  SweepRecord plan{json.text("name"), {}};
   if (json.at("runs").is_null()) json.fail("runs", "the runs that the sweep plans");
   for (const RecordReader& run : json.list("runs")) plan.runs.push_back(read_run(run));
   return plan;
