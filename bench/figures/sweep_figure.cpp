@@ -108,10 +108,11 @@ Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& option
   figure.columns = std::min<std::size_t>(figure.panels.size(), 2);
   figure.height_mm = 64.0 * std::ceil(static_cast<double>(figure.panels.size()) / 2.0);
   std::string what = "Medians, and bands between quartiles";
-  for (const RunColumn& column : all.columns) {
-    const std::set<std::string> values(column.values.begin(), column.values.end());
-    if (column.name == "seed" && values.size() > 1) what += fmt::format(", of {} seeds", values.size());
+  std::set<std::string> seeds;
+  for (const Method& method : all.methods) {
+    for (const std::size_t run : method.runs) seeds.insert(find_column(all.columns, "seed").values[run]);
   }
+  if (seeds.size() > 1) what += fmt::format(", of {} seeds", seeds.size());
   figure.caption = all.caption(what + ".", options.online);
   return figure;
 }
