@@ -1,0 +1,151 @@
+#include "frontends/str/motion/motion_tracks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "core/plugin/registration.hpp"
+#include "frontends/str/event_source.hpp"
+
+namespace evbench::str {
+namespace {
+
+const evbench::Registration<FrontEnd, MotionTracks> registration(
+    "str_motion",
+    "registers batches of events as point clouds; tracks are points that the motion of the image carries");
+
+std::pair<Batch, Batch> halves(const Batch& batch) {
+  const std::int64_t middle = batch.from + (batch.to - batch.from) / 2;
+  const auto early =
+      static_cast<std::size_t>(std::ranges::lower_bound(batch.events, middle, {}, &Event::t) - batch.events.begin());
+  return {{batch.events.first(early), batch.from, middle}, {batch.events.subspan(early), middle, batch.to}};
+}
+
+}  // namespace
+
+MotionTracks::MotionTracks(const Options& options, const FrontEndContext& context)
+    : options_(options),
+      camera_(context.source.camera()),
+      range_(context.source.time_range()),
+      feed_(events_of(context, "str_motion")),
+      batches_(options.batch, 0.0, microseconds(range_.from)),
+      registrar_(camera_, options.registration),
+      told_(range_.from),
+      complete_(range_.from),
+      clock_(range_.from) {}
+
+bool MotionTracks::advance(const Horizon& horizon, TrackBatch& batch) {
+  constexpr double kStep = 0.005;  // [s]
+  const auto enough = [&] { return horizon.observations > 0 && told_.has(horizon.observations, complete_); };
+  while (clock_ < horizon.t && !enough()) {
+    clock_ = std::min(horizon.t, range_.from + kStep * (std::floor((clock_ - range_.from) / kStep + 1e-6) + 1.0));
+    follow(microseconds(clock_));
+  }
+  const bool ended = feed_.ended() || clock_ >= range_.to;
+  told_.tell(ended ? clock_ : complete_, horizon.observations, batch);
+  batch.seen = clock_;
+  return !(ended && told_.empty());
+}
+
+/// All events up to `until` [µs].
+void MotionTracks::follow(std::int64_t until) {
+  for (auto events = feed_.until(until); !events.empty(); events = feed_.until(until)) batches_.add(events);
+  while (const auto batch = batches_.next(until)) process(*batch);
+}
+
+void MotionTracks::process(const Batch& batch) {
+  const std::size_t of_one_at_rest = 2 * static_cast<std::size_t>(options_.registration.least_events);
+  const Span span{seconds(batch.from - 1), seconds(batch.to - 1)};  // events up to here, these included
+  if (batch.events.size() < of_one_at_rest) {
+    ++still_;
+    move({span, Matrix3::Zero()});
+    return;
+  }
+  const Registration found = registrar_.align(batch, last_ ? std::optional(last_->A) : std::nullopt);
+  const bool divisible = seconds(batch.to - batch.from) >= 2.0 * options_.shortest_batch;
+  if (found.good() || (!divisible && found.alignment.converged && found.alignment.fit >= options_.shortest_fit)) {
+    ++registered_;
+    batches_.expect(found.motion / seconds(batch.to - batch.from));
+    move({span, found.A});
+  } else if (divisible) {
+    ++divided_;
+    const auto [early, late] = halves(batch);
+    process(early);
+    process(late);
+  } else {
+    ++unregistered_;
+    batches_.expect(0.0);
+    unknown_.push_back(span);
+    if (!last_ || span.to - unknown_.front().from > options_.patience) interrupt(span.to);
+  }
+}
+
+/// The points go on to the end of a span of which the motion is known, and through those before of which it is not.
+void MotionTracks::move(const Motion& motion) {
+  for (const Span& span : unknown_) {
+    const double share = (span.middle() - last_->span.middle()) / (motion.span.middle() - last_->span.middle());
+    carry_on({span, last_->A + share * (motion.A - last_->A)});
+  }
+  unknown_.clear();
+  carry_on(motion);
+  last_ = motion;
+  complete_ = motion.span.to;
+  replenish();
+}
+
+void MotionTracks::carry_on(const Motion& motion) {
+  const Matrix3 later = Matrix3(-(motion.span.to - motion.span.from) * motion.A).exp();
+  std::erase_if(points_, [&](Point& point) {
+    const Vector3 ray = later * point.ray;
+    if (ray.z() > 0.0) point.ray = ray / ray.z();
+    const bool stays = ray.z() > 0.0 && camera_.contains(camera_.project(point.ray));
+    if (stays) {
+      observe(point, motion.span.to);
+    } else {
+      told_.end({point.id, motion.span.to});
+    }
+    return !stays;
+  });
+}
+
+/// The motion has been unknown for too long.
+void MotionTracks::interrupt(double t) {
+  interrupted_ += points_.empty() ? 0 : 1;
+  for (const Point& point : points_) told_.end({point.id, t});
+  points_.clear();
+  unknown_.clear();
+  last_.reset();
+  complete_ = t;
+}
+
+/// New points at the places of a grid that none is near to.
+void MotionTracks::replenish() {
+  std::vector<Vector2> taken;
+  for (const Point& point : points_) taken.push_back(camera_.project(point.ray));
+  for (double y = 0.5 * options_.spacing; y < camera_.height; y += options_.spacing) {
+    for (double x = 0.5 * options_.spacing; x < camera_.width; x += options_.spacing) {
+      const Vector2 pixel(x, y);
+      const bool near = std::ranges::any_of(
+          taken, [&](const Vector2& other) { return (other - pixel).norm() < 0.5 * options_.spacing; });
+      const auto ideal = near ? std::nullopt : camera_.undistort(pixel);
+      if (!ideal) continue;
+      points_.push_back({next_id_++, camera_.pinhole.ray(*ideal)});
+      observe(points_.back(), complete_);
+    }
+  }
+}
+
+void MotionTracks::observe(const Point& point, double t) {
+  told_.add({point.id, t, camera_.project(point.ray), options_.sigma});
+}
+
+std::vector<std::string> MotionTracks::remarks() const {
+  return {fmt::format("batches: {} registered, {} standing still, {} without a motion; {} divided into halves",
+                      registered_, still_, unregistered_, divided_),
+          fmt::format("{} points begun, {} in view at the end; {} times all ended, as there was no motion", next_id_,
+                      points_.size(), interrupted_)};
+}
+
+}  // namespace evbench::str

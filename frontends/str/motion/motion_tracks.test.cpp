@@ -1,0 +1,157 @@
+#include "frontends/str/motion/motion_tracks.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "core/geometry/so3.hpp"
+#include "core/testing/event_scene.hpp"
+
+using namespace evbench;
+using namespace evbench::str;
+using evbench::testing::EventScene;
+
+namespace {
+
+/// To and fro, turning round every 0.26 s, first at 0.13 s.
+SE3 to_and_fro(double t) { return {so3::exp(Vector3(0.1, 0.25, 0.05) * std::sin(12.0 * t)), Vector3::Zero()}; }
+
+const EventScene& scene() {
+  static const EventScene result(to_and_fro, 1.0, EventScene::quadrangles(150, 1));
+  return result;
+}
+
+struct Told {
+  TrackBatch all;
+  std::vector<std::string> remarks;
+};
+
+Told follow(const Source& source, const MotionTracksOptions& options = {}, double interval = 0.01,
+            std::size_t most = 0) {
+  MotionTracks motion(options, {source, 0, ""});
+  const double to = source.time_range().to;
+  Told result;
+  TrackBatch batch;
+  result.all.until = 0.0;
+  for (int k = 1; result.all.until < to;) {
+    const double horizon = std::min(to, interval * k);
+    motion.advance({horizon, most}, batch);
+    REQUIRE(batch.until >= result.all.until);
+    for (const TrackObservation& z : batch.observations) {
+      CHECK((z.t > result.all.until && z.t <= batch.until));
+      result.all.observations.push_back(z);
+    }
+    result.all.ended.insert(result.all.ended.end(), batch.ended.begin(), batch.ended.end());
+    result.all.until = batch.until;
+    if (batch.known_at() >= horizon) ++k;
+  }
+  result.remarks = motion.remarks();
+  return result;
+}
+
+/// How far each observation is from where the rotation since the track's beginning takes it [px].
+std::vector<double> errors(const Source& source, const std::function<SE3(double)>& motion, const TrackBatch& told) {
+  std::map<TrackId, Vector3> directions;
+  std::vector<double> result;
+  for (const TrackObservation& z : told.observations) {
+    const Eigen::Quaterniond R = motion(z.t).q;
+    const auto [found, fresh] = directions.try_emplace(z.track, R * source.camera().pinhole.ray(z.pixel));
+    if (!fresh) result.push_back((source.camera().project(R.conjugate() * found->second) - z.pixel).norm());
+  }
+  std::ranges::sort(result);
+  return result;
+}
+
+bool same(const TrackBatch& a, const TrackBatch& b) {
+  return std::ranges::equal(a.observations, b.observations, [](const TrackObservation& x, const TrackObservation& y) {
+    return x.track == y.track && x.t == y.t && x.pixel == y.pixel;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("Points are carried by the rotation that the events say, also where it turns round") {
+  const Told told = follow(scene());
+  INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
+  const std::vector<double> all = errors(scene(), to_and_fro, told.all);
+  REQUIRE(all.size() > 500);
+  CHECK(all[all.size() / 2] < 1.0);
+  CHECK(all[all.size() * 95 / 100] < 4.0);  // of 400 px of motion, of which a track sees a part
+  CHECK(told.remarks.at(1).find(" 0 times all ended") != std::string::npos);
+}
+
+TEST_CASE("A batch within which the motion turns round is divided, and tells as much as its parts") {
+  MotionTracksOptions options;
+  options.batch.duration = 0.06;
+  const Told told = follow(scene(), options);
+  INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
+  CHECK(told.remarks.at(0).find(" 0 divided") == std::string::npos);
+  const std::vector<double> all = errors(scene(), to_and_fro, told.all);
+  REQUIRE(all.size() > 500);
+  CHECK(all[all.size() / 2] < 1.0);
+  CHECK(told.remarks.at(1).find(" 0 times all ended") != std::string::npos);
+}
+
+TEST_CASE("Points do not depend on how they are asked for") {
+  const TrackBatch usual = follow(scene()).all;
+  CHECK(usual.observations.size() > 500);
+  CHECK(same(usual, follow(scene(), {}, 0.037).all));
+  CHECK(same(usual, follow(scene(), {}, 0.01, 7).all));
+}
+
+TEST_CASE("Points of a camera that stands still stay where they are, and go on when it moves") {
+  const auto motion = [](double t) {
+    return to_and_fro(t < 0.3927 ? t : std::max(0.3927, t - 0.5));
+  };  // stands where it turns
+  const EventScene source(motion, 1.2, EventScene::quadrangles(150, 1));
+  const TrackBatch all = follow(source).all;
+  std::map<TrackId, std::pair<double, double>> lives;
+  for (const TrackObservation& z : all.observations) {
+    lives.try_emplace(z.track, z.t, z.t).first->second.second = z.t;
+  }
+  CHECK(std::ranges::count_if(
+            lives, [](const auto& life) { return life.second.first < 0.35 && life.second.second > 0.95; }) > 10);
+  std::map<TrackId, Vector2> at_rest;
+  for (const TrackObservation& z : all.observations) {
+    if (z.t < 0.45 || z.t > 0.85) continue;
+    CHECK((at_rest.try_emplace(z.track, z.pixel).first->second - z.pixel).norm() < 0.01);
+  }
+  CHECK(at_rest.size() > 10);
+  const std::vector<double> off = errors(source, motion, all);
+  CHECK(off[off.size() / 2] < 2.0);
+}
+
+TEST_CASE("Where events say nothing of a motion for too long, all points end, and others begin after it") {
+  EventScene flickering = scene();
+  Random random(1);
+  std::vector<Event> noise;
+  for (int i = 0; i < 300'000; ++i) {
+    noise.push_back({300'000 + static_cast<std::int64_t>(random.index(400'000)),
+                     static_cast<std::uint16_t>(random.index(240)), static_cast<std::uint16_t>(random.index(180)),
+                     random.index(2) == 1});
+  }
+  std::erase_if(flickering.list, [](const Event& e) { return e.t >= 300'000 && e.t < 700'000; });
+  flickering.add(noise);
+  MotionTracksOptions strict;
+  strict.patience = 0.1;
+  const Told told = follow(flickering, strict);
+  INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
+  CHECK(told.remarks.at(1).find("1 times all ended") != std::string::npos);
+  std::map<TrackId, std::pair<double, double>> lives;
+  for (const TrackObservation& z : told.all.observations) {
+    lives.try_emplace(z.track, z.t, z.t).first->second.second = z.t;
+  }
+  CHECK(std::ranges::none_of(lives,
+                             [](const auto& life) { return life.second.first < 0.4 && life.second.second > 0.6; }));
+  CHECK(std::ranges::any_of(lives, [](const auto& life) { return life.second.first > 0.7; }));
+}
+
+TEST_CASE("Without events str_motion tells nothing, and a source that has none is refused with a sentence") {
+  const Told none = follow(EventScene(to_and_fro, 0.3, {}));
+  CHECK(none.all.until == 0.3);
+  class Nothing : public EventScene {
+   public:
+    Nothing() : EventScene(to_and_fro, 0.01, {}) {}
+    std::unique_ptr<EventReader> all_events() const override { return nullptr; }
+  };
+  CHECK_THROWS_WITH(MotionTracks({}, {Nothing(), 0, ""}), Catch::Matchers::Contains("str_motion works on events"));
+}
