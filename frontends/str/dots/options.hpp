@@ -32,7 +32,7 @@ struct DotsOptions {
   SegmentationOptions segmentation;
   DotOptions dot;
   DotLifeOptions life;
-  double sigma = 0.3;
+  double sigma = 0.1;
   double delay = 0.05;
 
   DotsOptions() { registration.model = MotionModel::planar_4; }
