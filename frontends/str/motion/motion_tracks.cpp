@@ -60,6 +60,7 @@ void MotionTracks::process(const Batch& batch) {
   const Span span{seconds(batch.from - 1), seconds(batch.to - 1)};  // events up to here, these included
   if (batch.events.size() < of_one_at_rest) {
     ++still_;
+    batches_.expect(0.0);
     move({span, Matrix3::Zero()});
     return;
   }
@@ -97,17 +98,17 @@ void MotionTracks::move(const Motion& motion) {
 
 void MotionTracks::carry_on(const Motion& motion) {
   const Matrix3 later = Matrix3(-(motion.span.to - motion.span.from) * motion.A).exp();
-  std::erase_if(points_, [&](Point& point) {
+  std::vector<Point> alive;
+  for (const Point& point : points_) {
     const Vector3 ray = later * point.ray;
-    if (ray.z() > 0.0) point.ray = ray / ray.z();
-    const bool stays = ray.z() > 0.0 && camera_.contains(camera_.project(point.ray));
-    if (stays) {
-      observe(point, motion.span.to);
+    if (ray.z() > 0.0 && camera_.contains(camera_.project(ray))) {
+      alive.push_back({point.id, ray / ray.z()});
+      observe(alive.back(), motion.span.to);
     } else {
       told_.end({point.id, motion.span.to});
     }
-    return !stays;
-  });
+  }
+  points_ = std::move(alive);
 }
 
 /// The motion has been unknown for too long.
