@@ -65,11 +65,8 @@ void MotionTracks::process(const Batch& batch) {
     return;
   }
   const Registration found = registrar_.align(batch, last_ ? std::optional(last_->A) : std::nullopt);
-  constexpr double kLittle = 2.0;  // [px]
   const bool divisible = seconds(batch.to - batch.from) >= 2.0 * options_.shortest_batch;
-  const bool about_right =
-      !divisible && found.alignment.converged && found.motion < kLittle && found.alignment.fit >= options_.shortest_fit;
-  if (found.good() || about_right) {
+  if (found.good() || (!divisible && found.alignment.converged && found.alignment.fit >= options_.shortest_fit)) {
     ++registered_;
     batches_.expect(found.motion / seconds(batch.to - batch.from));
     move({span, found.A});
