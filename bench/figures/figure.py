@@ -90,7 +90,7 @@ def draw_cells(axes, mark):
     for row, values in enumerate(ratios):
         for column, ratio in enumerate(values):
             dark = ratio == ratio and not 1 / DARK_RATIO < ratio < DARK_RATIO
-            axes.text(column, row, f"{ratio:.2g}" if ratio == ratio else "fails", ha="center", va="center", fontsize=7,
+            axes.text(column, row, "fails" if ratio != ratio else f"{ratio:.2g}" if ratio < 99.5 else f"{ratio:.0f}", ha="center", va="center", fontsize=7,
                       color="white" if dark else "black")
     axes.set_xticks(range(len(columns)), [f"{x:g}" for x in columns])
     axes.set_yticks(range(len(rows)), [f"{y:g}" for y in rows])
