@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/events/event_time.hpp"
 #include "core/plugin/registration.hpp"
-#include "core/support/error.hpp"
 #include "core/support/index.hpp"
 
 namespace evbench::haste {
@@ -17,11 +17,7 @@ const Registration<FrontEnd, Haste> registration(
     "tracks features in events asynchronously by hypotheses (Alzugaray and "
     "Chli 2020), finds lost landmarks again");
 
-constexpr double kTick = 0.005;  ///< [s] between two looks after the trackers
 constexpr double kApart = 1e-6;  ///< [s] between two observations of a track, at least
-
-double seconds(std::int64_t t) { return static_cast<double>(t) / 1e6; }
-std::int64_t microseconds(double t) { return static_cast<std::int64_t>(std::floor(t * 1e6 + 1e-3)); }
 
 Vector2 place_of(const Change& change, Options::Place place) {
   switch (place) {
@@ -32,58 +28,22 @@ Vector2 place_of(const Change& change, Options::Place place) {
   return change.after.position;
 }
 
-std::unique_ptr<EventStream> events_of(const FrontEndContext& context) {
-  auto events = context.source.events();
-  if (!events) {
-    throw InputError(
-        fmt::format("{}: haste tracks in events, and this source has none; expected a recording of events or "
-                    "the source event_simulation",
-                    context.place));
-  }
-  return events;
-}
-
 }  // namespace
 
 Haste::Haste(const Options& options, const FrontEndContext& context)
-    : options_(options),
-      camera_(context.source.camera()),
-      range_(context.source.time_range()),
-      feed_(events_of(context)),
+    : EventFrontEnd(context, "haste"),
+      options_(options),
       recent_(static_cast<std::size_t>(options.detection.events)),
       trackers_(camera_.width, camera_.height),
-      told_(range_.from),
       guidance_(camera_),
       lost_(options.guidance),
-      clock_(range_.from),
       detected_(range_.from) {}
 
-bool Haste::advance(const Horizon& horizon, TrackBatch& batch) {
-  const auto complete = [&] { return clock_ - options_.delay; };
-  const auto enough = [&] { return horizon.observations > 0 && told_.has(horizon.observations, complete()); };
-  while (clock_ < horizon.t && !enough()) {
-    const double tick = range_.from + static_cast<double>(ticks_ + 1) * kTick;
-    follow(std::min(tick, horizon.t));
-    if (clock_ < tick) continue;
-    ++ticks_;
-    maintain();
-  }
-  const bool ended = feed_.ended() || clock_ >= range_.to;
-  told_.tell(ended ? clock_ : complete(), horizon.observations, batch);
-  batch.seen = clock_;
-  return !(ended && told_.empty());
-}
-
-/// All events up to t.
-void Haste::follow(double t) {
-  const std::int64_t until = microseconds(t);
-  for (auto events = feed_.until(until); !events.empty(); events = feed_.until(until)) {
-    recent_.add(events);
-    changes_.clear();
-    trackers_.push(events, changes_);
-    for (const Change& change : changes_) observe(change);
-  }
-  clock_ = t;
+void Haste::take(std::span<const Event> events) {
+  recent_.add(events);
+  changes_.clear();
+  trackers_.push(events, changes_);
+  for (const Change& change : changes_) observe(change);
 }
 
 void Haste::observe(const Change& change) {
@@ -117,7 +77,7 @@ bool Haste::is_as_expected(TrackId track, const Vector2& pixel, double t) const 
   return expected && (pixel - expected->pixel).norm() < options_.guidance.tolerance;
 }
 
-void Haste::maintain() {
+void Haste::look() {
   end_trackers();
   correct_guidance();
   if (options_.guidance.veto) veto_strays();

@@ -6,9 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/events/event_feed.hpp"
-#include "core/plugin/delayed_tracks.hpp"
-#include "core/plugin/frontend.hpp"
+#include "core/events/event_front_end.hpp"
 #include "frontends/haste/guidance.hpp"
 #include "frontends/haste/lost_landmarks.hpp"
 #include "frontends/haste/options.hpp"
@@ -20,16 +18,14 @@ namespace evbench::haste {
 /// Tracks features in the events themselves, each asynchronously by hypotheses about its motion (Alzugaray and Chli,
 /// 3DV 2019 and BMVC 2020), detects new ones where there are too few, and looks for lost landmarks where the back-end
 /// expects them: the front-end of Algorithm 1 of Liu et al., ICRA 2022. Throws InputError for a source without events.
-class Haste : public FrontEnd {
+class Haste : public EventFrontEnd {
  public:
   using Options = haste::Options;
 
   Haste(const Options& options, const FrontEndContext& context);
 
-  bool advance(const Horizon& horizon, TrackBatch& batch) override;
   FeedbackNeeds needs() const override;
   void receive(const Feedback& feedback) override;
-  double waited() const override { return feed_.seconds(); }
   std::vector<std::string> remarks() const override;
 
  private:
@@ -45,10 +41,11 @@ class Haste : public FrontEnd {
   /// Why tracks end.
   enum class End { border, spread, starvation, crowding, veto, outlier };
 
-  void follow(double t);
+  void take(std::span<const Event> events) override;
+  void look() override;
+  double complete() const override { return clock_ - options_.delay; }
   void observe(const Change& change);
   bool is_as_expected(TrackId track, const Vector2& pixel, double t) const;
-  void maintain();
   void end_trackers();
   void correct_guidance();
   void veto_strays();
@@ -59,18 +56,12 @@ class Haste : public FrontEnd {
   std::vector<Vector2> taken() const;
 
   Options options_;
-  Camera camera_;
-  Source::TimeRange range_;
-  EventFeed feed_;
   RecentEvents recent_;
   TrackerSet trackers_;
   std::map<std::int64_t, Track> tracks_;  ///< by tracker
-  DelayedTracks told_;
   Guidance guidance_;
   LostLandmarks lost_;
   std::vector<Change> changes_;  ///< of the events at hand
-  double clock_;                 ///< [s] events up to here have been followed
-  std::int64_t ticks_ = 0;       ///< maintained so often
   double detected_;              ///< [s] when features were last looked for
   double odometer_ = 0.0;        ///< the image's way: the trackers' mean one [px]
   TrackId next_id_ = 0;

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/events/event_time.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/index.hpp"
-#include "frontends/str/event_source.hpp"
 #include "frontends/str/expected_motion.hpp"
 
 namespace evbench::str {
@@ -35,33 +35,14 @@ void move(EventCloud& cloud, const Matrix3& A, double dt) {
 }  // namespace
 
 Str::Str(const Options& options, const FrontEndContext& context)
-    : options_(options),
-      camera_(context.source.camera()),
-      range_(context.source.time_range()),
-      feed_(events_of(context, "str")),
+    : EventFrontEnd(context, "str"),
+      options_(options),
       batches_(options.batch, options.registration.slice, microseconds(range_.from)),
       registrar_(camera_, options.registration),
-      told_(range_.from),
-      complete_(range_.from),
-      clock_(range_.from) {}
+      complete_(range_.from) {}
 
-bool Str::advance(const Horizon& horizon, TrackBatch& batch) {
-  constexpr double kStep = 0.005;  // [s]
-  const auto enough = [&] { return horizon.observations > 0 && told_.has(horizon.observations, complete_); };
-  while (clock_ < horizon.t && !enough()) {
-    clock_ = std::min(horizon.t, range_.from + kStep * (std::floor((clock_ - range_.from) / kStep + 1e-6) + 1.0));
-    follow(microseconds(clock_));
-  }
-  const bool ended = feed_.ended() || clock_ >= range_.to;
-  told_.tell(ended ? clock_ : complete_, horizon.observations, batch);
-  batch.seen = clock_;
-  return !(ended && told_.empty());
-}
-
-/// All events up to `until` [µs].
-void Str::follow(std::int64_t until) {
-  for (auto events = feed_.until(until); !events.empty(); events = feed_.until(until)) batches_.add(events);
-  while (const auto batch = batches_.next(until)) process(*batch);
+void Str::look() {
+  while (const auto batch = batches_.next(microseconds(clock_))) process(*batch);
 }
 
 void Str::process(const Batch& batch) {

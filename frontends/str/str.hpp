@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/events/event_feed.hpp"
-#include "core/plugin/delayed_tracks.hpp"
-#include "core/plugin/frontend.hpp"
+#include "core/events/event_front_end.hpp"
 #include "frontends/str/batches.hpp"
 #include "frontends/str/options.hpp"
 
@@ -17,16 +15,14 @@ namespace evbench::str {
 /// code: batches of events are registered as point clouds under a motion model, and the events that correspond,
 /// chained from batch to batch, are the tracks. As a model of a few parameters does not hold for all depths, each
 /// track's surroundings are registered once more, by translation. Throws InputError for a source without events.
-class Str : public FrontEnd {
+class Str : public EventFrontEnd {
  public:
   using Options = str::Options;
 
   Str(const Options& options, const FrontEndContext& context);
 
-  bool advance(const Horizon& horizon, TrackBatch& batch) override;
   FeedbackNeeds needs() const override;
   void receive(const Feedback& feedback) override;
-  double waited() const override { return feed_.seconds(); }
   std::vector<std::string> remarks() const override;
 
  private:
@@ -38,7 +34,9 @@ class Str : public FrontEnd {
     EventCloud anchor = {};  ///< events that were around it once, where they are now
   };
 
-  void follow(std::int64_t until);
+  void take(std::span<const Event> events) override { batches_.add(events); }
+  void look() override;
+  double complete() const override { return complete_; }
   void process(const Batch& batch);
   void go_on(const Batch& batch, const Registration& registration);
   bool go_on(Track& track, const Batch& batch, const Registration& registration);
@@ -50,18 +48,13 @@ class Str : public FrontEnd {
   Vector2 pixel_of(const Eigen::Vector2f& ray) const;
 
   Options options_;
-  Camera camera_;
-  Source::TimeRange range_;
-  EventFeed feed_;
   Batches batches_;
   Registrar registrar_;
-  DelayedTracks told_;
   std::vector<Track> tracks_;  ///< the older ones first
   std::optional<Matrix3> expected_;
   EventCloud early_, patch_;
   std::vector<float> early_x_, early_y_;  ///< at the reference time
   double complete_;                       ///< [s] all observations up to here have been made
-  double clock_;                          ///< [s] events up to here have been looked at
   TrackId next_id_ = 0;
   std::size_t grown_ = 0, misfits_ = 0, left_ = 0, crowded_ = 0;
   std::array<std::size_t, 4> registered_{};  ///< batches by Registration::State

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/events/event_time.hpp"
 #include "core/plugin/registration.hpp"
-#include "frontends/str/event_source.hpp"
 
 namespace evbench::str {
 namespace {
@@ -17,7 +17,6 @@ const evbench::Registration<FrontEnd, Dots> registration(
 constexpr int kCell = 32;               // [px]
 constexpr std::int64_t kListed = 1000;  // [µs] between two listings of what is near
 constexpr double kBorder = 2.0;         // [px] of a rim from the image's border
-constexpr double kTick = 0.005;         // [s] between two looks for batches that have ended
 constexpr double kApart = 1e-6;         // [s] between two observations of a track, at least
 
 /// How a pixel moves under a batch's motion [px/s].
@@ -33,43 +32,22 @@ Vector2 image_velocity(const Camera& camera, const Matrix3& A, const Vector2& pi
 }  // namespace
 
 Dots::Dots(const Options& options, const FrontEndContext& context)
-    : options_(options),
-      camera_(context.source.camera()),
-      range_(context.source.time_range()),
-      feed_(events_of(context, "dots")),
+    : EventFrontEnd(context, "dots"),
+      options_(options),
       batches_(options.batch, options.registration.slice, microseconds(range_.from)),
       registrar_(camera_, options.registration),
-      told_(range_.from),
       columns_((camera_.width + kCell - 1) / kCell),
       rows_((camera_.height + kCell - 1) / kCell),
       near_(static_cast<std::size_t>(columns_ * rows_)),
-      listed_(microseconds(range_.from)),
-      clock_(range_.from) {}
+      listed_(microseconds(range_.from)) {}
 
-bool Dots::advance(const Horizon& horizon, TrackBatch& batch) {
-  const auto complete = [&] { return clock_ - options_.delay; };
-  const auto enough = [&] { return horizon.observations > 0 && told_.has(horizon.observations, complete()); };
-  while (clock_ < horizon.t && !enough()) {
-    const double tick = range_.from + static_cast<double>(ticks_ + 1) * kTick;
-    follow(std::min(tick, horizon.t));
-    if (clock_ < tick) continue;
-    ++ticks_;
-    while (const auto found = batches_.next(microseconds(tick))) process(*found);
-  }
-  const bool ended = feed_.ended() || clock_ >= range_.to;
-  told_.tell(ended ? clock_ : complete(), horizon.observations, batch);
-  batch.seen = clock_;
-  return !(ended && told_.empty());
+void Dots::take(std::span<const Event> events) {
+  batches_.add(events);
+  for (const Event& event : events) take(event);
 }
 
-/// All events up to t.
-void Dots::follow(double t) {
-  const std::int64_t until = microseconds(t);
-  for (auto events = feed_.until(until); !events.empty(); events = feed_.until(until)) {
-    batches_.add(events);
-    for (const Event& event : events) take(event);
-  }
-  clock_ = t;
+void Dots::look() {
+  while (const auto batch = batches_.next(microseconds(clock_))) process(*batch);
 }
 
 /// An event is that dot's to whose rim it is nearest, or nobody's.

@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/events/event_feed.hpp"
-#include "core/plugin/delayed_tracks.hpp"
-#include "core/plugin/frontend.hpp"
+#include "core/events/event_front_end.hpp"
 #include "frontends/str/batches.hpp"
 #include "frontends/str/dots/options.hpp"
 #include "frontends/str/dots/plane_map.hpp"
@@ -17,14 +15,12 @@ namespace evbench::str {
 /// Follows round dots, as in the first experiment of Liu et al., ICRA 2022: batches of events are registered as point
 /// clouds, dots are clusters of events in the image that the registration compensates; from then on each event of a
 /// dot's rim says where its centre is, at its own time. Throws InputError for a source without events.
-class Dots : public FrontEnd {
+class Dots : public EventFrontEnd {
  public:
   using Options = DotsOptions;
 
   Dots(const Options& options, const FrontEndContext& context);
 
-  bool advance(const Horizon& horizon, TrackBatch& batch) override;
-  double waited() const override { return feed_.seconds(); }
   std::vector<std::string> remarks() const override;
 
  private:
@@ -38,7 +34,9 @@ class Dots : public FrontEnd {
     bool lost = false;
   };
 
-  void follow(double t);
+  void take(std::span<const Event> events) override;
+  void look() override;
+  double complete() const override { return clock_ - options_.delay; }
   void take(const Event& event);
   void observe(Track& track);
   void list_near();
@@ -49,12 +47,8 @@ class Dots : public FrontEnd {
   bool leaves(const Dot& dot, double t) const;
 
   Options options_;
-  Camera camera_;
-  Source::TimeRange range_;
-  EventFeed feed_;
   Batches batches_;
   Registrar registrar_;
-  DelayedTracks told_;
   PlaneMap map_;
   std::vector<Track> tracks_;
   std::set<TrackId> out_of_view_;
@@ -63,8 +57,6 @@ class Dots : public FrontEnd {
   std::vector<std::vector<std::uint32_t>> near_;  ///< by cells of the image: the tracks whose rim may be there
   std::int64_t listed_;                           ///< [µs] near_ is as of then
   std::vector<Event> free_;                       ///< events that are no dot's, of the batch at hand
-  double clock_;                                  ///< [s] events up to here have been looked at
-  std::int64_t ticks_ = 0;                        ///< looked for batches so often
   TrackId next_id_ = 0;
   std::size_t found_again_ = 0, left_ = 0, misfits_ = 0, starved_ = 0, late_ = 0;
   std::size_t registered_ = 0, unregistered_ = 0;

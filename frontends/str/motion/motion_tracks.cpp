@@ -6,8 +6,8 @@
 #include <cmath>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "core/events/event_time.hpp"
 #include "core/plugin/registration.hpp"
-#include "frontends/str/event_source.hpp"
 
 namespace evbench::str {
 namespace {
@@ -26,33 +26,14 @@ std::pair<Batch, Batch> halves(const Batch& batch) {
 }  // namespace
 
 MotionTracks::MotionTracks(const Options& options, const FrontEndContext& context)
-    : options_(options),
-      camera_(context.source.camera()),
-      range_(context.source.time_range()),
-      feed_(events_of(context, "str_motion")),
+    : EventFrontEnd(context, "str_motion"),
+      options_(options),
       batches_(options.batch, 0.0, microseconds(range_.from)),
       registrar_(camera_, options.registration),
-      told_(range_.from),
-      complete_(range_.from),
-      clock_(range_.from) {}
+      complete_(range_.from) {}
 
-bool MotionTracks::advance(const Horizon& horizon, TrackBatch& batch) {
-  constexpr double kStep = 0.005;  // [s]
-  const auto enough = [&] { return horizon.observations > 0 && told_.has(horizon.observations, complete_); };
-  while (clock_ < horizon.t && !enough()) {
-    clock_ = std::min(horizon.t, range_.from + kStep * (std::floor((clock_ - range_.from) / kStep + 1e-6) + 1.0));
-    follow(microseconds(clock_));
-  }
-  const bool ended = feed_.ended() || clock_ >= range_.to;
-  told_.tell(ended ? clock_ : complete_, horizon.observations, batch);
-  batch.seen = clock_;
-  return !(ended && told_.empty());
-}
-
-/// All events up to `until` [µs].
-void MotionTracks::follow(std::int64_t until) {
-  for (auto events = feed_.until(until); !events.empty(); events = feed_.until(until)) batches_.add(events);
-  while (const auto batch = batches_.next(until)) process(*batch);
+void MotionTracks::look() {
+  while (const auto batch = batches_.next(microseconds(clock_))) process(*batch);
 }
 
 void MotionTracks::process(const Batch& batch) {

@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/events/event_feed.hpp"
-#include "core/plugin/delayed_tracks.hpp"
-#include "core/plugin/frontend.hpp"
+#include "core/events/event_front_end.hpp"
 #include "frontends/str/batches.hpp"
 #include "frontends/str/motion/options.hpp"
 
@@ -19,14 +17,12 @@ namespace evbench::str {
 /// begins where the one before ends, and one that has no one motion is divided into halves, again and again. Where the
 /// image turns round, that leaves spans in which it moves too little to be registered: their motion is taken to change
 /// evenly from that before to that after. Throws InputError for a source without events.
-class MotionTracks : public FrontEnd {
+class MotionTracks : public EventFrontEnd {
  public:
   using Options = MotionTracksOptions;
 
   MotionTracks(const Options& options, const FrontEndContext& context);
 
-  bool advance(const Horizon& horizon, TrackBatch& batch) override;
-  double waited() const override { return feed_.seconds(); }
   std::vector<std::string> remarks() const override;
 
  private:
@@ -45,7 +41,9 @@ class MotionTracks : public FrontEnd {
     Matrix3 A;  ///< [1/s] (motion_model.hpp)
   };
 
-  void follow(std::int64_t until);
+  void take(std::span<const Event> events) override { batches_.add(events); }
+  void look() override;
+  double complete() const override { return complete_; }
   void process(const Batch& batch);
   void move(const Motion& motion);
   void carry_on(const Motion& motion);
@@ -54,17 +52,12 @@ class MotionTracks : public FrontEnd {
   void observe(const Point& point, double t);
 
   Options options_;
-  Camera camera_;
-  Source::TimeRange range_;
-  EventFeed feed_;
   Batches batches_;
   Registrar registrar_;
-  DelayedTracks told_;
   std::vector<Point> points_;
   std::optional<Motion> last_;  ///< that is known
   std::vector<Span> unknown_;   ///< since then
   double complete_;             ///< [s] all observations up to here have been made
-  double clock_;                ///< [s] events up to here have been looked at
   TrackId next_id_ = 0;
   std::size_t registered_ = 0, still_ = 0, divided_ = 0, unregistered_ = 0, interrupted_ = 0;
 };

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/events/event_feed.hpp"
+#include "core/plugin/delayed_tracks.hpp"
+#include "core/plugin/frontend.hpp"
+
+namespace evbench {
+
+/// A front-end that goes through its source's events: what those have in common that do. Events come in pieces; at
+/// every tick, 5 ms of data time apart however the run exchanges, and at the end of the time range, it looks after what
+/// it tracks. Observations may come late and out of order: they are told once none before them can come.
+class EventFrontEnd : public FrontEnd {
+ public:
+  bool advance(const Horizon& horizon, TrackBatch& batch) final;
+  double waited() const final { return feed_.seconds(); }
+
+ protected:
+  /// `name`: the front-end's, for messages. Throws InputError for a source without events.
+  EventFrontEnd(const FrontEndContext& context, const std::string& name);
+
+  /// The next events, in time order.
+  virtual void take(std::span<const Event> events) = 0;
+
+  /// All events up to the clock have been taken, and it is time for a tick.
+  virtual void look() = 0;
+
+  /// [s] All observations up to here have been made.
+  virtual double complete() const = 0;
+
+  Camera camera_;
+  Source::TimeRange range_;
+  DelayedTracks told_;
+  double clock_;  ///< [s] all events up to here have been taken; while some are, those before them
+
+ private:
+  void follow(double t);
+
+  EventFeed feed_;
+  std::int64_t ticks_ = 0;
+};
+
+}  // namespace evbench
