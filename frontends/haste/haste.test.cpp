@@ -5,10 +5,13 @@
 
 #include "core/support/error.hpp"
 #include "core/testing/event_scene.hpp"
+#include "core/testing/told_tracks.hpp"
 
 using namespace evbench;
 using namespace evbench::haste;
+using evbench::testing::all_told;
 using evbench::testing::EventScene;
+using evbench::testing::same;
 using evbench::testing::swing;
 
 namespace {
@@ -21,19 +24,7 @@ const EventScene& scene() {
 /// All that it tells, asked every `interval` [s].
 TrackBatch track(const Source& source, const Options& options = {}, double interval = 0.01, std::size_t most = 0) {
   Haste haste(options, {source, 0, ""});
-  const double to = source.time_range().to;
-  TrackBatch all, batch;
-  all.until = 0.0;
-  for (int k = 1; all.until < to;) {
-    const double horizon = std::min(to, interval * k);
-    haste.advance({horizon, most}, batch);
-    REQUIRE(batch.until >= all.until);
-    all.observations.insert(all.observations.end(), batch.observations.begin(), batch.observations.end());
-    all.ended.insert(all.ended.end(), batch.ended.begin(), batch.ended.end());
-    all.until = batch.until;
-    if (batch.known_at() >= horizon) ++k;
-  }
-  return all;
+  return all_told(haste, source, interval, most);
 }
 
 /// Median distance of the observations from where the track's first observation, a point of the wall, is by then [px].
@@ -51,12 +42,6 @@ double median_error(const EventScene& source, const std::vector<TrackObservation
   }
   std::ranges::sort(errors);
   return errors[errors.size() / 2];
-}
-
-bool same(const TrackBatch& a, const TrackBatch& b) {
-  return std::ranges::equal(a.observations, b.observations, [](const TrackObservation& x, const TrackObservation& y) {
-    return x.track == y.track && x.t == y.t && x.pixel == y.pixel;
-  });
 }
 
 }  // namespace

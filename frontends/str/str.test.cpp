@@ -6,11 +6,14 @@
 
 #include "core/geometry/so3.hpp"
 #include "core/testing/event_scene.hpp"
+#include "core/testing/told_tracks.hpp"
 #include "frontends/str/expected_motion.hpp"
 
 using namespace evbench;
 using namespace evbench::str;
+using evbench::testing::all_told;
 using evbench::testing::EventScene;
+using evbench::testing::same;
 using evbench::testing::swing;
 
 namespace {
@@ -31,21 +34,7 @@ struct Tracked {
 /// All that it tells, asked every `interval` [s].
 Tracked track(const Source& source, const Options& options = {}, double interval = 0.01, std::size_t most = 0) {
   Str str(options, {source, 0, ""});
-  const double to = source.time_range().to;
-  Tracked result;
-  TrackBatch batch;
-  result.all.until = 0.0;
-  for (int k = 1; result.all.until < to;) {
-    const double horizon = std::min(to, interval * k);
-    str.advance({horizon, most}, batch);
-    REQUIRE(batch.until >= result.all.until);
-    result.all.observations.insert(result.all.observations.end(), batch.observations.begin(), batch.observations.end());
-    result.all.ended.insert(result.all.ended.end(), batch.ended.begin(), batch.ended.end());
-    result.all.until = batch.until;
-    if (batch.known_at() >= horizon) ++k;
-  }
-  result.remarks = str.remarks();
-  return result;
+  return {all_told(str, source, interval, most), str.remarks()};
 }
 
 /// Median distance of the observations from where the track's first observation, a point of the wall, is by then [px].
@@ -64,12 +53,6 @@ double median_error(const EventScene& source, const std::function<SE3(double)>& 
   }
   std::ranges::nth_element(errors, errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2));
   return errors[errors.size() / 2];
-}
-
-bool same(const TrackBatch& a, const TrackBatch& b) {
-  return std::ranges::equal(a.observations, b.observations, [](const TrackObservation& x, const TrackObservation& y) {
-    return x.track == y.track && x.t == y.t && x.pixel == y.pixel;
-  });
 }
 
 std::size_t track_count(const TrackBatch& batch) {

@@ -5,10 +5,13 @@
 
 #include "core/geometry/so3.hpp"
 #include "core/testing/event_scene.hpp"
+#include "core/testing/told_tracks.hpp"
 
 using namespace evbench;
 using namespace evbench::str;
+using evbench::testing::all_told;
 using evbench::testing::EventScene;
+using evbench::testing::same;
 
 namespace {
 
@@ -56,21 +59,7 @@ struct Told {
 
 Told follow(const Source& source, const DotsOptions& options = {}, double interval = 0.01, std::size_t most = 0) {
   Dots dots(options, {source, 0, ""});
-  const double to = source.time_range().to;
-  Told result;
-  TrackBatch batch;
-  result.all.until = 0.0;
-  for (int k = 1; result.all.until < to;) {
-    const double horizon = std::min(to, interval * k);
-    dots.advance({horizon, most}, batch);
-    REQUIRE(batch.until >= result.all.until);
-    result.all.observations.insert(result.all.observations.end(), batch.observations.begin(), batch.observations.end());
-    result.all.ended.insert(result.all.ended.end(), batch.ended.begin(), batch.ended.end());
-    result.all.until = batch.until;
-    if (batch.known_at() >= horizon) ++k;
-  }
-  result.remarks = dots.remarks();
-  return result;
+  return {all_told(dots, source, interval, most), dots.remarks()};
 }
 
 /// Which disc an observation is of, and how far from its centre [px].
@@ -84,12 +73,6 @@ std::pair<std::size_t, double> nearest_disc(const TrackObservation& z, const std
     if (const double distance = (pixel - z.pixel).norm(); distance < best.second) best = {i, distance};
   }
   return best;
-}
-
-bool same(const TrackBatch& a, const TrackBatch& b) {
-  return std::ranges::equal(a.observations, b.observations, [](const TrackObservation& x, const TrackObservation& y) {
-    return x.track == y.track && x.t == y.t && x.pixel == y.pixel;
-  });
 }
 
 }  // namespace

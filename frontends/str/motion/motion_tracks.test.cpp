@@ -5,10 +5,13 @@
 
 #include "core/geometry/so3.hpp"
 #include "core/testing/event_scene.hpp"
+#include "core/testing/told_tracks.hpp"
 
 using namespace evbench;
 using namespace evbench::str;
+using evbench::testing::all_told;
 using evbench::testing::EventScene;
+using evbench::testing::same;
 
 namespace {
 
@@ -28,24 +31,7 @@ struct Told {
 Told follow(const Source& source, const MotionTracksOptions& options = {}, double interval = 0.01,
             std::size_t most = 0) {
   MotionTracks motion(options, {source, 0, ""});
-  const double to = source.time_range().to;
-  Told result;
-  TrackBatch batch;
-  result.all.until = 0.0;
-  for (int k = 1; result.all.until < to;) {
-    const double horizon = std::min(to, interval * k);
-    motion.advance({horizon, most}, batch);
-    REQUIRE(batch.until >= result.all.until);
-    for (const TrackObservation& z : batch.observations) {
-      CHECK((z.t > result.all.until && z.t <= batch.until));
-      result.all.observations.push_back(z);
-    }
-    result.all.ended.insert(result.all.ended.end(), batch.ended.begin(), batch.ended.end());
-    result.all.until = batch.until;
-    if (batch.known_at() >= horizon) ++k;
-  }
-  result.remarks = motion.remarks();
-  return result;
+  return {all_told(motion, source, interval, most), motion.remarks()};
 }
 
 /// How far each observation is from where the rotation since the track's beginning takes it [px].
@@ -59,12 +45,6 @@ std::vector<double> errors(const Source& source, const std::function<SE3(double)
   }
   std::ranges::sort(result);
   return result;
-}
-
-bool same(const TrackBatch& a, const TrackBatch& b) {
-  return std::ranges::equal(a.observations, b.observations, [](const TrackObservation& x, const TrackObservation& y) {
-    return x.track == y.track && x.t == y.t && x.pixel == y.pixel;
-  });
 }
 
 }  // namespace
