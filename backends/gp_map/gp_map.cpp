@@ -168,15 +168,19 @@ InitialGuess GpMap::present_map(double t0, double t1) const {
   return result;
 }
 
-/// Tracks seen of late whose error was too large at the last optimum. What has been observed since is not counted: its
-/// distance from an extrapolated pose tells of the motion first.
+/// Tracks seen of late whose error was too large at the last optimum, beside the noise and beside what most tracks err.
+/// What has been observed since is not counted: its distance from an extrapolated pose tells of the motion first.
 void GpMap::remove_outliers() {
+  constexpr double kMeanNorm = 1.2533;  // of a two-dimensional standard normal
+  const auto& seen = graph().intervals.back().groups();
+  std::vector<double> errors;  // [sigmas]
+  for (const auto& group : seen) errors.push_back(mean_error(group.landmark));
+  if (errors.empty()) return;
+  const double usual = std::max(noise_.scale(), median(errors) / kMeanNorm);
   std::vector<int> outliers;
-  for (const auto& group : graph().intervals.back().groups()) {
-    if (is_outlier(group.landmark, engine_->reprojection_mean(group.landmark))) outliers.push_back(group.landmark);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (errors[i] > options_.map.outlier_threshold * usual) outliers.push_back(seen[i].landmark);
   }
-  // Most tracks at once: then it is the motion that is wrong.
-  if (2 * outliers.size() > graph().intervals.back().groups().size()) return;
   for (const int landmark : outliers) become_outlier(landmark);
 }
 
@@ -210,11 +214,12 @@ void GpMap::add_landmarks() {
   }
 }
 
-bool GpMap::is_outlier(int landmark, double error_px) const {
+/// Over all observations of a landmark [stated sigmas].
+double GpMap::mean_error(int landmark) {
   const auto& seen = graph().landmarks[index(landmark)].intervals;
-  if (seen.empty()) return false;
+  if (seen.empty()) return 0.0;
   const double inverse_sigma = graph().intervals[index(seen.back())].of(landmark).back().inverse_sigma;
-  return error_px * inverse_sigma > options_.map.outlier_threshold * noise_.scale();
+  return engine_->reprojection_mean(landmark) * inverse_sigma;
 }
 
 void GpMap::optimise() {
@@ -514,16 +519,22 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
 /// noise.
 void GpMap::judge_tracks(const NoiseLearner& noise) {
   const double threshold = options_.map.outlier_threshold;
-  const auto landmarks = static_cast<int>(graph().landmarks.size());
-  for (int j = 0; j < landmarks; ++j) {
-    if (graph().landmarks[index(j)].alive && TrackErrors(graph(), j, noise).is_outlier(threshold)) become_outlier(j);
+  std::vector<int> alive;
+  std::vector<TrackErrors> errors;
+  for (int j = 0; j < std::ssize(graph().landmarks); ++j) {
+    if (!graph().landmarks[index(j)].alive) continue;
+    alive.push_back(j);
+    errors.emplace_back(graph(), j);
+  }
+  const double usual = TrackErrors::usual(errors, noise);
+  for (std::size_t i = 0; i < alive.size(); ++i) {
+    if (errors[i].is_outlier(threshold, usual)) become_outlier(alive[i]);
   }
   FactorGraph judged = graph();
-  for (int j = 0; j < landmarks; ++j) {
-    if (!judged.landmarks[index(j)].alive) continue;
-    const TrackErrors errors(judged, j, noise);
-    if (options_.learn.noise) judged.scale_sigmas(j, errors.sigma_scale());
-    if (const auto from = errors.slides_from(threshold)) judged.remove_observations(j, *from);
+  for (std::size_t i = 0; i < alive.size(); ++i) {
+    if (!judged.landmarks[index(alive[i])].alive) continue;
+    if (options_.learn.noise) judged.scale_sigmas(alive[i], errors[i].sigma_scale(usual));
+    if (const auto from = errors[i].slides_from(threshold, usual)) judged.remove_observations(alive[i], *from);
   }
   engine_.emplace(std::move(judged), EngineOptions());
 }

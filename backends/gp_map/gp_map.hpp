@@ -99,7 +99,7 @@ class GpMap : public BackEnd {
   const std::optional<Matrix2>& image_covariance(Track& track, const Eigen::Matrix<double, 2, 12>& J_state,
                                                  const Matrix23& J_landmark);
   double newest_error() const;
-  bool is_outlier(int landmark, double error_px) const;
+  double mean_error(int landmark);
   int landmarks_in_view() const;
   void tell_online(double t);
   void tell_smoothed();
@@ -131,7 +131,7 @@ class GpMap : public BackEnd {
   PriorLearner prior_;
   NoiseLearner noise_;
   double learnt_until_ = -std::numeric_limits<double>::infinity();  ///< [s], with a lag
-  double seconds_since_step_ = 0.0;  ///< spent on single observations
+  double seconds_since_step_ = 0.0;                                 ///< spent on single observations
   TrackingMonitor monitor_;
   double until_ = 0.0;                                        ///< [s] of the last batch
   double online_ = -std::numeric_limits<double>::infinity();  ///< [s], time of the last pose told
