@@ -9,22 +9,18 @@
 #include <utility>
 
 #include "backends/gp_map/problem_graph.hpp"
-#include "backends/gp_map/track_errors.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/median.hpp"
+#include "core/support/seconds_since.hpp"
 
 namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 5);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 6);
 
 constexpr double kYoung = 5.0;    ///< [s] for which another first map is looked for
 constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 }  // namespace
 
@@ -168,19 +164,15 @@ InitialGuess GpMap::present_map(double t0, double t1) const {
   return result;
 }
 
-/// Tracks seen of late whose error was too large at the last optimum, beside the noise and beside what most tracks err.
-/// What has been observed since is not counted: its distance from an extrapolated pose tells of the motion first.
+/// Tracks seen of late whose error was too large at the last optimum, beside what tracks err. What has been observed
+/// since is not counted: its distance from an extrapolated pose tells of the motion first.
 void GpMap::remove_outliers() {
-  constexpr double kMeanNorm = 1.2533;  // of a two-dimensional standard normal
-  const auto& seen = graph().intervals.back().groups();
-  std::vector<double> errors;  // [sigmas]
-  for (const auto& group : seen) errors.push_back(mean_error(group.landmark));
-  if (errors.empty()) return;
-  const double usual = std::max(noise_.scale(), median(errors) / kMeanNorm);
   std::vector<int> outliers;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (errors[i] > options_.map.outlier_threshold * usual) outliers.push_back(seen[i].landmark);
+  for (const auto& group : graph().intervals.back().groups()) {
+    if (is_outlier(group.landmark, engine_->reprojection_mean(group.landmark))) outliers.push_back(group.landmark);
   }
+  // Most tracks at once: then it is the motion that is wrong.
+  if (2 * outliers.size() > graph().intervals.back().groups().size()) return;
   for (const int landmark : outliers) become_outlier(landmark);
 }
 
@@ -214,12 +206,11 @@ void GpMap::add_landmarks() {
   }
 }
 
-/// Over all observations of a landmark [stated sigmas].
-double GpMap::mean_error(int landmark) {
+bool GpMap::is_outlier(int landmark, double error_px) const {
   const auto& seen = graph().landmarks[index(landmark)].intervals;
-  if (seen.empty()) return 0.0;
+  if (seen.empty()) return false;
   const double inverse_sigma = graph().intervals[index(seen.back())].of(landmark).back().inverse_sigma;
-  return engine_->reprojection_mean(landmark) * inverse_sigma;
+  return error_px * inverse_sigma > options_.map.outlier_threshold * noise_.error();
 }
 
 void GpMap::optimise() {
@@ -458,85 +449,6 @@ void GpMap::add_record(double t, double seconds, int iterations, std::optional<d
     record.learnt.insert(record.learnt.end(), graph().qc.begin(), graph().qc.end());
   }
   updates_.push_back(record);
-}
-
-/// Of each control state's update, in place of the density that it began with: that of the interval which ends there.
-void GpMap::record_final_prior() {
-  for (UpdateRecord& record : updates_) {
-    const int k = graph().interval_of(record.t);
-    if (k > 0 && !record.learnt.empty()) std::ranges::copy(graph().qcs[index(k)], record.learnt.end() - 6);
-  }
-}
-
-void GpMap::finish() {
-  if (const std::optional<double> last = placement_.last()) step(*last);
-  if (!engine_) {
-    monitor_.fail(first_map_.newest(),
-                  first_map_.reason().empty() ? "no observations" : "no first map: " + first_map_.reason());
-    return;
-  }
-  if (options_.final_iterations == 0) return;
-  const auto start = std::chrono::steady_clock::now();
-  if (options_.lag > 0.0) {
-    for (int round = 0; options_.learn.prior != LearnPrior::never && round < options_.learn.rounds; ++round) {
-      learn_prior(*engine_);
-      engine_->update();
-    }
-    record_final_prior();
-    add_record(graph().states.back().t, seconds_since(start), options_.learn.rounds, {});
-    return;
-  }
-  const Engine::OptimiseSummary summary = estimate_everything();
-  record_final_prior();
-  context_.log(fmt::format("final estimate: cost {:.2f} after {:.2f}, {} iterations{}", summary.final_cost,
-                           summary.initial_cost, summary.iterations, summary.converged ? "" : ", not converged"));
-  add_record(graph().states.back().t, seconds_since(start), summary.iterations, summary.final_cost);
-}
-
-/// Prior, noise, and what each track is worth follow from the estimate, and it from them.
-Engine::OptimiseSummary GpMap::estimate_everything() {
-  const bool learns_prior = options_.learn.prior != LearnPrior::never;
-  const bool learns = learns_prior || options_.learn.noise;
-  const int rounds = learns ? options_.learn.rounds : 1;
-  constexpr int kIterationsARound = 3;
-  constexpr double kRoughly = 1e-4, kLearnt = 1e-6, kFixed = 1e-9;  // what is learnt is known no better
-  engine_->optimise(kIterationsARound, kRoughly);
-  for (int round = 0; round < rounds; ++round) {
-    const NoiseLearner noise = learn_noise(graph());
-    if (options_.learn.noise) {
-      noise_ = noise;
-      engine_->set_loss(noise_.loss(options_.loss, options_.loss_width));
-    }
-    if (learns_prior) learn_prior(*engine_);
-    judge_tracks(noise);
-    const bool settled = engine_->optimise(kIterationsARound, kRoughly).iterations == 1;
-    if (settled && round > 0) break;  // what is learnt does not change the estimate any more
-  }
-  return engine_->optimise(options_.final_iterations, learns ? kLearnt : kFixed);
-}
-
-/// Of a full history. Outliers go, a track that slid keeps its landmark up to there, and each counts with its own
-/// noise.
-void GpMap::judge_tracks(const NoiseLearner& noise) {
-  const double threshold = options_.map.outlier_threshold;
-  std::vector<int> alive;
-  std::vector<TrackErrors> errors;
-  for (int j = 0; j < std::ssize(graph().landmarks); ++j) {
-    if (!graph().landmarks[index(j)].alive) continue;
-    alive.push_back(j);
-    errors.emplace_back(graph(), j);
-  }
-  const double usual = TrackErrors::usual(errors, noise);
-  for (std::size_t i = 0; i < alive.size(); ++i) {
-    if (errors[i].is_outlier(threshold, usual)) become_outlier(alive[i]);
-  }
-  FactorGraph judged = graph();
-  for (std::size_t i = 0; i < alive.size(); ++i) {
-    if (!judged.landmarks[index(alive[i])].alive) continue;
-    if (options_.learn.noise) judged.scale_sigmas(alive[i], errors[i].sigma_scale(usual));
-    if (const auto from = errors[i].slides_from(threshold, usual)) judged.remove_observations(alive[i], *from);
-  }
-  engine_.emplace(std::move(judged), EngineOptions());
 }
 
 }  // namespace evbench::gp_map

@@ -23,6 +23,7 @@ class NoiseLearner {
 
   double scale() const;  ///< true sigma over the stated one; 1 before there is any residual
   double share() const;  ///< of the information, at most 1
+  double error() const;  ///< whole error, with what is of the motion, over the stated sigma: at least the noise's scale
 
   /// The loss for residuals whitened by the stated sigmas. `width`: in true sigmas.
   RobustLoss loss(RobustLoss::Kind kind, double width) const;
@@ -46,7 +47,8 @@ class NoiseLearner {
   };
   void add(int landmark, double t, const Vector2& residual);
 
-  Median norms_;               ///< of residuals
+  Median errors_;              ///< norms of residuals
+  Median norms_;               ///< the same without what is of the motion
   Median means_;               ///< |sum|²/n of blocks
   std::map<int, Block> open_;  ///< by landmark
   int taken_ = 0;              ///< the last interval of follow()

@@ -6,13 +6,10 @@
 #include "backends/gp_map/problem_graph.hpp"
 #include "core/support/index.hpp"
 #include "core/support/peak_memory.hpp"
+#include "core/support/seconds_since.hpp"
 
 namespace evbench::gp_map {
 namespace {
-
-double milliseconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// Feeds a prepared problem to the engine, a control state at a time.
 class IncrementalRun {
@@ -34,7 +31,7 @@ class IncrementalRun {
       const auto start = std::chrono::steady_clock::now();
       add_step(k);
       result.updates.push_back(engine_.update());
-      result.step_ms.push_back(milliseconds_since(start));
+      result.step_ms.push_back(1e3 * seconds_since(start));
       result.total_s += 1e-3 * result.step_ms.back();
       if (!result.updates.back().reason.empty()) result.reason = result.updates.back().reason;
     }
@@ -111,7 +108,7 @@ SolveResult solve_at_once(const Problem& problem, const SolveOptions& options) {
   Engine engine(to_graph(problem), options.engine);
   const auto start = std::chrono::steady_clock::now();
   const auto summary = engine.optimise(options.max_iterations, 1e-8);
-  result.step_ms.push_back(milliseconds_since(start));
+  result.step_ms.push_back(1e3 * seconds_since(start));
   result.total_s = 1e-3 * result.step_ms.back();
   result.reason = summary.reason;
   result.peak_mib = peak_memory_mib();

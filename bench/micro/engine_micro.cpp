@@ -12,15 +12,12 @@
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/problem_graph.hpp"
 #include "core/support/index.hpp"
+#include "core/support/seconds_since.hpp"
 
 namespace {
 
 using namespace evbench;
 using namespace evbench::gp_map;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 template <class Call>
 double median_seconds(int repetitions, Call call) {

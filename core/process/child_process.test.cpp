@@ -12,6 +12,7 @@
 
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
+#include "core/support/seconds_since.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
@@ -30,10 +31,6 @@ std::string failure(const std::string& script, double timeout = 10.0, const std:
     return error.what();
   }
   return "";
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// Within two seconds.

@@ -9,6 +9,7 @@
 
 #include "core/geometry/so3.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/support/seconds_since.hpp"
 #include "cost_functions.hpp"
 
 namespace spline_map {
@@ -26,10 +27,6 @@ constexpr double kAlive = 0.1;           // [s] after its last observation a tra
 constexpr double kBetweenTries = 0.1;    // [s] between two attempts to locate a track
 constexpr int kFinalRounds = 3;          // of solving and removing outliers
 constexpr double kSmallestStep = 1e-6;   // [s]
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 }  // namespace
 
@@ -70,7 +67,7 @@ void SplineMap::update(double t) {
     watch(from, t);
   }
   if (mapped_ && !monitor_.lost()) context_.online({{t, spline_.pose(t)}, t});
-  updates_.push_back({t, seconds_since(start), report.knots, report.landmarks, report.observations, report.iterations,
+  updates_.push_back({t, evbench::seconds_since(start), report.knots, report.landmarks, report.observations, report.iterations,
                       report.usable ? std::optional(report.cost) : std::nullopt});
 }
 
@@ -233,7 +230,7 @@ void SplineMap::solve_everything() {
   }
   context_.log(fmt::format("final estimate: cost {:.2f}, {} observations, {} landmarks, {} knots, {} iterations",
                            report.cost, report.observations, report.landmarks, report.knots, report.iterations));
-  updates_.push_back({newest_, seconds_since(start), report.knots, report.landmarks, report.observations,
+  updates_.push_back({newest_, evbench::seconds_since(start), report.knots, report.landmarks, report.observations,
                       report.iterations, report.cost});
 }
 
