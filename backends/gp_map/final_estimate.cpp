@@ -63,22 +63,16 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
 /// noise.
 void GpMap::judge_tracks(const NoiseLearner& noise) {
   const double threshold = options_.map.outlier_threshold;
-  std::vector<int> alive;
-  std::vector<TrackErrors> errors;
-  for (int j = 0; j < std::ssize(graph().landmarks); ++j) {
-    if (!graph().landmarks[index(j)].alive) continue;
-    alive.push_back(j);
-    errors.emplace_back(graph(), j);
-  }
-  const double usual = TrackErrors::usual(errors, noise);
-  for (std::size_t i = 0; i < alive.size(); ++i) {
-    if (errors[i].is_outlier(threshold, usual)) become_outlier(alive[i]);
+  const auto landmarks = static_cast<int>(graph().landmarks.size());
+  for (int j = 0; j < landmarks; ++j) {
+    if (graph().landmarks[index(j)].alive && TrackErrors(graph(), j, noise).is_outlier(threshold)) become_outlier(j);
   }
   FactorGraph judged = graph();
-  for (std::size_t i = 0; i < alive.size(); ++i) {
-    if (!judged.landmarks[index(alive[i])].alive) continue;
-    if (options_.learn.noise) judged.scale_sigmas(alive[i], errors[i].sigma_scale(usual));
-    if (const auto from = errors[i].slides_from(threshold, usual)) judged.remove_observations(alive[i], *from);
+  for (int j = 0; j < landmarks; ++j) {
+    if (!judged.landmarks[index(j)].alive) continue;
+    const TrackErrors errors(judged, j, noise);
+    if (options_.learn.noise) judged.scale_sigmas(j, errors.sigma_scale());
+    if (const auto from = errors.slides_from(threshold)) judged.remove_observations(j, *from);
   }
   engine_.emplace(std::move(judged), EngineOptions());
 }

@@ -210,7 +210,7 @@ bool GpMap::is_outlier(int landmark, double error_px) const {
   const auto& seen = graph().landmarks[index(landmark)].intervals;
   if (seen.empty()) return false;
   const double inverse_sigma = graph().intervals[index(seen.back())].of(landmark).back().inverse_sigma;
-  return error_px * inverse_sigma > options_.map.outlier_threshold * noise_.error();
+  return error_px * inverse_sigma > options_.map.outlier_threshold * noise_.scale_of_means();
 }
 
 void GpMap::optimise() {
@@ -298,8 +298,7 @@ void GpMap::learn_before_settling() {
 /// What is seen next is compared with the newest state's constant velocity.
 void GpMap::predict_tracks() {
   constexpr double kLargestSpread = 2.0;
-  const double spread = std::min(kLargestSpread, 1.0 / std::sqrt(noise_.share()));  // errors that drift
-  const double noise = spread * noise_.scale() * options_.sigma_scale;
+  const double noise = std::min(kLargestSpread * noise_.scale(), noise_.scale_of_means()) * options_.sigma_scale;
   placement_.predict([this, noise, newest = graph().states.back()](const TrackObservation& z) {
     std::optional<double> deviation;
     const auto track = tracks_.find(z.track);

@@ -92,7 +92,6 @@ void NoiseLearner::follow(const FactorGraph& graph, double memory) {
   const int newest = static_cast<int>(graph.states.size()) - 1;
   for (; taken_ < newest - kAge; ++taken_) {
     const double dt = graph.states[index(taken_ + 1)].t - graph.states[index(taken_)].t;
-    errors_.fade(std::exp(-dt / memory));
     norms_.fade(std::exp(-dt / memory));
     means_.fade(std::exp(-dt / memory));
     add(graph, taken_ + 1);
@@ -113,7 +112,6 @@ void NoiseLearner::add(const FactorGraph& graph, int k) {
       if (!r.value.allFinite()) continue;
       residuals.push_back(r);
       norms.push_back(r.value.norm());
-      errors_.add(norms.back());
     }
   }
   if (residuals.empty()) return;
@@ -145,12 +143,12 @@ double NoiseLearner::scale() const {
   return norm > 0.0 ? norm / kMedianNorm : 1.0;
 }
 
-double NoiseLearner::error() const { return std::max(scale(), errors_.value() / kMedianNorm); }
-
 double NoiseLearner::share() const {
   const double single = norms_.value() * norms_.value(), mean = means_.value();
   return mean > 0.0 ? std::clamp(single / mean, kLeastShare, 1.0) : 1.0;
 }
+
+double NoiseLearner::scale_of_means() const { return scale() / std::sqrt(share()); }
 
 NoiseLearner learn_noise(const FactorGraph& graph) {
   NoiseLearner result;

@@ -23,7 +23,9 @@ class NoiseLearner {
 
   double scale() const;  ///< true sigma over the stated one; 1 before there is any residual
   double share() const;  ///< of the information, at most 1
-  double error() const;  ///< whole error, with what is of the motion, over the stated sigma: at least the noise's scale
+
+  /// The same as scale() for what is averaged over a short time and taken times √n: of errors that drift, larger.
+  double scale_of_means() const;
 
   /// The loss for residuals whitened by the stated sigmas. `width`: in true sigmas.
   RobustLoss loss(RobustLoss::Kind kind, double width) const;
@@ -47,8 +49,7 @@ class NoiseLearner {
   };
   void add(int landmark, double t, const Vector2& residual);
 
-  Median errors_;              ///< norms of residuals
-  Median norms_;               ///< the same without what is of the motion
+  Median norms_;               ///< of residuals
   Median means_;               ///< |sum|²/n of blocks
   std::map<int, Block> open_;  ///< by landmark
   int taken_ = 0;              ///< the last interval of follow()

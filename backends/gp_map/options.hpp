@@ -57,9 +57,9 @@ struct MapOptions {
         .range(0.0);
     set.add("depth_sigma", depth_sigma, "standard deviation of that guess, as a share of the depth").above(0.0);
     set.add("outlier_threshold", outlier_threshold,
-            "tracks whose average reprojection error over all their observations is larger are dropped [sigmas]; the "
-            "final estimate drops a track from where its error, averaged over 0.15 s, stays larger [sigmas of such "
-            "averages]")
+            "tracks whose average reprojection error over all their observations is larger are dropped; the final "
+            "estimate drops a track from where its error, averaged over 0.15 s, stays larger [sigmas of such averages, "
+            "which are larger where trackers drift]")
         .above(0.0);
     set.add("returns", returns,
             "landmarks that were out of sight at a time and were found again, at most: what comes back beyond that "

@@ -16,7 +16,7 @@ constexpr double kOthers = 10.0;           ///< blocks that the noise of all tra
 
 }  // namespace
 
-TrackErrors::TrackErrors(const FactorGraph& graph, int landmark)
+TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, const NoiseLearner& noise)
     : given_scale_(graph.landmarks[index(landmark)].sigma_scale) {
   const Vector3& position = graph.landmarks[index(landmark)].position;
   std::optional<Vector2> before;
@@ -28,35 +28,27 @@ TrackErrors::TrackErrors(const FactorGraph& graph, int landmark)
     blocks_.back().sum += reprojection_residual(interval, position, z, graph.camera);
   });
   if (!blocks_.empty() && blocks_.back().count < kFewest) blocks_.pop_back();
+  const double usual = noise.scale_of_means() * noise.scale_of_means();
+  for (Block& block : blocks_) block.square = block.sum.squaredNorm() / (block.count * usual);
 }
 
-double TrackErrors::usual(const std::vector<TrackErrors>& tracks, const NoiseLearner& noise) {
-  std::vector<double> squares;
-  for (const TrackErrors& track : tracks) {
-    for (const Block& block : track.blocks_) squares.push_back(block.square());
-  }
-  const double whole = squares.empty() ? 0.0 : median(std::move(squares)) / kMedianSquare;
-  return std::sqrt(std::max(whole, noise.scale() * noise.scale() / noise.share()));
-}
-
-double TrackErrors::sigma_scale(double usual) const {
+double TrackErrors::sigma_scale() const {
   if (blocks_.empty()) return given_scale_;
   std::vector<double> squares;
-  for (const Block& block : blocks_) squares.push_back(block.square() / (usual * usual));
+  for (const Block& block : blocks_) squares.push_back(block.square);
   const auto n = static_cast<double>(blocks_.size());
   const double own = given_scale_ * given_scale_ * median(std::move(squares)) / kMedianSquare;
   return std::sqrt(std::max(1.0, (kOthers + n * own) / (kOthers + n)));
 }
 
-bool TrackErrors::is_outlier(double threshold, double usual) const {
-  const double limit = std::pow(threshold * usual, 2);
-  return 2 * std::ranges::count_if(blocks_, [&](const Block& b) { return b.square() > limit; }) > std::ssize(blocks_);
+bool TrackErrors::is_outlier(double threshold) const {
+  const auto far = std::ranges::count_if(blocks_, [&](const Block& b) { return b.square > threshold * threshold; });
+  return 2 * far > std::ssize(blocks_);
 }
 
-std::optional<double> TrackErrors::slides_from(double threshold, double usual) const {
-  const double limit = std::pow(threshold * usual, 2);
+std::optional<double> TrackErrors::slides_from(double threshold) const {
   std::size_t good = blocks_.size();
-  while (good > 0 && blocks_[good - 1].square() > limit) --good;
+  while (good > 0 && blocks_[good - 1].square > threshold * threshold) --good;
   if (good == 0 || good == blocks_.size()) return std::nullopt;
   return blocks_[good].since;
 }

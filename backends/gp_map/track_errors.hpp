@@ -11,35 +11,28 @@ namespace evbench::gp_map {
 /// What the residuals of one landmark's track tell, as means over short times, in which white noise vanishes and what
 /// a tracker's template does remains: how the track's noise compares with that of the others, whether the track has
 /// anything to do with its landmark, and from when on it has slid off it.
-///
-/// "Usual" is the sigma of such means over all tracks [stated sigmas of a single observation]: the noise, or the whole
-/// error, with what all tracks err in common, which no track is to be blamed for.
 class TrackErrors {
  public:
-  /// At the graph's estimate.
-  TrackErrors(const FactorGraph& graph, int landmark);
-
-  /// Of all tracks.
-  static double usual(const std::vector<TrackErrors>& tracks, const NoiseLearner& noise);
+  /// At the graph's estimate. `noise`: of all tracks.
+  TrackErrors(const FactorGraph& graph, int landmark, const NoiseLearner& noise);
 
   /// Its sigmas over the stated ones, as that of all tracks is learnt apart: at least 1, for a track that is noisier
   /// than most. A robust estimate, which a short track takes from the others.
-  double sigma_scale(double usual) const;
+  double sigma_scale() const;
 
-  /// Are most of its means farther off than `threshold` usual ones?
-  bool is_outlier(double threshold, double usual) const;
+  /// Are most of its means farther off than `threshold` sigmas of such means?
+  bool is_outlier(double threshold) const;
 
   /// The time from which all that follows is farther off than that [s]; none where the end is as good as the rest, nor
   /// where nothing was good before.
-  std::optional<double> slides_from(double threshold, double usual) const;
+  std::optional<double> slides_from(double threshold) const;
 
  private:
   struct Block {
     double since = 0.0;             ///< [s]
     int count = 0;                  ///< observations
     Vector2 sum = Vector2::Zero();  ///< of residuals
-
-    double square() const { return sum.squaredNorm() / count; }
+    double square = 0.0;            ///< of the mean [sigmas of such means]
   };
   std::vector<Block> blocks_;
   double given_scale_;  ///< of the sigmas, in the residuals already
