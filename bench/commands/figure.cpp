@@ -7,11 +7,10 @@
 #include <vector>
 
 #include "bench/commands/commands.hpp"
-#include "bench/commands/failures.hpp"
+#include "bench/commands/run_outputs.hpp"
 #include "bench/common_time.hpp"
 #include "bench/figures/run_figures.hpp"
 #include "core/io/atomic_file.hpp"
-#include "eval/find_runs.hpp"
 #include "eval/names.hpp"
 #include "eval/run_columns.hpp"
 #include "eval/table.hpp"
@@ -69,17 +68,15 @@ void execute(const FigureArguments& arguments) {
     throw InputError(fmt::format("{}: is no .svg, .pdf or .png; expected one of these", arguments.out));
   }
   check_outputs({arguments.out, arguments.keep_script ? script : ""}, {}, arguments.force);
-  std::vector<std::string> unreadable;
-  std::vector<RunRecord> runs = find_runs(arguments.folders, &unreadable);
-  if (runs.empty()) throw_together(unreadable);
-  if (!arguments.only.empty()) keep_only(arguments.only, runs);
-  if (any_of_common_time(arguments.options.metrics)) score_common_time(runs, arguments.options.online);
-  Figure figure = make_figure(arguments, runs);
-  if (arguments.width_mm > 0.0) figure.width_mm = arguments.width_mm;
-  if (arguments.height_mm > 0.0) figure.height_mm = arguments.height_mm;
-  if (arguments.keep_script) write_file(script, drawing_script(figure));
-  draw(figure, arguments.out, arguments.python);
-  throw_together(unreadable);
+  use_runs(arguments.folders, [&](std::vector<RunRecord>& runs) {
+    if (!arguments.only.empty()) keep_only(arguments.only, runs);
+    if (any_of_common_time(arguments.options.metrics)) score_common_time(runs, arguments.options.online);
+    Figure figure = make_figure(arguments, runs);
+    if (arguments.width_mm > 0.0) figure.width_mm = arguments.width_mm;
+    if (arguments.height_mm > 0.0) figure.height_mm = arguments.height_mm;
+    if (arguments.keep_script) write_file(script, drawing_script(figure));
+    draw(figure, arguments.out, arguments.python);
+  });
 }
 
 }  // namespace
@@ -91,16 +88,10 @@ void add_figure(CLI::App& app) {
   command->add_option("kind", arguments->kind, "What is drawn")
       ->required()
       ->check(CLI::IsMember(to_strings(kFigureKindNames)));
-  command->add_option("folders", arguments->folders, "Folders of runs, searched with all folders below")
-      ->required()
-      ->type_name("DIR");
+  add_folders(*command, arguments->folders);
   command->add_option("--out", arguments->out, "The file: .svg, .pdf or .png")->required()->type_name("FILE");
-  command
-      ->add_option("--metrics", arguments->options.metrics,
-                   "What sweep, box and profile show, a panel each; else ATE, RPE")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("KEY,...");
+  add_list_option(*command, "--metrics", arguments->options.metrics,
+                  "What sweep, map, box and profile show, a panel each; else ATE, RPE");
   command->add_option("--axis", arguments->options.axis, "What a sweep is drawn against, e.g. backend.frame_duration")
       ->type_name("NAME");
   command

@@ -7,11 +7,10 @@
 #include <vector>
 
 #include "bench/commands/commands.hpp"
-#include "bench/commands/failures.hpp"
+#include "bench/commands/run_outputs.hpp"
 #include "bench/common_time.hpp"
 #include "bench/run_folder.hpp"
 #include "core/support/interruption.hpp"
-#include "eval/find_runs.hpp"
 #include "eval/table.hpp"
 
 namespace evbench {
@@ -31,22 +30,19 @@ ScoreOptions protocol_of(const std::string& folder, const ScoreArguments& argume
 
 void execute(const ScoreArguments& arguments) {
   const Interruption interruption("interrupted; the runs that were not scored again are as before");
-  std::vector<std::string> unreadable;
-  std::vector<RunRecord> records = find_runs(arguments.folders, &unreadable);
-  if (records.empty()) throw_together(unreadable);
-  std::vector<ScoreOptions> protocols;  // all of them first: what is wrong with one is told before any work
-  for (const RunRecord& run : records) protocols.push_back(protocol_of(run.folder, arguments));
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    check_interruption();
-    const std::string found_as = records[i].folder;
-    records[i] = score_again(std::filesystem::canonical(found_as).string(), protocols[i]);
-    records[i].folder = found_as;
-  }
-  if (!arguments.quiet) {
+  use_runs(arguments.folders, [&](std::vector<RunRecord>& records) {
+    std::vector<ScoreOptions> protocols;  // all of them first: what is wrong with one is told before any work
+    for (const RunRecord& run : records) protocols.push_back(protocol_of(run.folder, arguments));
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      check_interruption();
+      const std::string found_as = records[i].folder;
+      records[i] = score_again(std::filesystem::canonical(found_as).string(), protocols[i]);
+      records[i].folder = found_as;
+    }
+    if (arguments.quiet) return;
     score_common_time(records, false);
     fmt::print("{}", make_table(records, {}));
-  }
-  throw_together(unreadable);
+  });
 }
 
 }  // namespace
@@ -54,19 +50,15 @@ void execute(const ScoreArguments& arguments) {
 void add_score(CLI::App& app) {
   auto arguments = std::make_shared<ScoreArguments>();
   CLI::App* command = app.add_subcommand("score", "Score runs again from their trajectories, without running them");
-  command->add_option("folders", arguments->folders, "Folders of runs, searched with all folders below")
-      ->required()
-      ->type_name("DIR");
+  add_folders(*command, arguments->folders);
   command->add_option("--config", arguments->config, "Take the protocol from this config, not from each run's own")
       ->type_name("FILE");
   add_overrides(*command, arguments->overrides,
                 "Override a value of the protocol: evaluation.KEY=VALUE, e.g. evaluation.alignment=se3");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->footer(
-      "Reads final.tum, online.tum, told.txt and groundtruth.tum of each run, rewrites its metrics.json, and its "
-      "config.json "
-      "with\n"
-      "the protocol. The same protocol gives the same bytes.");
+      "Reads final.tum, online.tum, told.txt and groundtruth.tum of each run, rewrites its metrics.json, and its\n"
+      "config.json with the protocol. The same protocol gives the same bytes.");
   command->callback([arguments] { execute(*arguments); });
 }
 
