@@ -7,6 +7,7 @@
 
 #include "bench/run_folder.hpp"
 #include "core/io/sha256.hpp"
+#include "eval/json_file.hpp"
 #include "eval/score_run.hpp"
 
 // Runs that lie there already: found, copied, renamed, scored again.
@@ -14,8 +15,6 @@
 namespace evbench {
 namespace fs = std::filesystem;
 namespace {
-
-std::string pretty(const Json& json) { return json.dump(2) + "\n"; }
 
 /// A file's content; nothing when it can't be read.
 std::optional<std::string> content_of(const std::string& path) {
@@ -43,7 +42,7 @@ Json parse(const std::string& path) {
 RunRecord rewrite(const std::string& from, const std::string& to, const Json& config, RunRecord record,
                   const ScoreOptions& options, const std::string& log) {
   Json manifest = parse(from + "/manifest.json");
-  manifest["config_sha256"] = sha256(pretty(config));
+  manifest["config_sha256"] = sha256(json_file_text(config));
   score_run(from, options, record);
   const EmptyFolders made(fs::path(to).parent_path().string());
   AtomicFolder folder(to);
@@ -51,9 +50,9 @@ RunRecord rewrite(const std::string& from, const std::string& to, const Json& co
     const std::string name = entry.path().filename().string();
     if (entry.is_regular_file()) folder.write(name, content_of(entry.path().string()).value_or(""));
   }
-  folder.write("config.json", pretty(config));
-  folder.write("manifest.json", pretty(manifest));
-  folder.write("metrics.json", pretty(to_json(record)));
+  folder.write("config.json", json_file_text(config));
+  folder.write("manifest.json", json_file_text(manifest));
+  folder.write("metrics.json", json_file_text(to_json(record)));
   if (!log.empty()) folder.write("log.txt", content_of(from + "/log.txt").value_or("") + log);
   folder.commit();
   record.folder = to;
@@ -110,7 +109,7 @@ RunRecord adopt_run(const std::string& from, const std::string& to, const RunCon
   const Json resolved = config.resolved();
   const std::optional<std::uint64_t> position = config.position ? config.position : record.position;
   const bool same_place = from == to && position == record.position;
-  if (same_place && content_of(from + "/config.json") == pretty(resolved)) return record;
+  if (same_place && content_of(from + "/config.json") == json_file_text(resolved)) return record;
   std::string log;
   if (record.experiment != config.experiment || record.label != config.label) {
     log = fmt::format("not run again, but called {}: {}\n", config.experiment, config.label);

@@ -13,6 +13,7 @@
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/sha256.hpp"
+#include "eval/json_file.hpp"
 #include "eval/score_run.hpp"
 
 namespace evbench {
@@ -21,8 +22,6 @@ namespace {
 
 /// Ground truth is kept beyond the time range, for a protocol with another offset of time [s].
 constexpr double kGroundTruthMargin = 1.0;
-
-std::string pretty(const Json& json) { return json.dump(2) + "\n"; }
 
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
@@ -41,7 +40,7 @@ Json manifest_json(const RunConfig& config, const JobIdentity& identity, const R
           {"host", {{"name", host.data()}, {"processor", processor()}, {"cores", std::thread::hardware_concurrency()}}},
           {"seed", config.job.seed},
           {"key", identity.key},
-          {"config_sha256", sha256(pretty(config.resolved()))},
+          {"config_sha256", sha256(json_file_text(config.resolved()))},
           {"inputs_sha256", inputs},
           {"tracks_sha256", result.tracks_sha256},
           {"observations", result.observations}};
@@ -173,9 +172,9 @@ RunRecord RunFolder::write_broken_off(const RunConfig& config, const JobIdentity
 
 /// What every run has, but for its scores.
 void RunFolder::write_files(const RunConfig& config, const JobIdentity& identity, const RunResult& result) const {
-  folder_.write("config.json", pretty(config.resolved()));
+  folder_.write("config.json", json_file_text(config.resolved()));
   folder_.write("job.json", identity.text);
-  folder_.write("manifest.json", pretty(manifest_json(config, identity, result)));
+  folder_.write("manifest.json", json_file_text(manifest_json(config, identity, result)));
   write_pieces(folder_, result);
   folder_.write("timing.csv", timing_csv(result.updates));
   folder_.write("log.txt", log_text(config, result));
@@ -183,8 +182,8 @@ void RunFolder::write_files(const RunConfig& config, const JobIdentity& identity
 
 RunRecord RunFolder::finish(const RunConfig& config, RunRecord record) {
   score_run(folder_.part(), config.evaluation, record);
-  folder_.write("status.json", pretty(to_json(*record.status)));
-  folder_.write("metrics.json", pretty(to_json(record)));
+  folder_.write("status.json", json_file_text(to_json(*record.status)));
+  folder_.write("metrics.json", json_file_text(to_json(record)));
   folder_.commit();
   record.folder = path_;
   return record;

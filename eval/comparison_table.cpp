@@ -8,7 +8,6 @@
 #include <set>
 
 #include "core/support/error.hpp"
-#include "core/support/nearest.hpp"
 #include "eval/holm.hpp"
 #include "eval/methods.hpp"
 #include "eval/paired_comparison.hpp"
@@ -20,17 +19,6 @@ namespace evbench {
 namespace {
 
 using Cell = TextTable::Cell;
-
-constexpr double kSignificant = 0.05;
-
-std::size_t find_base(const std::vector<Method>& methods, const std::string& name) {
-  if (name.empty()) return 0;
-  std::vector<std::string> names;
-  for (const Method& method : methods) names.push_back(method.name);
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end()) throw InputError(fmt::format("there is no method \"{}\"{}", name, suggestion(name, names)));
-  return static_cast<std::size_t>(found - names.begin());
-}
 
 std::vector<Metric> compared_metrics(const ComparisonOptions& options, const std::vector<RunNumbers>& runs) {
   if (options.metrics.empty()) {
@@ -76,7 +64,7 @@ class Comparison {
         protocols_(collect_protocols(numbers_)),
         methods_(methods_of(numbers_, run_columns(runs))) {
     if (methods_.size() < 2) throw InputError("all runs are of one method; expected two or more to compare");
-    base_ = find_base(methods_, options.base);
+    base_ = options.base.empty() ? &methods_.front() : &find_method(methods_, options.base);
     metrics_ = compared_metrics(options, numbers_);
     for (const char* name :
          {"", "metric", "pairs", "failed", "base failed", "ratio", "better in", "p", "p, Holm", "effect"}) {
@@ -92,7 +80,7 @@ class Comparison {
       throw InputError(
           fmt::format("no run is of the same data as one of \"{}\"; expected the same source, front-end and "
                       "seed",
-                      methods_[base_].name));
+                      base_->name));
     }
     add_notes();
     return format_table(table_, options_.format);
@@ -100,28 +88,28 @@ class Comparison {
 
  private:
   void add_rows(const Metric& metric) {
-    std::vector<std::size_t> others;
+    std::vector<const Method*> others;
     std::vector<PairedComparison> comparisons;
-    const auto costs = [&](std::size_t method) {
-      return costs_of(methods_[method].runs, numbers_, metric, data_, protocols_.of_run);
+    const auto costs = [&](const Method& method) {
+      return costs_of(method.runs, numbers_, metric, data_, protocols_.of_run);
     };
-    for (std::size_t m = 0; m < methods_.size(); ++m) {
-      if (m == base_) continue;
-      const std::vector<CostPair> pairs = pair_up(costs(m), costs(base_));
+    for (const Method& method : methods_) {
+      if (&method == base_) continue;
+      const std::vector<CostPair> pairs = pair_up(costs(method), costs(*base_));
       if (pairs.empty()) continue;
       for (const CostPair& pair : pairs) paired_.insert({pair.own_run, pair.other_run});
-      others.push_back(m);
+      others.push_back(&method);
       comparisons.push_back(compare_pairs(pairs));
     }
     std::vector<double> p;
     for (const PairedComparison& comparison : comparisons) p.push_back(comparison.test.p);
     const std::vector<double> corrected = holm(p);
-    for (std::size_t i = 0; i < others.size(); ++i) add_row(metric, others[i], comparisons[i], corrected[i]);
+    for (std::size_t i = 0; i < others.size(); ++i) add_row(metric, *others[i], comparisons[i], corrected[i]);
   }
 
-  void add_row(const Metric& metric, std::size_t method, const PairedComparison& c, double corrected) {
+  void add_row(const Metric& metric, const Method& method, const PairedComparison& c, double corrected) {
     const auto p_text = [&](double p) { return csv_ ? fmt::format("{}", p) : fmt::format("{:.2g}", p); };
-    std::vector<Cell> row = {{methods_[method].name},
+    std::vector<Cell> row = {{method.name},
                              {csv_ ? metric.key : metric.header},
                              {fmt::format("{}", c.pairs)},
                              {fmt::format("{}", c.own_failed)},
@@ -140,10 +128,10 @@ class Comparison {
   }
 
   void add_notes() {
-    table_.experiments = {fmt::format("compared with {}", methods_[base_].name)};
+    table_.experiments = {fmt::format("compared with {}", base_->name)};
     std::vector<std::string>& notes = table_.notes;
     notes.push_back(
-        fmt::format("Compared with: {}. Pairs are runs of the same source, front-end and seed.", methods_[base_].name));
+        fmt::format("Compared with: {}. Pairs are runs of the same source, front-end and seed.", base_->name));
     std::size_t identical = 0, known = 0;
     for (const auto& [own, other] : paired_) {
       const std::string a = observations_of(numbers_[own].run()), b = observations_of(numbers_[other].run());
@@ -171,7 +159,7 @@ class Comparison {
   std::vector<std::size_t> data_;
   Protocols protocols_;
   std::vector<Method> methods_;
-  std::size_t base_ = 0;
+  const Method* base_ = nullptr;
   std::vector<Metric> metrics_;
   std::set<std::pair<std::size_t, std::size_t>> paired_;  ///< own and base's run of each pair of any metric
   TextTable table_;

@@ -21,4 +21,6 @@ Json read_json_file(const std::string& path) {
   }
 }
 
+std::string json_file_text(const Json& json) { return json.dump(2) + "\n"; }
+
 }  // namespace evbench

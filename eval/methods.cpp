@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "core/support/error.hpp"
+#include "core/support/nearest.hpp"
 #include "eval/paired_comparison.hpp"
 
 namespace evbench {
@@ -59,6 +61,14 @@ std::vector<Method> methods_of(const std::vector<RunNumbers>& runs, const std::v
     methods.push_back({method_name(naming, group.front()), std::move(group)});
   }
   return methods;
+}
+
+const Method& find_method(const std::vector<Method>& methods, const std::string& name) {
+  const auto found = std::ranges::find(methods, name, &Method::name);
+  if (found != methods.end()) return *found;
+  std::vector<std::string> names;
+  for (const Method& method : methods) names.push_back(method.name);
+  throw InputError(fmt::format("there is no method \"{}\"{}", name, suggestion(name, names)));
 }
 
 }  // namespace evbench

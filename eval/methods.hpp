@@ -21,4 +21,7 @@ struct Method {
 std::vector<Method> methods_of(const std::vector<RunNumbers>& runs, const std::vector<RunColumn>& columns,
                                const std::string& without = "");
 
+/// The method of that name; throws InputError, with the nearest name, where there is none.
+const Method& find_method(const std::vector<Method>& methods, const std::string& name);
+
 }  // namespace evbench

@@ -19,8 +19,6 @@ namespace {
 using Cell = TextTable::Cell;
 using Group = std::vector<std::size_t>;
 
-constexpr double kSignificant = 0.05;
-
 /// The columns that name rows, and those that they are summarised over.
 struct Columns {
   std::vector<const RunColumn*> rows, over;

@@ -11,6 +11,7 @@
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
 #include "eval/error_files.hpp"
+#include "eval/json_file.hpp"
 #include "eval/protocol.hpp"
 #include "eval/score_run.hpp"
 #include "eval/table.hpp"
@@ -116,7 +117,7 @@ RunRecord record_of(const std::string& ground_truth, const std::string& estimate
 std::string json_text(const std::vector<RunRecord>& records) {
   Json json = Json::array();
   for (const RunRecord& record : records) json.push_back(to_json(record));
-  return (records.size() == 1 ? json[0] : json).dump(2) + "\n";
+  return json_file_text(records.size() == 1 ? json[0] : json);
 }
 
 void check(const EvalArguments& arguments) {

@@ -62,7 +62,7 @@ void print_plan(const std::vector<PlannedRun>& runs, const SweepPlan& plan, cons
     const bool failed = condition == RunCondition::broken_off || condition == RunCondition::damaged;
     if (condition == RunCondition::absent || (failed && options.retry_failed)) ++to_do;
     fmt::print("{:<10}  {}  {}{}{}\n", kConditions[static_cast<int>(condition)], run.identity.key, run.config.label,
-               run.axes.empty() ? "" : ", ", place_of(run));
+               run.axes.empty() ? "" : ", ", place_of(run.axes));
   }
   fmt::print("{} runs, {} to do\n", runs.size(), to_do);
 }

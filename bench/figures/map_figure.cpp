@@ -6,7 +6,6 @@
 
 #include "bench/figures/figure_runs.hpp"
 #include "core/support/error.hpp"
-#include "core/support/nearest.hpp"
 #include "eval/paired_comparison.hpp"
 
 namespace evbench {
@@ -36,12 +35,7 @@ const Method& only_method(const FigureRuns& all, const RunColumn& axis, bool wit
 }
 
 const Method& base_of(const FigureRuns& all, const RunColumn& axis, const std::string& name) {
-  if (name.empty()) return only_method(all, axis, false);
-  std::vector<std::string> names;
-  for (const Method& method : all.methods) names.push_back(method.name);
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end()) throw InputError(fmt::format("there is no method \"{}\"{}", name, suggestion(name, names)));
-  return all.methods[static_cast<std::size_t>(found - names.begin())];
+  return name.empty() ? only_method(all, axis, false) : find_method(all.methods, name);
 }
 
 }  // namespace

@@ -260,14 +260,14 @@ class Executor {
   }
 
   void count(const Job& job, const RunRecord& record) {
-    if (auto trouble = trouble_of(record, place_of(*job.run))) {
+    if (auto trouble = trouble_of(record, place_of(job.run->axes))) {
       add(std::move(*trouble));
     } else {
       ++progress_.done;
     }
   }
 
-  void fail(const Job& job, const std::string& reason) { add({job.run->config.label, place_of(*job.run), reason}); }
+  void fail(const Job& job, const std::string& reason) { add({job.run->config.label, place_of(job.run->axes), reason}); }
 
   void add(TroubledRun run) {
     if (!run.lost) ++progress_.failed;

@@ -16,7 +16,7 @@ namespace {
 /// One point of a grid: what it changes in the config, and its place on the axes.
 struct Point {
   std::vector<std::string> overrides;
-  std::vector<std::pair<std::string, std::string>> axes;
+  RunAxes axes;
 };
 
 std::vector<Point> points_of(const Grid& grid) {
@@ -83,7 +83,7 @@ class Planner {
     throw InputError(
         fmt::format("the runs \"{}\" ({}) and \"{}\" ({}) are the same job, {}, and differ in name or protocol alone: "
                     "they would be one run; evbench score compares protocols",
-                    a.config.label, place_of(a), b.config.label, place_of(b), a.identity.key));
+                    a.config.label, place_of(a.axes), b.config.label, place_of(b.axes), a.identity.key));
   }
 
   void share_tracks() {
@@ -125,9 +125,9 @@ class Planner {
 
 }  // namespace
 
-std::string place_of(const PlannedRun& run) {
+std::string place_of(const RunAxes& axes) {
   std::string text;
-  for (const auto& [axis, value] : run.axes) text += fmt::format("{}{}={}", text.empty() ? "" : ", ", axis, value);
+  for (const auto& [axis, value] : axes) text += fmt::format("{}{}={}", text.empty() ? "" : ", ", axis, value);
   return text;
 }
 

@@ -8,6 +8,7 @@
 
 #include "bench/experiment.hpp"
 #include "bench/sweep/sweep_file.hpp"
+#include "eval/run_settings.hpp"
 
 namespace evbench {
 
@@ -15,14 +16,14 @@ namespace evbench {
 struct PlannedRun {
   RunConfig config;
   JobIdentity identity;
-  std::vector<std::pair<std::string, std::string>> axes;  ///< axis and value, in the axes' order
+  RunAxes axes;  ///< its value on each axis, in their order
   /// Names what its front-end gives, where that is made from events and other runs of the sweep need the same: the
   /// SHA-256 of the job without its back-end, ten digits of it. Empty: the run makes it for itself.
   std::string tracks;
 };
 
-/// Its values on the axes: "seed=3, frames=0.1".
-std::string place_of(const PlannedRun& run);
+/// Values on axes: "seed=3, frames=0.1".
+std::string place_of(const RunAxes& axes);
 
 /// All runs of a sweep, in order: grid by grid, the last axis varies fastest, then the config's back-ends.
 struct SweepPlan {

@@ -19,7 +19,7 @@ SweepPlan plan(const TemporaryFolder& folder, const std::string& file, const std
 
 std::vector<std::string> places(const std::vector<PlannedRun>& runs) {
   std::vector<std::string> result;
-  for (const PlannedRun& run : runs) result.push_back(run.config.label + ": " + place_of(run));
+  for (const PlannedRun& run : runs) result.push_back(run.config.label + ": " + place_of(run.axes));
   return result;
 }
 

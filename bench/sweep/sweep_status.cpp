@@ -6,24 +6,16 @@
 #include <filesystem>
 #include <set>
 
-#include "bench/experiment.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "eval/run_record.hpp"
+#include "eval/sweep_record.hpp"
 
 namespace evbench {
 namespace fs = std::filesystem;
 namespace {
 
-std::string place_of(const Json& axes) {
-  std::string text;
-  for (const auto& [axis, value] : axes.items()) {
-    text += fmt::format("{}{}={}", text.empty() ? "" : ", ", axis, value.get<std::string>());
-  }
-  return text;
-}
-
-void add_run(const std::string& folder, const std::string& label, const std::string& place, SweepStatus& status) {
+void add_run(const std::string& folder, const SweepRecordRun& run, SweepStatus& status) {
   std::error_code error;
   if (AtomicFolder::is_taken(folder)) {
     ++status.running;
@@ -35,30 +27,24 @@ void add_run(const std::string& folder, const std::string& label, const std::str
   }
   std::optional<TroubledRun> trouble;
   try {
-    trouble = trouble_of(read_record(folder), place);
+    trouble = trouble_of(read_record(folder), place_of(run.axes));
   } catch (const InputError& damage) {
-    trouble = TroubledRun{label, place, fmt::format("damaged: {}", damage.what())};
+    trouble = TroubledRun{run.label, place_of(run.axes), fmt::format("damaged: {}", damage.what())};
   }
   ++(trouble && !trouble->lost ? status.failed : status.done);
   if (trouble) status.troubled.push_back(std::move(*trouble));
 }
 
 SweepStatus read_one(const std::string& folder) {
-  const std::string path = folder + "/sweep.json";
-  const Json json = read_json(path);
+  const SweepRecord sweep = read_sweep_record(folder + "/sweep.json");
   SweepStatus status;
   status.folder = folder;
+  status.name = sweep.name;
   std::set<std::string> seen;
-  try {
-    status.name = json.at("name").get<std::string>();
-    for (const Json& run : json.at("runs")) {
-      const auto key = run.at("key").get<std::string>();
-      if (!seen.insert(key).second) continue;
-      ++status.runs;
-      add_run(folder + "/" + key, run.at("label").get<std::string>(), place_of(run.at("axes")), status);
-    }
-  } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: is not the plan of a sweep; evbench sweep writes it again", path));
+  for (const SweepRecordRun& run : sweep.runs) {
+    if (!seen.insert(run.key).second) continue;
+    ++status.runs;
+    add_run(folder + "/" + run.key, run, status);
   }
   return status;
 }
