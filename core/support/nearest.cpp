@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace evbench {
@@ -23,6 +24,21 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
     }
   }
   return row.back();
+}
+
+/// As many as one cares to read: those that `name` is a part of, then those with the smallest edit distance.
+constexpr std::size_t kMostNames = 30, kSimilarNames = 6;
+
+std::vector<std::string> most_similar(const std::string& name, std::span<const std::string> candidates) {
+  std::vector<std::pair<std::size_t, std::string>> ranked;
+  for (const std::string& candidate : candidates) {
+    const bool contains = candidate.find(name) != std::string::npos;
+    ranked.emplace_back(contains ? 0 : 1 + edit_distance(name, candidate), candidate);
+  }
+  std::ranges::stable_sort(ranked, {}, &std::pair<std::size_t, std::string>::first);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < kSimilarNames; ++i) names.push_back(ranked[i].second);
+  return names;
 }
 
 }  // namespace
@@ -44,7 +60,9 @@ std::string suggestion(const std::string& name, std::span<const std::string> can
   const std::string best = nearest_name(name, candidates);
   if (!best.empty()) return fmt::format("; did you mean \"{}\"?", best);
   if (candidates.empty()) return "; there are none";
-  return fmt::format("; known: {}", fmt::join(candidates, ", "));
+  if (candidates.size() <= kMostNames) return fmt::format("; known: {}", fmt::join(candidates, ", "));
+  return fmt::format("; the most similar of {}: {}", candidates.size(),
+                     fmt::join(most_similar(name, candidates), ", "));
 }
 
 }  // namespace evbench

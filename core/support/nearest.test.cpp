@@ -19,3 +19,12 @@ TEST_CASE("A suggestion offers the nearest name, or all of them") {
   CHECK(suggestion("hubert", names) == "; did you mean \"huber\"?");
   CHECK(suggestion("geman_mcclure", names) == "; known: huber, cauchy");
 }
+
+TEST_CASE("Of many names a suggestion offers those that have the word in them, then the nearest") {
+  std::vector<std::string> names = {"ate.rmse", "times.max", "rpe.rmse"};
+  for (int i = 0; i < 60; ++i) names.push_back("a rather long name, number " + std::to_string(i));
+  CHECK(suggestion("zzzz", {names.data(), 2}) == "; known: ate.rmse, times.max");
+  const std::string many = suggestion("rmse", names);
+  CHECK(many.starts_with("; the most similar of 63: ate.rmse, rpe.rmse, times.max, "));
+  CHECK(many.size() < 250);
+}
