@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <sstream>
 
 #include "core/io/path.hpp"
 #include "core/support/error.hpp"
@@ -22,6 +23,23 @@ struct Overloaded : Ts... {
 };
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
+
+/// Lines of at most kLine characters, broken between words, each behind `indent` blanks.
+std::string wrapped(const std::string& text, std::size_t indent) {
+  constexpr std::size_t kLine = 100;
+  std::istringstream words(text);
+  std::string result, line;
+  const auto end_line = [&] {
+    result += std::string(indent, ' ') + line + "\n";
+    line.clear();
+  };
+  for (std::string word; words >> word;) {
+    if (!line.empty() && indent + line.size() + 1 + word.size() > kLine) end_line();
+    line += (line.empty() ? "" : " ") + word;
+  }
+  end_line();
+  return result;
+}
 
 std::string shown(const Json& value) {
   std::string text = value.dump();
@@ -314,21 +332,22 @@ void OptionSet::describe_rows(const std::string& prefix, std::vector<std::array<
     rows.push_back({prefix + option.name_, option.required_ ? "required" : shown(option.value()),
                     allowed.empty() ? option.type_name() : allowed, option.text_});
   }
-  for (const Group& group : groups_) group.set.describe_rows(prefix + group.name + ".", rows);
+  for (const Group& group : groups_) {
+    rows.push_back({prefix + group.name + ".", "", "", group.text});  // a heading
+    group.set.describe_rows(prefix + group.name + ".", rows);
+  }
 }
 
 std::string OptionSet::describe() const {
   std::vector<std::array<std::string, 4>> rows = {{"option", "default", "allowed", "what it does"}};
   describe_rows("", rows);
-  std::array<std::size_t, 3> width{};
-  for (const auto& row : rows) {
-    for (std::size_t column = 0; column < width.size(); ++column) {
-      width[column] = std::max(width[column], row[column].size());
-    }
-  }
   std::string text;
-  for (const auto& row : rows) {
-    text += fmt::format("{:<{}}  {:<{}}  {:<{}}  {}\n", row[0], width[0], row[1], width[1], row[2], width[2], row[3]);
+  for (const auto& [name, value, allowed, what] : rows) {
+    if (value.empty()) {
+      text += "\n" + wrapped(fmt::format("{} {}", name, what), 0);
+    } else {
+      text += wrapped(fmt::format("{} = {}  ({})", name, value, allowed), 2) + wrapped(what, 6);
+    }
   }
   return text;
 }

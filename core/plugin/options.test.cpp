@@ -105,6 +105,9 @@ TEST_CASE("Description and schema name every option with its default and bounds"
   o.declare(set);
   using Catch::Matchers::Contains;
   CHECK_THAT(set.describe(), Contains("inner.width") && Contains("robust loss") && Contains("0.1 to 100"));
+  CHECK_THAT(set.describe(), Contains("\ninner. "));  // a heading with the group's text
+  std::istringstream lines(set.describe());
+  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 100);
   const Json schema = set.schema();
   CHECK(schema["properties"]["rate"]["maximum"] == 100.0);
   CHECK(schema["properties"]["inner"]["properties"]["width"]["exclusiveMinimum"] == 0.0);
