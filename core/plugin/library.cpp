@@ -123,11 +123,24 @@ void load(Plugins& plugins, const std::string& path) {
   plugins = std::move(trial);
 }
 
+/// What to do where a library is missing from the build folder of a plugin whose source is there; else nothing.
+std::string how_to_build(const fs::path& library) {
+  const fs::path build = library.parent_path(), source = build.parent_path();
+  std::error_code ignored;
+  if (source.empty() || !fs::exists(source / "CMakeLists.txt", ignored)) return "";
+  const auto shown = [](const fs::path& path) { return path.lexically_normal().string(); };
+  return fmt::format(
+      ". It is built by: cmake -S {0} -B {1} && cmake --build {1} (with -DCMAKE_PREFIX_PATH=DIR where evbench is not "
+      "installed in the usual places)",
+      shown(source), shown(build));
+}
+
 }  // namespace
 
 void load_plugin_libraries(Plugins& plugins, const std::string& path) {
   if (!fs::exists(path)) {
-    throw InputError(fmt::format("{}: no such file; expected a plugin's shared library, or a folder of them", path));
+    throw InputError(fmt::format("{}: no such file; expected a plugin's shared library, or a folder of them{}", path,
+                                 how_to_build(path)));
   }
   if (!fs::is_directory(path)) {
     load(plugins, fs::canonical(path).string());

@@ -23,7 +23,10 @@ auto Registry<Interface>::find(const std::string& name, const std::string& place
   std::vector<std::string> names;
   for (const auto& [known, entry] : entries_) names.push_back(known);
   throw InputError(
-      fmt::format("{}: no {} is called \"{}\"{}", place, PluginKind<Interface>::name, name, suggestion(name, names)));
+      fmt::format("{}: no {} is called \"{}\"{} (one from outside must be loaded: by --plugin LIBRARY, the variable "
+                  "EVBENCH_PLUGINS "
+                  "or the key \"plugins\" of a config)",
+                  place, PluginKind<Interface>::name, name, suggestion(name, names)));
 }
 
 template class Registry<Source>;
