@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <set>
 
 #include "core/support/error.hpp"
@@ -90,6 +91,7 @@ class Comparison {
   void add_rows(const Metric& metric) {
     std::vector<const Method*> others;
     std::vector<PairedComparison> comparisons;
+    std::size_t most_pairs = 0;
     const auto costs = [&](const Method& method) {
       return costs_of(method.runs, numbers_, metric, data_, protocols_.of_run);
     };
@@ -98,12 +100,14 @@ class Comparison {
       const std::vector<CostPair> pairs = pair_up(costs(method), costs(*base_));
       if (pairs.empty()) continue;
       for (const CostPair& pair : pairs) paired_.insert({pair.own_run, pair.other_run});
+      most_pairs = std::max(most_pairs, pairs.size());
       others.push_back(&method);
       comparisons.push_back(compare_pairs(pairs));
     }
     std::vector<double> p;
     for (const PairedComparison& comparison : comparisons) p.push_back(comparison.test.p);
     const std::vector<double> corrected = holm(p);
+    if (!too_few_ || !too_few_->empty()) too_few_ = too_few_pairs(most_pairs, p.size());
     for (std::size_t i = 0; i < others.size(); ++i) add_row(metric, *others[i], comparisons[i], corrected[i]);
   }
 
@@ -149,7 +153,8 @@ class Comparison {
         fmt::format("p: Wilcoxon's signed-rank test, two-sided; Holm: corrected for the comparisons of a "
                     "metric; bold (*): better with p < {} after correction. Effect: matched-pairs rank-biserial "
                     "correlation, -1: better in all pairs.",
-                    kSignificant));
+                    kSignificant) +
+        too_few_.value_or(""));
     for (const std::string& protocol : protocols_.texts) notes.push_back(fmt::format("Protocol: {}.", protocol));
   }
 
@@ -161,6 +166,7 @@ class Comparison {
   std::vector<Method> methods_;
   const Method* base_ = nullptr;
   std::vector<Metric> metrics_;
+  std::optional<std::string> too_few_;                    ///< to be said if it is so of all metrics; empty: it is not
   std::set<std::pair<std::size_t, std::size_t>> paired_;  ///< own and base's run of each pair of any metric
   TextTable table_;
 };

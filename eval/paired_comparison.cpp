@@ -1,9 +1,12 @@
 #include "eval/paired_comparison.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
+#include "eval/holm.hpp"
 #include "eval/quantile.hpp"
 #include "eval/run_columns.hpp"
 
@@ -68,6 +71,15 @@ PairedComparison compare_pairs(std::span<const CostPair> pairs) {
   std::ranges::sort(ratios);
   result.ratio = std::exp(quantile(ratios, 0.5));
   return result;
+}
+
+std::string too_few_pairs(std::size_t pairs, std::size_t comparisons) {
+  const auto can_be = [&](std::size_t n) { return smallest_p(n) * static_cast<double>(comparisons) < kSignificant; };
+  if (can_be(pairs)) return "";
+  std::size_t enough = pairs;
+  while (!can_be(enough)) ++enough;
+  return fmt::format(" With {} pair{} and {} comparison{} nothing can reach that: it takes {} pairs.", pairs,
+                     pairs == 1 ? "" : "s", comparisons, comparisons == 1 ? "" : "s", enough);
 }
 
 }  // namespace evbench

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "eval/bootstrap.hpp"
@@ -49,5 +50,9 @@ struct PairedComparison {
 };
 
 PairedComparison compare_pairs(std::span<const CostPair> pairs);
+
+/// What is to be said of comparisons that can't be significant (holm.hpp) whatever their numbers are, since they have
+/// so few pairs at the most: a sentence behind a blank; empty where they can be.
+std::string too_few_pairs(std::size_t pairs, std::size_t comparisons);
 
 }  // namespace evbench

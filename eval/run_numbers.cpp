@@ -93,14 +93,18 @@ bool any_has(const std::vector<RunNumbers>& runs, const std::string& key) {
   return std::ranges::any_of(runs, [&](const RunNumbers& run) { return run.at(key).has_value(); });
 }
 
+std::vector<std::string> keys_of(const std::vector<RunNumbers>& runs) {
+  std::set<std::string> keys;
+  for (const RunNumbers& run : runs) keys.merge(run.keys());
+  return {keys.begin(), keys.end()};
+}
+
 std::vector<Metric> metrics_of(const std::vector<std::string>& keys, const std::vector<RunNumbers>& runs) {
   std::vector<Metric> metrics;
   for (const std::string& key : keys) {
     if (!any_has(runs, key)) {
-      std::set<std::string> there;
-      for (const RunNumbers& run : runs) there.merge(run.keys());
-      const std::vector<std::string> known(there.begin(), there.end());
-      throw InputError(fmt::format("no run has the metric \"{}\"{}", key, suggestion(key, known)));
+      throw InputError(fmt::format("no run has the metric \"{}\"{} (evbench table --list-metrics has them all)", key,
+                                   suggestion(key, keys_of(runs))));
     }
     metrics.push_back(metric_of(key));
   }

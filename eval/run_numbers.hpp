@@ -49,7 +49,10 @@ class RunNumbers {
 /// Of all runs.
 std::vector<RunNumbers> numbers_of(std::span<const RunRecord> runs, bool online);
 
-/// The metrics of these keys; throws InputError, with the nearest key, for one that no run has.
+/// The paths of all that any of the runs has.
+std::vector<std::string> keys_of(const std::vector<RunNumbers>& runs);
+
+/// The metrics of these keys; throws InputError, with the nearest keys, for one that no run has.
 std::vector<Metric> metrics_of(const std::vector<std::string>& keys, const std::vector<RunNumbers>& runs);
 
 /// Does any run have this number?

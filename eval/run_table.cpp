@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <utility>
+#include <tuple>
 
 #include "core/support/index.hpp"
 #include "eval/table_parts.hpp"
@@ -14,11 +14,16 @@ namespace {
 using Cell = TextTable::Cell;
 using Values = std::vector<std::optional<double>>;
 
-/// Runs that can be compared with one another: of one experiment, scored by one protocol.
+/// Runs that can be compared with one another: of one experiment and sequence, scored by one protocol. Where nothing is
+/// known of the source, as of files that are compared, the seed alone tells sequences apart.
 std::vector<std::vector<std::size_t>> comparable_runs(const TableRuns& runs) {
-  std::map<std::pair<std::string, int>, std::vector<std::size_t>> groups;
+  std::map<std::tuple<std::string, std::string, int>, std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < runs.runs.size(); ++i) {
-    groups[{runs.runs[i].run().experiment, runs.protocols.of_run[i]}].push_back(i);
+    const RunRecord& run = runs.runs[i].run();
+    const std::string sequence = !run.settings.empty() ? sequence_of(run)
+                                 : run.seed            ? fmt::format("{}", *run.seed)
+                                                       : "";
+    groups[{run.experiment, sequence, runs.protocols.of_run[i]}].push_back(i);
   }
   std::vector<std::vector<std::size_t>> result;
   for (auto& [name, group] : groups) result.push_back(std::move(group));

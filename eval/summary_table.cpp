@@ -163,10 +163,7 @@ std::vector<std::string> summary_notes(const std::vector<Group>& rows, const Tab
       fmt::format("Bold (*): better than every other row, p < {} (Wilcoxon signed-rank, paired by data, Holm's "
                   "correction for the number of rows).",
                   kSignificant));
-  if (smallest_p(largest) * static_cast<double>(most - 1) >= kSignificant) {
-    notes.back() +=
-        fmt::format(" With {} pair{} and {} rows nothing can reach that.", largest, largest == 1 ? "" : "s", most);
-  }
+  notes.back() += too_few_pairs(largest, most - 1);
   return notes;
 }
 

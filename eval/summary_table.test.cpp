@@ -57,7 +57,7 @@ TEST_CASE("Bold is only what differs significantly from all other rows") {
   add_seeds(few, 5);
   add_seeds(many, 8);
   CHECK_THAT(line_with(table(few), "good "), !Contains("*"));
-  CHECK_THAT(table(few), Contains("With 5 pairs and 2 rows nothing can reach that."));
+  CHECK_THAT(table(few), Contains("With 5 pairs and 1 comparison nothing can reach that: it takes 6 pairs."));
   CHECK_THAT(line_with(table(many), "good "), Contains("0.0135*"));
   CHECK_THAT(line_with(table(many), "bad "), !Contains("*"));
   CHECK_THAT(table(many, {.format = TableFormat::markdown}), Contains("**0.0135** [0.0118, 0.0152]"));

@@ -85,6 +85,15 @@ bool shows_common_time(const TableOptions& options, std::size_t runs) {
   return options.format != TableFormat::latex && options.format != TableFormat::long_csv && runs <= kCommonTimeRuns;
 }
 
+std::string list_metrics(std::span<const RunRecord> runs) {
+  std::string text;
+  for (const std::string& key : keys_of(numbers_of(runs, false))) {
+    const Metric metric = metric_of(key);
+    text += metric.header == key ? key + "\n" : fmt::format("{:<34} {}\n", key, metric.header);
+  }
+  return text;
+}
+
 std::string make_table(std::span<const RunRecord> runs, const TableOptions& options) {
   if (runs.empty()) throw InputError("there is no run to make a table of");
   TableRuns all;

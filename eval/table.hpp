@@ -29,9 +29,9 @@ struct TableOptions {
 /// The protocol stands below (CSV: in columns; LaTeX: in the caption), and whether the final or the online trajectory
 /// is scored; runs of different protocols are marked with its number. LaTeX has fewer default columns, for a page.
 /// Pairs, coverage and scale are columns, or, where `metrics` leaves them out, ranges below. The best value of a
-/// column, among runs of the same experiment and protocol, is bold in Markdown and LaTeX and marked with * in text;
-/// runs that were lost or failed do not compete. A value that a run does not have is "-" (CSV: empty). Why runs have no
-/// scores, or were lost, stands below.
+/// column, among runs of the same experiment, sequence (seed included) and protocol, is bold in Markdown and LaTeX and
+/// marked with * in text; runs that were lost or failed do not compete. A value that a run does not have is "-" (CSV:
+/// empty). Why runs have no scores, or were lost, stands below.
 ///
 /// With `over`, runs that differ in nothing else are a row: median and quartiles of each number, and how many of them
 /// succeeded, that is, have scores and were neither lost nor failed. Those that did not count as worse than all others
@@ -47,6 +47,9 @@ struct TableOptions {
 /// no run has online scores but they are asked for, and with `over` when runs do not differ in what it names or when
 /// two of a row have the same seed (or whatever `over` names) but are not the same job.
 std::string make_table(std::span<const RunRecord> runs, const TableOptions& options);
+
+/// A line for each number that any of the runs has: its key, as TableOptions::metrics takes it, and its header.
+std::string list_metrics(std::span<const RunRecord> runs);
 
 /// Does such a table of so many runs show scores over common time (bench/common_time.hpp)? They take long: the runs'
 /// trajectories are scored again. So tables of more than kCommonTimeRuns runs have them only where they are asked for.

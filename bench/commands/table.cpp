@@ -13,11 +13,16 @@ struct TableArguments {
   std::vector<std::string> folders;
   std::string format = "text";
   TextOutput out;
+  bool list_metrics = false;
   TableOptions options;
 };
 
 void execute(const TableArguments& arguments) {
   arguments.out.check();
+  if (arguments.list_metrics) {
+    use_runs(arguments.folders, [&](const std::vector<RunRecord>& runs) { arguments.out.write(list_metrics(runs)); });
+    return;
+  }
   TableOptions options = arguments.options;
   options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
   use_runs(arguments.folders, [&](std::vector<RunRecord>& runs) {
@@ -43,8 +48,11 @@ void add_table(CLI::App& app) {
   add_list_option(*command, "--metrics", arguments->options.metrics,
                   "Columns, e.g. ate.trans_m.rmse,rpe.trans_m.median,runtime_s");
   add_list_option(*command, "--over", arguments->options.over,
-                  "Summarise: a row for all runs that differ in nothing else, e.g. seed, or seed,experiment",
+                  "Summarise over these columns: a row for all runs that differ in nothing else, e.g. seed, or "
+                  "seed,experiment",
                   "NAME,...");
+  command->add_flag("--list-metrics", arguments->list_metrics,
+                    "List the keys that --metrics knows: all numbers that these runs have, and what tables call them");
   command->add_flag("--online", arguments->options.online, "Scores of the poses as estimated when they were made");
   command->callback([arguments] { execute(*arguments); });
 }
