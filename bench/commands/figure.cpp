@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -11,15 +13,63 @@
 #include "bench/common_time.hpp"
 #include "bench/figures/run_figures.hpp"
 #include "core/io/atomic_file.hpp"
-#include "eval/names.hpp"
 #include "eval/run_columns.hpp"
 #include "eval/table.hpp"
 
 namespace evbench {
 namespace {
 
-enum class FigureKind { sweep, map, box, error, trajectory, times, profile };
-constexpr NameList<7> kFigureKindNames = {"sweep", "map", "box", "error", "trajectory", "times", "profile"};
+/// A kind of figure, how it is made, and which of the options it takes that not all kinds do.
+struct FigureKind {
+  const char* name;
+  const char* text;
+  Figure (*make)(std::span<const RunRecord> runs, const FigureOptions& options);
+  std::vector<std::string> options;
+};
+
+const std::vector<FigureKind>& figure_kinds() {
+  static const std::vector<FigureKind> kinds = {
+      {"sweep",
+       "metrics against an axis: medians, and bands between the quartiles of all other runs",
+       sweep_figure,
+       {"--metrics", "--axis", "--axis-label", "--online"}},
+      {"map",
+       "against an axis and across another one: the ratio of a metric to that of another method",
+       map_figure,
+       {"--metrics", "--axis", "--axis-label", "--across", "--base", "--online"}},
+      {"box", "quartiles and median of each back-end's runs, and the runs", box_figure, {"--metrics", "--online"}},
+      {"error", "errors over time of a sequence's runs", error_figure, {"--online"}},
+      {"trajectory", "from three sides, with the ground truth", trajectory_figure, {"--online"}},
+      {"times", "the distribution of the times of updates", times_figure, {}},
+      {"profile",
+       "performance profiles: the share of sequences and seeds within a factor of the best",
+       profile_figure,
+       {"--metrics", "--online"}},
+  };
+  return kinds;
+}
+
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
+  for (const FigureKind& kind : figure_kinds()) names.emplace_back(kind.name);
+  return names;
+}
+
+const FigureKind& find_kind(const std::string& name) {
+  return *std::ranges::find(figure_kinds(), name, &FigureKind::name);  // CLI11 has checked it
+}
+
+/// An option that another kind takes, and this one does not, must not be given.
+void check_options(const CLI::App& command, const FigureKind& kind) {
+  for (const FigureKind& other : figure_kinds()) {
+    for (const std::string& option : other.options) {
+      if (command.count(option) == 0 || std::ranges::find(kind.options, option) != kind.options.end()) continue;
+      throw InputError(fmt::format(
+          "{} says nothing of a figure of the kind {}; of the options that not all kinds have it takes {}", option,
+          kind.name, kind.options.empty() ? "none" : fmt::format("{}", fmt::join(kind.options, ", "))));
+    }
+  }
+}
 
 struct FigureArguments {
   std::string kind;
@@ -48,19 +98,6 @@ void keep_only(const std::vector<std::string>& only, std::vector<RunRecord>& run
   runs = std::move(left);
 }
 
-Figure make_figure(const FigureArguments& arguments, std::span<const RunRecord> runs) {
-  switch (parse_name<FigureKind>(kFigureKindNames, arguments.kind, "kind of figure")) {
-    case FigureKind::sweep: return sweep_figure(runs, arguments.options);
-    case FigureKind::map: return map_figure(runs, arguments.options);
-    case FigureKind::box: return box_figure(runs, arguments.options);
-    case FigureKind::error: return error_figure(runs, arguments.options);
-    case FigureKind::trajectory: return trajectory_figure(runs, arguments.options);
-    case FigureKind::times: return times_figure(runs, arguments.options);
-    case FigureKind::profile: break;
-  }
-  return profile_figure(runs, arguments.options);
-}
-
 void execute(const FigureArguments& arguments) {
   const std::filesystem::path out(arguments.out);
   const std::string script = std::filesystem::path(out).replace_extension(".py").string();
@@ -71,7 +108,7 @@ void execute(const FigureArguments& arguments) {
   use_runs(arguments.folders, [&](std::vector<RunRecord>& runs) {
     if (!arguments.only.empty()) keep_only(arguments.only, runs);
     if (any_of_common_time(arguments.options.metrics)) score_common_time(runs, arguments.options.online);
-    Figure figure = make_figure(arguments, runs);
+    Figure figure = find_kind(arguments.kind).make(runs, arguments.options);
     if (arguments.width_mm > 0.0) figure.width_mm = arguments.width_mm;
     if (arguments.height_mm > 0.0) figure.height_mm = arguments.height_mm;
     if (arguments.keep_script) write_file(script, drawing_script(figure));
@@ -85,13 +122,10 @@ void add_figure(CLI::App& app) {
   auto arguments = std::make_shared<FigureArguments>();
   CLI::App* command =
       app.add_subcommand("figure", "Draw runs for a paper: sweeps, boxes, errors, trajectories, profiles");
-  command->add_option("kind", arguments->kind, "What is drawn")
-      ->required()
-      ->check(CLI::IsMember(to_strings(kFigureKindNames)));
+  command->add_option("kind", arguments->kind, "What is drawn")->required()->check(CLI::IsMember(kind_names()));
   add_folders(*command, arguments->folders);
   command->add_option("--out", arguments->out, "The file: .svg, .pdf or .png")->required()->type_name("FILE");
-  add_list_option(*command, "--metrics", arguments->options.metrics,
-                  "What sweep, map, box and profile show, a panel each; else ATE, RPE");
+  add_list_option(*command, "--metrics", arguments->options.metrics, "What is shown, a panel each; else ATE, RPE");
   command->add_option("--axis", arguments->options.axis, "What a sweep is drawn against, e.g. backend.frame_duration")
       ->type_name("NAME");
   command
@@ -115,15 +149,16 @@ void add_figure(CLI::App& app) {
                     "Also write FILE with the ending .py: the Python script that draws it, to be changed by hand");
   command->add_option("--python", arguments->python, "A Python with matplotlib; else python3")->type_name("PROGRAM");
   command->add_flag("--force", arguments->force, "Replace files that exist");
-  command->footer(
-      "sweep       metrics against an axis: medians, and bands between the quartiles of all other runs\n"
-      "map         against an axis and across another one: the ratio of a metric to that of another method\n"
-      "box         quartiles and median of each back-end's runs, and the runs\n"
-      "error       errors over time of a sequence's runs\n"
-      "trajectory  from three sides, with the ground truth\n"
-      "times       the distribution of the times of updates\n"
-      "profile     performance profiles: the share of sequences and seeds within a factor of the best");
-  command->callback([arguments] { execute(*arguments); });
+  std::string kinds;
+  for (const FigureKind& kind : figure_kinds()) {
+    kinds += fmt::format("{}{:<12}{}{}", kinds.empty() ? "" : "\n", kind.name, kind.text,
+                         kind.options.empty() ? "" : fmt::format("\n{:<12}{}", "", fmt::join(kind.options, " ")));
+  }
+  command->footer(kinds);
+  command->callback([arguments, command] {
+    check_options(*command, find_kind(arguments->kind));
+    execute(*arguments);
+  });
 }
 
 }  // namespace evbench

@@ -34,7 +34,7 @@ Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options)
   }
   figure.columns = figure.panels.size();
   figure.height_mm = 13.0 + 6.5 * static_cast<double>(all.methods.size());
-  figure.caption = all.caption("Boxes between quartiles, with the median; each run is a point.", options.online);
+  figure.caption = all.scored_caption("Boxes between quartiles, with the median; each run is a point.", options.online);
   return figure;
 }
 

@@ -39,7 +39,11 @@ Json to_json(const PanelAxis& axis) {
 }
 
 Json to_json(const Panel& panel) {
-  Json json = {{"x", to_json(panel.x)}, {"y", to_json(panel.y)}, {"names", panel.names}, {"equal", panel.equal}};
+  Json json = {{"x", to_json(panel.x)},
+               {"y", to_json(panel.y)},
+               {"names", panel.names},
+               {"equal", panel.equal},
+               {"title", panel.title}};
   json["marks"] = Json::array();
   for (const Mark& mark : panel.marks) json["marks"].push_back(to_json(mark));
   return json;

@@ -43,6 +43,7 @@ struct Panel {
   std::vector<Mark> marks;
   std::vector<std::string> names = {};  ///< of boxes, from above, instead of a y axis
   bool equal = false;                   ///< a metre is as long on both axes
+  std::string title = {};               ///< above it
 };
 
 /// A figure for a page, made of panels in rows.

@@ -85,8 +85,11 @@ def draw_cells(axes, mark):
         ratios[rows.index(y)][columns.index(x)] = ratio
     colours = matplotlib.colormaps["RdBu_r"].copy()
     colours.set_bad("#BBBBBB")
-    axes.imshow(ratios, cmap=colours, norm=matplotlib.colors.LogNorm(1 / LARGEST_RATIO, LARGEST_RATIO, clip=True),
-                origin="lower", aspect="auto")
+    image = axes.imshow(ratios, cmap=colours, origin="lower", aspect="auto",
+                        norm=matplotlib.colors.LogNorm(1 / LARGEST_RATIO, LARGEST_RATIO, clip=True))
+    bar = axes.figure.colorbar(image, ax=axes, extend="both", label="ratio (logarithmic)", pad=0.02, aspect=25)
+    bar.set_ticks([1 / LARGEST_RATIO, 1 / 4, 1 / 2, 1, 2, 4, LARGEST_RATIO], labels=["1/8", "1/4", "1/2", "1", "2", "4", "8"])
+    bar.ax.minorticks_off()
     for row, values in enumerate(ratios):
         for column, ratio in enumerate(values):
             dark = ratio == ratio and not 1 / DARK_RATIO < ratio < DARK_RATIO
@@ -112,13 +115,19 @@ def set_scale(axis, scale, low, high):
     axis.set_minor_formatter(NullFormatter())
 
 
+def axis_label(axis):
+    return axis["label"] + (" (logarithmic)" if axis["scale"] == "log" else "")
+
+
 def draw_panel(axes, panel, series):
     axes.set_xscale(panel["x"]["scale"])
     axes.set_yscale(panel["y"]["scale"])
     for mark in panel["marks"]:
         draw(axes, mark, series[mark["series"]])
-    axes.set_xlabel(panel["x"]["label"])
-    axes.set_ylabel(panel["y"]["label"])
+    axes.set_xlabel(axis_label(panel["x"]))
+    axes.set_ylabel(axis_label(panel["y"]))
+    if panel["title"]:
+        axes.set_title(panel["title"])
     if panel["y"]["share"]:
         axes.set_ylim(0, 1.02)
     if not any(mark["kind"] == "cells" for mark in panel["marks"]):  # which have ticks of their own

@@ -27,12 +27,15 @@ FigureRuns::FigureRuns(std::span<const RunRecord> records, const FigureOptions& 
   if (methods.empty()) throw InputError("none of these runs was done yet; expected some to draw");
 }
 
-std::string FigureRuns::caption(const std::string& what, bool online) const {
+std::string FigureRuns::caption(const std::string& what) const {
   const std::vector<std::string>& names = find_column(columns, "experiment").values;
   const std::set<std::string> experiments(names.begin(), names.end());
-  std::string text = fmt::format("{}. {} {}", fmt::join(experiments, ", "), what,
-                                 online ? "Online: each pose as estimated at the time it was made."
-                                        : "Final: the trajectory as estimated after the whole sequence.");
+  return fmt::format("{}. {}", fmt::join(experiments, ", "), what);
+}
+
+std::string FigureRuns::scored_caption(const std::string& what, bool online) const {
+  std::string text = caption(what) + (online ? " Online: each pose as estimated at the time it was made."
+                                             : " Final: the trajectory as estimated after the whole sequence.");
   for (const std::string& protocol : collect_protocols(runs).texts) text += fmt::format(" {}.", protocol);
   return text;
 }

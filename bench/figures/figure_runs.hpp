@@ -19,8 +19,11 @@ struct FigureRuns {
   std::vector<Metric> metrics;
   std::vector<Method> methods;
 
-  /// Experiments, what is drawn (`what`, a sentence), which trajectory, the protocols.
-  std::string caption(const std::string& what, bool online) const;
+  /// Experiments, and what is drawn: a sentence.
+  std::string caption(const std::string& what) const;
+
+  /// The same of what follows from scores: with the trajectory that they are of, and the protocols.
+  std::string scored_caption(const std::string& what, bool online) const;
 };
 
 /// The number that is all of a text, if it is one.

@@ -81,15 +81,17 @@ Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options)
     if (mark.x.empty())
       throw InputError(fmt::format("no run of \"{}\" has one of \"{}\" on the same data", method.name, base.name));
     const std::string label = options.axis_label.empty() ? axis.name : options.axis_label;
-    figure.panels.push_back(
-        {{fmt::format("{}  (in the cells: {}, ratio)", label, metric.header)}, {across.name}, {std::move(mark)}});
+    figure.panels.push_back({.x = {label}, .y = {across.name}, .marks = {std::move(mark)}, .title = metric.header});
   }
   figure.columns = figure.panels.size();
   std::string shown;
   for (const Metric& metric : all.metrics) shown += (shown.empty() ? "" : ", ") + metric.header;
-  figure.caption = all.caption(fmt::format("{} of {} over that of {}, on the same data: medians of up to {} pair{}.",
-                                           shown, method.name, base.name, pairs, pairs == 1 ? "" : "s"),
-                               options.online);
+  figure.caption =
+      all.scored_caption(fmt::format("{} of {} over that of {}, on the same data: medians of up to {} pair{}. "
+                                     "Below 1, blue, the former is better. Cells are of one size, "
+                                     "whatever lies between their values.",
+                                     shown, method.name, base.name, pairs, pairs == 1 ? "" : "s"),
+                         options.online);
   return figure;
 }
 

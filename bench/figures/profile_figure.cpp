@@ -64,7 +64,7 @@ Figure profile_figure(std::span<const RunRecord> runs, const FigureOptions& opti
     figure.panels.push_back(std::move(panel));
   }
   figure.columns = std::min<std::size_t>(figure.panels.size(), 2);
-  figure.caption = all.caption(
+  figure.caption = all.scored_caption(
       fmt::format("Performance profiles (Dolan and Moré 2002) over {} sequences and seeds.", problems), options.online);
   return figure;
 }

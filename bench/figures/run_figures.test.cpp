@@ -63,6 +63,7 @@ TEST_CASE("A map has the median ratio to the base on the same data, by two axes"
   const Mark& cells = mark_of(figure.panels.at(0), Mark::Kind::cells, 0);
   REQUIRE(cells.low.size() == 9);  // three frames, three seeds
   for (std::size_t i = 0; i < cells.low.size(); ++i) CHECK(cells.low[i] == Approx(100.0 * cells.x[i]));
+  CHECK(figure.panels.at(0).title == "ATE [m]");
   CHECK_THAT(figure.caption, Contains("ATE [m] of bundle over that of asynchronous, on the same data"));
   FigureOptions other = options;
   other.base = "asynchron";
@@ -144,4 +145,18 @@ TEST_CASE("Figures that can't be written or drawn are errors, and nothing is rep
   refused("--out f.svg", "f.svg: exists already");
   CHECK(read_file(results.folder.file("f.svg")) == "mine");
   for (const std::string& name : names_in(results.folder.path())) CHECK_FALSE(name.starts_with("f.svg.part"));
+}
+
+TEST_CASE("An option that says nothing of a kind of figure is refused") {
+  const Swept results;
+  const auto refused = [&](const std::string& arguments, const std::string& message) {
+    const Outcome outcome = testing::evbench(results.folder, "figure " + arguments + " --out f.svg");
+    INFO(arguments);
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains(message));
+  };
+  refused("box . --axis backend.frame_duration", "--axis says nothing of a figure of the kind box");
+  refused("sweep . --across seed", "it takes --metrics, --axis, --axis-label, --online");
+  refused("times . --online", "it takes none");
+  CHECK(names_in(results.folder.path()).count("f.svg") == 0);
 }

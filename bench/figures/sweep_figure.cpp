@@ -113,7 +113,7 @@ Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& option
     for (const std::size_t run : method.runs) seeds.insert(find_column(all.columns, "seed").values[run]);
   }
   if (seeds.size() > 1) what += fmt::format(", of {} seeds", seeds.size());
-  figure.caption = all.caption(what + ".", options.online);
+  figure.caption = all.scored_caption(what + ".", options.online);
   return figure;
 }
 

@@ -45,7 +45,7 @@ Figure times_figure(std::span<const RunRecord> runs, const FigureOptions& option
   }
   if (panel.marks.empty()) throw InputError("none of these runs was without loss or failure; expected times to draw");
   figure.panels.push_back(std::move(panel));
-  figure.caption = all.caption("Distribution of the times of all updates of all runs that succeeded.", options.online);
+  figure.caption = all.caption("Distribution of the times of all updates of all runs that succeeded.");
   return figure;
 }
 

@@ -41,7 +41,7 @@ ScoredRuns score_first_sequence(std::span<const RunRecord> records, const Figure
     throw InputError("none of these runs has an estimate and ground truth; expected one to draw");
   const FigureRuns of_sequence(drawn, options);
   const std::string seed = drawn.front().seed ? fmt::format(", seed {}", *drawn.front().seed) : "";
-  result.caption = of_sequence.caption(what + seed + "." + missing, options.online);
+  result.caption = of_sequence.scored_caption(what + seed + "." + missing, options.online);
   return result;
 }
 
