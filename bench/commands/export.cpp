@@ -42,6 +42,10 @@ void check(const ExportArguments& arguments) {
         "nothing to export; expected at least one of --groundtruth, --tracks, --calib, --aligned, --errors, --evo, "
         "--rpg");
   }
+  if (!arguments.evo.empty() && std::filesystem::path(arguments.evo).extension() != ".zip") {
+    throw InputError(
+        fmt::format("--evo {}: expected a name that ends with .zip: evo_res reads no other", arguments.evo));
+  }
   std::error_code ignored;
   const bool folder = std::filesystem::is_directory(arguments.from, ignored);
   if (arguments.of_run() && !folder) {
@@ -104,6 +108,9 @@ void execute(const ExportArguments& arguments, Plugins& plugins) {
   if (arguments.of_run()) export_run(arguments);
   if (arguments.of_source()) {
     export_source(folder ? arguments.from + "/config.json" : arguments.from, arguments, plugins);
+  }
+  for (const std::string& output : arguments.outputs()) {
+    if (!output.empty()) fmt::print(stderr, "written: {}\n", output);  // a file may be the standard output
   }
 }
 

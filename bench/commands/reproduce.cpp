@@ -31,7 +31,9 @@ std::vector<std::string> find_configs(const ReproduceArguments& arguments) {
   std::error_code error;
   if (!fs::is_directory(arguments.configs, error)) {
     throw InputError(
-        fmt::format("{}: is not a folder; expected --configs with that of the paper's configs", arguments.configs));
+        fmt::format("{}: there is no such folder here. The paper's configs are in evbench's repository: expected its "
+                    "folder as the working folder, or --configs REPOSITORY/configs/paper",
+                    arguments.configs));
   }
   std::vector<std::string> known;
   for (const auto& entry : fs::directory_iterator(arguments.configs)) {
@@ -47,10 +49,11 @@ std::vector<std::string> find_configs(const ReproduceArguments& arguments) {
 }
 
 int execute(const ReproduceArguments& arguments, Plugins& plugins) {
+  const std::vector<std::string> names = find_configs(arguments);
   const Published published = read_published(arguments.configs + "/published.json");
   std::vector<std::string> folders, failures;
   int exit_code = kExitDone;
-  for (const std::string& name : find_configs(arguments)) {
+  for (const std::string& name : names) {
     RunArguments run = arguments.run;
     run.config = fmt::format("{}/{}.json", arguments.configs, name);
     if (!run.quiet) fmt::print("== {}\n", name);

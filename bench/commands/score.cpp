@@ -31,6 +31,8 @@ ScoreOptions protocol_of(const std::string& folder, const ScoreArguments& argume
 void execute(const ScoreArguments& arguments) {
   const Interruption interruption("interrupted; the runs that were not scored again are as before");
   use_runs(arguments.folders, [&](std::vector<RunRecord>& records) {
+    std::erase_if(records, [](const RunRecord& run) { return !run.done; });  // a sweep's that are still to come
+    if (records.empty()) throw InputError("none of these runs was done yet; expected some to score");
     std::vector<ScoreOptions> protocols;  // all of them first: what is wrong with one is told before any work
     for (const RunRecord& run : records) protocols.push_back(protocol_of(run.folder, arguments));
     for (std::size_t i = 0; i < records.size(); ++i) {
