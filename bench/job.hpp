@@ -56,6 +56,7 @@ struct JobIdentity {
 
 /// What a source reads.
 struct SourceFiles {
+  SourceFiles() = default;
   SourceFiles(const Source& source)  // NOLINT(google-explicit-constructor): a source stands for its files
       : files(source.files()), events(source.event_files()) {}
 

@@ -80,18 +80,21 @@ int do_locally(const std::vector<PlannedRun>& runs, const SweepArguments& argume
     line.update(shown_progress(progress));
     now = progress;
   };
+  const auto complete = [&] {
+    return fmt::format("{} of {} runs are complete, the same command goes on from there", now.done, now.runs);
+  };
   try {
     now = do_runs(runs, plugins, arguments.options, tell);
     tell(now);
     line.clear();
   } catch (const Interrupted& interrupted) {
-    throw Interrupted(fmt::format("{}: interrupted; {} of {} runs are complete, the same command goes on from there",
-                                  folder, now.done, now.runs),
-                      interrupted.signal());
+    throw Interrupted(fmt::format("{}: interrupted; {}", folder, complete()), interrupted.signal());
+  } catch (const OutputError& error) {
+    throw OutputError(fmt::format("{}; {}", error.what(), complete()));
   }
   if (!arguments.quiet) {
     fmt::print("{}: {} runs, {} of them complete before, {} failed{}\n", folder, now.runs, now.before, now.failed,
-               now.failed == 0 ? "" : " (--retry-failed does again those that broke off)");
+               now.failed == 0 ? "" : " (--retry-failed does again those that broke off or are damaged)");
     fmt::print("evbench table {}\n", folder);
   }
   return now.failed == 0 ? kExitDone : kExitFailed;
@@ -132,10 +135,11 @@ int write_manifest(const std::vector<PlannedRun>& runs, const SweepArguments& ar
 int execute(SweepArguments& arguments, Plugins& plugins) {
   const Interruption interruption(arguments.file + ": interrupted; no run was begun");
   stay_without_threads();
-  const Sweep sweep = read_sweep(arguments.file, arguments.overrides, arguments.over, plugins);
+  Sweep sweep = read_sweep(arguments.file, arguments.overrides, arguments.over, plugins);
+  sweep.limits.seconds = arguments.seconds.value_or(sweep.limits.seconds);
+  sweep.limits.memory_mib = arguments.memory_mib.value_or(sweep.limits.memory_mib);
   ExecutorOptions& options = arguments.options;
-  options.limits.seconds = arguments.seconds.value_or(sweep.limits.seconds);
-  options.limits.memory_mib = arguments.memory_mib.value_or(sweep.limits.memory_mib);
+  options.limits = sweep.limits;
   options.processes = arguments.at_a_time.value_or(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
   const SweepPlan plan = plan_sweep(sweep, plugins);
   const std::vector<PlannedRun> runs = select_runs(plan, arguments.only);
@@ -162,7 +166,9 @@ void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code) {
   CLI::App* command = app.add_subcommand("sweep", "Vary a config along axes: many runs, each in a process of its own");
   command->add_option("file", arguments->file, "JSON: a sweep, or a config (then with --over)")->required();
   command
-      ->add_option("--over", arguments->over, "Another axis: KEY=VALUES, e.g. seed=1..5 or KEY=a,b or KEY=0.01..1:7log")
+      ->add_option(
+          "--over", arguments->over,
+          "Vary the config over these values, another axis: KEY=VALUES, e.g. seed=1..5, KEY=a,b, KEY=0.01..1:7log")
       ->type_name("KEY=VALUES")
       ->allow_extra_args(false);
   add_overrides(*command, arguments->overrides, "Override a value of the base config: KEY=VALUE");

@@ -68,6 +68,31 @@ class Troublemaker : public BackEnd {
 
 const Registration<BackEnd, Troublemaker> registration("troublemaker", "does what no back-end should");
 
+/// A source that can't be made without harm.
+class TroubledSource : public Source {
+ public:
+  struct Options {
+    std::string what = "crash";
+    void declare(OptionSet& set) { set.add("what", what, "what it does").choices({"crash", "hang"}); }
+  };
+  TroubledSource(const Options& options, const SourceContext&) {
+    std::puts("reading a strange file");
+    std::fflush(stdout);
+    ::signal(SIGSEGV, SIG_DFL);  // of a sanitizer
+    if (options.what == "crash") ::raise(SIGSEGV);
+    ::sleep(1000);
+  }
+  const Camera& camera() const override { return camera_; }
+  TimeRange time_range() const override { return {}; }
+  const PoseTrajectory& ground_truth() const override { return truth_; }
+
+ private:
+  Camera camera_;
+  PoseTrajectory truth_;
+};
+
+const Registration<Source, TroubledSource> source_registration("troubled", "a source that can't be made");
+
 std::vector<PlannedRun> plan(const TemporaryFolder& folder, const Json& config) {
   Plugins plugins = known_plugins();
   return plan_sweep(read_sweep(folder.write("c.json", config.dump()), {}, {}, plugins), known_plugins()).runs;
@@ -84,6 +109,20 @@ std::map<std::string, std::string> reasons(const SweepProgress& progress) {
 }
 
 }  // namespace
+
+TEST_CASE("A source that crashes or hangs when it is made leaves the sweep a sentence to say") {
+  const TemporaryFolder folder;
+  Json config = tiny_config();
+  config["source"] = {{"type", "troubled"}};
+  CHECK_THROWS_WITH(plan(folder, config), Contains("source: its process ended when the source was made: killed by "
+                                                   "SIGSEGV; it said: reading a strange file"));
+  config["source"]["what"] = "hang";
+  folder.write("c.json", config.dump());
+  folder.write("s.json", R"({"config": "c.json", "timeout": 0.3})");
+  Plugins plugins = known_plugins();
+  CHECK_THROWS_WITH(plan_sweep(read_sweep(folder.file("s.json"), {}, {}, plugins), plugins),
+                    Contains("timeout after 0.3 s"));
+}
 
 TEST_CASE("A plugin that crashes, hangs or eats memory takes its own run down, which says so in the table") {
   const TemporaryFolder folder;

@@ -15,6 +15,7 @@
 #include "bench/run_folder.hpp"
 #include "bench/runner.hpp"
 #include "bench/sweep/process_pool.hpp"
+#include "bench/sweep/shared_events.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
@@ -30,16 +31,22 @@ constexpr std::chrono::milliseconds kLookElsewhere(500);
 const std::string kWritten = "written",
                   kNotWritten = "not written: ", kRefused = "refused: ", kNotShared = "not shared";
 
-/// The file in the folder of tracks that runs share.
-constexpr const char* kBatches = "batches.bin";
+/// Where what runs share is made already: its front-end's tracks, its source's events; empty: it is not.
+struct SharedFiles {
+  std::string tracks, events;
+};
 
-/// In a process of its own: does the run and writes its folder. `tracks`: the folder of its front-end's, where they are
-/// made already.
-std::string do_run(const PlannedRun& run, const Plugins& plugins, const std::string& tracks, RunFolder& folder) {
+std::unique_ptr<Source> make_source(const Job& job, const Plugins& plugins, const SharedFiles& shared) {
+  std::unique_ptr<Source> source = make_source(job, plugins);
+  return shared.events.empty() ? std::move(source) : with_recorded_events(std::move(source), shared.events);
+}
+
+/// In a process of its own: does the run and writes its folder.
+std::string do_run(const PlannedRun& run, const Plugins& plugins, const SharedFiles& shared, RunFolder& folder) {
   try {
     const Job& job = run.config.job;
-    const std::unique_ptr<Source> source = make_source(job, plugins);
-    const auto batches = tracks.empty() ? nullptr : RecordedBatches::open(tracks + "/" + kBatches);
+    const auto batches = shared.tracks.empty() ? nullptr : RecordedBatches::open(shared.tracks);
+    const std::unique_ptr<Source> source = make_source(job, plugins, batches ? SharedFiles() : shared);
     const Execution execution = batches ? execute(job, *source, plugins, *batches) : execute(job, *source, plugins, {});
     folder.write(run.config, run.identity, *source, ground_truth_tum(*source), execution);
     return kWritten;
@@ -50,12 +57,23 @@ std::string do_run(const PlannedRun& run, const Plugins& plugins, const std::str
   }
 }
 
-/// In a process of its own: makes the tracks that runs share.
-std::string make_tracks(const Job& job, const Plugins& plugins, AtomicFolder& folder) {
+/// The one file in the folder of what runs share.
+constexpr const char *kBatches = "batches.bin", *kEvents = "events.evb";
+
+/// Each in a process of its own: makes what runs share.
+bool make_tracks(const Job& job, const Plugins& plugins, const SharedFiles& shared, const AtomicFolder& folder) {
+  const std::optional<std::string> batches = record_front_end(job, *make_source(job, plugins, shared), plugins);
+  if (batches) folder.write(kBatches, *batches);
+  return batches.has_value();
+}
+bool make_events(const Job& job, const Plugins& plugins, const SharedFiles& /*shared*/, const AtomicFolder& folder) {
+  return record_events(*make_source(job, plugins), folder.part() + "/" + kEvents);
+}
+
+std::string make_shared_files(decltype(make_tracks)* make, const Job& job, const Plugins& plugins,
+                              const SharedFiles& shared, AtomicFolder& folder) {
   try {
-    const std::optional<std::string> batches = record_front_end(job, *make_source(job, plugins), plugins);
-    if (!batches) return kNotShared;
-    folder.write(kBatches, *batches);
+    if (!make(job, plugins, shared, folder)) return kNotShared;
     folder.commit();
     return kWritten;
   } catch (const OutputError& error) {
@@ -69,7 +87,9 @@ class Executor {
       : plugins_(plugins), options_(options) {
     std::set<std::string> keys;
     for (const PlannedRun& run : runs) {
-      if (keys.insert(run.identity.key).second) jobs_.push_back({&run, options.retry_failed, false, nullptr});
+      if (!keys.insert(run.identity.key).second) continue;
+      jobs_.push_back({&run, options.retry_failed, false, nullptr});
+      ++users_[run.events];
     }
     progress_.runs = jobs_.size();
   }
@@ -104,13 +124,15 @@ class Executor {
     std::unique_ptr<RunFolder> folder;  ///< its claim on the run
   };
 
-  /// What a front-end gives, and several runs need.
-  struct Tracks {
-    std::string path;                      ///< its folder
-    std::size_t id = 0;                    ///< of the process that makes it
-    bool settled = false;                  ///< it is there, or every run makes it for itself
-    std::unique_ptr<AtomicFolder> folder;  ///< the claim on it, while it is made
-    std::vector<std::size_t> waiting;      ///< jobs
+  /// What a front-end or a source gives, and several runs need.
+  struct Shared {
+    std::string path;  ///< its folder
+    const char* file;  ///< in it
+    decltype(make_tracks)* make;
+    std::size_t id = 0;                              ///< of the process that makes it
+    bool settled = false;                            ///< it is there, or every run makes it for itself
+    std::unique_ptr<AtomicFolder> folder = nullptr;  ///< the claim on it, while it is made
+    std::vector<std::size_t> waiting = {};           ///< jobs
   };
 
   std::string folder_of(const Job& job) const {
@@ -122,6 +144,18 @@ class Executor {
       check_interruption();
       if (!take_result(jobs_[i])) waiting_.push_back(i);
     }
+    keep_together();
+  }
+
+  /// Jobs of the same events follow one another: these can go soon.
+  void keep_together() {
+    std::map<std::string, std::size_t> firsts;
+    for (const std::size_t i : waiting_) firsts.emplace(jobs_[i].run->events, i);
+    const auto place = [&](std::size_t i) {
+      const std::string& events = jobs_[i].run->events;
+      return events.empty() ? i : firsts.at(events);
+    };
+    std::ranges::stable_sort(waiting_, {}, place);
   }
 
   /// Takes what lies there already, if that is to be taken.
@@ -161,11 +195,12 @@ class Executor {
   void start(std::size_t i) {
     Job& job = jobs_[i];
     const PlannedRun& run = *job.run;
-    Tracks* const tracks = run.tracks.empty() ? nullptr : &tracks_of(run);
-    if (tracks != nullptr && !tracks->settled) {
-      get_tracks(*tracks, i);
-      return;
-    }
+    Shared* const tracks = shared(run.tracks, "tracks", kBatches, make_tracks);
+    Shared* const events = shared(run.events, "events", kEvents, make_events);
+    if (file_of(tracks).empty() && !get(events, i, {})) return;
+    SharedFiles files{"", file_of(events)};
+    if (!get(tracks, i, files)) return;
+    files.tracks = file_of(tracks);
     try {
       job.folder = std::make_unique<RunFolder>(options_.out, run.config.experiment, run.identity.key);
     } catch (const FolderTaken&) {
@@ -179,53 +214,73 @@ class Executor {
       if (!take_result(job)) waiting_.push_back(i);
       return;
     }
-    const std::string shared = tracks == nullptr ? "" : tracks->path;
-    const auto work = [&] { return do_run(run, plugins_, shared, *job.folder); };
+    const auto work = [&] { return do_run(run, plugins_, files, *job.folder); };
     pool_.start(i, work, options_.limits);
   }
 
-  Tracks& tracks_of(const PlannedRun& run) {
-    const auto known = tracks_.find(run.tracks);
-    if (known != tracks_.end()) return known->second;
-    Tracks& tracks = tracks_[run.tracks];
-    tracks.path = fmt::format("{}/.tracks/{}", options_.out, run.tracks);
-    tracks.id = jobs_.size() + tracks_made_++;
-    AtomicFolder::clear_leftovers(tracks.path);
-    tracks.settled = std::filesystem::exists(tracks.path);
-    return tracks;
+  /// What runs share of this name; nullptr where there is no name.
+  Shared* shared(const std::string& name, const char* kind, const char* file, decltype(make_tracks)* make) {
+    if (name.empty()) return nullptr;
+    const std::string path = fmt::format("{}/.{}/{}", options_.out, kind, name);
+    const auto [found, is_new] = shared_.try_emplace(path, Shared{path, file, make});
+    if (is_new) {
+      found->second.id = jobs_.size() + shared_made_++;
+      AtomicFolder::clear_leftovers(path);
+      found->second.settled = std::filesystem::exists(path);
+    }
+    return &found->second;
   }
 
-  /// Has tracks made that a job needs; it begins when they are settled.
-  void get_tracks(Tracks& tracks, std::size_t i) {
-    if (!tracks.folder) {
+  static std::string file_of(const Shared* shared) {
+    const std::string path = shared == nullptr ? "" : shared->path + "/" + shared->file;
+    return !path.empty() && shared->settled && std::filesystem::exists(path) ? path : "";
+  }
+
+  /// Has made what a job needs; false where it has to wait, and begins again when that is settled. `files`: what it is
+  /// made of.
+  bool get(Shared* shared, std::size_t i, const SharedFiles& files) {
+    if (shared == nullptr || shared->settled) return true;
+    if (!shared->folder) {
       try {
-        tracks.folder = std::make_unique<AtomicFolder>(tracks.path);
-      } catch (const FolderTaken&) {  // another process makes them
-        tracks_.erase(jobs_[i].run->tracks);
+        shared->folder = std::make_unique<AtomicFolder>(shared->path);
+      } catch (const FolderTaken&) {  // another process makes it
+        shared_.erase(std::string(shared->path));
         elsewhere_.push_back(i);
-        return;
+        return false;
       }
-      const auto work = [&] { return make_tracks(jobs_[i].run->config.job, plugins_, *tracks.folder); };
-      pool_.start(tracks.id, work, options_.limits);
+      const auto work = [&] {
+        return make_shared_files(shared->make, jobs_[i].run->config.job, plugins_, files, *shared->folder);
+      };
+      pool_.start(shared->id, work, options_.limits);
     }
-    tracks.waiting.push_back(i);
+    shared->waiting.push_back(i);
+    return false;
   }
 
-  /// Tracks that could not be made are made by each run, which then says what is wrong.
-  void settle_tracks(const Ending& ending) {
+  /// What could not be made is made by each run, which then says what is wrong.
+  void settle(const Ending& ending) {
     if (ending.report.starts_with(kNotWritten)) throw OutputError(ending.report.substr(kNotWritten.size()));
-    for (auto& [name, tracks] : tracks_) {
-      if (tracks.id != ending.id) continue;
-      tracks.settled = true;
-      tracks.folder.reset();
-      waiting_.insert(waiting_.begin(), tracks.waiting.begin(), tracks.waiting.end());
-      tracks.waiting.clear();
+    for (auto& [path, shared] : shared_) {
+      if (shared.id != ending.id) continue;
+      shared.settled = true;
+      shared.folder.reset();
+      waiting_.insert(waiting_.begin(), shared.waiting.begin(), shared.waiting.end());
+      shared.waiting.clear();
     }
+  }
+
+  /// A job is done. Events that nobody needs any more go: they are large.
+  void leave(const Job& job) {
+    const std::string& events = job.run->events;
+    if (--users_[events] > 0 || events.empty()) return;
+    std::error_code ignored;
+    std::filesystem::remove_all(fmt::format("{}/.events/{}", options_.out, events), ignored);
+    std::filesystem::remove(options_.out + "/.events", ignored);  // the last one
   }
 
   void take_ending(const Ending& ending) {
     if (ending.id >= jobs_.size()) {
-      settle_tracks(ending);
+      settle(ending);
       return;
     }
     Job& job = jobs_[ending.id];
@@ -260,6 +315,7 @@ class Executor {
   }
 
   void count(const Job& job, const RunRecord& record) {
+    leave(job);
     if (auto trouble = trouble_of(record, place_of(job.run->axes))) {
       add(std::move(*trouble));
     } else {
@@ -267,7 +323,10 @@ class Executor {
     }
   }
 
-  void fail(const Job& job, const std::string& reason) { add({job.run->config.label, place_of(job.run->axes), reason}); }
+  void fail(const Job& job, const std::string& reason) {
+    leave(job);
+    add({job.run->config.label, place_of(job.run->axes), reason});
+  }
 
   void add(TroubledRun run) {
     if (!run.lost) ++progress_.failed;
@@ -286,8 +345,9 @@ class Executor {
   std::vector<Job> jobs_;
   std::deque<std::size_t> waiting_;
   std::vector<std::size_t> elsewhere_;
-  std::map<std::string, Tracks> tracks_;
-  std::size_t tracks_made_ = 0;  ///< numbers of processes that were given to tracks
+  std::map<std::string, Shared> shared_;      ///< by path
+  std::size_t shared_made_ = 0;               ///< numbers of processes that were given to what runs share
+  std::map<std::string, std::size_t> users_;  ///< jobs that are not done, by the events that they need
   Clock::time_point looked_ = {};
   SweepProgress progress_;
   ProcessPool pool_;  // the last one: its processes end before what they use

@@ -1,10 +1,13 @@
 #include "bench/sweep/plan.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 
+#include "bench/sweep/process_pool.hpp"
 #include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
@@ -38,6 +41,9 @@ std::vector<Point> points_of(const Grid& grid) {
   return points;
 }
 
+/// What a process says of a source that can't be made, before the reason.
+const std::string kRefused = "refused: ";
+
 /// Makes the plan, run by run.
 class Planner {
  public:
@@ -48,7 +54,7 @@ class Planner {
     for (const Grid& grid : sweep_.grids) {
       for (const Point& point : points_of(grid)) add(point);
     }
-    share_tracks();
+    share_what_is_made_of_events();
     return std::move(plan_);
   }
 
@@ -72,22 +78,24 @@ class Planner {
   }
 
   void add(const RunConfig& config, const Point& point) {
-    PlannedRun run{config, identify(config.job, source_files(config.job), plugins_, digests_), point.axes, ""};
+    PlannedRun run{config, identify(config.job, source_files(config.job), plugins_, digests_), point.axes, "", ""};
     const auto [twin, is_new] = by_key_.emplace(run.identity.key, plan_.runs.size());
     if (!is_new) check_twin(plan_.runs[twin->second], run);
     plan_.runs.push_back(std::move(run));
   }
 
-  void check_twin(const PlannedRun& a, const PlannedRun& b) const {
-    if (a.config.resolved() == b.config.resolved()) return;
-    throw InputError(
-        fmt::format("the runs \"{}\" ({}) and \"{}\" ({}) are the same job, {}, and differ in name or protocol alone: "
-                    "they would be one run; evbench score compares protocols",
-                    a.config.label, place_of(a.axes), b.config.label, place_of(b.axes), a.identity.key));
+  /// Of a job that has several places in the sweep there is one run, which stands in tables at each of them, by the
+  /// label that it has there. It can have one protocol.
+  static void check_twin(const PlannedRun& a, const PlannedRun& b) {
+    if (write_options(a.config.evaluation) == write_options(b.config.evaluation)) return;
+    throw InputError(fmt::format(
+        "the runs \"{}\" ({}) and \"{}\" ({}) are the same job, {}, and differ in their protocol, of which a run has "
+        "one; expected \"evaluation\" to be no axis: evbench score DIR --set evaluation.KEY=VALUE scores a sweep again",
+        a.config.label, place_of(a.axes), b.config.label, place_of(b.axes), a.identity.key));
   }
 
-  void share_tracks() {
-    std::map<std::string, std::set<std::string>> jobs;  // that need the same tracks
+  void share_what_is_made_of_events() {
+    std::map<std::string, std::set<std::string>> jobs;  // that need the same events or tracks
     for (PlannedRun& run : plan_.runs) {
       const PluginConfig& frontend = run.config.job.frontend;
       if (!plugins_.of<FrontEnd>().find(frontend.type, frontend.place + ".type").reads_events) continue;
@@ -96,16 +104,52 @@ class Planner {
       job.erase("trajectory_rate");
       run.tracks = sha256(job.dump()).substr(0, 10);
       jobs[run.tracks].insert(run.identity.key);
+      if (!source_files(run.config.job).events.empty()) continue;
+      run.events = sha256(Json({{"seed", job["seed"]}, {"source", job["source"]}}).dump()).substr(0, 10);
+      jobs[run.events].insert(run.identity.key);
     }
     for (PlannedRun& run : plan_.runs) {
-      if (!run.tracks.empty() && jobs[run.tracks].size() == 1) run.tracks.clear();
+      for (std::string* shared : {&run.tracks, &run.events}) {
+        if (!shared->empty() && jobs[*shared].size() == 1) shared->clear();
+      }
     }
   }
 
   const SourceFiles& source_files(const Job& job) {
     const std::string what = fmt::format("{} {}", job.seed, job.source.with_type().dump());
     const auto known = sources_.find(what);
-    return known != sources_.end() ? known->second : sources_.emplace(what, *make_source(job, plugins_)).first->second;
+    return known != sources_.end() ? known->second : sources_.emplace(what, files_apart(job)).first->second;
+  }
+
+  /// In a process of its own: a source that crashes or hangs when it is made must not take the sweep along without a
+  /// word.
+  SourceFiles files_apart(const Job& job) {
+    const auto work = [&]() -> std::string {
+      try {
+        const SourceFiles files = *make_source(job, plugins_);
+        return Json({{"files", files.files}, {"events", files.events}}).dump();
+      } catch (const InputError& error) {
+        return kRefused + error.what();
+      }
+    };
+    pool_.start(0, work, sweep_.limits);
+    std::vector<Ending> endings;
+    while (endings.empty()) {
+      check_interruption();
+      endings = pool_.wait(std::chrono::milliseconds(50));
+    }
+    const Ending& ending = endings.front();
+    if (ending.report.starts_with(kRefused)) throw InputError(ending.report.substr(kRefused.size()));
+    if (ending.report.empty()) {
+      throw InputError(
+          fmt::format("{}: its process ended when the source was made: {}{}{}", job.source.place, ending.reason,
+                      ending.log.empty() ? "" : "; it said: ", ending.log.empty() ? "" : ending.log.back()));
+    }
+    const Json told = Json::parse(ending.report);
+    SourceFiles files;
+    files.files = told.at("files").get<std::vector<std::string>>();
+    files.events = told.at("events").get<std::vector<std::string>>();
+    return files;
   }
 
   void note(const std::string& axis, const std::string& value) {
@@ -121,6 +165,7 @@ class Planner {
   std::map<std::string, SourceFiles> sources_;
   std::map<std::string, std::size_t> by_key_;
   SweepPlan plan_;
+  ProcessPool pool_;
 };
 
 }  // namespace
@@ -158,8 +203,8 @@ std::vector<PlannedRun> select_runs(const SweepPlan& plan, const std::vector<std
     }
     const std::string value = text.substr(equals + 1);
     if (std::ranges::find(axis->second, value) == axis->second.end()) {
-      throw InputError(
-          fmt::format("--only {}: the axis \"{}\" has no such value{}", text, name, suggestion(value, axis->second)));
+      throw InputError(fmt::format("--only {}: the axis \"{}\" has no such value, but {}", text, name,
+                                   fmt::join(axis->second, ", ")));
     }
     wanted[name].insert(value);
   }

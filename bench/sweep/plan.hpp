@@ -20,6 +20,9 @@ struct PlannedRun {
   /// Names what its front-end gives, where that is made from events and other runs of the sweep need the same: the
   /// SHA-256 of the job without its back-end, ten digits of it. Empty: the run makes it for itself.
   std::string tracks;
+  /// Likewise names its source and seed, where its front-end begins with events that no file holds, and other runs do,
+  /// too: ten digits of the SHA-256 of that part of the job.
+  std::string events;
 };
 
 /// Values on axes: "seed=3, frames=0.1".
@@ -37,8 +40,9 @@ struct SweepPlan {
 };
 
 /// Makes every config of the sweep, checks it, and finds the keys; each source is made once, for the files that it
-/// reads. Throws InputError, with the sweep's place, for a value that can't be, and for two points with one job that
-/// differ in name or protocol alone: they would be one run.
+/// reads, in a process of its own with the sweep's limits. A job may have several places in a sweep, under several
+/// labels. Throws InputError, with the sweep's place, for a value that can't be, and for two places of one job that
+/// differ in protocol: it is one run.
 SweepPlan plan_sweep(const Sweep& sweep, const Plugins& plugins);
 
 /// The runs with one of these values, "AXIS=VALUE", on each axis that is named. Throws InputError for an axis or value

@@ -1,0 +1,66 @@
+#include "bench/sweep/shared_events.hpp"
+
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "core/events/native/native.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench {
+namespace {
+
+/// What a source is, but for where its events come from.
+class RecordedEvents : public Source {
+ public:
+  RecordedEvents(std::unique_ptr<Source> source, std::string path)
+      : source_(std::move(source)), path_(std::move(path)) {}
+
+  const Camera& camera() const override { return source_->camera(); }
+  TimeRange time_range() const override { return source_->time_range(); }
+  const PoseTrajectory& ground_truth() const override { return source_->ground_truth(); }
+  std::unique_ptr<EventReader> all_events() const override { return std::make_unique<NativeReader>(path_); }
+  std::optional<std::span<const TrackObservation>> true_tracks() const override { return source_->true_tracks(); }
+  std::vector<std::string> files() const override { return source_->files(); }
+  std::vector<std::string> event_files() const override { return source_->event_files(); }
+  std::vector<std::string> remarks() const override { return source_->remarks(); }
+
+ private:
+  std::unique_ptr<Source> source_;
+  std::string path_;
+};
+
+/// Are all of a recording's events there? A damaged one would leave some out.
+bool is_intact(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  try {
+    NativeReader reader(path);
+    for (std::vector<Event> events; reader.read(events);) {
+    }
+    return reader.faults().all().empty();
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+bool record_events(const Source& source, const std::string& path) {
+  const std::unique_ptr<EventReader> reader = source.event_files().empty() ? source.all_events() : nullptr;
+  if (!reader) return false;
+  RecordingHeader header;
+  header.width = reader->info().width;
+  header.height = reader->info().height;
+  NativeWriter writer(path, header);
+  for (std::vector<Event> events; reader->read(events);) writer.write(events);
+  writer.finish();
+  return true;
+}
+
+std::unique_ptr<Source> with_recorded_events(std::unique_ptr<Source> source, const std::string& path) {
+  if (!is_intact(path)) return source;
+  return std::make_unique<RecordedEvents>(std::move(source), path);
+}
+
+}  // namespace evbench
