@@ -44,6 +44,16 @@ TEST_CASE("Back-ends are compared pair by pair: ratio, interval, p, correction, 
                  Contains("half,ate.trans_m.rmse,8,0,0,0.5"));
 }
 
+TEST_CASE("Where so few pairs can't tell anything, that is said, and how many it takes") {
+  Results results;
+  for (int seed = 1; seed <= 5; ++seed) {
+    for (const char* label : {"a", "b", "c"}) results.add_seed(label, seed, 0.01 * seed);
+  }
+  CHECK_THAT(make_comparison_table(results.find(), {}),
+             Contains("With 5 pairs and 2 comparisons nothing can reach that: it takes 7 pairs."));
+  CHECK_THAT(Compared().table(), !Contains("nothing can reach that"));
+}
+
 TEST_CASE("Observations that were identical are counted") {
   const Compared results;
   int n = 0;

@@ -43,6 +43,26 @@ TEST_CASE("Only runs of one experiment and protocol that kept track compete") {
   CHECK_THAT(text, Contains("Protocol 1: ") && Contains("Protocol 2: ") && Contains("do not compete"));
 }
 
+TEST_CASE("Runs compete with those of the same seed and source alone") {
+  Results results;
+  for (const int seed : {1, 2}) {
+    results.add_seed("good", seed, 0.01 * seed);
+    results.add_seed("bad", seed, 0.04 * seed);
+  }
+  const std::string text = table(results, {.metrics = {"ate.trans_m.rmse"}});
+  CHECK_THAT(text, Contains("0.0100*") && Contains("0.0200*") && !Contains("0.0400*") && !Contains("0.0800*"));
+}
+
+TEST_CASE("All numbers that runs have can be listed, with their headers, and each is a column") {
+  Results results;
+  results.add_seed("good", 1, 0.01);
+  const std::string keys = list_metrics(results.find());
+  CHECK_THAT(line_with(keys, "ate.trans_m.rmse"), Contains("ATE [m]"));
+  CHECK_THAT(table(results, {.metrics = {line_with(keys, "ate.trans_m.median")}}), Contains("ate.trans_m.median"));
+  CHECK_THROWS_WITH(table(results, {.metrics = {"foo"}}),
+                    Contains("no run has the metric \"foo\"; the most similar of ") && Contains("--list-metrics"));
+}
+
 TEST_CASE("A run without an estimate is a row without values") {
   Results results;
   results.add("a", run("arm", "good", scores_with(0.020)));

@@ -131,6 +131,7 @@ TEST_CASE("What can't be exported is refused with what was expected, and no file
   sequence.refused("c.json", "nothing to export; expected at least one of --groundtruth");
   sequence.refused("c.json --errors e.csv",
                    "c.json: --aligned, --errors, --evo and --rpg are of a run; expected its folder");
+  sequence.refused("c.json --evo e.txt", "--evo e.txt: expected a name that ends with .zip");
   sequence.refused("none.json --tracks t.txt", "none.json: no such file");
   sequence.refused(". --errors e.csv", ".: has no metrics.json; expected the folder of a run");
   sequence.folder.write("t.txt", "mine");

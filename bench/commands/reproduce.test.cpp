@@ -64,7 +64,7 @@ TEST_CASE("Names that are no configs and damaged numbers are refused with the pl
   paper.write({{"config", "arm"}, {"what", "Table I"}});
   CHECK_THAT(paper.reproduce("arm").err, Contains("published.json: results.0: \"protocol\" is missing"));
   CHECK_THAT(testing::evbench(paper.folder, "reproduce").err,
-             Contains("configs/paper/published.json: can't be opened"));
+             Contains("configs/paper: there is no such folder here") && Contains("--configs REPOSITORY/configs/paper"));
 }
 
 TEST_CASE("The paper's numbers are of configs and back-ends that there are") {

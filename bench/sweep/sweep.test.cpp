@@ -175,7 +175,9 @@ TEST_CASE("Two processes share a sweep, and lines of its manifest, done one by o
   REQUIRE(testing::evbench(folder, "sweep c.json --over seed=1..6 --out three --executor none").exit_code == 0);
   CHECK(testing::evbench(folder, "status three").exit_code == 3);
   const std::string task = "\"$evbench\" task three/tiny/manifest.jsonl ";
-  CHECK(testing::shell(folder, task + "1 --stride 2 &&" + task + "2 && " + task + "4 && " + task + "6").exit_code == 0);
+  CHECK_THAT(testing::evbench(folder, "score three").err, Contains("none of these runs was done yet"));
+  CHECK(testing::shell(folder, task + "1 --stride 2 && \"$evbench\" score three").exit_code == 0);  // of three runs
+  CHECK(testing::shell(folder, task + "2 && " + task + "4 && " + task + "6").exit_code == 0);
   CHECK(testing::evbench(folder, "status three").exit_code == 0);
   auto made = results_of(folder.file("three/tiny"));
   made.erase("manifest.jsonl");
