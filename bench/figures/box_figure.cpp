@@ -8,11 +8,12 @@
 namespace evbench {
 
 Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  const FigureRuns all(runs, options);
+  const FigureRuns all(runs, options.online);
+  const std::vector<Metric> metrics = all.metrics(options);
   Figure figure;
   figure.legend = false;
   for (const Method& method : all.methods) figure.series.push_back({method.name});
-  for (const Metric& metric : all.metrics) {
+  for (const Metric& metric : metrics) {
     Panel panel{{metric.header}, {}, {}};
     std::vector<double> drawn;
     for (std::size_t m = 0; m < all.methods.size(); ++m) {

@@ -11,20 +11,15 @@
 #include "core/support/error.hpp"
 
 namespace evbench {
-namespace {
 
-std::vector<std::string> keys_of(const FigureOptions& options) {
-  return options.metrics.empty() ? std::vector<std::string>{"ate.trans_m.rmse", "rpe.trans_m.rmse"} : options.metrics;
+FigureRuns::FigureRuns(std::span<const RunRecord> records, bool online, const std::string& without)
+    : runs(numbers_of(records, online)), columns(run_columns(records)), methods(methods_of(runs, columns, without)) {
+  if (methods.empty()) throw InputError("none of these runs was done yet; expected some to draw");
 }
 
-}  // namespace
-
-FigureRuns::FigureRuns(std::span<const RunRecord> records, const FigureOptions& options, const std::string& without)
-    : runs(numbers_of(records, options.online)),
-      columns(run_columns(records)),
-      metrics(metrics_of(keys_of(options), runs)),
-      methods(methods_of(runs, columns, without)) {
-  if (methods.empty()) throw InputError("none of these runs was done yet; expected some to draw");
+std::vector<Metric> FigureRuns::metrics(const FigureOptions& options) const {
+  if (!options.metrics.empty()) return metrics_of(options.metrics, runs);
+  return metrics_of({"ate.trans_m.rmse", "rpe.trans_m.rmse"}, runs);
 }
 
 std::string FigureRuns::caption(const std::string& what) const {

@@ -12,12 +12,15 @@ namespace evbench {
 
 /// What every figure is made from.
 struct FigureRuns {
-  FigureRuns(std::span<const RunRecord> runs, const FigureOptions& options, const std::string& without = "");
+  /// `without`: a column that is no part of methods' names (methods_of()).
+  FigureRuns(std::span<const RunRecord> runs, bool online, const std::string& without = "");
 
   std::vector<RunNumbers> runs;
   std::vector<RunColumn> columns;
-  std::vector<Metric> metrics;
   std::vector<Method> methods;
+
+  /// What a figure shows, a panel each: those asked for, else ATE and RPE. Throws InputError for one that no run has.
+  std::vector<Metric> metrics(const FigureOptions& options) const;
 
   /// Experiments, and what is drawn: a sentence.
   std::string caption(const std::string& what) const;

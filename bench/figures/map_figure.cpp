@@ -47,7 +47,8 @@ Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options)
   if (options.axis == options.across) {
     throw InputError(fmt::format("--axis and --across are both \"{}\"; expected two axes", options.axis));
   }
-  const FigureRuns all(runs, options, options.axis);
+  const FigureRuns all(runs, options.online, options.axis);
+  const std::vector<Metric> metrics = all.metrics(options);
   const RunColumn &axis = find_column(all.columns, options.axis), &across = find_column(all.columns, options.across);
   check_numbers(axis);
   check_numbers(across);
@@ -64,7 +65,7 @@ Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options)
   figure.legend = false;
   figure.series.push_back({method.name});
   std::size_t pairs = 0;
-  for (const Metric& metric : all.metrics) {
+  for (const Metric& metric : metrics) {
     if (metric.better == Better::neither) {
       throw InputError(fmt::format("a map of \"{}\" can't be made: neither lower nor higher is better", metric.key));
     }
@@ -85,7 +86,7 @@ Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options)
   }
   figure.columns = figure.panels.size();
   std::string shown;
-  for (const Metric& metric : all.metrics) shown += (shown.empty() ? "" : ", ") + metric.header;
+  for (const Metric& metric : metrics) shown += (shown.empty() ? "" : ", ") + metric.header;
   figure.caption =
       all.scored_caption(fmt::format("{} of {} over that of {}, on the same data: medians of up to {} pair{}. "
                                      "Below 1, blue, the former is better. Cells are of one size, "

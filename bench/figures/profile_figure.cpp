@@ -32,11 +32,12 @@ std::vector<std::vector<double>> costs_by_problem(const FigureRuns& all, const M
 }  // namespace
 
 Figure profile_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  const FigureRuns all(runs, options);
+  const FigureRuns all(runs, options.online);
+  const std::vector<Metric> metrics = all.metrics(options);
   Figure figure;
   std::size_t problems = 0;
   for (const Method& method : all.methods) figure.series.push_back({method.name});
-  for (const Metric& metric : all.metrics) {
+  for (const Metric& metric : metrics) {
     if (metric.better == Better::neither) {
       throw InputError(
           fmt::format("a profile of \"{}\" can't be made: neither lower nor higher is better; expected an "

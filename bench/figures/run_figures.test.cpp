@@ -100,6 +100,17 @@ TEST_CASE("A profile is of the data that all methods have runs of") {
   CHECK_THAT(figure.caption, Contains("over 3 sequences and seeds"));
 }
 
+TEST_CASE("Times are drawn of runs without scores, and what needs scores says so") {
+  const Results results;
+  results.add("a", run("arm", "no ground truth", nullptr));
+  results.folder.write("a/timing.csv", "t_s,update_ms\n0.1,2.5\n0.2,3.5\n");
+  const std::vector<RunRecord> runs = results.find();
+  const Figure figure = times_figure(runs, {});
+  CHECK(mark_of(figure.panels.at(0), Mark::Kind::line, 0).x.back() == 3.5);
+  CHECK(figure.caption == "arm. Distribution of the times of all updates of all runs that succeeded.");
+  CHECK_THROWS_WITH(error_figure(runs, {}), Contains("none of these runs has an estimate and ground truth"));
+}
+
 TEST_CASE("What can't be drawn is refused with what was expected") {
   const Swept results;
   const std::vector<RunRecord> runs = results.find();

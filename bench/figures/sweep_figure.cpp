@@ -87,13 +87,14 @@ std::vector<Mark> draw_method(const Method& method, std::size_t number, const Ru
 
 Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
   const std::string name = axis_of(runs, options);
-  const FigureRuns all(runs, options, name);
+  const FigureRuns all(runs, options.online, name);
+  const std::vector<Metric> metrics = all.metrics(options);
   const RunColumn& axis = find_column(all.columns, name);
   Figure figure;
   for (const Method& method : all.methods) figure.series.push_back({method.name});
   std::vector<double> places;
   for (const std::string& value : axis.values) places.push_back(number_in(value).value_or(NAN));
-  for (const Metric& metric : all.metrics) {
+  for (const Metric& metric : metrics) {
     Panel panel{{options.axis_label.empty() ? name : options.axis_label, spread_wide(places)}, {metric.header}, {}};
     std::vector<double> heights;
     for (std::size_t m = 0; m < all.methods.size(); ++m) {

@@ -39,7 +39,7 @@ ScoredRuns score_first_sequence(std::span<const RunRecord> records, const Figure
   }
   if (result.scores.empty())
     throw InputError("none of these runs has an estimate and ground truth; expected one to draw");
-  const FigureRuns of_sequence(drawn, options);
+  const FigureRuns of_sequence(drawn, options.online);
   const std::string seed = drawn.front().seed ? fmt::format(", seed {}", *drawn.front().seed) : "";
   result.caption = of_sequence.scored_caption(what + seed + "." + missing, options.online);
   return result;
@@ -49,7 +49,7 @@ ScoredRuns score_first_sequence(std::span<const RunRecord> records, const Figure
 
 Figure error_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
   const ScoredRuns scored =
-      score_first_sequence(runs, FigureRuns(runs, options), options, "Error of each pose after alignment");
+      score_first_sequence(runs, FigureRuns(runs, options.online), options, "Error of each pose after alignment");
   Figure figure;
   Panel translation{{"time [s]"}, {"translation [m]"}, {}}, rotation{{"time [s]"}, {"rotation [deg]"}, {}};
   std::vector<double> trans_m, rot_deg;
@@ -70,8 +70,8 @@ Figure error_figure(std::span<const RunRecord> runs, const FigureOptions& option
 }
 
 Figure trajectory_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  const ScoredRuns scored =
-      score_first_sequence(runs, FigureRuns(runs, options), options, "Trajectories after alignment, from three sides");
+  const ScoredRuns scored = score_first_sequence(runs, FigureRuns(runs, options.online), options,
+                                                 "Trajectories after alignment, from three sides");
   Figure figure;
   figure.series.push_back({"ground truth", true});
   for (const std::string& name : scored.names) figure.series.push_back({name});
