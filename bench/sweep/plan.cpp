@@ -52,33 +52,47 @@ class Planner {
 
   SweepPlan plan() {
     for (const Grid& grid : sweep_.grids) {
-      for (const Point& point : points_of(grid)) add(point);
+      for (const Point& point : points_of(grid)) gather(point);
     }
+    with_place([&] {
+      look_at_sources();
+      for (auto& [config, axes] : gathered_) add(std::move(config), std::move(axes));
+    });
     share_what_is_made_of_events();
     return std::move(plan_);
   }
 
  private:
-  void add(const Point& point) {
-    check_interruption();
-    std::vector<std::string> overrides = sweep_.overrides;
-    overrides.insert(overrides.end(), point.overrides.begin(), point.overrides.end());
+  /// An error says which sweep it is of.
+  template <class Work>
+  void with_place(const Work& work) const {
     try {
-      if (!sweep_.name.empty()) overrides.push_back("name=" + sweep_.name);
-      const Experiment experiment = config_.experiment(overrides, "the sweep's");
-      plan_.name = experiment.name;
-      for (const RunConfig& config : experiment.runs) add(config, point);
+      work();
     } catch (const Interrupted&) {
       throw;
     } catch (const InputError& error) {
       if (sweep_.place == sweep_.config) throw;
       throw InputError(fmt::format("{}: {}", sweep_.place, error.what()));
     }
+  }
+
+  void gather(const Point& point) {
+    check_interruption();
+    std::vector<std::string> overrides = sweep_.overrides;
+    overrides.insert(overrides.end(), point.overrides.begin(), point.overrides.end());
+    if (!sweep_.name.empty()) overrides.push_back("name=" + sweep_.name);
+    with_place([&] {
+      const Experiment experiment = config_.experiment(overrides, "the sweep's");
+      plan_.name = experiment.name;
+      for (const RunConfig& config : experiment.runs) gathered_.emplace_back(config, point.axes);
+    });
     for (const auto& [axis, value] : point.axes) note(axis, value);
   }
 
-  void add(const RunConfig& config, const Point& point) {
-    PlannedRun run{config, identify(config.job, source_files(config.job), plugins_, digests_), point.axes, "", ""};
+  void add(RunConfig config, RunAxes axes) {
+    check_interruption();
+    JobIdentity identity = identify(config.job, sources_.at(source_of(config.job)), plugins_, digests_);
+    PlannedRun run{std::move(config), std::move(identity), std::move(axes), "", ""};
     const auto [twin, is_new] = by_key_.emplace(run.identity.key, plan_.runs.size());
     if (!is_new) check_twin(plan_.runs[twin->second], run);
     plan_.runs.push_back(std::move(run));
@@ -104,7 +118,7 @@ class Planner {
       job.erase("trajectory_rate");
       run.tracks = sha256(job.dump()).substr(0, 10);
       jobs[run.tracks].insert(run.identity.key);
-      if (!source_files(run.config.job).events.empty()) continue;
+      if (!sources_.at(source_of(run.config.job)).events.empty()) continue;
       run.events = sha256(Json({{"seed", job["seed"]}, {"source", job["source"]}}).dump()).substr(0, 10);
       jobs[run.events].insert(run.identity.key);
     }
@@ -115,24 +129,42 @@ class Planner {
     }
   }
 
-  const SourceFiles& source_files(const Job& job) {
-    const std::string what = fmt::format("{} {}", job.seed, job.source.with_type().dump());
-    const auto known = sources_.find(what);
-    return known != sources_.end() ? known->second : sources_.emplace(what, files_apart(job)).first->second;
+  static std::string source_of(const Job& job) { return fmt::format("{} {}", job.seed, job.source.with_type().dump()); }
+
+  /// Makes each source once, for the files that it reads; in a process of their own: one that crashes or hangs when it
+  /// is made must not take the sweep along without a word. Where that happens, each has its own, so that it is known
+  /// which one it was.
+  void look_at_sources() {
+    std::map<std::string, const Job*> jobs;
+    std::vector<const Job*> all;
+    for (const auto& [config, axes] : gathered_) {
+      if (jobs.emplace(source_of(config.job), &config.job).second) all.push_back(&config.job);
+    }
+    if (all.empty() || look_at(all).empty()) return;
+    for (const Job* job : all) {
+      if (const std::string reason = look_at({job}); !reason.empty()) {
+        throw InputError(fmt::format("{}: its process ended when the source was made: {}", job->source.place, reason));
+      }
+    }
   }
 
-  /// In a process of its own: a source that crashes or hangs when it is made must not take the sweep along without a
-  /// word.
-  SourceFiles files_apart(const Job& job) {
+  /// Why the process ended before it was done; empty: it was done.
+  std::string look_at(const std::vector<const Job*>& jobs) {
     const auto work = [&]() -> std::string {
+      Json list = Json::array();
       try {
-        const SourceFiles files = *make_source(job, plugins_);
-        return Json({{"files", files.files}, {"events", files.events}}).dump();
+        for (const Job* job : jobs) {
+          const SourceFiles files = *make_source(*job, plugins_);
+          list.push_back({{"files", files.files}, {"events", files.events}});
+        }
       } catch (const InputError& error) {
         return kRefused + error.what();
       }
+      return list.dump();
     };
-    pool_.start(0, work, sweep_.limits);
+    RunLimits limits = sweep_.limits;
+    limits.seconds *= static_cast<double>(jobs.size());
+    pool_.start(0, work, limits);
     std::vector<Ending> endings;
     while (endings.empty()) {
       check_interruption();
@@ -141,15 +173,15 @@ class Planner {
     const Ending& ending = endings.front();
     if (ending.report.starts_with(kRefused)) throw InputError(ending.report.substr(kRefused.size()));
     if (ending.report.empty()) {
-      throw InputError(
-          fmt::format("{}: its process ended when the source was made: {}{}{}", job.source.place, ending.reason,
-                      ending.log.empty() ? "" : "; it said: ", ending.log.empty() ? "" : ending.log.back()));
+      return ending.log.empty() ? ending.reason : fmt::format("{}; it said: {}", ending.reason, ending.log.back());
     }
-    const Json told = Json::parse(ending.report);
-    SourceFiles files;
-    files.files = told.at("files").get<std::vector<std::string>>();
-    files.events = told.at("events").get<std::vector<std::string>>();
-    return files;
+    const Json list = Json::parse(ending.report);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      SourceFiles& files = sources_[source_of(*jobs[i])];
+      files.files = list.at(i).at("files").get<std::vector<std::string>>();
+      files.events = list.at(i).at("events").get<std::vector<std::string>>();
+    }
+    return "";
   }
 
   void note(const std::string& axis, const std::string& value) {
@@ -162,6 +194,7 @@ class Planner {
   const Plugins& plugins_;
   ConfigFile config_;
   Digests digests_;
+  std::vector<std::pair<RunConfig, RunAxes>> gathered_;
   std::map<std::string, SourceFiles> sources_;
   std::map<std::string, std::size_t> by_key_;
   SweepPlan plan_;

@@ -40,7 +40,7 @@ struct SweepPlan {
 };
 
 /// Makes every config of the sweep, checks it, and finds the keys; each source is made once, for the files that it
-/// reads, in a process of its own with the sweep's limits. A job may have several places in a sweep, under several
+/// reads, in another process, with the sweep's limits for each. A job may have several places in a sweep, under several
 /// labels. Throws InputError, with the sweep's place, for a value that can't be, and for two places of one job that
 /// differ in protocol: it is one run.
 SweepPlan plan_sweep(const Sweep& sweep, const Plugins& plugins);
