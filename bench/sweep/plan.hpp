@@ -46,7 +46,7 @@ struct SweepPlan {
 SweepPlan plan_sweep(const Sweep& sweep, const Plugins& plugins);
 
 /// The runs with one of these values, "AXIS=VALUE", on each axis that is named. Throws InputError for an axis or value
-/// that the plan doesn't have, with the nearest one.
+/// that the plan doesn't have, with the nearest axis or all values.
 std::vector<PlannedRun> select_runs(const SweepPlan& plan, const std::vector<std::string>& only);
 
 }  // namespace evbench
