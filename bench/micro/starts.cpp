@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "backends/gp_map/gp_map.hpp"
+#include "bench/micro/track_noise.hpp"
 #include "core/plugin/track_player.hpp"
 #include "core/simulation/track_simulator.hpp"
 #include "core/support/index.hpp"
@@ -32,13 +33,8 @@ using namespace evbench;
 constexpr double kDuration = 8.0;    ///< [s] for a start, at most
 constexpr double kAfterwards = 2.5;  ///< [s] until a start is looked at again
 constexpr double kExchange = 0.01;   ///< [s]
+constexpr double kDriftTime = 0.3;   ///< [s] of its correlation
 constexpr double kDegrees = 180.0 / M_PI;
-
-/// Pixels wander about their true places: an Ornstein-Uhlenbeck process for each track.
-struct Wander {
-  double sigma = 0.0;  ///< [px]
-  double time = 0.3;   ///< [s] of its correlation
-};
 
 struct Kind {
   std::string_view name;
@@ -47,7 +43,7 @@ struct Kind {
   double amplitude;  ///< [m] of that
   double rotation;   ///< [rad] likewise
   TrackOptions tracks;
-  Wander wander;
+  double drift;  ///< of each track [px], add_drift()
 };
 
 TrackOptions usual_tracks() {
@@ -68,16 +64,16 @@ TrackOptions dense_tracks() {
 std::vector<Kind> all_kinds() {
   const TrackOptions usual = usual_tracks();
   return {
-      {"hand-held, plane", "plane", Vector3::Zero(), 0.3, 0.15, usual, {}},
-      {"hand-held, boxes", "boxes", Vector3::Zero(), 0.3, 0.15, usual, {}},
-      {"hand-held, cloud", "frustum", Vector3::Zero(), 0.3, 0.15, usual, {}},
-      {"forward, plane", "plane", {0.0, 0.0, 0.4}, 0.03, 0.08, usual, {}},
-      {"forward, cloud", "frustum", {0.0, 0.0, 0.4}, 0.03, 0.08, usual, {}},
-      {"sideways, plane", "plane", {0.3, 0.0, 0.0}, 0.03, 0.08, usual, {}},
-      {"sideways, boxes", "boxes", {0.3, 0.0, 0.0}, 0.03, 0.08, usual, {}},
-      {"turning, plane", "plane", Vector3::Zero(), 0.1, 0.25, usual, {}},
-      {"turning, cloud", "frustum", Vector3::Zero(), 0.1, 0.25, usual, {}},
-      {"dense, slow", "frustum", {0.1, 0.0, 0.0}, 0.01, 0.03, dense_tracks(), {1.2}},
+      {"hand-held, plane", "plane", Vector3::Zero(), 0.3, 0.15, usual, 0.0},
+      {"hand-held, boxes", "boxes", Vector3::Zero(), 0.3, 0.15, usual, 0.0},
+      {"hand-held, cloud", "frustum", Vector3::Zero(), 0.3, 0.15, usual, 0.0},
+      {"forward, plane", "plane", {0.0, 0.0, 0.4}, 0.03, 0.08, usual, 0.0},
+      {"forward, cloud", "frustum", {0.0, 0.0, 0.4}, 0.03, 0.08, usual, 0.0},
+      {"sideways, plane", "plane", {0.3, 0.0, 0.0}, 0.03, 0.08, usual, 0.0},
+      {"sideways, boxes", "boxes", {0.3, 0.0, 0.0}, 0.03, 0.08, usual, 0.0},
+      {"turning, plane", "plane", Vector3::Zero(), 0.1, 0.25, usual, 0.0},
+      {"turning, cloud", "frustum", Vector3::Zero(), 0.1, 0.25, usual, 0.0},
+      {"dense, slow", "frustum", {0.1, 0.0, 0.0}, 0.01, 0.03, dense_tracks(), 1.2},
   };
 }
 
@@ -87,21 +83,6 @@ struct Beginning {
   Motion motion;
   SimulatedTracks tracks;
 };
-
-void add_wander(SimulatedTracks& tracks, const Wander& wander, Random random) {
-  std::vector<TrackObservation> last(tracks.tracks.size());
-  std::vector<Vector2> offset(tracks.tracks.size());
-  const auto normal = [&] { return Vector2(random.normal(), random.normal()); };
-  for (TrackObservation& z : tracks.observations) {
-    Vector2& now = offset[index(z.track)];
-    TrackObservation& before = last[index(z.track)];
-    const double kept = before.sigma > 0.0 && before.t > 0.0 ? std::exp((before.t - z.t) / wander.time) : 0.0;
-    now = kept * now + wander.sigma * std::sqrt(1.0 - kept * kept) * normal();
-    before = z;
-    z.pixel += now;
-    z.sigma = std::hypot(z.sigma, wander.sigma);
-  }
-}
 
 Beginning simulate(const Kind& kind, std::uint64_t seed) {
   Beginning result;
@@ -122,7 +103,7 @@ Beginning simulate(const Kind& kind, std::uint64_t seed) {
   scene_options.kind = kind.scene;
   Scene scene(scene_options, result.camera, result.motion, kDuration, Random(seed, 1));
   result.tracks = simulate_tracks(kind.tracks, result.camera, result.motion, scene, kDuration, seed, "tracks");
-  if (kind.wander.sigma > 0.0) add_wander(result.tracks, kind.wander, Random(seed, 2));
+  if (kind.drift > 0.0) add_drift(result.tracks.observations, kind.drift, kDriftTime, Random(seed, 2));
   return result;
 }
 
