@@ -225,7 +225,7 @@ void report(const std::array<std::vector<Outcome>, kModels.size()>& outcomes) {
   };
   fmt::print(
       "| model | ATE [m] | / fewer | p | RPE [m] | / fewer | p | NEES 0.1 s | NEES 1 s | variables | iterations | "
-      "time [s] |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+      "iteration [ms] |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (std::size_t model = 0; model < kModels.size(); ++model) {
     const std::vector<Outcome>& own = outcomes[model];
     const auto error = [&](double Outcome::*member) {
