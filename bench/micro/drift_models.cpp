@@ -66,8 +66,8 @@ std::vector<TrackObservation> tracks_of(const Job& job, const Source& source, co
   const auto frontend = entry.make(job.frontend.options, {source, job.seed, job.folder, job.frontend.place});
   std::vector<TrackObservation> result;
   TrackBatch batch;
-  const auto [from, to] = source.time_range();
-  for (double t = from; t < to + kExchange && frontend->advance({std::min(t, to)}, batch); t += kExchange) {
+  for (bool more = true; more;) {
+    more = frontend->advance({source.time_range().to}, batch);
     for (TrackObservation z : batch.observations) {
       const auto pixel = source.camera().undistort(z.pixel);
       if (!pixel) continue;
@@ -93,7 +93,11 @@ FactorGraph final_graph(const Job& job, const Camera& camera, const std::vector<
   }
   TrackPlayer player(observations);
   TrackBatch batch;
-  for (double t = observations.front().t; player.advance({t}, batch); t += kExchange) backend->advance(batch);
+  double t = observations.front().t;
+  for (bool more = true; more; t += kExchange) {
+    more = player.advance({t}, batch);
+    backend->advance(batch);
+  }
   backend->finish();
   if (backend->trajectory().empty()) {
     throw InputError(fmt::format("{}: gp_map finds no first map in these tracks, seed {}: {}", job.backend.place,
