@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "bench/micro/track_noise.hpp"
 #include "core/motion/wnoa.hpp"
@@ -14,7 +15,6 @@ namespace {
 
 using gp_map::BatchOptions;
 using gp_map::FactorGraph;
-using gp_map::GraphLayout;
 using gp_map::RobustLoss;
 
 constexpr int kStates = 21;
@@ -103,7 +103,7 @@ TEST_CASE("Offsets that can't be but zero change nothing") {
   FactorGraph white = drawn.graph;
   gp_map::solve_batch(white, kExactly);
   for (const DriftModel& model : {DriftModel{1e-6, 0.0, 0.3}, DriftModel{1e-6, 0.1, 0.3}, DriftModel{1e-6, 0.1, 0.0},
-                                  DriftModel{1e-6, INFINITY, 0.0}, DriftModel{}}) {
+                                  DriftModel{1e-6, std::numeric_limits<double>::infinity(), 0.0}, DriftModel{}}) {
     DriftProblem problem(drawn.graph, model);
     problem.solve(kExactly);
     for (std::size_t i = 0; i < white.states.size(); ++i) {

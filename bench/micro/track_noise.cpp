@@ -48,9 +48,10 @@ Variogram variogram_of(const gp_map::FactorGraph& graph) {
   }
   Variogram result;
   for (std::size_t lag = 0; lag < kApart.size(); ++lag) {
-    if (squares[lag].empty()) continue;
+    const double square = squares[lag].empty() ? 0.0 : median(squares[lag]);
+    if (square == 0.0) continue;  // of tracks that stand still, too
     result.apart.push_back(median(times[lag]));
-    result.value.push_back(0.5 * median(squares[lag]) / kMedianSquare);
+    result.value.push_back(0.5 * square / kMedianSquare);
   }
   return result;
 }
@@ -80,6 +81,7 @@ TrackNoise estimate_noise(const gp_map::FactorGraph& graph) {
   const Eigen::ArrayXd apart = Eigen::ArrayXd::Map(variogram.apart.data(), n);
   const Eigen::ArrayXd value = Eigen::ArrayXd::Map(variogram.value.data(), n);
   TrackNoise best;
+  if (n < 3) return best;
   double least = std::numeric_limits<double>::infinity();
   constexpr double kShortest = 0.02, kLongest = 2.0, kStep = 1.05;  // [s]
   for (double time = kShortest; time <= kLongest; time *= kStep) {
