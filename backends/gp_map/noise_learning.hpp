@@ -8,7 +8,8 @@ namespace evbench::gp_map {
 
 /// Learns the observations' noise from residuals: a scale of the stated sigmas, and the share of the information that
 /// counts, as a tracker's errors drift. The mean of n independent errors over a block of time has a variance of
-/// sigma²/n an axis; that of errors which hang together is larger, and they count as so many observations less.
+/// sigma²/n an axis; that of errors which hang together is larger, and they count as so many observations less. That
+/// is the cheapest model of drift; results/reference/drift_models.md compares it with dearer ones.
 ///
 /// What a pose error, linear over an interval, explains of its residuals tells of the motion, not of noise, and is
 /// taken away first: a motion model that is wrong must not pass for noise, which would then make the prior stronger
