@@ -155,20 +155,6 @@ void check_interval(const std::vector<double>& interval, const std::string& plac
   }
 }
 
-void check(const TrackOptions& options, const Camera& camera, const std::string& place) {
-  check_interval(options.lifetime, place + ".lifetime");
-  check_interval(options.rate, place + ".rate");
-  check_interval(options.dropout_length, place + ".dropout_length");
-  if (options.outlier_share + options.drift_share > 1.0) {
-    throw InputError(fmt::format("{}: outlier_share + drift_share is {}; expected at most 1", place,
-                                 options.outlier_share + options.drift_share));
-  }
-  if (2.0 * options.border >= std::min(camera.width, camera.height) - 1) {
-    throw InputError(fmt::format("{}.border: {} px leave nothing of an image of {} x {}", place, options.border,
-                                 camera.width, camera.height));
-  }
-}
-
 }  // namespace
 
 void TrackOptions::declare(OptionSet& set) {
@@ -187,9 +173,23 @@ void TrackOptions::declare(OptionSet& set) {
   set.add("blackouts", blackouts, "spans without observations, which end all tracks [from, to, from, to, ...] [s]");
 }
 
+void TrackOptions::check(const Camera& camera, const std::string& place) const {
+  check_interval(lifetime, place + ".lifetime");
+  check_interval(rate, place + ".rate");
+  check_interval(dropout_length, place + ".dropout_length");
+  if (outlier_share + drift_share > 1.0) {
+    throw InputError(
+        fmt::format("{}: outlier_share + drift_share is {}; expected at most 1", place, outlier_share + drift_share));
+  }
+  if (2.0 * border >= std::min(camera.width, camera.height) - 1) {
+    throw InputError(fmt::format("{}.border: {} px leave nothing of an image of {} x {}", place, border, camera.width,
+                                 camera.height));
+  }
+}
+
 SimulatedTracks simulate_tracks(const TrackOptions& options, const Camera& camera, const Motion& motion, Scene& scene,
                                 double duration, std::uint64_t seed, const std::string& place) {
-  check(options, camera, place);
+  options.check(camera, place);
   SimulatedTracks tracks = TrackSimulator(options, camera, motion, scene, duration, seed, place).run();
   if (tracks.observations.empty()) {
     throw InputError(

@@ -21,6 +21,9 @@ struct TrackOptions {
   std::vector<double> blackouts;
 
   void declare(OptionSet& set);
+
+  /// Throws InputError for options that contradict each other or the camera.
+  void check(const Camera& camera, const std::string& place) const;
 };
 
 enum class TrackKind {

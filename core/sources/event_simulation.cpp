@@ -45,7 +45,7 @@ EventSimulation::EventSimulation(const Options& options, const SourceContext& co
   Scene features(scene_->features, camera(), [truth = truth()](const SE3& T_world_camera, const Vector3& point) {
     return truth.unoccluded(T_world_camera, point);
   });
-  simulate_tracks_of(features, options.tracks, context.place + ".tracks");
+  make_tracks_of(std::move(features), options.tracks, context.place + ".tracks");
 }
 
 std::unique_ptr<EventReader> EventSimulation::all_events() const {
@@ -54,9 +54,8 @@ std::unique_ptr<EventReader> EventSimulation::all_events() const {
 }
 
 std::vector<std::string> EventSimulation::remarks() const {
-  return {fmt::format("events simulated while they are read; {} surfaces, {} features, {} tracks, path {:.3f} m",
-                      scene_->surfaces.size(), scene_->features.size(), tracks().tracks.size(),
-                      ground_truth().path_length())};
+  return {fmt::format("events simulated while they are read; {} surfaces, {} features, path {:.3f} m",
+                      scene_->surfaces.size(), scene_->features.size(), ground_truth().path_length())};
 }
 
 }  // namespace evbench

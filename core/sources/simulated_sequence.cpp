@@ -1,5 +1,7 @@
 #include "core/sources/simulated_sequence.hpp"
 
+#include <utility>
+
 #include "core/io/path.hpp"
 
 namespace evbench {
@@ -24,8 +26,16 @@ SimulatedSequence::SimulatedSequence(const Options& options, const SourceContext
   if (options.motion.kind == "trajectory") add_file(resolve_path(options.motion.trajectory, context.folder));
 }
 
-void SimulatedSequence::simulate_tracks_of(Scene& scene, const TrackOptions& options, const std::string& place) {
-  tracks_ = simulate_tracks(options, camera_, motion_, scene, duration_, random(Part::tracks).next(), place);
+void SimulatedSequence::make_tracks_of(Scene scene, const TrackOptions& options, const std::string& place) {
+  options.check(camera_, place);
+  make_tracks_ = [this, scene = std::move(scene), options, place]() mutable {
+    return simulate_tracks(options, camera_, motion_, scene, duration_, random(Part::tracks).next(), place);
+  };
+}
+
+const SimulatedTracks& SimulatedSequence::tracks() const {
+  std::call_once(made_, [this] { tracks_ = make_tracks_(); });
+  return tracks_;
 }
 
 }  // namespace evbench

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <mutex>
+
 #include "core/plugin/options.hpp"
 #include "core/plugin/source.hpp"
 #include "core/simulation/motion.hpp"
@@ -28,10 +31,12 @@ class SimulatedSequence : public Source {
   const Camera& camera() const override { return camera_; }
   TimeRange time_range() const override { return {0.0, duration_}; }
   const PoseTrajectory& ground_truth() const override { return ground_truth_; }
-  std::optional<std::span<const TrackObservation>> true_tracks() const override { return tracks_.observations; }
+  std::optional<std::span<const TrackObservation>> true_tracks() const override { return tracks().observations; }
   std::vector<std::string> files() const override { return files_; }
 
-  const SimulatedTracks& tracks() const { return tracks_; }
+  /// Made when they are asked for first: a front-end that reads events has no use for them, and what hides what takes
+  /// its time. Throws InputError where the options can't be met.
+  const SimulatedTracks& tracks() const;
 
  protected:
   SimulatedSequence(const Options& options, const SourceContext& context);
@@ -42,7 +47,8 @@ class SimulatedSequence : public Source {
 
   double duration() const { return duration_; }
   const Motion& motion() const { return motion_; }
-  void simulate_tracks_of(Scene& scene, const TrackOptions& options, const std::string& place);
+  /// `place`: where the options stand, for messages.
+  void make_tracks_of(Scene scene, const TrackOptions& options, const std::string& place);
   void add_file(const std::string& path) { files_.push_back(path); }
 
  private:
@@ -51,7 +57,9 @@ class SimulatedSequence : public Source {
   Camera camera_;
   Motion motion_;
   PoseTrajectory ground_truth_;
-  SimulatedTracks tracks_;
+  std::function<SimulatedTracks()> make_tracks_;
+  mutable std::once_flag made_;
+  mutable SimulatedTracks tracks_;
   std::vector<std::string> files_;
 };
 

@@ -20,7 +20,8 @@ void Simulation::Options::declare(OptionSet& set) {
 
 Simulation::Simulation(const Options& options, const SourceContext& context) : SimulatedSequence(options, context) {
   Scene scene(options.scene, camera(), motion(), duration(), random(Part::scene));
-  simulate_tracks_of(scene, options.tracks, context.place + ".tracks");
+  make_tracks_of(std::move(scene), options.tracks, context.place + ".tracks");
+  tracks();  // what can't be simulated is to be told now
 }
 
 std::vector<std::string> Simulation::remarks() const {
