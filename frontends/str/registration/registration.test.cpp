@@ -52,7 +52,7 @@ double median_error(const RotationRecording& recording, double pixels, bool from
 TEST_CASE("The rotation of a camera is found from slow to violent, from the last motion and from nothing") {
   const double speed = GENERATE(1.0, 5.0, 20.0);
   const std::string scene = GENERATE("shapes", "plane");
-  const RotationRecording recording = simulate_rotation(scene, 240, speed * kAxis, 0.33 / speed, 1);
+  const RotationRecording recording = simulate_rotation(scene, 240, 180, speed * kAxis, 0.33 / speed, 1);
   for (const bool from_nothing : {false, true}) {
     CHECK(median_error(recording, 5.0, from_nothing) < 0.02);
     CHECK(median_error(recording, 10.0, from_nothing) < 0.01);
@@ -132,7 +132,7 @@ TEST_CASE("A million events in 10 ms are no more than their number") {
 }
 
 TEST_CASE("The motion is found though half of the pixels flicker") {
-  RotationRecording recording = simulate_rotation("shapes", 240, 2.0 * kAxis, 0.05, 1);
+  RotationRecording recording = simulate_rotation("shapes", 240, 180, 2.0 * kAxis, 0.05, 1);
   Random random(2);
   std::vector<Event> flicker;
   for (std::uint16_t y = 0; y < 180; ++y) {

@@ -6,12 +6,12 @@
 
 namespace evbench::str::testing {
 
-RotationRecording simulate_rotation(const std::string& scene, int width, const Vector3& omega, double duration,
-                                    std::uint64_t seed) {
+RotationRecording simulate_rotation(const std::string& scene, int width, int height, const Vector3& omega,
+                                    double duration, std::uint64_t seed) {
   RotationRecording result{{}, omega, {}};
   Camera& camera = result.camera;
   camera.width = width;
-  camera.height = 3 * width / 4;
+  camera.height = height;
   const double focal_length = 5.0 * width / 6.0;
   camera.pinhole = {focal_length, focal_length, 0.5 * (camera.width - 1), 0.5 * (camera.height - 1)};
   const Motion motion = [omega, duration](double t) {

@@ -15,9 +15,9 @@ struct RotationRecording {
   std::vector<Event> events;
 };
 
-/// Simulated: `scene` as in RenderedSceneOptions::kind, the image's width 4/3 of its height, the focal length 5/6 of
-/// the width; thresholds 0.3.
-RotationRecording simulate_rotation(const std::string& scene, int width, const Vector3& omega, double duration,
-                                    std::uint64_t seed);
+/// Simulated: `scene` as in RenderedSceneOptions::kind, an image of this size [px], the focal length 5/6 of the width;
+/// thresholds 0.3.
+RotationRecording simulate_rotation(const std::string& scene, int width, int height, const Vector3& omega,
+                                    double duration, std::uint64_t seed);
 
 }  // namespace evbench::str::testing
