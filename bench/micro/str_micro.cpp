@@ -104,7 +104,7 @@ void measure_contrast(const RotationRecording& recording, double pixels) {
   double time = 0.0;
   for (const Batch& batch : some) {
     EventCloud cloud;
-    make_cloud(batch.events, rays, (batch.from + batch.to) / 2, 0, cloud);
+    make_cloud(batch.events, rays, (batch.from + batch.to) / 2, cloud);
     const double start = now();
     const MotionParameters theta =
         testing::maximise_contrast(cloud, MotionModel::rotation, 0.95 * recording.omega, 0.1, rays.focal_length());

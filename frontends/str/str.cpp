@@ -14,7 +14,8 @@ namespace evbench::str {
 namespace {
 
 const evbench::Registration<FrontEnd, Str> registration(
-    "str", "registers batches of events as point clouds (after Liu, Parra and Chin 2021); tracks are chains of events");
+    "str", "registers batches of events as point clouds (after Liu, Parra and Chin 2021); tracks are chains of events",
+    2);
 
 /// The ray at another time, `dt` [s] later, under the motion A.
 Eigen::Vector2f moved(const Eigen::Vector2f& ray, const Matrix3& A, double dt) {
@@ -68,7 +69,7 @@ void Str::go_on(const Batch& batch, const Registration& registration) {
   const std::int64_t slice =
       static_cast<std::int64_t>(options_.registration.slice * static_cast<double>(batch.to - batch.from));
   const auto last = std::ranges::lower_bound(batch.events, batch.from + slice, {}, &Event::t);
-  make_cloud({batch.events.begin(), last}, registrar_.rays(), registration.reference, 0, early_);
+  make_cloud({batch.events.begin(), last}, registrar_.rays(), registration.reference, early_);
   warp(early_, registration.A, early_x_, early_y_);
   std::vector<Track> alive;
   for (Track& track : tracks_) {

@@ -12,7 +12,7 @@ namespace evbench::str {
 namespace {
 
 const evbench::Registration<FrontEnd, Dots> registration(
-    "dots", "follows round dots by the events of their rims, found by registering batches of events");
+    "dots", "follows round dots by the events of their rims, found by registering batches of events", 2);
 
 constexpr int kCell = 32;               // [px]
 constexpr std::int64_t kListed = 1000;  // [µs] between two listings of what is near
@@ -153,7 +153,7 @@ void Dots::find_new(const Batch& batch, const Registration& registration) {
     if (event.t >= batch.from && event.t < batch.to) events.push_back(event);
   }
   EventCloud cloud;
-  make_cloud(events, registrar_.rays(), batch.to, 0, cloud);
+  make_cloud(events, registrar_.rays(), batch.to, cloud);
   std::vector<float> x, y;
   warp(cloud, registration.A, x, y);
   std::vector<Vector2> places;

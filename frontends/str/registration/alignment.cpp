@@ -86,18 +86,22 @@ Alignment Aligner::align_with(const EventCloud& queries, MotionModel model, cons
   const auto scale2 = static_cast<float>(options_.robust_scale * options_.robust_scale);
 
   Alignment result{.A = start};
+  const auto few = static_cast<std::size_t>(options_.first_queries);
+  const bool in_two_steps = few > 0 && queries.size() > 2 * few;
+  const EventCloud first = in_two_steps ? take_evenly(queries, few) : EventCloud();
+  const EventCloud* asked = in_two_steps ? &first : &queries;
   for (; result.iterations < options_.iterations; ++result.iterations) {
-    match(queries, result.A, gate);
+    match(*asked, result.A, gate);
     if (matches_.size() < 2 * P) return result;
     const Eigen::Matrix3f drift = (result.A - built_for_).template cast<float>();
     pulls_.clear();
     sorted_.clear();
     for (const Match& m : matches_) {
-      Pull pull{m.difference, queries.t[m.query] - targets_.t[m.target], Eigen::Matrix2f::Identity(), m.at};
+      Pull pull{m.difference, asked->t[m.query] - targets_.t[m.target], Eigen::Matrix2f::Identity(), m.at};
       if (options_.distance == AlignmentOptions::Distance::line) {
         const NeighbourGrid::Surroundings& s = grid_.surroundings(m.cell, noise);
         pull.difference = m.at - s.mean - s.time * flow(drift, s.mean.x(), s.mean.y());
-        pull.between = queries.t[m.query] - s.time;
+        pull.between = asked->t[m.query] - s.time;
         pull.weight = s.weight;
       }
       pull.difference *= f;
@@ -127,7 +131,7 @@ Alignment Aligner::align_with(const EventCloud& queries, MotionModel model, cons
       squares += static_cast<double>(pull.squared);
       ++counted;
     }
-    result.fit = fit / static_cast<double>(queries.size());
+    result.fit = fit / static_cast<double>(asked->size());
     result.residual = std::sqrt(squares / static_cast<double>(counted));
     const double damping = 1e-6 * H.trace() + 1e-12;
     const Vector step = (H + damping * Hessian::Identity()).ldlt().solve(-g);
@@ -137,10 +141,13 @@ Alignment Aligner::align_with(const EventCloud& queries, MotionModel model, cons
     result.A += change;
     const bool last_gate = gate <= options_.last_gate;
     gate = std::max(options_.last_gate, gate * options_.gate_shrinking);
-    if (last_gate && mean_motion(queries, change, duration) < options_.tolerance) {
-      result.converged = true;
-      ++result.iterations;
-      break;
+    if (last_gate && mean_motion(*asked, change, duration) < options_.tolerance) {
+      if (asked == &queries) {
+        result.converged = true;
+        ++result.iterations;
+        break;
+      }
+      asked = &queries;
     }
   }
   return result;

@@ -21,6 +21,7 @@ struct AlignmentOptions {
   double edge_noise = 0.4;
   double cell = 1.5;
   double stale = 0.3;
+  int first_queries = 1000;
   int iterations = 40;
   double tolerance = 0.01;
 
@@ -48,7 +49,8 @@ struct Alignment {
 /// Finds the motion under which two clouds of events, each event moved by its own time to the reference time, lie on
 /// one another: the nearest target of each query, least squares over the better part of the distances, again and again
 /// (trimmed iterative closest points, Chetverikov et al. 2005), with a robust weight (Cauchy) and, for line distances,
-/// a weight by how the targets lie there, which lets an event slide along an edge.
+/// a weight by how the targets lie there, which lets an event slide along an edge. It comes to rest with
+/// `first_queries` of many queries first, and then takes a step or two with all.
 ///
 /// The targets are searched in a grid that is built for a motion, and built again when the motion has moved a target by
 /// more than `stale` since. Distances are always those under the motion at hand.

@@ -1,7 +1,11 @@
 #include "frontends/str/registration/event_cloud.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+
+#include "core/support/index.hpp"
 
 namespace evbench::str {
 
@@ -34,16 +38,42 @@ void EventCloud::add(float ray_x, float ray_y, float time, bool polarity) {
   on.push_back(polarity ? 1 : 0);
 }
 
-void make_cloud(std::span<const Event> events, const RayTable& rays, std::int64_t reference, std::size_t most,
-                EventCloud& cloud) {
+void make_cloud(std::span<const Event> events, const RayTable& rays, std::int64_t reference, EventCloud& cloud) {
   cloud.clear();
-  const std::size_t count = most == 0 ? events.size() : std::min(most, events.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    const Event& event = events[i * events.size() / count];
+  for (const Event& event : events) {
     const Eigen::Vector2f& ray = rays.ray(event.x, event.y);
     if (!std::isfinite(ray.x())) continue;
     cloud.add(ray.x(), ray.y(), 1e-6F * static_cast<float>(event.t - reference), event.on);
   }
+}
+
+std::vector<Event> take_evenly(std::span<const Event> events, std::size_t count) {
+  count = std::min(count, events.size());
+  std::vector<Event> result(count);
+  for (std::size_t k = 0; k < count; ++k) result[k] = events[k * events.size() / count];
+  return result;
+}
+
+EventCloud take_evenly(const EventCloud& cloud, std::size_t count) {
+  count = std::min(count, cloud.size());
+  EventCloud result;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = k * cloud.size() / count;
+    result.add(cloud.x[i], cloud.y[i], cloud.t[i], cloud.on[i] != 0);
+  }
+  return result;
+}
+
+void sort_by_place(std::vector<Event>& events, int width, int height) {
+  constexpr int kSide = 8;  // [px]
+  const int columns = width / kSide + 1, rows = height / kSide + 1;
+  const auto square = [&](const Event& event) { return index(event.y / kSide * columns + event.x / kSide); };
+  std::vector<std::size_t> place(index(columns * rows) + 1);  // of the next event in a square
+  for (const Event& event : events) ++place[square(event) + 1];
+  std::partial_sum(place.begin(), place.end(), place.begin());
+  std::vector<Event> sorted(events.size());
+  for (const Event& event : events) sorted[place[square(event)]++] = event;
+  events = std::move(sorted);
 }
 
 void warp(const EventCloud& cloud, const Matrix3& A, std::vector<float>& x, std::vector<float>& y) {

@@ -39,10 +39,18 @@ struct EventCloud {
   void add(float ray_x, float ray_y, float time, bool polarity);
 };
 
-/// Replaces `cloud` by `events`, at most `most` of them, evenly taken (0: all); those without a ray are left out.
-/// `reference`: the time [µs] from which times are counted.
-void make_cloud(std::span<const Event> events, const RayTable& rays, std::int64_t reference, std::size_t most,
-                EventCloud& cloud);
+/// Replaces `cloud` by `events`; those without a ray are left out. `reference`: the time [µs] from which times are
+/// counted.
+void make_cloud(std::span<const Event> events, const RayTable& rays, std::int64_t reference, EventCloud& cloud);
+
+/// So many of the events, evenly taken; all where they are no more.
+std::vector<Event> take_evenly(std::span<const Event> events, std::size_t count);
+EventCloud take_evenly(const EventCloud& cloud, std::size_t count);
+
+/// Puts events that are near in the image near to one another, by squares of 8 px, within each in the order that they
+/// had. Where the neighbours of one after the other are looked for, most of what is touched has just been touched: by
+/// order of time, on a large sensor, nearly all of it has to come from memory. `width`, `height` [px]: the sensor's.
+void sort_by_place(std::vector<Event>& events, int width, int height);
 
 /// The points of a cloud under a motion at the reference time: exp(t A) (x, y, 1), by its series up to the fourth
 /// power, whose error is |t A|⁵ / 120: below a hundredth of a pixel for motions of a quarter of the view.

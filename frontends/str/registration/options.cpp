@@ -16,6 +16,10 @@ void AlignmentOptions::declare(OptionSet& set) {
   set.add("cell", cell, "side of the cells in which events are searched [px]").range(0.5, 100.0);
   set.add("stale", stale, "cells are made anew when the motion has moved an event by more than this since [px]")
       .range(0.0, 10.0);
+  set.add("first_queries", first_queries,
+          "events that the first iterations are made with, until these move by less than the tolerance; then all "
+          "others join them; 0: all from the beginning")
+      .range(0);
   set.add("iterations", iterations, "at most").range(1, 1000);
   set.add("tolerance", tolerance, "a change of the motion over a batch that is none [px, mean]").above(0.0);
 }

@@ -43,7 +43,7 @@ double difference(const Excerpt& excerpt, std::int64_t from, std::int64_t to) {
   const Registration found = registrar.align(batch, std::nullopt);
   REQUIRE(found.good());
   EventCloud cloud;
-  make_cloud(batch.events, registrar.rays(), (from + to) / 2, 0, cloud);
+  make_cloud(batch.events, registrar.rays(), (from + to) / 2, cloud);
   const MotionParameters theta = project_onto(MotionModel::rotation, found.A);
   const MotionParameters sharpest = str::testing::maximise_contrast(
       cloud, MotionModel::rotation, theta, 0.1 * theta.norm(), registrar.rays().focal_length());

@@ -32,9 +32,12 @@ Registration Registrar::try_from(const Batch& batch, const Matrix3& start) {
   const std::int64_t slice = static_cast<std::int64_t>(options_.slice * static_cast<double>(length));
   const std::int64_t reference = batch.from + length / 2;
   result.reference = reference;
-  make_cloud(between(batch.events, batch.from, batch.from + slice), rays_, reference,
-             static_cast<std::size_t>(options_.queries), queries_);
-  make_cloud(between(batch.events, batch.to - slice, batch.to), rays_, reference, 0, targets_);
+  const std::span<const Event> first = between(batch.events, batch.from, batch.from + slice);
+  std::vector<Event> queries =
+      take_evenly(first, options_.queries == 0 ? first.size() : static_cast<std::size_t>(options_.queries));
+  sort_by_place(queries, rays_.width(), rays_.height());
+  make_cloud(queries, rays_, reference, queries_);
+  make_cloud(between(batch.events, batch.to - slice, batch.to), rays_, reference, targets_);
   const auto least = static_cast<std::size_t>(options_.least_events);
   if (queries_.size() < least || targets_.size() < least) return result;
   aligner_.swap_targets(targets_);
