@@ -39,6 +39,7 @@ const std::vector<FigureKind>& figure_kinds() {
        {"--metrics", "--axis", "--axis-label", "--across", "--base", "--online"}},
       {"box", "quartiles and median of each back-end's runs, and the runs", box_figure, {"--metrics", "--online"}},
       {"error", "errors over time of a sequence's runs", error_figure, {"--online"}},
+      {"position", "x, y and z over time, with the ground truth", position_figure, {"--online"}},
       {"trajectory", "from three sides, with the ground truth", trajectory_figure, {"--online"}},
       {"times", "the distribution of the times of updates", times_figure, {}},
       {"profile",

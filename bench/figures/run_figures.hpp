@@ -43,6 +43,9 @@ Figure times_figure(std::span<const RunRecord> runs, const FigureOptions& option
 /// sequences the first is drawn, and the caption says which.
 Figure error_figure(std::span<const RunRecord> runs, const FigureOptions& options);
 
+/// The three coordinates over time of the trajectories of one sequence, likewise, with the ground truth.
+Figure position_figure(std::span<const RunRecord> runs, const FigureOptions& options);
+
 /// Trajectories of one sequence from three sides, aligned as they were scored, with the ground truth; of several
 /// likewise.
 Figure trajectory_figure(std::span<const RunRecord> runs, const FigureOptions& options);

@@ -108,6 +108,7 @@ TEST_CASE("Times are drawn of runs without scores, and what needs scores says so
   const Figure figure = times_figure(runs, {});
   CHECK(mark_of(figure.panels.at(0), Mark::Kind::line, 0).x.back() == 3.5);
   CHECK(figure.caption == "arm. Distribution of the times of all updates of all runs that succeeded.");
+  CHECK_THROWS_WITH(position_figure(runs, {}), Contains("none of these runs has an estimate and ground truth"));
   CHECK_THROWS_WITH(error_figure(runs, {}), Contains("none of these runs has an estimate and ground truth"));
 }
 
@@ -127,7 +128,7 @@ TEST_CASE("Figures of runs are drawn by the program, the same bytes each time") 
   const TemporaryFolder folder;
   folder.write("c.json", short_comparison().dump());
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
-  for (const std::string kind : {"trajectory", "error", "box", "times"}) {
+  for (const std::string kind : {"trajectory", "position", "error", "box", "times"}) {
     INFO(kind);
     const Outcome outcome =
         testing::evbench(folder, "figure " + kind + " results --out " + kind + ".svg --keep-script");

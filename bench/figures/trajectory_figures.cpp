@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "bench/figures/figure_runs.hpp"
 #include "bench/run_folder.hpp"
 #include "core/support/error.hpp"
+#include "core/support/index.hpp"
 #include "eval/score_run.hpp"
 
 namespace evbench {
@@ -45,6 +47,41 @@ ScoredRuns score_first_sequence(std::span<const RunRecord> records, const Figure
   return result;
 }
 
+constexpr int kTime = -1;
+
+/// The axes of each panel: time, or a coordinate.
+Figure figure_of_trajectories(const ScoredRuns& scored, const std::vector<std::pair<int, int>>& axes) {
+  Figure figure;
+  figure.series.push_back({"ground truth", true});
+  for (const std::string& name : scored.names) figure.series.push_back({name});
+  const auto longest = std::ranges::max_element(scored.scores, {}, &Scores::coverage);
+  const std::array names{"x [m]", "y [m]", "z [m]"};
+  for (const auto& [across, up] : axes) {
+    Panel panel{{across == kTime ? "time [s]" : names[index(across)]}, {names[index(up)]}, {}};
+    panel.equal = across != kTime;
+    const auto add = [&, across = across, up = up](std::size_t series, const std::vector<PosePair>& pairs, auto pose) {
+      Mark line{Mark::Kind::line, series, {}};
+      for (const PosePair& pair : pairs) {
+        line.x.push_back(across == kTime ? pair.t : pose(pair).p[across]);
+        line.y.push_back(pose(pair).p[up]);
+      }
+      panel.marks.push_back(std::move(line));
+    };
+    add(0, longest->compared, [](const PosePair& pair) { return pair.ground_truth; });
+    for (std::size_t i = 0; i < scored.scores.size(); ++i) {
+      add(i + 1, scored.scores[i].compared, [](const PosePair& pair) { return pair.estimate; });
+    }
+    figure.panels.push_back(std::move(panel));
+  }
+  if (axes.front().first == kTime) {
+    figure.height_mm = 128.0;
+  } else {
+    figure.columns = 3;
+  }
+  figure.caption = scored.caption;
+  return figure;
+}
+
 }  // namespace
 
 Figure error_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
@@ -69,34 +106,16 @@ Figure error_figure(std::span<const RunRecord> runs, const FigureOptions& option
   return figure;
 }
 
+Figure position_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
+  return figure_of_trajectories(
+      score_first_sequence(runs, FigureRuns(runs, options.online), options, "Position over time, after alignment"),
+      {{kTime, 0}, {kTime, 1}, {kTime, 2}});
+}
+
 Figure trajectory_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  const ScoredRuns scored = score_first_sequence(runs, FigureRuns(runs, options.online), options,
-                                                 "Trajectories after alignment, from three sides");
-  Figure figure;
-  figure.series.push_back({"ground truth", true});
-  for (const std::string& name : scored.names) figure.series.push_back({name});
-  const auto longest = std::ranges::max_element(scored.scores, {}, &Scores::coverage);
-  const char* names[] = {"x [m]", "y [m]", "z [m]"};
-  for (const auto& [across, up] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
-    Panel panel{{names[across]}, {names[up]}, {}};
-    panel.equal = true;
-    const auto add = [&](std::size_t series, const std::vector<PosePair>& pairs, auto pose) {
-      Mark line{Mark::Kind::line, series, {}};
-      for (const PosePair& pair : pairs) {
-        line.x.push_back(pose(pair).p[across]);
-        line.y.push_back(pose(pair).p[up]);
-      }
-      panel.marks.push_back(std::move(line));
-    };
-    add(0, longest->compared, [](const PosePair& pair) { return pair.ground_truth; });
-    for (std::size_t i = 0; i < scored.scores.size(); ++i) {
-      add(i + 1, scored.scores[i].compared, [](const PosePair& pair) { return pair.estimate; });
-    }
-    figure.panels.push_back(std::move(panel));
-  }
-  figure.columns = 3;
-  figure.caption = scored.caption;
-  return figure;
+  return figure_of_trajectories(score_first_sequence(runs, FigureRuns(runs, options.online), options,
+                                                     "Trajectories after alignment, from three sides"),
+                                {{0, 1}, {0, 2}, {1, 2}});
 }
 
 }  // namespace evbench
