@@ -37,9 +37,9 @@ Tracked track(const Source& source, const Options& options = {}, double interval
   return {all_told(str, source, interval, most), str.remarks()};
 }
 
-/// Median distance of the observations from where the track's first observation, a point of the wall, is by then [px].
-double median_error(const EventScene& source, const std::function<SE3(double)>& motion,
-                    const std::vector<TrackObservation>& observations) {
+/// How far the observations are from where their track's first one, a point of the wall, is by then [px]; sorted.
+std::vector<double> track_errors(const EventScene& source, const std::function<SE3(double)>& motion,
+                                 const std::vector<TrackObservation>& observations) {
   std::map<TrackId, Vector3> points;
   std::vector<double> errors;
   for (const TrackObservation& z : observations) {
@@ -51,8 +51,23 @@ double median_error(const EventScene& source, const std::function<SE3(double)>& 
       points.emplace(z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray);
     }
   }
-  std::ranges::nth_element(errors, errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2));
+  std::ranges::sort(errors);
+  return errors;
+}
+
+/// Their median [px].
+double median_error(const EventScene& source, const std::function<SE3(double)>& motion,
+                    const std::vector<TrackObservation>& observations) {
+  const std::vector<double> errors = track_errors(source, motion, observations);
   return errors[errors.size() / 2];
+}
+
+/// The share of the observations that are farther off than this [px].
+double share_off(const EventScene& source, const std::function<SE3(double)>& motion,
+                 const std::vector<TrackObservation>& observations, double pixels) {
+  const std::vector<double> errors = track_errors(source, motion, observations);
+  const auto off = errors.end() - std::ranges::upper_bound(errors, pixels);
+  return static_cast<double>(off) / static_cast<double>(errors.size());
 }
 
 std::size_t track_count(const TrackBatch& batch) {
@@ -127,6 +142,21 @@ TEST_CASE("Tracks of a camera that stands still go on when it moves") {
   }
   CHECK(std::ranges::count_if(
             lives, [](const auto& life) { return life.second.first < 0.4 && life.second.second > 1.2; }) > 10);
+}
+
+TEST_CASE("A structure that moves on its own leaves the tracks of all else where they are") {
+  EventScene source = scene();
+  const EventScene other(
+      [](double t) {
+        return SE3{Eigen::Quaterniond::Identity(), {1.0 - 2.0 * t, 0.3 * t, 0.0}};
+      },
+      0.6, EventScene::quadrangles(12, 2, 0.15));
+  source.add(other.list);
+  CHECK(other.list.size() > source.list.size() / 20);
+  const TrackBatch all = track(source).all;
+  CHECK(track_count(all) > 60);
+  CHECK(median_error(source, brisk, all.observations) < 0.5);
+  CHECK(share_off(source, brisk, all.observations, 2.0) < 0.05);
 }
 
 TEST_CASE("A source whose events stop, flicker or come all at once neither stops str nor keeps it") {

@@ -125,6 +125,23 @@ TEST_CASE("Where events say nothing of a motion for too long, all points end, an
   CHECK(std::ranges::any_of(lives, [](const auto& life) { return life.second.first > 0.7; }));
 }
 
+TEST_CASE("A structure that moves on its own does not carry the points of str_motion away") {
+  EventScene source = scene();
+  const EventScene other(
+      [](double t) {
+        return SE3{Eigen::Quaterniond::Identity(), {1.0 - 2.0 * t, 0.3 * t, 0.0}};
+      },
+      1.0, EventScene::quadrangles(24, 2, 0.15));
+  source.add(other.list);
+  CHECK(other.list.size() > source.list.size() / 20);
+  const Told told = follow(source);
+  INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
+  const std::vector<double> all = errors(source, to_and_fro, told.all);
+  REQUIRE(all.size() > 500);
+  CHECK(all[all.size() / 2] < 2.0);  // of 400 px of motion, with one event in twenty of something else
+  CHECK(all[all.size() * 95 / 100] < 6.0);
+}
+
 TEST_CASE("Without events str_motion tells nothing, and a source that has none is refused with a sentence") {
   const Told none = follow(EventScene(to_and_fro, 0.3, {}));
   CHECK(none.all.until == 0.3);
