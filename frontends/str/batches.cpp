@@ -6,10 +6,12 @@
 namespace evbench::str {
 
 Batches::Batches(const BatchOptions& options, double slice, std::int64_t from)
-    : options_(options), slice_(slice), from_(from) {}
+    : options_(options), slice_(slice), from_(from), longest_(options.duration) {}
+
+void Batches::learn(bool found) { longest_ = std::min(options_.duration, found ? 2.0 * longest_ : 0.5 * last_); }
 
 std::optional<Batch> Batches::next(std::int64_t until) {
-  double duration = options_.duration;
+  double duration = longest_;
   if (options_.motion > 0.0 && speed_ > 0.0) duration = std::min(duration, options_.motion / speed_);
   std::int64_t to = from_ + std::llround(1e6 * duration);
   const auto most = static_cast<std::size_t>(options_.events);
@@ -24,6 +26,7 @@ std::optional<Batch> Batches::next(std::int64_t until) {
   const auto first = events_.begin() + static_cast<std::ptrdiff_t>(begin_);
   const auto last = std::ranges::lower_bound(first, events_.end(), to, {}, &Event::t);
   const Batch batch{{first, last}, from_, to};
+  last_ = 1e-6 * static_cast<double>(to - from_);
   from_ = to - static_cast<std::int64_t>(slice_ * static_cast<double>(to - from_));
   begin_ = static_cast<std::size_t>(std::ranges::lower_bound(first, last, from_, {}, &Event::t) - events_.begin());
   return batch;

@@ -41,6 +41,10 @@ class Batches {
   /// The image moves at this speed [px/s], for batches that end by motion.
   void expect(double speed) { speed_ = speed; }
 
+  /// Whether the last one's motion was found. Where it was not, the next ones are half as long, and then ever longer
+  /// again: what is too much motion for a batch is not for a part of it.
+  void learn(bool found);
+
   /// The next batch, if it ends at or before `until` [µs], up to which all events have been added; valid until the
   /// next call of add() or next(). Call until there is none.
   std::optional<Batch> next(std::int64_t until);
@@ -50,6 +54,8 @@ class Batches {
   double slice_;
   std::int64_t from_;   ///< [µs] of the next one
   double speed_ = 0.0;  ///< [px/s]
+  double longest_;      ///< [s] of the next one
+  double last_ = 0.0;   ///< [s] how long the last one was
   std::vector<Event> events_;
   std::size_t begin_ = 0;  ///< of the next one, in events_
 };

@@ -20,7 +20,8 @@ struct PatchOptions {
     set.add("radius", radius, "events this near to a track are aligned for it [px]").range(2.0, 1000.0);
     set.add("queries", queries, "so many of them, at most").range(10, 1'000'000);
     set.add("least_fit", least_fit,
-            "how well they must lie on the last slice for the track to go on: mean weight of the queries")
+            "how well they must lie on the last slice for the track to go on: mean weight of the queries, from 0 for "
+            "what chance gives to 1")
         .range(0.0, 1.0);
     set.add("anchor_fit", anchor_fit,
             "a track is where the events fit that were around it when it was anchored, if they fit so well; else it is "

@@ -15,7 +15,7 @@ namespace {
 
 const evbench::Registration<FrontEnd, Str> registration(
     "str", "registers batches of events as point clouds (after Liu, Parra and Chin 2021); tracks are chains of events",
-    2);
+    3);
 
 /// The ray at another time, `dt` [s] later, under the motion A.
 Eigen::Vector2f moved(const Eigen::Vector2f& ray, const Matrix3& A, double dt) {
@@ -52,6 +52,7 @@ void Str::process(const Batch& batch) {
   grown_ += found.grown ? 1 : 0;
   expected_.reset();
   batches_.expect(0.0);
+  batches_.learn(found.good() || found.state == Registration::State::too_few_events);
   if (found.state == Registration::State::too_few_events) {
     for (Track& track : tracks_) track.t = batch.to;  // the camera stands still, or nearly: they are where they were
   } else {
@@ -107,7 +108,7 @@ bool Str::go_on(Track& track, const Batch& batch, const Registration& registrati
   const double duration = 1e-6 * static_cast<double>(batch.to - batch.from);
   const double gate = options_.registration.alignment.last_gate;
   const Alignment found = aligner.align(patch_, MotionModel::translation, registration.A, duration, gate);
-  if (!found.converged || found.fit < options_.patch.least_fit) {
+  if (!found.converged || registration.beyond_chance(found.fit) < options_.patch.least_fit) {
     ++misfits_;
     return false;
   }

@@ -144,6 +144,21 @@ TEST_CASE("Tracks of a camera that stands still go on when it moves") {
             lives, [](const auto& life) { return life.second.first < 0.4 && life.second.second > 1.2; }) > 10);
 }
 
+TEST_CASE("Where the motion is fast from the beginning and turns round, few and many edges tell the truth or nothing") {
+  const auto motion = [](double t) {
+    return SE3{so3::exp({0.0, 0.5 * std::sin(6.0 * t), 0.1 * std::sin(6.0 * t)}), Vector3::Zero()};
+  };
+  const int edges = GENERATE(30, 150);
+  CAPTURE(edges);
+  const EventScene source(motion, 0.6, EventScene::quadrangles(edges, 1));  // turns at 0.26 s
+  const Tracked told = track(source);
+  INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
+  CHECK(track_count(told.all) > 40);
+  CHECK(median_error(source, motion, told.all.observations) < 1.0);
+  CHECK(share_off(source, motion, told.all.observations, 3.0) < 0.05);
+  CHECK(told.remarks.at(0).find(" 0 poor") == std::string::npos);  // the first batch: 60 px of motion that changes
+}
+
 TEST_CASE("A structure that moves on its own leaves the tracks of all else where they are") {
   EventScene source = scene();
   const EventScene other(

@@ -12,7 +12,7 @@ namespace evbench::str {
 namespace {
 
 const evbench::Registration<FrontEnd, Dots> registration(
-    "dots", "follows round dots by the events of their rims, found by registering batches of events", 2);
+    "dots", "follows round dots by the events of their rims, found by registering batches of events", 3);
 
 constexpr int kCell = 32;               // [px]
 constexpr std::int64_t kListed = 1000;  // [µs] between two listings of what is near

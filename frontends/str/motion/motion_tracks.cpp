@@ -14,7 +14,7 @@ namespace {
 
 const evbench::Registration<FrontEnd, MotionTracks> registration(
     "str_motion", "registers batches of events as point clouds; tracks are points that the motion of the image carries",
-    2);
+    3);
 
 std::pair<Batch, Batch> halves(const Batch& batch) {
   const std::int64_t middle = batch.from + (batch.to - batch.from) / 2;

@@ -73,6 +73,50 @@ double Aligner::mean_motion(const EventCloud& cloud, const Matrix3& A, double du
   return focal_length_ * duration * sum / static_cast<double>(cloud.size());
 }
 
+/// What the matches do to the motion A.
+void Aligner::pull(const EventCloud& queries, const Matrix3& A) {
+  const auto f = static_cast<float>(focal_length_);
+  const auto noise = static_cast<float>(options_.edge_noise / focal_length_);
+  const Eigen::Matrix3f drift = (A - built_for_).cast<float>();
+  pulls_.clear();
+  sorted_.clear();
+  for (const Match& m : matches_) {
+    Pull pull{m.difference, queries.t[m.query] - targets_.t[m.target], Eigen::Matrix2f::Identity(), m.at};
+    if (options_.distance == AlignmentOptions::Distance::line) {
+      const NeighbourGrid::Surroundings& s = grid_.surroundings(m.cell, noise);
+      pull.difference = m.at - s.mean - s.time * flow(drift, s.mean.x(), s.mean.y());
+      pull.between = queries.t[m.query] - s.time;
+      pull.weight = s.weight;
+    }
+    pull.difference *= f;
+    pull.squared = pull.difference.dot(pull.weight * pull.difference);
+    pulls_.push_back(pull);
+    sorted_.push_back(pull.squared);
+  }
+}
+
+float Aligner::weight_of(const Pull& pull) const {
+  return 1.0F / (1.0F + pull.squared / static_cast<float>(options_.robust_scale * options_.robust_scale));
+}
+
+double Aligner::chance_fit(const EventCloud& queries, const Matrix3& A) {
+  constexpr float kCos = 0.5403F, kSin = 0.8415F;  // 1 rad: nothing that repeats in the image comes to lie on itself
+  constexpr std::size_t kMost = 1000;
+  if (queries.size() == 0) return 0.0;
+  const EventCloud some = take_evenly(queries, kMost);
+  warp(some, A, query_x_, query_y_);
+  EventCloud elsewhere;
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    elsewhere.add(kCos * query_x_[i] - kSin * query_y_[i], kSin * query_x_[i] + kCos * query_y_[i], 0.0F,
+                  some.on[i] != 0);
+  }
+  match(elsewhere, A, options_.last_gate);
+  pull(elsewhere, A);
+  double fit = 0.0;
+  for (const Pull& pull : pulls_) fit += static_cast<double>(weight_of(pull));
+  return fit / static_cast<double>(elsewhere.size());
+}
+
 template <int P>
 Alignment Aligner::align_with(const EventCloud& queries, MotionModel model, const Matrix3& start, double duration,
                               double gate) {
@@ -82,8 +126,6 @@ Alignment Aligner::align_with(const EventCloud& queries, MotionModel model, cons
   for (int k = 0; k < P; ++k)
     G[static_cast<std::size_t>(k)] = generators(model)[static_cast<std::size_t>(k)].template cast<float>();
   const auto f = static_cast<float>(focal_length_);
-  const auto noise = static_cast<float>(options_.edge_noise / focal_length_);
-  const auto scale2 = static_cast<float>(options_.robust_scale * options_.robust_scale);
 
   Alignment result{.A = start};
   const auto few = static_cast<std::size_t>(options_.first_queries);
@@ -93,22 +135,7 @@ Alignment Aligner::align_with(const EventCloud& queries, MotionModel model, cons
   for (; result.iterations < options_.iterations; ++result.iterations) {
     match(*asked, result.A, gate);
     if (matches_.size() < 2 * P) return result;
-    const Eigen::Matrix3f drift = (result.A - built_for_).template cast<float>();
-    pulls_.clear();
-    sorted_.clear();
-    for (const Match& m : matches_) {
-      Pull pull{m.difference, asked->t[m.query] - targets_.t[m.target], Eigen::Matrix2f::Identity(), m.at};
-      if (options_.distance == AlignmentOptions::Distance::line) {
-        const NeighbourGrid::Surroundings& s = grid_.surroundings(m.cell, noise);
-        pull.difference = m.at - s.mean - s.time * flow(drift, s.mean.x(), s.mean.y());
-        pull.between = asked->t[m.query] - s.time;
-        pull.weight = s.weight;
-      }
-      pull.difference *= f;
-      pull.squared = pull.difference.dot(pull.weight * pull.difference);
-      pulls_.push_back(pull);
-      sorted_.push_back(pull.squared);
-    }
+    pull(*asked, result.A);
     const auto last = static_cast<std::size_t>(options_.keep * static_cast<double>(sorted_.size() - 1));
     std::ranges::nth_element(sorted_, sorted_.begin() + static_cast<std::ptrdiff_t>(last));
     const float farthest = sorted_[last];
@@ -118,7 +145,7 @@ Alignment Aligner::align_with(const EventCloud& queries, MotionModel model, cons
     double squares = 0.0, fit = 0.0;
     std::size_t counted = 0;
     for (const Pull& pull : pulls_) {
-      const float weight = 1.0F / (1.0F + pull.squared / scale2);
+      const float weight = weight_of(pull);
       fit += static_cast<double>(weight);
       if (pull.squared > farthest) continue;
       Eigen::Matrix<float, 2, P> J;

@@ -69,6 +69,10 @@ class Aligner {
   /// Nearest targets under the motion A, within `gate` [px]; in the order of the queries.
   const std::vector<Match>& match(const EventCloud& queries, const Matrix3& A, double gate);
 
+  /// The fit that queries would have under the motion A if they lay elsewhere: they are turned about the optical axis
+  /// by a radian. Where targets are dense this comes near to the fit of what is aligned.
+  double chance_fit(const EventCloud& queries, const Matrix3& A);
+
   const EventCloud& targets() const { return targets_; }
 
   /// How far the motion A moves the targets, and what they are aligned with, in `duration` [s]: mean [px].
@@ -101,6 +105,9 @@ class Aligner {
     Eigen::Vector2f at;  ///< the query under the motion
     float squared = 0.0F;
   };
+  void pull(const EventCloud& queries, const Matrix3& A);
+  float weight_of(const Pull& pull) const;
+
   std::vector<Pull> pulls_;
   std::vector<float> sorted_;
 };

@@ -34,7 +34,7 @@ void RegistrationOptions::declare(OptionSet& set) {
   set.add("least_events", least_events, "with fewer events in a slice there is no motion to be found").range(10);
   set.add("least_fit", least_fit,
           "how well the slices must lie on one another for a motion to be believed: mean weight of the queries, those "
-          "without a match being 0")
+          "without a match being 0, from 0 for what chance gives to 1")
       .range(0.0, 1.0);
   set.add(
          "halvings", halvings,

@@ -45,9 +45,10 @@ Registration Registrar::try_from(const Batch& batch, const Matrix3& start) {
   result.alignment = aligner_.align(queries_, options_.model, start, duration, options_.alignment.gate);
   result.A = result.alignment.A;
   result.motion = aligner_.mean_motion(queries_, result.A, duration);
+  result.chance = aligner_.chance_fit(queries_, result.A);
   if (!result.alignment.converged) {
     result.state = Registration::State::not_converged;
-  } else if (result.alignment.fit < options_.least_fit) {
+  } else if (result.beyond_chance(result.alignment.fit) < options_.least_fit) {
     result.state = Registration::State::poor;
   } else {
     result.state = Registration::State::good;

@@ -14,7 +14,7 @@ struct RegistrationOptions {
   double slice = 0.25;
   int queries = 5000;
   int least_events = 50;
-  double least_fit = 0.5;
+  double least_fit = 0.45;
   int halvings = 6;
   double trusted_motion = 1.0;
   AlignmentOptions alignment;
@@ -34,15 +34,20 @@ struct Registration {
     good,
     too_few_events,  ///< one of the slices has less than `least_events`
     not_converged,   ///< the iterations did not come to rest
-    poor,            ///< too few events of the first slice found one in the last slice
+    poor,            ///< too few events of the first slice found one in the last slice, or no more than by chance
   } state = State::too_few_events;
   Matrix3 A = Matrix3::Zero();  ///< of the motion [1/s] (motion_model.hpp)
   std::int64_t reference = 0;   ///< [µs] the batch's middle
   double motion = 0.0;          ///< [px] mean, over the batch
+  double chance = 0.0;          ///< the fit that is to be expected where nothing belongs together
   Alignment alignment;
   bool grown = false;  ///< it was not found from the start that was given
 
   bool good() const { return state == State::good; }
+
+  /// What is left of a fit of this batch's events without what chance gives: 1 where all fits, 0 where it fits no
+  /// better than anything would. Among dense edges each event has one near it, whatever the motion.
+  double beyond_chance(double fit) const { return (fit - chance) / (1.0 - chance); }
 };
 
 std::string to_string(Registration::State state);
