@@ -4,32 +4,43 @@
 #include <cmath>
 
 namespace evbench::str {
+namespace {
+
+std::int64_t microseconds_of(double seconds) { return std::llround(1e6 * seconds); }
+
+}  // namespace
 
 Batches::Batches(const BatchOptions& options, double slice, std::int64_t from)
-    : options_(options), slice_(slice), from_(from), longest_(options.duration) {}
+    : options_(options), slice_(slice), end_(from), longest_(options.duration) {}
 
-void Batches::learn(bool found) { longest_ = std::min(options_.duration, found ? 2.0 * longest_ : 0.5 * last_); }
+void Batches::learn(bool found) {
+  constexpr double kShortest = 0.125;  // of the duration: what fails there, too, is not short of brevity
+  if (found) {
+    longest_ = std::min(options_.duration, 2.0 * longest_);
+  } else {
+    longest_ = last_ > kShortest * options_.duration ? 0.5 * last_ : options_.duration;
+  }
+}
 
 std::optional<Batch> Batches::next(std::int64_t until) {
   double duration = longest_;
   if (options_.motion > 0.0 && speed_ > 0.0) duration = std::min(duration, options_.motion / speed_);
-  std::int64_t to = from_ + std::llround(1e6 * duration);
-  const auto most = static_cast<std::size_t>(options_.events);
-  if (most > 0 && events_.size() - begin_ >= most) to = std::min(to, events_[begin_ + most - 1].t + 1);
+  const std::int64_t from = end_ - std::min(shared_, microseconds_of(0.5 * duration));
+  const auto first = std::ranges::lower_bound(events_, from, {}, &Event::t);
+  std::int64_t to = from + microseconds_of(duration);
+  const auto most = static_cast<std::ptrdiff_t>(options_.events);
+  if (most > 0 && events_.end() - first >= most) to = std::min(to, first[most - 1].t + 1);
   constexpr std::int64_t kShortest = 1000;  // [µs]: a batch of events that all come at once would not get on
-  to = std::max(to, from_ + kShortest);
+  to = std::max(to, end_ + kShortest);
   if (to > until) {
-    events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(begin_));
-    begin_ = 0;
+    events_.erase(events_.begin(), std::ranges::lower_bound(events_, end_ - shared_, {}, &Event::t));
     return std::nullopt;
   }
-  const auto first = events_.begin() + static_cast<std::ptrdiff_t>(begin_);
   const auto last = std::ranges::lower_bound(first, events_.end(), to, {}, &Event::t);
-  const Batch batch{{first, last}, from_, to};
-  last_ = 1e-6 * static_cast<double>(to - from_);
-  from_ = to - static_cast<std::int64_t>(slice_ * static_cast<double>(to - from_));
-  begin_ = static_cast<std::size_t>(std::ranges::lower_bound(first, last, from_, {}, &Event::t) - events_.begin());
-  return batch;
+  end_ = to;
+  shared_ = static_cast<std::int64_t>(slice_ * static_cast<double>(to - from));
+  last_ = 1e-6 * static_cast<double>(to - from);
+  return Batch{{first, last}, from, to};
 }
 
 }  // namespace evbench::str

@@ -28,8 +28,9 @@ struct BatchOptions {
   }
 };
 
-/// Events in batches, of which each begins with the last slice of the one before: what was found there is where the
-/// next one goes on. Batches follow one another in time, whether there are events or not.
+/// Events in batches, of which each begins with the last slice of the one before, or with the end of that where it is
+/// much shorter: what was found there is where the next one goes on. Each ends after the one before. Batches follow one
+/// another in time, whether there are events or not.
 class Batches {
  public:
   /// `from` [µs]: where the first one begins. `slice`: the share that two batches have in common.
@@ -41,8 +42,9 @@ class Batches {
   /// The image moves at this speed [px/s], for batches that end by motion.
   void expect(double speed) { speed_ = speed; }
 
-  /// Whether the last one's motion was found. Where it was not, the next ones are half as long, and then ever longer
-  /// again: what is too much motion for a batch is not for a part of it.
+  /// Whether the last one's motion was found. Where it was not, the next one is half as long, down to an eighth of the
+  /// duration, then as long as ever; where it was, the next one may be twice as long: what is too much motion for a
+  /// batch is not for a part of it.
   void learn(bool found);
 
   /// The next batch, if it ends at or before `until` [µs], up to which all events have been added; valid until the
@@ -52,12 +54,12 @@ class Batches {
  private:
   BatchOptions options_;
   double slice_;
-  std::int64_t from_;   ///< [µs] of the next one
-  double speed_ = 0.0;  ///< [px/s]
-  double longest_;      ///< [s] of the next one
-  double last_ = 0.0;   ///< [s] how long the last one was
+  std::int64_t end_;         ///< [µs] of the last one
+  std::int64_t shared_ = 0;  ///< [µs] before that, from where on the next one may begin
+  double speed_ = 0.0;       ///< [px/s]
+  double longest_;           ///< [s] of the next one
+  double last_ = 0.0;        ///< [s] how long the last one was
   std::vector<Event> events_;
-  std::size_t begin_ = 0;  ///< of the next one, in events_
 };
 
 }  // namespace evbench::str
