@@ -107,7 +107,7 @@ class Comparison {
     std::vector<double> p;
     for (const PairedComparison& comparison : comparisons) p.push_back(comparison.test.p);
     const std::vector<double> corrected = holm(p);
-    if (!too_few_ || !too_few_->empty()) too_few_ = too_few_pairs(most_pairs, p.size());
+    if (!p.empty() && (!too_few_ || !too_few_->empty())) too_few_ = too_few_pairs(most_pairs, p.size());
     for (std::size_t i = 0; i < others.size(); ++i) add_row(metric, *others[i], comparisons[i], corrected[i]);
   }
 

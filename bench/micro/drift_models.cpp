@@ -263,6 +263,9 @@ void compare(const Arguments& arguments) {
     const RunConfig run = read_experiment(arguments.config, overrides, plugins).runs.front();
     const auto source = make_source(run.job, plugins);
     std::vector<TrackObservation> observations = tracks_of(run.job, *source, plugins);
+    if (observations.empty()) {
+      throw InputError(fmt::format("{}: its front-end tells no tracks; expected some", arguments.config));
+    }
     const double stated = observations.front().sigma;
     if (arguments.drift > 0.0) add_drift(observations, arguments.drift, arguments.time, Random(run.job.seed, 5));
     const FactorGraph graph = final_graph(run.job, source->camera(), observations, plugins);

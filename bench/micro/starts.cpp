@@ -5,10 +5,9 @@
 //
 // One row a kind. "right" is a share of all starts: the estimated motion goes the true way, to within 30 degrees, and
 // half of the landmarks' depths are, up to scale, within 30 %; at the first map, 2.5 s later, and in the final estimate
-// of what has been seen by then. "first map" is the
-// time from the first observation, median and 90 % quantile; "reaches back" how much of that time the trajectory
-// covers. "attempt" is what a step costs before there is a first map, "first" the step that finds it, with the engine's
-// first update; wall time.
+// of what has been seen by then. "first map" is the time from the first observation, median and 90 % quantile; "reaches
+// back" how much of that time the trajectory covers. "attempt" is what a step costs before there is a first map,
+// "first" the step that finds it, with the engine's first update; wall time.
 
 #include <fmt/format.h>
 

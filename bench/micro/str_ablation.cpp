@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <functional>
 
+#include "core/support/error.hpp"
 #include "frontends/str/registration/registration.hpp"
 #include "frontends/str/registration/testing/rotation_recording.hpp"
 
@@ -126,6 +127,7 @@ double median(std::vector<double> values) {
 
 int main(int argc, char** argv) try {
   const int seeds = argc > 1 ? std::atoi(argv[1]) : 2;
+  if (seeds < 1) throw InputError("usage: str_ablation [SEEDS], at least 1");
   const Vector3 omega = 2.0 * Vector3(0.5, 0.8, 0.33).normalized();
   std::vector<std::vector<RotationRecording>> scenes;
   std::string header = "| what |", line = "| --- |";

@@ -129,6 +129,7 @@ RotationRecording thinned(const RotationRecording& recording, double share) {
 
 int main(int argc, char** argv) try {
   const double seconds = argc > 1 ? std::atof(argv[1]) : 0.1;
+  if (!(seconds > 0.0)) throw InputError("usage: str_micro [SECONDS], more than 0");
   fmt::print(
       "| sensor | px a batch | events a batch | method | error, median [%] | million events/s |\n"
       "| --- | ---: | ---: | --- | ---: | ---: |\n");

@@ -19,7 +19,12 @@ class RecordedEvents : public Source {
   const Camera& camera() const override { return source_->camera(); }
   TimeRange time_range() const override { return source_->time_range(); }
   const PoseTrajectory& ground_truth() const override { return source_->ground_truth(); }
-  std::unique_ptr<EventReader> all_events() const override { return std::make_unique<NativeReader>(path_); }
+  /// Another sweep that needs them no more may have taken the recording away: then they are made again.
+  std::unique_ptr<EventReader> all_events() const override {
+    std::error_code error;
+    if (!std::filesystem::exists(path_, error)) return source_->all_events();
+    return std::make_unique<NativeReader>(path_);
+  }
   std::optional<std::span<const TrackObservation>> true_tracks() const override { return source_->true_tracks(); }
   std::vector<std::string> files() const override { return source_->files(); }
   std::vector<std::string> event_files() const override { return source_->event_files(); }

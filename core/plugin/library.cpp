@@ -125,10 +125,10 @@ void load(Plugins& plugins, const std::string& path) {
 
 /// What to do where a library is missing from the build folder of a plugin whose source is there; else nothing.
 std::string how_to_build(const fs::path& library) {
-  const fs::path build = library.parent_path(), source = build.parent_path();
   std::error_code ignored;
+  const fs::path build = fs::absolute(library, ignored).parent_path(), source = build.parent_path();
   if (source.empty() || !fs::exists(source / "CMakeLists.txt", ignored)) return "";
-  const auto shown = [](const fs::path& path) { return path.lexically_normal().string(); };
+  const auto shown = [](const fs::path& path) { return path.lexically_proximate(fs::current_path()).string(); };
   return fmt::format(
       ". It is built by: cmake -S {0} -B {1} && cmake --build {1} (with -DCMAKE_PREFIX_PATH=DIR where evbench is not "
       "installed in the usual places)",

@@ -67,8 +67,8 @@ void SplineMap::update(double t) {
     watch(from, t);
   }
   if (mapped_ && !monitor_.lost()) context_.online({{t, spline_.pose(t)}, t});
-  updates_.push_back({t, evbench::seconds_since(start), report.knots, report.landmarks, report.observations, report.iterations,
-                      report.usable ? std::optional(report.cost) : std::nullopt});
+  updates_.push_back({t, evbench::seconds_since(start), report.knots, report.landmarks, report.observations,
+                      report.iterations, report.usable ? std::optional(report.cost) : std::nullopt});
 }
 
 void SplineMap::take_observations(double t) {

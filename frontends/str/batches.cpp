@@ -18,15 +18,15 @@ void Batches::learn(bool found) {
   if (found) {
     longest_ = std::min(options_.duration, 2.0 * longest_);
   } else {
-    longest_ = last_ > kShortest * options_.duration ? 0.5 * last_ : options_.duration;
+    longest_ = 0.5 * last_ >= kShortest * options_.duration ? 0.5 * last_ : options_.duration;
   }
 }
 
 std::optional<Batch> Batches::next(std::int64_t until) {
   double duration = longest_;
   if (options_.motion > 0.0 && speed_ > 0.0) duration = std::min(duration, options_.motion / speed_);
-  const std::int64_t from = end_ - std::min(shared_, microseconds_of(0.5 * duration));
-  const auto first = std::ranges::lower_bound(events_, from, {}, &Event::t);
+  std::int64_t from = end_ - std::min(shared_, microseconds_of(0.5 * duration));
+  auto first = std::ranges::lower_bound(events_, from, {}, &Event::t);
   std::int64_t to = from + microseconds_of(duration);
   const auto most = static_cast<std::ptrdiff_t>(options_.events);
   if (most > 0 && events_.end() - first >= most) to = std::min(to, first[most - 1].t + 1);
@@ -35,6 +35,10 @@ std::optional<Batch> Batches::next(std::int64_t until) {
   if (to > until) {
     events_.erase(events_.begin(), std::ranges::lower_bound(events_, end_ - shared_, {}, &Event::t));
     return std::nullopt;
+  }
+  if (from < 2 * end_ - to) {  // it has become shorter still: its last slice is to begin at the last one's end or later
+    from = 2 * end_ - to;
+    first = std::ranges::lower_bound(events_, from, {}, &Event::t);
   }
   const auto last = std::ranges::lower_bound(first, events_.end(), to, {}, &Event::t);
   end_ = to;

@@ -42,9 +42,9 @@ class Batches {
   /// The image moves at this speed [px/s], for batches that end by motion.
   void expect(double speed) { speed_ = speed; }
 
-  /// Whether the last one's motion was found. Where it was not, the next one is half as long, down to an eighth of the
-  /// duration, then as long as ever; where it was, the next one may be twice as long: what is too much motion for a
-  /// batch is not for a part of it.
+  /// Whether the last one's motion was found. Where it was not, the next one is half as long, down to about an eighth
+  /// of the duration, then as long as ever; where it was, the next one may be twice as long: what is too much motion
+  /// for a batch is not for a part of it.
   void learn(bool found);
 
   /// The next batch, if it ends at or before `until` [µs], up to which all events have been added; valid until the

@@ -25,8 +25,8 @@ struct MotionTracksOptions {
             "a batch that has no one motion, as where it turns round, is divided into halves, down to this [s]")
         .range(1e-3, 10.0);
     set.add("shortest_fit", shortest_fit,
-            "and these are believed if they fit so well (registration.least_fit is for longer ones): about right is "
-            "better than nothing, as they move little")
+            "and these are believed if they fit so well, chance included (registration.least_fit is for longer ones): "
+            "about right is better than nothing, as they move little")
         .range(0.0, 1.0);
     set.add(
            "patience", patience,

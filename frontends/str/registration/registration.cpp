@@ -65,7 +65,7 @@ Registration Registrar::grow(const Batch& batch) {
     result = try_from(part, Matrix3::Zero());
     if (expected) {
       const Registration going_on = try_from(part, *expected);
-      if (going_on.alignment.fit > result.alignment.fit) result = going_on;
+      if (going_on.better_than(result)) result = going_on;
     }
     if (result.good() && result.motion >= options_.trusted_motion) expected = result.A;
   }
@@ -78,7 +78,7 @@ Registration Registrar::align(const Batch& batch, const std::optional<Matrix3>& 
   const Registration direct = try_from(batch, *expected);
   if (direct.good() || direct.state == Registration::State::too_few_events) return direct;
   const Registration grown = grow(batch);
-  return grown.alignment.fit > direct.alignment.fit ? grown : direct;
+  return grown.better_than(direct) ? grown : direct;
 }
 
 }  // namespace evbench::str

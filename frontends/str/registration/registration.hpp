@@ -47,7 +47,12 @@ struct Registration {
 
   /// What is left of a fit of this batch's events without what chance gives: 1 where all fits, 0 where it fits no
   /// better than anything would. Among dense edges each event has one near it, whatever the motion.
-  double beyond_chance(double fit) const { return (fit - chance) / (1.0 - chance); }
+  double beyond_chance(double fit) const { return chance < 1.0 ? (fit - chance) / (1.0 - chance) : 0.0; }
+
+  /// Is it more to be believed than another one of the same batch?
+  bool better_than(const Registration& other) const {
+    return good() != other.good() ? good() : alignment.fit > other.alignment.fit;
+  }
 };
 
 std::string to_string(Registration::State state);
