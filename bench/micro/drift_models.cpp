@@ -4,8 +4,8 @@
 //   drift_models CONFIG [--set KEY=VALUE]... [--seeds N] [--drift PX --time S] [--true-noise]
 //
 // CONFIG's first back-end must be a gp_map. --drift adds an Ornstein-Uhlenbeck process of that size and correlation
-// time to each track; --true-noise lets the models know what the simulator adds (source.tracks.noise and --drift), else
-// they take what the residuals of gp_map's estimate show (track_noise.hpp). Models:
+// time to each track; --true-noise lets the models know what the simulator adds (source.tracks.noise and --drift, both
+// in pixels), else they take what the residuals of gp_map's estimate show (track_noise.hpp). Models:
 //
 //   white        every observation counts in full, with noise as large as white and drifting part together
 //   fewer        gp_map's own: a learnt share of the information (noise_learning.hpp)
