@@ -220,8 +220,8 @@ void GpMap::optimise() {
   settle();
 }
 
-/// A damped step has not arrived. Where it leaves most tracks far from where they should be, more follow: the next state,
-/// extrapolated from this one, would be farther off still, where the robust loss hardly pulls.
+/// A damped step has not arrived. Where it leaves most tracks far from where they should be, more follow: the next
+/// state, extrapolated from this one, would be farther off still, where the robust loss hardly pulls.
 void GpMap::settle() {
   constexpr double kHelp = 0.95;
   constexpr int kSteps = 6;
