@@ -17,11 +17,10 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 7);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 6);
 
 constexpr double kYoung = 5.0;    ///< [s] for which another first map is looked for
 constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
-constexpr double kFar = 3.0;      ///< [sigmas] median error of the tracks seen last that no optimum should leave
 
 }  // namespace
 
@@ -217,26 +216,12 @@ bool GpMap::is_outlier(int landmark, double error_px) const {
 void GpMap::optimise() {
   last_update_ = engine_->update();
   yield_to_motion();
-  settle();
-}
-
-/// A damped step has not arrived. Where it leaves most tracks far from where they should be, more follow: the next
-/// state, extrapolated from this one, would be farther off still, where the robust loss hardly pulls.
-void GpMap::settle() {
-  constexpr double kHelp = 0.95;
-  constexpr int kSteps = 6;
-  double error = newest_error();
-  for (int i = 0; i < kSteps && last_update_.damping > 0.0 && error > kFar; ++i) {
-    last_update_ = engine_->update();
-    const double now = newest_error();
-    if (!(now < kHelp * error)) return;
-    error = now;
-  }
 }
 
 /// Where most tracks are far from where they should be, the prior is too strong for what the camera does, and the
 /// robust loss would take them for outliers: the prior over the newest intervals is weakened as long as that helps.
 void GpMap::yield_to_motion() {
+  constexpr double kFar = 3.0;                                   // [sigmas]
   constexpr double kWeaker = 10.0, kWeakest = 1e4, kHelp = 0.8;  // weakest: over the prior that was given
   constexpr int kIntervals = 3;
   const int newest = static_cast<int>(graph().states.size()) - 1;

@@ -73,7 +73,6 @@ class GpMap : public BackEnd {
   void add_observations();
   void add_landmarks();
   void optimise();
-  void settle();
   void yield_to_motion();
   void recover_prior();
   void learn();
