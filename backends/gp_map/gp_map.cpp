@@ -17,10 +17,11 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 6);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 7);
 
 constexpr double kYoung = 5.0;    ///< [s] for which another first map is looked for
 constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
+constexpr double kFar = 3.0;      ///< [sigmas] median error of the tracks seen last that no optimum should leave
 
 }  // namespace
 
@@ -215,13 +216,30 @@ bool GpMap::is_outlier(int landmark, double error_px) const {
 
 void GpMap::optimise() {
   last_update_ = engine_->update();
+  settle(false);
   yield_to_motion();
+  settle(true);
+}
+
+/// More steps, where one has left most tracks far from where they should be: the next state, extrapolated from this
+/// one, would be farther off still, where the robust loss hardly pulls. Before the prior has yielded (`yielded`) only
+/// where a step was damped, and so has not arrived: one that has is held by the prior, and more would make outliers of
+/// all.
+void GpMap::settle(bool yielded) {
+  constexpr double kHelp = 0.95;
+  constexpr int kSteps = 6;
+  double error = newest_error();
+  for (int i = 0; i < kSteps && error > kFar && (yielded || last_update_.damping > 0.0); ++i) {
+    last_update_ = engine_->update();
+    const double now = newest_error();
+    if (!(now < kHelp * error)) return;
+    error = now;
+  }
 }
 
 /// Where most tracks are far from where they should be, the prior is too strong for what the camera does, and the
 /// robust loss would take them for outliers: the prior over the newest intervals is weakened as long as that helps.
 void GpMap::yield_to_motion() {
-  constexpr double kFar = 3.0;                                   // [sigmas]
   constexpr double kWeaker = 10.0, kWeakest = 1e4, kHelp = 0.8;  // weakest: over the prior that was given
   constexpr int kIntervals = 3;
   const int newest = static_cast<int>(graph().states.size()) - 1;
