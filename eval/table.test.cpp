@@ -12,7 +12,7 @@ namespace {
 using namespace testing;
 using Catch::Matchers::Contains;
 
-std::string table(const Results& results, const TableOptions& options) { return make_table(results.find(), options); }
+std::string text_of(const Results& results, const TableOptions& options) { return make_table(results.find(), options); }
 
 }  // namespace
 
@@ -20,12 +20,12 @@ TEST_CASE("A table shows the protocol, and the best value of each column") {
   Results results;
   results.add("a", run("arm", "asynchronous", scores_with(0.012)));
   results.add("b", run("arm", "bundle", scores_with(0.034)));
-  const std::string text = table(results, {});
+  const std::string text = text_of(results, {});
   CHECK_THAT(line_with(text, "asynchronous"), Contains("0.0120*"));
   CHECK_THAT(line_with(text, "bundle"), Contains("0.0340") && !Contains("0.0340*"));
   CHECK_THAT(text, Contains("Experiment: arm.") && Contains("Protocol: Sim(3) alignment on all poses; nearest ground "
                                                             "truth within 0.01 s; RPE over 0.1 seconds, all pairs"));
-  CHECK_THAT(table(results, {.format = TableFormat::markdown}), Contains("**0.0120**"));
+  CHECK_THAT(text_of(results, {.format = TableFormat::markdown}), Contains("**0.0120**"));
 }
 
 TEST_CASE("Only runs of one experiment and protocol that kept track compete") {
@@ -35,7 +35,7 @@ TEST_CASE("Only runs of one experiment and protocol that kept track compete") {
   results.add("c", run("arm", "worse", scores_with(0.030)));
   results.add("d", run("arm", "other protocol", scores_with(0.001, "se3")));
   results.add("e", run("poster", "other experiment", scores_with(0.002)));
-  const std::string text = table(results, {});
+  const std::string text = text_of(results, {});
   CHECK_THAT(line_with(text, "good"), Contains("0.02000*"));
   CHECK_THAT(line_with(text, "better but lost"), Contains("lost at 3.25 s") && !Contains("0.01000*"));
   CHECK_THAT(line_with(text, "other protocol"), !Contains("0.00100*"));
@@ -49,7 +49,7 @@ TEST_CASE("Runs compete with those of the same seed and source alone") {
     results.add_seed("good", seed, 0.01 * seed);
     results.add_seed("bad", seed, 0.04 * seed);
   }
-  const std::string text = table(results, {.metrics = {"ate.trans_m.rmse"}});
+  const std::string text = text_of(results, {.metrics = {"ate.trans_m.rmse"}});
   CHECK_THAT(text, Contains("0.0100*") && Contains("0.0200*") && !Contains("0.0400*") && !Contains("0.0800*"));
 }
 
@@ -58,8 +58,8 @@ TEST_CASE("All numbers that runs have can be listed, with their headers, and eac
   results.add_seed("good", 1, 0.01);
   const std::string keys = list_metrics(results.find());
   CHECK_THAT(line_with(keys, "ate.trans_m.rmse"), Contains("ATE [m]"));
-  CHECK_THAT(table(results, {.metrics = {line_with(keys, "ate.trans_m.median")}}), Contains("ate.trans_m.median"));
-  CHECK_THROWS_WITH(table(results, {.metrics = {"foo"}}),
+  CHECK_THAT(text_of(results, {.metrics = {line_with(keys, "ate.trans_m.median")}}), Contains("ate.trans_m.median"));
+  CHECK_THROWS_WITH(text_of(results, {.metrics = {"foo"}}),
                     Contains("no run has the metric \"foo\"; the most similar of ") && Contains("--list-metrics"));
 }
 
@@ -67,25 +67,25 @@ TEST_CASE("A run without an estimate is a row without values") {
   Results results;
   results.add("a", run("arm", "good", scores_with(0.020)));
   results.add("b", run("arm", "bad", nullptr, "failed"));
-  CHECK_THAT(line_with(table(results, {}), "bad"), Contains(" - ") && Contains("failed at 3.25 s"));
-  CHECK_THROWS_WITH(table(results, {.online = true}), "none of the 2 runs has online scores");
+  CHECK_THAT(line_with(text_of(results, {}), "bad"), Contains(" - ") && Contains("failed at 3.25 s"));
+  CHECK_THROWS_WITH(text_of(results, {.online = true}), "none of the 2 runs has online scores");
 }
 
 TEST_CASE("Runs that could not be scored still make a table") {
   Results results;
   results.add("a", run("arm", "no ground truth", nullptr));
-  CHECK_THAT(line_with(table(results, {}), "no ground truth"), Contains("1.50") && Contains("ok"));
-  CHECK_THAT(table(results, {}), Contains("No run has scores") && Contains("no ground truth: not known"));
+  CHECK_THAT(line_with(text_of(results, {}), "no ground truth"), Contains("1.50") && Contains("ok"));
+  CHECK_THAT(text_of(results, {}), Contains("No run has scores") && Contains("no ground truth: not known"));
 }
 
 TEST_CASE("Columns can be chosen, pairs, coverage and scale then stand below") {
   Results results;
   results.add("a", run("arm", "one", scores_with(0.020)));
   results.add("b", run("arm", "two", scores_with(0.030)));
-  const std::string text = table(results, {.metrics = {"rpe.trans_m.median", "peak_rss_mib"}});
+  const std::string text = text_of(results, {.metrics = {"rpe.trans_m.median", "peak_rss_mib"}});
   CHECK_THAT(text, Contains("rpe.trans_m.median") && Contains("memory [MiB]") && !Contains("ATE [m]"));
   CHECK_THAT(text, Contains("pairs 100 to 100; covered [%] 100.0 to 100.0; scale "));
-  CHECK_THROWS_WITH(table(results, {.metrics = {"rpe.trans_m.meddian"}}),
+  CHECK_THROWS_WITH(text_of(results, {.metrics = {"rpe.trans_m.meddian"}}),
                     Contains("no run has the metric \"rpe.trans_m.meddian\"") && Contains("rpe.trans_m.median"));
 }
 
@@ -98,11 +98,11 @@ TEST_CASE("Runs that differ in their seed, or in nothing but their options, can 
     results.add(name, json);
   };
   add("a", 1, "mine-aa");
-  CHECK_THAT(table(results, {}), !Contains("seed") && !Contains("mine-aa"));
+  CHECK_THAT(text_of(results, {}), !Contains("seed") && !Contains("mine-aa"));
   add("b", 2, "mine-bb");
-  CHECK_THAT(table(results, {}), Contains("seed") && !Contains("mine-aa"));
+  CHECK_THAT(text_of(results, {}), Contains("seed") && !Contains("mine-aa"));
   add("c", 2, "mine-cc");
-  CHECK_THAT(table(results, {}), Contains("key") && Contains("mine-bb") && Contains("mine-cc"));
+  CHECK_THAT(text_of(results, {}), Contains("key") && Contains("mine-bb") && Contains("mine-cc"));
 }
 
 TEST_CASE("Runs of one label have as columns the settings in which they differ, in the order of their values") {
@@ -118,7 +118,7 @@ TEST_CASE("Runs of one label have as columns the settings in which they differ, 
                    {"backend", {{"type", "bundle_adjustment"}, {"frame_duration", duration}, {"label", "x"}}}});
     }
   }
-  const std::string text = table(results, {});
+  const std::string text = text_of(results, {});
   CHECK_THAT(line_with(text, "ATE [m]"), Contains("backend.frame_duration") && Contains("seed") && !Contains("key"));
   CHECK_THAT(text, !Contains("source.type") && !Contains("backend.label"));
   const auto runs = results.find();
@@ -126,7 +126,7 @@ TEST_CASE("Runs of one label have as columns the settings in which they differ, 
   CHECK(runs[1].seed == 2);
   CHECK(*find_setting(runs[1].settings, "backend.frame_duration") == 0.05);
   CHECK(*find_setting(runs[2].settings, "backend.frame_duration") == 0.1);
-  CHECK_THAT(table(results, {.format = TableFormat::csv}),
+  CHECK_THAT(text_of(results, {.format = TableFormat::csv}),
              Contains("experiment,label,backend.frame_duration,seed,key,folder,") &&
                  Contains("\narm,bundle_adjustment,0.05,1,"));
 }
@@ -135,7 +135,7 @@ TEST_CASE("Labels that tell runs apart need no settings beside them") {
   Results results;
   results.add("a", run("arm", "25 ms", scores_with(0.02)), {{"backend", {{"frame_duration", 0.025}}}});
   results.add("b", run("arm", "50 ms", scores_with(0.03)), {{"backend", {{"frame_duration", 0.05}}}});
-  CHECK_THAT(table(results, {}), !Contains("frame_duration"));
+  CHECK_THAT(text_of(results, {}), !Contains("frame_duration"));
 }
 
 TEST_CASE("Rows stand in the order of their config") {
@@ -155,11 +155,11 @@ TEST_CASE("Rows stand in the order of their config") {
 TEST_CASE("Front-end and back-end have a time each, and every time can be a column") {
   Results results;
   results.add("a", run("arm", "one", scores_with(0.020)));
-  CHECK_THAT(line_with(table(results, {}), "ATE [m]"), Contains("front-end [s]") && Contains("back-end [s]"));
-  CHECK_THAT(line_with(table(results, {}), "one"), Contains(" 0.250") && Contains(" 1.75"));
-  CHECK_THAT(line_with(table(results, {.metrics = {"times.waiting_s", "times.harness_s", "data_s"}}), "one"),
+  CHECK_THAT(line_with(text_of(results, {}), "ATE [m]"), Contains("front-end [s]") && Contains("back-end [s]"));
+  CHECK_THAT(line_with(text_of(results, {}), "one"), Contains(" 0.250") && Contains(" 1.75"));
+  CHECK_THAT(line_with(text_of(results, {.metrics = {"times.waiting_s", "times.harness_s", "data_s"}}), "one"),
              Contains("0.500") && Contains("0.125") && Contains("3.00"));
-  CHECK_THROWS_WITH(table(results, {.metrics = {"times.waitng_s"}}), Contains("times.waiting_s"));
+  CHECK_THROWS_WITH(text_of(results, {.metrics = {"times.waitng_s"}}), Contains("times.waiting_s"));
 }
 
 TEST_CASE("Below a table stands why runs have no scores") {
@@ -175,9 +175,9 @@ TEST_CASE("Below a table stands why runs have no scores") {
   lost["seed"] = 8;
   lost["status"]["reason"] = "nothing was seen for 1 s";
   results.add("d", lost);
-  CHECK_THAT(table(results, {}), Contains("Lost: good (seed 8): nothing was seen for 1 s."));
-  CHECK_THAT(table(results, {}), Contains("Without scores: bad: 2 tracks at 3.051 s, 15 needed.") &&
-                                     Contains("Without scores: unscored: only 2 of the estimate's poses"));
+  CHECK_THAT(text_of(results, {}), Contains("Lost: good (seed 8): nothing was seen for 1 s."));
+  CHECK_THAT(text_of(results, {}), Contains("Without scores: bad: 2 tracks at 3.051 s, 15 needed.") &&
+                                       Contains("Without scores: unscored: only 2 of the estimate's poses"));
 }
 
 TEST_CASE("A sweep's axes are columns, and runs that it has planned but not done are rows") {
@@ -189,18 +189,18 @@ TEST_CASE("A sweep's axes are columns, and runs that it has planned but not done
   const Json plan = {
       {"name", "batching"}, {"axes", Json::array()}, {"runs", {planned("a", "0.1"), planned("b", "0.2")}}};
   results.folder.write("batching/sweep.json", plan.dump());
-  const std::string text = table(results, {});
+  const std::string text = text_of(results, {});
   CHECK_THAT(line_with(text, "ATE [m]"), Contains("frame") && !Contains("seed"));
   CHECK_THAT(line_with(text, "0.1 "), Contains("0.02") && Contains("ok"));
   CHECK_THAT(line_with(text, "0.2 "), Contains("-") && Contains("not run"));
   CHECK_THAT(text, Contains("Not run yet: bundle (frame 0.2)."));
-  CHECK_THAT(table(results, {.over = {"frame"}}), Contains("1 of 1"));
+  CHECK_THAT(text_of(results, {.over = {"frame"}}), Contains("1 of 1"));
 }
 
 TEST_CASE("CSV has the exact numbers under the keys of metrics.json") {
   Results results;
   results.add("a", run("arm, left", "say \"one\"", scores_with(0.0123456789)));
-  const std::string csv = table(results, {.format = TableFormat::csv, .metrics = {"ate.trans_m.rmse"}});
+  const std::string csv = text_of(results, {.format = TableFormat::csv, .metrics = {"ate.trans_m.rmse"}});
   CHECK(csv.substr(0, csv.find('\n')) ==
         "experiment,label,seed,key,folder,ate.trans_m.rmse,pairs,coverage,scale,status,trajectory,protocol");
   CHECK_THAT(csv, Contains("\n\"arm, left\",\"say \"\"one\"\"\",7,mine-0123456789," + results.folder.file("a") +
@@ -213,19 +213,19 @@ TEST_CASE("Every format says which trajectory is scored") {
   json["online"] = json["final"];
   results.add("a", json);
   for (const TableFormat format : {TableFormat::text, TableFormat::markdown, TableFormat::latex}) {
-    CHECK_THAT(table(results, {.format = format}), Contains("Final: the trajectory as estimated after"));
-    CHECK_THAT(table(results, {.format = format, .online = true}), Contains("Online: each pose as estimated"));
+    CHECK_THAT(text_of(results, {.format = format}), Contains("Final: the trajectory as estimated after"));
+    CHECK_THAT(text_of(results, {.format = format, .online = true}), Contains("Online: each pose as estimated"));
   }
-  CHECK_THAT(table(results, {.format = TableFormat::csv}),
+  CHECK_THAT(text_of(results, {.format = TableFormat::csv}),
              Contains(",status,trajectory,protocol\n") && Contains(",final,"));
-  CHECK_THAT(table(results, {.format = TableFormat::csv, .online = true}), Contains(",online,"));
+  CHECK_THAT(text_of(results, {.format = TableFormat::csv, .online = true}), Contains(",online,"));
 }
 
 TEST_CASE("LaTeX is a float for a page: few columns, booktabs' rules, a label, the protocol in the caption") {
   Results results;
   results.add("a", run("arm_2", "asynchronous", scores_with(0.012)));
   results.add("b", run("arm_2", "bundle", scores_with(0.034)));
-  const std::string latex = table(results, {.format = TableFormat::latex});
+  const std::string latex = text_of(results, {.format = TableFormat::latex});
   CHECK(line_with(latex, "ATE [m]") ==
         "                 &         ATE [m] & ATE [deg] & RPE [m] & RPE [deg] & real-time factor \\\\");
   CHECK_THAT(line_with(latex, "asynchronous"), Contains("& \\textbf{0.0120} &"));
@@ -242,8 +242,8 @@ TEST_CASE("LaTeX is a float for a page: few columns, booktabs' rules, a label, t
   }
   CHECK(std::ranges::count(latex, '{') == std::ranges::count(latex, '}'));
   results.add("c", run("arm_2", "third", scores_with(0.034), "degraded"));
-  CHECK_THAT(table(results, {.format = TableFormat::latex}), Contains("& status ") && Contains("degraded at 3.25 s"));
-  CHECK_THAT(table(results, {.format = TableFormat::latex, .metrics = {"coverage"}}),
+  CHECK_THAT(text_of(results, {.format = TableFormat::latex}), Contains("& status ") && Contains("degraded at 3.25 s"));
+  CHECK_THAT(text_of(results, {.format = TableFormat::latex, .metrics = {"coverage"}}),
              Contains("covered [\\%]") && !Contains("ATE [m]"));
 }
 
@@ -253,7 +253,7 @@ TEST_CASE("Characters with a meaning in LaTeX and Markdown are escaped") {
   CHECK(escape_latex("[a]") == "{[}a]");
   Results results;
   results.add("a", run("arm", "a|b_c", scores_with(0.02)));
-  CHECK_THAT(table(results, {.format = TableFormat::markdown}), Contains("a\\|b\\_c"));
+  CHECK_THAT(text_of(results, {.format = TableFormat::markdown}), Contains("a\\|b\\_c"));
 }
 
 }  // namespace evbench

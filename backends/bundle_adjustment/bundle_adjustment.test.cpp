@@ -16,7 +16,7 @@ using namespace evbench;
 using evbench::bundle_adjustment::BundleAdjustment;
 using evbench::bundle_adjustment::Options;
 using evbench::testing::davis;
-using evbench::testing::Scene;
+using evbench::testing::PointScene;
 
 namespace {
 
@@ -32,7 +32,7 @@ SE3 resting(double) { return {}; }
 SE3 rotating(double t) { return se3::exp((Vector6() << 0.0, 0.1 * std::sin(2.0 * t), 0.3 * t, 0, 0, 0).finished()); }
 
 struct Simulation {
-  Scene scene = Scene::volume;
+  PointScene scene = PointScene::volume;
   Motion motion = weaving;
   double duration = 4.0, noise = 0.3, outlier_share = 0.0;
   double told_noise = 0.0;  ///< sigma of the observations; 0: the noise
@@ -114,7 +114,7 @@ bool finite(const PoseTrajectory& trajectory) {
 }  // namespace
 
 TEST_CASE("a simulated motion is recovered, in a volume and before a plane") {
-  for (const Scene scene : {Scene::volume, Scene::plane}) {
+  for (const PointScene scene : {PointScene::volume, PointScene::plane}) {
     Simulation simulation;
     simulation.scene = scene;
     std::vector<StampedPose> online;

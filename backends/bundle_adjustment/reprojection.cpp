@@ -1,6 +1,7 @@
 #include "backends/bundle_adjustment/reprojection.hpp"
 
 #include "core/geometry/so3.hpp"
+#include "core/geometry/tangent_plane.hpp"
 
 namespace evbench::bundle_adjustment {
 namespace {
@@ -93,11 +94,7 @@ bool PoseManifold::MinusJacobian(const double*, double* jacobian) const {
 }
 
 Eigen::Matrix<double, 3, 2> FixedDistanceManifold::basis(const Vector3& position) const {
-  const Vector3 direction = (position - centre_).normalized();
-  Eigen::Matrix<double, 3, 2> result;
-  result.col(0) = direction.unitOrthogonal();
-  result.col(1) = direction.cross(result.col(0));
-  return result;
+  return tangent_plane((position - centre_).normalized());
 }
 
 bool FixedDistanceManifold::Plus(const double* x, const double* delta, double* x_plus_delta) const {

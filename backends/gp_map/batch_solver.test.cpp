@@ -13,7 +13,7 @@ namespace {
 
 /// A camera that flies past a few points, started away from the truth.
 FactorGraph flight(int states, double error) {
-  testing::RandomTangents random;
+  evbench::testing::RandomTangents random;
   FactorGraph graph;
   graph.camera = {200.0, 200.0, 120.0, 90.0};
   graph.qc.setConstant(0.5);
@@ -53,12 +53,12 @@ double solved_cost(const std::string& path) {
 }  // namespace
 
 TEST_CASE("The batch solve reaches the small problem's documented optimum") {
-  if (const auto path = testing::problem_file("small.txt.gz"))
+  if (const auto path = evbench::testing::problem_file("small.txt.gz"))
     CHECK(solved_cost(*path) == Approx(13981.638).margin(0.01));
 }
 
 TEST_CASE("The batch solve reaches the medium problem's documented optimum, or a lower one") {
-  if (const auto path = testing::problem_file("medium.txt.gz")) {
+  if (const auto path = evbench::testing::problem_file("medium.txt.gz")) {
     const double cost = solved_cost(*path);
     CHECK(cost <= 127925.660 + 0.01);
     CHECK(cost > 127925.0);

@@ -33,7 +33,6 @@ constexpr double kDuration = 8.0;    ///< [s] for a start, at most
 constexpr double kAfterwards = 2.5;  ///< [s] until a start is looked at again
 constexpr double kExchange = 0.01;   ///< [s]
 constexpr double kDriftTime = 0.3;   ///< [s] of its correlation
-constexpr double kDegrees = 180.0 / M_PI;
 
 struct Kind {
   std::string_view name;

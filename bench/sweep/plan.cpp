@@ -41,9 +41,6 @@ std::vector<Point> points_of(const Grid& grid) {
   return points;
 }
 
-/// What a process says of a source that can't be made, before the reason.
-const std::string kRefused = "refused: ";
-
 /// Makes the plan, run by run.
 class Planner {
  public:
@@ -150,6 +147,7 @@ class Planner {
 
   /// Why the process ended before it was done; empty: it was done.
   std::string look_at(const std::vector<const Job*>& jobs) {
+    static const std::string kCantBeMade = "refused: ";  // what the process says of a source that can't be made, first
     const auto work = [&]() -> std::string {
       Json list = Json::array();
       try {
@@ -158,7 +156,7 @@ class Planner {
           list.push_back({{"files", files.files}, {"events", files.events}});
         }
       } catch (const InputError& error) {
-        return kRefused + error.what();
+        return kCantBeMade + error.what();
       }
       return list.dump();
     };
@@ -171,7 +169,7 @@ class Planner {
       endings = pool_.wait(std::chrono::milliseconds(50));
     }
     const Ending& ending = endings.front();
-    if (ending.report.starts_with(kRefused)) throw InputError(ending.report.substr(kRefused.size()));
+    if (ending.report.starts_with(kCantBeMade)) throw InputError(ending.report.substr(kCantBeMade.size()));
     if (ending.report.empty()) {
       return ending.log.empty() ? ending.reason : fmt::format("{}; it said: {}", ending.reason, ending.log.back());
     }

@@ -1,6 +1,5 @@
 #include "bench/sweep/process_pool.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
@@ -10,7 +9,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -22,6 +20,7 @@
 #include <span>
 #include <sstream>
 
+#include "bench/sweep/pipe.hpp"
 #include "bench/sweep/process_tree.hpp"
 #include "core/io/write_all.hpp"
 #include "core/process/line_tail.hpp"
@@ -38,49 +37,6 @@ constexpr std::chrono::milliseconds kWatch(50);
 std::string shown_memory(double mib) {
   return mib < 1024.0 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.1f} GiB", mib / 1024.0);
 }
-
-/// A pipe of which the end that is read does not block.
-class Pipe {
- public:
-  Pipe() {
-    if (::pipe2(ends_.data(), O_CLOEXEC) != 0) {
-      throw InputError(fmt::format("no pipe can be had for a run: {}", std::strerror(errno)));
-    }
-    ::fcntl(ends_[0], F_SETFL, O_NONBLOCK);
-  }
-  ~Pipe() {
-    close_read();
-    close_write();
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-
-  int read_end() const { return ends_[0]; }
-  int write_end() const { return ends_[1]; }
-  void close_read() { close(ends_[0]); }
-  void close_write() { close(ends_[1]); }
-
-  /// Takes what there is to be read; closes its end when there will be no more.
-  template <class Take>
-  void read(Take take) {
-    std::array<char, 65536> bytes;
-    // Not until nothing is left: one that writes without end must not keep us here.
-    for (int i = 0; i < 16 && ends_[0] >= 0; ++i) {
-      const ssize_t count = ::read(ends_[0], bytes.data(), bytes.size());
-      if (count > 0) take(std::string_view(bytes.data(), static_cast<std::size_t>(count)));
-      if (count == 0) close_read();
-      if (count <= 0) return;
-    }
-  }
-
- private:
-  static void close(int& end) {
-    if (end >= 0) ::close(end);
-    end = -1;
-  }
-
-  std::array<int, 2> ends_ = {-1, -1};
-};
 
 /// What a process does first: it is to end with its parent, be the one that goes when memory is short, leave
 /// signals to their defaults, and write into the pipe.

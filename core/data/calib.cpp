@@ -18,13 +18,13 @@ bool is_yaml(const TextReader& reader) {
   return reader.text().starts_with("---") || reader.text().find_first_of(":{") != std::string::npos;
 }
 
-struct Layout {
+struct Coefficients {
   std::size_t count;
   const char* columns;
 };
 
 /// With every coefficient that there may be.
-Layout layout(DistortionModel model) {
+Coefficients layout(DistortionModel model) {
   switch (model) {
     case DistortionModel::radial_tangential: return {9, "fx fy cx cy k1 k2 p1 p2 k3"};
     case DistortionModel::equidistant: return {8, "fx fy cx cy k1 k2 k3 k4"};
@@ -37,7 +37,7 @@ Layout layout(DistortionModel model) {
 
 Camera read_calib(const std::string& path, int width, int height, DistortionModel model, const std::string& camera) {
   TextReader reader(path);
-  const Layout full = layout(model);
+  const Coefficients full = layout(model);
   if (!reader.next()) {
     throw InputError(fmt::format("{}: is empty; expected one record {}, or YAML", path, full.columns));
   }
@@ -57,7 +57,7 @@ Camera read_calib(const std::string& path, int width, int height, DistortionMode
 
 std::string format_calib(const Camera& camera) {
   const bool pinhole = camera.distortion == DistortionModel::none;
-  const Layout written = layout(pinhole ? DistortionModel::radial_tangential : camera.distortion);
+  const Coefficients written = layout(pinhole ? DistortionModel::radial_tangential : camera.distortion);
   const PinholeCamera& p = camera.pinhole;
   std::string text = fmt::format("{} {} {} {}", p.fx, p.fy, p.cx, p.cy);
   for (std::size_t i = 0; i < written.count - kPinhole; ++i) {

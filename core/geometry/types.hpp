@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 namespace evbench {
 
@@ -14,5 +15,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 using Matrix23 = Eigen::Matrix<double, 2, 3>;
 using Matrix26 = Eigen::Matrix<double, 2, 6>;
+
+constexpr double kDegrees = 180.0 / M_PI;  ///< in a radian
 
 }  // namespace evbench

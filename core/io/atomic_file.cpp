@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <span>
 
@@ -21,20 +20,16 @@ namespace evbench {
 namespace fs = std::filesystem;
 namespace {
 
-[[noreturn]] void fail(const std::string& path, const char* what, int error) {
-  throw OutputError(fmt::format("{}: {}: {}", path, what, std::strerror(error)));
-}
-
 /// Writes a file, then does `flush` with its descriptor, which returns an error of errno or 0, and closes it. Errors
 /// name the file `shown`.
 template <class Flush>
 void write_whole(const std::string& path, std::string_view content, const std::string& shown, Flush flush) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) fail(shown, "can't be written", errno);
+  if (file < 0) fail_to_write(shown, errno);
   int error = write_all(file, std::as_bytes(std::span(content)));
   if (error == 0) error = flush(file);
   if (::close(file) != 0 && error == 0) error = errno;
-  if (error != 0) fail(shown, "can't be written", error);
+  if (error != 0) fail_to_write(shown, error);
 }
 
 /// Content and name to the disk. Returns an error of errno, 0 where it is fine or means nothing (a pipe, a device).
@@ -52,7 +47,7 @@ int flush_data(int file) {
 int open_locked(const std::string& path, const std::string& shown) {
   while (true) {
     const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (file < 0) fail(shown, "can't be written", errno);
+    if (file < 0) fail_to_write(shown, errno);
     const bool locked = ::flock(file, LOCK_EX | LOCK_NB) == 0;
     struct stat held {
     }, named{};

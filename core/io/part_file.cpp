@@ -7,20 +7,16 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 
 #include "core/io/path.hpp"
+#include "core/io/write_all.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void fail(const std::string& path, int error) {
-  throw OutputError(fmt::format("{}: can't be written: {}", path, std::strerror(error)));
-}
 
 std::string folder_of(const std::string& path) {
   const std::string folder = fs::path(path).parent_path().string();
@@ -35,7 +31,7 @@ void PartFile::take_name(Try succeeds) {
   const std::string name = fmt::format("{}.part{}", target_, ::getpid());
   std::string candidate = name;
   for (int i = 1; !succeeds(candidate); ++i) {
-    if (errno != EEXIST) fail(path_, errno);
+    if (errno != EEXIST) fail_to_write(path_, errno);
     candidate = fmt::format("{}-{}", name, i);
   }
   part_ = candidate;
@@ -76,13 +72,13 @@ PartFile::~PartFile() {
 void PartFile::commit() {
   if (descriptor_ < 0) return;
   // A full disk is noticed here and not lost.
-  if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) fail(path_, errno);
+  if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) fail_to_write(path_, errno);
   if (part_.empty()) {  // linkat() does not replace: by way of a name beside it
     take_name([&](const std::string& name) {
       return ::linkat(AT_FDCWD, writable_path_.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
     });
   }
-  if (::rename(part_.c_str(), target_.c_str()) != 0) fail(path_, errno);
+  if (::rename(part_.c_str(), target_.c_str()) != 0) fail_to_write(path_, errno);
   ::close(descriptor_);
   descriptor_ = -1;
 }

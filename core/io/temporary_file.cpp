@@ -1,29 +1,18 @@
 #include "core/io/temporary_file.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 
 #include "core/io/write_all.hpp"
-#include "core/support/error.hpp"
 
 namespace evbench {
-namespace {
-
-[[noreturn]] void fail(const std::string& path, int error) {
-  throw OutputError(fmt::format("{}: can't be written: {}", path, std::strerror(error)));
-}
-
-}  // namespace
-
 TemporaryFile::TemporaryFile() : path_((std::filesystem::temp_directory_path() / "evbench-XXXXXX").string()) {
   file_ = ::mkostemp(path_.data(), O_CLOEXEC);
-  if (file_ < 0) fail(path_, errno);
+  if (file_ < 0) fail_to_write(path_, errno);
 }
 
 TemporaryFile::~TemporaryFile() {
@@ -32,7 +21,7 @@ TemporaryFile::~TemporaryFile() {
 }
 
 void TemporaryFile::write(std::span<const std::byte> bytes) {
-  if (const int error = write_all(file_, bytes); error != 0) fail(path_, error);
+  if (const int error = write_all(file_, bytes); error != 0) fail_to_write(path_, error);
 }
 
 }  // namespace evbench

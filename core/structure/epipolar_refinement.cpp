@@ -4,21 +4,13 @@
 #include <cmath>
 
 #include "core/geometry/so3.hpp"
+#include "core/geometry/tangent_plane.hpp"
 
 namespace evbench {
 namespace {
 
 using Vector5 = Eigen::Matrix<double, 5, 1>;
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
-using Basis = Eigen::Matrix<double, 3, 2>;
-
-/// Two unit vectors across a unit vector.
-Basis across(const Vector3& direction) {
-  Basis result;
-  result.col(0) = direction.unitOrthogonal();
-  result.col(1) = direction.cross(result.col(0));
-  return result;
-}
 
 /// Derivative of the Sampson distance's norm in normalised coordinates is left out: the norm changes little over a
 /// step.
@@ -32,7 +24,7 @@ Linearisation linearise(const SE3& T, const std::vector<Vector3>& rays1, const s
                         double focal, double huber_px) {
   const Matrix3 R = T.R();
   const Matrix3 E = so3::hat(T.p) * R;
-  const Basis B = across(T.p);
+  const Eigen::Matrix<double, 3, 2> B = tangent_plane(T.p);
   Linearisation result;
   for (std::size_t i = 0; i < rays1.size(); ++i) {
     const Vector3 line1 = E * rays2[i];
@@ -70,7 +62,8 @@ SE3 refine_relative_pose(const SE3& T_first_second, std::span<const Vector2> fir
     H.diagonal() *= 1.0 + damping;
     const Vector5 step = H.ldlt().solve(-at.g);
     if (!step.allFinite()) break;
-    const SE3 trial{(T.q * so3::exp(step.head<3>())).normalized(), (T.p + across(T.p) * step.tail<2>()).normalized()};
+    const SE3 trial{(T.q * so3::exp(step.head<3>())).normalized(),
+                    (T.p + tangent_plane(T.p) * step.tail<2>()).normalized()};
     const Linearisation next = linearise(trial, rays1, rays2, focal, huber_px);
     if (!(next.cost < at.cost)) {
       damping = std::max(10.0 * damping, 1e-4);

@@ -11,15 +11,13 @@
 
 using namespace evbench;
 using evbench::testing::davis;
-using evbench::testing::Scene;
+using evbench::testing::PointScene;
 
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
-
 /// Observations at 200 Hz, each track with a phase of its own, for 0 ≤ t ≤ duration, in time order.
 template <class Motion>
-TrackBuffer tracks_of(Scene scene, const Motion& motion, double duration, double noise, std::uint64_t seed) {
+TrackBuffer tracks_of(PointScene scene, const Motion& motion, double duration, double noise, std::uint64_t seed) {
   Random random(seed);
   TrackBuffer buffer;
   TrackId id = 0;
@@ -46,7 +44,7 @@ double angle_deg(const Vector3& a, const Vector3& b) { return std::atan2(a.cross
 }  // namespace
 
 TEST_CASE("a moving camera is initialised once the parallax suffices, with the right motion") {
-  for (const Scene scene : {Scene::volume, Scene::plane}) {
+  for (const PointScene scene : {PointScene::volume, PointScene::plane}) {
     const TrackBuffer tracks = tracks_of(scene, moving, 1.0, 0.5, 3);
     Initialiser initialiser({}, davis());
     double found = 0.0;
@@ -75,7 +73,7 @@ TEST_CASE("a moving camera is initialised once the parallax suffices, with the r
 
 TEST_CASE("a camera at rest or in pure rotation is never initialised") {
   for (const auto motion : {rotating, resting}) {
-    const TrackBuffer tracks = tracks_of(Scene::volume, motion, 2.0, 0.7, 5);
+    const TrackBuffer tracks = tracks_of(PointScene::volume, motion, 2.0, 0.7, 5);
     Initialiser initialiser({}, davis());
     for (double t = 0.03; t < 2.0; t += 0.1) {
       const Initialiser::Attempt attempt = initialiser.attempt(tracks, t);
@@ -86,7 +84,7 @@ TEST_CASE("a camera at rest or in pure rotation is never initialised") {
 }
 
 TEST_CASE("the first view moves on when its tracks have ended") {
-  TrackBuffer tracks = tracks_of(Scene::volume, moving, 0.1, 0.0, 7);
+  TrackBuffer tracks = tracks_of(PointScene::volume, moving, 0.1, 0.0, 7);
   std::vector<TrackObservation> later;
   for (TrackId id : tracks.ids()) {
     for (TrackObservation z : tracks.observations(id)) later.push_back({id + 100, z.t + 0.5, z.pixel, z.sigma});

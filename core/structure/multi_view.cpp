@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "core/geometry/tangent_plane.hpp"
 #include "core/structure/resection.hpp"
 #include "core/support/index.hpp"
 #include "core/support/median.hpp"
@@ -19,16 +20,9 @@ using Matrix6x3 = Eigen::Matrix<double, 6, 3>;
 constexpr double kBehind = 30.0;        ///< [px] what a point behind the camera counts as
 constexpr double kLeastInverse = 0.01;  ///< no point is farther than a hundred times the median distance
 
-/// Two directions across a unit vector, and along it the inverse distance: the columns of a point's increment.
-Eigen::Matrix<double, 3, 2> across(const Vector3& direction) {
-  Eigen::Matrix<double, 3, 2> result;
-  result.col(0) = direction.unitOrthogonal();
-  result.col(1) = direction.cross(result.col(0));
-  return result;
-}
-
+/// By a step in the plane across its direction, and one of its inverse distance.
 InversePoint moved(const InversePoint& point, const Vector3& step) {
-  return {(point.direction + across(point.direction) * step.head<2>()).normalized(), point.inverse + step.z()};
+  return {(point.direction + tangent_plane(point.direction) * step.head<2>()).normalized(), point.inverse + step.z()};
 }
 
 InversePoint to_inverse(const Vector3& position) {
@@ -86,7 +80,7 @@ class MultiView::Step {
     camera_gradients_.assign(views_, Vector6::Zero());
     for (std::size_t i = 0; i < at.points.size(); ++i) {
       Point point;
-      const Eigen::Matrix<double, 3, 2> basis = across(at.points[i].direction);
+      const Eigen::Matrix<double, 3, 2> basis = tangent_plane(at.points[i].direction);
       for (std::size_t v = 0; v < views_; ++v) {
         const auto& place = problem.views_.places[i][v];
         if (!place) continue;

@@ -11,7 +11,7 @@ namespace evbench {
 namespace {
 
 using testing::davis;
-using testing::Scene;
+using testing::PointScene;
 
 constexpr double kWidth = 3.0;  ///< [px]
 constexpr int kIterations = 20;
@@ -28,7 +28,7 @@ struct Sequence {
     guess.t1 = 1.0;
     guess.T1 = moving(1.0);
     TrackId id = 0;
-    for (const Vector3& point : testing::scene_points(Scene::volume, 50, random)) {
+    for (const Vector3& point : testing::scene_points(PointScene::volume, 50, random)) {
       for (double t = 0.0; t <= 1.0; t += 0.01) {
         Vector2 pixel = davis().project(moving(t).inverse() * point) + testing::noise(noise, random);
         if (id < outliers) pixel += 40.0 * t * Vector2(std::cos(id), std::sin(id));
@@ -113,7 +113,7 @@ TEST_CASE("A camera is found by what it sees, though a quarter of it is wrong") 
   Random random(5);
   std::vector<InversePoint> points;
   std::vector<Vector2> pixels;
-  for (const Vector3& point : testing::scene_points(Scene::volume, 40, random)) {
+  for (const Vector3& point : testing::scene_points(PointScene::volume, 40, random)) {
     pixels.push_back(davis().project(moving(0.6).inverse() * point));
     if (points.size() % 4 == 0) pixels.back() += Vector2(25.0, -10.0);
     points.push_back({point.normalized(), 1.0 / point.norm()});

@@ -9,8 +9,6 @@
 namespace evbench {
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
-
 double angle(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 /// The views of one point, as it is seen from a fixed set of cameras.

@@ -17,7 +17,6 @@
 namespace evbench {
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
 constexpr std::size_t kFewestMatches = 8;
 
 struct Matches {

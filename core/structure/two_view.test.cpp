@@ -8,7 +8,7 @@
 
 using namespace evbench;
 using evbench::testing::davis;
-using evbench::testing::Scene;
+using evbench::testing::PointScene;
 
 namespace {
 
@@ -17,7 +17,7 @@ struct Pair {
   std::vector<Vector2> first, second;
 };
 
-Pair make_pair(Scene scene, const Vector6& motion, double noise, double outlier_share, std::uint64_t seed) {
+Pair make_pair(PointScene scene, const Vector6& motion, double noise, double outlier_share, std::uint64_t seed) {
   Random random(seed);
   Pair pair{se3::exp(motion), {}, {}};
   for (const Vector3& point : testing::scene_points(scene, 400, random)) {
@@ -58,7 +58,7 @@ const Vector6 sideways = motion({0.02, -0.06, 0.03}, {0.35, 0.05, -0.06});
 TEST_CASE("the pose between two views of a volume is recovered") {
   std::vector<double> errors;  // of the direction [deg]; over 300 seeds: median 1.1, 95 % below 4.5, worst 17
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const Pair pair = make_pair(Scene::volume, sideways, 0.4, 0.15, seed);
+    const Pair pair = make_pair(PointScene::volume, sideways, 0.4, 0.15, seed);
     const TwoViewResult result = relative_pose(pair.first, pair.second, davis());
     INFO(result.reason);
     REQUIRE_FALSE(result.candidates.empty());
@@ -77,7 +77,7 @@ TEST_CASE("the pose between two views of a volume is recovered") {
 
 TEST_CASE("the pose between two views of a plane is among the candidates") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const Pair pair = make_pair(Scene::plane, sideways, 0.3, 0.1, seed);
+    const Pair pair = make_pair(PointScene::plane, sideways, 0.3, 0.1, seed);
     const TwoViewResult result = relative_pose(pair.first, pair.second, davis());
     INFO(result.reason);
     REQUIRE_FALSE(result.candidates.empty());
@@ -87,7 +87,7 @@ TEST_CASE("the pose between two views of a plane is among the candidates") {
 }
 
 TEST_CASE("points of the candidates are in front of both cameras and reproject") {
-  const Pair pair = make_pair(Scene::volume, sideways, 0.3, 0.1, 3);
+  const Pair pair = make_pair(PointScene::volume, sideways, 0.3, 0.1, 3);
   const TwoViewResult result = relative_pose(pair.first, pair.second, davis());
   REQUIRE_FALSE(result.candidates.empty());
   for (const auto& candidate : result.candidates) {
@@ -107,7 +107,7 @@ TEST_CASE("points of the candidates are in front of both cameras and reproject")
 
 TEST_CASE("a pure rotation and a camera at rest give no pose and say so") {
   for (const double noise : {0.0, 0.7}) {
-    for (const Scene scene : {Scene::volume, Scene::plane}) {
+    for (const PointScene scene : {PointScene::volume, PointScene::plane}) {
       for (const Vector3& rotation : {Vector3(0, 0, 0), Vector3(0.02, -0.15, 0.05), Vector3(0, 0, 0.6)}) {
         for (std::uint64_t seed = 1; seed <= 5; ++seed) {
           const Pair pair = make_pair(scene, motion(rotation, Vector3::Zero()), noise, 0.05, seed);
@@ -122,14 +122,14 @@ TEST_CASE("a pure rotation and a camera at rest give no pose and say so") {
 }
 
 TEST_CASE("matches that no motion explains give no pose") {
-  const Pair pair = make_pair(Scene::volume, sideways, 0.3, 1.0, 5);
+  const Pair pair = make_pair(PointScene::volume, sideways, 0.3, 1.0, 5);
   const TwoViewResult result = relative_pose(pair.first, pair.second, davis());
   CHECK(result.candidates.empty());
   CHECK_FALSE(result.reason.empty());
 }
 
 TEST_CASE("few matches, equal matches, and NaN are refused with a reason") {
-  const Pair pair = make_pair(Scene::volume, sideways, 0.3, 0.0, 5);
+  const Pair pair = make_pair(PointScene::volume, sideways, 0.3, 0.0, 5);
   const auto few = relative_pose(std::span(pair.first).first(6), std::span(pair.second).first(6), davis());
   CHECK(few.candidates.empty());
   CHECK(few.reason.find("6 matches") == 0);
@@ -144,7 +144,7 @@ TEST_CASE("few matches, equal matches, and NaN are refused with a reason") {
 }
 
 TEST_CASE("the same matches give the same pose to the last bit") {
-  const Pair pair = make_pair(Scene::plane, sideways, 0.5, 0.2, 9);
+  const Pair pair = make_pair(PointScene::plane, sideways, 0.5, 0.2, 9);
   const auto a = relative_pose(pair.first, pair.second, davis()), b = relative_pose(pair.first, pair.second, davis());
   REQUIRE(a.candidates.size() == b.candidates.size());
   REQUIRE_FALSE(a.candidates.empty());

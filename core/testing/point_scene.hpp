@@ -22,14 +22,14 @@ inline bool in_davis_image(const Vector2& pixel) {
   return pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() <= 239.0 && pixel.y() <= 179.0;
 }
 
-enum class Scene { volume, plane };
+enum class PointScene { volume, plane };
 
 /// Points about 2 m before a camera at the origin that looks along z: in a volume, or on a slightly tilted plane.
-inline std::vector<Vector3> scene_points(Scene scene, int count, Random& random, double width = 2.6) {
+inline std::vector<Vector3> scene_points(PointScene scene, int count, Random& random, double width = 2.6) {
   std::vector<Vector3> points;
   for (int i = 0; i < count; ++i) {
     const double x = random.uniform(-0.5 * width, 0.5 * width), y = random.uniform(-0.4 * width, 0.4 * width);
-    const double z = scene == Scene::plane ? 2.0 + 0.2 * x - 0.1 * y : random.uniform(1.4, 3.2);
+    const double z = scene == PointScene::plane ? 2.0 + 0.2 * x - 0.1 * y : random.uniform(1.4, 3.2);
     points.emplace_back(x, y, z);
   }
   return points;
