@@ -21,7 +21,7 @@ const Registration<BackEnd, GpMap> registration("gp_map",
 
 constexpr double kYoung = 5.0;    ///< [s] for which another first map is looked for
 constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
-constexpr double kFar = 3.0;      ///< [sigmas] median error of the tracks seen last that no optimum should leave
+constexpr double kFar = 3.0;      ///< median error of the tracks seen last that no optimum should leave: newest_error()
 
 }  // namespace
 
@@ -216,20 +216,17 @@ bool GpMap::is_outlier(int landmark, double error_px) const {
 
 void GpMap::optimise() {
   last_update_ = engine_->update();
-  settle(false);
+  settle();
   yield_to_motion();
-  settle(true);
 }
 
-/// More steps, where one has left most tracks far from where they should be: the next state, extrapolated from this
-/// one, would be farther off still, where the robust loss hardly pulls. Before the prior has yielded (`yielded`) only
-/// where a step was damped, and so has not arrived: one that has is held by the prior, and more would make outliers of
-/// all.
-void GpMap::settle(bool yielded) {
+/// More steps, where one was damped, and so has not arrived, and leaves most tracks far from where they should be: the
+/// next state, extrapolated from this one, would be farther off still, where the robust loss hardly pulls.
+void GpMap::settle() {
   constexpr double kHelp = 0.95;
   constexpr int kSteps = 6;
   double error = newest_error();
-  for (int i = 0; i < kSteps && error > kFar && (yielded || last_update_.damping > 0.0); ++i) {
+  for (int i = 0; i < kSteps && error > kFar && last_update_.damping > 0.0; ++i) {
     last_update_ = engine_->update();
     const double now = newest_error();
     if (!(now < kHelp * error)) return;
@@ -274,11 +271,12 @@ void GpMap::recover_prior() {
   engine_->set_next_qc((std::exp(-dt / options_.learn.window) * graph().qc).cwiseMax(qc_));
 }
 
-/// Median error of the tracks seen in the newest interval, each at its last observation [sigmas]; 0: too few.
+/// Median error of the tracks seen in the newest interval, each at its last observation [sigmas of what averages of the
+/// errors would be, as outliers are told by: trackers drift, and that is no motion]; 0: too few.
 double GpMap::newest_error() const {
   const std::size_t k = graph().states.size() - 1;
   const GpInterval interval(graph().states[k - 1], graph().states[k]);
-  const double noise = noise_.scale();
+  const double noise = noise_.scale_of_means();
   std::vector<double> errors;
   for (const auto& group : graph().intervals[k].groups()) {
     const Observation& z = graph().intervals[k].of(group).back();

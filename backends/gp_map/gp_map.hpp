@@ -73,7 +73,7 @@ class GpMap : public BackEnd {
   void add_observations();
   void add_landmarks();
   void optimise();
-  void settle(bool yielded);
+  void settle();
   void yield_to_motion();
   void recover_prior();
   void learn();

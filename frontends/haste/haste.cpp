@@ -15,7 +15,8 @@ namespace {
 const Registration<FrontEnd, Haste> registration(
     "haste",
     "tracks features in events asynchronously by hypotheses (Alzugaray and "
-    "Chli 2020), finds lost landmarks again");
+    "Chli 2020), finds lost landmarks again",
+    2);
 
 constexpr double kApart = 1e-6;  ///< [s] between two observations of a track, at least
 
@@ -99,6 +100,8 @@ void Haste::end_trackers() {
       end(id, End::border);
     } else if (tracker.running() && tracker.scores().spread() < life.spread) {
       end(id, End::spread);
+    } else if (tracker.running() && tracker.scores().weakest_curvature() < life.curvature) {
+      end(id, End::edge);
     } else if (life.starvation > 0.0 && odometer_ - track.odometer > life.starvation) {
       end(id, End::starvation);
     } else if (crowded(id, track.pixel)) {
@@ -213,14 +216,14 @@ void Haste::receive(const Feedback& feedback) {
 
 std::vector<std::string> Haste::remarks() const {
   const auto ended = [&](End why) { return ended_[index(static_cast<int>(why))]; };
-  return {
-      fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
-      fmt::format("trackers that ended: {} at the border, {} as their hypotheses were alike, {} starved, {} crowded, "
-                  "{} far from where they were expected, {} as outliers",
-                  ended(End::border), ended(End::spread), ended(End::starvation), ended(End::crowding),
-                  ended(End::veto), ended(End::outlier)),
-      fmt::format("{} landmarks found again, of which {} went on", found_, went_on_),
-      fmt::format("{} observations came later than the delay", late_)};
+  return {fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
+          fmt::format("trackers that ended: {} at the border, {} as their hypotheses were alike, {} before an edge, {} "
+                      "starved, {} crowded, "
+                      "{} far from where they were expected, {} as outliers",
+                      ended(End::border), ended(End::spread), ended(End::edge), ended(End::starvation),
+                      ended(End::crowding), ended(End::veto), ended(End::outlier)),
+          fmt::format("{} landmarks found again, of which {} went on", found_, went_on_),
+          fmt::format("{} observations came later than the delay", late_)};
 }
 
 }  // namespace evbench::haste

@@ -39,7 +39,7 @@ class Haste : public EventFrontEnd {
   };
 
   /// Why tracks end.
-  enum class End { border, spread, starvation, crowding, veto, outlier };
+  enum class End { border, spread, edge, starvation, crowding, veto, outlier };
 
   void take(std::span<const Event> events) override;
   void look() override;
@@ -65,7 +65,7 @@ class Haste : public EventFrontEnd {
   double detected_;              ///< [s] when features were last looked for
   double odometer_ = 0.0;        ///< the image's way: the trackers' mean one [px]
   TrackId next_id_ = 0;
-  std::array<std::size_t, 6> ended_{};  ///< by End
+  std::array<std::size_t, 7> ended_{};  ///< by End
   std::size_t begun_ = 0, found_ = 0, went_on_ = 0, late_ = 0;
 };
 

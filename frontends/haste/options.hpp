@@ -9,6 +9,7 @@ namespace evbench::haste {
 /// When a tracker is given up.
 struct LifeOptions {
   double spread = 0.2;
+  double curvature = 0.02;
   double border = 8.0;
   double starvation = 15.0;
   double crowding = 5.0;
@@ -17,6 +18,10 @@ struct LifeOptions {
     set.add("spread", spread,
             "its hypotheses' scores differ by less than this share of the best one: it follows nothing")
         .range(0.0, 1.0);
+    set.add("curvature", curvature,
+            "along some direction its scores fall by less than this share of the best one at √2 px from where they are "
+            "highest: it follows an edge, along which nothing holds it; -1: never")
+        .range(-1.0, 1.0);
     set.add("border", border, "it comes this near to the image's border [px]").range(0.0, 1000.0);
     set.add("starvation", starvation,
             "the others have moved by this much (mean) since it last changed its state [px]: a standing camera starves "

@@ -24,6 +24,10 @@ struct Scores {
     const double largest = std::max(std::abs(best()), std::abs(worst()));
     return largest > 0.0 ? (best() - worst()) / largest : 0.0;
   }
+  /// How much the paraboloid through them falls from its top to √2 px away, along the direction along which it falls
+  /// least, as a share of the largest magnitude: small before an edge, along which nothing holds a tracker. Negative
+  /// where it rises.
+  double weakest_curvature() const;
 };
 
 /// What happened when a tracker changed its state. The first change of a tracker tells that its window is full: it

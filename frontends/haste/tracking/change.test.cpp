@@ -36,6 +36,17 @@ TEST_CASE("The refined position is no more than a pixel away, and the midpoint w
   CHECK(refined_position(flat) == Vector2(50.5, 40));
 }
 
+TEST_CASE("Scores tell how little they fall along the direction along which they fall least") {
+  const Scores peak =
+      with_scores([](double x, double y) { return 10.0 - 2.0 * x * x - 2.0 * x * y - 2.0 * y * y; }).scores;
+  CHECK(peak.weakest_curvature() == Approx(0.2));  // 2 lower at (1, -1), of 10
+  const Scores edge = with_scores([](double x, double y) { return -10.0 - (x + y) * (x + y); }).scores;
+  CHECK(edge.weakest_curvature() == Approx(0.0).margin(1e-12));
+  const Scores saddle = with_scores([](double x, double y) { return 4.0 - x * x + y * y; }).scores;
+  CHECK(saddle.weakest_curvature() == Approx(-0.4));
+  CHECK(Scores().weakest_curvature() == 0.0);
+}
+
 TEST_CASE("Scores tell the best, the worst and their spread, of either sign") {
   Scores scores;
   CHECK(scores.spread() == 0.0);
