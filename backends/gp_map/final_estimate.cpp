@@ -59,14 +59,36 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
   return engine_->optimise(options_.final_iterations, learns ? kLearnt : kFixed);
 }
 
+/// Landmarks of which the track says something else. Where most of the tracks that are seen together do, it is the
+/// motion that is wrong, and none of them.
+std::vector<int> GpMap::outliers(const NoiseLearner& noise) const {
+  std::vector<int> far;
+  std::vector<int> seen_in(graph().intervals.size()), far_in(seen_in);
+  for (int j = 0; j < static_cast<int>(graph().landmarks.size()); ++j) {
+    const auto& landmark = graph().landmarks[index(j)];
+    if (!landmark.alive) continue;
+    const bool is_far = TrackErrors(graph(), j, noise).is_outlier(options_.map.outlier_threshold);
+    if (is_far) far.push_back(j);
+    for (const int k : landmark.intervals) {
+      ++seen_in[index(k)];
+      far_in[index(k)] += is_far ? 1 : 0;
+    }
+  }
+  std::erase_if(far, [&](int j) {
+    const auto& intervals = graph().landmarks[index(j)].intervals;
+    const auto wrong =
+        std::ranges::count_if(intervals, [&](int k) { return 2 * far_in[index(k)] > seen_in[index(k)]; });
+    return 2 * wrong > std::ssize(intervals);
+  });
+  return far;
+}
+
 /// Of a full history. Outliers go, a track that slid keeps its landmark up to there, and each counts with its own
 /// noise.
 void GpMap::judge_tracks(const NoiseLearner& noise) {
   const double threshold = options_.map.outlier_threshold;
   const auto landmarks = static_cast<int>(graph().landmarks.size());
-  for (int j = 0; j < landmarks; ++j) {
-    if (graph().landmarks[index(j)].alive && TrackErrors(graph(), j, noise).is_outlier(threshold)) become_outlier(j);
-  }
+  for (const int outlier : outliers(noise)) become_outlier(outlier);
   FactorGraph judged = graph();
   for (int j = 0; j < landmarks; ++j) {
     if (!judged.landmarks[index(j)].alive) continue;

@@ -17,7 +17,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 7);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 8);
 
 constexpr double kYoung = 5.0;    ///< [s] for which another first map is looked for
 constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map

@@ -105,6 +105,7 @@ class GpMap : public BackEnd {
   void tell_online(double t);
   void tell_smoothed();
   Engine::OptimiseSummary estimate_everything();
+  std::vector<int> outliers(const NoiseLearner& noise) const;
   void judge_tracks(const NoiseLearner& noise);
   void record_final_prior();
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
