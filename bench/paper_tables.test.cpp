@@ -40,6 +40,28 @@ TEST_CASE("Table I on real tracks: no back-end is more than a tenth less accurat
   CHECK(ate(metrics.at("bundle adjustment, 100 ms")) < 0.0058);
 }
 
+TEST_CASE("Tracks of violent motion: the final estimate does not take a wrong motion for wrong tracks") {
+  const auto tracks = data_file("haste_simulated/poster_violent/tracks.txt");
+  if (!tracks) return;
+  const TemporaryFolder folder;
+  const Json config{
+      {"name", "violent"},
+      {"source",
+       {{"type", "recording"},
+        {"folder", std::filesystem::path(*tracks).parent_path().string()},
+        {"width", 240},
+        {"height", 180}}},
+      {"frontend", {{"type", "recorded"}, {"tracks", *tracks}, {"sigma", 0.5}}},
+      {"backend", {{"type", "gp_map"}, {"label", "asynchronous"}}},
+      {"evaluation",
+       {{"alignment", "sim3"}, {"association", "interpolated"}, {"rpe_delta", 0.1}, {"rpe_unit", "seconds"}}}};
+  folder.write("violent.json", config.dump());
+  REQUIRE(testing::evbench(folder, "run violent.json --quiet").exit_code == 0);
+  const Json final_scores = metrics_of(folder.file("results/violent")).at("asynchronous").at("final");
+  CHECK(final_scores.at("ate").at("trans_percent").get<double>() < 1.35);
+  CHECK(final_scores.at("rpe").at("trans_m").at("rmse").get<double>() < 0.045);
+}
+
 TEST_CASE("Real tracks that run out: a trajectory as long as there are some, and degraded or lost is said") {
   if (!data_file("poster_translation/tracks_eklt.txt")) return;
   const TemporaryFolder folder;
