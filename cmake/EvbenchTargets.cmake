@@ -40,8 +40,8 @@ function(evbench_precompile target header)
   endif()
 endfunction()
 
-# evbench_group(TARGET): with EVBENCH_GROUP, its sources are compiled several at a time, which takes a third of the time;
-# what is local to one must then have a name that no other of the target has.
+# evbench_group(TARGET): with EVBENCH_GROUP, its sources are compiled several at a time, so that what they share is read and
+# instantiated once; what is local to one must then have a name that no other of the target has.
 function(evbench_group target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${EVBENCH_GROUP} UNITY_BUILD_BATCH_SIZE 8)
 endfunction()

@@ -217,9 +217,8 @@ void Haste::receive(const Feedback& feedback) {
 std::vector<std::string> Haste::remarks() const {
   const auto ended = [&](End why) { return ended_[index(static_cast<int>(why))]; };
   return {fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
-          fmt::format("trackers that ended: {} at the border, {} as their hypotheses were alike, {} before an edge, {} "
-                      "starved, {} crowded, "
-                      "{} far from where they were expected, {} as outliers",
+          fmt::format("trackers that ended: {} at the border, {} as their hypotheses were alike, {} before an edge, "
+                      "{} starved, {} crowded, {} far from where they were expected, {} as outliers",
                       ended(End::border), ended(End::spread), ended(End::edge), ended(End::starvation),
                       ended(End::crowding), ended(End::veto), ended(End::outlier)),
           fmt::format("{} landmarks found again, of which {} went on", found_, went_on_),
