@@ -135,8 +135,9 @@ class Executor {
     std::vector<std::size_t> waiting = {};           ///< jobs
   };
 
-  std::string folder_of(const Job& job) const {
-    return fmt::format("{}/{}/{}", options_.out, job.run->config.experiment, job.run->identity.key);
+  std::string folder_of(const Job& job) const { return folder_of(*job.run, job.run->identity.key); }
+  std::string folder_of(const PlannedRun& run, const std::string& key) const {
+    return fmt::format("{}/{}/{}", options_.out, run.config.experiment, key);
   }
 
   void take_results() {
@@ -273,6 +274,9 @@ class Executor {
     const std::string& events = job.run->events;
     if (--users_[events] > 0 || events.empty()) return;
     std::error_code ignored;
+    for (const std::string& key : job.run->events_for) {
+      if (!std::filesystem::exists(folder_of(*job.run, key), ignored)) return;
+    }
     std::filesystem::remove_all(fmt::format("{}/.events/{}", options_.out, events), ignored);
     std::filesystem::remove(options_.out + "/.events", ignored);  // the last one
   }

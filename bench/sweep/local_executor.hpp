@@ -58,8 +58,9 @@ std::vector<PlannedRun> runs_to_do(const std::vector<PlannedRun>& runs, const Pl
 /// What a front-end gives that begins with events and takes no feedback is made once for the runs that share it
 /// (PlannedRun::tracks), in a process of its own, and kept in `out`/.tracks/NAME; results are the same, byte by byte,
 /// and their times the front-end's own. Simulated events that several runs need (PlannedRun::events) are likewise made
-/// once, in `out`/.events/NAME, and removed when the last of these runs is done; runs of the same events follow one
-/// another, so that there are at most about as many recordings as processes.
+/// once, in `out`/.events/NAME, and removed when the last of these runs is done, whoever does it
+/// (PlannedRun::events_for); runs of the same events follow one another, so that there are at most about as many
+/// recordings as processes.
 ///
 /// `progress` is called several times a second. Throws OutputError when results can't be written, and Interrupted; what
 /// was complete by then stays, and nothing is half.

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "bench/experiment.hpp"
 #include "core/io/path.hpp"
@@ -29,6 +31,7 @@ ManifestLine read_line(const std::string& text, const std::string& place, Plugin
     line.run.config = ConfigFile(place, json.at("config"), plugins).experiment({}).runs.at(0);
     if (!json.at("position").is_null()) line.run.config.position = json.at("position").get<std::size_t>();
     line.run.tracks = json.at("tracks").get<std::string>();
+    line.run.events = json.at("events").get<std::string>();
     const Job& job = line.run.config.job;
     line.run.identity = identify(job, *make_source(job, plugins), plugins, digests);
     const auto key = json.at("key").get<std::string>();
@@ -44,6 +47,21 @@ ManifestLine read_line(const std::string& text, const std::string& place, Plugin
   return line;
 }
 
+/// Other lines, which other processes do, may need the same events. Where none does, they are not kept.
+void share_events(std::vector<ManifestLine>& lines, const std::vector<std::string>& texts) {
+  if (std::ranges::all_of(lines, [](const ManifestLine& line) { return line.run.events.empty(); })) return;
+  std::map<std::string, std::vector<std::string>> keys;  // by the name of the events
+  for (const std::string& text : texts) {
+    const Json json = Json::parse(text, nullptr, false);
+    if (json.is_object()) keys[json.value("events", "")].push_back(json.value("key", ""));
+  }
+  for (auto& [run, options] : lines) {
+    if (run.events.empty()) continue;
+    run.events_for = keys[run.events];
+    if (run.events_for.size() < 2) run.events.clear();
+  }
+}
+
 }  // namespace
 
 std::string format_manifest(const std::vector<PlannedRun>& runs, const ExecutorOptions& options) {
@@ -56,6 +74,7 @@ std::string format_manifest(const std::vector<PlannedRun>& runs, const ExecutorO
                        {"position", run.config.position ? Json(*run.config.position) : Json()},
                        {"config", run.config.resolved()},
                        {"tracks", run.tracks},
+                       {"events", run.events},
                        {"out", std::filesystem::absolute(options.out).string()},
                        {"timeout", options.limits.seconds},
                        {"memory", options.limits.memory_mib},
@@ -71,14 +90,16 @@ std::vector<ManifestLine> read_manifest(const std::string& path, std::size_t fir
   if (!file) throw InputError(fmt::format("{}: can't be read; expected the manifest of a sweep", path));
   Digests digests;
   std::vector<ManifestLine> lines;
-  std::size_t number = 0;
+  std::vector<std::string> texts;
   for (std::string text; std::getline(file, text);) {
-    ++number;
+    texts.push_back(text);
+    const std::size_t number = texts.size();
     const bool wanted = stride == 0 ? number == first : number >= first && (number - first) % stride == 0;
     if (!wanted) continue;
     lines.push_back(read_line(text, fmt::format("{}:{}", path, number), plugins, digests));
   }
-  if (lines.empty()) throw InputError(fmt::format("{}: has {} lines; expected a line {}", path, number, first));
+  if (lines.empty()) throw InputError(fmt::format("{}: has {} lines; expected a line {}", path, texts.size(), first));
+  share_events(lines, texts);
   return lines;
 }
 

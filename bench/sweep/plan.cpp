@@ -89,7 +89,7 @@ class Planner {
   void add(RunConfig config, RunAxes axes) {
     check_interruption();
     JobIdentity identity = identify(config.job, sources_.at(source_of(config.job)), plugins_, digests_);
-    PlannedRun run{std::move(config), std::move(identity), std::move(axes), "", ""};
+    PlannedRun run{std::move(config), std::move(identity), std::move(axes), "", "", {}};
     const auto [twin, is_new] = by_key_.emplace(run.identity.key, plan_.runs.size());
     if (!is_new) check_twin(plan_.runs[twin->second], run);
     plan_.runs.push_back(std::move(run));

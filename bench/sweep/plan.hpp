@@ -23,6 +23,8 @@ struct PlannedRun {
   /// Likewise names its source and seed, where its front-end begins with events that no file holds, and other runs do,
   /// too: ten digits of the SHA-256 of that part of the job.
   std::string events;
+  /// Keys of runs that other processes do and that need the same events, which stay until all of them are done.
+  std::vector<std::string> events_for;
 };
 
 /// Values on axes: "seed=3, frames=0.1".

@@ -94,19 +94,26 @@ std::string set_up(const std::string& setup, const std::string& command) {
   return std::string(setup).replace(place, 2, command) + "\n";
 }
 
-std::string task_time(const ExecutorOptions& options, const SlurmOptions& slurm, std::size_t lines_each) {
+/// Minutes in which a task can do its runs, each with its limit, and wait for what they share with others, of which
+/// each is made with the limit of a run.
+std::string task_time(const std::vector<PlannedRun>& runs, const ExecutorOptions& options, const SlurmOptions& slurm,
+                      std::size_t tasks) {
   if (!slurm.time.empty()) return slurm.time;
   if (options.limits.seconds == 0.0) return "";
-  return fmt::format("{:.0f}", std::ceil(options.limits.seconds * static_cast<double>(lines_each) / 60.0) + 1.0);
+  const bool tracks = std::ranges::any_of(runs, [](const PlannedRun& run) { return !run.tracks.empty(); });
+  const bool events = std::ranges::any_of(runs, [](const PlannedRun& run) { return !run.events.empty(); });
+  const std::size_t lines_each = (runs.size() + tasks - 1) / tasks;
+  const auto limits = static_cast<double>(lines_each * (1U + (tracks ? 1U : 0U) + (events ? 1U : 0U)));
+  return fmt::format("{:.0f}", std::ceil(options.limits.seconds * limits / 60.0) + 1.0);
 }
 
 /// Options of sbatch for the tasks. Its limit of memory is above the run's, which tells what happened.
 std::string task_options(const ExecutorOptions& options, const SlurmOptions& slurm, const SlurmSubmission& submission,
-                         std::size_t runs) {
+                         const std::vector<PlannedRun>& runs) {
   std::string text = fmt::format("--requeue --array=1-{}", submission.tasks);
   if (slurm.width > 0) text += fmt::format("%{}", slurm.width);
   text += " --output=" + quoted(submission.folder + "/%a.log");
-  const std::string time = task_time(options, slurm, (runs + submission.tasks - 1) / submission.tasks);
+  const std::string time = task_time(runs, options, slurm, submission.tasks);
   if (!time.empty()) text += " --time=" + quoted(time);
   if (options.limits.memory_mib > 0.0) text += fmt::format(" --mem={:.0f}M", 1.25 * options.limits.memory_mib + 256.0);
   return text;
@@ -138,7 +145,7 @@ SlurmSubmission submit_to_slurm(const std::vector<PlannedRun>& runs, const Execu
                         set_up(slurm.setup, fmt::format("{} status {} > {}/status.txt", program, sweep, sweep)));
   try {
     submission.array_job =
-        submit(fmt::format("{} {}", everywhere, task_options(options, slurm, submission, runs.size())), tasks);
+        submit(fmt::format("{} {}", everywhere, task_options(options, slurm, submission, runs)), tasks);
   } catch (const InputError&) {
     std::error_code ignored;
     fs::remove_all(submission.folder, ignored);

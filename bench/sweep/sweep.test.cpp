@@ -228,21 +228,42 @@ TEST_CASE("Simulated events are made once for runs that share them, change nothi
   for (const PlannedRun& run : runs) CHECK((!run.events.empty() && run.events == runs[0].events));
   CHECK(plan(folder, "c.json", {"seed=1,2"}).runs.at(0).events.empty());
 
-  REQUIRE(testing::evbench(folder, sweep + "--out own --executor none").exit_code == 0);  // each by itself
-  testing::shell(folder, "for i in 1 2 3 4; do \"$evbench\" task own/tiny/manifest.jsonl $i; done");
-  auto expected = results_of(folder.file("own/tiny"));
-  expected.erase("manifest.jsonl");
+  for (const char* const tracks : {"40", "60"}) {
+    for (const char* const duration : {"0.1", "0.05"}) {
+      testing::evbench(folder, fmt::format("run c.json --quiet --out own --set frontend.tracks={} "
+                                           "--set backend.frame_duration={}",
+                                           tracks, duration));
+    }
+  }
+  const auto expected = results_of(folder.file("own/tiny"));
   CHECK(expected.size() > 40);
+  const auto is_expected = [&](const std::string& out) {
+    auto made = results_of(folder.file(out + "/tiny"));
+    for (const char* const plan : {"sweep.json", "manifest.jsonl"}) made.erase(plan);
+    CHECK(difference(expected, made) == "");
+    CHECK_FALSE(std::filesystem::exists(folder.file(out + "/.events")));
+  };
   testing::evbench(folder, sweep + "--out shared");
-  CHECK(difference(expected, results_of(folder.file("shared/tiny"))) == "");
-  CHECK_FALSE(std::filesystem::exists(folder.file("shared/.events")));
+  is_expected("shared");
+
+  // Tasks share them as well: those that come later find what the first one has made.
+  REQUIRE(testing::evbench(folder, sweep + "--out tasks --executor none").exit_code == 0);
+  const std::string task = "\"$evbench\" task tasks/tiny/manifest.jsonl ";
+  testing::shell(folder, task + "1");
+  const std::string recording = folder.file("tasks/.events/" + runs[0].events + "/events.evb");
+  REQUIRE(std::filesystem::exists(recording));
+  const auto made = std::filesystem::last_write_time(recording);
+  testing::shell(folder, task + "2 & " + task + "3; wait");
+  CHECK(std::filesystem::last_write_time(recording) == made);
+  testing::shell(folder, task + "4");
+  is_expected("tasks");
 
   // One that is damaged is not believed.
   REQUIRE(testing::shell(folder, "mkdir -p bad/.events/" + runs[0].events + " && echo no > bad/.events/" +
                                      runs[0].events + "/events.evb")
               .exit_code == 0);
   testing::evbench(folder, sweep + "--out bad");
-  CHECK(difference(expected, results_of(folder.file("bad/tiny"))) == "");
+  is_expected("bad");
 }
 
 TEST_CASE("A job that has two labels in a sweep is run once, and stands in its table under both") {
