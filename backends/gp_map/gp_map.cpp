@@ -21,7 +21,6 @@ const Registration<BackEnd, GpMap> registration("gp_map",
 
 constexpr double kYoung = 5.0;    ///< [s] for which another first map is looked for
 constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
-constexpr double kFar = 3.0;      ///< median error of the tracks seen last that no optimum should leave: newest_error()
 
 }  // namespace
 
@@ -31,6 +30,7 @@ GpMap::GpMap(const Options& options, const BackEndContext& context)
       placement_(options.placement),
       first_map_(options, context.camera),
       returns_(options.map.returns),
+      violent_motion_(options.health.min_landmarks, options.learn.window),
       prior_(options.learn.window, options.learn.memory),
       monitor_(context.patience) {}
 
@@ -122,7 +122,7 @@ bool GpMap::initialise(double t) {
 }
 
 void GpMap::begin_from(FirstMap map) {
-  qc_ = map.graph.qc;
+  violent_motion_.begin(map.graph.qc);
   engine_.emplace(std::move(map.graph), EngineOptions{.lag = options_.lag});
   returns_ = ReturnBudget(options_.map.returns);
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
@@ -216,74 +216,7 @@ bool GpMap::is_outlier(int landmark, double error_px) const {
 
 void GpMap::optimise() {
   last_update_ = engine_->update();
-  settle();
-  yield_to_motion();
-}
-
-/// More steps, where one was damped, and so has not arrived, and leaves most tracks far from where they should be: the
-/// next state, extrapolated from this one, would be farther off still, where the robust loss hardly pulls.
-void GpMap::settle() {
-  constexpr double kHelp = 0.95;
-  constexpr int kSteps = 6;
-  double error = newest_error();
-  for (int i = 0; i < kSteps && error > kFar && last_update_.damping > 0.0; ++i) {
-    last_update_ = engine_->update();
-    const double now = newest_error();
-    if (!(now < kHelp * error)) return;
-    error = now;
-  }
-}
-
-/// Where most tracks are far from where they should be, the prior is too strong for what the camera does, and the
-/// robust loss would take them for outliers: the prior over the newest intervals is weakened as long as that helps.
-void GpMap::yield_to_motion() {
-  constexpr double kWeaker = 10.0, kWeakest = 1e4, kHelp = 0.8;  // weakest: over the prior that was given
-  constexpr int kIntervals = 3;
-  const int newest = static_cast<int>(graph().states.size()) - 1;
-  const int first = std::max(engine_->first_state() + 1, newest - kIntervals + 1);
-  const std::vector<Vector6> learnt(graph().qcs.begin() + first, graph().qcs.end());
-  const std::vector<double> expansions(graph().expansions.begin() + first, graph().expansions.end());
-  const auto weaken = [&](double factor) {
-    for (std::size_t i = 0; i < learnt.size(); ++i) {
-      engine_->set_qc(first + static_cast<int>(i), factor * learnt[i], expansions[i] / factor);
-    }
-    last_update_ = engine_->update();
-  };
-  double error = newest_error(), factor = 1.0;
-  const double weakest = kWeakest / graph().qc.cwiseQuotient(qc_).maxCoeff();
-  while (error > kFar && factor < weakest) {
-    weaken(kWeaker * factor);
-    const double now = newest_error();
-    if (!(now < kHelp * error)) {
-      weaken(factor);
-      break;
-    }
-    error = now;
-    factor *= kWeaker;
-  }
-  if (factor > 1.0) engine_->set_next_qc(graph().qcs.back());
-}
-
-/// A prior that has yielded is as it was again as long after as the learnt one follows the motion.
-void GpMap::recover_prior() {
-  const std::vector<ControlState>& states = graph().states;
-  const double dt = states.back().t - states[states.size() - 2].t;
-  engine_->set_next_qc((std::exp(-dt / options_.learn.window) * graph().qc).cwiseMax(qc_));
-}
-
-/// Median error of the tracks seen in the newest interval, each at its last observation [sigmas of what averages of the
-/// errors would be, as outliers are told by: trackers drift, and that is no motion]; 0: too few.
-double GpMap::newest_error() const {
-  const std::size_t k = graph().states.size() - 1;
-  const GpInterval interval(graph().states[k - 1], graph().states[k]);
-  const double noise = noise_.scale_of_means();
-  std::vector<double> errors;
-  for (const auto& group : graph().intervals[k].groups()) {
-    const Observation& z = graph().intervals[k].of(group).back();
-    const Vector3& position = graph().landmarks[index(group.landmark)].position;
-    errors.push_back(reprojection_error(interval, position, z, graph().camera) * z.inverse_sigma / noise);
-  }
-  return std::ssize(errors) < options_.health.min_landmarks ? 0.0 : median(std::move(errors));
+  last_update_ = violent_motion_.follow(*engine_, noise_, last_update_);
 }
 
 /// Prior and noise from what has been seen until now.
@@ -295,7 +228,7 @@ void GpMap::learn() {
   if (options_.learn.prior == LearnPrior::always) {
     prior_.follow(*engine_);
   } else {
-    recover_prior();
+    violent_motion_.recover(*engine_);
   }
   if (options_.learn.prior == LearnPrior::final && options_.lag > 0.0) learn_before_settling();
 }

@@ -17,6 +17,7 @@
 #include "backends/gp_map/prior_learning.hpp"
 #include "backends/gp_map/return_budget.hpp"
 #include "backends/gp_map/state_placement.hpp"
+#include "backends/gp_map/violent_motion.hpp"
 #include "core/plugin/backend.hpp"
 #include "core/plugin/tracking_monitor.hpp"
 #include "core/structure/track_buffer.hpp"
@@ -73,9 +74,6 @@ class GpMap : public BackEnd {
   void add_observations();
   void add_landmarks();
   void optimise();
-  void settle();
-  void yield_to_motion();
-  void recover_prior();
   void learn();
   void learn_before_settling();
   void check_support();
@@ -99,7 +97,6 @@ class GpMap : public BackEnd {
   const std::optional<Matrix12>& newest_covariance();
   const std::optional<Matrix2>& image_covariance(Track& track, const Eigen::Matrix<double, 2, 12>& J_state,
                                                  const Matrix23& J_landmark);
-  double newest_error() const;
   bool is_outlier(int landmark, double error_px) const;
   int landmarks_in_view() const;
   void tell_online(double t);
@@ -129,7 +126,7 @@ class GpMap : public BackEnd {
   std::pair<std::size_t, std::optional<Matrix12>> newest_covariance_;  ///< and the number of states then
   std::vector<TrackId> new_outliers_;
   UpdateSummary last_update_;
-  Vector6 qc_;  ///< of the prior, where it has not yielded
+  ViolentMotion violent_motion_;
   PriorLearner prior_;
   NoiseLearner noise_;
   double learnt_until_ = -std::numeric_limits<double>::infinity();  ///< [s], with a lag

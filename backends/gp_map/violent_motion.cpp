@@ -1,0 +1,93 @@
+#include "backends/gp_map/violent_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "backends/gp_map/factors.hpp"
+#include "core/support/median.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kFar = 3.0;  ///< median error of the tracks seen last that no optimum should leave: newest_error()
+
+/// More steps, where one was damped, and so has not arrived, and leaves most tracks far from where they should be: the
+/// next state, extrapolated from this one, would be farther off still, where the robust loss hardly pulls.
+void settle(Engine& engine, UpdateSummary& update, const std::function<double()>& newest_error) {
+  constexpr double kHelp = 0.95;
+  constexpr int kSteps = 6;
+  double error = newest_error();
+  for (int i = 0; i < kSteps && error > kFar && update.damping > 0.0; ++i) {
+    update = engine.update();
+    const double now = newest_error();
+    if (!(now < kHelp * error)) return;
+    error = now;
+  }
+}
+
+/// Where most tracks are still far from where they should be, the prior over the newest intervals is weakened as long
+/// as that helps. `qc`: where nothing has yielded.
+void yield(Engine& engine, UpdateSummary& update, const std::function<double()>& newest_error, const Vector6& qc) {
+  constexpr double kWeaker = 10.0, kWeakest = 1e4, kHelp = 0.8;  // weakest: over the prior that was given
+  constexpr int kIntervals = 3;
+  const FactorGraph& graph = engine.graph();
+  const int newest = static_cast<int>(graph.states.size()) - 1;
+  const int first = std::max(engine.first_state() + 1, newest - kIntervals + 1);
+  const std::vector<Vector6> learnt(graph.qcs.begin() + first, graph.qcs.end());
+  const std::vector<double> expansions(graph.expansions.begin() + first, graph.expansions.end());
+  const auto weaken = [&](double factor) {
+    for (std::size_t i = 0; i < learnt.size(); ++i) {
+      engine.set_qc(first + static_cast<int>(i), factor * learnt[i], expansions[i] / factor);
+    }
+    update = engine.update();
+  };
+  double error = newest_error(), factor = 1.0;
+  const double weakest = kWeakest / graph.qc.cwiseQuotient(qc).maxCoeff();
+  while (error > kFar && factor < weakest) {
+    weaken(kWeaker * factor);
+    const double now = newest_error();
+    if (!(now < kHelp * error)) {
+      weaken(factor);
+      break;
+    }
+    error = now;
+    factor *= kWeaker;
+  }
+  if (factor > 1.0) engine.set_next_qc(graph.qcs.back());
+}
+
+}  // namespace
+
+UpdateSummary ViolentMotion::follow(Engine& engine, const NoiseLearner& noise, const UpdateSummary& update) const {
+  UpdateSummary last = update;
+  const auto error = [&] { return newest_error(engine.graph(), noise); };
+  settle(engine, last, error);
+  yield(engine, last, error, qc_);
+  return last;
+}
+
+void ViolentMotion::recover(Engine& engine) const {
+  const FactorGraph& graph = engine.graph();
+  const double dt = graph.states.back().t - graph.states[graph.states.size() - 2].t;
+  engine.set_next_qc((std::exp(-dt / window_) * graph.qc).cwiseMax(qc_));
+}
+
+/// Median error of the tracks seen in the newest interval, each at its last observation [sigmas of what averages of the
+/// errors would be, as outliers are told by: trackers drift, and that is no motion]; 0: too few.
+double ViolentMotion::newest_error(const FactorGraph& graph, const NoiseLearner& noise) const {
+  const std::size_t k = graph.states.size() - 1;
+  const GpInterval interval(graph.states[k - 1], graph.states[k]);
+  const double scale = noise.scale_of_means();
+  std::vector<double> errors;
+  for (const auto& group : graph.intervals[k].groups()) {
+    const Observation& z = graph.intervals[k].of(group).back();
+    const Vector3& position = graph.landmarks[index(group.landmark)].position;
+    errors.push_back(reprojection_error(interval, position, z, graph.camera) * z.inverse_sigma / scale);
+  }
+  return std::ssize(errors) < min_landmarks_ ? 0.0 : median(std::move(errors));
+}
+
+}  // namespace evbench::gp_map

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "backends/gp_map/engine/engine.hpp"
+#include "backends/gp_map/noise_learning.hpp"
+
+namespace evbench::gp_map {
+
+/// Keeps hold of a camera that moves more violently than the prior expects: brings the newest state to where its
+/// observations ask for it, by more Gauss-Newton steps where one has not arrived, and by a weaker prior where that one
+/// holds it back. The robust loss would else take good tracks for outliers.
+class ViolentMotion {
+ public:
+  /// `min_landmarks`: in view, with fewer nothing is concluded; `window`: in which a prior that has yielded is as it
+  /// was again [s].
+  ViolentMotion(int min_landmarks, double window) : min_landmarks_(min_landmarks), window_(window) {}
+
+  /// A new map, with the prior's density as it is when nothing has yielded.
+  void begin(const Vector6& qc) { qc_ = qc; }
+
+  /// Once an update of the engine is done and may have left most tracks far from where they should be: what is needed
+  /// beyond it. Returns the last update's summary. `noise`: of the tracks.
+  UpdateSummary follow(Engine& engine, const NoiseLearner& noise, const UpdateSummary& update) const;
+
+  /// The density of the intervals to come goes back to what it was, as far as time has passed.
+  void recover(Engine& engine) const;
+
+ private:
+  double newest_error(const FactorGraph& graph, const NoiseLearner& noise) const;
+
+  int min_landmarks_;
+  double window_;
+  Vector6 qc_ = Vector6::Ones();
+};
+
+}  // namespace evbench::gp_map
