@@ -27,7 +27,7 @@ std::optional<std::string> content_of(const std::string& path) {
 
 bool is_complete(const std::string& folder, const JobIdentity& identity) {
   std::string ignored;
-  return condition_of(folder, identity, ignored) == RunCondition::complete;
+  return condition_of(folder, identity.key, ignored) == RunCondition::complete;
 }
 
 Json parse(const std::string& path) {
@@ -36,6 +36,32 @@ Json parse(const std::string& path) {
   const Json json = Json::parse(*text, nullptr, false);
   if (!json.is_object()) throw InputError(fmt::format("{}: expected a JSON object", path));
   return json;
+}
+
+/// What is wrong with a run's files, as far as can be seen without reading the estimate; empty where nothing is. Runs
+/// of older versions have no list of their sizes.
+std::string damage_of(const std::string& folder, const std::string& key) {
+  std::error_code error;
+  if (!key.ends_with("-" + digits_of_key(content_of(folder + "/job.json").value_or("")))) {
+    return fmt::format("{}/job.json: is not that of the job; expected what {} stands for", folder, key);
+  }
+  for (const char* name :
+       {"config.json", "manifest.json", "final.tum", "online.tum", "told.txt", "map.ply", "log.txt"}) {
+    if (!fs::is_regular_file(folder + "/" + name, error)) return fmt::format("{}/{}: is missing", folder, name);
+  }
+  try {
+    const Json manifest = parse(folder + "/manifest.json");
+    if (!manifest.contains("sizes")) return "";
+    for (const auto& [name, size] : manifest.at("sizes").items()) {
+      const std::string path = folder + "/" + name;
+      if (!fs::is_regular_file(path, error)) return path + ": is missing";
+      if (size == fs::file_size(path, error)) continue;
+      return fmt::format("{}: has {} bytes; expected {}", path, fs::file_size(path, error), size.dump());
+    }
+  } catch (const InputError& damage) {
+    return damage.what();
+  }
+  return "";
 }
 
 /// Writes the run in `from` to `to` with this config and record (but for its scores), scored by `options`.
@@ -62,22 +88,14 @@ RunRecord rewrite(const std::string& from, const std::string& to, const Json& co
 
 }  // namespace
 
-RunCondition condition_of(const std::string& folder, const JobIdentity& identity, std::string& why) {
+RunCondition condition_of(const std::string& folder, const std::string& key, std::string& why) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) return RunCondition::absent;
-  if (content_of(folder + "/job.json") != identity.text) {
-    why = fmt::format("{}/job.json: is not that of the job; expected what {} stands for", folder, identity.key);
-    return RunCondition::damaged;
-  }
-  for (const char* name :
-       {"config.json", "manifest.json", "final.tum", "online.tum", "told.txt", "map.ply", "log.txt"}) {
-    if (fs::is_regular_file(folder + "/" + name, error)) continue;
-    why = fmt::format("{}/{}: is missing", folder, name);
-    return RunCondition::damaged;
-  }
+  why = damage_of(folder, key);
+  if (!why.empty()) return RunCondition::damaged;
   try {
     const RunRecord record = read_record(folder);
-    if (record.key == identity.key && record.status) {
+    if (record.key == key && record.status) {
       if (record.status->complete) return RunCondition::complete;
       why = record.status->status.reason;
       return RunCondition::broken_off;

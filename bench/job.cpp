@@ -101,6 +101,8 @@ const std::string& Digests::of(const std::string& path) {
   return known_.emplace(path, digest).first->second;
 }
 
+std::string digits_of_key(const std::string& text) { return sha256(text).substr(0, 10); }
+
 JobIdentity identify(const Job& job, const SourceFiles& source, const Plugins& plugins, Digests& digests) {
   Identifier identifier(job, plugins, digests);
   Json json = {{"pipeline_version", kPipelineVersion},
@@ -112,7 +114,7 @@ JobIdentity identify(const Job& job, const SourceFiles& source, const Plugins& p
   json["backend"] = identifier.part<BackEnd>(job.backend, identifier.named_files<BackEnd>(job.backend));
   JobIdentity identity;
   identity.text = json.dump(2) + "\n";
-  identity.key = fmt::format("{}-{}", job.backend.type, sha256(identity.text).substr(0, 10));
+  identity.key = fmt::format("{}-{}", job.backend.type, digits_of_key(identity.text));
   identity.files = identifier.take_files();
   return identity;
 }

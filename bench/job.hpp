@@ -54,6 +54,9 @@ struct JobIdentity {
   std::vector<std::pair<std::string, std::string>> files;  ///< path and SHA-256 of what is read, each once
 };
 
+/// The digits of a key: the first ten of the SHA-256 of the job's text.
+std::string digits_of_key(const std::string& text);
+
 /// What a source reads.
 struct SourceFiles {
   SourceFiles() = default;

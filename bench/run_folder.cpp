@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <thread>
 
 #include "bench/version.hpp"
@@ -23,6 +25,8 @@ namespace {
 /// Ground truth is kept beyond the time range, for a protocol with another offset of time [s].
 constexpr double kGroundTruthMargin = 1.0;
 
+constexpr const char* kRewritten[] = {"config.json", "manifest.json", "metrics.json", "log.txt"};
+
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {
@@ -31,7 +35,20 @@ std::string processor() {
   return "unknown";
 }
 
-Json manifest_json(const RunConfig& config, const JobIdentity& identity, const RunResult& result) {
+/// Of a folder's files, but for those that are written again when a run is renamed or scored, and what was measured.
+Json sizes_json(const std::string& folder) {
+  std::map<std::string, std::uintmax_t> sizes;  // by name: folders have an order of their own
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const auto is_other = [&](const char* other) { return name == other; };
+    if (std::ranges::any_of(kRewritten, is_other) || name == "timing.csv") continue;
+    sizes[name] = fs::file_size(entry.path());
+  }
+  return sizes;
+}
+
+Json manifest_json(const RunConfig& config, const JobIdentity& identity, const RunResult& result,
+                   const std::string& folder) {
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);
   Json inputs = Json::object();
@@ -43,7 +60,8 @@ Json manifest_json(const RunConfig& config, const JobIdentity& identity, const R
           {"config_sha256", sha256(json_file_text(config.resolved()))},
           {"inputs_sha256", inputs},
           {"tracks_sha256", result.tracks_sha256},
-          {"observations", result.observations}};
+          {"observations", result.observations},
+          {"sizes", sizes_json(folder)}};
 }
 
 std::string timing_csv(const std::vector<UpdateRecord>& updates) {
@@ -156,7 +174,7 @@ RunRecord RunFolder::write(const RunConfig& config, const JobIdentity& identity,
   if (!result.tracks.empty()) folder_.write("tracks.txt", format_tracks(result.tracks));
   RunRecord record = record_of(config, identity, execution);
   record.range = {source.time_range().from, source.time_range().to};
-  return finish(config, std::move(record));
+  return finish(config, identity, execution, std::move(record));
 }
 
 RunRecord RunFolder::write_broken_off(const RunConfig& config, const JobIdentity& identity, const std::string& reason,
@@ -167,23 +185,24 @@ RunRecord RunFolder::write_broken_off(const RunConfig& config, const JobIdentity
   execution.result.status = {RunState::failed, reason, 0.0, {}};
   execution.result.log = log;
   write_files(config, identity, execution.result);
-  return finish(config, record_of(config, identity, execution));
+  return finish(config, identity, execution, record_of(config, identity, execution));
 }
 
 /// What every run has, but for its scores.
 void RunFolder::write_files(const RunConfig& config, const JobIdentity& identity, const RunResult& result) const {
   folder_.write("config.json", json_file_text(config.resolved()));
   folder_.write("job.json", identity.text);
-  folder_.write("manifest.json", json_file_text(manifest_json(config, identity, result)));
   write_pieces(folder_, result);
   folder_.write("timing.csv", timing_csv(result.updates));
   folder_.write("log.txt", log_text(config, result));
 }
 
-RunRecord RunFolder::finish(const RunConfig& config, RunRecord record) {
+RunRecord RunFolder::finish(const RunConfig& config, const JobIdentity& identity, const Execution& execution,
+                            RunRecord record) {
   score_run(folder_.part(), config.evaluation, record);
   folder_.write("status.json", json_file_text(to_json(*record.status)));
   folder_.write("metrics.json", json_file_text(to_json(record)));
+  folder_.write("manifest.json", json_file_text(manifest_json(config, identity, execution.result, folder_.part())));
   folder_.commit();
   record.folder = path_;
   return record;

@@ -26,7 +26,8 @@ class EmptyFolders {
 ///
 ///   config.json      resolved, complete: can be run again from anywhere
 ///   job.json         what determines the trajectory: its SHA-256 begins with the key's digits
-///   manifest.json    program, host, seed, SHA-256 of config.json, of each input and of the tracks
+///   manifest.json    program, host, seed, SHA-256 of config.json, of each input and of the tracks; how long the files
+///                    are that stay as they are
 ///   final.tum, online.tum, map.ply   the estimate: after the fact, causal, landmarks
 ///   told.txt         every pose told while the data came in, with the time at which it was known
 ///   covariance.txt   relative poses with the covariances that the back-end gave, where it has them
@@ -61,7 +62,7 @@ class RunFolder {
 
  private:
   void write_files(const RunConfig& config, const JobIdentity& identity, const RunResult& result) const;
-  RunRecord finish(const RunConfig& config, RunRecord record);
+  RunRecord finish(const RunConfig& config, const JobIdentity& identity, const Execution& execution, RunRecord record);
 
   std::string path_;
   EmptyFolders made_;  // before the folder: it must be gone by then
@@ -76,11 +77,12 @@ enum class RunCondition {
   absent,
   complete,
   broken_off,  ///< the run's failure: it did not come to its end
-  damaged,     ///< files are missing or can't be read
+  damaged,     ///< files are missing, not as long as they were, or can't be read
 };
 
-/// What lies in a folder of this job. `why`: of a run that broke off its reason, of a damaged one what is wrong.
-RunCondition condition_of(const std::string& folder, const JobIdentity& identity, std::string& why);
+/// What lies in a folder of the job with this key. `why`: of a run that broke off its reason, of a damaged one what is
+/// wrong.
+RunCondition condition_of(const std::string& folder, const std::string& key, std::string& why);
 
 /// Where a complete run of this job lies below `out`: of this experiment or, where there is none, of another one.
 std::optional<std::string> find_complete_run(const std::string& out, const std::string& experiment,

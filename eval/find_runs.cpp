@@ -91,8 +91,10 @@ struct FoundRun {
   std::size_t planned = 0;
 };
 
-/// Files are read by as many threads as there are processors. Runs that can't be read are left out, with a sentence.
-std::map<std::string, RunRecord> read_records(const std::vector<Place>& places, std::vector<std::string>& unreadable) {
+/// Files are read by as many threads as there are processors. Runs that can't be read are left out, with a sentence
+/// each; by their canonical names.
+std::map<std::string, RunRecord> read_records(const std::vector<Place>& places,
+                                              std::map<std::string, std::string>& unreadable) {
   std::vector<RunRecord> records(places.size());
   std::vector<std::string> failures(places.size());
   std::vector<std::exception_ptr> errors(places.size());
@@ -109,7 +111,7 @@ std::map<std::string, RunRecord> read_records(const std::vector<Place>& places, 
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (errors[i]) std::rethrow_exception(errors[i]);
     if (failures[i].empty()) by_folder.emplace(places[i].canonical, std::move(records[i]));
-    if (!failures[i].empty()) unreadable.push_back(failures[i]);
+    if (!failures[i].empty()) unreadable.emplace(places[i].canonical, failures[i]);
   }
   return by_folder;
 }
@@ -124,9 +126,9 @@ RunRecord not_run(const SweepRecordRun& run, const std::string& folder) {
   return record;
 }
 
-/// Moves the records of a sweep's runs out of `records`, in the order of its plan.
-void take_sweep(const Place& sweep, const std::set<std::string>& unreadable, std::map<std::string, RunRecord>& records,
-                std::vector<FoundRun>& runs) {
+/// Moves the records of a sweep's runs out of `records`, in the order of its plan. `unreadable`: why, by folder.
+void take_sweep(const Place& sweep, const std::map<std::string, std::string>& unreadable,
+                std::map<std::string, RunRecord>& records, std::vector<FoundRun>& runs) {
   const SweepRecord plan = read_sweep_record(sweep.path + "/sweep.json");
   std::map<std::string, RunRecord> own;  // several places of a sweep may need the same run
   const std::string prefix = sweep.canonical + "/";
@@ -136,9 +138,9 @@ void take_sweep(const Place& sweep, const std::set<std::string>& unreadable, std
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
     const SweepRecordRun& planned = plan.runs[i];
     const std::string folder = prefix + planned.key;
-    if (unreadable.contains(folder)) continue;
     const auto found = own.find(folder);
     RunRecord record = found != own.end() ? found->second : not_run(planned, sweep.path + "/" + planned.key);
+    if (const auto bad = unreadable.find(folder); bad != unreadable.end()) record.damage = bad->second;
     record.experiment = plan.name;
     record.label = planned.label;
     record.axes = planned.axes;
@@ -178,24 +180,22 @@ bool natural_less(const std::string& a, const std::string& b) {
 
 std::vector<RunRecord> find_runs(std::span<const std::string> folders, std::vector<std::string>* unreadable) {
   const Places places = find_places(folders);
-  std::vector<std::string> failures;
+  std::map<std::string, std::string> failures;
   std::map<std::string, RunRecord> records = read_records(places.runs, failures);
-  std::set<std::string> known_bad;
-  for (const Place& run : places.runs) {
-    if (!records.contains(run.canonical)) known_bad.insert(run.canonical);
-  }
-  if (!failures.empty() && unreadable == nullptr) throw InputError(failures.front());
+  if (!failures.empty() && unreadable == nullptr) throw InputError(failures.begin()->second);
   for (const Place& run : places.missing) {
-    failures.push_back(fmt::format("{}: is the folder of a run without metrics.json; run it again", run.path));
-    known_bad.insert(run.canonical);
+    failures.emplace(run.canonical, run.path + ": is the folder of a run without metrics.json; run it again");
   }
   std::vector<FoundRun> runs;
-  for (const Place& sweep : places.sweeps) take_sweep(sweep, known_bad, records, runs);
+  for (const Place& sweep : places.sweeps) take_sweep(sweep, failures, records, runs);
   for (auto& [folder, record] : records) runs.push_back({std::move(record)});
   std::ranges::sort(runs, comes_before);
   std::vector<RunRecord> result;
   for (FoundRun& run : runs) result.push_back(std::move(run.record));
-  if (unreadable != nullptr) *unreadable = std::move(failures);
+  if (unreadable != nullptr) {
+    unreadable->clear();
+    for (auto& [folder, why] : failures) unreadable->push_back(std::move(why));
+  }
   return result;
 }
 

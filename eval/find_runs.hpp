@@ -16,8 +16,8 @@ namespace evbench {
 /// an InputError.
 ///
 /// The runs of a sweep, whose folder has a sweep.json (sweep_plan.hpp), stand in its order, with their places on its
-/// axes; those that it plans and that are not there have `done` false; those that it does not plan (any more) are
-/// passed over.
+/// axes; those that it plans and that are not there, or can't be read, have `done` false; those that it does not plan
+/// (any more) are passed over.
 std::vector<RunRecord> find_runs(std::span<const std::string> folders, std::vector<std::string>* unreadable = nullptr);
 
 /// Does name `a` come before `b`? Digits compare by value, other characters as they are.

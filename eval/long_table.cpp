@@ -8,7 +8,7 @@ namespace evbench {
 std::string long_table(const TableRuns& runs, const TableOptions& options) {
   std::vector<std::string> header;
   for (const RunColumn& column : runs.columns) header.push_back(column.name);
-  for (const char* name : {"key", "folder", "status", "trajectory", "protocol", "metric", "value"}) {
+  for (const char* name : {"key", "folder", "status", "reason", "trajectory", "protocol", "metric", "value"}) {
     header.emplace_back(name);
   }
   std::string text = csv_line(header);
@@ -18,7 +18,7 @@ std::string long_table(const TableRuns& runs, const TableOptions& options) {
     for (const RunColumn& column : runs.columns) names.push_back(column.values[i]);
     const int protocol = runs.protocols.of_run[i];
     for (const std::string& name :
-         {run.key, run.folder, status_text(run, true), std::string(options.online ? "online" : "final"),
+         {run.key, run.folder, status_word(run), status_reason(run), std::string(options.online ? "online" : "final"),
           protocol < 0 ? std::string() : runs.protocols.texts[index(protocol)]}) {
       names.push_back(name);
     }

@@ -63,6 +63,7 @@ struct RunRecord {
   RunSettings settings;                   ///< of its config.json, where there is one; not in the file
   RunAxes axes;                           ///< its place in a sweep, where it is of one; not in the file
   bool done = true;                       ///< false: a sweep has planned it, and it was not run; not in the file
+  std::string damage;                     ///< of a sweep's run that can't be read, done then being false: why
   Json final_scores, online_scores;       ///< as to_json(Scores) gives them; null: none
   Json covariance;                        ///< {kind: as to_json(CovarianceScores) gives it}; null: none
   Json common_scores;                     ///< over the time that all runs of a table cover; not in the file

@@ -123,7 +123,8 @@ TextTable run_table(const TableRuns& runs, const TableOptions& options) {
     add_column(table, csv ? metric.key : metric.header, true, metric_cells(runs, metric, csv));
   }
   if (options.format != TableFormat::latex || !all_fine(runs)) {
-    add_column(table, "status", false, cells_of(runs, [&](const RunRecord& run) { return status_text(run, csv); }));
+    add_column(table, "status", false, cells_of(runs, csv ? status_word : status_text));
+    if (csv) add_column(table, "reason", false, cells_of(runs, status_reason));
   }
   if (csv) {
     const char* trajectory = options.online ? "online" : "final";

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <map>
 #include <set>
+#include <utility>
 
 #include "core/support/error.hpp"
 #include "eval/holm.hpp"
@@ -58,14 +59,32 @@ std::optional<std::size_t> distinguished(const std::vector<Group>& rows, const T
   return best - costs.begin();
 }
 
-/// Rows of one experiment; other settings of the data may still set them apart.
-std::vector<std::vector<std::size_t>> rows_of_experiments(const std::vector<Group>& rows, const TableRuns& runs) {
-  std::map<std::string, std::vector<std::size_t>> experiments;
+/// Rows that can be compared with one another: of one experiment, and with data in common, directly or by way of
+/// others.
+std::vector<std::vector<std::size_t>> comparable_rows(const std::vector<Group>& rows, const TableRuns& runs,
+                                                      std::span<const std::size_t> data) {
+  struct Comparable {
+    std::set<std::pair<std::string, std::size_t>> data;  // and of which experiment
+    std::vector<std::size_t> rows;
+  };
+  std::vector<Comparable> all;
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    experiments[runs.runs[rows[r].front()].run().experiment].push_back(r);
+    Comparable joined;
+    for (const std::size_t i : rows[r]) joined.data.emplace(runs.runs[i].run().experiment, data[i]);
+    const auto meets = [&](const Comparable& other) {
+      return std::ranges::any_of(other.data, [&](const auto& one) { return joined.data.contains(one); });
+    };
+    const auto apart = std::stable_partition(all.begin(), all.end(), std::not_fn(meets));
+    for (auto other = apart; other != all.end(); ++other) {
+      joined.data.merge(other->data);
+      joined.rows.insert(joined.rows.end(), other->rows.begin(), other->rows.end());
+    }
+    all.erase(apart, all.end());
+    joined.rows.push_back(r);
+    all.push_back(std::move(joined));
   }
   std::vector<std::vector<std::size_t>> result;
-  for (auto& [name, of_one] : experiments) result.push_back(std::move(of_one));
+  for (Comparable& one : all) result.push_back(std::move(one.rows));
   return result;
 }
 
@@ -96,7 +115,7 @@ void add_metric(TextTable& table, const std::vector<Group>& rows, const TableRun
     cells.back().aside = fmt::format("[{}, {}]", number_text(metric.factor * q->lower, decimals),
                                      number_text(metric.factor * q->upper, decimals));
   }
-  for (const auto& of_one : rows_of_experiments(rows, runs)) {
+  for (const auto& of_one : comparable_rows(rows, runs, data)) {
     std::vector<Group> groups;
     for (const std::size_t r : of_one) groups.push_back(rows[r]);
     if (const auto best = distinguished(groups, runs, metric, data)) cells[of_one[*best]].best = true;
@@ -129,7 +148,8 @@ void add_names(TextTable& table, const std::vector<Group>& rows, const Columns& 
 void add_success(TextTable& table, const std::vector<Group>& rows, const TableRuns& runs, bool csv) {
   std::vector<Cell> done, succeeded, both;
   for (const Group& row : rows) {
-    const auto n = std::ranges::count_if(row, [&](std::size_t i) { return runs.runs[i].run().done; });
+    const auto n = std::ranges::count_if(
+        row, [&](std::size_t i) { return runs.runs[i].run().done || !runs.runs[i].run().damage.empty(); });
     const auto good = std::ranges::count_if(row, [&](std::size_t i) { return runs.runs[i].succeeded(); });
     done.push_back({fmt::format("{}", n)});
     succeeded.push_back({fmt::format("{}", good)});
@@ -146,7 +166,8 @@ std::string extent(const RunColumn& column) {
 }
 
 /// What the cells are, and what bold means.
-std::vector<std::string> summary_notes(const std::vector<Group>& rows, const TableRuns& runs, const Columns& columns) {
+std::vector<std::string> summary_notes(const std::vector<Group>& rows, const TableRuns& runs, const Columns& columns,
+                                       std::span<const std::size_t> data) {
   std::vector<std::string> over;
   for (const RunColumn* column : columns.over) over.push_back(extent(*column));
   const auto fails = [](const RunNumbers& run) { return run.run().done && !run.succeeded(); };
@@ -155,15 +176,21 @@ std::vector<std::string> summary_notes(const std::vector<Group>& rows, const Tab
   if (std::ranges::any_of(runs.runs, fails)) {
     notes.back() += " Runs that were lost or failed count as worse than all others: fails.";
   }
-  std::size_t largest = 0, most = 0;
-  for (const Group& row : rows) largest = std::max(largest, row.size());
-  for (const auto& of_one : rows_of_experiments(rows, runs)) most = std::max(most, of_one.size());
-  if (most < 2) return notes;
-  notes.push_back(
-      fmt::format("Bold (*): better than every other row, p < {} (Wilcoxon signed-rank, paired by data, Holm's "
-                  "correction for the number of rows).",
-                  kSignificant));
-  notes.back() += too_few_pairs(largest, most - 1);
+  bool compared = false;
+  std::set<std::string> too_few;  // of the rows that are compared with one another; none where they are enough
+  for (const auto& of_one : comparable_rows(rows, runs, data)) {
+    if (of_one.size() < 2) continue;
+    compared = true;
+    std::size_t largest = 0;
+    for (const std::size_t r : of_one) largest = std::max(largest, rows[r].size());
+    too_few.insert(too_few_pairs(largest, of_one.size() - 1));
+  }
+  if (!compared) return notes;
+  notes.push_back(fmt::format(
+      "Bold (*): better than every other row of the same data, p < {} (Wilcoxon signed-rank, paired by data, "
+      "Holm's correction for the number of rows).",
+      kSignificant));
+  if (!too_few.contains("")) notes.back() += *too_few.begin();
   return notes;
 }
 
@@ -190,7 +217,7 @@ TextTable summary_table(const TableRuns& runs, const TableOptions& options) {
   }
   if (csv)
     add_column(table, "trajectory", false, std::vector<Cell>(rows.size(), {options.online ? "online" : "final"}));
-  table.notes = summary_notes(rows, runs, columns);
+  table.notes = summary_notes(rows, runs, columns, data);
   std::ranges::move(table_notes(runs.runs, run_names(runs.columns), runs.metrics, runs.protocols, options.online),
                     std::back_inserter(table.notes));
   return table;

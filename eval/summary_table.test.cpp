@@ -63,6 +63,14 @@ TEST_CASE("Bold is only what differs significantly from all other rows") {
   CHECK_THAT(table(many, {.format = TableFormat::markdown}), Contains("**0.0135** [0.0118, 0.0152]"));
   CHECK_THAT(table(many, {.format = TableFormat::latex}),
              Contains("\\textbf{0.0135} {\\scriptsize {[}0.0118, 0.0152]}"));
+  // Another sequence has a best row of its own, and pairs of its own.
+  for (int seed = 1; seed <= 6; ++seed) {
+    many.add_seed("good on hard", seed, 0.09 + 0.01 * seed, 0.1, "hard");
+    many.add_seed("bad on hard", seed, 0.18 + 0.02 * seed, 0.1, "hard");
+  }
+  CHECK_THAT(line_with(table(many), "good  "), Contains("0.0135*"));
+  CHECK_THAT(line_with(table(many), "good on hard "), Contains("0.1250*"));
+  CHECK_THAT(table(many), Contains("better than every other row of the same data") && !Contains("nothing can reach"));
   for (int seed = 1; seed <= 8; ++seed) many.add_seed("as good", seed, 0.009 + 0.001 * seed);
   CHECK_THAT(line_with(table(many), "good "), !Contains("*"));  // better than one of two
 }
@@ -89,7 +97,7 @@ TEST_CASE("The same job found twice counts once, two jobs that should be one are
   copy["seed"] = 1;
   copy["key"] = "good1-" + std::to_string(0.1);
   const Json config = {{"seed", 1},
-                       {"source", {{"type", "simulation"}}},
+                       {"source", {{"type", "simulation"}, {"motion", "arm"}}},
                        {"frontend", {{"type", "oracle"}}},
                        {"backend", {{"type", "good"}, {"frame_duration", 0.1}}}};
   results.add("copy", copy, config);
@@ -106,10 +114,10 @@ TEST_CASE("The long format has a line a run and metric, with the settings as col
   const std::string csv =
       make_table(results.find(), {.format = TableFormat::long_csv, .metrics = {"ate.trans_m.rmse", "runtime_s"}});
   CHECK(csv.substr(0, csv.find('\n')) ==
-        "experiment,label,backend.frame_duration,seed,key,folder,status,trajectory,protocol,metric,value");
+        "experiment,label,backend.frame_duration,seed,key,folder,status,reason,trajectory,protocol,metric,value");
   CHECK(std::ranges::count(csv, '\n') == 5);
   CHECK_THAT(csv, Contains("arm,bundle,0.1,1,") && Contains(",ate.trans_m.rmse,0.5\n"));
-  CHECK_THAT(csv, Contains(",failed,final,,ate.trans_m.rmse,\n") && Contains(",runtime_s,2\n"));
+  CHECK_THAT(csv, Contains(",failed,,final,,ate.trans_m.rmse,\n") && Contains(",runtime_s,2\n"));
   CHECK_THAT(make_table(results.find(), {.format = TableFormat::long_csv}),
              Contains(",peak_rss_mib,30\n") && Contains(",times.backend_s,1.75\n"));
 }

@@ -1,5 +1,8 @@
 #include "eval/sweep_record.hpp"
 
+#include <fmt/format.h>
+
+#include "core/support/error.hpp"
 #include "eval/json_file.hpp"
 #include "eval/record_reader.hpp"
 
@@ -17,13 +20,15 @@ SweepRecordRun read_run(const RecordReader& json) {
 
 }  // namespace
 
-SweepRecord read_sweep_record(const std::string& path) {
+SweepRecord read_sweep_record(const std::string& path) try {
   const Json file = read_json_file(path);
   const RecordReader json(file, path);
   SweepRecord plan{json.text("name"), {}};
   if (json.at("runs").is_null()) json.fail("runs", "the runs that the sweep plans");
   for (const RecordReader& run : json.list("runs")) plan.runs.push_back(read_run(run));
   return plan;
+} catch (const InputError& error) {
+  throw InputError(fmt::format("{}; the sweep's command writes it anew, and runs are found without it", error.what()));
 }
 
 }  // namespace evbench

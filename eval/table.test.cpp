@@ -195,6 +195,32 @@ TEST_CASE("A sweep's axes are columns, and runs that it has planned but not done
   CHECK_THAT(line_with(text, "0.2 "), Contains("-") && Contains("not run"));
   CHECK_THAT(text, Contains("Not run yet: bundle (frame 0.2)."));
   CHECK_THAT(text_of(results, {.over = {"frame"}}), Contains("1 of 1"));
+
+  // A run of it that can't be read is no less one of its runs.
+  results.add("batching/b", std::string("{"));
+  std::vector<std::string> unreadable;
+  const std::vector<RunRecord> runs = find_runs(std::vector{results.folder.path()}, &unreadable);
+  CHECK(unreadable.size() == 1);
+  const std::string damaged = make_table(runs, {});
+  CHECK_THAT(line_with(damaged, "0.2 "), Contains("damaged"));
+  CHECK_THAT(damaged, Contains("Damaged: bundle (frame 0.2): ") && Contains("is not JSON"));
+  CHECK_THAT(make_table(runs, {.over = {"frame"}}), Contains("1 of 2"));
+}
+
+TEST_CASE("A run that broke off says why, in tables for people and for programs") {
+  Results results;
+  Json hung = run("arm", "hung", Json(), "failed"), crashed = hung;
+  hung["status"] = {{"state", "failed"}, {"reason", "timeout after 60 s"}, {"time", 0.0}, {"complete", false}};
+  crashed["label"] = "crashed";
+  crashed["status"] = {
+      {"state", "failed"}, {"reason", "error: " + std::string(80, 'x')}, {"time", 0.0}, {"complete", false}};
+  results.add("a", hung);
+  results.add("b", crashed);
+  const std::string text = text_of(results, {});
+  CHECK_THAT(line_with(text, "hung "), Contains("timeout after 60 s"));
+  CHECK_THAT(line_with(text, "crashed "), Contains("failed") && !Contains("xxx") && !Contains("at 0.00 s"));
+  CHECK_THAT(text_of(results, {.format = TableFormat::csv}), Contains(",failed,timeout after 60 s,"));
+  CHECK_THAT(text_of(results, {.format = TableFormat::long_csv}), Contains(",failed,timeout after 60 s,"));
 }
 
 TEST_CASE("CSV has the exact numbers under the keys of metrics.json") {
@@ -202,7 +228,7 @@ TEST_CASE("CSV has the exact numbers under the keys of metrics.json") {
   results.add("a", run("arm, left", "say \"one\"", scores_with(0.0123456789)));
   const std::string csv = text_of(results, {.format = TableFormat::csv, .metrics = {"ate.trans_m.rmse"}});
   CHECK(csv.substr(0, csv.find('\n')) ==
-        "experiment,label,seed,key,folder,ate.trans_m.rmse,pairs,coverage,scale,status,trajectory,protocol");
+        "experiment,label,seed,key,folder,ate.trans_m.rmse,pairs,coverage,scale,status,reason,trajectory,protocol");
   CHECK_THAT(csv, Contains("\n\"arm, left\",\"say \"\"one\"\"\",7,mine-0123456789," + results.folder.file("a") +
                            ",0.0123456789,100,1,"));
 }
@@ -217,7 +243,7 @@ TEST_CASE("Every format says which trajectory is scored") {
     CHECK_THAT(text_of(results, {.format = format, .online = true}), Contains("Online: each pose as estimated"));
   }
   CHECK_THAT(text_of(results, {.format = TableFormat::csv}),
-             Contains(",status,trajectory,protocol\n") && Contains(",final,"));
+             Contains(",status,reason,trajectory,protocol\n") && Contains(",final,"));
   CHECK_THAT(text_of(results, {.format = TableFormat::csv, .online = true}), Contains(",online,"));
 }
 

@@ -44,6 +44,7 @@ struct Trouble {
 /// None where a run was neither lost nor left without scores. The reason of its status tells most.
 std::optional<Trouble> trouble_of(const RunNumbers& numbers, bool online) {
   const RunRecord& run = numbers.run();
+  if (!run.damage.empty()) return Trouble{"Damaged", run.damage};
   if (!run.done) return Trouble{"Not run yet", ""};
   const std::string reason = run.competes() ? "" : run.status->status.reason;
   const bool scored = !numbers.scores().is_null();
@@ -147,12 +148,23 @@ std::vector<std::string> table_notes(const std::vector<RunNumbers>& runs, const 
   return notes;
 }
 
-std::string status_text(const RunRecord& run, bool brief) {
-  if (!run.done) return "not run";
-  if (!run.status) return brief ? "" : "-";
+std::string status_text(const RunRecord& run) {
+  constexpr std::size_t kShort = 40;
+  const std::string word = status_word(run);
+  if (!run.done || !run.status || run.status->status.state == RunState::ok) return word.empty() ? "-" : word;
   const Status& status = run.status->status;
-  const std::string state = to_string(status.state);
-  return brief || status.state == RunState::ok ? state : fmt::format("{} at {:.2f} s", state, status.time);
+  if (run.status->complete) return fmt::format("{} at {:.2f} s", word, status.time);
+  return status.reason.size() <= kShort ? status.reason : word;  // it broke off: at no time of the data
+}
+
+std::string status_word(const RunRecord& run) {
+  if (!run.damage.empty()) return "damaged";
+  if (!run.done) return "not run";
+  return run.status ? to_string(run.status->status.state) : "";
+}
+
+std::string status_reason(const RunRecord& run) {
+  return !run.damage.empty() ? run.damage : run.status ? run.status->status.reason : "";
 }
 
 }  // namespace evbench

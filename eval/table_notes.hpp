@@ -19,7 +19,10 @@ Protocols collect_protocols(const std::vector<RunNumbers>& runs);
 std::vector<std::string> table_notes(const std::vector<RunNumbers>& runs, const std::vector<std::string>& names,
                                      const std::vector<Metric>& metrics, const Protocols& protocols, bool online);
 
-/// "ok", "lost at 3.25 s", "not run"; what it was is enough for programs: "lost".
-std::string status_text(const RunRecord& run, bool brief);
+/// For people: "ok", "lost at 3.25 s", "timeout after 60 s", "not run".
+std::string status_text(const RunRecord& run);
+/// For programs: "ok", "lost", "failed", "damaged", "not run", and why, which is empty where all is well.
+std::string status_word(const RunRecord& run);
+std::string status_reason(const RunRecord& run);
 
 }  // namespace evbench

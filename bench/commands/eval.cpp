@@ -7,6 +7,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/failures.hpp"
+#include "bench/commands/number_check.hpp"
 #include "core/data/pose_file.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
@@ -214,7 +215,7 @@ void add_alignment_options(CLI::App& command, EvalArguments& arguments) {
 void add_association_options(CLI::App& command, EvalArguments& arguments) {
   ScoreOptions& options = arguments.options;
   command.add_option("--t_max_diff", options.tolerance, "Ground truth at most this far in time from a pose [s]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->capture_default_str();
   command.add_option("--t_offset", options.time_offset, "Added to the estimate's times [s]")->capture_default_str();
   command.add_option("--t_start", arguments.t_start, "Use ground truth from this time on [s]");
@@ -225,13 +226,13 @@ void add_association_options(CLI::App& command, EvalArguments& arguments) {
 void add_relative_options(CLI::App& command, EvalArguments& arguments) {
   ScoreOptions& options = arguments.options;
   command.add_option("-d,--delta", options.rpe_delta, "Distance of the two poses of a relative error")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   command.add_option("-u,--delta_unit", arguments.delta_unit, "Unit of delta: frames, seconds, metres, degrees")
       ->check(CLI::IsMember({"f", "s", "m", "d"}))
       ->capture_default_str();
   command.add_option("-t,--delta_tol", options.rpe_tolerance, "How far from delta a pair may be, relative to it")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->capture_default_str();
   command.add_flag("--all_pairs", arguments.all_pairs, "Pairs from every pose on, not one chain");
   command.add_flag("--pairs_from_reference", arguments.pairs_from_reference,
@@ -252,7 +253,7 @@ void add_segment_options(CLI::App& command, EvalArguments& arguments) {
                   "Their lengths; else 10 to 50 % of the path (rpg), 100 to 800 m (kitti)")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("LENGTH,...")
       ->needs(rule);
   command.add_option("--segment_unit", options.segment_unit, "What --segment_lengths are in")

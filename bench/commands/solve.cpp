@@ -8,6 +8,7 @@
 
 #include "backends/gp_map/problem_solver.hpp"
 #include "bench/commands/commands.hpp"
+#include "bench/commands/number_check.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 
@@ -101,31 +102,31 @@ void add_solve(CLI::App& app) {
       ->type_name("FILE");
   command->add_option("--steps", arguments->steps, "Write a CSV with a line for each step")->type_name("FILE");
   command->add_option("--reach", arguments->options.engine.reach, "States that relinearisation may reach back, at most")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   command->add_flag("--check", arguments->check, "Compare the cost with that of a batch solve from the result");
   command->add_option("--lag", arguments->options.lag, "Lag of fixed-lag mode [s]")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   command->add_option("--iterations", arguments->options.max_iterations, "Iterations of batch mode, at most")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   gp_map::EngineOptions& engine = arguments->options.engine;
   command->add_option("--relinearise", engine.relinearise, "Relinearise and redo from increments of this size [rad]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->capture_default_str();
   command
       ->add_option("--relinearise-redone", engine.relinearise_redone, "The same where stages are redone anyway [rad]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->capture_default_str();
   command
       ->add_option(
           "--solve-tolerance", engine.solve_tolerance,
           "Changes below this over the root of the number of landmarks alive are not solved back further [rad]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->capture_default_str();
   command->add_option("--check-step", engine.check_step, "Steps above this must not raise the cost [rad]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->capture_default_str();
   command->callback([arguments] { execute(*arguments); });
 }

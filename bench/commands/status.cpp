@@ -22,6 +22,7 @@ void add_status(CLI::App& app, int& exit_code) {
       fmt::print("{}: {} of {} done, {} failed, {} running, {} to do\n", sweep.folder, sweep.done, sweep.runs,
                  sweep.failed, sweep.running, sweep.missing);
       for (const TroubledRun& run : sweep.troubled) fmt::print("  {}\n", describe(run));
+      if (sweep.others > 0) fmt::print("  {}\n", describe_others(sweep.others));
       if (sweep.done < sweep.runs) exit_code = kExitFailed;
     }
   });

@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/exit_code.hpp"
+#include "bench/commands/number_check.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/run_folder.hpp"
 #include "bench/sweep/local_executor.hpp"
@@ -52,19 +54,25 @@ std::string shown_progress(const SweepProgress& now) {
 
 void print_plan(const std::vector<PlannedRun>& runs, const SweepPlan& plan, const ExecutorOptions& options) {
   constexpr const char* kConditions[] = {"to do", "complete", "broken off", "damaged"};
-  std::size_t to_do = 0;
+  std::set<std::string> all, to_do, failed;  // keys: a job may stand at several places
   for (const PlannedRun& run : runs) {
     std::string why;
-    auto condition = condition_of(fmt::format("{}/{}/{}", options.out, plan.name, run.identity.key), run.identity, why);
+    auto condition =
+        condition_of(fmt::format("{}/{}/{}", options.out, plan.name, run.identity.key), run.identity.key, why);
     if (condition == RunCondition::absent && find_complete_run(options.out, plan.name, run.identity)) {
       condition = RunCondition::complete;
     }
-    const bool failed = condition == RunCondition::broken_off || condition == RunCondition::damaged;
-    if (condition == RunCondition::absent || (failed && options.retry_failed)) ++to_do;
+    all.insert(run.identity.key);
+    if (condition == RunCondition::absent) to_do.insert(run.identity.key);
+    if (condition == RunCondition::broken_off || condition == RunCondition::damaged) failed.insert(run.identity.key);
     fmt::print("{:<10}  {}  {}{}{}\n", kConditions[static_cast<int>(condition)], run.identity.key, run.config.label,
                run.axes.empty() ? "" : ", ", place_of(run.axes));
   }
-  fmt::print("{} runs, {} to do\n", runs.size(), to_do);
+  const bool retried = options.retry_failed;
+  fmt::print("{} runs, {} to do{}\n", all.size(), to_do.size() + (retried ? failed.size() : 0),
+             failed.empty() || retried
+                 ? ""
+                 : fmt::format(", {} broken off or damaged (--retry-failed does them again)", failed.size()));
 }
 
 int do_locally(const std::vector<PlannedRun>& runs, const SweepArguments& arguments, const std::string& folder,
@@ -93,8 +101,10 @@ int do_locally(const std::vector<PlannedRun>& runs, const SweepArguments& argume
     throw OutputError(fmt::format("{}; {}", error.what(), complete()));
   }
   if (!arguments.quiet) {
-    fmt::print("{}: {} runs, {} of them complete before, {} failed{}\n", folder, now.runs, now.before, now.failed,
+    fmt::print("{}: {} runs, {} of them done before, {} failed{}\n", folder, now.runs, now.before, now.failed,
                now.failed == 0 ? "" : " (--retry-failed does again those that broke off or are damaged)");
+    const std::size_t others = count_others(folder, read_sweep_record(folder + "/sweep.json"));
+    if (others > 0) fmt::print("{}\n", describe_others(others));
     fmt::print("evbench table {}\n", folder);
   }
   return now.failed == 0 ? kExitDone : kExitFailed;
@@ -141,7 +151,11 @@ int execute(SweepArguments& arguments, Plugins& plugins) {
   ExecutorOptions& options = arguments.options;
   options.limits = sweep.limits;
   options.processes = arguments.at_a_time.value_or(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
-  const SweepPlan plan = plan_sweep(sweep, plugins);
+  const SweepPlan plan = [&] {
+    ProgressLine line(arguments.file, arguments.quiet);
+    line.update("planning: sources are made, for the files that they read");
+    return plan_sweep(sweep, plugins);
+  }();
   const std::vector<PlannedRun> runs = select_runs(plan, arguments.only);
   if (runs.empty()) throw InputError(fmt::format("{}: no run has all the values of --only", sweep.place));
   if (arguments.dry_run) {
@@ -182,9 +196,9 @@ void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code) {
                    "Runs at a time: by default one a processor, or as many as Slurm likes; 1 where times are compared")
       ->check(CLI::Range(1, 4096));
   command->add_option("--timeout", arguments->seconds, "Time that a run may take [s]; 0: no limit")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   command->add_option("--memory", arguments->memory_mib, "Memory that a run may take [MiB]; 0: no limit")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   command->add_flag("--retry-failed", arguments->options.retry_failed,
                     "Do runs again that crashed, hung or took too much, and damaged ones");
   command->add_flag("--dry-run", arguments->dry_run, "Print the plan, and what of it is complete, and stop");

@@ -7,6 +7,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/exit_code.hpp"
+#include "bench/commands/number_check.hpp"
 #include "bench/sweep/manifest.hpp"
 #include "bench/sweep/process_pool.hpp"
 #include "core/support/interruption.hpp"
@@ -38,7 +39,7 @@ void add_task(CLI::App& app, Plugins& plugins, int& exit_code) {
   auto arguments = std::make_shared<TaskArguments>();
   CLI::App* command = app.add_subcommand("task", "Do a line of the manifest that evbench sweep wrote");
   command->add_option("manifest", arguments->manifest, "manifest.jsonl")->required();
-  command->add_option("line", arguments->line, "Number of the line, from 1")->required()->check(CLI::PositiveNumber);
+  command->add_option("line", arguments->line, "Number of the line, from 1")->required()->check(above_zero());
   command->add_option("--stride", arguments->stride, "And every so many lines after it; 0: that line alone");
   command->footer("Exit codes: as of evbench run.");
   command->callback([arguments, &plugins, &exit_code] { exit_code = execute(*arguments, plugins); });

@@ -168,6 +168,12 @@ std::optional<RangeOptions> parse_range(const std::string& text) {
 
 }  // namespace
 
+std::vector<std::string> AxisValue::keys() const {
+  std::vector<std::string> result;
+  for (const std::string& override : overrides) result.push_back(override.substr(0, override.find('=')));
+  return result;
+}
+
 ZippedAxes read_axis(const Json& json, const std::string& place) {
   const auto options = read_options<AxisOptions>(json, place);
   const bool has_values = !options.values.is_null(), has_range = !options.range.is_null();

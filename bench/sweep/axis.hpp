@@ -11,6 +11,9 @@ namespace evbench {
 struct AxisValue {
   std::string text;
   std::vector<std::string> overrides;
+
+  /// The paths in the config that it sets.
+  std::vector<std::string> keys() const;
 };
 
 /// What is varied, and the values that it takes: at least one, no two of one text.

@@ -163,7 +163,7 @@ class Executor {
   bool take_result(Job& job) {
     AtomicFolder::clear_leftovers(folder_of(job));
     std::string why;
-    const RunCondition condition = condition_of(folder_of(job), job.run->identity, why);
+    const RunCondition condition = condition_of(folder_of(job), job.run->identity.key, why);
     if (condition == RunCondition::complete || condition == RunCondition::absent) {
       const auto found = find_complete_run(options_.out, job.run->config.experiment, job.run->identity);
       return found && adopt(job, *found);
@@ -210,7 +210,7 @@ class Executor {
       return;
     }
     std::string ignored;
-    if (condition_of(folder_of(job), run.identity, ignored) == RunCondition::complete) {  // since it was looked at
+    if (condition_of(folder_of(job), run.identity.key, ignored) == RunCondition::complete) {  // since it was looked at
       job.folder.reset();
       if (!take_result(job)) waiting_.push_back(i);
       return;

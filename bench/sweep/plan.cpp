@@ -92,7 +92,8 @@ class Planner {
     PlannedRun run{std::move(config), std::move(identity), std::move(axes), "", "", {}};
     const auto [twin, is_new] = by_key_.emplace(run.identity.key, plan_.runs.size());
     if (!is_new) check_twin(plan_.runs[twin->second], run);
-    plan_.runs.push_back(std::move(run));
+    const std::string place = fmt::format("{} {} {}", run.identity.key, run.config.label, place_of(run.axes));
+    if (places_.insert(place).second) plan_.runs.push_back(std::move(run));  // grids may overlap
   }
 
   /// Of a job that has several places in the sweep there is one run, which stands in tables at each of them, by the
@@ -195,6 +196,7 @@ class Planner {
   std::vector<std::pair<RunConfig, RunAxes>> gathered_;
   std::map<std::string, SourceFiles> sources_;
   std::map<std::string, std::size_t> by_key_;
+  std::set<std::string> places_;
   SweepPlan plan_;
   ProcessPool pool_;
 };
@@ -228,9 +230,13 @@ std::vector<PlannedRun> select_runs(const SweepPlan& plan, const std::vector<std
     std::vector<std::string> names;
     for (const auto& axis : plan.axes) names.push_back(axis.first);
     const auto axis = std::ranges::find(plan.axes, name, &decltype(plan.axes)::value_type::first);
-    if (equals == std::string::npos || axis == plan.axes.end()) {
+    if (axis == plan.axes.end()) {
       throw InputError(fmt::format("--only {}: expected AXIS=VALUE; no axis is called \"{}\"{}", text, name,
                                    suggestion(name, names)));
+    }
+    if (equals == std::string::npos) {
+      throw InputError(
+          fmt::format("--only {}: expected AXIS=VALUE, with one of {}", text, fmt::join(axis->second, ", ")));
     }
     const std::string value = text.substr(equals + 1);
     if (std::ranges::find(axis->second, value) == axis->second.end()) {

@@ -64,6 +64,7 @@ TEST_CASE("A sweep is the product of its axes, grid by grid, and its plan names 
   CHECK(select_runs(made, {"frame=0.1", "frame=0.2"}).size() == 4);
   CHECK_THROWS_WITH(select_runs(made, {"motoin=fast"}), Contains("did you mean \"motion\"?"));
   CHECK_THROWS_WITH(select_runs(made, {"motion=fats"}), Contains("has no such value, but slow, fast"));
+  CHECK_THROWS_WITH(select_runs(made, {"motion"}), Contains("expected AXIS=VALUE, with one of slow, fast"));
 }
 
 TEST_CASE("The same config has the same key in a sweep as alone, and points of one job are one run, or refused") {
@@ -95,7 +96,13 @@ TEST_CASE("A sweep that can't be is refused before anything is written, with pla
   refused(R"({"config": "c.json", "axes": [{"key": "seed", "values": []}]})",
           "axes.0: the axis \"seed\" has no values");
   refused(R"({"config": "c.json", "axes": [{"key": "seed", "values": [1]}, {"key": "seed", "values": [1]}]})",
+          "expected one axis for a key");
+  refused(R"({"config": "c.json", "axes": [{"key": "seed", "values": [1]}, {"name": "seed", "overlays": {"a": {}}}]})",
           "two axes are called \"seed\"");
+  refused(R"({"config": "c.json", "axes": [{"key": "backend.frame_duration", "values": [0.1]}],
+              "grids": [{"axes": [{"name": "which", "overlays": {"a": {"backend": {"type": "gp_map"}}}}]}]})",
+          "the axis \"which\" sets \"backend\", and with it \"backend.frame_duration\"");
+  refused(R"({"axes": [{"key": "seed", "values": [1]}]})", "\"config\" is missing");
   refused(R"({"config": "c.json", "grids": [{"axes": [{"key": "seed"}]}]})", "grids.0.axes.0: expected one of");
   refused(R"({"config": "c.json", "plugins": ["no.so"]})", "plugins: ");
   refused(R"({"config": "c.json", "timeout": -1})", "timeout: ");
@@ -132,25 +139,37 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
 
   const Outcome first = sweep("--over seed=1..2");
   CHECK(first.exit_code == 0);
-  CHECK_THAT(first.out, Contains("results/tiny: 2 runs, 0 of them complete before, 0 failed"));
+  CHECK_THAT(first.out, Contains("results/tiny: 2 runs, 0 of them done before, 0 failed"));
   const auto before = results_of(folder.file("results/tiny"));
-  CHECK_THAT(sweep("--over seed=1..3").out, Contains("3 runs, 2 of them complete before"));
-  CHECK_THAT(sweep("--over seed=1..3 --set name=other").out,
-             Contains("results/other: 3 runs, 3 of them complete before"));
-  CHECK_THAT(sweep("--over seed=1..3 --set evaluation.rpe_delta=0.2").out, Contains("3 of them complete before"));
-  CHECK_THAT(sweep("--over seed=1..2").out, Contains("2 of them complete before"));
+  CHECK_THAT(sweep("--over seed=1..3").out, Contains("3 runs, 2 of them done before"));
+  CHECK_THAT(sweep("--over seed=1..3 --set name=other").out, Contains("results/other: 3 runs, 3 of them done before"));
+  CHECK_THAT(sweep("--over seed=1..3 --set evaluation.rpe_delta=0.2").out, Contains("3 of them done before"));
+  CHECK_THAT(sweep("--over seed=1..2").out, Contains("2 of them done before"));
   CHECK_THAT(testing::evbench(folder, "status results").out,
-             Contains("results/other: 3 of 3 done") && Contains("results/tiny: 2 of 2 done, 0 failed"));
+             Contains("results/other: 3 of 3 done") && Contains("results/tiny: 2 of 2 done, 0 failed") &&
+                 Contains("1 more runs lie here that the sweep does not plan"));
 
   // The file of a config and evbench run give the same.
   REQUIRE(testing::evbench(folder, "run c.json --quiet --out alone").exit_code == 0);
   for (const auto& [path, content] : results_of(folder.file("alone/tiny"))) CHECK(before.at(path) == content);
 
+  // Both see the same damage, and say so.
   REQUIRE(testing::shell(folder, "rm -r results/other; rm results/tiny/*/final.tum").exit_code == 0);
   const Outcome damaged = sweep("--over seed=1..2");
   CHECK(damaged.exit_code == 3);
   CHECK_THAT(damaged.err, Contains("damaged: ") && Contains("final.tum: is missing"));
   CHECK_THAT(damaged.out, Contains("2 failed"));
+  CHECK_THAT(sweep("--over seed=1..2 --dry-run").out, Contains("2 runs, 0 to do, 2 broken off or damaged"));
+  CHECK_THAT(testing::evbench(folder, "status results").out, Contains("0 of 2 done, 2 failed"));
+  REQUIRE(sweep("--over seed=1..2 --retry-failed").exit_code == 0);
+  for (const std::string damage : {"truncate -s 100 $f/final.tum", "rm $f/status.json", "echo > $f/job.json"}) {
+    INFO(damage);
+    REQUIRE(testing::shell(folder, "for f in results/tiny/*-*; do " + damage + "; done").exit_code == 0);
+    CHECK_THAT(testing::evbench(folder, "status results").out, Contains("0 of 2 done, 2 failed"));
+    CHECK_THAT(sweep("--over seed=1..2").out, Contains("2 failed"));
+    REQUIRE(sweep("--over seed=1..2 --retry-failed").exit_code == 0);
+    CHECK(testing::evbench(folder, "status results").exit_code == 0);
+  }
   CHECK(sweep("--over seed=1..2 --retry-failed").exit_code == 0);
   auto after = results_of(folder.file("results/tiny"));
   for (const auto& [path, content] : before) {

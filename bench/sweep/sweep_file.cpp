@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
+#include <ranges>
 #include <set>
+#include <utility>
 
 #include "bench/experiment.hpp"
 #include "bench/plugins.hpp"
@@ -42,16 +45,28 @@ void add_axes(const Json& axes, const std::string& place, Grid& grid) {
   for (std::size_t i = 0; i < axes.size(); ++i) grid.push_back(read_axis(axes[i], fmt::format("{}.{}", place, i)));
 }
 
-void check_names(const Sweep& sweep) {
-  for (const Grid& grid : sweep.grids) {
-    std::set<std::string> names;
-    for (const ZippedAxes& zipped : grid) {
-      for (const Axis& axis : zipped) {
-        if (names.insert(axis.name).second) continue;
+/// No axis may undo what another one before it has set: runs would stand at places where they are not.
+void check_axes(const Sweep& sweep, const Grid& grid) {
+  std::set<std::string> names;
+  std::map<std::string, std::string> set_by;  // key, axis
+  for (const Axis& axis : grid | std::views::join) {
+    std::set<std::string> keys;
+    for (const AxisValue& value : axis.values) {
+      for (std::string& key : value.keys()) keys.insert(std::move(key));
+    }
+    for (const std::string& key : keys) {
+      for (const auto& [earlier, by] : set_by) {
+        if (earlier != key && !earlier.starts_with(key + ".")) continue;
         throw InputError(
-            fmt::format("{}: two axes are called \"{}\"; give one another \"name\"", sweep.place, axis.name));
+            fmt::format("{}: the axis \"{}\" sets \"{}\", and with it \"{}\" of the axis \"{}\" before it; "
+                        "expected {}",
+                        sweep.place, axis.name, key, earlier, by,
+                        earlier == key ? "one axis for a key" : fmt::format("\"{}\" behind it", by)));
       }
     }
+    for (const std::string& key : keys) set_by.emplace(key, axis.name);
+    if (names.insert(axis.name).second) continue;
+    throw InputError(fmt::format("{}: two axes are called \"{}\"; give one another \"name\"", sweep.place, axis.name));
   }
 }
 
@@ -104,7 +119,9 @@ Sweep read_sweep(const std::string& path, const std::vector<std::string>& overri
                  const std::vector<std::string>& over, Plugins& plugins) {
   const Json json = read_json(path);
   Sweep sweep;
-  if (json.is_object() && json.contains("config")) {
+  const bool is_sweep =
+      json.is_object() && (json.contains("config") || json.contains("axes") || json.contains("grids"));
+  if (is_sweep) {
     sweep = read_file(json, path, plugins);
   } else {
     sweep.place = sweep.config = path;
@@ -120,7 +137,7 @@ Sweep read_sweep(const std::string& path, const std::vector<std::string>& overri
   for (const std::string& text : over) {
     for (Grid& grid : sweep.grids) grid.push_back({parse_axis(text)});
   }
-  check_names(sweep);
+  for (const Grid& grid : sweep.grids) check_axes(sweep, grid);
   return sweep;
 }
 

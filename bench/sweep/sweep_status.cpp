@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 
+#include "bench/run_folder.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "eval/run_record.hpp"
@@ -16,23 +17,22 @@ namespace fs = std::filesystem;
 namespace {
 
 void add_run(const std::string& folder, const SweepRecordRun& run, SweepStatus& status) {
-  std::error_code error;
   if (AtomicFolder::is_taken(folder)) {
     ++status.running;
     return;
   }
-  if (!fs::is_directory(folder, error)) {
+  std::string why;
+  const RunCondition condition = condition_of(folder, run.key, why);
+  if (condition == RunCondition::absent) {
     ++status.missing;
     return;
   }
-  std::optional<TroubledRun> trouble;
-  try {
-    trouble = trouble_of(read_record(folder), place_of(run.axes));
-  } catch (const InputError& damage) {
-    trouble = TroubledRun{run.label, place_of(run.axes), fmt::format("damaged: {}", damage.what())};
-  }
+  const std::string place = place_of(run.axes);
+  const std::optional<TroubledRun> trouble = condition == RunCondition::damaged
+                                                 ? TroubledRun{run.label, place, "damaged: " + why}
+                                                 : trouble_of(read_record(folder), place);
   ++(trouble && !trouble->lost ? status.failed : status.done);
-  if (trouble) status.troubled.push_back(std::move(*trouble));
+  if (trouble) status.troubled.push_back(*trouble);
 }
 
 SweepStatus read_one(const std::string& folder) {
@@ -46,6 +46,7 @@ SweepStatus read_one(const std::string& folder) {
     ++status.runs;
     add_run(folder + "/" + run.key, run, status);
   }
+  status.others = count_others(folder, sweep);
   return status;
 }
 
@@ -68,6 +69,22 @@ std::vector<SweepStatus> read_sweep_status(const std::string& folder) {
   std::vector<SweepStatus> result;
   for (const std::string& sweep : sweeps) result.push_back(read_one(sweep));
   return result;
+}
+
+std::size_t count_others(const std::string& folder, const SweepRecord& sweep) {
+  std::set<std::string> planned;
+  for (const SweepRecordRun& run : sweep.runs) planned.insert(run.key);
+  const auto is_other = [&](const fs::directory_entry& entry) {
+    const std::string name = entry.path().filename().string();
+    return !name.ends_with(".part") && !name.ends_with(".old") && !planned.contains(name) &&
+           fs::exists(entry.path() / "job.json");
+  };
+  return static_cast<std::size_t>(std::ranges::count_if(fs::directory_iterator(folder), is_other));
+}
+
+std::string describe_others(std::size_t others) {
+  return others == 0 ? ""
+                     : fmt::format("{} more runs lie here that the sweep does not plan: tables pass them over", others);
 }
 
 }  // namespace evbench

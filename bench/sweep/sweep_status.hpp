@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/sweep/local_executor.hpp"
+#include "eval/sweep_record.hpp"
 
 namespace evbench {
 
@@ -11,11 +12,18 @@ namespace evbench {
 struct SweepStatus {
   std::string folder, name;
   std::size_t runs = 0, done = 0, failed = 0, running = 0, missing = 0;
+  std::size_t others = 0;             ///< runs in its folder that it does not plan (any more), and tables pass over
   std::vector<TroubledRun> troubled;  ///< failed, damaged ones among them, or lost, which are done
 };
 
 /// The sweeps in a folder: its own or those of the folders in it. Throws InputError where there is none, and for a
 /// sweep.json that can't be read.
 std::vector<SweepStatus> read_sweep_status(const std::string& folder);
+
+/// A sentence for `others`; empty where there are none.
+std::string describe_others(std::size_t others);
+
+/// SweepStatus::others of a sweep's folder.
+std::size_t count_others(const std::string& folder, const SweepRecord& sweep);
 
 }  // namespace evbench

@@ -53,13 +53,14 @@ struct Results {
     folder.write(name + "/config.json", config.dump());
   }
   /// A run of this label and seed on the data of that seed, of an ATE; none: it failed.
-  void add_seed(const std::string& label, int seed, std::optional<double> ate, double frame = 0.1) const {
+  void add_seed(const std::string& label, int seed, std::optional<double> ate, double frame = 0.1,
+                const std::string& motion = "arm") const {
     Json json = run("arm", label, ate ? scores_with(*ate) : Json(), ate ? "ok" : "failed");
     json["seed"] = seed;
     json["key"] = label + std::to_string(seed) + "-" + std::to_string(frame);
     add(json["key"].get<std::string>(), json,
         {{"seed", seed},
-         {"source", {{"type", "simulation"}}},
+         {"source", {{"type", "simulation"}, {"motion", motion}}},
          {"frontend", {{"type", "oracle"}}},
          {"backend", {{"type", label}, {"frame_duration", frame}}}});
   }
