@@ -159,8 +159,10 @@ class Executor {
     std::ranges::stable_sort(waiting_, {}, place);
   }
 
-  /// Takes what lies there already, if that is to be taken.
+  /// Takes what lies there already, if that is to be taken. Not while somebody writes to it, be it a killed sweep's run
+  /// in its last moment: what it leaves behind is seen later.
   bool take_result(Job& job) {
+    if (AtomicFolder::is_taken(folder_of(job))) return false;
     AtomicFolder::clear_leftovers(folder_of(job));
     std::string why;
     const RunCondition condition = condition_of(folder_of(job), job.run->identity.key, why);
