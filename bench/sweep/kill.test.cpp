@@ -79,6 +79,18 @@ TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the 
   CHECK(of_sweeps > 0);
 }
 
+TEST_CASE("A run that is complete while its writer is still ending is taken when that is gone, and no lock stays") {
+  const TemporaryFolder folder;
+  folder.write("c.json", tiny_config().dump());
+  REQUIRE(testing::evbench(folder, kSweep + "out").exit_code == 0);
+  const auto expected = results_of(folder.file("out/tiny"));
+  const Outcome outcome = testing::shell(
+      folder, "lock=$(ls -d out/tiny/*-* | head -1).evbench.lock; flock $lock sleep 1 & sleep 0.2; \"$evbench\" " +
+                  kSweep + "out; wait");
+  CHECK(outcome.exit_code == 0);
+  CHECK(difference(expected, results_of(folder.file("out/tiny"))) == "");
+}
+
 TEST_CASE("A sweep onto a full disk says so and loses nothing: with more room it ends with the same bytes") {
   const TemporaryFolder folder;
   folder.write("c.json", tiny_config().dump());

@@ -36,26 +36,40 @@ void EventSimulation::Options::declare(OptionSet& set) {
 
 EventSimulation::EventSimulation(const Options& options, const SourceContext& context)
     : SimulatedSequence(options, check_sensor(options, context)),
+      look_(options.scene),
+      folder_(context.folder),
+      place_(context.place + ".scene"),
       rendering_(options.rendering),
-      simulator_(options.simulator),
-      scene_(std::make_shared<const RenderedScene>(make_rendered_scene(options.scene, camera(), motion(), duration(),
-                                                                       random(Part::scene), context.folder,
-                                                                       context.place + ".scene"))) {
-  if (!options.scene.picture.empty()) add_file(resolve_path(options.scene.picture, context.folder));
-  Scene features(scene_->features, camera(), [truth = truth()](const SE3& T_world_camera, const Vector3& point) {
-    return truth.unoccluded(T_world_camera, point);
+      simulator_(options.simulator) {
+  check_rendered_scene(look_, camera(), motion(), duration(), place_);
+  if (!look_.picture.empty()) {
+    add_file(resolve_path(look_.picture, folder_));
+    drawn_scene();  // a picture that can't be read is told at once
+  }
+  const auto features = [this] {
+    return Scene(scene().features, camera(), [truth = truth()](const SE3& T_world_camera, const Vector3& point) {
+      return truth.unoccluded(T_world_camera, point);
+    });
+  };
+  make_tracks_of(features, options.tracks, context.place + ".tracks");
+}
+
+std::shared_ptr<const RenderedScene> EventSimulation::drawn_scene() const {
+  std::call_once(drawn_, [this] {
+    scene_ = std::make_shared<const RenderedScene>(
+        make_rendered_scene(look_, camera(), motion(), duration(), random(Part::scene), folder_, place_));
   });
-  make_tracks_of(std::move(features), options.tracks, context.place + ".tracks");
+  return scene_;
 }
 
 std::unique_ptr<EventReader> EventSimulation::all_events() const {
-  auto brightness = std::make_unique<SceneBrightness>(camera(), scene_, motion(), rendering_, simulator_.threads);
+  auto brightness =
+      std::make_unique<SceneBrightness>(camera(), drawn_scene(), motion(), rendering_, simulator_.threads);
   return std::make_unique<EventSimulator>(std::move(brightness), simulator_, duration(), random(Part::sensor).next());
 }
 
 std::vector<std::string> EventSimulation::remarks() const {
-  return {fmt::format("events simulated while they are read; {} surfaces, {} features, path {:.3f} m",
-                      scene_->surfaces.size(), scene_->features.size(), ground_truth().path_length())};
+  return {fmt::format("events simulated while they are read; path {:.3f} m", ground_truth().path_length())};
 }
 
 }  // namespace evbench

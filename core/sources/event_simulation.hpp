@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
+#include <string>
 
 #include "core/simulation/events/event_simulator.hpp"
 #include "core/simulation/events/scene_brightness.hpp"
@@ -28,13 +30,20 @@ class EventSimulation : public SimulatedSequence {
   std::vector<std::string> remarks() const override;
 
   /// Depth at any pixel and time, and the true track of any point.
-  SceneTruth truth() const { return {camera(), scene_, motion()}; }
-  const RenderedScene& scene() const { return *scene_; }
+  SceneTruth truth() const { return {camera(), drawn_scene(), motion()}; }
+  const RenderedScene& scene() const { return *drawn_scene(); }
 
  private:
+  /// Drawn when it is needed first: that takes its time, and who plans a sweep, or reads events that were recorded, has
+  /// no use for it.
+  std::shared_ptr<const RenderedScene> drawn_scene() const;
+
+  RenderedSceneOptions look_;
+  std::string folder_, place_;  ///< of its picture; for messages
   RenderingOptions rendering_;
   SimulatorOptions simulator_;
-  std::shared_ptr<const RenderedScene> scene_;
+  mutable std::once_flag drawn_;
+  mutable std::shared_ptr<const RenderedScene> scene_;
 };
 
 }  // namespace evbench

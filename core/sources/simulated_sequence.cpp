@@ -26,10 +26,12 @@ SimulatedSequence::SimulatedSequence(const Options& options, const SourceContext
   if (options.motion.kind == "trajectory") add_file(resolve_path(options.motion.trajectory, context.folder));
 }
 
-void SimulatedSequence::make_tracks_of(Scene scene, const TrackOptions& options, const std::string& place) {
+void SimulatedSequence::make_tracks_of(std::function<Scene()> scene, const TrackOptions& options,
+                                       const std::string& place) {
   options.check(camera_, place);
-  make_tracks_ = [this, scene = std::move(scene), options, place]() mutable {
-    return simulate_tracks(options, camera_, motion_, scene, duration_, random(Part::tracks).next(), place);
+  make_tracks_ = [this, scene = std::move(scene), options, place] {
+    Scene seen = scene();
+    return simulate_tracks(options, camera_, motion_, seen, duration_, random(Part::tracks).next(), place);
   };
 }
 

@@ -47,8 +47,8 @@ class SimulatedSequence : public Source {
 
   double duration() const { return duration_; }
   const Motion& motion() const { return motion_; }
-  /// `place`: where the options stand, for messages.
-  void make_tracks_of(Scene scene, const TrackOptions& options, const std::string& place);
+  /// `scene`: makes what is seen, when tracks are asked for; `place`: where the options stand, for messages.
+  void make_tracks_of(std::function<Scene()> scene, const TrackOptions& options, const std::string& place);
   void add_file(const std::string& path) { files_.push_back(path); }
 
  private:

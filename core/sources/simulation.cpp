@@ -19,8 +19,10 @@ void Simulation::Options::declare(OptionSet& set) {
 }
 
 Simulation::Simulation(const Options& options, const SourceContext& context) : SimulatedSequence(options, context) {
-  Scene scene(options.scene, camera(), motion(), duration(), random(Part::scene));
-  make_tracks_of(std::move(scene), options.tracks, context.place + ".tracks");
+  const auto make_scene = [this, scene = options.scene] {
+    return Scene(scene, camera(), motion(), duration(), random(Part::scene));
+  };
+  make_tracks_of(make_scene, options.tracks, context.place + ".tracks");
   tracks();  // what can't be simulated is to be told now
 }
 

@@ -15,6 +15,8 @@
 namespace evbench {
 namespace {
 
+constexpr double kLayoutRate = 10.0;  ///< of the poses that a scene is laid out before [Hz]
+
 using Box = Eigen::AlignedBox3d;
 
 /// A pattern and how large it is on the surfaces [m].
@@ -141,13 +143,9 @@ void RenderedSceneOptions::declare(OptionSet& set) {
 
 RenderedScene make_rendered_scene(const RenderedSceneOptions& options, const Camera& camera, const Motion& motion,
                                   double duration, Random random, const std::string& folder, const std::string& place) {
-  if (!(options.near < options.far)) {
-    throw InputError(
-        fmt::format("{}: near is {} m and far {} m; expected near < far", place, options.near, options.far));
-  }
-  const SceneLayout layout(camera, sample_motion(motion, duration, 10.0));
+  check_rendered_scene(options, camera, motion, duration, place);
+  const SceneLayout layout(camera, sample_motion(motion, duration, kLayoutRate));
   const bool boxes = options.kind == "boxes";
-  if (!boxes) check_before_plane(0.5 * (options.near + options.far), layout, motion, duration, place);
   std::vector<Surface> surfaces = boxes ? boxes_in_room(options, layout, random) : plane(options, layout);
   const Vector3& largest = surfaces.back().half;
   const Print print = make_print(options, camera, 2.0 * largest.maxCoeff(), random, folder);
@@ -163,6 +161,17 @@ RenderedScene make_rendered_scene(const RenderedSceneOptions& options, const Cam
     }
   }
   return scene;
+}
+
+void check_rendered_scene(const RenderedSceneOptions& options, const Camera& camera, const Motion& motion,
+                          double duration, const std::string& place) {
+  if (!(options.near < options.far)) {
+    throw InputError(
+        fmt::format("{}: near is {} m and far {} m; expected near < far", place, options.near, options.far));
+  }
+  if (options.kind == "boxes") return;
+  const SceneLayout layout(camera, sample_motion(motion, duration, kLayoutRate));
+  check_before_plane(0.5 * (options.near + options.far), layout, motion, duration, place);
 }
 
 }  // namespace evbench

@@ -38,9 +38,14 @@ struct RenderedScene {
 /// - plane: a plane with a picture, or with fallen leaves (see draw_leaves);
 /// - boxes: boxes with that in a room with that, between the depths near and far from the path.
 /// Planes meet the mean view direction at right angles half way between near and far.
-/// Throws InputError, naming `place`, unless near < far, where the motion leads to or behind the plane, and for a
-/// picture that can't be read (relative to `folder`).
+/// Throws InputError, naming `place`, as check_rendered_scene() does, and for a picture that can't be read (relative to
+/// `folder`).
 RenderedScene make_rendered_scene(const RenderedSceneOptions& options, const Camera& camera, const Motion& motion,
                                   double duration, Random random, const std::string& folder, const std::string& place);
+
+/// Throws InputError, naming `place`, unless near < far, and where the motion leads to or behind the plane: all that
+/// can be wrong without a picture, in no time.
+void check_rendered_scene(const RenderedSceneOptions& options, const Camera& camera, const Motion& motion,
+                          double duration, const std::string& place);
 
 }  // namespace evbench
