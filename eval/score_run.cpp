@@ -91,7 +91,8 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
     try {
       scores = to_json(compare(trajectories, options, record));
     } catch (const InputError& error) {
-      unscored = error.what();
+      const bool broke_off = record.status && !record.status->complete;  // and left nothing to be scored
+      unscored = broke_off ? record.status->status.reason : error.what();
     }
   };
   set(false, record.final_scores, record.final_unscored);

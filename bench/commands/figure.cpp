@@ -4,7 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -81,19 +83,18 @@ struct FigureArguments {
   FigureOptions options;
 };
 
-/// Leaves the runs that have all the values asked for, NAME=VALUE.
+/// Leaves the runs that have of each name, NAME=VALUE, one of the values asked for.
 void keep_only(const std::vector<std::string>& only, std::vector<RunRecord>& runs) {
   const std::vector<RunColumn> columns = run_columns(runs);
-  std::vector<bool> kept(runs.size(), true);
+  std::map<const RunColumn*, std::set<std::string>> asked;
   for (const std::string& condition : only) {
     const std::size_t equals = condition.find('=');
-    const RunColumn& column = find_column(columns, condition.substr(0, equals));
-    const std::string value = condition.substr(equals + 1);
-    for (std::size_t i = 0; i < runs.size(); ++i) kept[i] = kept[i] && column.values[i] == value;
+    asked[&find_column(columns, condition.substr(0, equals))].insert(condition.substr(equals + 1));
   }
   std::vector<RunRecord> left;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (kept[i]) left.push_back(std::move(runs[i]));
+    const auto fits = [&](const auto& column) { return column.second.contains(column.first->values[i]); };
+    if (std::ranges::all_of(asked, fits)) left.push_back(std::move(runs[i]));
   }
   if (left.empty()) throw InputError(fmt::format("none of {} runs is left by --only", runs.size()));
   runs = std::move(left);
@@ -113,7 +114,8 @@ void execute(const FigureArguments& arguments) {
     if (arguments.width_mm > 0.0) figure.width_mm = arguments.width_mm;
     if (arguments.height_mm > 0.0) figure.height_mm = arguments.height_mm;
     if (arguments.keep_script) write_file(script, drawing_script(figure));
-    draw(figure, arguments.out, arguments.python);
+    const std::string warnings = draw(figure, arguments.out, arguments.python);
+    if (!warnings.empty()) fmt::print(stderr, "{}: is drawn, but Python warns:{}\n", arguments.out, warnings);
   });
 }
 
@@ -135,7 +137,9 @@ void add_figure(CLI::App& app) {
   command->add_option("--across", arguments->options.across, "The other axis of a map")->type_name("NAME");
   command->add_option("--base", arguments->options.base, "What a map compares with; else the method without the axis")
       ->type_name("METHOD");
-  command->add_option("--only", arguments->only, "Only runs with this value, e.g. seed=3; can be given often")
+  command
+      ->add_option("--only", arguments->only,
+                   "Only runs with this value, e.g. seed=3; several of one name: any of them")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false)
       ->check([](const std::string& value) {

@@ -6,36 +6,66 @@
 #include "bench/figures/figure_runs.hpp"
 
 namespace evbench {
+namespace {
+
+constexpr std::size_t kColumns = 3;  ///< of panels, at most: beside them the names stand
+
+/// A method's runs, as a metric has them.
+struct Row {
+  std::vector<double> values;  ///< of those that did not fail
+  std::string failures;        ///< how many did, on one line by no-break spaces; empty: none
+};
+
+Row row_of(const Method& method, const FigureRuns& all, const Metric& metric) {
+  Row row{values_of(method.runs, all.runs, metric), ""};
+  const std::size_t counted = row.values.size();
+  const std::size_t failed = std::erase_if(row.values, [](double value) { return std::isinf(value); });
+  for (double& value : row.values) value *= metric.factor;
+  if (failed > 0) row.failures = fmt::format("({}\u00a0of\u00a0{}\u00a0fail)", failed, counted);
+  return row;
+}
+
+}  // namespace
 
 Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
   const FigureRuns all(runs, options.online);
   const std::vector<Metric> metrics = all.metrics(options);
   Figure figure;
   figure.legend = false;
-  for (const Method& method : all.methods) figure.series.push_back({method.name});
+  figure.columns = std::min(metrics.size(), kColumns);
+  std::vector<std::vector<std::size_t>> groups;
+  for (const Method& method : all.methods) {
+    figure.series.push_back({method.name});
+    groups.push_back(method.runs);
+  }
+  bool some_failed = false;
+  std::vector<std::string> told;  // of failures, by the first panel of a row, which has the names for all of it
   for (const Metric& metric : metrics) {
+    const bool begins_row = figure.panels.size() % figure.columns == 0;
+    if (begins_row) told.clear();
     Panel panel{{metric.header}, {}, {}};
     std::vector<double> drawn;
     for (std::size_t m = 0; m < all.methods.size(); ++m) {
-      std::vector<double> values = values_of(all.methods[m].runs, all.runs, metric);
-      const std::size_t counted = values.size();
-      std::erase_if(values, [](double value) { return std::isinf(value); });
-      for (double& value : values) value *= metric.factor;
-      const bool some_failed = values.size() < counted;
-      // Once a row: panels that stand side by side share their names.
-      panel.names.push_back(
-          !figure.panels.empty() && !some_failed ? ""
-          : some_failed ? fmt::format("{} ({} of {} fail)", all.methods[m].name, counted - values.size(), counted)
-                        : all.methods[m].name);
-      drawn.insert(drawn.end(), values.begin(), values.end());
-      if (!values.empty()) panel.marks.push_back({Mark::Kind::box, m, {static_cast<double>(m)}, std::move(values)});
+      Row row = row_of(all.methods[m], all, metric);
+      some_failed = some_failed || !row.failures.empty();
+      if (begins_row) {
+        panel.names.push_back(all.methods[m].name + (row.failures.empty() ? "" : " " + row.failures));
+        told.push_back(row.failures);
+      } else {
+        panel.names.push_back(row.failures == told[m] ? "" : row.failures);
+      }
+      drawn.insert(drawn.end(), row.values.begin(), row.values.end());
+      if (!row.values.empty()) {
+        panel.marks.push_back({Mark::Kind::box, m, {static_cast<double>(m)}, std::move(row.values)});
+      }
     }
     panel.x.log = spread_wide(drawn);
     figure.panels.push_back(std::move(panel));
   }
-  figure.columns = figure.panels.size();
-  figure.height_mm = 13.0 + 6.5 * static_cast<double>(all.methods.size());
-  figure.caption = all.scored_caption("Boxes between quartiles, with the median; each run is a point.", options.online);
+  const std::size_t rows = (figure.panels.size() + figure.columns - 1) / figure.columns;
+  figure.height_mm = (13.0 + 6.5 * static_cast<double>(all.methods.size())) * static_cast<double>(rows);
+  const std::string what = all.pooled("Boxes between quartiles, with the median and each run as a point", groups);
+  figure.caption = all.scored_caption(what + (some_failed ? " Those that failed are in no box." : ""), options.online);
   return figure;
 }
 

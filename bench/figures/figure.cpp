@@ -9,13 +9,14 @@
 
 #include "bench/figures/figure_script.hpp"
 #include "core/io/atomic_file.hpp"
+#include "core/io/part_file.hpp"
 #include "core/process/child_process.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
 namespace {
 
-constexpr std::array kKindNames = {"line", "points", "band", "level", "steps", "note", "box", "cells"};
+constexpr std::array kKindNames = {"line", "points", "band", "level", "steps", "failures", "box", "cells"};
 
 /// Python's JSON knows no infinity; what is not finite is not drawn.
 Json numbers(const std::vector<double>& values) {
@@ -30,7 +31,6 @@ Json to_json(const Mark& mark) {
   json["y"] = numbers(mark.y);
   json["low"] = numbers(mark.low);
   json["high"] = numbers(mark.high);
-  if (!mark.text.empty()) json["text"] = mark.text;
   return json;
 }
 
@@ -102,17 +102,20 @@ std::string drawing_script(const Figure& figure) {
   return script.replace(script.find(place), place.size(), data);
 }
 
-void draw(const Figure& figure, const std::string& file, const std::string& python) {
+std::string draw(const Figure& figure, const std::string& file, const std::string& python) {
+  PartFile{file};  // says by the name that was asked for, not by those below, why it can't be written
   const std::string interpreter = python.empty() ? find_python() : python;
   const std::filesystem::path target(file);
   // Beside the target, so that it can be renamed; with its extension, which tells matplotlib the format.
   const std::string part = file + ".part" + target.extension().string(), script = file + ".part.py";
   write_file(script, drawing_script(figure));
-  std::string failure;
+  std::string failure, warnings;
   try {
     ChildProcess process({interpreter, script, part}, "");
     try {
       process.exchange("\n", kPatience);  // it says a line when it is done
+      process.close(kPatience);
+      warnings = process.errors().text("  ");
     } catch (const ProcessError& error) {
       failure = error.what() + process.errors().text("  ");
     }
@@ -127,6 +130,7 @@ void draw(const Figure& figure, const std::string& file, const std::string& pyth
   }
   std::filesystem::rename(part, target, error);
   if (error) throw OutputError(fmt::format("{}: can't be written: {}", file, error.message()));
+  return warnings;
 }
 
 }  // namespace evbench

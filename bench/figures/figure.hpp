@@ -16,19 +16,18 @@ struct Series {
 /// Something drawn in a panel, of one series.
 struct Mark {
   enum class Kind {
-    line,    ///< through x, y, many of them
-    points,  ///< the same with a marker at each
-    band,    ///< over x, from `low` to `high`
-    level,   ///< all across: a line at y[0], a band from low[0] to high[0]
-    steps,   ///< through x, y, level up to the next x
-    note,    ///< text above the panel at x[0]
-    box,     ///< lying, at height x[0]: quartiles, median, all of the values y
-    cells,   ///< around x, y: coloured by the ratio in `low`, white where it is 1, which is written in them
+    line,      ///< through x, y, many of them
+    points,    ///< the same with a marker at each
+    band,      ///< over x, from `low` to `high`
+    level,     ///< all across: a line at y[0], a band from low[0] to high[0]
+    steps,     ///< through x, y, level up to the next x
+    failures,  ///< above the panel, at each x: `low` of `high` runs failed; without x: of a level
+    box,       ///< lying, at height x[0]: quartiles, median, all of the values y
+    cells,     ///< around x, y: coloured by the ratio in `low`, white where it is 1, which is written in them
   };
   Kind kind;
   std::size_t series;
   std::vector<double> x, y = {}, low = {}, high = {};  ///< as long as x, where they are used; of a box y has any length
-  std::string text = {};
 };
 
 struct PanelAxis {
@@ -53,7 +52,7 @@ struct Figure {
   std::string caption;  ///< what it is of, and the protocol, small below
   std::size_t columns = 1;
   bool legend = true;
-  double width_mm = 174.0, height_mm = 64.0;  ///< of the whole; of the panels alone, without legend and caption
+  double width_mm = 174.0, height_mm = 64.0;  ///< of the whole; of the panels alone, names being of one line each
 };
 
 /// The program that draws it: a Python script that needs matplotlib alone, with all data in it
@@ -61,8 +60,10 @@ struct Figure {
 std::string drawing_script(const Figure& figure);
 
 /// Draws it to a file. `python`: the interpreter; empty: the first of "python3" and "/usr/bin/python3" that has
-/// matplotlib. Throws InputError, with what Python said, where there is none or drawing fails. The file appears
-/// complete or not at all; the same figure gives the same bytes by the same matplotlib.
-void draw(const Figure& figure, const std::string& file, const std::string& python);
+/// matplotlib. Throws InputError, with what Python said, where there is none or drawing fails, OutputError where the
+/// file can't be written. The file appears complete or not at all; the same figure gives the same bytes by the same
+/// matplotlib. Returns what Python warned of, lines that each begin with a newline: the file is there, but may not look
+/// as it should.
+std::string draw(const Figure& figure, const std::string& file, const std::string& python);
 
 }  // namespace evbench

@@ -3,6 +3,7 @@
 import json
 import sys
 import textwrap
+import warnings
 
 import matplotlib
 
@@ -18,7 +19,13 @@ DASHES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8, 
 MARKERS = "osD^vP*X"
 MILLIMETRE = 1 / 25.4
 LARGEST_RATIO, DARK_RATIO = 8.0, 4.0  # of cells: where colours end; from where on they are dark
-CAPTION_WIDTH, CAPTION_HEIGHT, LEGEND_HEIGHT = 1.02, 2.3, 4.2  # [mm] of a letter; of a line
+CAPTION_WIDTH, COUNT_WIDTH, LABEL_WIDTH = 1.02, 1.25, 1.45  # [mm] of a letter; the last one of names and axes' labels
+CAPTION_HEIGHT, LEGEND_HEIGHT, NAME_HEIGHT = 2.3, 4.2, 3.2  # [mm] of a line
+NAMES_SHARE = 0.4  # of the figure's width, that names take at most
+TICKS_SIZE, TICK_WIDTH = 14.0, 8.0  # [mm] of what stands beside and below axes, about; of a number below them, at least
+
+# What goes wrong is told to people that never saw this file.
+warnings.formatwarning = lambda message, *_: f"{message}\n"
 
 plt.rcParams.update({
     "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 8, "axes.labelsize": 8,
@@ -57,6 +64,7 @@ def draw(axes, mark, series):
         axes.plot(mark["x"], mark["y"], zorder=3, **style(series, dense=True))
     elif kind == "points":
         axes.plot(mark["x"], mark["y"], marker=marker(series), markeredgecolor="white", markeredgewidth=0.4, zorder=4, **look)
+        axes.update_datalim([(x, 0) for x in mark["x"]], updatey=False)  # of what has no height, as it failed, too
     elif kind == "band":
         axes.fill_between(mark["x"], mark["low"], mark["high"], color=colour, alpha=0.2, linewidth=0, zorder=2)
     elif kind == "level":
@@ -64,9 +72,6 @@ def draw(axes, mark, series):
         axes.axhspan(mark["low"][0], mark["high"][0], color=colour, alpha=0.2, linewidth=0, zorder=2)
     elif kind == "steps":
         axes.step(mark["x"], mark["y"], where="post", zorder=3, **look)
-    elif kind == "note":
-        axes.annotate(mark["text"], (mark["x"][0], 1), xycoords=("data", "axes fraction"), xytext=(0, 1),
-                      textcoords="offset points", ha="center", va="bottom", fontsize=6, color=colour)
     elif kind == "box":
         box = axes.boxplot([mark["y"]], positions=mark["x"], widths=0.6, vert=False, patch_artist=True, whis=(0, 100),
                            medianprops={"color": colour, "linewidth": 1.4}, whiskerprops={"color": colour},
@@ -75,6 +80,34 @@ def draw(axes, mark, series):
         axes.plot(mark["y"], mark["x"] * len(mark["y"]), "o", color=colour, markersize=2, alpha=0.6, zorder=4)
     elif kind == "cells":
         draw_cells(axes, mark)
+
+
+def draw_failures(axes, panel, series, width):
+    """Above the panel: where how many runs of how many failed, in rows of each series, as many as it takes to be read."""
+    marks = [mark for mark in panel["marks"] if mark["kind"] == "failures"]
+
+    def place(x):
+        return width * axes.transAxes.inverted().transform(axes.transData.transform((x, axes.get_ylim()[0])))[0]
+
+    def write(text, number, row, x=0, where="axes fraction", alignment="left"):
+        axes.annotate(text, (x, 1), xycoords=(where, "axes fraction"), xytext=(0, 1 + 7 * row), fontsize=6,
+                      textcoords="offset points", ha=alignment, va="bottom", color=style(series[number])["color"])
+
+    first = 0  # row of a series
+    for number in sorted({mark["series"] for mark in marks}, reverse=True):
+        write("failed ", number, first, alignment="right")
+        ends = [0.0]  # of its rows: how far they are written [mm]
+        for mark in (mark for mark in marks if mark["series"] == number):
+            counts = [f"{failed:g}/{runs:g}" for failed, runs in zip(mark["low"], mark["high"])]
+            if not mark["x"]:
+                write(counts[0], number, first)
+                ends[0] = COUNT_WIDTH * len(counts[0])
+            for x, count in zip(mark["x"], counts):
+                half = 0.5 * COUNT_WIDTH * len(count)
+                free = next((row for row, end in enumerate(ends) if end <= place(x) - half), len(ends))
+                ends[free:free + 1] = [place(x) + half]
+                write(count, number, first + free, x, "data", "center")
+        first += len(ends)
 
 
 def draw_cells(axes, mark):
@@ -104,9 +137,9 @@ def plain(value, _):
     return f"{value:g}"
 
 
-def set_scale(axis, scale, low, high):
+def set_scale(axis, scale, low, high, ticks=6):
     if scale != "log":
-        axis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 2.5, 5, 10]))
+        axis.set_major_locator(MaxNLocator(nbins=ticks, min_n_ticks=min(2, ticks), steps=[1, 2, 2.5, 5, 10]))
         return
     # More labels where few decades are spanned: two say nothing of what lies between.
     span = high / low
@@ -115,23 +148,31 @@ def set_scale(axis, scale, low, high):
     axis.set_minor_formatter(NullFormatter())
 
 
-def axis_label(axis):
-    return axis["label"] + (" (logarithmic)" if axis["scale"] == "log" else "")
+def axis_label(axis, width):
+    """On as many lines as it takes: layout does not see to it that a label is no longer than its axis."""
+    return wrap(axis["label"] + (" (logarithmic)" if axis["scale"] == "log" else ""), width)
 
 
-def draw_panel(axes, panel, series):
+def wrap(text, width):
+    """`width`: [mm]."""
+    return textwrap.fill(text, max(8, int(width / LABEL_WIDTH)))
+
+
+def draw_panel(axes, panel, series, width, height):
+    """`width`, `height`: of its axes, about [mm]."""
     axes.set_xscale(panel["x"]["scale"])
     axes.set_yscale(panel["y"]["scale"])
     for mark in panel["marks"]:
         draw(axes, mark, series[mark["series"]])
-    axes.set_xlabel(axis_label(panel["x"]))
-    axes.set_ylabel(axis_label(panel["y"]))
+    draw_failures(axes, panel, series, width)
+    axes.set_xlabel(axis_label(panel["x"], width))
+    axes.set_ylabel(axis_label(panel["y"], height))
     if panel["title"]:
         axes.set_title(panel["title"])
     if panel["y"]["share"]:
         axes.set_ylim(0, 1.02)
     if not any(mark["kind"] == "cells" for mark in panel["marks"]):  # which have ticks of their own
-        set_scale(axes.xaxis, panel["x"]["scale"], *axes.get_xlim())
+        set_scale(axes.xaxis, panel["x"]["scale"], *axes.get_xlim(), ticks=max(1, min(6, int(width / TICK_WIDTH))))
         set_scale(axes.yaxis, panel["y"]["scale"], *axes.get_ylim())
     if panel["names"]:
         axes.set_yticks(range(len(panel["names"])), panel["names"])
@@ -140,6 +181,16 @@ def draw_panel(axes, panel, series):
         axes.tick_params(axis="y", length=0)
     if panel["equal"]:
         axes.set_aspect("equal", adjustable="datalim")
+
+
+def wrap_names(panels, width):
+    """Returns what names take now [mm]: the width of the longest line, the height of a panel's further lines."""
+    for panel in panels:
+        panel["names"] = [wrap(name, width) for name in panel["names"]]
+    names = [name.split("\n") for panel in panels for name in panel["names"]]
+    most = max((len(name) for name in names), default=1)
+    longest = max((len(line) for name in names for line in name), default=0)
+    return LABEL_WIDTH * longest, NAME_HEIGHT * (most - 1) * max(len(panel["names"]) for panel in panels)
 
 
 def legend_line(series, kinds):
@@ -158,11 +209,14 @@ def main():
     columns_of_legend = min(len(data["series"]), data["legend_columns"])
     if data["legend"]:
         above += LEGEND_HEIGHT * -(-len(data["series"]) // columns_of_legend)
-    height = data["height_mm"] + below + above
+    names_width, names_height = wrap_names(panels, NAMES_SHARE * data["width_mm"])
+    panels_height = data["height_mm"] + rows * names_height
+    height = panels_height + below + above
     figure, grid = plt.subplots(rows, columns, squeeze=False, layout="constrained",
                                 figsize=(data["width_mm"] * MILLIMETRE, height * MILLIMETRE))
     for number, panel in enumerate(panels):
-        draw_panel(grid[number // columns][number % columns], panel, data["series"])
+        draw_panel(grid[number // columns][number % columns], panel, data["series"],
+                   (data["width_mm"] - names_width) / columns - TICKS_SIZE, panels_height / rows - TICKS_SIZE)
     for number in range(len(panels), rows * columns):
         grid[number // columns][number % columns].set_visible(False)
     figure.text(1.5 / data["width_mm"], 1.0 / height, "\n".join(caption), fontsize=5.5, color="#555555", va="bottom")

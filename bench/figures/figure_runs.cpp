@@ -22,6 +22,23 @@ std::vector<Metric> FigureRuns::metrics(const FigureOptions& options) const {
   return metrics_of({"ate.trans_m.rmse", "rpe.trans_m.rmse"}, runs);
 }
 
+std::string FigureRuns::pooled(const std::string& what, const std::vector<std::vector<std::size_t>>& groups) const {
+  std::set<std::size_t> sizes;
+  for (const std::vector<std::size_t>& group : groups) sizes.insert(group.size());
+  if (*sizes.rbegin() == 1) return "Each point is one run.";
+  std::vector<std::string> names;
+  for (const RunColumn& column : columns) {
+    const auto differs = [&](const std::vector<std::size_t>& group) {
+      return std::ranges::any_of(group,
+                                 [&](std::size_t i) { return column.values[i] != column.values[group.front()]; });
+    };
+    if (std::ranges::any_of(groups, differs)) names.push_back(column.name);
+  }
+  const std::string fewest = sizes.size() > 1 ? fmt::format("{} to ", *sizes.begin()) : "";
+  return fmt::format("{}, of {}{} runs each{}.", what, fewest, *sizes.rbegin(),
+                     names.empty() ? "" : fmt::format(" ({})", fmt::join(names, ", ")));
+}
+
 std::string FigureRuns::caption(const std::string& what) const {
   const std::vector<std::string>& names = find_column(columns, "experiment").values;
   const std::set<std::string> experiments(names.begin(), names.end());

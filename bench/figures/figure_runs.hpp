@@ -22,6 +22,10 @@ struct FigureRuns {
   /// What a figure shows, a panel each: those asked for, else ATE and RPE. Throws InputError for one that no run has.
   std::vector<Metric> metrics(const FigureOptions& options) const;
 
+  /// A sentence: how many runs each of these groups is of, by their indices, and what they differ in. `what` begins
+  /// it; of groups of one run each it says nothing, as there is nothing but these runs.
+  std::string pooled(const std::string& what, const std::vector<std::vector<std::size_t>>& groups) const;
+
   /// Experiments, and what is drawn: a sentence.
   std::string caption(const std::string& what) const;
 

@@ -1,8 +1,10 @@
 #include "bench/figures/run_figures.hpp"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
 
 #include "bench/testing/program.hpp"
+#include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "eval/testing/runs.hpp"
 
@@ -24,13 +26,17 @@ struct Swept : Results {
   Swept() {
     for (int seed = 1; seed <= 3; ++seed) {
       for (const double frame : {0.2, 0.05, 0.1}) add_seed("bundle", seed, frame * seed, frame);
-      Json json = run("arm", "asynchronous", scores_with(0.01 * seed));
-      json["seed"] = seed;
-      add("asynchronous" + std::to_string(seed), json,
-          {{"source", {{"type", "simulation"}}},
-           {"frontend", {{"type", "oracle"}}},
-           {"backend", {{"type", "gp_map"}}}});
+      add_asynchronous(seed, 0.01 * seed);
     }
+  }
+  /// Of an ATE; none: it failed.
+  void add_asynchronous(int seed, std::optional<double> ate) const {
+    Json json = run("arm", "asynchronous", ate ? scores_with(*ate) : Json(), ate ? "ok" : "failed");
+    json["seed"] = seed;
+    add("asynchronous" + std::to_string(seed), json,
+        {{"source", {{"type", "simulation"}, {"motion", "arm"}}},
+         {"frontend", {{"type", "oracle"}}},
+         {"backend", {{"type", "gp_map"}}}});
   }
 };
 
@@ -52,7 +58,8 @@ TEST_CASE("A sweep is a curve of medians with bands, and a level for what does n
   const Mark& level = mark_of(panel, Mark::Kind::level, 0);
   CHECK(level.y == std::vector{0.02});
   CHECK(level.low.at(0) == Approx(0.015));
-  CHECK_THAT(figure.caption, Contains("arm. Medians, and bands between quartiles, of 3 seeds.") && Contains("Sim(3)"));
+  CHECK_THAT(figure.caption,
+             Contains("arm. Medians, and bands between quartiles, of 3 runs each (seed).") && Contains("Sim(3)"));
 }
 
 TEST_CASE("A map has the median ratio to the base on the same data, by two axes") {
@@ -78,12 +85,55 @@ TEST_CASE("What failed is told above a sweep, behind a box's name, and by a prof
   results.add_seed("bundle", 4, std::nullopt, 0.1);
   const std::vector<RunRecord> runs = results.find();
   const Figure sweep = sweep_figure(runs, {});
-  const Mark& note = mark_of(sweep.panels.at(0), Mark::Kind::note, 1);
-  CHECK(note.text == "1 fail");
-  CHECK(note.x == std::vector{0.1});
+  const Mark& failures = mark_of(sweep.panels.at(0), Mark::Kind::failures, 1);
+  CHECK(failures.x == std::vector{0.1});
+  CHECK(failures.low == std::vector{1.0});
+  CHECK(failures.high == std::vector{4.0});
+  CHECK_THAT(sweep.caption, Contains("of 3 to 4 runs each (seed). Above: how many of the runs failed"));
   const Figure boxes = box_figure(runs, {});
-  CHECK(boxes.panels.at(0).names.at(2) == "bundle, backend.frame_duration 0.1 (1 of 4 fail)");
+  CHECK(boxes.panels.at(0).names.at(2) ==
+        "bundle, backend.frame_duration 0.1 (1\u00a0of\u00a04\u00a0fail)");  // not to be broken
+  CHECK(boxes.panels.at(1).names.at(2).empty());                             // the first panel has said it
+  CHECK_THAT(boxes.caption, Contains("Those that failed are in no box."));
   CHECK(mark_of(boxes.panels.at(0), Mark::Kind::box, 2).y.size() == 3);
+}
+
+TEST_CASE("What of a level failed is told, too") {
+  const Swept results;
+  results.add_asynchronous(4, std::nullopt);
+  const Figure figure = sweep_figure(results.find(), {});
+  const Mark& failures = mark_of(figure.panels.at(0), Mark::Kind::failures, 0);
+  CHECK(failures.x.empty());
+  CHECK(failures.low == std::vector{1.0});
+  CHECK(failures.high == std::vector{4.0});
+}
+
+TEST_CASE("A value of the axis at which the median fails is in the figure") {
+  const Results results;
+  for (int seed = 1; seed <= 3; ++seed) {
+    for (const double frame : {0.1, 0.2}) results.add_seed("bundle", seed, frame, frame);
+    results.add_seed("bundle", seed, std::nullopt, 0.4);
+  }
+  const Outcome outcome = testing::evbench(results.folder, "figure sweep . --out f.svg --keep-script");
+  INFO(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.err, !Contains("warns"));
+  CHECK_THAT(read_file(results.folder.file("f.svg")), Contains("<!-- 0.4 -->") && Contains("<!-- 3/3 -->"));
+}
+
+TEST_CASE("What runs that are drawn together differ in is said") {
+  const Swept results;
+  std::vector<RunRecord> runs = results.find();
+  for (std::size_t i = runs.size(); i > 0; --i) {
+    RunRecord& slow = runs.emplace_back(runs[i - 1]);
+    slow.settings.emplace_back("source.speed", 0.5);
+    slow.key += "-slow";
+  }
+  CHECK_THAT(sweep_figure(runs, {.axis = "backend.frame_duration"}).caption,
+             Contains("Medians, and bands between quartiles, of 6 runs each (source.speed, seed)."));
+  CHECK_THAT(sweep_figure(runs, {.axis = "seed"}).caption, Contains("quartiles, of 2 runs each (source.speed)."));
+  CHECK_THAT(box_figure(runs, {}).caption, Contains("as a point, of 6 runs each (source.speed, seed)."));
+  CHECK_THAT(sweep_figure(results.find(), {.axis = "seed"}).caption, Contains("arm. Each point is one run."));
 }
 
 TEST_CASE("A profile is of the data that all methods have runs of") {
@@ -142,6 +192,59 @@ TEST_CASE("Figures of runs are drawn by the program, the same bytes each time") 
   CHECK(read_file(folder.file("again.pdf")).starts_with("%PDF"));
 }
 
+TEST_CASE("A figure of one sequence names it, and tells why a run is not in it; so does what is exported") {
+  const TemporaryFolder folder;
+  Json config = short_comparison();
+  config["source"]["duration"] = 1;
+  config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "a"}},
+                        {{"type", "bundle_adjustment"}, {"label", "b"}, {"frame_duration", 0.1}}};
+  folder.write("c.json", config.dump());
+  for (const std::string alive : {"40", "50"}) {
+    REQUIRE(testing::evbench(folder, "run c.json --quiet --set source.tracks.alive=" + alive).exit_code == 0);
+  }
+  std::string failed;
+  for (const RunRecord& run : find_runs(std::vector{folder.path()})) {
+    if (run.label != "b") continue;
+    failed = run.folder;  // as a run that was stopped leaves it
+    Json metrics = Json::parse(read_file(run.folder + "/metrics.json"));
+    metrics["final"] = nullptr;
+    metrics["final_unscored"] = kNoGroundTruth;
+    metrics["status"]["state"] = "failed";
+    metrics["status"]["reason"] = "timeout after 20 s";
+    write_file(run.folder + "/metrics.json", metrics.dump());
+    std::filesystem::remove(run.folder + "/groundtruth.tum");
+  }
+  std::vector<RunRecord> runs = find_runs(std::vector{folder.path()});
+  CHECK_THAT(error_figure(runs, {}).caption,
+             Contains("after alignment, source.tracks.alive 40, seed 1 (the first of 2 sequences and seeds). b is not "
+                      "drawn: timeout after 20 s. Final"));
+  const Outcome outcome = testing::evbench(folder, "export '" + failed + "' --evo x.zip");
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("has no scores: timeout after 20 s"));
+  std::erase_if(runs, [](const RunRecord& run) { return run.label == "a"; });
+  CHECK_THROWS_WITH(error_figure(runs, {}), Contains("b is not drawn: timeout after 20 s."));
+}
+
+TEST_CASE("Runs that are asked for by several values of one name have any of them") {
+  const Swept results;
+  const auto script_of = [&](const std::string& only) {
+    const Outcome outcome =
+        testing::evbench(results.folder, "figure sweep . --axis seed --out f.svg --keep-script --force " + only);
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    return read_file(results.folder.file("f.py"));
+  };
+  CHECK_THAT(script_of("--only seed=1 --only seed=3 --only label=asynchronous"), Contains("\"x\":[1.0,3.0]"));
+  CHECK_THAT(script_of("--only label=asynchronous"), Contains("\"x\":[1.0,2.0,3.0]"));
+}
+
+TEST_CASE("What Python warns of is passed on") {
+  const Swept results;
+  const Outcome outcome = testing::evbench(results.folder, "figure box . --out f.svg --width 20");
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.err, Contains("f.svg: is drawn, but Python warns:\n  constrained_layout not applied"));
+}
+
 TEST_CASE("Figures that can't be written or drawn are errors, and nothing is replaced") {
   const Swept results;
   const auto refused = [&](const std::string& arguments, const std::string& message) {
@@ -153,6 +256,9 @@ TEST_CASE("Figures that can't be written or drawn are errors, and nothing is rep
   refused("--out f.svg --python /nowhere/python", "f.svg: could not be drawn: \"/nowhere/python\" can't be started");
   refused("--out f.svg --python /bin/false", "\"/bin/false\" ended with exit code 1");
   refused("--out f.svg --only seed=17", "none of 12 runs is left by --only");
+  const Outcome nowhere = testing::evbench(results.folder, "figure sweep . --out nowhere/f.svg");
+  CHECK(nowhere.exit_code == 4);
+  CHECK_THAT(nowhere.err, Contains("evbench: nowhere/f.svg: can't be written: "));
   results.folder.write("f.svg", "mine");
   refused("--out f.svg", "f.svg: exists already");
   CHECK(read_file(results.folder.file("f.svg")) == "mine");

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "bench/figures/figure_runs.hpp"
 #include "core/support/error.hpp"
@@ -38,38 +37,53 @@ std::string axis_of(std::span<const RunRecord> runs, const FigureOptions& option
   return names.front();
 }
 
+/// The runs of a method.
+struct Places {
+  std::map<double, std::vector<std::size_t>> at;  ///< by their value of the axis
+  std::vector<std::size_t> without;               ///< that do not have the axis
+};
+
+Places places_of(const Method& method, const RunColumn& axis) {
+  Places places;
+  for (const std::size_t run : method.runs) {
+    const std::optional<double> x = number_in(axis.values[run]);
+    (x ? places.at[*x] : places.without).push_back(run);
+  }
+  return places;
+}
+
 /// Of a method at one value of the axis.
 struct Spot {
   Quartiles quartiles;
-  std::ptrdiff_t failed;
+  double runs, failed;  ///< how many
 };
 
 Spot spot_of(const std::vector<std::size_t>& runs, const FigureRuns& all, const Metric& metric) {
   std::vector<double> values = values_of(runs, all.runs, metric);
   const auto failed = std::ranges::count_if(values, [](double value) { return std::isinf(value); });
+  const auto runs_counted = static_cast<double>(values.size());
   for (double& value : values) value *= metric.factor;
-  return {quartiles(std::move(values)), failed};
+  return {quartiles(std::move(values)), runs_counted, static_cast<double>(failed)};
 }
 
 /// The marks of one method in a panel.
-std::vector<Mark> draw_method(const Method& method, std::size_t number, const RunColumn& axis, const FigureRuns& all,
-                              const Metric& metric) {
-  std::map<double, std::vector<std::size_t>> at;
-  std::vector<std::size_t> without;
-  for (const std::size_t run : method.runs) {
-    const std::optional<double> x = number_in(axis.values[run]);
-    (x ? at[*x] : without).push_back(run);
-  }
+std::vector<Mark> draw_method(const Places& places, std::size_t number, const FigureRuns& all, const Metric& metric) {
   std::vector<Mark> marks;
-  if (!without.empty()) {
-    const Quartiles q = spot_of(without, all, metric).quartiles;
+  if (!places.without.empty()) {
+    const Spot spot = spot_of(places.without, all, metric);
+    const Quartiles& q = spot.quartiles;
     marks.push_back({Mark::Kind::level, number, {}, {q.median}, {q.lower}, {q.upper}});
+    if (spot.failed > 0) marks.push_back({Mark::Kind::failures, number, {}, {}, {spot.failed}, {spot.runs}});
   }
   Mark curve{Mark::Kind::points, number, {}}, band{Mark::Kind::band, number, {}};
-  for (const auto& [x, runs] : at) {
+  Mark failures{Mark::Kind::failures, number, {}};
+  for (const auto& [x, runs] : places.at) {
     const Spot spot = spot_of(runs, all, metric);
-    if (spot.failed > 0)
-      marks.push_back({Mark::Kind::note, number, {x}, {}, {}, {}, fmt::format("{} fail", spot.failed)});
+    if (spot.failed > 0) {
+      failures.x.push_back(x);
+      failures.low.push_back(spot.failed);
+      failures.high.push_back(spot.runs);
+    }
     curve.x.push_back(x);
     curve.y.push_back(spot.quartiles.median);
     band.low.push_back(spot.quartiles.lower);
@@ -80,6 +94,7 @@ std::vector<Mark> draw_method(const Method& method, std::size_t number, const Ru
     marks.push_back(std::move(band));
     marks.push_back(std::move(curve));
   }
+  if (!failures.x.empty()) marks.push_back(std::move(failures));
   return marks;
 }
 
@@ -91,14 +106,25 @@ Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& option
   const std::vector<Metric> metrics = all.metrics(options);
   const RunColumn& axis = find_column(all.columns, name);
   Figure figure;
-  for (const Method& method : all.methods) figure.series.push_back({method.name});
-  std::vector<double> places;
-  for (const std::string& value : axis.values) places.push_back(number_in(value).value_or(NAN));
+  std::vector<Places> places;
+  std::vector<std::vector<std::size_t>> groups;
+  std::vector<double> values;
+  for (const Method& method : all.methods) {
+    figure.series.push_back({method.name});
+    places.push_back(places_of(method, axis));
+    if (!places.back().without.empty()) groups.push_back(places.back().without);
+    for (const auto& [x, of_value] : places.back().at) {
+      values.push_back(x);
+      groups.push_back(of_value);
+    }
+  }
+  bool some_failed = false;
   for (const Metric& metric : metrics) {
-    Panel panel{{options.axis_label.empty() ? name : options.axis_label, spread_wide(places)}, {metric.header}, {}};
+    Panel panel{{options.axis_label.empty() ? name : options.axis_label, spread_wide(values)}, {metric.header}, {}};
     std::vector<double> heights;
-    for (std::size_t m = 0; m < all.methods.size(); ++m) {
-      for (Mark& mark : draw_method(all.methods[m], m, axis, all, metric)) {
+    for (std::size_t m = 0; m < places.size(); ++m) {
+      for (Mark& mark : draw_method(places[m], m, all, metric)) {
+        some_failed = some_failed || mark.kind == Mark::Kind::failures;
         heights.insert(heights.end(), mark.y.begin(), mark.y.end());
         panel.marks.push_back(std::move(mark));
       }
@@ -108,13 +134,13 @@ Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& option
   }
   figure.columns = std::min<std::size_t>(figure.panels.size(), 2);
   figure.height_mm = 64.0 * std::ceil(static_cast<double>(figure.panels.size()) / 2.0);
-  std::string what = "Medians, and bands between quartiles";
-  std::set<std::string> seeds;
-  for (const Method& method : all.methods) {
-    for (const std::size_t run : method.runs) seeds.insert(find_column(all.columns, "seed").values[run]);
+  std::string what = all.pooled("Medians, and bands between quartiles", groups);
+  if (some_failed) {
+    what +=
+        " Above: how many of the runs failed; they count as worse than all others, and quartiles that are theirs are "
+        "not drawn.";
   }
-  if (seeds.size() > 1) what += fmt::format(", of {} seeds", seeds.size());
-  figure.caption = all.scored_caption(what + ".", options.online);
+  figure.caption = all.scored_caption(what, options.online);
   return figure;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <set>
 
 #include "bench/figures/figure_runs.hpp"
 #include "bench/run_folder.hpp"
@@ -11,6 +13,34 @@
 
 namespace evbench {
 namespace {
+
+/// Is a column the same for all runs of one sequence? Then it tells which one it is.
+bool tells_sequence(const RunColumn& column, const std::vector<std::string>& sequences) {
+  std::map<std::string, std::string> values;
+  for (std::size_t i = 0; i < sequences.size(); ++i) {
+    if (values.try_emplace(sequences[i], column.values[i]).first->second != column.values[i]) return false;
+  }
+  return true;
+}
+
+/// "sequence fast, seed 1": what a run's sequence is called, by these columns. `sequences`: of all runs.
+std::string name_of_sequence(const std::vector<RunColumn>& columns, const std::vector<std::string>& sequences,
+                             std::size_t run) {
+  std::string name;
+  for (const RunColumn& column : columns) {
+    const bool told_elsewhere = column.name == "experiment" || column.name == "label";
+    if (told_elsewhere || column.values[run].empty() || !tells_sequence(column, sequences)) continue;
+    name += fmt::format("{}{} {}", name.empty() ? "" : ", ", column.name, column.values[run]);
+  }
+  return name;
+}
+
+/// Why a run has nothing to draw: of one that was lost or failed, how that came about.
+std::string why_unscored(const RunRecord& run, bool online) {
+  const std::string& unscored = online ? run.online_unscored : run.final_unscored;
+  const std::string reason = run.competes() ? unscored : status_reason(run);
+  return reason.empty() ? "it failed" : reason;
+}
 
 /// The runs of the first sequence, scored by their own protocols.
 struct ScoredRuns {
@@ -22,28 +52,37 @@ struct ScoredRuns {
 ScoredRuns score_first_sequence(std::span<const RunRecord> records, const FigureRuns& all, const FigureOptions& options,
                                 const std::string& what) {
   ScoredRuns result;
-  std::string sequence, missing;
+  std::vector<std::string> sequences;
+  for (const RunRecord& run : records) sequences.push_back(sequence_of(run));
+  const std::size_t first = all.methods.front().runs.front();
+  const std::string name = name_of_sequence(all.columns, sequences, first);
+  std::string missing;
   std::vector<RunRecord> drawn;
+  std::set<std::string> distinct;
   for (const Method& method : all.methods) {
     for (const std::size_t i : method.runs) {
       const RunRecord& run = records[i];
-      if (sequence.empty()) sequence = sequence_of(run);
-      if (sequence_of(run) != sequence) continue;
+      distinct.insert(sequences[i]);
+      if (sequences[i] != sequences[first]) continue;
       drawn.push_back(run);
       if (all.runs[i].scores().is_null()) {
-        const std::string& unscored = options.online ? run.online_unscored : run.final_unscored;
-        missing += fmt::format(" {} is not drawn: {}.", method.name, unscored.empty() ? "it failed" : unscored);
+        missing += fmt::format(" {} is not drawn: {}.", method.name, why_unscored(run, options.online));
         continue;
       }
       result.names.push_back(method.name);
       result.scores.push_back(score_estimate(run.folder, options.online, protocol_of_run(run.folder), run).scores);
     }
   }
-  if (result.scores.empty())
-    throw InputError("none of these runs has an estimate and ground truth; expected one to draw");
+  if (result.scores.empty()) {
+    throw InputError(
+        fmt::format("none of these runs has an estimate and ground truth{}; expected one that has, say by --only.{}",
+                    name.empty() ? "" : ": " + name, missing));
+  }
+  const std::string others =
+      distinct.size() > 1 ? fmt::format(" (the first of {} sequences and seeds)", distinct.size()) : "";
   const FigureRuns of_sequence(drawn, options.online);
-  const std::string seed = drawn.front().seed ? fmt::format(", seed {}", *drawn.front().seed) : "";
-  result.caption = of_sequence.scored_caption(what + seed + "." + missing, options.online);
+  result.caption = of_sequence.scored_caption(
+      fmt::format("{}{}{}{}.{}", what, name.empty() ? "" : ", ", name, others, missing), options.online);
   return result;
 }
 
