@@ -41,11 +41,11 @@ RunTrajectories read_trajectories(const std::string& folder, bool online) {
 
 /// Throws InputError with the reason where there are no scores.
 Scores compare(const RunTrajectories& trajectories, ScoreOptions options, const RunRecord& record) {
-  if (trajectories.ground_truth.empty()) throw InputError(kNoGroundTruth);
-  if (trajectories.estimate.empty()) {
+  if (trajectories.estimate.empty()) {  // a run that broke off left no ground truth either
     const std::string reason = record.status ? record.status->status.reason : "";
     throw InputError(reason.empty() ? "no trajectory" : "no trajectory: " + reason);
   }
+  if (trajectories.ground_truth.empty()) throw InputError(kNoGroundTruth);
   const OptionSet::List asked = options.time_range;
   options.time_range = clip(asked, record.range);
   if (asked.size() == 2 && !(options.time_range[0] < options.time_range[1])) {
@@ -91,8 +91,7 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
     try {
       scores = to_json(compare(trajectories, options, record));
     } catch (const InputError& error) {
-      const bool broke_off = record.status && !record.status->complete;  // and left nothing to be scored
-      unscored = broke_off ? record.status->status.reason : error.what();
+      unscored = error.what();
     }
   };
   set(false, record.final_scores, record.final_unscored);
