@@ -140,7 +140,7 @@ TextTable run_table(const TableRuns& runs, const TableOptions& options) {
     add_column(table, "protocol", false, std::move(cells));
   }
   table.notes = table_notes(runs.runs, run_names(runs.columns), runs.metrics, runs.protocols, options.online);
-  if (!std::ranges::all_of(runs.runs, [](const RunNumbers& run) { return run.run().competes(); })) {
+  if (std::ranges::any_of(runs.runs, [](const RunNumbers& run) { return run.run().done && !run.run().competes(); })) {
     table.notes.emplace_back("Lost and failed runs do not compete for the best value.");
   }
   return table;

@@ -27,6 +27,7 @@ int execute(const TaskArguments& arguments, Plugins& plugins) {
   for (const ManifestLine& line : read_manifest(arguments.manifest, arguments.line, arguments.stride, plugins)) {
     const SweepProgress now = do_runs({line.run}, plugins, line.options, [](const SweepProgress&) {});
     for (const TroubledRun& run : now.troubled) fmt::print("{}\n", describe(run));
+    if (now.troubled.empty()) fmt::print("done: {}, {}\n", line.run.config.label, place_of(line.run.axes));
     std::fflush(stdout);
     if (now.failed > 0) exit_code = kExitFailed;
   }
