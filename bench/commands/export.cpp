@@ -19,7 +19,6 @@
 #include "eval/evo_result.hpp"
 #include "eval/rpg_layout.hpp"
 #include "eval/score_run.hpp"
-#include "eval/table_notes.hpp"
 
 namespace evbench {
 namespace {
@@ -85,18 +84,9 @@ void export_source(const std::string& config, const ExportArguments& arguments, 
   if (!arguments.calibration.empty()) write_file(arguments.calibration, format_calib(source->camera()));
 }
 
-/// A run that broke off may lack all files: that there is no ground truth among them is not why it has no scores.
-void check_scored(const RunRecord& record, const ExportArguments& arguments) {
-  const Json& scores = arguments.online ? record.online_scores : record.final_scores;
-  if (record.competes() || !scores.is_null()) return;
-  const std::string reason = status_reason(record);
-  throw InputError(fmt::format("{}: has no scores: {}", arguments.from, reason.empty() ? "it failed" : reason));
-}
-
 void export_run(const ExportArguments& arguments) {
   const ScoreOptions protocol = protocol_of_run(arguments.from);
   const RunRecord record = read_record(arguments.from);
-  check_scored(record, arguments);
   const auto [estimate, scores] = score_estimate(arguments.from, arguments.online, protocol, record);
   if (!arguments.aligned.empty()) write_file(arguments.aligned, format_tum(aligned_estimate(estimate, scores)));
   if (!arguments.errors.empty()) write_file(arguments.errors, errors_csv(scores));

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "bench/run_folder.hpp"
 #include "bench/testing/program.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
@@ -207,22 +208,22 @@ TEST_CASE("A figure of one sequence names it, and it and what is exported tell w
     if (run.label != "b") continue;
     failed = run.folder;  // as a run that was stopped leaves it
     Json metrics = Json::parse(read_file(run.folder + "/metrics.json"));
-    metrics["final"] = nullptr;
-    metrics["final_unscored"] = kNoGroundTruth;
     metrics["status"]["state"] = "failed";
     metrics["status"]["reason"] = "timeout after 20 s";
     write_file(run.folder + "/metrics.json", metrics.dump());
+    for (const char* estimate : {"/final.tum", "/online.tum"}) write_file(run.folder + estimate, "");
     std::filesystem::remove(run.folder + "/groundtruth.tum");
+    score_again(run.folder, protocol_of_run(run.folder));
   }
   std::vector<RunRecord> runs = find_runs(std::vector{folder.path()});
   CHECK_THAT(error_figure(runs, {}).caption,
              Contains("after alignment, source.tracks.alive 40, seed 1 (the first of 2 sequences and seeds). b is not "
-                      "drawn: timeout after 20 s. Final"));
+                      "drawn: no trajectory: timeout after 20 s. Final"));
   const Outcome outcome = testing::evbench(folder, "export '" + failed + "' --evo x.zip");
   CHECK(outcome.exit_code == 2);
-  CHECK_THAT(outcome.err, Contains("has no scores: timeout after 20 s"));
+  CHECK_THAT(outcome.err, Contains("no trajectory: timeout after 20 s"));
   std::erase_if(runs, [](const RunRecord& run) { return run.label == "a"; });
-  CHECK_THROWS_WITH(error_figure(runs, {}), Contains("b is not drawn: timeout after 20 s."));
+  CHECK_THROWS_WITH(error_figure(runs, {}), Contains("b is not drawn: no trajectory: timeout after 20 s."));
 }
 
 TEST_CASE("Runs that are asked for by several values of one name have any of them") {

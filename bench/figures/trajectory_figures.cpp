@@ -35,13 +35,6 @@ std::string name_of_sequence(const std::vector<RunColumn>& columns, const std::v
   return name;
 }
 
-/// Why a run has nothing to draw: of one that was lost or failed, how that came about.
-std::string why_unscored(const RunRecord& run, bool online) {
-  const std::string& unscored = online ? run.online_unscored : run.final_unscored;
-  const std::string reason = run.competes() ? unscored : status_reason(run);
-  return reason.empty() ? "it failed" : reason;
-}
-
 /// The runs of the first sequence, scored by their own protocols.
 struct ScoredRuns {
   std::vector<std::string> names;
@@ -66,7 +59,8 @@ ScoredRuns score_first_sequence(std::span<const RunRecord> records, const Figure
       if (sequences[i] != sequences[first]) continue;
       drawn.push_back(run);
       if (all.runs[i].scores().is_null()) {
-        missing += fmt::format(" {} is not drawn: {}.", method.name, why_unscored(run, options.online));
+        const std::string& unscored = options.online ? run.online_unscored : run.final_unscored;
+        missing += fmt::format(" {} is not drawn: {}.", method.name, unscored.empty() ? "it failed" : unscored);
         continue;
       }
       result.names.push_back(method.name);

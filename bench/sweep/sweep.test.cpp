@@ -147,7 +147,7 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
   CHECK_THAT(sweep("--over seed=1..2").out, Contains("2 of them done before"));
   CHECK_THAT(testing::evbench(folder, "status results").out,
              Contains("results/other: 3 of 3 done") && Contains("results/tiny: 2 of 2 done, 0 failed") &&
-                 Contains("1 more runs lie here that the sweep does not plan"));
+                 Contains("that the sweep does not plan, and tables pass over: 1\n"));
 
   // The file of a config and evbench run give the same.
   REQUIRE(testing::evbench(folder, "run c.json --quiet --out alone").exit_code == 0);

@@ -83,8 +83,7 @@ std::size_t count_others(const std::string& folder, const SweepRecord& sweep) {
 }
 
 std::string describe_others(std::size_t others) {
-  return others == 0 ? ""
-                     : fmt::format("{} more runs lie here that the sweep does not plan: tables pass them over", others);
+  return fmt::format("runs here that the sweep does not plan, and tables pass over: {}", others);
 }
 
 }  // namespace evbench

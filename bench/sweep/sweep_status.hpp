@@ -20,7 +20,7 @@ struct SweepStatus {
 /// sweep.json that can't be read.
 std::vector<SweepStatus> read_sweep_status(const std::string& folder);
 
-/// A sentence for `others`; empty where there are none.
+/// A line for `others`.
 std::string describe_others(std::size_t others);
 
 /// SweepStatus::others of a sweep's folder.
