@@ -83,6 +83,18 @@ void Conditional::back_substitute(const double* z, double* delta) const {
   });
 }
 
+void Conditional::back_substitute(double* z, int z_stride, double* x, int x_stride, int columns) const {
+  auto solved = as_matrix(z, pivots, columns, z_stride);
+  auto places = as_matrix(x, extent, columns, x_stride);
+  solved.noalias() -= as_matrix(A.data(), extent, pivots, extent).transpose() * places;
+  as_matrix(L.data(), pivots, pivots, pivots).transpose().triangularView<Eigen::Upper>().solveInPlace(solved);
+  int from = 0;
+  for_each_pivot([&](int row, int size) {
+    places.middleRows(row, size) = solved.middleRows(from, size);
+    from += size;
+  });
+}
+
 void Conditional::eliminate(double* r, int r_stride, double* z, int z_stride, int columns) const {
   auto rest = as_matrix(r, extent, columns, r_stride);
   auto taken = as_matrix(z, pivots, columns, z_stride);

@@ -26,6 +26,8 @@ struct Conditional {
 
   /// δ_p = L⁻ᵀ (z − Aᵀ δ_r) from the increments in the root's layout, into their places there.
   void back_substitute(const double* z, double* delta) const;
+  /// The same for several right-hand sides by columns, with these strides; z becomes δ_p.
+  void back_substitute(double* z, int z_stride, double* x, int x_stride, int columns) const;
   /// Eliminates from right-hand sides r in the root's layout: z = L⁻¹ r_p; r_p ← 0; r ← r − A z. All are stored by
   /// columns, with these strides.
   void eliminate(double* r, int r_stride, double* z, int z_stride, int columns) const;

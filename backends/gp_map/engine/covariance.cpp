@@ -1,11 +1,24 @@
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "backends/gp_map/engine/engine.hpp"
 
 // Marginal covariances by solving for unit right-hand sides through the factor: forward from the stage in which the
 // variable is eliminated (before that the right-hand side is zero) to the root, and back to that stage only.
 namespace evbench::gp_map {
+namespace {
+
+using Unknown = Factorisation::Unknown;
+
+std::vector<Unknown> following(Unknown first, int count) {
+  std::vector<Unknown> result;
+  for (int i = 0; i < count; ++i) result.push_back({first.stage, first.row + i});
+  return result;
+}
+
+}  // namespace
+
 /// x ← H⁻¹ x for the root, both in its layout.
 void Factorisation::solve_with_root_factor(double* x) const {
   Buffer y(index(factor_.size()), 0.0);
@@ -15,67 +28,63 @@ void Factorisation::solve_with_root_factor(double* x) const {
   factor_.copy_to_root(y.data(), x);
 }
 
-/// The stage that eliminates a landmark (the one after the last done while it is in the root) and its row there.
-std::optional<std::pair<int, int>> Factorisation::find_landmark(int j) const {
-  if (root_.slot_of(j) >= 0) return std::pair(done_ + 1, Root::row_of_slot(root_.slot_of(j)));
+std::optional<Factorisation::Unknown> Factorisation::find_landmark(int j) const {
+  if (root_.slot_of(j) >= 0) return Unknown{done_ + 1, Root::row_of_slot(root_.slot_of(j))};
   const std::optional<int> stage = eliminated_at(j);
   if (!stage) return std::nullopt;
   for (const Conditional& conditional : stages_[index(*stage)].conditionals) {
     const auto found = std::ranges::find(conditional.landmarks, j);
     if (found == conditional.landmarks.end()) continue;
-    return std::pair(*stage, conditional.rows[index(found - conditional.landmarks.begin())]);
+    return Unknown{*stage, conditional.rows[index(found - conditional.landmarks.begin())]};
   }
   return std::nullopt;
 }
 
-/// x ← H⁻¹ x for what is left from stage `stage` on, in the layouts in which the stages find it: visit(k) is called
-/// when x is in the layout before stage k, from the one after the last done (the root as it is now) down to `stage`.
-template <class Visit>
-void Factorisation::solve_from(int stage, Buffer& x, Buffer& z, const Visit& visit) const {
-  const int stride = static_cast<int>(x.size());
-  ForwardPass pass(returns_, stage, 1);
-  z.clear();
-  for (int k = stage; k <= done_; ++k) {
-    pass.cross(k, x.data(), stride);
-    const int pivots = stages_[index(k)].pivots();
-    z.resize(z.size() + index(pivots));
-    stages_[index(k)].eliminate(x.data(), stride, z.data() + z.size() - pivots, 1);
-    pass.add(stages_[index(k)].returned, z.data() + z.size() - pivots, pivots);
+/// Columns of H⁻¹, all in one go: each comes in with the stage of its unknown and is read where each unknown is.
+Eigen::MatrixXd Factorisation::covariance(std::span<const Unknown> unknowns) const {
+  const int first = unknowns.front().stage, columns = static_cast<int>(unknowns.size()), stride = root_.stride();
+  Buffer x(index(stride * columns), 0.0), z;
+  auto X = as_matrix(x.data(), stride, columns, stride);
+  const auto bring_in = [&](int k) {
+    for (int c = 0; c < columns; ++c) {
+      if (unknowns[index(c)].stage == k) X(unknowns[index(c)].row, c) = 1.0;
+    }
+  };
+  ForwardPass forward(returns_, first, columns);
+  for (int k = first; k <= done_; ++k) {
+    forward.cross(k, x.data(), stride);
+    bring_in(k);
+    const Stage& stage = stages_[index(k)];
+    const int pivots = stage.pivots();
+    z.resize(z.size() + index(pivots * columns));
+    double* const taken = z.data() + z.size() - index(pivots * columns);
+    stage.eliminate(x.data(), stride, taken, columns);
+    forward.add(stage.returned, taken, pivots);
   }
-  pass.cross(done_ + 1, x.data(), stride);
-  solve_with_root_factor(x.data());
-  visit(done_ + 1);
+  forward.cross(done_ + 1, x.data(), stride);
+  bring_in(done_ + 1);
+  for (int c = 0; c < columns; ++c) solve_with_root_factor(X.col(c).data());
+
+  Eigen::MatrixXd result(columns, columns);
+  const auto read = [&](int k) {
+    for (int u = 0; u < columns; ++u) {
+      if (unknowns[index(u)].stage == k) result.row(u) = X.row(unknowns[index(u)].row);
+    }
+  };
+  read(done_ + 1);
   BackwardPass back;
-  back.start(returns_, pass.first(), pass.g());
-  back.cross(returns_, done_ + 1, x.data());
+  back.start(returns_, forward.first(), forward.g());
+  back.cross(returns_, done_ + 1, x.data(), stride);
   double* end = z.data() + z.size();
-  for (int k = done_; k >= stage; --k) {
-    const int pivots = stages_[index(k)].pivots();
-    end -= pivots;
-    back.shift(stages_[index(k)].returned, end, pivots);
-    stages_[index(k)].back_substitute(end, x.data());
-    back.cross(returns_, k, x.data());
-    visit(k);
+  for (int k = done_; k >= first; --k) {
+    const Stage& stage = stages_[index(k)];
+    const int pivots = stage.pivots();
+    end -= pivots * columns;
+    back.shift(stage.returned, end, pivots);
+    stage.back_substitute(end, x.data(), stride, columns);
+    back.cross(returns_, k, x.data(), stride);
+    read(k);
   }
-}
-
-Eigen::MatrixXd Factorisation::cross(int stage, std::span<const int> rows, int later,
-                                     std::span<const int> later_rows) const {
-  Eigen::MatrixXd result(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(later_rows.size()));
-  Buffer x(index(root_.stride())), z;
-  for (Eigen::Index i = 0; i < result.rows(); ++i) {
-    std::ranges::fill(x, 0.0);
-    x[index(rows[index(i)])] = 1.0;
-    solve_from(stage, x, z, [&](int k) {
-      if (k != later) return;
-      for (Eigen::Index j = 0; j < result.cols(); ++j) result(i, j) = x[index(later_rows[index(j)])];
-    });
-  }
-  return result;
-}
-
-Eigen::MatrixXd Factorisation::marginal(int stage, std::span<const int> rows) const {
-  const Eigen::MatrixXd result = cross(stage, rows, stage, rows);
   return 0.5 * (result + result.transpose());
 }
 
@@ -206,12 +215,9 @@ bool Engine::factorise_undamped() {
 std::optional<Matrix24> Engine::neighbours(int k) {
   if (k < first_state() || k + 1 >= static_cast<int>(graph_.states.size()) || !factorise_undamped())
     return std::nullopt;
-  std::array<int, 24> rows;
-  for (int i = 0; i < 12; ++i) {
-    rows[index(i)] = Root::row_of_state(k) + i;
-    rows[index(12 + i)] = Root::row_of_state(k + 1) + i;
-  }
-  const Matrix24 joint = factorisation_.marginal(k + 1, rows);
+  std::vector<Unknown> unknowns = following({k + 1, Root::row_of_state(k)}, 12);
+  std::ranges::copy(following({k + 1, Root::row_of_state(k + 1)}, 12), std::back_inserter(unknowns));
+  const Matrix24 joint = factorisation_.covariance(unknowns);
   if (!joint.allFinite()) return std::nullopt;
   return joint;
 }
@@ -226,15 +232,9 @@ std::vector<Matrix24> Engine::chain_covariances(int first) {
 std::optional<Matrix12> Engine::poses(int i, int j) {
   if (i < first_state() || j <= i || j >= static_cast<int>(graph_.states.size()) || !factorise_undamped())
     return std::nullopt;
-  std::array<int, 6> rows_i, rows_j;
-  for (int row = 0; row < 6; ++row) {
-    rows_i[index(row)] = Root::row_of_state(i) + row;
-    rows_j[index(row)] = Root::row_of_state(j) + row;
-  }
-  Matrix12 joint;
-  joint << factorisation_.marginal(i + 1, rows_i), factorisation_.cross(i + 1, rows_i, j, rows_j), Matrix6::Zero(),
-      factorisation_.marginal(j, rows_j);
-  joint.bottomLeftCorner<6, 6>() = joint.topRightCorner<6, 6>().transpose();
+  std::vector<Unknown> unknowns = following({i + 1, Root::row_of_state(i)}, 6);
+  std::ranges::copy(following({j, Root::row_of_state(j)}, 6), std::back_inserter(unknowns));
+  const Matrix12 joint = factorisation_.covariance(unknowns);
   if (!joint.allFinite()) return std::nullopt;
   return joint;
 }
@@ -259,11 +259,9 @@ std::optional<Matrix12> Engine::newest_covariance() {
 
 std::optional<Matrix3> Engine::landmark_covariance(int landmark) {
   if (!factorise_undamped()) return std::nullopt;
-  const std::optional<std::pair<int, int>> place = factorisation_.find_landmark(landmark);
+  const std::optional<Unknown> place = factorisation_.find_landmark(landmark);
   if (!place) return std::nullopt;
-  const auto [stage, row] = *place;
-  const std::array<int, 3> rows = {row, row + 1, row + 2};
-  const Matrix3 result = factorisation_.marginal(stage, rows);
+  const Matrix3 result = factorisation_.covariance(following(*place, 3));
   if (!result.allFinite()) return std::nullopt;
   return result;
 }
@@ -271,12 +269,12 @@ std::optional<Matrix3> Engine::landmark_covariance(int landmark) {
 std::optional<Matrix2> Engine::predicted_covariance(int landmark, const Eigen::Matrix<double, 2, 12>& J_state,
                                                     const Matrix23& J_landmark) {
   if (!factorise_undamped()) return std::nullopt;
-  const std::optional<std::pair<int, int>> place = factorisation_.find_landmark(landmark);
-  const bool in_root = place && place->first == static_cast<int>(graph_.states.size());
+  const std::optional<Unknown> place = factorisation_.find_landmark(landmark);
+  const bool in_root = place && place->stage == static_cast<int>(graph_.states.size());
   std::vector<int> rows;
   for (int i = 0; i < 12; ++i) rows.push_back(Root::row_of_state(static_cast<int>(graph_.states.size()) - 1) + i);
   if (in_root) {
-    for (int i = 0; i < 3; ++i) rows.push_back(place->second + i);
+    for (int i = 0; i < 3; ++i) rows.push_back(place->row + i);
   }
   Eigen::MatrixXd J(2, rows.size());
   J.leftCols<12>() = J_state;

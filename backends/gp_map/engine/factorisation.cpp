@@ -43,6 +43,15 @@ void Factorisation::Stage::back_substitute(const double* z, double* delta) const
   }
 }
 
+void Factorisation::Stage::back_substitute(double* z, double* x, int x_stride, int columns) const {
+  const int z_stride = pivots();
+  z += z_stride;
+  for (auto c = conditionals.rbegin(); c != conditionals.rend(); ++c) {
+    z -= c->pivots;
+    c->back_substitute(z, z_stride, x, x_stride, columns);
+  }
+}
+
 void Factorisation::add_landmark() { landmarks_.emplace_back(); }
 
 std::optional<int> Factorisation::eliminated_at(int j) const {
@@ -246,8 +255,8 @@ void Factorisation::solve_root(Buffer& delta) {
   factor_.solve_forward(factor_.b());
   factor_.solve_back(factor_.b());
   factor_.copy_to_root(factor_.b(), delta.data());
-  back_.start(returns_, 0, returns_.means());
-  back_.cross_and_keep(returns_, done_ + 1, delta.data());
+  back_.start(returns_);
+  back_.cross(returns_, done_ + 1, delta.data());
 }
 
 void Factorisation::solve_stage(int k, double* delta) {
@@ -258,7 +267,7 @@ void Factorisation::solve_stage(int k, double* delta) {
   }
   back_.shift(stage.returned, right_hand_side_.data(), stage.pivots());
   stage.back_substitute(right_hand_side_.data(), delta);
-  back_.cross_and_keep(returns_, k, delta);
+  back_.cross(returns_, k, delta);
 }
 
 void Factorisation::keep_snapshot(int k, int newest) {

@@ -44,6 +44,7 @@ class Factorisation {
     /// Of all conditionals, one after the other; z is pivots × columns.
     void eliminate(double* r, int r_stride, double* z, int columns) const;
     void back_substitute(const double* z, double* delta) const;
+    void back_substitute(double* z, double* x, int x_stride, int columns) const;
   };
 
   /// A landmark that is not observed any more stays in the root for this many states [≥ 1].
@@ -89,20 +90,23 @@ class Factorisation {
   /// How much what was learnt from landmarks that came back changes the stages that are not solved yet (returns.hpp).
   double change_by_returns() const { return back_.change(); }
 
-  /// Covariance of rows in the layout that the root had before stage `stage` eliminated them (or later ones).
-  Eigen::MatrixXd marginal(int stage, std::span<const int> rows) const;
+  /// A scalar unknown: its row in the layout in which stage `stage` eliminates from the root (after the last stage
+  /// done: the root as it is now).
+  struct Unknown {
+    int stage = 0, row = 0;
+  };
+  /// Joint covariance of unknowns, the one with the earliest stage first.
+  Eigen::MatrixXd covariance(std::span<const Unknown> unknowns) const;
 
   /// Joint covariances of states k − 1 and k for k = first, first + 1, ..., done(): one walk backwards that inverts
   /// selected blocks only, about as dear as the stages were.
   std::vector<Matrix24> chain(int first) const;
-  /// The covariance between rows in the layout before stage `stage`, as above, and rows in that before a later one.
-  Eigen::MatrixXd cross(int stage, std::span<const int> rows, int later, std::span<const int> later_rows) const;
 
   /// Covariance of J x for x in these rows of the root as it is now.
   Eigen::MatrixXd image_in_root(std::span<const int> rows, const Eigen::MatrixXd& J) const;
 
-  /// The stage that eliminates a landmark (the one after the last done while it is in the root) and its row there.
-  std::optional<std::pair<int, int>> find_landmark(int j) const;
+  /// The first of a landmark's three where it is eliminated, or in the root.
+  std::optional<Unknown> find_landmark(int j) const;
 
   /// Forgets the stages up to the newest snapshot not after `stage`: what they say about the variables in the root
   /// there stays as a linear prior, the base. Returns the base's stage.
@@ -130,8 +134,6 @@ class Factorisation {
   void solve_with_root_factor(double* x) const;
   Eigen::MatrixXd root_covariance() const;
   void add_return_moments(int position, Eigen::MatrixXd& S) const;
-  template <class Visit>
-  void solve_from(int stage, Buffer& x, Buffer& z, const Visit& visit) const;
   int place_anchor(const FactorGraph& graph);
   int go_back_to(int first, const FactorGraph& graph);
   int take_back_returns(const FactorGraph& graph);
@@ -170,7 +172,7 @@ class Factorisation {
   Returns returns_;
   std::vector<Return> taken_back_;  ///< of stages that are being redone
   std::vector<int> called_back_;    ///< landmarks that have not come back yet
-  BackwardPass back_;
+  EstimatePass back_;
   Buffer right_hand_side_;
   std::int64_t stages_done_ = 0;
 };

@@ -64,60 +64,81 @@ void ForwardPass::resume(int k, const Eigen::Ref<const Eigen::MatrixXd>& g) {
   g_.topRows(known) = g.topRows(known);
 }
 
-void BackwardPass::start(const Returns& returns, int first, Eigen::VectorXd g) {
+void BackwardPass::start(const Returns& returns, int first, Eigen::MatrixXd g) {
   first_ = first;
   next_ = returns.size();
-  g_.setZero(g.size(), 2);
-  g_.col(0) = g;
-  mu_.resize(3 * returns.ids(), 2);
-  change2_ = 0.0;
+  g_ = std::move(g);
+  mu_.resize(3 * returns.ids(), g_.cols());
 }
 
-template <class Known>
-void BackwardPass::cross(const Returns& returns, int k, const double* delta, Known known) {
-  for (; next_ > first_ && returns[next_ - 1].before == k; --next_) {
-    const Return& last = returns[next_ - 1];
-    Eigen::Matrix<double, 3, 2> mu;
-    mu.col(0) = last.R.transpose() * as_vector(delta, static_cast<int>(last.R.rows()));
-    mu.col(0) -= last.mean;
-    mu.col(1) = known(next_ - 1, mu.col(0));
-    mu.col(0) += last.mean;
-    change2_ += mu.col(1).squaredNorm();
-    mu -= g_.middleRows<3>(3 * (next_ - 1 - first_));
-    last.L.transpose().triangularView<Eigen::Upper>().solveInPlace(mu);
-    mu_.middleRows<3>(3 * last.id) = mu;
-    const int common = std::max(first_, last.first);
-    const int rows = 3 * (next_ - 1 - common);
-    g_.middleRows(3 * (common - first_), rows).noalias() += last.g.bottomRows(rows) * mu;
+const Return* BackwardPass::next(const Returns& returns, int k) const {
+  return next_ > first_ && returns[next_ - 1].before == k ? &returns[next_ - 1] : nullptr;
+}
+
+void BackwardPass::cross(const Return& last, Known3 known) {
+  --next_;
+  Known3& mu = known;
+  mu -= g_.middleRows<3>(3 * (next_ - first_));
+  last.L.transpose().triangularView<Eigen::Upper>().solveInPlace(mu);
+  mu_.middleRows<3>(3 * last.id) = mu;
+  const int common = std::max(first_, last.first);
+  const int rows = 3 * (next_ - common);
+  g_.middleRows(3 * (common - first_), rows).noalias() += last.g.bottomRows(rows).lazyProduct(mu);
+}
+
+void BackwardPass::cross(const Returns& returns, int k, const double* x, int stride) {
+  while (const Return* last = next(returns, k)) {
+    cross(*last,
+          last->R.transpose() * as_matrix(x, static_cast<int>(last->R.rows()), static_cast<int>(g_.cols()), stride));
   }
 }
 
-void BackwardPass::cross(const Returns& returns, int k, const double* delta) {
-  cross(returns, k, delta, [](int, const Vector3&) { return Vector3::Zero(); });
-}
-
-void BackwardPass::cross_and_keep(Returns& returns, int k, const double* delta) {
-  cross(returns, k, delta, [&](int position, const Vector3& known) -> Vector3 {
-    returns[position].known_before = std::exchange(returns[position].known, known);
-    return known - returns[position].known_before;
-  });
-}
-
-void BackwardPass::swap_known(Returns& returns) const {
-  for (int i = next_; i < returns.size(); ++i) std::swap(returns[i].known, returns[i].known_before);
+const Eigen::MatrixXd& BackwardPass::gather(const ReturnRows& stage) {
+  gathered_.resize(3 * static_cast<int>(stage.ids.size()), g_.cols());
+  for (std::size_t i = 0; i < stage.ids.size(); ++i) {
+    gathered_.middleRows<3>(3 * static_cast<int>(i)) = mu_.middleRows<3>(3 * stage.ids[i]);
+  }
+  return gathered_;
 }
 
 void BackwardPass::shift(const ReturnRows& stage, double* z, int pivots) {
   if (stage.ids.empty()) return;
-  const int rows = 3 * static_cast<int>(stage.ids.size());
-  gathered_.resize(rows, 2);
-  for (std::size_t i = 0; i < stage.ids.size(); ++i) {
-    gathered_.middleRows<3>(3 * static_cast<int>(i)) = mu_.middleRows<3>(3 * stage.ids[i]);
+  const Eigen::MatrixXd& mu = gather(stage);
+  as_matrix(z, pivots, static_cast<int>(mu.cols()), pivots).noalias() +=
+      as_matrix(stage.Zt.data(), static_cast<int>(mu.rows()), pivots, stage.stride).transpose() * mu;
+}
+
+/// A second column has the change of μ.
+void EstimatePass::start(const Returns& returns) {
+  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(3 * returns.size(), 2);
+  g.col(0) = returns.means();
+  BackwardPass::start(returns, 0, std::move(g));
+  change2_ = 0.0;
+}
+
+void EstimatePass::cross(Returns& returns, int k, const double* delta) {
+  while (const Return* last = next(returns, k)) {
+    Return& kept = returns[next_ - 1];
+    Known3 known(3, 2);
+    known.col(0) = last->R.transpose() * as_vector(delta, static_cast<int>(last->R.rows()));
+    kept.known_before = std::exchange(kept.known, known.col(0) - kept.mean);
+    known.col(1) = kept.known - kept.known_before;
+    change2_ += known.col(1).squaredNorm();
+    BackwardPass::cross(*last, std::move(known));
   }
-  const auto Z = as_matrix(stage.Zt.data(), rows, pivots, stage.stride).transpose();
-  as_vector(z, pivots).noalias() += Z * gathered_.col(0);
+}
+
+void EstimatePass::swap_known(Returns& returns) const {
+  for (int i = next_; i < returns.size(); ++i) std::swap(returns[i].known, returns[i].known_before);
+}
+
+void EstimatePass::shift(const ReturnRows& stage, double* z, int pivots) {
+  if (stage.ids.empty()) return;
+  const Eigen::MatrixXd& mu = gather(stage);
+  const auto Z = as_matrix(stage.Zt.data(), static_cast<int>(mu.rows()), pivots, stage.stride).transpose();
+  as_vector(z, pivots).noalias() += Z * mu.col(0);
   if (change2_ <= 0.0) return;
-  shift_change_.noalias() = Z * gathered_.col(1);
+  shift_change_.noalias() = Z * mu.col(1);
   change2_ -= shift_change_.squaredNorm();
 }
 

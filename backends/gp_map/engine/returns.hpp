@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -9,6 +10,8 @@
 
 namespace evbench::gp_map {
 
+/// Of a landmark, for up to 24 right-hand sides.
+using Known3 = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 24>;
 using MatrixX3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
 /// What the noise of a stage has to do with landmarks that came back later (see Returns): Zᵀ, 3 rows for each of them.
@@ -21,6 +24,7 @@ struct ReturnRows {
   void append(int id, const double* Z, int pivots);
 };
 
+struct Return;
 class Returns;
 
 /// Right-hand sides on their way forward through the stages, across the returns.
@@ -47,32 +51,49 @@ class ForwardPass {
   Buffer product_;
 };
 
-/// The way back: solves for μ, the latest return first.
+/// The way back of right-hand sides: solves for μ, the latest return first.
 class BackwardPass {
  public:
-  /// g: of the returns from position `first` on; those before are not met.
-  void start(const Returns& returns, int first, Eigen::VectorXd g);
+  /// g: of the returns from position `first` on, with a column for each right-hand side; those before are not met.
+  void start(const Returns& returns, int first, Eigen::MatrixXd g);
+  /// Crosses the returns before stage k; x in the root's layout there, with this stride between right-hand sides.
+  void cross(const Returns& returns, int k, const double* x, int stride);
+  /// z += Z μ, pivots × columns.
+  void shift(const ReturnRows& stage, double* z, int pivots);
+
+ protected:
+  /// The return to cross next, if it is before stage k; null: none.
+  const Return* next(const Returns& returns, int k) const;
+  /// Crosses it: `known` is Rᵀ x there.
+  void cross(const Return& last, Known3 known);
+  /// μ of what the stage has to do with.
+  const Eigen::MatrixXd& gather(const ReturnRows& stage);
+
+  int next_ = 0;
+
+ private:
+  int first_ = 0;
+  Eigen::MatrixXd g_;         ///< increased by what later returns have explained
+  Eigen::MatrixXd mu_;        ///< by id
+  Eigen::MatrixXd gathered_;  ///< of a stage
+};
+
+/// The estimate's way back, which keeps what is known of each return for the next time.
+class EstimatePass : private BackwardPass {
+ public:
+  void start(const Returns& returns);
   /// Crosses the returns before stage k; delta in the root's layout there.
-  void cross(const Returns& returns, int k, const double* delta);
-  /// The same, and keeps what is known of each return for the next time.
-  void cross_and_keep(Returns& returns, int k, const double* delta);
-  /// Exchanges what cross_and_keep() has kept with what it has replaced.
-  void swap_known(Returns& returns) const;
+  void cross(Returns& returns, int k, const double* delta);
   /// z += Z μ.
   void shift(const ReturnRows& stage, double* z, int pivots);
+  /// Exchanges what was kept with what it has replaced.
+  void swap_known(Returns& returns) const;
 
   /// How much what is known of the returns changes the noise of the stages that have not been shifted yet [standard
   /// deviations, its norm over all of them].
   double change() const { return std::sqrt(std::max(0.0, change2_)); }
 
  private:
-  template <class Known>
-  void cross(const Returns& returns, int k, const double* delta, Known known);
-
-  int first_ = 0, next_ = 0;
-  Eigen::MatrixX2d g_;         ///< increased by what later returns have explained
-  Eigen::MatrixX2d mu_;        ///< by id; second column: its change
-  Eigen::MatrixX2d gathered_;  ///< of a stage
   Eigen::VectorXd shift_change_;
   double change2_ = 0.0;
 };
