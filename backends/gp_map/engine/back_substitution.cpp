@@ -99,6 +99,9 @@ void Engine::solve_back(UpdateSummary& summary) {
       if (conditional.state >= 0) set_state(conditional.state, delta_.data() + conditional.rows.back());
     }
     for (const int slot : stage.entered_slots) slot_change_[index(slot)] = 0.0;
+    for (auto move = stage.moved.rbegin(); move != stage.moved.rend(); ++move) {
+      slot_change_[index(move->from)] = std::exchange(slot_change_[index(move->to)], 0.0);
+    }
     clear_returns(k);
   }
 }

@@ -61,14 +61,23 @@ std::optional<int> Factorisation::bring_all_back(const FactorGraph& graph, const
     return from;
   }
   taken_back_.clear();
-  while (!called_back_.empty()) {
-    const int j = called_back_.back();
-    called_back_.pop_back();
-    const std::optional<int> from = eliminated_at(j);
-    if (!from || last_interval(j, graph) <= done_) continue;  // it is in the root, or its observations were taken back
-    if (!walk_and_bring_back(j, points)) return from;
-  }
+  if (const std::optional<int> from = walk_and_bring_back(graph, points)) return from;
+  add_returned_factors();
   return std::nullopt;
+}
+
+/// What the stages know of the landmarks that come back before the next one.
+void Factorisation::add_returned_factors() {
+  const int first = returns_.first_after(done_), count = returns_.size() - first;
+  if (count == 0) return;
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(root_.extent(), 3 * count);
+  Eigen::VectorXd mean(3 * count);
+  for (int i = 0; i < count; ++i) {
+    const Return& one = returns_[first + i];
+    R.block(0, 3 * i, one.R.rows(), 3) = one.R;
+    mean.segment<3>(3 * i) = one.mean;
+  }
+  root_.add_factor(R, mean);
 }
 
 /// A landmark that had come back in a stage that is being redone.
@@ -77,7 +86,7 @@ bool Factorisation::bring_back_again(Return&& known, const LinearisationPoints& 
   while (!checkpoints.empty() && checkpoints.back().stage > done_) checkpoints.pop_back();
   if (checkpoints.empty() || checkpoints.back().stage < done_) return false;
   const Return::Checkpoint& start = checkpoints.back();
-  Walk walk(returns_, known.from, root_.stride());
+  Walk walk(returns_, known.from, root_.stride(), 1);
   walk.x.topRows(start.x.rows()) = start.x;
   walk.square = start.square;
   walk.with_y = start.with_y;
@@ -90,46 +99,96 @@ bool Factorisation::bring_back_again(Return&& known, const LinearisationPoints& 
   return true;
 }
 
-/// A landmark that comes back for the first time since it was eliminated.
-bool Factorisation::walk_and_bring_back(int j, const LinearisationPoints& points) {
-  const auto [from, row] = *find_landmark(j);
-  Return result;
-  result.id = returns_.new_id();
-  result.landmark = j;
-  result.from = from;
-  result.delta_before = points.landmark_delta(j);
-  const int stride = root_.stride();
-  Walk walk(returns_, from, stride);
-  walk.x.middleRows<3>(row).setIdentity();
-  Buffer z;
-  for (int k = from; k <= done_; ++k) {
-    walk.pass.cross(k, walk.x.data(), stride);
-    Stage& stage = stages_[index(k)];
+/// Landmarks that come back for the first time since they were eliminated, in one walk. If that can't be done for some
+/// of them, the stage that has to be redone.
+std::optional<int> Factorisation::walk_and_bring_back(const FactorGraph& graph, const LinearisationPoints& points) {
+  std::vector<Return> coming;
+  std::vector<int> rows;
+  std::ranges::sort(called_back_);
+  called_back_.erase(std::unique(called_back_.begin(), called_back_.end()), called_back_.end());
+  int first = done_ + 1;
+  for (const int j : std::exchange(called_back_, {})) {
+    if (!eliminated_at(j) || last_interval(j, graph) <= done_) continue;  // in the root, or not observed after all
+    const Unknown place = *find_landmark(j);
+    Return& one = coming.emplace_back();
+    one.id = returns_.new_id();
+    one.landmark = j;
+    one.from = place.stage;
+    one.delta_before = points.landmark_delta(j);
+    rows.push_back(place.row);
+    first = std::min(first, place.stage);
+  }
+  if (coming.empty()) return std::nullopt;
+  const int count = static_cast<int>(coming.size()), columns = 3 * count, stride = root_.stride();
+  Walk walk(returns_, first, stride, count);
+  Buffer z;  // of all stages
+  for (int k = first; k <= done_; ++k) {
+    const Stage& stage = stages_[index(k)];
     const int pivots = stage.pivots();
-    z.resize(3 * index(pivots));
-    stage.eliminate(walk.x.data(), stride, z.data(), 3);
-    walk.pass.add(stage.returned, z.data(), pivots);
-    const auto Z = as_matrix(z.data(), pivots, 3, pivots);
+    walk.pass.cross(k, walk.x.data(), stride);
+    follow_moves(stage.moved, walk.x.data(), stride, columns);
+    for (int i = 0; i < count; ++i) {
+      if (coming[index(i)].from == k) walk.x.block<3, 3>(rows[index(i)], 3 * i).setIdentity();
+    }
+    z.resize(z.size() + index(pivots * columns));
+    double* const taken = z.data() + z.size() - index(pivots * columns);
+    stage.eliminate(walk.x.data(), stride, taken, columns);
+    walk.pass.add(stage.returned, taken, pivots);
+    const auto Z = as_matrix(taken, pivots, columns, pivots);
     walk.square.noalias() += Z.transpose() * Z;
     int at = 0;
     for (const Conditional& c : stage.conditionals) {
       walk.with_y.noalias() += Z.middleRows(at, c.pivots).transpose() * as_vector(c.y.data(), c.pivots);
       at += c.pivots;
     }
-    stage.returned.append(result.id, z.data(), pivots);
-    if (snapshots_.contains(k) && k >= done_ - kThinnedUpTo) keep_checkpoint(k, walk, result);
+    if (snapshots_.contains(k) && k >= done_ - kThinnedUpTo) keep_checkpoints(k, walk, coming);
   }
-  if (bring_back(std::move(result), walk) != nullptr) return true;
-  returns_.free_id(result.id);
-  return false;
+  std::vector<int> ids(coming.size(), -1);  // of those that have come back
+  std::optional<int> failed;
+  for (int i = 0; i < count; ++i) {
+    const int id = coming[index(i)].id, from = coming[index(i)].from;
+    Walk own(walk, i, from);
+    for (int e = 0; e < i; ++e) {
+      if (ids[index(e)] >= 0) own.pass.sum(ids[index(e)]) = walk.square.block<3, 3>(3 * e, 3 * i);
+    }
+    if (bring_back(std::move(coming[index(i)]), own) != nullptr) {
+      ids[index(i)] = id;
+    } else {
+      returns_.free_id(id);
+      failed = std::min(from, failed.value_or(from));
+    }
+  }
+  const double* taken = z.data();
+  for (int k = first; k <= done_; ++k) {
+    Stage& stage = stages_[index(k)];
+    const int pivots = stage.pivots();
+    for (int i = 0; i < count; ++i, taken += 3 * pivots) {
+      if (ids[index(i)] >= 0 && coming[index(i)].from <= k) stage.returned.append(ids[index(i)], taken, pivots);
+    }
+  }
+  return failed;
 }
 
-void Factorisation::keep_checkpoint(int k, Walk& walk, Return& result) const {
-  const int rows = stages_[index(k)].conditionals.back().extent;
-  result.checkpoints.push_back({k, walk.x.topRows(rows), walk.square, walk.with_y, {}});
-  auto& sums = result.checkpoints.back().sums;
-  for (int i = returns_.first_after(k); i < returns_.size(); ++i) {
-    if (returns_[i].from <= k) sums.emplace_back(returns_[i].id, walk.pass.sum(returns_[i].id));
+/// The walk as it is after stage k, for each of its landmarks; those before it in the order come back before it.
+void Factorisation::keep_checkpoints(int k, Walk& walk, std::vector<Return>& coming) const {
+  const int rows = stages_[index(k)].conditionals.back().extent, count = static_cast<int>(coming.size());
+  for (int i = 0; i < count; ++i) {
+    if (coming[index(i)].from > k) continue;
+    const int column = 3 * i;
+    Return::Checkpoint checkpoint{k,
+                                  walk.x.block(0, column, rows, 3),
+                                  walk.square.block<3, 3>(column, column),
+                                  walk.with_y.segment<3>(column),
+                                  {}};
+    for (int e = returns_.first_after(k); e < returns_.size(); ++e) {
+      if (returns_[e].from > k) continue;
+      checkpoint.sums.emplace_back(returns_[e].id, walk.pass.sum(returns_[e].id).middleCols<3>(column));
+    }
+    for (int e = 0; e < i; ++e) {
+      if (coming[index(e)].from > k) continue;
+      checkpoint.sums.emplace_back(coming[index(e)].id, walk.square.block<3, 3>(3 * e, column));
+    }
+    coming[index(i)].checkpoints.push_back(std::move(checkpoint));
   }
 }
 
@@ -139,9 +198,7 @@ Return* Factorisation::bring_back(Return&& result, Walk& walk) {
   walk.pass.cross(result.before, walk.x.data(), static_cast<int>(walk.x.rows()));
   result.slot = root_.enter(j);
   Return* appended = returns_.append(std::move(result), walk, root_.extent());
-  if (appended == nullptr) return nullptr;
-  landmarks_[index(j)].eliminated_at = -1;
-  root_.add_factor(appended->R, appended->mean);
+  if (appended != nullptr) landmarks_[index(j)].eliminated_at = -1;
   return appended;
 }
 

@@ -52,9 +52,10 @@ Eigen::MatrixXd Factorisation::covariance(std::span<const Unknown> unknowns) con
   };
   ForwardPass forward(returns_, first, columns);
   for (int k = first; k <= done_; ++k) {
-    forward.cross(k, x.data(), stride);
-    bring_in(k);
     const Stage& stage = stages_[index(k)];
+    forward.cross(k, x.data(), stride);
+    follow_moves(stage.moved, x.data(), stride, columns);
+    bring_in(k);
     const int pivots = stage.pivots();
     z.resize(z.size() + index(pivots * columns));
     double* const taken = z.data() + z.size() - index(pivots * columns);
@@ -82,8 +83,9 @@ Eigen::MatrixXd Factorisation::covariance(std::span<const Unknown> unknowns) con
     end -= pivots * columns;
     back.shift(stage.returned, end, pivots);
     stage.back_substitute(end, x.data(), stride, columns);
-    back.cross(returns_, k, x.data(), stride);
     read(k);
+    undo_moves(stage.moved, x.data(), stride, columns);
+    back.cross(returns_, k, x.data(), stride);
   }
   return 0.5 * (result + result.transpose());
 }
@@ -179,11 +181,16 @@ std::vector<Matrix24> Factorisation::chain(int first) const {
         for (int j = 0; j < p; ++j) S(places[index(i)], places[index(j)]) = 0.5 * (S_pp(i, j) + S_pp(j, i));
       }
     }
-    meet(k);
     const int older = Root::row_of_state(k - 1), newer = Root::row_of_state(k);
     Matrix24& joint = result[index(k - first)];
     joint << S.block<12, 12>(older, older), S.block<12, 12>(older, newer), S.block<12, 12>(newer, older),
         S.block<12, 12>(newer, newer);
+    const std::vector<SlotMove>& moved = stages_[index(k)].moved;
+    undo_moves(moved, S.data(), size, size);
+    for (auto move = moved.rbegin(); move != moved.rend(); ++move) {
+      S.middleCols<3>(Root::row_of_slot(move->from)) = S.middleCols<3>(Root::row_of_slot(move->to));
+    }
+    meet(k);
   }
   return result;
 }

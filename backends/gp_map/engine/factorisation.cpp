@@ -144,6 +144,7 @@ std::optional<Variable> Factorisation::do_stage(int k, const FactorGraph& graph,
   ++stages_done_;
   stage(k).entered.clear();
   stage(k).entered_slots.clear();
+  stage(k).moved.clear();
   stage(k).returned.clear();
   add_factors(k, graph, points);
   if (k == 0) return std::nullopt;
@@ -158,16 +159,20 @@ void Factorisation::add_factors(int k, const FactorGraph& graph, LinearisationPo
   root_.add_state(k, H, -g);
   if (k == 0) return;
   const IntervalLinearisation& linear = points.interval(graph, k);
+  std::vector<int>& entered = stage(k).entered;
   for (const auto& coupling : linear.couplings) {
-    if (root_.slot_of(coupling.landmark) < 0) enter(coupling.landmark, graph, points, stage(k));
+    if (root_.slot_of(coupling.landmark) >= 0) continue;
+    enter(coupling.landmark, graph, points);
+    entered.push_back(coupling.landmark);
   }
+  root_.close_holes(stage(k).moved);
+  for (const int j : entered) stage(k).entered_slots.push_back(root_.slot_of(j));
   root_.add_interval(k, linear);
   if (k == anchor_stage_) add_anchor(graph, points);
 }
 
-void Factorisation::enter(int j, const FactorGraph& graph, const LinearisationPoints& points, Stage& stage) {
-  stage.entered_slots.push_back(root_.enter(j));
-  stage.entered.push_back(j);
+void Factorisation::enter(int j, const FactorGraph& graph, const LinearisationPoints& points) {
+  root_.enter(j);
   landmarks_[index(j)].eliminated_at = -1;
   const LandmarkPrior& prior = graph.landmarks[index(j)].prior;
   if (!std::isfinite(prior.sigma)) return;
@@ -267,6 +272,7 @@ void Factorisation::solve_stage(int k, double* delta) {
   }
   back_.shift(stage.returned, right_hand_side_.data(), stage.pivots());
   stage.back_substitute(right_hand_side_.data(), delta);
+  undo_moves(stage.moved, delta, 0, 1);
   back_.cross(returns_, k, delta);
 }
 

@@ -36,6 +36,7 @@ class Factorisation {
     std::vector<Conditional> conditionals;  ///< in the order of elimination
     std::vector<int> entered;               ///< landmarks that came into the root in this stage
     std::vector<int> entered_slots;         ///< and where
+    std::vector<SlotMove> moved;            ///< landmarks, before anything was eliminated
     ReturnRows returned;  ///< landmarks that had been eliminated in this stage or before, and came back
     /// Change of the separator since the stage was last solved back (see Engine); infinite once it has been redone.
     double skipped = 0.0;
@@ -83,7 +84,8 @@ class Factorisation {
 
   /// The increments of the root's variables, in the root's layout; `delta` grows to the root's extent.
   void solve_root(Buffer& delta);
-  /// Then those of the variables that stage k eliminated, from the newest stage backwards.
+  /// Then those of the variables that stage k eliminated, from the newest stage backwards; delta then is in the layout
+  /// before the stage, and still has them in their rows.
   void solve_stage(int k, double* delta);
   /// Exchanges what is known of landmarks that came back with that of before the last solve.
   void swap_known() { back_.swap_known(returns_); }
@@ -139,14 +141,15 @@ class Factorisation {
   int take_back_returns(const FactorGraph& graph);
   std::optional<int> bring_all_back(const FactorGraph& graph, const LinearisationPoints& points);
   bool bring_back_again(Return&& known, const LinearisationPoints& points);
-  bool walk_and_bring_back(int j, const LinearisationPoints& points);
-  void keep_checkpoint(int k, Walk& walk, Return& result) const;
+  std::optional<int> walk_and_bring_back(const FactorGraph& graph, const LinearisationPoints& points);
+  void keep_checkpoints(int k, Walk& walk, std::vector<Return>& coming) const;
+  void add_returned_factors();
   Return* bring_back(Return&& result, Walk& walk);
   Buffer increments_of_root(const LinearisationPoints& points) const;
   std::optional<Variable> do_stage(int k, const FactorGraph& graph, LinearisationPoints& points, double damping);
   void add_factors(int k, const FactorGraph& graph, LinearisationPoints& points);
   void add_anchor(const FactorGraph& graph, const LinearisationPoints& points);
-  void enter(int j, const FactorGraph& graph, const LinearisationPoints& points, Stage& stage);
+  void enter(int j, const FactorGraph& graph, const LinearisationPoints& points);
   void find_finished(int k, const FactorGraph& graph);
   std::optional<Variable> eliminate_finished(int k, const LinearisationPoints& points, double damping);
   double damping_of(const Variable& variable, double damping) const;

@@ -33,6 +33,14 @@ ForwardPass::ForwardPass(const Returns& returns, int stage, int columns)
   g_.resize(3 * (returns.size() - first_), columns);
 }
 
+ForwardPass::ForwardPass(const ForwardPass& all, int stage, int column, int columns)
+    : ForwardPass(all.returns_, stage, columns) {
+  next_ = all.next_;
+  sums_ = all.sums_.middleCols(column, columns);
+  const int known = 3 * (next_ - first_);
+  g_.topRows(known) = all.g_.block(3 * (first_ - all.first_), column, known, columns);
+}
+
 void ForwardPass::add(const ReturnRows& stage, const double* z, int pivots) {
   if (stage.ids.empty()) return;
   const int rows = padded(3 * static_cast<int>(stage.ids.size())), columns = static_cast<int>(sums_.cols());
@@ -142,7 +150,17 @@ void EstimatePass::shift(const ReturnRows& stage, double* z, int pivots) {
   change2_ -= shift_change_.squaredNorm();
 }
 
-Walk::Walk(const Returns& returns, int stage, int rows) : pass(returns, stage, 3), x(MatrixX3::Zero(rows, 3)) {}
+Walk::Walk(const Returns& returns, int stage, int rows, int landmarks)
+    : pass(returns, stage, 3 * landmarks),
+      x(Eigen::MatrixXd::Zero(rows, 3 * landmarks)),
+      square(Eigen::MatrixXd::Zero(3 * landmarks, 3 * landmarks)),
+      with_y(Eigen::VectorXd::Zero(3 * landmarks)) {}
+
+Walk::Walk(const Walk& all, int landmark, int stage)
+    : pass(all.pass, stage, 3 * landmark, 3),
+      x(all.x.middleCols<3>(3 * landmark)),
+      square(all.square.block<3, 3>(3 * landmark, 3 * landmark)),
+      with_y(all.with_y.segment<3>(3 * landmark)) {}
 
 int Returns::first_after(int stage) const {
   const auto later = std::ranges::upper_bound(returns_, stage, {}, &Return::before);

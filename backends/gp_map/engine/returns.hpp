@@ -32,6 +32,8 @@ class ForwardPass {
  public:
   /// From this stage on.
   ForwardPass(const Returns& returns, int stage, int columns);
+  /// Of another one's right-hand sides these columns, which are zero before this later stage.
+  ForwardPass(const ForwardPass& all, int stage, int column, int columns);
 
   /// z: what the stage's pivots took of the right-hand sides, pivots × columns.
   void add(const ReturnRows& stage, const double* z, int pivots);
@@ -98,14 +100,17 @@ class EstimatePass : private BackwardPass {
   double change2_ = 0.0;
 };
 
-/// An eliminated landmark carried forward: ℓ = xᵀ δ_root + Σ_k Z_kᵀ (y_k + w_k).
+/// Eliminated landmarks carried forward together, 3 columns each: ℓ = xᵀ δ_root + Σ_k Z_kᵀ (y_k + w_k).
 struct Walk {
-  Walk(const Returns& returns, int stage, int rows);
+  /// From this stage on, x with this many rows.
+  Walk(const Returns& returns, int stage, int rows, int landmarks);
+  /// One landmark of a walk, which began at this stage.
+  Walk(const Walk& all, int landmark, int stage);
 
   ForwardPass pass;
-  MatrixX3 x;
-  Matrix3 square = Matrix3::Zero();  ///< Σ Zᵀ Z
-  Vector3 with_y = Vector3::Zero();  ///< Σ Zᵀ y
+  Eigen::MatrixXd x;
+  Eigen::MatrixXd square;  ///< Σ Zᵀ Z
+  Eigen::VectorXd with_y;  ///< Σ Zᵀ y
 };
 
 /// A landmark that had been eliminated and came back into the root.

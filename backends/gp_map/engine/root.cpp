@@ -1,6 +1,7 @@
 #include "backends/gp_map/engine/root.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace evbench::gp_map {
 
@@ -22,6 +23,36 @@ void Root::leave(int landmark) {
   occupant_[index(slot_of(landmark))] = -1;
   slot_of_[index(landmark)] = -1;
   while (top_ > 0 && occupant_[index(top_ - 1)] < 0) --top_;
+}
+
+void Root::close_holes(std::vector<SlotMove>& moves) {
+  constexpr int kBearable = 4;
+  moves.clear();
+  int holes = static_cast<int>(std::count(occupant_.begin(), occupant_.begin() + top_, -1));
+  if (holes <= kBearable) return;
+  for (int to = 0; holes > 0; ++to) {
+    if (occupant_[index(to)] >= 0) continue;
+    move(top_ - 1, to);
+    moves.push_back({top_ - 1, to});
+    --holes;
+    for (--top_; occupant_[index(top_ - 1)] < 0; --top_) --holes;
+  }
+}
+
+void Root::move(int from, int to) {
+  const int n = extent();
+  for (int i = 0; i < 3; ++i) {
+    const int a = row_of_slot(from) + i, b = row_of_slot(to) + i;
+    const auto take = [](double& value) { return std::exchange(value, 0.0); };
+    for (int c = 0; c < b; ++c) column(c)[b] = take(column(c)[a]);
+    column(b)[b] = take(column(a)[a]);
+    for (int c = b + 1; c < a; ++c) column(b)[c] = take(column(c)[a]);
+    for (int r = a + 1; r < n; ++r) column(b)[r] = take(column(a)[r]);
+    b_[index(b)] = take(b_[index(a)]);
+  }
+  const int landmark = std::exchange(occupant_[index(from)], -1);
+  occupant_[index(to)] = landmark;
+  slot_of_[index(landmark)] = to;
 }
 
 void Root::add_state(int state, const Matrix12& H, const Vector12& b) {

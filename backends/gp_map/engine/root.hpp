@@ -26,11 +26,16 @@ inline void add_damping(double* H, std::ptrdiff_t stride, double* b, int row, in
   }
 }
 
+/// A landmark has been given another, lower slot.
+struct SlotMove {
+  int from = 0, to = 0;
+};
+
 /// The trailing dense part of the factorisation: information matrix H and right-hand side b (H δ = b) of the newest two
 /// states and of the landmarks that are alive there, after everything older has been eliminated.
 ///
-/// Layout: state k occupies 12 rows from 12 (k mod 2) on, a landmark 3 rows in a slot that is its own while it is
-/// alive. Slots are never moved, so neither eliminating nor going back through the stages needs permutations.
+/// Layout: state k occupies 12 rows from 12 (k mod 2) on, a landmark 3 rows in a slot of its own. It keeps that slot
+/// until too many below it are free: close_holes().
 /// Invariant: rows and columns of a place that nothing occupies are zero.
 class Root {
  public:
@@ -54,6 +59,9 @@ class Root {
   /// Gives a landmark the lowest free slot.
   int enter(int landmark);
   void leave(int landmark);  ///< its rows have been cleared by an elimination
+  /// Moves landmarks from the highest slots to free ones where these have become many: whatever is as large as the root
+  /// is dear, by its square. Tells the moves in their order.
+  void close_holes(std::vector<SlotMove>& moves);
 
   void add_state(int state, const Matrix12& H, const Vector12& b);
   void add_landmark(int landmark, const Matrix3& H, const Vector3& b);
@@ -83,11 +91,31 @@ class Root {
 
  private:
   void reserve(int rows);
+  void move(int from, int to);
   void forget_occupants();
 
   int top_ = 0, stride_ = 0;
   Buffer H_, b_;
   std::vector<int> occupant_, slot_of_;
 };
+
+/// What belongs to landmarks that were moved, in right-hand sides in the root's layout: to their new places, and back.
+inline void follow_moves(std::span<const SlotMove> moves, double* x, int stride, int columns) {
+  for (const auto [from, to] : moves) {
+    for (int c = 0; c < columns; ++c, x += stride) {
+      std::copy_n(x + Root::row_of_slot(from), 3, x + Root::row_of_slot(to));
+      std::fill_n(x + Root::row_of_slot(from), 3, 0.0);
+    }
+    x -= columns * stride;
+  }
+}
+inline void undo_moves(std::span<const SlotMove> moves, double* x, int stride, int columns) {
+  for (auto move = moves.rbegin(); move != moves.rend(); ++move) {
+    for (int c = 0; c < columns; ++c, x += stride) {
+      std::copy_n(x + Root::row_of_slot(move->to), 3, x + Root::row_of_slot(move->from));
+    }
+    x -= columns * stride;
+  }
+}
 
 }  // namespace evbench::gp_map
