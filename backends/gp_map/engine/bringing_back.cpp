@@ -54,6 +54,7 @@ int Factorisation::take_back_returns(const FactorGraph& graph) {
 
 /// Brings landmarks back into the root as it is now. If that can't be done, the stage that has to be redone instead.
 std::optional<int> Factorisation::bring_all_back(const FactorGraph& graph, const LinearisationPoints& points) {
+  const int before = returns_.size();
   for (auto i = taken_back_.begin(); i != taken_back_.end(); ++i) {
     const int from = i->from;
     if (bring_back_again(std::move(*i), points)) continue;
@@ -62,13 +63,13 @@ std::optional<int> Factorisation::bring_all_back(const FactorGraph& graph, const
   }
   taken_back_.clear();
   if (const std::optional<int> from = walk_and_bring_back(graph, points)) return from;
-  add_returned_factors();
+  add_returned_factors(before);
   return std::nullopt;
 }
 
-/// What the stages know of the landmarks that come back before the next one.
-void Factorisation::add_returned_factors() {
-  const int first = returns_.first_after(done_), count = returns_.size() - first;
+/// What the stages know of the landmarks that have just come back: the returns from this position on.
+void Factorisation::add_returned_factors(int first) {
+  const int count = returns_.size() - first;
   if (count == 0) return;
   Eigen::MatrixXd R = Eigen::MatrixXd::Zero(root_.extent(), 3 * count);
   Eigen::VectorXd mean(3 * count);
@@ -147,7 +148,7 @@ std::optional<int> Factorisation::walk_and_bring_back(const FactorGraph& graph, 
   std::optional<int> failed;
   for (int i = 0; i < count; ++i) {
     const int id = coming[index(i)].id, from = coming[index(i)].from;
-    Walk own(walk, i, from);
+    Walk own(walk, i, from, root_.stride());  // which may have grown for those before it
     for (int e = 0; e < i; ++e) {
       if (ids[index(e)] >= 0) own.pass.sum(ids[index(e)]) = walk.square.block<3, 3>(3 * e, 3 * i);
     }

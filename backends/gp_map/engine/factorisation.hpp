@@ -143,7 +143,7 @@ class Factorisation {
   bool bring_back_again(Return&& known, const LinearisationPoints& points);
   std::optional<int> walk_and_bring_back(const FactorGraph& graph, const LinearisationPoints& points);
   void keep_checkpoints(int k, Walk& walk, std::vector<Return>& coming) const;
-  void add_returned_factors();
+  void add_returned_factors(int first);
   Return* bring_back(Return&& result, Walk& walk);
   Buffer increments_of_root(const LinearisationPoints& points) const;
   std::optional<Variable> do_stage(int k, const FactorGraph& graph, LinearisationPoints& points, double damping);

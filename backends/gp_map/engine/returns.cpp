@@ -156,11 +156,13 @@ Walk::Walk(const Returns& returns, int stage, int rows, int landmarks)
       square(Eigen::MatrixXd::Zero(3 * landmarks, 3 * landmarks)),
       with_y(Eigen::VectorXd::Zero(3 * landmarks)) {}
 
-Walk::Walk(const Walk& all, int landmark, int stage)
+Walk::Walk(const Walk& all, int landmark, int stage, int rows)
     : pass(all.pass, stage, 3 * landmark, 3),
-      x(all.x.middleCols<3>(3 * landmark)),
+      x(Eigen::MatrixXd::Zero(rows, 3)),
       square(all.square.block<3, 3>(3 * landmark, 3 * landmark)),
-      with_y(all.with_y.segment<3>(3 * landmark)) {}
+      with_y(all.with_y.segment<3>(3 * landmark)) {
+  x.topRows(all.x.rows()) = all.x.middleCols<3>(3 * landmark);
+}
 
 int Returns::first_after(int stage) const {
   const auto later = std::ranges::upper_bound(returns_, stage, {}, &Return::before);

@@ -104,8 +104,8 @@ class EstimatePass : private BackwardPass {
 struct Walk {
   /// From this stage on, x with this many rows.
   Walk(const Returns& returns, int stage, int rows, int landmarks);
-  /// One landmark of a walk, which began at this stage.
-  Walk(const Walk& all, int landmark, int stage);
+  /// One landmark of a walk, which began at this stage; x with this many rows, not fewer.
+  Walk(const Walk& all, int landmark, int stage, int rows);
 
   ForwardPass pass;
   Eigen::MatrixXd x;
