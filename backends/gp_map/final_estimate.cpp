@@ -19,7 +19,10 @@ void GpMap::finish() {
                   first_map_.reason().empty() ? "no observations" : "no first map: " + first_map_.reason());
     return;
   }
-  if (options_.final_iterations == 0) return;
+  if (options_.final_iterations == 0) {
+    engine_->settle();
+    return;
+  }
   const auto start = std::chrono::steady_clock::now();
   if (options_.lag > 0.0) {
     for (int round = 0; options_.learn.prior != LearnPrior::never && round < options_.learn.rounds; ++round) {

@@ -17,7 +17,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 8);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 9);
 
 constexpr double kYoung = 5.0;    ///< [s] for which another first map is looked for
 constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
@@ -268,6 +268,8 @@ void GpMap::check_support() {
   const int seen = landmarks_in_view(), enough = options_.health.min_landmarks, few = options_.health.lost_landmarks;
   if (last_update_.rejected && !last_update_.reason.empty()) {
     monitor_.lose(to, last_update_.reason);
+  } else if (to > until_) {
+    return;  // the data ends, and with it its tracks
   } else if (seen < few) {
     monitor_.observe(from, to, Support::none, fmt::format("fewer than {} landmarks in view", few));
   } else {

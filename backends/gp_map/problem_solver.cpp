@@ -35,6 +35,9 @@ class IncrementalRun {
       result.total_s += 1e-3 * result.step_ms.back();
       if (!result.updates.back().reason.empty()) result.reason = result.updates.back().reason;
     }
+    const auto start = std::chrono::steady_clock::now();
+    engine_.settle();
+    result.total_s += seconds_since(start);
     result.peak_mib = peak_memory_mib();
     result.graph = complete_graph();
     return result;

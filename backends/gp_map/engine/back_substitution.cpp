@@ -62,9 +62,14 @@ void Engine::set_landmark(int j, const double* delta, int slot) {
 /// [standard deviations of their noise]: as much as `solve_tolerance` is worth, in cost.
 constexpr double kNoiseTolerance = 0.3;
 
+/// Changes that may wait [tolerances of what is skipped for good].
+constexpr double kSmall = 30.0;
+
 /// Solves back from the root through the stages. All stages that were redone are solved; older ones as long as the
 /// change of the separator, added up over the updates since the stage was last solved, is above the tolerance: so what
-/// is skipped stays bounded however long it goes on.
+/// is skipped stays bounded however long it goes on. Beyond depth_ changes wait for an update that reaches farther back
+/// as long as they are small: every landmark that comes back changes all of history, a little. Where the separator has
+/// changed since is not known then, so all stages are solved.
 void Engine::solve_back(UpdateSummary& summary) {
   const Root& root = factorisation_.root();
   const int newest = factorisation_.done();
@@ -81,7 +86,11 @@ void Engine::solve_back(UpdateSummary& summary) {
   for (int k = newest; k > std::max(0, factorisation_.base()); --k) {
     Factorisation::Stage& stage = factorisation_.stage(k);
     stage.skipped += separator_change(k) + tolerance / kNoiseTolerance * factorisation_.change_by_returns();
-    if (stage.skipped < tolerance) break;
+    if (stage.skipped < tolerance && waiting_ == 0.0) break;
+    if (newest - k >= depth_ && std::isfinite(stage.skipped)) {
+      waiting_ += stage.skipped;
+      if (waiting_ < kSmall * tolerance) return;
+    }
     stage.skipped = 0.0;
     ++summary.solved_back;
     factorisation_.solve_stage(k, delta_.data());
@@ -104,6 +113,7 @@ void Engine::solve_back(UpdateSummary& summary) {
     }
     clear_returns(k);
   }
+  waiting_ = 0.0;
 }
 
 /// Landmarks that came back before stage k are in no slot before it.

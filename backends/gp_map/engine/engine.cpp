@@ -2,8 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace evbench::gp_map {
+namespace {
+
+constexpr int kAll = std::numeric_limits<int>::max();
+
+}  // namespace
+
 Engine::Engine(const PinholeCamera& camera, const Vector6& qc, const RobustLoss& loss, const EngineOptions& options)
     : options_(options), points_(options.kept_intervals), factorisation_(options.grace) {
   graph_.camera = camera;
@@ -214,6 +221,16 @@ void Engine::choose_points() {
 }
 
 UpdateSummary Engine::update() {
+  constexpr int kEach = 64, kMost = 1 << 20;
+  ++updates_;
+  return update_back(options_.lag > 0.0 ? kAll : kEach * std::min(updates_ & -updates_, kMost));
+}
+
+UpdateSummary Engine::settle() { return update_back(kAll); }
+
+/// Solves back so many stages where the estimate has changed.
+UpdateSummary Engine::update_back(int depth) {
+  depth_ = depth;
   UpdateSummary summary;
   if (graph_.states.empty()) {
     restart_ = 0;

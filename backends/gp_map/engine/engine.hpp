@@ -65,6 +65,7 @@ class Engine {
   Engine(FactorGraph graph, const EngineOptions& options);
 
   /// The problem with the present estimate of every variable. Observations added since the last update are in it.
+  /// States and landmarks n states ago have heard of what was added up to n / 64 updates ago: see settle().
   const FactorGraph& graph() const { return graph_; }
 
   /// The oldest state that is still being estimated.
@@ -115,6 +116,9 @@ class Engine {
   /// One Gauss-Newton step over what the changes since the last update concern, damped if it would raise the cost.
   UpdateSummary update();
 
+  /// The same, back to the beginning: graph() is then up to date everywhere.
+  UpdateSummary settle();
+
   /// Of a full history only. Gauss-Newton steps over everything, shortened and damped where needed, until a full step
   /// lowers the cost by less than the tolerance.
   struct OptimiseSummary {
@@ -160,6 +164,7 @@ class Engine {
     invalidate(stage);
   }
   void touch_landmarks(std::span<const int> landmarks);
+  UpdateSummary update_back(int depth);
   bool insert(int landmark, const Observation& observation);
   void forget_old();
   double size_of_state(int i, const Vector12& delta) const;
@@ -191,6 +196,9 @@ class Engine {
   bool damped_ = false;               ///< the factorisation at hand is
   bool newest_errors_taken_ = false;  ///< since the last update
   int restart_ = 0;                   ///< the oldest stage that has changed
+  int updates_ = 0;
+  int depth_ = 0;                     ///< how many stages back those are solved that were not redone
+  double waiting_ = 0.0;              ///< change of the separator at that depth since those beyond it were solved
   Buffer delta_;                      ///< increments in the root's layout, while solving back
   std::vector<double> slot_change_;   ///< of the landmark in each slot, in the solve at hand
   double state_change_ = 0.0;         ///< of the newest state solved for
