@@ -10,7 +10,6 @@
 
 #include "backends/gp_map/problem_graph.hpp"
 #include "core/plugin/registration.hpp"
-#include "core/support/median.hpp"
 #include "core/support/seconds_since.hpp"
 
 namespace evbench::gp_map {
@@ -55,6 +54,7 @@ void GpMap::step(double t) {
     remove_outliers();
     extrapolate_state(t);
     add_observations();
+    trust_parallax();
     add_landmarks();
     optimise();
     learn();
@@ -124,6 +124,7 @@ bool GpMap::initialise(double t) {
 void GpMap::begin_from(FirstMap map) {
   violent_motion_.begin(map.graph.qc);
   engine_.emplace(std::move(map.graph), EngineOptions{.lag = options_.lag});
+  guessed_.clear();
   returns_ = ReturnBudget(options_.map.returns);
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
   noise_ = NoiseLearner();
@@ -165,18 +166,6 @@ InitialGuess GpMap::present_map(double t0, double t1) const {
   return result;
 }
 
-/// Tracks seen of late whose error was too large at the last optimum, beside what tracks err. What has been observed
-/// since is not counted: its distance from an extrapolated pose tells of the motion first.
-void GpMap::remove_outliers() {
-  std::vector<int> outliers;
-  for (const auto& group : graph().intervals.back().groups()) {
-    if (is_outlier(group.landmark, engine_->reprojection_mean(group.landmark))) outliers.push_back(group.landmark);
-  }
-  // Most tracks at once: then it is the motion that is wrong.
-  if (2 * outliers.size() > graph().intervals.back().groups().size()) return;
-  for (const int landmark : outliers) become_outlier(landmark);
-}
-
 void GpMap::extrapolate_state(double t) {
   follower_.close(*engine_, t);
   if (graph().states.back().t < t) add_extrapolated_state(*engine_, t);
@@ -186,32 +175,6 @@ void GpMap::extrapolate_state(double t) {
 void GpMap::add_observations() {
   for (const auto& [landmark, z] : new_) engine_->add_observation(landmark, z);
   new_.clear();
-}
-
-void GpMap::add_landmarks() {
-  const bool scarce = landmarks_in_view() < 2 * options_.health.min_landmarks;
-  for (const TrackId id : waiting_.ids()) {
-    const auto observations = waiting_.observations(id);
-    const auto count = static_cast<int>(observations.size());
-    Track& track = tracks_.at(id);
-    if (count < options_.map.min_observations) continue;
-    if (!scarce && count < track.tried_with + options_.map.min_observations / 2) continue;
-    track.tried_with = count;
-    const auto place = locate(id, scarce);
-    if (!place) continue;
-    const int landmark = engine_->add_landmark(place->first, place->second);
-    for (const TrackObservation& z : observations) {
-      engine_->add_observation(landmark, to_observation(z, options_.sigma_scale));
-    }
-    become_landmark(id, landmark);
-  }
-}
-
-bool GpMap::is_outlier(int landmark, double error_px) const {
-  const auto& seen = graph().landmarks[index(landmark)].intervals;
-  if (seen.empty()) return false;
-  const double inverse_sigma = graph().intervals[index(seen.back())].of(landmark).back().inverse_sigma;
-  return error_px * inverse_sigma > options_.map.outlier_threshold * noise_.scale_of_means();
 }
 
 void GpMap::optimise() {
@@ -318,75 +281,6 @@ void GpMap::follow_observations(double t, double ahead) {
 int GpMap::landmarks_in_view() const {
   return static_cast<int>(
       std::ranges::count(live_, Track::Role::landmark, [&](TrackId track) { return tracks_.at(track).role; }));
-}
-
-void GpMap::become_landmark(TrackId id, int landmark) {
-  Track& track = tracks_.at(id);
-  track.role = Track::Role::landmark;
-  track.landmark = landmark;
-  track_of_.push_back(id);
-  ++landmarks_;
-  waiting_.forget(id);
-}
-
-void GpMap::become_outlier(int landmark) {
-  hold_scale_without(landmark);
-  engine_->remove_landmark(landmark);
-  const auto track = tracks_.find(track_of_[index(landmark)]);
-  if (track == tracks_.end() || track->second.landmark != landmark) return;  // it came back as another one
-  track->second.role = Track::Role::outlier;
-  --landmarks_;
-  new_outliers_.push_back(track->first);
-}
-
-/// Where a track's landmark is, by triangulation over its observations; in need (`scarce`), at the scene's depth.
-std::optional<std::pair<Vector3, LandmarkPrior>> GpMap::locate(TrackId track, bool scarce) const {
-  constexpr std::size_t kViews = 16;  // evenly from all observations: enough for a start
-  std::vector<const TrackObservation*> usable;
-  for (const TrackObservation& z : waiting_.observations(track)) {
-    if (graph().interval_of(z.t) > engine_->first_state()) usable.push_back(&z);
-  }
-  if (usable.size() < 2) return std::nullopt;
-  std::vector<SE3> poses;
-  std::vector<Vector2> pixels;
-  const std::size_t views = std::min(kViews, usable.size());
-  for (std::size_t i = 0; i < views; ++i) {
-    const TrackObservation& z = *usable[i * (usable.size() - 1) / (views - 1)];
-    poses.push_back(*pose(z.t));
-    pixels.push_back(z.pixel);
-  }
-  const Triangulation result = triangulate(poses, pixels, context_.camera, options_.map.triangulation);
-  if (result.ok()) return std::pair{result.point, LandmarkPrior{}};
-  const bool waited = usable.back()->t - usable.front()->t >= options_.map.patience;
-  if (!scarce || !waited || result.state != Triangulation::State::low_parallax) return std::nullopt;
-  const double depth = median_depth();
-  const Vector3 point = poses.back() * (depth * graph().camera.ray(pixels.back()));
-  return std::pair{point, LandmarkPrior{point, options_.map.depth_sigma * depth}};
-}
-
-/// Of the landmarks seen last, from the newest pose.
-double GpMap::median_depth() const {
-  const SE3 T_camera_world = graph().states.back().T.inverse();
-  std::vector<double> depths;
-  for (std::size_t k = graph().intervals.size(); k-- > 0 && depths.size() < 10;) {
-    for (const auto& group : graph().intervals[k].groups()) {
-      const double z = (T_camera_world * graph().landmarks[index(group.landmark)].position).z();
-      if (z > 0.0) depths.push_back(z);
-    }
-  }
-  return depths.empty() ? 1.0 : median(depths);
-}
-
-/// One of few landmarks that hold the scale is about to go: those seen now join the others, at the scale of now.
-void GpMap::hold_scale_without(int leaving) {
-  std::set<int> anchors(graph().anchor.landmarks.begin(), graph().anchor.landmarks.end());
-  if (anchors.erase(leaving) == 0 || std::ssize(anchors) >= options_.health.min_landmarks) return;
-  for (const auto& group : graph().intervals.back().groups()) {
-    if (group.landmark != leaving) anchors.insert(group.landmark);
-  }
-  context_.log(fmt::format("{:.3f} s: most landmarks that held the scale were outliers; {} hold it now",
-                           graph().states.back().t, anchors.size()));
-  engine_->anchor_scale(graph().anchor.origin, {anchors.begin(), anchors.end()});
 }
 
 void GpMap::add_record(double t, double seconds, int iterations, std::optional<double> cost) {

@@ -73,6 +73,7 @@ class GpMap : public BackEnd {
   void extrapolate_state(double t);
   void add_observations();
   void add_landmarks();
+  void trust_parallax();
   void optimise();
   void learn();
   void learn_before_settling();
@@ -89,7 +90,7 @@ class GpMap : public BackEnd {
   void become_landmark(TrackId track, int landmark);
   void become_outlier(int landmark);
   void hold_scale_without(int leaving);
-  std::optional<std::pair<Vector3, LandmarkPrior>> locate(TrackId track, bool scarce) const;
+  std::optional<std::pair<Vector3, LandmarkPrior>> locate(TrackId track) const;
   double median_depth() const;
   ControlState newest_seen() const;
   std::vector<ExpectedFeature> expected_features();
@@ -118,6 +119,7 @@ class GpMap : public BackEnd {
   TrackBuffer young_;              ///< of all tracks, until the first map is settled
   std::set<TrackId> live_;         ///< tracks that are alive, or have ended since the last step
   std::vector<TrackId> track_of_;  ///< by landmark, of which a track that came back may have several
+  std::vector<int> guessed_;       ///< landmarks at the scene's depth, until they show parallax
   ReturnBudget returns_;
   int landmarks_ = 0;                                                  ///< tracks that are landmarks
   std::vector<TrackObservation> pending_;                              ///< later than the newest state

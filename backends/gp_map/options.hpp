@@ -50,10 +50,9 @@ struct MapOptions {
   void declare(OptionSet& set) {
     set.group("triangulation", triangulation, "when a track becomes a landmark");
     set.add("min_observations", min_observations, "observations that a track needs to become a landmark").range(2);
-    set.add(
-           "patience", patience,
-           "a track that shows no parallax for this long becomes a landmark at the scene's median depth when landmarks "
-           "are scarce: it still tells rotation [s]")
+    set.add("patience", patience,
+            "a track that shows no parallax for this long becomes a landmark at the scene's median depth: it tells "
+            "rotation, and where tracks are short, the scale as well; the guess counts until there is parallax [s]")
         .range(0.0);
     set.add("depth_sigma", depth_sigma, "standard deviation of that guess, as a share of the depth").above(0.0);
     set.add("outlier_threshold", outlier_threshold,

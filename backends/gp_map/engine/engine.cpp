@@ -99,6 +99,13 @@ void Engine::set_qc(int k, const Vector6& qc, double expansion) {
   touch(k);
 }
 
+void Engine::drop_prior(int landmark) {
+  FactorGraph::Landmark& known = graph_.landmarks[index(landmark)];
+  if (known.intervals.empty() || known.intervals.front() <= factorisation_.base()) return;
+  known.prior = {};
+  touch_landmarks({&landmark, 1});
+}
+
 void Engine::remove_landmark(int landmark) {
   touch_landmarks({&landmark, 1});
   for (const int k : graph_.landmarks[index(landmark)].intervals) points_.invalidate(k);

@@ -87,6 +87,8 @@ class Engine {
 
   /// Becomes part of the solution with its first observation.
   int add_landmark(const Vector3& guess, const LandmarkPrior& prior = {});
+  /// From now on the landmark has no prior. Refused once it has been marginalised in part.
+  void drop_prior(int landmark);
 
   /// At any time within the states' span, late or not. False, and nothing added, outside it, for a value that is not
   /// finite, a landmark that was removed, and with a lag for what has been marginalised.

@@ -1,0 +1,146 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "backends/gp_map/gp_map.hpp"
+#include "backends/gp_map/problem_graph.hpp"
+#include "core/support/median.hpp"
+
+// Which tracks are landmarks, and where these are.
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kFoundAgain = 10.0;  ///< [s] within which most are that are found again
+
+}  // namespace
+
+/// Tracks seen of late whose error was too large at the last optimum, beside what tracks err. What has been observed
+/// since is not counted: its distance from an extrapolated pose tells of the motion first.
+void GpMap::remove_outliers() {
+  std::vector<int> outliers;
+  for (const auto& group : graph().intervals.back().groups()) {
+    if (is_outlier(group.landmark, engine_->reprojection_mean(group.landmark))) outliers.push_back(group.landmark);
+  }
+  // Most tracks at once: then it is the motion that is wrong.
+  if (2 * outliers.size() > graph().intervals.back().groups().size()) return;
+  for (const int landmark : outliers) become_outlier(landmark);
+}
+
+void GpMap::add_landmarks() {
+  for (const TrackId id : waiting_.ids()) {
+    const auto observations = waiting_.observations(id);
+    const auto count = static_cast<int>(observations.size());
+    Track& track = tracks_.at(id);
+    const int enough = options_.map.min_observations;
+    if (count < enough || count < track.tried_with + enough / 2) continue;
+    track.tried_with = count;
+    const auto place = locate(id);
+    if (!place) continue;
+    const int landmark = engine_->add_landmark(place->first, place->second);
+    for (const TrackObservation& z : observations) {
+      engine_->add_observation(landmark, to_observation(z, options_.sigma_scale));
+    }
+    if (std::isfinite(place->second.sigma)) guessed_.push_back(landmark);
+    become_landmark(id, landmark);
+  }
+}
+
+/// What a landmark's depth was guessed to be is forgotten once it is seen from two sides: what shows no parallax at
+/// first is farther off than most.
+void GpMap::trust_parallax() {
+  const double least = std::sin(options_.map.triangulation.min_parallax_deg * std::numbers::pi / 180.0);
+  const std::vector<ControlState>& states = graph().states;
+  std::erase_if(guessed_, [&](int j) {
+    const FactorGraph::Landmark& landmark = graph().landmarks[index(j)];
+    const std::vector<int>& seen = landmark.intervals;
+    if (!landmark.alive || seen.empty() || states.back().t > states[index(seen.back())].t + kFoundAgain) return true;
+    const auto ray = [&](int k) { return (landmark.position - states[index(k)].T.p).normalized().eval(); };
+    if (ray(seen.front()).cross(ray(seen.back())).norm() < least) return false;
+    engine_->drop_prior(j);
+    return true;
+  });
+}
+
+/// Where a track's landmark is, by triangulation over its observations; without parallax, at the scene's depth: it
+/// tells rotation, and where landmarks live shortly, nothing else hands the scale on.
+std::optional<std::pair<Vector3, LandmarkPrior>> GpMap::locate(TrackId track) const {
+  constexpr std::size_t kViews = 16;  // evenly from all observations: enough for a start
+  std::vector<const TrackObservation*> usable;
+  for (const TrackObservation& z : waiting_.observations(track)) {
+    if (graph().interval_of(z.t) > engine_->first_state()) usable.push_back(&z);
+  }
+  if (usable.size() < 2) return std::nullopt;
+  std::vector<SE3> poses;
+  std::vector<Vector2> pixels;
+  const std::size_t views = std::min(kViews, usable.size());
+  for (std::size_t i = 0; i < views; ++i) {
+    const TrackObservation& z = *usable[i * (usable.size() - 1) / (views - 1)];
+    poses.push_back(*pose(z.t));
+    pixels.push_back(z.pixel);
+  }
+  const Triangulation result = triangulate(poses, pixels, context_.camera, options_.map.triangulation);
+  if (result.ok()) return std::pair{result.point, LandmarkPrior{}};
+  const bool waited = usable.back()->t - usable.front()->t >= options_.map.patience;
+  if (!waited || result.state != Triangulation::State::low_parallax) return std::nullopt;
+  const double depth = median_depth();
+  const Vector3 point = poses.back() * (depth * graph().camera.ray(pixels.back()));
+  return std::pair{point, LandmarkPrior{point, options_.map.depth_sigma * depth}};
+}
+
+/// Of the landmarks seen last, from the newest pose.
+double GpMap::median_depth() const {
+  const SE3 T_camera_world = graph().states.back().T.inverse();
+  std::vector<double> depths;
+  for (std::size_t k = graph().intervals.size(); k-- > 0 && depths.size() < 10;) {
+    for (const auto& group : graph().intervals[k].groups()) {
+      const double z = (T_camera_world * graph().landmarks[index(group.landmark)].position).z();
+      if (z > 0.0) depths.push_back(z);
+    }
+  }
+  return depths.empty() ? 1.0 : median(depths);
+}
+
+void GpMap::become_landmark(TrackId id, int landmark) {
+  Track& track = tracks_.at(id);
+  track.role = Track::Role::landmark;
+  track.landmark = landmark;
+  track_of_.push_back(id);
+  ++landmarks_;
+  waiting_.forget(id);
+}
+
+bool GpMap::is_outlier(int landmark, double error_px) const {
+  const auto& seen = graph().landmarks[index(landmark)].intervals;
+  if (seen.empty()) return false;
+  const double inverse_sigma = graph().intervals[index(seen.back())].of(landmark).back().inverse_sigma;
+  return error_px * inverse_sigma > options_.map.outlier_threshold * noise_.scale_of_means();
+}
+
+void GpMap::become_outlier(int landmark) {
+  hold_scale_without(landmark);
+  engine_->remove_landmark(landmark);
+  const auto track = tracks_.find(track_of_[index(landmark)]);
+  if (track == tracks_.end() || track->second.landmark != landmark) return;  // it came back as another one
+  track->second.role = Track::Role::outlier;
+  --landmarks_;
+  new_outliers_.push_back(track->first);
+}
+
+/// One of few landmarks that hold the scale is about to go: those seen now join the others, at the scale of now.
+void GpMap::hold_scale_without(int leaving) {
+  std::set<int> anchors(graph().anchor.landmarks.begin(), graph().anchor.landmarks.end());
+  if (anchors.erase(leaving) == 0 || std::ssize(anchors) >= options_.health.min_landmarks) return;
+  for (const auto& group : graph().intervals.back().groups()) {
+    if (group.landmark != leaving) anchors.insert(group.landmark);
+  }
+  context_.log(fmt::format("{:.3f} s: most landmarks that held the scale were outliers; {} hold it now",
+                           graph().states.back().t, anchors.size()));
+  engine_->anchor_scale(graph().anchor.origin, {anchors.begin(), anchors.end()});
+}
+
+}  // namespace evbench::gp_map
