@@ -10,6 +10,7 @@
 #include "backends/gp_map/testing/tracked_scene.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/index.hpp"
+#include "core/support/median.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -162,10 +163,30 @@ TEST_CASE("A prior that is too strong for violent motion yields to it") {
                                 "tracks": {"lifetime": [0.3, 1.0]}})",
                             R"({"motion": {"kind": "smooth_random", "max_frequency": 4.0, "rotation_amplitude": 0.2},
                                 "tracks": {"lifetime": [0.3, 1.0]}})"}) {
-    const auto result = run(TrackedScene(4.0, scene), {.backend = R"({"qc_scale": 0.1})"});
-    CHECK(result.backend->status().state == RunState::ok);
-    CHECK(result.scores.ate.trans_percent < 1.0);
+    std::vector<double> errors;  // one may find little to hold on to
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const auto result = run(TrackedScene(4.0, scene, seed), {.backend = R"({"qc_scale": 0.1})"});
+      CHECK(result.backend->status().state == RunState::ok);
+      errors.push_back(result.scores.ate.trans_percent);
+    }
+    CHECK(median(errors) < 0.3);
   }
+}
+
+TEST_CASE("Tracks that show no parallax tell rotation, and a guess of their depth helps") {
+  // After the first map the camera only turns: all that comes into view has no depth.
+  const char* scene = R"({"motion": {"rotation_only": [2.0, 3.5]}, "tracks": {"lifetime": [0.3, 0.8]}})";
+  std::vector<double> patient, guessing;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    const TrackedScene turning(6.0, scene, seed);
+    for (auto& [errors, options] : {std::pair{&patient, R"({"map": {"patience": 100}})"}, {&guessing, "{}"}}) {
+      const auto result = run(turning, {.backend = options});
+      CHECK(result.backend->status().state != RunState::failed);
+      errors->push_back(result.scores.ate.trans_percent);
+      if (errors == &guessing) CHECK(result.backend->status().state == RunState::ok);
+    }
+  }
+  CHECK(median(guessing) < 0.7 * median(patient));
 }
 
 TEST_CASE("gp_map's estimate does not depend on how its observations are cut into pieces") {

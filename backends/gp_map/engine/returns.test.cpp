@@ -16,10 +16,11 @@ const PinholeCamera kCamera{200.0, 200.0, 120.0, 90.0};
 /// A camera that goes to and fro past a wall of landmarks, so that all of them are seen again and again.
 class Patrol {
  public:
-  explicit Patrol(const EngineOptions& options) : engine(graph(), options) {
+  /// One landmark may be left without a prior.
+  explicit Patrol(const EngineOptions& options, int unknown = -1) : engine(graph(), options) {
     for (int j = 0; j < kLandmarks; ++j) {
       const Vector3 guess = 1.03 * landmark(j);
-      engine.add_landmark(guess, {guess, 1.0});
+      engine.add_landmark(guess, j == unknown ? LandmarkPrior{} : LandmarkPrior{guess, 1.0});
     }
     engine.add_state(guess(0));
     engine.add_pose_prior({0, guess(0).T, Vector6::Constant(0.01)});
@@ -142,6 +143,33 @@ TEST_CASE("Stages before and after a return can be redone, and states taken back
   }
   check_same(back.engine, redone.engine);
   check_same_covariances(back.engine, redone.engine);
+}
+
+TEST_CASE("What came back changes old states little by little; settle() tells them all") {
+  Patrol waiting({}), told({});
+  int waited = 0;
+  for (int k = 0; k < 260; ++k) {
+    waiting.step();
+    told.step();
+    waited += waiting.engine.update().solved_back < told.engine.settle().solved_back ? 1 : 0;
+  }
+  CHECK(waited > 50);
+  const auto cost = [](const Patrol& patrol) { return evaluate(patrol.engine.graph()).total(); };
+  CHECK(cost(waiting) < 1.1 * cost(told));
+  CHECK(waiting.engine.settle().solved_back == 260);
+  told.engine.settle();
+  CHECK(cost(waiting) < 1.03 * cost(told));
+}
+
+TEST_CASE("A prior that is dropped leaves no trace") {
+  constexpr int kUnknown = 7;
+  Patrol forgets(options(0)), never_knew(options(0), kUnknown);
+  forgets.fly(150);
+  forgets.engine.drop_prior(kUnknown);
+  CHECK(forgets.engine.update().first_stage < 30);
+  forgets.fly(30);
+  never_knew.fly(180);
+  check_same(forgets.engine, never_knew.engine);
 }
 
 TEST_CASE("With a lag what comes back within it ends as in full history") {

@@ -1,0 +1,101 @@
+#include "backends/gp_map/engine/root.hpp"
+
+#include <Eigen/Core>
+#include <catch2/catch.hpp>
+#include <map>
+#include <numeric>
+#include <vector>
+
+#include "core/simulation/random.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr int kLandmarks = 20;
+
+/// What the root says of each pair of landmarks, of each with the states, and of each alone, by landmark.
+std::map<std::pair<int, int>, Eigen::MatrixXd> content(const Root& root) {
+  const int n = root.extent();
+  Eigen::MatrixXd H = as_matrix(root.column(0), n, n, root.stride());
+  H = Eigen::MatrixXd(H.selfadjointView<Eigen::Lower>());
+  std::map<std::pair<int, int>, Eigen::MatrixXd> result;
+  for (int i = 0; i < kLandmarks; ++i) {
+    if (root.slot_of(i) < 0) continue;
+    const int row = Root::row_of_slot(root.slot_of(i));
+    result[{i, -1}] = H.block(row, 0, 3, 24);
+    result[{i, -2}] = as_vector(root.b() + row, 3);
+    for (int j = 0; j < kLandmarks; ++j) {
+      if (root.slot_of(j) >= 0) result[{i, j}] = H.block(row, Root::row_of_slot(root.slot_of(j)), 3, 3);
+    }
+  }
+  result[{-1, -1}] = H.topLeftCorner(24, 24);
+  return result;
+}
+
+/// Takes a landmark out as an elimination does.
+void remove(Root& root, int landmark) {
+  const int row = Root::row_of_slot(root.slot_of(landmark));
+  for (int i = row; i < row + 3; ++i) {
+    for (int c = 0; c <= i; ++c) root.column(c)[i] = 0.0;
+    for (int r = i; r < root.extent(); ++r) root.column(i)[r] = 0.0;
+    root.b()[i] = 0.0;
+  }
+  root.leave(landmark);
+}
+
+}  // namespace
+
+TEST_CASE("Landmarks that are moved to lower slots keep what is known of them") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random(seed);
+    Root root;
+    for (int j = 0; j < kLandmarks; ++j) root.enter(j);
+    Eigen::MatrixXd R(root.extent(), 8);
+    for (double& value : R.reshaped()) value = random.uniform(-1.0, 1.0);
+    R.bottomRows(root.extent() - Root::row_of_slot(kLandmarks)).setZero();
+    root.add_factor(R, Eigen::VectorXd::LinSpaced(8, -1.0, 1.0));
+    int left = kLandmarks;
+    for (int j = 0; j < kLandmarks; ++j) {
+      if (random.uniform(0.0, 1.0) > 0.6) continue;
+      remove(root, j);
+      --left;
+    }
+    const auto before = content(root);
+    std::map<int, int> slot;
+    for (int j = 0; j < kLandmarks; ++j) slot[j] = root.slot_of(j);
+    std::vector<double> x(static_cast<std::size_t>(2 * root.stride()));
+    std::iota(x.begin(), x.end(), 0.0);
+    for (int s = 0; s < root.slots(); ++s) {  // zero where nothing is, as the root is
+      if (root.occupant(s) >= 0) continue;
+      for (const int column : {0, root.stride()}) std::fill_n(x.begin() + column + Root::row_of_slot(s), 3, 0.0);
+    }
+    const std::vector<double> as_it_was = x;
+
+    std::vector<SlotMove> moves;
+    root.close_holes(moves);
+    CHECK(root.slots() <= left + 4);
+    const auto after = content(root);
+    REQUIRE(after.size() == before.size());
+    for (const auto& [key, value] : before) CHECK(after.at(key) == value);
+
+    follow_moves(moves, x.data(), root.stride(), 2);
+    for (int j = 0; j < kLandmarks; ++j) {
+      if (slot[j] < 0) continue;
+      for (const int column : {0, root.stride()}) {
+        for (int i = 0; i < 3; ++i) {
+          CHECK(x[static_cast<std::size_t>(column + Root::row_of_slot(root.slot_of(j)) + i)] ==
+                as_it_was[static_cast<std::size_t>(column + Root::row_of_slot(slot[j]) + i)]);
+        }
+      }
+    }
+    undo_moves(moves, x.data(), root.stride(), 2);
+    for (int j = 0; j < kLandmarks; ++j) {
+      if (slot[j] < 0) continue;
+      const auto at = static_cast<std::size_t>(Root::row_of_slot(slot[j]));
+      CHECK(std::equal(x.begin() + static_cast<long>(at), x.begin() + static_cast<long>(at) + 3,
+                       as_it_was.begin() + static_cast<long>(at)));
+    }
+  }
+}
+
+}  // namespace evbench::gp_map
