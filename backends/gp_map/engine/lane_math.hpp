@@ -9,8 +9,9 @@
 
 namespace evbench::gp_map {
 
-/// The bits of a Lane's doubles, and its comparisons' results.
+/// The bits of a Lane's doubles, and its comparisons' results; and where a sum may wrap round, as NaN's bits do.
 using LaneBits [[gnu::vector_size(8 * kLanes)]] = std::int64_t;
+using WrappingBits [[gnu::vector_size(8 * kLanes)]] = std::uint64_t;
 
 /// √x. One instruction where the file is compiled with -fno-math-errno.
 inline Lane sqrt(Lane x) {
@@ -25,7 +26,7 @@ inline Lane log1p(Lane x) {
   constexpr std::int64_t kOne = 0x3ff0000000000000, kRootHalf = 0x3fe6a09e00000000, kMantissa = 0x000fffffffffffff;
   constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
   const Lane u = 1.0 + x;
-  const LaneBits from_root = std::bit_cast<LaneBits>(u) + (kOne - kRootHalf);
+  const auto from_root = std::bit_cast<LaneBits>(std::bit_cast<WrappingBits>(u) + (kOne - kRootHalf));
   const LaneBits exponent = (from_root >> 52) - 1023;
   const Lane k = __builtin_convertvector(exponent, Lane);
   const Lane lost = (exponent > 1 ? 1.0 - (u - x) : x - (u - 1.0)) / u;
