@@ -1,6 +1,7 @@
 #include "backends/gp_map/engine/root.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 #include <numeric>
