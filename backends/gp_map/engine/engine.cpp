@@ -101,7 +101,8 @@ void Engine::set_qc(int k, const Vector6& qc, double expansion) {
 
 void Engine::drop_prior(int landmark) {
   FactorGraph::Landmark& known = graph_.landmarks[index(landmark)];
-  if (known.intervals.empty() || known.intervals.front() <= factorisation_.base()) return;
+  if (known.intervals.empty() || factorisation_.is_forgotten(landmark)) return;
+  if (factorisation_.in_base({Variable::Kind::landmark, landmark})) return;
   known.prior = {};
   touch_landmarks({&landmark, 1});
 }
