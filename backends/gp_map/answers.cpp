@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <utility>
 
 #include "backends/gp_map/gp_map.hpp"
@@ -17,14 +18,19 @@ void GpMap::tell_online(double t) {
   online_ = t;
 }
 
-/// What is seen now tells of the states before, too: those of late are told anew.
-void GpMap::tell_smoothed() {
-  constexpr double kTold = 0.4;  // [s]
-  const double now = graph().states.back().t;
-  if (online_ != now) return;  // no pose has been told now, or the newest state has been taken back since
-  for (std::size_t i = graph().states.size() - 1; i-- > 0 && graph().states[i].t > now - kTold;) {
-    const ControlState& state = graph().states[i];
-    context_.online({{state.t, state.T}, now, state.velocity});
+/// The newest state, and those of late anew: what is seen now tells of them, too.
+void GpMap::tell_recent(double t) {
+  if (graph().states.back().t != t) return;  // it has been taken back
+  recent_->follow(graph(), engine_->first_state(), options_.learn.prior != LearnPrior::never);
+  const auto states = recent_->states();
+  if (options_.per_observation) {
+    tell_online(t);  // as between the states
+  } else {
+    context_.online({{t, states.back().T}, t, states.back().velocity});
+    online_ = t;
+  }
+  for (const ControlState& state : std::views::reverse(states.first(states.size() - 1))) {
+    context_.online({{state.t, state.T}, t, state.velocity});
   }
 }
 

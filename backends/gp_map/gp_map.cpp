@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 9);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 10);
 
 constexpr double kYoung = 5.0;    ///< [s] for which another first map is looked for
 constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
@@ -60,8 +60,7 @@ void GpMap::step(double t) {
     learn();
     if (had_map) reconsider(t);
     check_support();
-    tell_online(t);
-    tell_smoothed();
+    tell_recent(t);
     predict_tracks();
   }
   forget_ended_tracks(t);
@@ -127,6 +126,7 @@ void GpMap::begin_from(FirstMap map) {
   guessed_.clear();
   returns_ = ReturnBudget(options_.map.returns);
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
+  recent_.emplace(options_.learn.window, options_.learn.memory, graph().qc);
   noise_ = NoiseLearner();
   track_of_.clear();
   landmarks_ = 0;

@@ -15,6 +15,7 @@
 #include "backends/gp_map/observation_follower.hpp"
 #include "backends/gp_map/options.hpp"
 #include "backends/gp_map/prior_learning.hpp"
+#include "backends/gp_map/recent_motion.hpp"
 #include "backends/gp_map/return_budget.hpp"
 #include "backends/gp_map/state_placement.hpp"
 #include "backends/gp_map/violent_motion.hpp"
@@ -101,7 +102,7 @@ class GpMap : public BackEnd {
   bool is_outlier(int landmark, double error_px) const;
   int landmarks_in_view() const;
   void tell_online(double t);
-  void tell_smoothed();
+  void tell_recent(double t);
   Engine::OptimiseSummary estimate_everything();
   std::vector<int> outliers(const NoiseLearner& noise) const;
   void judge_tracks(const NoiseLearner& noise);
@@ -130,6 +131,7 @@ class GpMap : public BackEnd {
   UpdateSummary last_update_;
   ViolentMotion violent_motion_;
   PriorLearner prior_;
+  std::optional<RecentMotion> recent_;
   NoiseLearner noise_;
   double learnt_until_ = -std::numeric_limits<double>::infinity();  ///< [s], with a lag
   double seconds_since_step_ = 0.0;                                 ///< spent on single observations

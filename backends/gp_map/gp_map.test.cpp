@@ -343,6 +343,22 @@ TEST_CASE("However control states are placed, the error is at most a tenth large
   }
 }
 
+TEST_CASE("Poses are told with a prior that the last moments show, which the map is not built on") {
+  double causal[2] = {}, last[2] = {};
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const TrackedScene scene(6.0, "{}", seed);
+    for (const bool learns : {false, true}) {
+      const auto result = run(scene, {.backend = learns ? R"({"final_iterations": 0})"
+                                                        : R"({"final_iterations": 0, "learn": {"prior": "never"}})"});
+      const Scores scores = score(scene.ground_truth(), result.online, {.association = "interpolated"});
+      causal[learns] += scores.rpe.trans_m.rmse;
+      last[learns] += result.scores.ate.trans_m.rmse;
+    }
+  }
+  CHECK(causal[1] < 0.8 * causal[0]);
+  CHECK(last[1] == last[0]);
+}
+
 TEST_CASE("With one prior, and no outliers to find afterwards, a lag of 2 s costs less than a tenth of the accuracy") {
   const char* scene = R"({"tracks": {"lifetime": [1.0, 4.0]}})";
   CHECK(mean_error(scene, R"({"lag": 2, "learn": {"prior": "never"}})") <

@@ -80,17 +80,17 @@ struct LearningOptions {
   void declare(OptionSet& set) {
     set.add("prior", prior, {"never", "final", "always"},
             "when the prior's power spectral density is learnt from the data, beginning with qc: never; for the final "
-            "estimate, from everything, with a lag before states are marginalised; always, so also while running, "
-            "which is better where the scale is held well and "
-            "can lose it where landmarks live for less than a second or the motion is violent");
+            "estimate, from everything, with a lag before states are marginalised, and for the poses that are told "
+            "while running; always, so also for the map while running, which can lose the scale where landmarks live "
+            "for less than a second or the motion is violent");
     set.add("noise", noise,
             "learn a scale of the observations' sigmas, and how much of their information counts, as trackers drift");
     set.add("window", window,
-            "while running, a prior that has yielded to violent motion is as it was again after a few times this; "
-            "\"always\": it follows what the last seconds show [s]")
+            "while running, what is learnt follows what these show, and a prior that has yielded to violent motion is "
+            "as "
+            "it was again after a few times this [s]")
         .range(0.01, 100.0);
-    set.add("memory", memory,
-            "\"always\": and falls back to what these show, where that is little; the noise follows these [s]")
+    set.add("memory", memory, "and falls back to what these show, where that is little; the noise follows these [s]")
         .range(0.1, 1000.0);
     set.add("rounds", rounds, "of learning from everything, in the final estimate").range(0, 100);
   }

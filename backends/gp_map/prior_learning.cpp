@@ -20,7 +20,19 @@ constexpr int kSetAnew = 8;             ///< of the newest intervals
 constexpr double kForce = 1.0;          ///< by which an expansion must change
 constexpr double kChange = 1.5;         ///< by which a density must change to be set anew
 
-/// `joint`: covariance of the states at both ends.
+/// Of the intervals from `first` on; none when the system is singular.
+std::vector<PriorEvidence> evidence_from(Engine& engine, int first) {
+  std::vector<PriorEvidence> result;
+  const FactorGraph& graph = engine.graph();
+  for (const Matrix24& joint : engine.chain_covariances(first)) {
+    const std::size_t k = index(first) + result.size();
+    result.push_back(evidence_of(GpInterval(graph.states[k - 1], graph.states[k]), joint, graph.qcs[k]));
+  }
+  return result;
+}
+
+}  // namespace
+
 PriorEvidence evidence_of(const GpInterval& interval, const Matrix24& joint, const Vector6& qc) {
   const GpInterval::PriorJacobians jacobians = interval.prior_jacobians(interval.derivatives());
   Eigen::Matrix<double, 12, 24> J;
@@ -38,19 +50,6 @@ PriorEvidence evidence_of(const GpInterval& interval, const Matrix24& joint, con
   }
   return result;
 }
-
-/// Of the intervals from `first` on; none when the system is singular.
-std::vector<PriorEvidence> evidence_from(Engine& engine, int first) {
-  std::vector<PriorEvidence> result;
-  const FactorGraph& graph = engine.graph();
-  for (const Matrix24& joint : engine.chain_covariances(first)) {
-    const std::size_t k = index(first) + result.size();
-    result.push_back(evidence_of(GpInterval(graph.states[k - 1], graph.states[k]), joint, graph.qcs[k]));
-  }
-  return result;
-}
-
-}  // namespace
 
 void PriorEvidence::add(const PriorEvidence& other, double window) {
   const double weight = std::exp(-std::abs(t - other.t) / window);
@@ -73,39 +72,9 @@ Vector6 PriorEvidence::common_qc(const Vector6& guess, double weight) const {
 
 double PriorEvidence::expansion(const Vector6& qc) const { return square.tail<3>().cwiseQuotient(qc.tail<3>()).sum(); }
 
-void PriorLearner::follow(Engine& engine) {
-  const FactorGraph& graph = engine.graph();
-  const double now = graph.states.back().t;
-  if (now < followed_until_ + kPace) return;
-  followed_until_ = now;
-  if (!begin_) begin_ = graph.qc;
-  take_evidence(engine);
-  if (recent_.empty()) return;
-  const int newest = static_cast<int>(graph.states.size()) - 1;
-  for (const auto& [k, evidence] : recent_) {
-    if (k <= newest - kSetAnew) continue;
-    const Vector6 qc = qc_at(evidence.t), change = qc.cwiseQuotient(graph.qcs[index(k)]);
-    const double expansion = evidence.expansion(qc);
-    if (change.maxCoeff() > kChange || change.minCoeff() < 1.0 / kChange ||
-        std::abs(expansion - graph.expansions[index(k)]) > kForce) {
-      engine.set_qc(k, qc, expansion);
-    }
-  }
-  engine.set_next_qc(qc_at(now));
-}
-
-void PriorLearner::take_evidence(Engine& engine) {
-  const FactorGraph& graph = engine.graph();
-  const int newest = static_cast<int>(graph.states.size()) - 1;
-  int first = 1;  // all of the first map's
-  if (!recent_.empty()) {
-    first = newest;
-    const double from = graph.states.back().t - kLookedBack;
-    while (first > 1 && newest - first + 1 < kMostLookedBack && graph.states[index(first - 1)].t > from) --first;
-  }
-  first = std::max(first, engine.first_state() + 1);
-  recent_.erase(recent_.upper_bound(newest), recent_.end());  // of states that were taken back
-  const std::vector<PriorEvidence> evidence = evidence_from(engine, first);
+void RecentPrior::take(int first, const std::vector<PriorEvidence>& evidence) {
+  if (evidence.empty()) return;
+  recent_.erase(recent_.upper_bound(first + static_cast<int>(evidence.size()) - 1), recent_.end());  // taken back
   for (std::size_t i = 0; i < evidence.size(); ++i) recent_[first + static_cast<int>(i)] = evidence[i];
   for (; !recent_.empty() && recent_.begin()->first < first; recent_.erase(recent_.begin())) {
     PriorEvidence settled = recent_.begin()->second, remembered = settled;
@@ -116,7 +85,7 @@ void PriorLearner::take_evidence(Engine& engine) {
   }
 }
 
-Vector6 PriorLearner::qc_at(double t) const {
+Vector6 RecentPrior::at(double t) const {
   PriorEvidence window{t, Vector6::Zero(), Vector6::Zero()}, memory = window;
   window.add(settled_, window_);
   memory.add(remembered_, memory_);
@@ -124,7 +93,41 @@ Vector6 PriorLearner::qc_at(double t) const {
     window.add(evidence, window_);
     memory.add(evidence, memory_);
   }
-  return window.qc(memory.qc(memory.common_qc(*begin_, kBegin), kCommonWeight), kGuessWeight);
+  return window.qc(memory.qc(memory.common_qc(guess_, kBegin), kCommonWeight), kGuessWeight);
+}
+
+void PriorLearner::follow(Engine& engine) {
+  const FactorGraph& graph = engine.graph();
+  const double now = graph.states.back().t;
+  if (now < followed_until_ + kPace) return;
+  followed_until_ = now;
+  if (!prior_) prior_.emplace(window_, memory_, graph.qc);
+  take_evidence(engine);
+  if (prior_->recent().empty()) return;
+  const int newest = static_cast<int>(graph.states.size()) - 1;
+  for (const auto& [k, evidence] : prior_->recent()) {
+    if (k <= newest - kSetAnew) continue;
+    const Vector6 qc = prior_->at(evidence.t), change = qc.cwiseQuotient(graph.qcs[index(k)]);
+    const double expansion = evidence.expansion(qc);
+    if (change.maxCoeff() > kChange || change.minCoeff() < 1.0 / kChange ||
+        std::abs(expansion - graph.expansions[index(k)]) > kForce) {
+      engine.set_qc(k, qc, expansion);
+    }
+  }
+  engine.set_next_qc(prior_->at(now));
+}
+
+void PriorLearner::take_evidence(Engine& engine) {
+  const FactorGraph& graph = engine.graph();
+  const int newest = static_cast<int>(graph.states.size()) - 1;
+  int first = 1;  // all of the first map's
+  if (!prior_->recent().empty()) {
+    first = newest;
+    const double from = graph.states.back().t - kLookedBack;
+    while (first > 1 && newest - first + 1 < kMostLookedBack && graph.states[index(first - 1)].t > from) --first;
+  }
+  first = std::max(first, engine.first_state() + 1);
+  prior_->take(first, evidence_from(engine, first));
 }
 
 void learn_prior(Engine& engine, double until) {

@@ -32,11 +32,36 @@ struct PriorEvidence {
   Vector6 common_qc(const Vector6& guess, double weight) const;
 };
 
-/// Learns the prior while running, over a window that ends now, so that it follows a camera that goes from slow to
-/// violent and back.
+/// Of the prior over an interval; `joint`: covariance of the states at both its ends.
+PriorEvidence evidence_of(const GpInterval& interval, const Matrix24& joint, const Vector6& qc);
+
+/// The density of now, from what was seen of late: over a window that ends now, so that it follows a camera that goes
+/// from slow to violent and back.
+class RecentPrior {
+ public:
+  /// `window`: of what the density follows [s]; `memory`: of what it falls back to where the window shows little;
+  /// `guess`: before there is any evidence.
+  RecentPrior(double window, double memory, const Vector6& guess) : window_(window), memory_(memory), guess_(guess) {}
+
+  /// Evidence of the intervals `first`, first + 1, ... up to the newest, in place of what was known of these; those
+  /// before are settled.
+  void take(int first, const std::vector<PriorEvidence>& evidence);
+
+  /// Of the intervals that are not settled, by number.
+  const std::map<int, PriorEvidence>& recent() const { return recent_; }
+
+  Vector6 at(double t) const;
+
+ private:
+  double window_, memory_;
+  Vector6 guess_;
+  PriorEvidence settled_, remembered_;   ///< of intervals that are not looked at any more
+  std::map<int, PriorEvidence> recent_;  ///< by interval
+};
+
+/// Learns the prior of an engine while running.
 class PriorLearner {
  public:
-  /// `window`: of what the density follows [s]; `memory`: of what it falls back to where the window shows little.
   PriorLearner(double window, double memory) : window_(window), memory_(memory) {}
 
   /// After an update: sets the densities of the newest intervals and of those to come.
@@ -44,17 +69,14 @@ class PriorLearner {
 
  private:
   void take_evidence(Engine& engine);
-  Vector6 qc_at(double t) const;
 
   double window_, memory_;
-  PriorEvidence settled_, remembered_;   ///< of intervals that are not looked at any more
-  std::optional<Vector6> begin_;         ///< the density that was set before there was any evidence
-  std::map<int, PriorEvidence> recent_;  ///< by interval
-  double followed_until_ = -1e300;       ///< [s]
+  std::optional<RecentPrior> prior_;
+  double followed_until_ = -1e300;  ///< [s]
 };
 
-/// Learns the prior of the intervals that are still estimated, with a lag those within it, from all of them, and sets it
-/// up to the time `until` [s].
+/// Learns the prior of the intervals that are still estimated, with a lag those within it, from all of them, and sets
+/// it up to the time `until` [s].
 void learn_prior(Engine& engine, double until = std::numeric_limits<double>::infinity());
 
 }  // namespace evbench::gp_map
