@@ -145,7 +145,7 @@ TEST_CASE("Stages before and after a return can be redone, and states taken back
   check_same_covariances(back.engine, redone.engine);
 }
 
-TEST_CASE("What came back changes old states little by little; settle() tells them all") {
+TEST_CASE("What came back changes old states little by little, and settle() tells them all") {
   Patrol waiting({}), told({});
   int waited = 0;
   for (int k = 0; k < 260; ++k) {
