@@ -1,6 +1,7 @@
 #include "backends/gp_map/factor_graph.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "backends/gp_map/factors.hpp"
 
@@ -87,7 +88,18 @@ void FactorGraph::remove_landmark(int landmark) {
 void FactorGraph::anchor_scale(const Vector3& origin, std::vector<int> anchors) {
   anchor.origin = origin;
   anchor.landmarks = std::move(anchors);
-  anchor.mean_log_distance = mean_log_distance(*this);
+  anchor.mean_nearness = 0.0;
+  if (anchor.landmarks.empty()) return;
+  const auto count = static_cast<double>(anchor.landmarks.size());
+  double log_distances = 0.0;
+  for (const int j : anchor.landmarks) log_distances += std::log((landmarks[index(j)].position - origin).norm());
+  anchor.unit = std::exp(log_distances / count);
+  anchor.mean_nearness = mean_nearness(*this);
+  anchor.change = 0.0;
+  for (const int j : anchor.landmarks) {
+    const double nearness = anchor.nearness(landmarks[index(j)].position);
+    anchor.change += nearness * (1.0 - nearness) / count;
+  }
 }
 
 void FactorGraph::remove_observations(int landmark, double from) {

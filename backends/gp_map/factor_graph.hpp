@@ -60,14 +60,19 @@ struct LandmarkPrior {
   double sigma = std::numeric_limits<double>::infinity();  ///< infinite: no prior
 };
 
-/// Holds the scale: the mean log distance of some landmarks from a fixed point keeps its value,
-/// residual (1/N Σ log ‖l_j − origin‖ − mean_log_distance)/sigma. Every observation ties the map's depth to the motion,
-/// so this holds the whole trajectory's scale; the length of one baseline would hold no more than that baseline.
+/// Holds the scale: the mean nearness n_j = 1/(1 + ‖l_j − origin‖/unit) of some landmarks keeps its value, residual
+/// (mean_nearness − 1/N Σ n_j)/(change · sigma), with the change of Σ n_j / N as log distances grow. Every observation
+/// ties the map's depth to the motion, so this holds the whole trajectory's scale; the length of one baseline would
+/// hold no more than that baseline. Nearness is bounded: a landmark whose depth nothing tells, running off to infinity,
+/// would let all others shrink to a point while it keeps their mean log distance.
 struct ScaleAnchor {
   Vector3 origin = Vector3::Zero();
   std::vector<int> landmarks;  ///< empty: no anchor
-  double mean_log_distance = 0.0;
-  double sigma = 1e-4;
+  double unit = 1.0;           ///< geometric mean distance when the scale was anchored
+  double mean_nearness = 0.0, change = 1.0;
+  double sigma = 1e-4;  ///< of the scale's logarithm
+
+  double nearness(const Vector3& landmark) const { return 1.0 / (1.0 + (landmark - origin).norm() / unit); }
 };
 
 /// The continuous-time structure-from-motion problem: control states in time order joined by the WNOA prior, landmarks,

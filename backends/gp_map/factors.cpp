@@ -73,7 +73,7 @@ Vector3 residual(const LandmarkPrior& prior, const Vector3& position) {
 }
 
 double residual(const ScaleAnchor& anchor, const FactorGraph& graph) {
-  return (mean_log_distance(graph) - anchor.mean_log_distance) / anchor.sigma;
+  return (anchor.mean_nearness - mean_nearness(graph)) / (anchor.change * anchor.sigma);
 }
 
 void add_state_priors(const FactorGraph& graph, int state, Matrix12& H, Vector12& g) {
@@ -128,23 +128,24 @@ double state_prior_cost(const FactorGraph& graph, int state) {
   return cost;
 }
 
-double mean_log_distance(const FactorGraph& graph) {
-  if (graph.anchor.landmarks.empty()) return 0.0;
+double mean_nearness(const FactorGraph& graph) {
+  const ScaleAnchor& anchor = graph.anchor;
+  if (anchor.landmarks.empty()) return 0.0;
   double sum = 0.0;
-  for (const int j : graph.anchor.landmarks) {
-    sum += std::log((graph.landmarks[index(j)].position - graph.anchor.origin).norm());
-  }
-  return sum / static_cast<double>(graph.anchor.landmarks.size());
+  for (const int j : anchor.landmarks) sum += anchor.nearness(graph.landmarks[index(j)].position);
+  return sum / static_cast<double>(anchor.landmarks.size());
 }
 
 AnchorLinearisation linearise_anchor(const FactorGraph& graph) {
   AnchorLinearisation result;
   const ScaleAnchor& anchor = graph.anchor;
   result.e = residual(anchor, graph);
-  const double share = 1.0 / (anchor.sigma * static_cast<double>(anchor.landmarks.size()));
+  const double share =
+      1.0 / (anchor.change * anchor.sigma * anchor.unit * static_cast<double>(anchor.landmarks.size()));
   for (const int j : anchor.landmarks) {
-    const Vector3 from_origin = graph.landmarks[index(j)].position - anchor.origin;
-    result.jacobian.push_back(share * from_origin / from_origin.squaredNorm());
+    const Vector3& position = graph.landmarks[index(j)].position;
+    const double nearness = anchor.nearness(position);
+    result.jacobian.push_back(share * nearness * nearness * (position - anchor.origin).normalized());
   }
   return result;
 }

@@ -47,7 +47,7 @@ double scene_distance(const FactorGraph& graph, int k);
 double expansion_cost(const FactorGraph& graph, int k);
 double interval_cost(const FactorGraph& graph, int k);
 double state_prior_cost(const FactorGraph& graph, int state);
-double mean_log_distance(const FactorGraph& graph);  ///< of the scale anchor's landmarks; 0 without any
+double mean_nearness(const FactorGraph& graph);  ///< of the scale anchor's landmarks; 0 without any
 
 using Matrix24 = Eigen::Matrix<double, 24, 24>;
 using Vector24 = Eigen::Matrix<double, 24, 1>;

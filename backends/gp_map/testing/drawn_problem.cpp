@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "backends/gp_map/factors.hpp"
 #include "core/motion/wnoa.hpp"
 
 namespace evbench::gp_map::testing {
@@ -98,17 +99,21 @@ void DrawnProblem::draw_landmark(int first, int last) {
 
 /// The engine anchors the scale that the guesses have: it has to be the true one, but for what the anchor's sigma says.
 void DrawnProblem::draw_anchor() {
-  double excess = ScaleAnchor().sigma * random_.normal();
+  const double drawn = random_.normal();
   for (std::size_t j = 0; j < landmarks_.size(); ++j) {
     if (landmarks_[j].first == 1) anchors_.push_back(static_cast<int>(j));
   }
   const Vector3 origin = pose_prior_.T.p;
-  for (const int j : anchors_) {
-    const Landmark& landmark = landmarks_[at(j)];
-    const double ratio = (landmark.position - origin).norm() / (landmark.guess - origin).norm();
-    excess += std::log(ratio) / static_cast<double>(anchors_.size());
+  for (int i = 0; i < 20; ++i) {
+    FactorGraph graph;
+    for (const Landmark& landmark : landmarks_) graph.add_landmark(landmark.guess);
+    graph.anchor_scale(origin, anchors_);
+    for (std::size_t j = 0; j < landmarks_.size(); ++j) graph.landmarks[j].position = landmarks_[j].position;
+    const double excess = graph.anchor.sigma * (residual(graph.anchor, graph) + drawn);
+    for (const int j : anchors_) {
+      landmarks_[at(j)].guess = origin + std::exp(excess) * (landmarks_[at(j)].guess - origin);
+    }
   }
-  for (const int j : anchors_) landmarks_[at(j)].guess = origin + std::exp(excess) * (landmarks_[at(j)].guess - origin);
 }
 
 Engine DrawnProblem::solve_incrementally(const EngineOptions& engine_options) const {
