@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numeric>
 
 #include "core/motion/wnoa.hpp"
 #include "core/support/index.hpp"
@@ -184,6 +185,25 @@ TEST_CASE("Removing an anchor's landmark leaves the scale as it is") {
   graph.remove_landmark(1);
   CHECK(graph.anchor.landmarks == std::vector<int>{0, 2});
   CHECK(linearise_anchor(graph).e == Approx(0.0).margin(1e-9));
+}
+
+TEST_CASE("The scale anchor feels what the scale's logarithm changes by, and little of one landmark that runs off") {
+  RandomTangents random;
+  constexpr int kLandmarks = 20;
+  FactorGraph graph = random_interval(random, 1, kLandmarks);
+  std::vector<int> all(kLandmarks);
+  std::iota(all.begin(), all.end(), 0);
+  graph.anchor_scale(Vector3::Zero(), all);
+  constexpr double kChange = 1e-3;
+  FactorGraph larger = graph;
+  for (auto& landmark : larger.landmarks) landmark.position *= 1.0 + kChange;
+  CHECK(linearise_anchor(larger).e * graph.anchor.sigma == Approx(kChange).epsilon(0.01));
+  for (const double far : {1e-9, 1e9}) {
+    FactorGraph without = graph;
+    without.landmarks[3].position *= far;
+    CHECK(std::abs(linearise_anchor(without).e * graph.anchor.sigma) < 3.0 / kLandmarks);
+    CHECK(std::isfinite(linearise_anchor(without).jacobian[3].norm()));
+  }
 }
 
 TEST_CASE("An observation behind the camera costs a constant and moves nothing") {

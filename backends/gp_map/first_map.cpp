@@ -83,7 +83,8 @@ std::optional<FirstMap> FirstMapFinder::reconsider(const TrackBuffer& tracks, do
   ViewsExplained& other = others.front();
   look->views.refine(other, now.front().width, kIterations);  // costs of one loss
   if (same_way(other, now.front()) || advantage(other, now.front()) < kClearlyBetter) return std::nullopt;
-  if (!(look->views.distance_sigma(other) <= kLaterUncertainty * options_.max_initial_uncertainty)) return std::nullopt;
+  if (!(median(look->views.distance_sigmas(other)) <= kLaterUncertainty * options_.max_initial_uncertainty))
+    return std::nullopt;
   looks_ = 0;
   return map_of(tracks, look->views, other);
 }
@@ -142,7 +143,7 @@ std::vector<ViewsExplained> FirstMapFinder::explanations(const MultiView& views,
 
 /// Do the errors that are left, and the uncertainty of the structure, allow a map?
 bool FirstMapFinder::is_sound(const MultiView& views, const ViewsExplained& explained) {
-  const double error = median(views.errors(explained)), sigma = views.distance_sigma(explained);
+  const double error = median(views.errors(explained)), sigma = median(views.distance_sigmas(explained));
   if (!(error <= options_.max_initial_error)) {
     reason_ = fmt::format("the best first map leaves {:.2f} px, {:.2f} allowed", error, options_.max_initial_error);
   } else if (!(sigma <= options_.max_initial_uncertainty)) {
@@ -156,7 +157,7 @@ bool FirstMapFinder::is_sound(const MultiView& views, const ViewsExplained& expl
 
 /// Is the best one so much better than all others, or its structure so certain that it is taken all the same?
 bool FirstMapFinder::is_clear(const MultiView& views, const std::vector<ViewsExplained>& found) {
-  if (views.distance_sigma(found.front()) < kDecisive * options_.max_initial_uncertainty) return true;
+  if (median(views.distance_sigmas(found.front())) < kDecisive * options_.max_initial_uncertainty) return true;
   for (std::size_t i = 1; i < found.size(); ++i) {
     const double sigmas = advantage(found.front(), found[i]);
     if (sigmas >= options_.min_advantage) continue;
@@ -170,12 +171,13 @@ bool FirstMapFinder::is_clear(const MultiView& views, const std::vector<ViewsExp
 FirstMap FirstMapFinder::map_of(const TrackBuffer& tracks, const MultiView& views,
                                 const ViewsExplained& explained) const {
   FirstTrajectory path(tracks, camera_, options_);
-  const std::vector<double> errors = views.errors(explained);
+  const std::vector<double> errors = views.errors(explained), sigmas = views.distance_sigmas(explained);
+  const double certain = median(sigmas);
   std::vector<TrackId> anchored;
   for (std::size_t i = 0; i < explained.points.size(); ++i) {
     if (errors[i] > kFarOff * options_.max_initial_error || explained.points[i].inverse < 1.0 / kFarthest) continue;
     path.add_landmark(views.views().tracks[i], explained.points[i]);
-    anchored.push_back(views.views().tracks[i]);
+    if (sigmas[i] <= certain) anchored.push_back(views.views().tracks[i]);
   }
   path.go_along(explained.poses, views.views().times, state_times_);
 

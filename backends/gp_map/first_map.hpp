@@ -27,7 +27,8 @@ struct FirstMap {
 /// For a while a map is looked at again: what is seen later may tell that another explanation was the true one.
 ///
 /// World frame: the camera at the first view. Unit of length: the landmarks' median distance from there. Gauge and
-/// scale are anchored by a tight prior on the first pose and the mean nearness of the landmarks to it.
+/// scale are anchored by a tight prior on the first pose and the mean nearness to it of those landmarks, half of them,
+/// whose distance is known best.
 class FirstMapFinder {
  public:
   FirstMapFinder(const Options& options, const PinholeCamera& camera);

@@ -294,19 +294,19 @@ void MultiView::refine(ViewsExplained& explained, double width, int iterations) 
   }
 }
 
-double MultiView::distance_sigma(const ViewsExplained& explained) const {
+std::vector<double> MultiView::distance_sigmas(const ViewsExplained& explained) const {
   const Step step(*this, explained);
   std::size_t farthest = 0;
   for (std::size_t v = 1; v < explained.poses.size(); ++v) {
     if (explained.poses[v].p.norm() > explained.poses[farthest].p.norm()) farthest = v;
   }
-  if (farthest == 0) return std::numeric_limits<double>::infinity();
+  if (farthest == 0) return std::vector<double>(explained.points.size(), std::numeric_limits<double>::infinity());
   constexpr double kLeastNoise = 0.5;
   const double noise = std::max(step.noise(), kLeastNoise * views_.sigma);
   const SE3& T = explained.poses[farthest];
   std::vector<double> sigmas = step.inverse_sigmas(farthest, T.q.conjugate() * T.p.normalized());
   for (std::size_t i = 0; i < sigmas.size(); ++i) sigmas[i] *= noise / std::abs(explained.points[i].inverse);
-  return median(std::move(sigmas));
+  return sigmas;
 }
 
 std::vector<double> MultiView::errors(const ViewsExplained& explained) const {

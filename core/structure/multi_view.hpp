@@ -44,10 +44,10 @@ class MultiView {
   /// At most so many iterations, fewer when the cost ceases to fall.
   void refine(ViewsExplained& explained, double width, int iterations) const;
 
-  /// How uncertain the structure is: the median over the tracks of the standard deviation of a distance's logarithm,
-  /// the distance measured in the length of the longest baseline, under noise as large as the errors that are left, and
-  /// no smaller than half an observation's sigma: what drifts along a track shows in no residual.
-  double distance_sigma(const ViewsExplained& explained) const;
+  /// How uncertain the structure is: by track, the standard deviation of a distance's logarithm, the distance measured
+  /// in the length of the longest baseline, under noise as large as the errors that are left, and no smaller than half
+  /// an observation's sigma: what drifts along a track shows in no residual. Infinite without a baseline.
+  std::vector<double> distance_sigmas(const ViewsExplained& explained) const;
 
   /// Mean reprojection error [px], by track.
   std::vector<double> errors(const ViewsExplained& explained) const;
