@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 namespace evbench::gp_map {

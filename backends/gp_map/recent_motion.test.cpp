@@ -1,6 +1,8 @@
 #include "backends/gp_map/recent_motion.hpp"
 
 #include <catch2/catch.hpp>
+#include <limits>
+#include <utility>
 
 #include "backends/gp_map/testing/drawn_problem.hpp"
 
