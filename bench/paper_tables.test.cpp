@@ -92,3 +92,22 @@ TEST_CASE("gp_map stays below one percent of the path over 30 s with a tenth of 
     CHECK(metrics.at("final").at("coverage").get<double>() > 0.97);
   }
 }
+
+TEST_CASE("Landmarks whose depth a slow beginning does not tell do not let the world shrink to a point") {
+  if (!data_file("dynamic_6dof/motion.txt")) return;
+  const TemporaryFolder folder;
+  Json config = short_config("gp_map");
+  config["seed"] = 4;  // by the mean logarithm of distances the scale was lost after 3 s
+  config["source"] = {
+      {"type", "simulation"},
+      {"duration", 7},
+      {"camera", {{"width", 240}, {"height", 180}, {"focal_length", 200}}},
+      {"motion", {{"kind", "trajectory"}, {"trajectory", "${EVBENCH_DATA}/dynamic_6dof/motion.txt"}, {"start", 0}}},
+      {"scene", {{"kind", "frustum"}}},
+      {"tracks", {{"outlier_share", 0.05}, {"drift_share", 0.05}, {"dropout_rate", 0.1}}}};
+  folder.write("c.json", config.dump());
+  REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
+  const Json metrics = metrics_of(folder.file("results/short")).at("gp_map");
+  CHECK(metrics.at("status").at("state") == "ok");
+  CHECK(metrics.at("final").at("ate").at("trans_percent").get<double>() < 1.0);
+}

@@ -21,7 +21,7 @@ void GpMap::tell_online(double t) {
 /// The newest state, and those of late anew: what is seen now tells of them, too.
 void GpMap::tell_recent(double t) {
   if (graph().states.back().t != t) return;  // it has been taken back
-  recent_->follow(graph(), engine_->first_state(), options_.learn.prior != LearnPrior::never);
+  recent_->follow(graph(), engine_->first_state());
   const auto states = recent_->states();
   if (options_.per_observation) {
     tell_online(t);  // as between the states

@@ -61,10 +61,11 @@ struct LandmarkPrior {
 };
 
 /// Holds the scale: the mean nearness n_j = 1/(1 + ‖l_j − origin‖/unit) of some landmarks keeps its value, residual
-/// (mean_nearness − 1/N Σ n_j)/(change · sigma), with the change of Σ n_j / N as log distances grow. Every observation
-/// ties the map's depth to the motion, so this holds the whole trajectory's scale; the length of one baseline would
-/// hold no more than that baseline. Nearness is bounded: a landmark whose depth nothing tells, running off to infinity,
-/// would let all others shrink to a point while it keeps their mean log distance.
+/// (mean_nearness − 1/N Σ n_j)/(change · sigma), change = 1/N Σ n_j (1 − n_j), by which the mean falls as the logarithm
+/// of all distances grows. Every observation ties the map's depth to the motion, so this holds the whole trajectory's
+/// scale; the length of one baseline would hold no more than that baseline. Nearness is bounded: a landmark whose depth
+/// nothing tells, running off to infinity, would let all others shrink to a point while it keeps their mean log
+/// distance.
 struct ScaleAnchor {
   Vector3 origin = Vector3::Zero();
   std::vector<int> landmarks;  ///< empty: no anchor

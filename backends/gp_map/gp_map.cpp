@@ -126,7 +126,10 @@ void GpMap::begin_from(FirstMap map) {
   guessed_.clear();
   returns_ = ReturnBudget(options_.map.returns);
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
-  recent_.emplace(options_.learn.window, options_.learn.memory, graph().qc);
+  recent_.emplace(
+      options_.learn.prior == LearnPrior::never
+          ? std::nullopt
+          : std::optional<RecentPrior>(std::in_place, options_.learn.window, options_.learn.memory, graph().qc));
   noise_ = NoiseLearner();
   track_of_.clear();
   landmarks_ = 0;

@@ -131,7 +131,7 @@ class GpMap : public BackEnd {
   UpdateSummary last_update_;
   ViolentMotion violent_motion_;
   PriorLearner prior_;
-  std::optional<RecentMotion> recent_;
+  std::optional<RecentMotion> recent_;  ///< as it is told online; from the first map on
   NoiseLearner noise_;
   double learnt_until_ = -std::numeric_limits<double>::infinity();  ///< [s], with a lag
   double seconds_since_step_ = 0.0;                                 ///< spent on single observations

@@ -19,28 +19,6 @@ using testing::run;
 using testing::RunOptions;
 using testing::TrackedScene;
 
-/// The scale from the estimate to the truth by the anchor's landmarks alone.
-double anchored_scale(const TrackedScene& scene, const GpMap& backend) {
-  const ScaleAnchor& anchor = backend.graph().anchor;
-  const Vector3 origin = scene.ground_truth().pose(backend.trajectory().start())->p;
-  std::vector<double> distances;
-  for (const int j : anchor.landmarks) {
-    for (const Landmark& landmark : backend.map()) {
-      if (landmark.position != backend.graph().landmarks[index(j)].position) continue;
-      distances.push_back((scene.point(landmark.track) - origin).norm());
-    }
-  }
-  REQUIRE(distances.size() == anchor.landmarks.size());
-  double low = 1e-3, high = 1e3;  // by bisection: nearness falls as distances grow
-  for (int i = 0; i < 60; ++i) {
-    const double scale = std::sqrt(low * high);
-    double nearness = 0.0;
-    for (const double distance : distances) nearness += 1.0 / (1.0 + distance / (scale * anchor.unit));
-    (nearness < anchor.mean_nearness * static_cast<double>(distances.size()) ? low : high) = scale;
-  }
-  return low;
-}
-
 /// ATE [m] over several seeds of a scene.
 double mean_error(const char* scene, const char* backend) {
   constexpr std::uint64_t kSeeds = 4;
@@ -205,47 +183,6 @@ TEST_CASE("gp_map's estimate does not depend on how its observations are cut int
     CHECK(a[i].T.p == b[i].T.p);
     CHECK(a[i].T.q.coeffs() == b[i].T.q.coeffs());
   }
-}
-
-TEST_CASE("A prior a hundred times stronger or weaker leaves the scale where the anchor holds it") {
-  const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
-  for (const char* options : {"{}", R"({"qc_scale": 100})", R"({"qc_scale": 0.01})"}) {
-    INFO(options);
-    const auto result = run(scene, {.backend = options});
-    CHECK(result.scores.alignment.transform.scale == Approx(anchored_scale(scene, *result.backend)).epsilon(0.05));
-  }
-}
-
-TEST_CASE("The first landmarks keep the mean nearness that they were given") {
-  const TrackedScene scene(5.0);
-  const auto result = run(scene);
-  CHECK(std::abs(linearise_anchor(result.backend->graph()).e) < 5.0);  // in sigmas of 1e-4
-}
-
-TEST_CASE("When most landmarks that hold the scale turn out to be outliers, others hold it too") {
-  // Only 25 tracks make the first map; 40 others come at 0.6 s; from 0.9 s on the first ones jump away in turn.
-  const TrackedScene scene(6.0,
-                           R"({"motion": {"max_frequency": 0.3}, "tracks": {"lifetime": [7.0, 8.0], "alive": 65}})");
-  constexpr TrackId kFirst = 25;
-  std::vector<TrackObservation> observations;
-  for (TrackObservation z : scene.observations()) {
-    if (z.track >= kFirst && z.t < 0.6) continue;
-    const double angle = static_cast<double>(z.track);
-    if (z.track < kFirst && z.t > 0.9 + 0.005 * angle) z.pixel += 100.0 * Vector2(std::cos(angle), std::sin(angle));
-    observations.push_back(z);
-  }
-  BackEndContext context;
-  context.camera = scene.camera();
-  int handed_over = 0;
-  context.log = [&](const std::string& line) { handed_over += line.find("hold it now") != std::string::npos ? 1 : 0; };
-  GpMap backend({}, context);
-  backend.advance({observations, {}, 6.0});
-  backend.finish();
-  CHECK(handed_over == 1);
-  CHECK(backend.graph().anchor.landmarks.size() > 10);
-  CHECK(backend.status().state == RunState::ok);
-  const Scores scores = score(scene.ground_truth(), backend.trajectory(), {.association = "interpolated"});
-  CHECK(scores.ate.trans_percent < 2.0);
 }
 
 TEST_CASE("A short blackout is carried by the prior and said") {

@@ -87,8 +87,7 @@ struct LearningOptions {
             "learn a scale of the observations' sigmas, and how much of their information counts, as trackers drift");
     set.add("window", window,
             "while running, what is learnt follows what these show, and a prior that has yielded to violent motion is "
-            "as "
-            "it was again after a few times this [s]")
+            "as it was again after a few times this [s]")
         .range(0.01, 100.0);
     set.add("memory", memory, "and falls back to what these show, where that is little; the noise follows these [s]")
         .range(0.1, 1000.0);
@@ -146,8 +145,7 @@ struct Options {
         .above(0.0);
     set.add("max_initial_uncertainty", max_initial_uncertainty,
             "standard deviation of a first map's distances that noise may leave, as a share: the parallax that is "
-            "needed "
-            "follows from the noise")
+            "needed follows from the noise")
         .above(0.0);
     set.add("min_advantage", min_advantage,
             "a first map must be better than the second-best one by this much, the tracks being witnesses [sigmas]")

@@ -62,7 +62,7 @@ class Chain {
 
 }  // namespace
 
-void RecentMotion::follow(const FactorGraph& graph, int first_state, bool smooth) {
+void RecentMotion::follow(const FactorGraph& graph, int first_state) {
   const int newest = static_cast<int>(graph.states.size()) - 1;
   int first = newest;
   while (first > first_state && newest - first + 1 < kMost &&
@@ -70,7 +70,7 @@ void RecentMotion::follow(const FactorGraph& graph, int first_state, bool smooth
     --first;
   }
   const std::vector<ControlState> told = std::exchange(states_, {graph.states.begin() + first, graph.states.end()});
-  if (first == newest || !smooth) return;
+  if (first == newest || !prior_) return;
 
   Chain chain(states_.size());
   std::vector<Vector6> qcs;  // of the intervals between states_
@@ -81,8 +81,10 @@ void RecentMotion::follow(const FactorGraph& graph, int first_state, bool smooth
     for (const auto& group : observations.groups()) {
       positions_.push_back(graph.landmarks[index(group.landmark)].position);
     }
-    const Vector6 qc = prior_.at(0.5 * (before.t + state.t));
-    linearise_interval({graph.camera, graph.loss, qc, 0.0, before, state, observations, positions_}, linearised_);
+    const Vector6 qc = prior_->at(0.5 * (before.t + state.t));
+    constexpr double kNoExpansion = 0.0;  // the map is held, so this prior cannot draw the world together
+    linearise_interval({graph.camera, graph.loss, qc, kNoExpansion, before, state, observations, positions_},
+                       linearised_);
     const auto i = index(k - first);
     chain.diagonal[i] += linearised_.states.bottomRightCorner<12, 12>();
     chain.gradient[i] += linearised_.gradient.tail<12>();
@@ -110,7 +112,7 @@ void RecentMotion::follow(const FactorGraph& graph, int first_state, bool smooth
     const std::size_t i = evidence.size();
     evidence.push_back(evidence_of(GpInterval(states_[i], states_[i + 1]), joint, qcs[i]));
   }
-  prior_.take(first + 1, evidence);
+  prior_->take(first + 1, evidence);
 }
 
 }  // namespace evbench::gp_map

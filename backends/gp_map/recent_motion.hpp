@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "backends/gp_map/factors.hpp"
@@ -16,18 +18,17 @@ namespace evbench::gp_map {
 /// each, one Gauss-Newton step from the engine's estimate.
 class RecentMotion {
  public:
-  /// `window`, `memory`: of the prior's density (RecentPrior) [s]; `guess`: the density at the beginning.
-  RecentMotion(double window, double memory, const Vector6& guess) : prior_(window, memory, guess) {}
+  /// Without a prior the states stay as the engine has them.
+  explicit RecentMotion(std::optional<RecentPrior> prior) : prior_(std::move(prior)) {}
 
-  /// After an update of the engine, of which `first_state` is the oldest state that is still being estimated; without
-  /// `smooth` the states stay as the engine has them.
-  void follow(const FactorGraph& graph, int first_state, bool smooth);
+  /// After an update of the engine, of which `first_state` is the oldest state that is still being estimated.
+  void follow(const FactorGraph& graph, int first_state);
 
   /// In time order, the newest last: those of the last 0.4 s, 24 at most. The engine's own where nothing can be solved.
   std::span<const ControlState> states() const { return states_; }
 
  private:
-  RecentPrior prior_;
+  std::optional<RecentPrior> prior_;
   std::vector<ControlState> states_;
   std::vector<Vector3> positions_;  ///< of landmarks, in the interval at hand
   IntervalLinearisation linearised_;

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "backends/gp_map/testing/drawn_problem.hpp"
@@ -30,8 +31,8 @@ TEST_CASE("The newest motion is smoothed by the prior that it shows, whatever th
     for (int seed = 1; seed <= 20; ++seed) {
       const DrawnProblem problem({.qc = kDensity, .pixel_sigma = 0.3}, static_cast<std::uint64_t>(seed));
       const Engine engine = solved_with(wrong * kDensity, problem);
-      RecentMotion motion(0.3, 3.0, engine.graph().qc);
-      for (int i = 0; i < 20; ++i) motion.follow(engine.graph(), 0, true);
+      RecentMotion motion(RecentPrior(0.3, 3.0, engine.graph().qc));
+      for (int i = 0; i < 20; ++i) motion.follow(engine.graph(), 0);
       const Vector6& truth = problem.truth((DrawnProblem::kStates - 1) * DrawnProblem::kSteps).velocity;
       estimated += (engine.graph().states.back().velocity - truth).squaredNorm();
       smoothed += (motion.states().back().velocity - truth).squaredNorm();
@@ -44,9 +45,9 @@ TEST_CASE("The newest motion is smoothed by the prior that it shows, whatever th
 TEST_CASE("States of the last 0.4 s are told, at the engine's times, and as it has them where nothing is smoothed") {
   const Engine engine = solved_with(kDensity, DrawnProblem({.qc = kDensity, .pixel_sigma = 0.3}, 1));
   const auto& states = engine.graph().states;
-  RecentMotion motion(0.3, 3.0, engine.graph().qc);
   for (const bool smooth : {false, true}) {
-    motion.follow(engine.graph(), 0, smooth);
+    RecentMotion motion(smooth ? std::optional<RecentPrior>(std::in_place, 0.3, 3.0, engine.graph().qc) : std::nullopt);
+    motion.follow(engine.graph(), 0);
     REQUIRE(motion.states().size() == 8);  // 0.05 s apart
     for (std::size_t i = 0; i < 8; ++i) {
       const ControlState &told = motion.states()[i], &estimate = states[states.size() - 8 + i];
@@ -54,19 +55,19 @@ TEST_CASE("States of the last 0.4 s are told, at the engine's times, and as it h
       CHECK((told.T.p == estimate.T.p) == !smooth);
       CHECK((told.T.p - estimate.T.p).norm() < 0.01);
     }
+    motion.follow(engine.graph(), static_cast<int>(states.size()) - 3);
+    CHECK(motion.states().size() == 3);  // of those before, the observations are gone
   }
-  motion.follow(engine.graph(), static_cast<int>(states.size()) - 3, true);
-  CHECK(motion.states().size() == 3);  // of those before, the observations are gone
 }
 
 TEST_CASE("One state, or an estimate that is no number, is told as it is") {
   FactorGraph graph;
-  RecentMotion motion(0.3, 3.0, graph.qc);
+  RecentMotion motion(RecentPrior(0.3, 3.0, graph.qc));
   graph.add_state({1.0, SE3(), Vector6::Ones()});
-  motion.follow(graph, 0, true);
+  motion.follow(graph, 0);
   CHECK(motion.states().size() == 1);
   graph.add_state({1.1, SE3(), Vector6::Constant(std::numeric_limits<double>::quiet_NaN())});
-  motion.follow(graph, 0, true);
+  motion.follow(graph, 0);
   REQUIRE(motion.states().size() == 2);
   CHECK(motion.states()[0].velocity == Vector6::Ones());
 }

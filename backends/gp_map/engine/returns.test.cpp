@@ -10,7 +10,6 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kStep = 0.05;  ///< [s] between states
 const PinholeCamera kCamera{200.0, 200.0, 120.0, 90.0};
 
 /// A camera that goes to and fro past a wall of landmarks, so that all of them are seen again and again.
@@ -27,6 +26,7 @@ class Patrol {
     engine.add_velocity_prior({0, guess(0).velocity, Vector6::Constant(0.5)});
   }
 
+  static constexpr double kStep = 0.05;  ///< [s] between states
   static constexpr int kLandmarks = 40;
   static Vector3 landmark(int j) { return {0.15 * j, 0.3 * (j % 3) - 0.3, 1.5 + 0.2 * (j % 5)}; }
   static double place(double t) { return 2.5 - 2.0 * std::cos(1.1 * t); }
@@ -48,9 +48,10 @@ class Patrol {
     engine.add_state(guess(k));
     if (follower != nullptr) follower->engine.add_state(guess(k));
     for (int j = 0; j < kLandmarks; ++j) {
-      if (std::abs(landmark(j).x() - place(kStep * k)) > 0.7) continue;
+      if (std::abs(landmark(j).x() - place(Patrol::kStep * k)) > 0.7) continue;
       for (const double back : {0.6, 0.1}) {
-        if (observe(j, kStep * (k - back)) && follower != nullptr) CHECK(follower->observe(j, kStep * (k - back)));
+        if (observe(j, Patrol::kStep * (k - back)) && follower != nullptr)
+          CHECK(follower->observe(j, Patrol::kStep * (k - back)));
       }
     }
   }
@@ -129,16 +130,16 @@ TEST_CASE("Stages before and after a return can be redone, and states taken back
   Patrol back(options(0)), redone(options(kAlways));
   for (Patrol* patrol : {&back, &redone}) {
     patrol->fly(130);
-    patrol->observe(3, kStep * 100.5);  // out of view: any number will do
+    patrol->observe(3, Patrol::kStep * 100.5);  // out of view: any number will do
     patrol->fly(1);
-    patrol->observe(30, kStep * 2.5);
+    patrol->observe(30, Patrol::kStep * 2.5);
     patrol->fly(9);
     for (int i = 0; i < 12; ++i) patrol->engine.remove_newest_state();
     patrol->engine.update();
     patrol->fly(20);
     patrol->engine.remove_landmark(7);
-    patrol->observe(20, kStep * 130.5);
-    patrol->observe(20, kStep * 60.5);
+    patrol->observe(20, Patrol::kStep * 130.5);
+    patrol->observe(20, Patrol::kStep * 60.5);
     patrol->fly(30);
   }
   check_same(back.engine, redone.engine);

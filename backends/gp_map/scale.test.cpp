@@ -1,0 +1,107 @@
+// The scale that a first map gives is held as long as the map lasts.
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "backends/gp_map/factors.hpp"
+#include "backends/gp_map/gp_map.hpp"
+#include "backends/gp_map/testing/tracked_scene.hpp"
+#include "core/support/index.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+using testing::run;
+using testing::TrackedScene;
+
+/// The true places of the landmarks that hold the scale.
+std::vector<Vector3> anchored_points(const TrackedScene& scene, const GpMap& backend) {
+  std::vector<Vector3> points;
+  for (const int j : backend.graph().anchor.landmarks) {
+    for (const Landmark& landmark : backend.map()) {
+      if (landmark.position == backend.graph().landmarks[index(j)].position)
+        points.push_back(scene.point(landmark.track));
+    }
+  }
+  REQUIRE(points.size() == backend.graph().anchor.landmarks.size());
+  return points;
+}
+
+/// The scale from the estimate to the truth by the anchor's landmarks alone: in the truth's units, too, they have the
+/// mean nearness that the anchor holds.
+double anchored_scale(const TrackedScene& scene, const GpMap& backend) {
+  ScaleAnchor anchor = backend.graph().anchor;
+  const double estimated_unit = anchor.unit;
+  anchor.origin = scene.ground_truth().pose(backend.trajectory().start())->p;
+  const std::vector<Vector3> points = anchored_points(scene, backend);
+  double low = 1e-3, high = 1e3;  // by bisection: nearness grows with the unit
+  for (int i = 0; i < 60; ++i) {
+    const double scale = std::sqrt(low * high);
+    anchor.unit = scale * estimated_unit;
+    double nearness = 0.0;
+    for (const Vector3& point : points) nearness += anchor.nearness(point);
+    (nearness < anchor.mean_nearness * static_cast<double>(points.size()) ? low : high) = scale;
+  }
+  return low;
+}
+
+}  // namespace
+
+TEST_CASE("A prior a hundred times stronger or weaker leaves the scale where the anchor holds it") {
+  const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
+  for (const char* options : {"{}", R"({"qc_scale": 100})", R"({"qc_scale": 0.01})"}) {
+    INFO(options);
+    const auto result = run(scene, {.backend = options});
+    CHECK(result.scores.alignment.transform.scale == Approx(anchored_scale(scene, *result.backend)).epsilon(0.05));
+  }
+}
+
+TEST_CASE("The first landmarks keep the mean nearness that they were given") {
+  const TrackedScene scene(5.0);
+  const auto result = run(scene);
+  CHECK(std::abs(linearise_anchor(result.backend->graph()).e) < 5.0);  // in sigmas of 1e-4
+}
+
+TEST_CASE("Landmarks that are near, whose distances are known best, hold the scale") {
+  const TrackedScene scene(2.0, R"({"scene": {"near": 1, "far": 10}, "tracks": {"lifetime": [3.0, 4.0]}})");
+  const auto result = run(scene);
+  const Vector3 origin = scene.ground_truth().pose(result.backend->trajectory().start())->p;
+  const auto nearness = [&](const Vector3& point) { return 1.0 / (point - origin).norm(); };
+  double sum = 0.0, of_all = 0.0;
+  const std::vector<Vector3> holding = anchored_points(scene, *result.backend);
+  for (const Vector3& point : holding) sum += nearness(point);
+  for (const Landmark& landmark : result.backend->map()) of_all += nearness(scene.point(landmark.track));
+  const double map_size = static_cast<double>(result.backend->map().size());
+  CHECK(sum / static_cast<double>(holding.size()) > 1.3 * of_all / map_size);
+}
+
+TEST_CASE("When most landmarks that hold the scale turn out to be outliers, others hold it too") {
+  // Only 25 tracks make the first map; 40 others come at 0.6 s; from 0.9 s on the first ones jump away in turn.
+  const TrackedScene scene(6.0,
+                           R"({"motion": {"max_frequency": 0.3}, "tracks": {"lifetime": [7.0, 8.0], "alive": 65}})");
+  constexpr TrackId kFirst = 25;
+  std::vector<TrackObservation> observations;
+  for (TrackObservation z : scene.observations()) {
+    if (z.track >= kFirst && z.t < 0.6) continue;
+    const double angle = static_cast<double>(z.track);
+    if (z.track < kFirst && z.t > 0.9 + 0.005 * angle) z.pixel += 100.0 * Vector2(std::cos(angle), std::sin(angle));
+    observations.push_back(z);
+  }
+  BackEndContext context;
+  context.camera = scene.camera();
+  int handed_over = 0;
+  context.log = [&](const std::string& line) { handed_over += line.find("hold it now") != std::string::npos ? 1 : 0; };
+  GpMap backend({}, context);
+  backend.advance({observations, {}, 6.0});
+  backend.finish();
+  CHECK(handed_over == 1);
+  CHECK(backend.graph().anchor.landmarks.size() > 10);
+  CHECK(backend.status().state == RunState::ok);
+  const Scores scores = score(scene.ground_truth(), backend.trajectory(), {.association = "interpolated"});
+  CHECK(scores.ate.trans_percent < 2.0);
+}
+
+}  // namespace evbench::gp_map
