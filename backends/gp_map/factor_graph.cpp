@@ -123,6 +123,10 @@ int FactorGraph::interval_of(double t) const {
   return std::max(1, static_cast<int>(right - states.begin()));
 }
 
+int FactorGraph::first_state_after(double t) const {
+  return static_cast<int>(std::ranges::upper_bound(states, t, {}, &ControlState::t) - states.begin());
+}
+
 bool FactorGraph::add_observation(int landmark, const Observation& observation) {
   const int k = interval_of(observation.t);
   if (k < 0) return false;

@@ -16,10 +16,13 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 10);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 11);
 
-constexpr double kYoung = 5.0;    ///< [s] for which another first map is looked for
-constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
+// Learning with hindsight while running [s]:
+constexpr double kEvery = 0.3, kHindsight = 1.0;
+constexpr double kOneSided = 0.1;  ///< what was seen so shortly ago is known from one side
+constexpr double kYoung = 5.0;     ///< [s] for which another first map is looked for, and no track is judged by it
+constexpr double kMemory = 10.0;   ///< [s] for which tracks are remembered that ended before there is a map
 
 }  // namespace
 
@@ -124,6 +127,7 @@ void GpMap::begin_from(FirstMap map) {
   violent_motion_.begin(map.graph.qc);
   engine_.emplace(std::move(map.graph), EngineOptions{.lag = options_.lag});
   guessed_.clear();
+  next_hindsight_ = graph().states.front().t + kHindsight;
   returns_ = ReturnBudget(options_.map.returns);
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
   recent_.emplace(
@@ -196,18 +200,19 @@ void GpMap::learn() {
   } else {
     violent_motion_.recover(*engine_);
   }
-  if (options_.learn.prior == LearnPrior::final && options_.lag > 0.0) learn_before_settling();
+  const double now = graph().states.back().t;
+  if (now < next_hindsight_) return;
+  next_hindsight_ = now + kEvery;
+  learn_with_hindsight({now - kHindsight, now - kOneSided});
+  last_update_ = engine_->update();
 }
 
-/// With a lag there is no final estimate: the prior is learnt from both sides while there is time. What is newest knows
-/// one side alone.
-void GpMap::learn_before_settling() {
-  constexpr double kPace = 0.25, kOneSided = 0.1;  // of the lag
-  const double now = graph().states.back().t, oldest = graph().states[index(engine_->first_state())].t;
-  if (now < oldest + (1.0 - kPace) * options_.lag || now < learnt_until_ + kPace * options_.lag) return;
-  learnt_until_ = now;
-  learn_prior(*engine_, now - kOneSided * options_.lag);
-  last_update_ = engine_->update();
+/// What was seen a while ago is known from both sides: tracks show whether they stayed on their points, and the motion
+/// how smooth it was. The newest motion, known from one side alone, keeps a prior that allows for what may come.
+void GpMap::learn_with_hindsight(const TimeSpan& span) {
+  const bool is_young = !(graph().states.back().t > graph().states.front().t + kYoung);
+  if (!is_young) judge_tracks(noise_, span);  // a young map itself is not right yet
+  if (options_.learn.prior != LearnPrior::never) learn_prior(*engine_, span);
 }
 
 /// What is seen next is compared with the newest state's constant velocity.

@@ -18,6 +18,7 @@
 #include "backends/gp_map/recent_motion.hpp"
 #include "backends/gp_map/return_budget.hpp"
 #include "backends/gp_map/state_placement.hpp"
+#include "backends/gp_map/time_span.hpp"
 #include "backends/gp_map/violent_motion.hpp"
 #include "core/plugin/backend.hpp"
 #include "core/plugin/tracking_monitor.hpp"
@@ -77,7 +78,7 @@ class GpMap : public BackEnd {
   void trust_parallax();
   void optimise();
   void learn();
-  void learn_before_settling();
+  void learn_with_hindsight(const TimeSpan& span);
   void check_support();
   void forget_ended_tracks(double t);
   void predict_tracks();
@@ -90,6 +91,7 @@ class GpMap : public BackEnd {
   InitialGuess present_map(double t0, double t1) const;
   void become_landmark(TrackId track, int landmark);
   void become_outlier(int landmark);
+  void end_track_of(int landmark);
   void hold_scale_without(int leaving);
   std::optional<std::pair<Vector3, LandmarkPrior>> locate(TrackId track) const;
   double median_depth() const;
@@ -104,8 +106,8 @@ class GpMap : public BackEnd {
   void tell_online(double t);
   void tell_recent(double t);
   Engine::OptimiseSummary estimate_everything();
-  std::vector<int> outliers(const NoiseLearner& noise) const;
-  void judge_tracks(const NoiseLearner& noise);
+  void judge_tracks(const NoiseLearner& noise, const TimeSpan& span);
+  void weigh_tracks(const NoiseLearner& noise);
   void record_final_prior();
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
 
@@ -133,8 +135,8 @@ class GpMap : public BackEnd {
   PriorLearner prior_;
   std::optional<RecentMotion> recent_;  ///< as it is told online; from the first map on
   NoiseLearner noise_;
-  double learnt_until_ = -std::numeric_limits<double>::infinity();  ///< [s], with a lag
-  double seconds_since_step_ = 0.0;                                 ///< spent on single observations
+  double next_hindsight_ = 0.0;      ///< [s]
+  double seconds_since_step_ = 0.0;  ///< spent on single observations
   TrackingMonitor monitor_;
   double until_ = 0.0;                                        ///< [s] of the last batch
   double online_ = -std::numeric_limits<double>::infinity();  ///< [s], time of the last pose told

@@ -124,6 +124,11 @@ bool GpMap::is_outlier(int landmark, double error_px) const {
 void GpMap::become_outlier(int landmark) {
   hold_scale_without(landmark);
   engine_->remove_landmark(landmark);
+  end_track_of(landmark);
+}
+
+/// What it will show is not of this landmark.
+void GpMap::end_track_of(int landmark) {
   const auto track = tracks_.find(track_of_[index(landmark)]);
   if (track == tracks_.end() || track->second.landmark != landmark) return;  // it came back as another one
   track->second.role = Track::Role::outlier;

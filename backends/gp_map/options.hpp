@@ -68,21 +68,22 @@ struct MapOptions {
 };
 
 /// When the prior's power spectral density is learnt from the data.
-enum class LearnPrior { never, final, always };
+enum class LearnPrior { never, hindsight, always };
 
 /// What is learnt from the data.
 struct LearningOptions {
-  LearnPrior prior = LearnPrior::final;
+  LearnPrior prior = LearnPrior::hindsight;
   bool noise = true;
   double window = 0.3, memory = 3.0;
   int rounds = 6;
 
   void declare(OptionSet& set) {
-    set.add("prior", prior, {"never", "final", "always"},
-            "when the prior's power spectral density is learnt from the data, beginning with qc: never; for the final "
-            "estimate, from everything, with a lag before states are marginalised, and for the poses that are told "
-            "while running; always, so also for the map while running, which can lose the scale where landmarks live "
-            "for less than a second or the motion is violent");
+    set.add(
+        "prior", prior, {"never", "hindsight", "always"},
+        "when the prior's power spectral density is learnt from the data, beginning with qc: never; with hindsight, "
+        "where motion is known from both sides: while running, of all but the newest 0.1 s, and for the final "
+        "estimate, from everything; always, so also of the newest motion, which can lose the scale where landmarks "
+        "live for less than a second or the motion is violent");
     set.add("noise", noise,
             "learn a scale of the observations' sigmas, and how much of their information counts, as trackers drift");
     set.add("window", window,

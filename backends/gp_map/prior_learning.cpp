@@ -130,8 +130,8 @@ void PriorLearner::take_evidence(Engine& engine) {
   prior_->take(first, evidence_from(engine, first));
 }
 
-void learn_prior(Engine& engine, double until) {
-  const int first = engine.first_state() + 1;
+void learn_prior(Engine& engine, const TimeSpan& span) {
+  const int first = std::max(engine.first_state() + 1, engine.graph().first_state_after(span.from));
   const std::vector<PriorEvidence> evidence = evidence_from(engine, first);
   PriorEvidence all;
   for (const PriorEvidence& one : evidence) {
@@ -143,7 +143,7 @@ void learn_prior(Engine& engine, double until) {
   std::vector<PriorEvidence> before = evidence, after = evidence;
   for (std::size_t k = 1; k < evidence.size(); ++k) before[k].add(before[k - 1], kHistoryWindow);
   for (std::size_t k = evidence.size(); k-- > 1;) after[k - 1].add(after[k], kHistoryWindow);
-  for (std::size_t k = 0; k < evidence.size() && evidence[k].t <= until; ++k) {
+  for (std::size_t k = 0; k < evidence.size() && evidence[k].t <= span.until; ++k) {
     PriorEvidence sum = before[k];
     sum.square += after[k].square - evidence[k].square;
     sum.freedom += after[k].freedom - evidence[k].freedom;

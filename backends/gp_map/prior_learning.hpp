@@ -1,11 +1,11 @@
 #pragma once
 
-#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
 
 #include "backends/gp_map/engine/engine.hpp"
+#include "backends/gp_map/time_span.hpp"
 
 namespace evbench::gp_map {
 
@@ -75,8 +75,7 @@ class PriorLearner {
   double followed_until_ = -1e300;  ///< [s]
 };
 
-/// Learns the prior of the intervals that are still estimated, with a lag those within it, from all of them, and sets
-/// it up to the time `until` [s].
-void learn_prior(Engine& engine, double until = std::numeric_limits<double>::infinity());
+/// Learns the prior of the intervals in this span that are still estimated, from these and from what came after it.
+void learn_prior(Engine& engine, const TimeSpan& span);
 
 }  // namespace evbench::gp_map

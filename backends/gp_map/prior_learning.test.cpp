@@ -25,7 +25,7 @@ TEST_CASE("The prior that a motion was drawn from is learnt, from one a hundred 
     for (int k = 1; k < testing::DrawnProblem::kStates; ++k) engine.set_qc(k, Vector6::Constant(start * kTrue));
     for (int round = 0; round < 6; ++round) {
       engine.optimise(10, 1e-6);
-      learn_prior(engine);
+      learn_prior(engine, {});
     }
     CAPTURE(start);
     CHECK(mean_qc(engine.graph()) == Approx(kTrue).epsilon(0.4));

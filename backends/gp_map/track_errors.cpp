@@ -16,11 +16,12 @@ constexpr double kOthers = 10.0;           ///< blocks that the noise of all tra
 
 }  // namespace
 
-TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, const NoiseLearner& noise)
+TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, const NoiseLearner& noise, const TimeSpan& span)
     : given_scale_(graph.landmarks[index(landmark)].sigma_scale) {
   const Vector3& position = graph.landmarks[index(landmark)].position;
   std::optional<Vector2> before;
   for_each_observation(graph, landmark, [&](const GpInterval& interval, const Observation& z) {
+    if (!span.has(z.t)) return;
     if (before == z.pixel) return;  // a camera that stands still: told again, the same error says nothing new
     before = z.pixel;
     if (blocks_.empty() || z.t > blocks_.back().since + kBlock) blocks_.push_back({.since = z.t});

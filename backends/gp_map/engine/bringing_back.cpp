@@ -34,14 +34,14 @@ int Factorisation::take_back_returns(const FactorGraph& graph) {
   taken_back_.clear();
   int oldest = std::numeric_limits<int>::max();
   for (auto i = taken.rbegin(); i != taken.rend(); ++i) {
-    landmarks_[index(i->landmark)].eliminated_at = i->from;
+    const auto& seen = graph.landmarks[index(i->landmark)].intervals;
+    landmarks_[index(i->landmark)].eliminated_at = seen.empty() ? -1 : i->from;
     if (i->from <= done_) continue;
     const auto same = std::find_if(i + 1, taken.rend(), [&](const Return& r) { return r.landmark == i->landmark; });
     Return* earlier = same != taken.rend() ? &*same : returns_.last_of(i->landmark);
     if (earlier != nullptr) earlier->offset += i->offset;
     returns_.free_id(i->id);
     if (same != taken.rend() || i->offset.isZero(0.0)) continue;
-    const auto& seen = graph.landmarks[index(i->landmark)].intervals;
     if (earlier != nullptr)
       oldest = std::min(oldest, earlier->before);
     else if (!seen.empty())

@@ -108,11 +108,33 @@ void Engine::drop_prior(int landmark) {
 }
 
 void Engine::remove_landmark(int landmark) {
-  touch_landmarks({&landmark, 1});
-  for (const int k : graph_.landmarks[index(landmark)].intervals) points_.invalidate(k);
+  touch_observations(landmark);
   const std::vector<int>& anchors = graph_.anchor.landmarks;
   if (std::ranges::find(anchors, landmark) != anchors.end()) touch_landmarks(anchors);
   graph_.remove_landmark(landmark);
+}
+
+void Engine::remove_observations(int landmark, double from) {
+  const std::vector<int>& seen = graph_.landmarks[index(landmark)].intervals;
+  if (seen.empty() || graph_.states[index(seen.back())].t < from) return;
+  for (const int k : seen) {
+    if (graph_.states[index(k)].t < from) continue;
+    points_.invalidate(k);
+    touch(k);
+  }
+  graph_.remove_observations(landmark, from);
+  if (seen.empty()) factorisation_.leave(landmark);
+}
+
+void Engine::scale_sigmas(int landmark, double scale) {
+  touch_observations(landmark);
+  graph_.scale_sigmas(landmark, scale);
+}
+
+/// What is said of a landmark's observations changes.
+void Engine::touch_observations(int landmark) {
+  touch_landmarks({&landmark, 1});
+  for (const int k : graph_.landmarks[index(landmark)].intervals) points_.invalidate(k);
 }
 
 /// The factors of these landmarks change.

@@ -115,6 +115,13 @@ class Engine {
   /// Removes a landmark with all its observations.
   void remove_landmark(int landmark);
 
+  /// Removes a landmark's observations from a time on; what has been marginalised stays.
+  void remove_observations(int landmark, double from);
+
+  /// Makes the sigmas of a landmark's observations so many times those that they were given; what has been marginalised
+  /// stays as it was.
+  void scale_sigmas(int landmark, double scale);
+
   /// One Gauss-Newton step over what the changes since the last update concern, damped if it would raise the cost.
   UpdateSummary update();
 
@@ -166,6 +173,7 @@ class Engine {
     invalidate(stage);
   }
   void touch_landmarks(std::span<const int> landmarks);
+  void touch_observations(int landmark);
   UpdateSummary update_back(int depth);
   bool insert(int landmark, const Observation& observation);
   void forget_old();

@@ -77,8 +77,10 @@ int RandomSession::draw_length() {
 void RandomSession::operate() {
   const double which = random_.uniform();
   if (which < 0.33 || truth_.empty()) return add_state();
-  if (which < 0.47) return late_observation();
-  if (which < 0.53) return remove_landmark(any_landmark());
+  if (which < 0.46) return late_observation();
+  if (which < 0.50) return remove_landmark(any_landmark());
+  if (which < 0.52) return remove_observations();
+  if (which < 0.53) return scale_sigmas();
   if (which < 0.65) {
     if (const auto seen = look()) give(seen->landmark, seen->observation);  // whether it was eliminated or removed
   } else if (which < 0.73) {
@@ -220,6 +222,26 @@ void RandomSession::remove_landmark(int landmark) {
     twin_->remove_landmark(landmark);
   }
   engine_.remove_landmark(landmark);
+}
+
+void RandomSession::remove_observations() {
+  const double marginalised = graph().states[index(engine_.first_state())].t;
+  const double from = chance(0.2) ? 0.0 : random_.uniform(0.0, newest());
+  if (twin_ && from <= marginalised) return;  // what has been marginalised can't be taken back
+  const int j = any_landmark();
+  engine_.remove_observations(j, from);
+  if (twin_) twin_->remove_observations(j, from);
+}
+
+void RandomSession::scale_sigmas() {
+  const int j = any_landmark();
+  const double scale = random_.uniform(0.5, 3.0);
+  if (twin_) {
+    const auto& seen = twin_->graph().landmarks[index(j)].intervals;
+    if (!seen.empty() && seen.front() <= engine_.first_state()) return;
+    twin_->scale_sigmas(j, scale);
+  }
+  engine_.scale_sigmas(j, scale);
 }
 
 void RandomSession::remove_newest_state() {

@@ -61,6 +61,8 @@ class RandomSession {
   bool give(int landmark, const Observation& observation);
   void late_observation();
   void remove_landmark(int landmark);
+  void remove_observations();
+  void scale_sigmas();
   void remove_newest_state();
   void refused();
   void degenerate_landmark();

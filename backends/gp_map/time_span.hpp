@@ -1,0 +1,14 @@
+#pragma once
+
+#include <limits>
+
+namespace evbench::gp_map {
+
+/// After `from`, up to and with `until` [s]; by default, all times.
+struct TimeSpan {
+  double from = -std::numeric_limits<double>::infinity(), until = std::numeric_limits<double>::infinity();
+
+  bool has(double t) const { return from < t && t <= until; }
+};
+
+}  // namespace evbench::gp_map

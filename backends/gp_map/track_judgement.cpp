@@ -1,0 +1,67 @@
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "backends/gp_map/gp_map.hpp"
+#include "backends/gp_map/track_errors.hpp"
+
+// What tracks turn out to be worth, once it is known from both sides where the camera was.
+namespace evbench::gp_map {
+namespace {
+
+using Judged = std::vector<std::pair<int, TrackErrors>>;  ///< by landmark
+
+Judged errors_in(const FactorGraph& graph, const NoiseLearner& noise, const TimeSpan& span) {
+  Judged errors;
+  for (int j = 0; j < static_cast<int>(graph.landmarks.size()); ++j) {
+    const std::vector<int>& seen = graph.landmarks[index(j)].intervals;
+    if (seen.empty() || graph.states[index(seen.back())].t <= span.from) continue;
+    errors.emplace_back(j, TrackErrors(graph, j, noise, span));
+  }
+  return errors;
+}
+
+/// Landmarks of which the track says something else. Where most of the tracks that are seen together do, it is the
+/// motion that is wrong, and none of them.
+std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double threshold) {
+  std::vector<int> far;
+  std::map<int, std::pair<int, int>> far_of;  // by interval: of so many that are seen in it so many are far off
+  for (const auto& [j, error] : errors) {
+    const bool is_far = error.is_outlier(threshold);
+    if (is_far) far.push_back(j);
+    for (const int k : graph.landmarks[index(j)].intervals) {
+      ++far_of[k].second;
+      if (is_far) ++far_of[k].first;
+    }
+  }
+  std::erase_if(far, [&](int j) {
+    const std::vector<int>& intervals = graph.landmarks[index(j)].intervals;
+    const auto wrong =
+        std::ranges::count_if(intervals, [&](int k) { return 2 * far_of.at(k).first > far_of.at(k).second; });
+    return 2 * wrong > std::ssize(intervals);
+  });
+  return far;
+}
+
+}  // namespace
+
+/// By what they show in this span: outliers go, and a track that slid keeps its landmark up to there.
+void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span) {
+  const double threshold = options_.map.outlier_threshold;
+  const Judged errors = errors_in(graph(), noise, span);
+  for (const int outlier : outliers(graph(), errors, threshold)) become_outlier(outlier);
+  for (const auto& [j, error] : errors) {
+    const std::optional<double> from = error.slides_from(threshold);
+    if (!from || !graph().landmarks[index(j)].alive) continue;
+    engine_->remove_observations(j, *from);
+    end_track_of(j);
+  }
+}
+
+/// Each track counts with its own noise.
+void GpMap::weigh_tracks(const NoiseLearner& noise) {
+  for (const auto& [j, error] : errors_in(graph(), noise, {})) engine_->scale_sigmas(j, error.sigma_scale());
+}
+
+}  // namespace evbench::gp_map
