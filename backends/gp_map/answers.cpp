@@ -152,7 +152,7 @@ std::optional<Matrix6> GpMap::relative_covariance(double t0, double t1) {
 std::vector<Landmark> GpMap::map() const {
   std::vector<Landmark> result;
   for (const auto& [id, track] : tracks_) {
-    if (track.role != Track::Role::landmark) continue;
+    if (track.role != Track::Role::landmark && track.role != Track::Role::slid) continue;
     result.push_back({id, graph().landmarks[index(track.landmark)].position});
   }
   return result;

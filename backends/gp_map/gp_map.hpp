@@ -55,9 +55,9 @@ class GpMap : public BackEnd {
   const FactorGraph& graph() const { return engine_->graph(); }
 
  private:
-  /// A track that waits until its landmark can be located, is a landmark, or was an outlier.
+  /// A track that waits until its landmark can be located, is a landmark, slid off one, or was an outlier.
   struct Track {
-    enum class Role { waiting, landmark, outlier } role = Role::waiting;
+    enum class Role { waiting, landmark, slid, outlier } role = Role::waiting;
     int landmark = -1;   ///< the engine's number
     int tried_with = 0;  ///< observations at the last vain attempt to locate it
     bool ended = false;
@@ -91,7 +91,7 @@ class GpMap : public BackEnd {
   InitialGuess present_map(double t0, double t1) const;
   void become_landmark(TrackId track, int landmark);
   void become_outlier(int landmark);
-  void end_track_of(int landmark);
+  bool end_track_of(int landmark, Track::Role role);
   void hold_scale_without(int leaving);
   std::optional<std::pair<Vector3, LandmarkPrior>> locate(TrackId track) const;
   double median_depth() const;
@@ -107,6 +107,7 @@ class GpMap : public BackEnd {
   void tell_recent(double t);
   Engine::OptimiseSummary estimate_everything();
   void judge_tracks(const NoiseLearner& noise, const TimeSpan& span);
+  void slid_off(int landmark, double from);
   void weigh_tracks(const NoiseLearner& noise);
   void record_final_prior();
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);

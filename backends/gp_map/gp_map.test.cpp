@@ -53,8 +53,8 @@ TEST_CASE("gp_map drops outlier tracks") {
   CHECK(result.scores.ate.trans_percent < 1.0);
 }
 
-TEST_CASE("In the final estimate a track that slides off its point keeps its beginning, and one that does not all") {
-  const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [4.0, 5.0]}})");
+TEST_CASE("A track that slides off its point keeps its beginning as a landmark, and one that does not all") {
+  const TrackedScene scene(10.0, R"({"tracks": {"lifetime": [4.0, 5.0]}})");
   constexpr double kAfter = 1.0, kSpeed = 3.0;  // [s], [px/s]: its mean error stays far below the outliers'
   const auto slides = [](TrackId track) { return track % 5 == 0; };
   std::map<TrackId, double> begin, end;
@@ -85,7 +85,7 @@ TEST_CASE("In the final estimate a track that slides off its point keeps its beg
       whole += last > end[landmark.track] - 0.2;
     }
   }
-  CHECK(slid >= 4);
+  CHECK(slid >= 8);
   CHECK(beginnings >= slid - 1);
   CHECK(sound > 20);
   CHECK(whole == sound);
@@ -285,7 +285,7 @@ TEST_CASE("However control states are placed, the error is at most a tenth large
   }
 }
 
-TEST_CASE("Poses are told with a prior that the last moments show, which the map is not built on") {
+TEST_CASE("A prior that is learnt while running makes what is told smoother, and what was told a while ago better") {
   double causal[2] = {}, last[2] = {};
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const TrackedScene scene(6.0, "{}", seed);
@@ -298,7 +298,7 @@ TEST_CASE("Poses are told with a prior that the last moments show, which the map
     }
   }
   CHECK(causal[1] < 0.8 * causal[0]);
-  CHECK(last[1] == last[0]);
+  CHECK(last[1] < 0.9 * last[0]);
 }
 
 TEST_CASE("With one prior, and no outliers to find afterwards, a lag of 2 s costs less than a tenth of the accuracy") {

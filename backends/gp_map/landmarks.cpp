@@ -124,16 +124,16 @@ bool GpMap::is_outlier(int landmark, double error_px) const {
 void GpMap::become_outlier(int landmark) {
   hold_scale_without(landmark);
   engine_->remove_landmark(landmark);
-  end_track_of(landmark);
+  if (end_track_of(landmark, Track::Role::outlier)) --landmarks_;
 }
 
-/// What it will show is not of this landmark.
-void GpMap::end_track_of(int landmark) {
+/// What it will show is not of this landmark. False where it came back as another one.
+bool GpMap::end_track_of(int landmark, Track::Role role) {
   const auto track = tracks_.find(track_of_[index(landmark)]);
-  if (track == tracks_.end() || track->second.landmark != landmark) return;  // it came back as another one
-  track->second.role = Track::Role::outlier;
-  --landmarks_;
+  if (track == tracks_.end() || track->second.landmark != landmark) return false;
+  track->second.role = role;
   new_outliers_.push_back(track->first);
+  return true;
 }
 
 /// One of few landmarks that hold the scale is about to go: those seen now join the others, at the scale of now.

@@ -50,13 +50,23 @@ std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double
 void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span) {
   const double threshold = options_.map.outlier_threshold;
   const Judged errors = errors_in(graph(), noise, span);
-  for (const int outlier : outliers(graph(), errors, threshold)) become_outlier(outlier);
+  for (const int outlier : outliers(graph(), errors, threshold)) {
+    const int first_seen = graph().landmarks[index(outlier)].intervals.front();
+    if (graph().states[index(first_seen)].t > span.from) {
+      become_outlier(outlier);
+    } else {
+      slid_off(outlier, span.from);  // what it was before has been judged already
+    }
+  }
   for (const auto& [j, error] : errors) {
     const std::optional<double> from = error.slides_from(threshold);
-    if (!from || !graph().landmarks[index(j)].alive) continue;
-    engine_->remove_observations(j, *from);
-    end_track_of(j);
+    if (from && graph().landmarks[index(j)].alive) slid_off(j, *from);
   }
+}
+
+void GpMap::slid_off(int landmark, double from) {
+  engine_->remove_observations(landmark, from);
+  end_track_of(landmark, Track::Role::slid);
 }
 
 /// Each track counts with its own noise.

@@ -35,7 +35,7 @@ int Factorisation::take_back_returns(const FactorGraph& graph) {
   int oldest = std::numeric_limits<int>::max();
   for (auto i = taken.rbegin(); i != taken.rend(); ++i) {
     const auto& seen = graph.landmarks[index(i->landmark)].intervals;
-    landmarks_[index(i->landmark)].eliminated_at = seen.empty() ? -1 : i->from;
+    landmarks_[index(i->landmark)].eliminated_at = i->from <= done_ ? i->from : -1;
     if (i->from <= done_) continue;
     const auto same = std::find_if(i + 1, taken.rend(), [&](const Return& r) { return r.landmark == i->landmark; });
     Return* earlier = same != taken.rend() ? &*same : returns_.last_of(i->landmark);

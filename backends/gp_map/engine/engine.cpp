@@ -123,7 +123,6 @@ void Engine::remove_observations(int landmark, double from) {
     touch(k);
   }
   graph_.remove_observations(landmark, from);
-  if (seen.empty()) factorisation_.leave(landmark);
 }
 
 void Engine::scale_sigmas(int landmark, double scale) {

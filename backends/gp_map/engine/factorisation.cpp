@@ -79,9 +79,9 @@ std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph,
                                             double damping) {
   const int newest = static_cast<int>(graph.states.size()) - 1;
   if (done_ > newest) first = std::min(first, newest + 1);  // states were taken back
-  stages_.resize(graph.states.size());
   first = std::min(first, place_anchor(graph));
   first = go_back_to(first, graph);
+  stages_.resize(graph.states.size());
   while (const std::optional<int> earlier = bring_all_back(graph, points)) {
     first = std::min(first, go_back_to(*earlier, graph));
   }
@@ -119,6 +119,7 @@ int Factorisation::place_anchor(const FactorGraph& graph) {
 /// was: an older one if landmarks have moved.
 int Factorisation::go_back_to(int first, const FactorGraph& graph) {
   if (first > done_) return first;
+  const int before = done_;
   const auto after = snapshots_.lower_bound(first);
   for (auto i = after; i != snapshots_.end(); ++i) spare_.push_back(std::move(i->second));
   snapshots_.erase(after, snapshots_.end());
@@ -128,6 +129,14 @@ int Factorisation::go_back_to(int first, const FactorGraph& graph) {
   } else {
     root_.restore(snapshots_.rbegin()->second);
     done_ = snapshots_.rbegin()->first;
+  }
+  // The stages to come need not meet them again: their observations may be gone.
+  for (int k = done_ + 1; k <= before; ++k) {
+    for (const Conditional& conditional : stage(k).conditionals) {
+      for (const int j : conditional.landmarks) {
+        if (landmarks_[index(j)].eliminated_at == k) landmarks_[index(j)].eliminated_at = -1;
+      }
+    }
   }
   const int oldest = take_back_returns(graph);
   return oldest <= done_ ? go_back_to(oldest, graph) : first;
@@ -202,10 +211,7 @@ void Factorisation::find_finished(int k, const FactorGraph& graph) {
 }
 
 std::optional<Variable> Factorisation::eliminate_finished(int k, const LinearisationPoints& points, double damping) {
-  for (const int j : finished_) {
-    damp({Variable::Kind::landmark, j}, points, damping);
-    landmarks_[index(j)].eliminated_at = k;
-  }
+  for (const int j : finished_) damp({Variable::Kind::landmark, j}, points, damping);
   damp({Variable::Kind::state, k - 1}, points, damping);
   Stage& stage = stages_[index(k)];
   std::span<const int> rest = finished_;
@@ -217,6 +223,7 @@ std::optional<Variable> Factorisation::eliminate_finished(int k, const Linearisa
     const int failed = eliminate(root_, chunk, last ? k - 1 : -1, conditional);
     if (failed == static_cast<int>(chunk.size())) return Variable{Variable::Kind::state, k - 1};
     if (failed >= 0) return Variable{Variable::Kind::landmark, chunk[index(failed)]};
+    for (const int j : chunk) landmarks_[index(j)].eliminated_at = k;
   }
   return std::nullopt;
 }

@@ -61,9 +61,6 @@ class Factorisation {
   /// The stage that eliminates it; none while it is in the root or before it has been seen.
   std::optional<int> eliminated_at(int j) const;
 
-  /// All its observations have been removed: stages that are redone won't meet it.
-  void leave(int j) { landmarks_[index(j)].eliminated_at = -1; }
-
   /// An eliminated landmark has been observed again in an interval that is going to be redone: redo() brings it back
   /// into the root without redoing the stages since its elimination. Of a full history only.
   void bring_back(int j) { called_back_.push_back(j); }
