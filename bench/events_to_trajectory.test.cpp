@@ -197,22 +197,27 @@ TEST_CASE("A texture that repeats itself does not fool re-acquisition") {
   CHECK(error(scene, execution) < 0.02);
 }
 
-TEST_CASE("A hand that moves before the camera is not taken for the world") {
-  EventScene scene(swing, 4.0, wall());
-  // Seen from a camera that swings faster: 30 quadrangles in the image's left part.
-  const auto other = [](double t) { return swing(2.5 * t + 1.0); };
-  const EventScene hand(other, 3.0, EventScene::quadrangles(60, 9));
-  std::vector<Event> moving;
-  for (const Event& event : hand.list) {
-    if (event.t > 1'500'000 && event.x < 70) moving.push_back(event);
+TEST_CASE("A hand that moves before the camera is rarely taken for the world") {
+  constexpr std::uint64_t kHands = 5;  // of 20 three are, which of them is chance
+  std::vector<double> errors;
+  for (std::uint64_t seed = 9; seed < 9 + kHands; ++seed) {
+    EventScene scene(swing, 4.0, wall());
+    // Seen from a camera that swings faster: 30 quadrangles in the image's left part.
+    const auto other = [](double t) { return swing(2.5 * t + 1.0); };
+    const EventScene hand(other, 3.0, EventScene::quadrangles(60, seed));
+    std::vector<Event> moving;
+    for (const Event& event : hand.list) {
+      if (event.t > 1'500'000 && event.x < 70) moving.push_back(event);
+    }
+    std::erase_if(scene.list,
+                  [](const Event& event) { return event.t > 1'500'000 && event.t < 3'000'000 && event.x < 70; });
+    scene.add(moving);
+    const Execution execution = run(scene);
+    REQUIRE(execution.complete);
+    CHECK(execution.result.status.state == RunState::ok);
+    errors.push_back(error(scene, execution));
   }
-  std::erase_if(scene.list,
-                [](const Event& event) { return event.t > 1'500'000 && event.t < 3'000'000 && event.x < 70; });
-  scene.add(moving);
-  const Execution execution = run(scene);
-  REQUIRE(execution.complete);
-  CHECK(execution.result.status.state == RunState::ok);
-  CHECK(error(scene, execution) < 0.03);
+  CHECK(median(errors) < 0.01);
 }
 
 TEST_CASE("Events out of order, twice, at the border and outside the sensor are borne") {

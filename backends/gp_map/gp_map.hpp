@@ -101,7 +101,6 @@ class GpMap : public BackEnd {
   const std::optional<Matrix12>& newest_covariance();
   const std::optional<Matrix2>& image_covariance(Track& track, const Eigen::Matrix<double, 2, 12>& J_state,
                                                  const Matrix23& J_landmark);
-  bool is_outlier(int landmark, double error_px) const;
   int landmarks_in_view() const;
   void tell_online(double t);
   void tell_recent(double t);

@@ -22,9 +22,11 @@ constexpr double kFoundAgain = 10.0;  ///< [s] within which most are that are fo
 /// Tracks seen of late whose error was too large at the last optimum, beside what tracks err. What has been observed
 /// since is not counted: its distance from an extrapolated pose tells of the motion first.
 void GpMap::remove_outliers() {
+  const double far = options_.map.outlier_threshold * noise_.scale_of_means();
   std::vector<int> outliers;
   for (const auto& group : graph().intervals.back().groups()) {
-    if (is_outlier(group.landmark, engine_->reprojection_mean(group.landmark))) outliers.push_back(group.landmark);
+    const double inverse_sigma = graph().intervals.back().of(group).back().inverse_sigma;
+    if (inverse_sigma * engine_->reprojection_mean(group.landmark) > far) outliers.push_back(group.landmark);
   }
   // Most tracks at once: then it is the motion that is wrong.
   if (2 * outliers.size() > graph().intervals.back().groups().size()) return;
@@ -112,13 +114,6 @@ void GpMap::become_landmark(TrackId id, int landmark) {
   track_of_.push_back(id);
   ++landmarks_;
   waiting_.forget(id);
-}
-
-bool GpMap::is_outlier(int landmark, double error_px) const {
-  const auto& seen = graph().landmarks[index(landmark)].intervals;
-  if (seen.empty()) return false;
-  const double inverse_sigma = graph().intervals[index(seen.back())].of(landmark).back().inverse_sigma;
-  return error_px * inverse_sigma > options_.map.outlier_threshold * noise_.scale_of_means();
 }
 
 void GpMap::become_outlier(int landmark) {

@@ -16,7 +16,7 @@ constexpr double kOthers = 10.0;           ///< blocks that the noise of all tra
 
 }  // namespace
 
-TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, const NoiseLearner& noise, const TimeSpan& span)
+TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, double usual, const TimeSpan& span)
     : given_scale_(graph.landmarks[index(landmark)].sigma_scale) {
   const Vector3& position = graph.landmarks[index(landmark)].position;
   std::optional<Vector2> before;
@@ -29,8 +29,7 @@ TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, const NoiseLear
     blocks_.back().sum += reprojection_residual(interval, position, z, graph.camera);
   });
   if (!blocks_.empty() && blocks_.back().count < kFewest) blocks_.pop_back();
-  const double usual = noise.scale_of_means() * noise.scale_of_means();
-  for (Block& block : blocks_) block.square = block.sum.squaredNorm() / (block.count * usual);
+  for (Block& block : blocks_) block.square = block.sum.squaredNorm() / (block.count * usual * usual);
 }
 
 double TrackErrors::sigma_scale() const {

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "backends/gp_map/factor_graph.hpp"
-#include "backends/gp_map/noise_learning.hpp"
 #include "backends/gp_map/time_span.hpp"
 
 namespace evbench::gp_map {
@@ -14,8 +13,8 @@ namespace evbench::gp_map {
 /// anything to do with its landmark, and from when on it has slid off it.
 class TrackErrors {
  public:
-  /// At the graph's estimate, of what was observed in this span. `noise`: of all tracks.
-  TrackErrors(const FactorGraph& graph, int landmark, const NoiseLearner& noise, const TimeSpan& span);
+  /// At the graph's estimate, of what was observed in this span. `usual`: NoiseLearner::scale_of_means() of all tracks.
+  TrackErrors(const FactorGraph& graph, int landmark, double usual, const TimeSpan& span);
 
   /// Its sigmas over the stated ones, as that of all tracks is learnt apart: at least 1, for a track that is noisier
   /// than most. A robust estimate, which a short track takes from the others.

@@ -13,11 +13,12 @@ namespace {
 using Judged = std::vector<std::pair<int, TrackErrors>>;  ///< by landmark
 
 Judged errors_in(const FactorGraph& graph, const NoiseLearner& noise, const TimeSpan& span) {
+  const double usual = noise.scale_of_means();
   Judged errors;
   for (int j = 0; j < static_cast<int>(graph.landmarks.size()); ++j) {
     const std::vector<int>& seen = graph.landmarks[index(j)].intervals;
     if (seen.empty() || graph.states[index(seen.back())].t <= span.from) continue;
-    errors.emplace_back(j, TrackErrors(graph, j, noise, span));
+    errors.emplace_back(j, TrackErrors(graph, j, usual, span));
   }
   return errors;
 }
