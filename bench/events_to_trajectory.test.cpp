@@ -4,6 +4,7 @@
 
 #include "bench/runner.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/support/median.hpp"
 #include "core/testing/event_scene.hpp"
 #include "eval/alignment.hpp"
 
