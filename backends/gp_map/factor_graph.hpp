@@ -127,8 +127,8 @@ struct FactorGraph {
   /// The interval k with t in (t_{k−1}, t_k]; t = t_0 belongs to the first. −1 outside.
   int interval_of(double t) const;
 
-  /// The first state later than t [s], after which the first interval is named that ends later; one past the newest
-  /// when there is none.
+  /// The first state later than t [s], at which the first interval ends that ends later; one past the newest when there
+  /// is none.
   int first_state_after(double t) const;
 
   /// False, and nothing added, when t lies outside the states' span.

@@ -40,7 +40,7 @@ double reprojection_error(const GpInterval& interval, const Vector3& landmark, c
 double reprojection_mean(const FactorGraph& graph, int landmark) {
   double sum = 0.0;
   int count = 0;
-  for_each_observation(graph, landmark, [&](const GpInterval& interval, const Observation& z) {
+  for_each_observation(graph, landmark, {}, [&](const GpInterval& interval, const Observation& z) {
     sum += reprojection_error(interval, graph.landmarks[index(landmark)].position, z, graph.camera);
     ++count;
   });

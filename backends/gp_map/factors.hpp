@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "backends/gp_map/factor_graph.hpp"
+#include "backends/gp_map/time_span.hpp"
 
 namespace evbench::gp_map {
 
@@ -20,10 +21,11 @@ double reprojection_error(const GpInterval& interval, const Vector3& landmark, c
 /// Mean of a landmark's over all its observations.
 double reprojection_mean(const FactorGraph& graph, int landmark);
 
-/// Calls visit(interval, observation) for each of a landmark's observations.
+/// Calls visit(interval, observation) for each of a landmark's observations, in the intervals that this span meets.
 template <class Visit>
-void for_each_observation(const FactorGraph& graph, int landmark, Visit visit) {
+void for_each_observation(const FactorGraph& graph, int landmark, const TimeSpan& span, Visit visit) {
   for (const int k : graph.landmarks[index(landmark)].intervals) {
+    if (!span.meets(graph.states[index(k - 1)].t, graph.states[index(k)].t)) continue;
     const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
     for (const Observation& z : graph.intervals[index(k)].of(landmark)) visit(interval, z);
   }

@@ -20,7 +20,7 @@ TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, double usual, c
     : given_scale_(graph.landmarks[index(landmark)].sigma_scale) {
   const Vector3& position = graph.landmarks[index(landmark)].position;
   std::optional<Vector2> before;
-  for_each_observation(graph, landmark, [&](const GpInterval& interval, const Observation& z) {
+  for_each_observation(graph, landmark, span, [&](const GpInterval& interval, const Observation& z) {
     if (!span.has(z.t)) return;
     if (before == z.pixel) return;  // a camera that stands still: told again, the same error says nothing new
     before = z.pixel;

@@ -30,7 +30,7 @@ TEST_CASE("A landmark's views cost what its observations and its prior do, where
       for (const Vector3& moved : {Vector3(0, 0, 0), Vector3(0.1, -0.2, 0.3), Vector3(0, 0, -20)}) {
         const Vector3 position = landmark.position + moved;
         double expected = 0.5 * residual(landmark.prior, position).squaredNorm();
-        for_each_observation(graph, j, [&](const GpInterval& interval, const Observation& z) {
+        for_each_observation(graph, j, {}, [&](const GpInterval& interval, const Observation& z) {
           expected += 0.5 * loss.value(reprojection_residual(interval, position, z, graph.camera).squaredNorm());
         });
         CHECK(views.cost(position) == Approx(expected).epsilon(1e-10));
@@ -49,7 +49,7 @@ TEST_CASE("A landmark's own normal equations are the sums over its observations 
       const LandmarkViews::System system = views.linearise(position);
       Matrix3 H = Matrix3::Identity() / (landmark.prior.sigma * landmark.prior.sigma);
       Vector3 g = H * (position - landmark.prior.position);
-      for_each_observation(graph, j, [&](const GpInterval& interval, const Observation& z) {
+      for_each_observation(graph, j, {}, [&](const GpInterval& interval, const Observation& z) {
         const SE3 T = interval.pose(z.t).inverse();
         const Matrix23 J = z.inverse_sigma * graph.camera.project_jacobian(T * position) * T.R();
         const Vector2 e = reprojection_residual(interval, position, z, graph.camera);

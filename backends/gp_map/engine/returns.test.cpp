@@ -48,10 +48,9 @@ class Patrol {
     engine.add_state(guess(k));
     if (follower != nullptr) follower->engine.add_state(guess(k));
     for (int j = 0; j < kLandmarks; ++j) {
-      if (std::abs(landmark(j).x() - place(Patrol::kStep * k)) > 0.7) continue;
+      if (std::abs(landmark(j).x() - place(kStep * k)) > 0.7) continue;
       for (const double back : {0.6, 0.1}) {
-        if (observe(j, Patrol::kStep * (k - back)) && follower != nullptr)
-          CHECK(follower->observe(j, Patrol::kStep * (k - back)));
+        if (observe(j, kStep * (k - back)) && follower != nullptr) CHECK(follower->observe(j, kStep * (k - back)));
       }
     }
   }
