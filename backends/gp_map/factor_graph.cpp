@@ -116,6 +116,10 @@ void FactorGraph::scale_sigmas(int landmark, double scale) {
   scaled.sigma_scale = scale;
 }
 
+Observation FactorGraph::scaled(int landmark, const Observation& given) const {
+  return {given.t, given.pixel, given.inverse_sigma / landmarks[index(landmark)].sigma_scale};
+}
+
 int FactorGraph::interval_of(double t) const {
   if (states.size() < 2 || t < states.front().t || t > states.back().t) return -1;
   const auto right = std::lower_bound(states.begin(), states.end(), t,
@@ -130,7 +134,7 @@ int FactorGraph::first_state_after(double t) const {
 bool FactorGraph::add_observation(int landmark, const Observation& observation) {
   const int k = interval_of(observation.t);
   if (k < 0) return false;
-  intervals[index(k)].add(landmark, observation);
+  intervals[index(k)].add(landmark, scaled(landmark, observation));
   ++observation_count_;
   std::vector<int>& seen = landmarks[index(landmark)].intervals;
   const auto at = std::lower_bound(seen.begin(), seen.end(), k);

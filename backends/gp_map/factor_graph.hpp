@@ -85,7 +85,7 @@ struct FactorGraph {
     LandmarkPrior prior;
     std::vector<int> intervals;  ///< in which it is observed, ascending
     bool alive = true;           ///< false once removed; its index is not used again
-    double sigma_scale = 1.0;    ///< that has multiplied its observations' sigmas
+    double sigma_scale = 1.0;    ///< multiplies its observations' sigmas
   };
 
   PinholeCamera camera;
@@ -121,8 +121,11 @@ struct FactorGraph {
   /// Removes a landmark's observations from a time on.
   void remove_observations(int landmark, double from);
 
-  /// Makes the sigmas of a landmark's observations so many times those that they were given.
+  /// Makes the sigmas of a landmark's observations, those to come included, so many times those that they are given.
   void scale_sigmas(int landmark, double scale);
+
+  /// An observation with its sigma as given, as it counts here.
+  Observation scaled(int landmark, const Observation& given) const;
 
   /// The interval k with t in (t_{k−1}, t_k]; t = t_0 belongs to the first. −1 outside.
   int interval_of(double t) const;

@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 11);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 12);
 
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
@@ -59,6 +59,7 @@ void GpMap::step(double t) {
     add_observations();
     trust_parallax();
     add_landmarks();
+    bound_leverage();
     optimise();
     learn();
     if (had_map) reconsider(t);
@@ -127,6 +128,7 @@ void GpMap::begin_from(FirstMap map) {
   violent_motion_.begin(map.graph.qc);
   engine_.emplace(std::move(map.graph), EngineOptions{.lag = options_.lag});
   guessed_.clear();
+  leverage_.clear();
   next_hindsight_ = graph().states.front().t + kHindsight;
   returns_ = ReturnBudget(options_.map.returns);
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);

@@ -76,6 +76,7 @@ class GpMap : public BackEnd {
   void add_observations();
   void add_landmarks();
   void trust_parallax();
+  void bound_leverage();
   void optimise();
   void learn();
   void learn_with_hindsight(const TimeSpan& span);
@@ -122,6 +123,7 @@ class GpMap : public BackEnd {
   TrackBuffer young_;              ///< of all tracks, until the first map is settled
   std::set<TrackId> live_;         ///< tracks that are alive, or have ended since the last step
   std::vector<TrackId> track_of_;  ///< by landmark, of which a track that came back may have several
+  std::vector<double> leverage_;   ///< by landmark: what its leverage multiplies its sigmas by
   std::vector<int> guessed_;       ///< landmarks at the scene's depth, until they show parallax
   ReturnBudget returns_;
   int landmarks_ = 0;                                                  ///< tracks that are landmarks

@@ -16,6 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 constexpr double kFoundAgain = 10.0;  ///< [s] within which most are that are found again
+constexpr double kWellSeen = 1.5;     ///< error of a landmark's first observations, over what noise makes it
 
 }  // namespace
 
@@ -25,7 +26,8 @@ void GpMap::remove_outliers() {
   const double far = options_.map.outlier_threshold * noise_.scale_of_means();
   std::vector<int> outliers;
   for (const auto& group : graph().intervals.back().groups()) {
-    const double inverse_sigma = graph().intervals.back().of(group).back().inverse_sigma;
+    const double scale = graph().landmarks[index(group.landmark)].sigma_scale;
+    const double inverse_sigma = scale * graph().intervals.back().of(group).back().inverse_sigma;  // as given
     if (inverse_sigma * engine_->reprojection_mean(group.landmark) > far) outliers.push_back(group.landmark);
   }
   // Most tracks at once: then it is the motion that is wrong.
@@ -86,7 +88,11 @@ std::optional<std::pair<Vector3, LandmarkPrior>> GpMap::locate(TrackId track) co
     pixels.push_back(z.pixel);
   }
   const Triangulation result = triangulate(poses, pixels, context_.camera, options_.map.triangulation);
-  if (result.ok()) return std::pair{result.point, LandmarkPrior{}};
+  if (result.ok()) {
+    const double noise = options_.sigma_scale * usable.back()->sigma * noise_.scale_of_means();
+    if (result.rms_px > kWellSeen * std::numbers::sqrt2 * noise) return std::nullopt;
+    return std::pair{result.point, LandmarkPrior{}};
+  }
   const bool waited = usable.back()->t - usable.front()->t >= options_.map.patience;
   if (!waited || result.state != Triangulation::State::low_parallax) return std::nullopt;
   const double depth = median_depth();

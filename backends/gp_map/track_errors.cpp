@@ -16,9 +16,8 @@ constexpr double kOthers = 10.0;           ///< blocks that the noise of all tra
 
 }  // namespace
 
-TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, double usual, const TimeSpan& span)
-    : given_scale_(graph.landmarks[index(landmark)].sigma_scale) {
-  const Vector3& position = graph.landmarks[index(landmark)].position;
+TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, double usual, const TimeSpan& span) {
+  const FactorGraph::Landmark& l = graph.landmarks[index(landmark)];
   std::optional<Vector2> before;
   for_each_observation(graph, landmark, span, [&](const GpInterval& interval, const Observation& z) {
     if (!span.has(z.t)) return;
@@ -26,18 +25,18 @@ TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, double usual, c
     before = z.pixel;
     if (blocks_.empty() || z.t > blocks_.back().since + kBlock) blocks_.push_back({.since = z.t});
     ++blocks_.back().count;
-    blocks_.back().sum += reprojection_residual(interval, position, z, graph.camera);
+    blocks_.back().sum += l.sigma_scale * reprojection_residual(interval, l.position, z, graph.camera);
   });
   if (!blocks_.empty() && blocks_.back().count < kFewest) blocks_.pop_back();
   for (Block& block : blocks_) block.square = block.sum.squaredNorm() / (block.count * usual * usual);
 }
 
 double TrackErrors::sigma_scale() const {
-  if (blocks_.empty()) return given_scale_;
+  if (blocks_.empty()) return 1.0;
   std::vector<double> squares;
   for (const Block& block : blocks_) squares.push_back(block.square);
   const auto n = static_cast<double>(blocks_.size());
-  const double own = given_scale_ * given_scale_ * median(std::move(squares)) / kMedianSquare;
+  const double own = median(std::move(squares)) / kMedianSquare;
   return std::sqrt(std::max(1.0, (kOthers + n * own) / (kOthers + n)));
 }
 

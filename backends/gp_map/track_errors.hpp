@@ -31,11 +31,10 @@ class TrackErrors {
   struct Block {
     double since = 0.0;             ///< [s]
     int count = 0;                  ///< observations
-    Vector2 sum = Vector2::Zero();  ///< of residuals
+    Vector2 sum = Vector2::Zero();  ///< of residuals [sigmas as given]
     double square = 0.0;            ///< of the mean [sigmas of such means]
   };
   std::vector<Block> blocks_;
-  double given_scale_;  ///< of the sigmas, in the residuals already
 };
 
 }  // namespace evbench::gp_map

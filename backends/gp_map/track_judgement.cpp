@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -24,24 +25,31 @@ Judged errors_in(const FactorGraph& graph, const NoiseLearner& noise, const Time
   return errors;
 }
 
-/// Landmarks of which the track says something else. Where most of the tracks that are seen together do, it is the
-/// motion that is wrong, and none of them.
-std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double threshold) {
+/// Landmarks of which the track says something else in this span. Where most of the tracks that are seen together do,
+/// it is the motion that is wrong, and none of them.
+std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double threshold, const TimeSpan& span) {
+  const auto seen = [&](int j) {
+    return std::views::filter(graph.landmarks[index(j)].intervals, [&](int k) {
+      return span.meets(graph.states[index(k - 1)].t, graph.states[index(k)].t);
+    });
+  };
   std::vector<int> far;
   std::map<int, std::pair<int, int>> far_of;  // by interval: of so many that are seen in it so many are far off
   for (const auto& [j, error] : errors) {
     const bool is_far = error.is_outlier(threshold);
     if (is_far) far.push_back(j);
-    for (const int k : graph.landmarks[index(j)].intervals) {
+    for (const int k : seen(j)) {
       ++far_of[k].second;
       if (is_far) ++far_of[k].first;
     }
   }
   std::erase_if(far, [&](int j) {
-    const std::vector<int>& intervals = graph.landmarks[index(j)].intervals;
-    const auto wrong =
-        std::ranges::count_if(intervals, [&](int k) { return 2 * far_of.at(k).first > far_of.at(k).second; });
-    return 2 * wrong > std::ssize(intervals);
+    int wrong = 0, all = 0;
+    for (const int k : seen(j)) {
+      ++all;
+      if (2 * far_of.at(k).first > far_of.at(k).second) ++wrong;
+    }
+    return 2 * wrong > all;
   });
   return far;
 }
@@ -52,7 +60,7 @@ std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double
 void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span) {
   const double threshold = options_.map.outlier_threshold;
   const Judged errors = errors_in(graph(), noise, span);
-  for (const int outlier : outliers(graph(), errors, threshold)) {
+  for (const int outlier : outliers(graph(), errors, threshold, span)) {
     const int first_seen = graph().landmarks[index(outlier)].intervals.front();
     if (graph().states[index(first_seen)].t > span.from) {
       become_outlier(outlier);
@@ -71,9 +79,11 @@ void GpMap::slid_off(int landmark, double from) {
   end_track_of(landmark, Track::Role::slid);
 }
 
-/// Each track counts with its own noise.
+/// Each track counts with its own noise, within the bounds of its leverage.
 void GpMap::weigh_tracks(const NoiseLearner& noise) {
-  for (const auto& [j, error] : errors_in(graph(), noise, {})) engine_->scale_sigmas(j, error.sigma_scale());
+  for (const auto& [j, error] : errors_in(graph(), noise, {})) {
+    engine_->scale_sigmas(j, std::max(error.sigma_scale(), leverage_[index(j)]));
+  }
 }
 
 }  // namespace evbench::gp_map

@@ -118,8 +118,8 @@ class Engine {
   /// Removes a landmark's observations from a time on; what has been marginalised stays.
   void remove_observations(int landmark, double from);
 
-  /// Makes the sigmas of a landmark's observations so many times those that they were given; what has been marginalised
-  /// stays as it was.
+  /// Makes the sigmas of a landmark's observations, those to come included, so many times those that they are given;
+  /// what has been marginalised stays as it was.
   void scale_sigmas(int landmark, double scale);
 
   /// One Gauss-Newton step over what the changes since the last update concern, damped if it would raise the cost.

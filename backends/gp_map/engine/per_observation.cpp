@@ -40,8 +40,8 @@ bool Engine::observe(int landmark, const Observation& observation) {
   // An observation of something else is part of the next update.
   const bool live = slot >= 0 && graph_.interval_of(observation.t) == newest && open_live_factor();
   if (!insert(landmark, observation) || !live) return false;
-  const ObservationRows rows =
-      linearise(*live_interval_, live_derivatives_, graph_.camera, points_.landmark(landmark), observation);
+  const ObservationRows rows = linearise(*live_interval_, live_derivatives_, graph_.camera, points_.landmark(landmark),
+                                         graph_.scaled(landmark, observation));
   live_.add(slot, rows, graph_.loss.weight(rows.e.squaredNorm()));
   const Vector24 delta = live_.solve_states();
   if (!delta.allFinite()) return false;

@@ -1,0 +1,37 @@
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "backends/gp_map/gp_map.hpp"
+
+// How much one landmark may say of where the camera is.
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kMost = 1.5;    ///< times what a landmark at the scene's median depth says
+constexpr double kChange = 1.2;  ///< by which a bound must change to be set anew
+
+}  // namespace
+
+/// What a translation does to the image grows with nearness. A track that follows nothing, taken for a landmark close
+/// before the camera, says more of the translation than all others together, and the estimate then fits it: a robust
+/// loss, which looks at residuals, protects from no such leverage. Sigmas in proportion bound it, as Mallows'
+/// estimators do, and leave residuals by which such a track is told.
+void GpMap::bound_leverage() {
+  leverage_.resize(graph().landmarks.size(), 1.0);
+  const double median = median_depth();
+  const SE3 T_camera_world = graph().states.back().T.inverse();
+  std::vector<int> changed;
+  for (const auto& group : graph().intervals.back().groups()) {
+    const double depth = (T_camera_world * graph().landmarks[index(group.landmark)].position).z();
+    if (!(depth > 0.0)) continue;
+    const double bound = std::max(1.0, median / (kMost * depth));
+    double& present = leverage_[index(group.landmark)];
+    if (bound < kChange * present && bound > present / kChange) continue;
+    present = bound;
+    changed.push_back(group.landmark);
+  }
+  for (const int j : changed) engine_->scale_sigmas(j, leverage_[index(j)]);
+}
+
+}  // namespace evbench::gp_map
