@@ -30,7 +30,7 @@ Variogram variogram_of(const gp_map::FactorGraph& graph) {
   std::array<std::vector<double>, kApart.size()> squares, times;
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
     std::vector<Residual> track;
-    gp_map::for_each_observation(graph, j, [&](const GpInterval& interval, const gp_map::Observation& z) {
+    gp_map::for_each_observation(graph, j, {}, [&](const GpInterval& interval, const gp_map::Observation& z) {
       track.push_back(
           {z.t, gp_map::reprojection_residual(interval, graph.landmarks[index(j)].position, z, graph.camera)});
     });
