@@ -8,7 +8,7 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kMost = 1.5;    ///< times what a landmark at the scene's median depth says
+constexpr double kNear = 1.5;    ///< times nearer than the scene's median depth: from there on
 constexpr double kChange = 1.2;  ///< by which a bound must change to be set anew
 
 }  // namespace
