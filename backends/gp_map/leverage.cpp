@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "backends/gp_map/gp_map.hpp"
@@ -8,15 +7,17 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kNear = 1.5;    ///< times nearer than the scene's median depth: from there on
+constexpr double kNear = 1.5;  ///< times nearer than the scene's median depth: bounded from there on
+constexpr double kLargest = 100.0;
 constexpr double kChange = 1.2;  ///< by which a bound must change to be set anew
 
 }  // namespace
 
 /// What a translation does to the image grows with nearness. A track that follows nothing, taken for a landmark close
 /// before the camera, says more of the translation than all others together, and the estimate then fits it: a robust
-/// loss, which looks at residuals, protects from no such leverage. Sigmas in proportion bound it, as Mallows'
-/// estimators do, and leave residuals by which such a track is told.
+/// loss, which looks at residuals, protects from no such leverage. Larger sigmas bound it, as Mallows' estimators do,
+/// and leave residuals by which such a track is told. In proportion to nearness they would not do: translation and
+/// rotation move all that is equally far by nearly the same, so a little that is near decides between the two.
 void GpMap::bound_leverage() {
   leverage_.resize(graph().landmarks.size(), 1.0);
   const double median = median_depth();
@@ -25,7 +26,8 @@ void GpMap::bound_leverage() {
   for (const auto& group : graph().intervals.back().groups()) {
     const double depth = (T_camera_world * graph().landmarks[index(group.landmark)].position).z();
     if (!(depth > 0.0)) continue;
-    const double bound = std::max(1.0, median / (kMost * depth));
+    const double nearness = std::max(1.0, median / (kNear * depth));
+    const double bound = std::min(kLargest, nearness * nearness);
     double& present = leverage_[index(group.landmark)];
     if (bound < kChange * present && bound > present / kChange) continue;
     present = bound;
