@@ -187,6 +187,22 @@ TEST_CASE("Removing an anchor's landmark leaves the scale as it is") {
   CHECK(linearise_anchor(graph).e == Approx(0.0).margin(1e-9));
 }
 
+TEST_CASE("A landmark's sigma scale counts for its observations to come, and is taken back as it was given") {
+  FactorGraph graph;
+  graph.add_state({0.0, {}, Vector6::Zero()});
+  graph.add_state({1.0, {}, Vector6::Zero()});
+  const int j = graph.add_landmark({0.0, 0.0, 1.0});
+  const auto inverse_sigma = [&](std::size_t i) { return graph.intervals[1].of(j)[i].inverse_sigma; };
+  REQUIRE(graph.add_observation(j, {0.3, {1.0, 2.0}, 4.0}));
+  graph.scale_sigmas(j, 2.0);
+  REQUIRE(graph.add_observation(j, {0.6, {1.0, 2.0}, 4.0}));
+  CHECK(inverse_sigma(0) == 2.0);
+  CHECK(inverse_sigma(1) == 2.0);
+  graph.scale_sigmas(j, 1.0);
+  CHECK(inverse_sigma(0) == 4.0);
+  CHECK(inverse_sigma(1) == 4.0);
+}
+
 TEST_CASE("The scale anchor feels what the scale's logarithm changes by, and little of one landmark that runs off") {
   RandomTangents random;
   constexpr int kLandmarks = 20;

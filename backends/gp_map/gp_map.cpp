@@ -114,6 +114,7 @@ void GpMap::split(TrackId id) {
   const double sigma = std::sqrt(known->selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff());
   track = {.role = Track::Role::landmark, .landmark = engine_->add_landmark(position, {position, sigma})};
   track_of_.push_back(id);
+  leverage_.push_back(1.0);
 }
 
 bool GpMap::initialise(double t) {
@@ -128,7 +129,6 @@ void GpMap::begin_from(FirstMap map) {
   violent_motion_.begin(map.graph.qc);
   engine_.emplace(std::move(map.graph), EngineOptions{.lag = options_.lag});
   guessed_.clear();
-  leverage_.clear();
   next_hindsight_ = graph().states.front().t + kHindsight;
   returns_ = ReturnBudget(options_.map.returns);
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
@@ -138,6 +138,7 @@ void GpMap::begin_from(FirstMap map) {
           : std::optional<RecentPrior>(std::in_place, options_.learn.window, options_.learn.memory, graph().qc));
   noise_ = NoiseLearner();
   track_of_.clear();
+  leverage_.clear();
   landmarks_ = 0;
   for (const TrackId track : map.tracks) become_landmark(track, static_cast<int>(track_of_.size()));
   context_.log(

@@ -118,6 +118,7 @@ void GpMap::become_landmark(TrackId id, int landmark) {
   track.role = Track::Role::landmark;
   track.landmark = landmark;
   track_of_.push_back(id);
+  leverage_.push_back(1.0);
   ++landmarks_;
   waiting_.forget(id);
 }

@@ -7,9 +7,9 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kNear = 1.5;  ///< times nearer than the scene's median depth: bounded from there on
-constexpr double kLargest = 100.0;
-constexpr double kChange = 1.2;  ///< by which a bound must change to be set anew
+constexpr double kNear = 1.5;       ///< times nearer than the scene's median depth: bounded from there on
+constexpr double kLargest = 100.0;  ///< bound: such a landmark says nothing
+constexpr double kChange = 1.2;     ///< by which a bound must change to be set anew
 
 }  // namespace
 
@@ -19,7 +19,6 @@ constexpr double kChange = 1.2;  ///< by which a bound must change to be set ane
 /// and leave residuals by which such a track is told. In proportion to nearness they would not do: translation and
 /// rotation move all that is equally far by nearly the same, so a little that is near decides between the two.
 void GpMap::bound_leverage() {
-  leverage_.resize(graph().landmarks.size(), 1.0);
   const double median = median_depth();
   const SE3 T_camera_world = graph().states.back().T.inverse();
   std::vector<int> changed;
