@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "backends/gp_map/problem_graph.hpp"
@@ -17,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 13);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 12);
 
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
@@ -63,7 +62,6 @@ void GpMap::step(double t) {
     bound_leverage();
     optimise();
     learn();
-    reconsider_depths();
     if (had_map) reconsider(t);
     check_support();
     tell_recent(t);
@@ -132,7 +130,6 @@ void GpMap::begin_from(FirstMap map) {
   engine_.emplace(std::move(map.graph), EngineOptions{.lag = options_.lag});
   guessed_.clear();
   next_hindsight_ = graph().states.front().t + kHindsight;
-  next_reconsidering_ = std::numeric_limits<double>::infinity();
   returns_ = ReturnBudget(options_.map.returns);
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
   recent_.emplace(
@@ -209,7 +206,6 @@ void GpMap::learn() {
   const double now = graph().states.back().t;
   if (now < next_hindsight_) return;
   next_hindsight_ = now + kEvery;
-  next_reconsidering_ = now + kEvery / 2.0;
   learn_with_hindsight({now - kHindsight, now - kOneSided});
   last_update_ = engine_->update();
 }

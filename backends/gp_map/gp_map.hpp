@@ -80,7 +80,6 @@ class GpMap : public BackEnd {
   void optimise();
   void learn();
   void learn_with_hindsight(const TimeSpan& span);
-  void reconsider_depths();
   void check_support();
   void forget_ended_tracks(double t);
   void predict_tracks();
@@ -139,7 +138,6 @@ class GpMap : public BackEnd {
   std::optional<RecentMotion> recent_;  ///< as it is told online; from the first map on
   NoiseLearner noise_;
   double next_hindsight_ = 0.0;      ///< [s]
-  double next_reconsidering_ = 0.0;  ///< [s]
   double seconds_since_step_ = 0.0;  ///< spent on single observations
   TrackingMonitor monitor_;
   double until_ = 0.0;                                        ///< [s] of the last batch

@@ -63,7 +63,6 @@ class RandomSession {
   void remove_landmark(int landmark);
   void remove_observations();
   void scale_sigmas();
-  void place();
   void remove_newest_state();
   void refused();
   void degenerate_landmark();
