@@ -16,12 +16,14 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 12);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 13);
 
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
 constexpr double kOneSided = 0.1;  ///< what was seen so shortly ago is known from one side
 constexpr double kYoung = 5.0;     ///< [s] for which another first map is looked for, and no track is judged by it
+constexpr double kReconsidering = 0.15;  ///< [s] between two looks for another explanation
+constexpr int kSettling = 3;             ///< steps from another explanation
 constexpr double kMemory = 10.0;   ///< [s] for which tracks are remembered that ended before there is a map
 
 }  // namespace
@@ -62,6 +64,7 @@ void GpMap::step(double t) {
     bound_leverage();
     optimise();
     learn();
+    reconsider_recent();
     if (had_map) reconsider(t);
     check_support();
     tell_recent(t);
@@ -130,6 +133,7 @@ void GpMap::begin_from(FirstMap map) {
   engine_.emplace(std::move(map.graph), EngineOptions{.lag = options_.lag});
   guessed_.clear();
   next_hindsight_ = graph().states.front().t + kHindsight;
+  next_reconsidering_ = next_hindsight_;
   returns_ = ReturnBudget(options_.map.returns);
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
   recent_.emplace(
@@ -208,6 +212,23 @@ void GpMap::learn() {
   next_hindsight_ = now + kEvery;
   learn_with_hindsight({now - kHindsight, now - kOneSided});
   last_update_ = engine_->update();
+}
+
+/// What came into view of late may be explained otherwise.
+void GpMap::reconsider_recent() {
+  const double now = graph().states.back().t;
+  if (now < next_reconsidering_) return;
+  next_reconsidering_ = now + kReconsidering;
+  supposed_ = supposed_ == SupposedPlane::frontal ? SupposedPlane::dual : SupposedPlane::frontal;
+  const auto other = explain_otherwise(graph(), engine_->first_state(), options_.health.min_landmarks, supposed_);
+  if (!other) return;
+  context_.log(fmt::format("{:.3f} s: what came into view of late is explained better otherwise, by {:.1f}", now,
+                           other->advantage));
+  for (std::size_t i = 0; i < other->states.size(); ++i) {
+    engine_->place_state(other->first + static_cast<int>(i), other->states[i]);
+  }
+  for (const auto& [landmark, position] : other->landmarks) engine_->place_landmark(landmark, position);
+  for (int step = 0; step < kSettling; ++step) last_update_ = engine_->update();
 }
 
 /// What was seen a while ago is known from both sides: tracks show whether they stayed on their points, and the motion

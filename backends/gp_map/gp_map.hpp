@@ -15,6 +15,7 @@
 #include "backends/gp_map/observation_follower.hpp"
 #include "backends/gp_map/options.hpp"
 #include "backends/gp_map/prior_learning.hpp"
+#include "backends/gp_map/recent_explanation.hpp"
 #include "backends/gp_map/recent_motion.hpp"
 #include "backends/gp_map/return_budget.hpp"
 #include "backends/gp_map/state_placement.hpp"
@@ -80,6 +81,7 @@ class GpMap : public BackEnd {
   void optimise();
   void learn();
   void learn_with_hindsight(const TimeSpan& span);
+  void reconsider_recent();
   void check_support();
   void forget_ended_tracks(double t);
   void predict_tracks();
@@ -138,6 +140,8 @@ class GpMap : public BackEnd {
   std::optional<RecentMotion> recent_;  ///< as it is told online; from the first map on
   NoiseLearner noise_;
   double next_hindsight_ = 0.0;      ///< [s]
+  double next_reconsidering_ = 0.0;  ///< [s]
+  SupposedPlane supposed_ = SupposedPlane::dual;
   double seconds_since_step_ = 0.0;  ///< spent on single observations
   TrackingMonitor monitor_;
   double until_ = 0.0;                                        ///< [s] of the last batch

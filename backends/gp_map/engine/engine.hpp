@@ -122,6 +122,11 @@ class Engine {
   /// what has been marginalised stays as it was.
   void scale_sigmas(int landmark, double scale);
 
+  /// Makes this the estimate, from which the next update starts. What has been marginalised, or is tied to what has
+  /// been, stays where it is.
+  void place_state(int i, const ControlState& estimate);
+  void place_landmark(int landmark, const Vector3& position);
+
   /// One Gauss-Newton step over what the changes since the last update concern, damped if it would raise the cost.
   UpdateSummary update();
 

@@ -95,8 +95,10 @@ void RandomSession::operate() {
     for (const int j : std::vector(graph().anchor.landmarks)) remove_landmark(j);
   } else if (which < 0.85) {
     if (options_.covariances) check_covariances();
-  } else {
+  } else if (which < 0.99) {
     update();
+  } else {
+    place();
   }
 }
 
@@ -242,6 +244,30 @@ void RandomSession::scale_sigmas() {
     twin_->scale_sigmas(j, scale);
   }
   engine_.scale_sigmas(j, scale);
+}
+
+/// Another estimate of a state and a landmark, from which the problem is linear then; not of what is marginalised.
+void RandomSession::place() {
+  const auto away = [&](const Vector3& from) -> Vector3 {
+    return from + 0.1 * Vector3(random_.uniform(-1.0, 1.0), random_.uniform(-1.0, 1.0), random_.uniform(-1.0, 1.0));
+  };
+  const auto i = random_.index(graph().states.size());
+  ControlState state = graph().states[i];
+  state.T.p = away(state.T.p);
+  state.velocity.tail<3>() = away(state.velocity.tail<3>());
+  engine_.place_state(static_cast<int>(i), state);
+  if (graph().states[i].T.p.isApprox(state.T.p)) {
+    state_guesses_[i] = state;
+    if (twin_) twin_->place_state(static_cast<int>(i), state);
+  }
+  const int j = any_landmark();
+  const Vector3 position = away(graph().landmarks[index(j)].position);
+  engine_.place_landmark(j, position);
+  if (graph().landmarks[index(j)].position.isApprox(position)) {
+    landmark_guesses_[index(j)] = position;
+    if (twin_) twin_->place_landmark(j, position);
+  }
+  require_finite(graph());
 }
 
 void RandomSession::remove_newest_state() {

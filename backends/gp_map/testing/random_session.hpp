@@ -63,6 +63,7 @@ class RandomSession {
   void remove_landmark(int landmark);
   void remove_observations();
   void scale_sigmas();
+  void place();
   void remove_newest_state();
   void refused();
   void degenerate_landmark();

@@ -1,0 +1,176 @@
+#include "backends/gp_map/recent_explanation.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "backends/gp_map/engine/engine.hpp"
+#include "backends/gp_map/observation_follower.hpp"
+#include "core/support/median.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kOfLate = 1.5;       ///< [s] since which landmarks are new,
+constexpr double kTurnover = 2.5;     ///< or since when so many came as so many times those in view
+constexpr double kKnown = 0.03;       ///< to which landmarks of before are known, as a share of their distance
+constexpr double kHeld = 1e-4;        ///< [rad, units] of the pose from which it begins
+constexpr double kOnPlane = 0.05;     ///< to which new ones are on the plane at first, as a share of the usual depth
+constexpr double kMostOblique = 4.0;  ///< times nearer or farther than usual: not where the plane is seen edge-on
+constexpr double kAdvantage = 10.0;   ///< by which the other explanation's cost must be lower
+constexpr int kIterations = 6;
+constexpr double kTolerance = 3e-3;
+
+struct Seen {
+  int landmark = 0;
+  int since = 0;  ///< interval
+};
+
+/// The newest part of a problem.
+struct Part {
+  int first = 0;           ///< its intervals are those from this one on
+  std::vector<Seen> seen;  ///< its landmarks, the newest one first
+  std::size_t fresh = 0;   ///< so many of them came into view in it
+};
+
+std::optional<Part> newest_part(const FactorGraph& graph, int first_state, int enough) {
+  Part part{graph.first_state_after(graph.states.back().t - kOfLate), {}, 0};
+  for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
+    const std::vector<int>& intervals = graph.landmarks[index(j)].intervals;
+    if (!intervals.empty() && intervals.back() >= part.first) part.seen.push_back({j, intervals.front()});
+  }
+  std::ranges::stable_sort(part.seen, std::greater{}, &Seen::since);
+  const auto most = static_cast<std::size_t>(kTurnover * static_cast<double>(graph.intervals.back().groups().size()));
+  if (most < part.seen.size()) part.first = std::max(part.first, part.seen[most].since + 1);
+  if (part.first <= first_state + 1 || part.first + 1 >= std::ssize(graph.states)) return std::nullopt;
+  std::erase_if(part.seen,
+                [&](const Seen& s) { return graph.landmarks[index(s.landmark)].intervals.back() < part.first; });
+  const auto old = std::ranges::find_if(part.seen, [&](const Seen& s) { return s.since < part.first; });
+  part.fresh = static_cast<std::size_t>(old - part.seen.begin());
+  if (old - part.seen.begin() < enough || part.seen.end() - old < enough) return std::nullopt;
+  return part;
+}
+
+/// As a problem of its own, its landmarks numbered as in `part`; the state before it is held.
+FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
+  FactorGraph problem;
+  problem.camera = graph.camera;
+  problem.loss = graph.loss;
+  for (int k = part.first - 1; k < std::ssize(graph.states); ++k) {
+    problem.qc = graph.qcs[index(k)];
+    problem.add_state(graph.states[index(k)]);
+    problem.expansions.back() = graph.expansions[index(k)];
+  }
+  const SE3& begin = problem.states.front().T;
+  problem.pose_priors.push_back({0, begin, Vector6::Constant(kHeld)});
+  for (const Seen& s : part.seen) {
+    const FactorGraph::Landmark& landmark = graph.landmarks[index(s.landmark)];
+    const LandmarkPrior known{landmark.position, kKnown * (landmark.position - begin.p).norm()};
+    const int j = problem.add_landmark(landmark.position, s.since < part.first ? known : landmark.prior);
+    for (const int k : landmark.intervals) {
+      if (k < part.first) continue;
+      for (const Observation& z : graph.intervals[index(k)].of(s.landmark)) problem.add_observation(j, z);
+    }
+  }
+  return problem;
+}
+
+/// The depth of a landmark when it was seen first.
+double first_depth(const FactorGraph& graph, const FactorGraph::Landmark& landmark) {
+  return (graph.states[index(landmark.intervals.front())].T.inverse() * landmark.position).z();
+}
+
+/// A plane through the middle of what is new.
+struct Plane {
+  Vector3 normal, point;
+  double usual;  ///< depth
+
+  /// Where a ray from p, of depth 1, meets it, within bounds.
+  Vector3 meets(const Vector3& p, const Vector3& ray) const {
+    const double toward = normal.dot(ray), away = normal.dot(point - p);
+    const double most = kMostOblique * usual;
+    return p + (toward * away > 0.0 ? std::clamp(away / toward, usual / kMostOblique, most) : most) * ray;
+  }
+};
+
+std::optional<Plane> suppose(SupposedPlane supposed, const FactorGraph& problem, std::size_t fresh) {
+  std::vector<double> depths;
+  Vector3 sum = Vector3::Zero();  // of where they would be at the usual depth of 1, less the camera's place, and of this
+  Vector3 places = Vector3::Zero();
+  for (std::size_t j = 0; j < fresh; ++j) {
+    const FactorGraph::Landmark& landmark = problem.landmarks[j];
+    const double depth = first_depth(problem, landmark);
+    if (!(depth > 0.0)) continue;
+    const Vector3& p = problem.states[index(landmark.intervals.front())].T.p;
+    depths.push_back(depth);
+    places += p;
+    sum += (landmark.position - p) / depth;
+  }
+  if (depths.empty()) return std::nullopt;
+  const auto count = static_cast<double>(depths.size());
+  const double usual = median(std::move(depths));
+  const SE3 &begin = problem.states.front().T, &end = problem.states.back().T;
+  const Vector3 along = supposed == SupposedPlane::dual ? Vector3(end.p - begin.p) : Vector3(begin.R().col(2) + end.R().col(2));
+  return Plane{along.normalized(), (places + usual * sum) / count, usual};
+}
+
+/// The same problem, gone through from its beginning: what comes into view begins on the plane.
+FactorGraph from_plane(const FactorGraph& problem, std::size_t fresh, const Plane& plane) {
+  Engine engine(problem.camera, problem.qc, problem.loss);
+  engine.add_state(problem.states.front());
+  engine.add_pose_prior(problem.pose_priors.front());
+  FactorGraph result = problem;
+  std::vector<int> known(problem.landmarks.size(), -1);  // the engine's numbers
+  for (int k = 1; k < std::ssize(problem.states); ++k) {
+    engine.set_next_qc(problem.qcs[index(k)]);
+    add_extrapolated_state(engine, problem.states[index(k)].t);
+    for (const auto& group : problem.intervals[index(k)].groups()) {
+      const auto observations = problem.intervals[index(k)].of(group);
+      int& j = known[index(group.landmark)];
+      if (j < 0 && index(group.landmark) < fresh) {
+        const SE3& T = engine.graph().states.back().T;
+        const Vector3 place = plane.meets(T.p, T.R() * problem.camera.ray(observations.front().pixel));
+        j = engine.add_landmark(place, {place, kOnPlane * plane.usual});
+      } else if (j < 0) {
+        const FactorGraph::Landmark& landmark = problem.landmarks[index(group.landmark)];
+        j = engine.add_landmark(landmark.position, landmark.prior);
+      }
+      for (const Observation& z : observations) engine.add_observation(j, z);
+    }
+    engine.update();
+  }
+  engine.settle();
+  result.states = engine.graph().states;
+  for (std::size_t j = 0; j < known.size(); ++j) {
+    if (known[j] >= 0) result.landmarks[j].position = engine.graph().landmarks[index(known[j])].position;
+  }
+  return result;
+}
+
+/// Solves it and returns its cost.
+double solve(FactorGraph& problem) {
+  Engine engine(std::move(problem), {});
+  const double cost = engine.optimise(kIterations, kTolerance).final_cost;
+  problem = engine.graph();
+  return cost;
+}
+
+}  // namespace
+
+std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, int first_state, int enough,
+                                                   SupposedPlane supposed) {
+  const auto part = newest_part(graph, first_state, enough);
+  if (!part) return std::nullopt;
+  FactorGraph present = problem_of(graph, *part);
+  const auto plane = suppose(supposed, present, part->fresh);
+  if (!plane) return std::nullopt;
+  FactorGraph other = from_plane(present, part->fresh, *plane);
+  const double advantage = solve(present) - solve(other);
+  if (!(advantage > kAdvantage)) return std::nullopt;
+  RecentExplanation result{part->first, {other.states.begin() + 1, other.states.end()}, {}, advantage};
+  for (std::size_t j = 0; j < part->fresh; ++j) {
+    result.landmarks.emplace_back(part->seen[j].landmark, other.landmarks[j].position);
+  }
+  return result;
+}
+
+}  // namespace evbench::gp_map
