@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "backends/gp_map/engine/engine.hpp"
+#include "backends/gp_map/factors.hpp"
 #include "backends/gp_map/observation_follower.hpp"
 #include "core/support/median.hpp"
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double kOfLate = 1.5;       ///< [s] since which landmarks are new,
 constexpr double kTurnover = 2.5;     ///< or since when so many came as so many times those in view
+constexpr int kMostStates = 32;
 constexpr double kKnown = 0.03;       ///< to which landmarks of before are known, as a share of their distance
 constexpr double kHeld = 1e-4;        ///< [rad, units] of the pose from which it begins
 constexpr double kOnPlane = 0.05;     ///< to which new ones are on the plane at first, as a share of the usual depth
@@ -33,7 +35,8 @@ struct Part {
 };
 
 std::optional<Part> newest_part(const FactorGraph& graph, int first_state, int enough) {
-  Part part{graph.first_state_after(graph.states.back().t - kOfLate), {}, 0};
+  Part part;
+  part.first = std::max(graph.first_state_after(graph.states.back().t - kOfLate), static_cast<int>(graph.states.size()) - kMostStates);
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
     const std::vector<int>& intervals = graph.landmarks[index(j)].intervals;
     if (!intervals.empty() && intervals.back() >= part.first) part.seen.push_back({j, intervals.front()});
@@ -164,7 +167,9 @@ std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, int
   const auto plane = suppose(supposed, present, part->fresh);
   if (!plane) return std::nullopt;
   FactorGraph other = from_plane(present, part->fresh, *plane);
-  const double advantage = solve(present) - solve(other);
+  const double cost = solve(other);
+  if (!(cost + kAdvantage < evaluate(present).total())) return std::nullopt;
+  const double advantage = solve(present) - cost;
   if (!(advantage > kAdvantage)) return std::nullopt;
   RecentExplanation result{part->first, {other.states.begin() + 1, other.states.end()}, {}, advantage};
   for (std::size_t j = 0; j < part->fresh; ++j) {
