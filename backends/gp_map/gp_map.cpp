@@ -24,7 +24,7 @@ constexpr double kOneSided = 0.1;  ///< what was seen so shortly ago is known fr
 constexpr double kYoung = 5.0;     ///< [s] for which another first map is looked for, and no track is judged by it
 constexpr double kReconsidering = 0.15;  ///< [s] between two looks for another explanation
 constexpr int kSettling = 3;             ///< steps from another explanation
-constexpr double kMemory = 10.0;   ///< [s] for which tracks are remembered that ended before there is a map
+constexpr double kMemory = 10.0;         ///< [s] for which tracks are remembered that ended before there is a map
 
 }  // namespace
 

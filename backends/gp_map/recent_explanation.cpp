@@ -1,7 +1,6 @@
 #include "backends/gp_map/recent_explanation.hpp"
 
 #include <algorithm>
-#include <functional>
 
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/factors.hpp"
@@ -11,9 +10,7 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kOfLate = 1.5;       ///< [s] since which landmarks are new,
-constexpr double kTurnover = 2.5;     ///< or since when so many came as so many times those in view
-constexpr int kMostStates = 32;
+constexpr int kStates = 32;           ///< of late
 constexpr double kKnown = 0.03;       ///< to which landmarks of before are known, as a share of their distance
 constexpr double kHeld = 1e-4;        ///< [rad, units] of the pose from which it begins
 constexpr double kOnPlane = 0.05;     ///< to which new ones are on the plane at first, as a share of the usual depth
@@ -22,38 +19,25 @@ constexpr double kAdvantage = 10.0;   ///< by which the other explanation's cost
 constexpr int kIterations = 6;
 constexpr double kTolerance = 3e-3;
 
-struct Seen {
-  int landmark = 0;
-  int since = 0;  ///< interval
-};
-
 /// The newest part of a problem.
 struct Part {
-  int first = 0;           ///< its intervals are those from this one on
-  std::vector<Seen> seen;  ///< its landmarks, the newest one first
-  std::size_t fresh = 0;   ///< so many of them came into view in it
+  int first = 0;                 ///< its intervals are those from this one on
+  std::vector<int> fresh, held;  ///< landmarks seen in it, which came into view in it or before
 };
 
-std::optional<Part> newest_part(const FactorGraph& graph, int first_state, int enough) {
+std::optional<Part> newest_part(const FactorGraph& graph, int first_state, std::size_t enough) {
   Part part;
-  part.first = std::max(graph.first_state_after(graph.states.back().t - kOfLate), static_cast<int>(graph.states.size()) - kMostStates);
+  part.first = static_cast<int>(graph.states.size()) - kStates;
+  if (part.first <= first_state + 1) return std::nullopt;
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
-    const std::vector<int>& intervals = graph.landmarks[index(j)].intervals;
-    if (!intervals.empty() && intervals.back() >= part.first) part.seen.push_back({j, intervals.front()});
+    const std::vector<int>& seen = graph.landmarks[index(j)].intervals;
+    if (!seen.empty() && seen.back() >= part.first) (seen.front() < part.first ? part.held : part.fresh).push_back(j);
   }
-  std::ranges::stable_sort(part.seen, std::greater{}, &Seen::since);
-  const auto most = static_cast<std::size_t>(kTurnover * static_cast<double>(graph.intervals.back().groups().size()));
-  if (most < part.seen.size()) part.first = std::max(part.first, part.seen[most].since + 1);
-  if (part.first <= first_state + 1 || part.first + 1 >= std::ssize(graph.states)) return std::nullopt;
-  std::erase_if(part.seen,
-                [&](const Seen& s) { return graph.landmarks[index(s.landmark)].intervals.back() < part.first; });
-  const auto old = std::ranges::find_if(part.seen, [&](const Seen& s) { return s.since < part.first; });
-  part.fresh = static_cast<std::size_t>(old - part.seen.begin());
-  if (old - part.seen.begin() < enough || part.seen.end() - old < enough) return std::nullopt;
+  if (part.fresh.size() < enough || part.held.size() < enough) return std::nullopt;
   return part;
 }
 
-/// As a problem of its own, its landmarks numbered as in `part`; the state before it is held.
+/// As a problem of its own, its landmarks in this order; the state before it is held.
 FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
   FactorGraph problem;
   problem.camera = graph.camera;
@@ -65,21 +49,20 @@ FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
   }
   const SE3& begin = problem.states.front().T;
   problem.pose_priors.push_back({0, begin, Vector6::Constant(kHeld)});
-  for (const Seen& s : part.seen) {
-    const FactorGraph::Landmark& landmark = graph.landmarks[index(s.landmark)];
-    const LandmarkPrior known{landmark.position, kKnown * (landmark.position - begin.p).norm()};
-    const int j = problem.add_landmark(landmark.position, s.since < part.first ? known : landmark.prior);
-    for (const int k : landmark.intervals) {
+  const auto add = [&](int landmark, const LandmarkPrior& prior) {
+    const FactorGraph::Landmark& l = graph.landmarks[index(landmark)];
+    const int j = problem.add_landmark(l.position, prior);
+    for (const int k : l.intervals) {
       if (k < part.first) continue;
-      for (const Observation& z : graph.intervals[index(k)].of(s.landmark)) problem.add_observation(j, z);
+      for (const Observation& z : graph.intervals[index(k)].of(landmark)) problem.add_observation(j, z);
     }
+  };
+  for (const int j : part.fresh) add(j, graph.landmarks[index(j)].prior);
+  for (const int j : part.held) {
+    const Vector3& position = graph.landmarks[index(j)].position;
+    add(j, {position, kKnown * (position - begin.p).norm()});
   }
   return problem;
-}
-
-/// The depth of a landmark when it was seen first.
-double first_depth(const FactorGraph& graph, const FactorGraph::Landmark& landmark) {
-  return (graph.states[index(landmark.intervals.front())].T.inverse() * landmark.position).z();
 }
 
 /// A plane through the middle of what is new.
@@ -95,25 +78,29 @@ struct Plane {
   }
 };
 
+/// None where what is new lies behind the camera.
 std::optional<Plane> suppose(SupposedPlane supposed, const FactorGraph& problem, std::size_t fresh) {
+  struct Sight {
+    Vector3 p, ray;  // of depth 1
+  };
+  std::vector<Sight> sights;
   std::vector<double> depths;
-  Vector3 sum = Vector3::Zero();  // of where they would be at the usual depth of 1, less the camera's place, and of this
-  Vector3 places = Vector3::Zero();
   for (std::size_t j = 0; j < fresh; ++j) {
     const FactorGraph::Landmark& landmark = problem.landmarks[j];
-    const double depth = first_depth(problem, landmark);
+    const SE3& T = problem.states[index(landmark.intervals.front())].T;
+    const double depth = (T.inverse() * landmark.position).z();
     if (!(depth > 0.0)) continue;
-    const Vector3& p = problem.states[index(landmark.intervals.front())].T.p;
     depths.push_back(depth);
-    places += p;
-    sum += (landmark.position - p) / depth;
+    sights.push_back({T.p, (landmark.position - T.p) / depth});
   }
   if (depths.empty()) return std::nullopt;
-  const auto count = static_cast<double>(depths.size());
   const double usual = median(std::move(depths));
+  Vector3 middle = Vector3::Zero();
+  for (const Sight& sight : sights) middle += (sight.p + usual * sight.ray) / static_cast<double>(sights.size());
   const SE3 &begin = problem.states.front().T, &end = problem.states.back().T;
-  const Vector3 along = supposed == SupposedPlane::dual ? Vector3(end.p - begin.p) : Vector3(begin.R().col(2) + end.R().col(2));
-  return Plane{along.normalized(), (places + usual * sum) / count, usual};
+  const Vector3 normal =
+      supposed == SupposedPlane::dual ? Vector3(end.p - begin.p) : Vector3(begin.R().col(2) + end.R().col(2));
+  return Plane{normal.normalized(), middle, usual};
 }
 
 /// The same problem, gone through from its beginning: what comes into view begins on the plane.
@@ -161,19 +148,19 @@ double solve(FactorGraph& problem) {
 
 std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, int first_state, int enough,
                                                    SupposedPlane supposed) {
-  const auto part = newest_part(graph, first_state, enough);
+  const auto part = newest_part(graph, first_state, index(enough));
   if (!part) return std::nullopt;
   FactorGraph present = problem_of(graph, *part);
-  const auto plane = suppose(supposed, present, part->fresh);
+  const auto plane = suppose(supposed, present, part->fresh.size());
   if (!plane) return std::nullopt;
-  FactorGraph other = from_plane(present, part->fresh, *plane);
+  FactorGraph other = from_plane(present, part->fresh.size(), *plane);
   const double cost = solve(other);
   if (!(cost + kAdvantage < evaluate(present).total())) return std::nullopt;
   const double advantage = solve(present) - cost;
   if (!(advantage > kAdvantage)) return std::nullopt;
   RecentExplanation result{part->first, {other.states.begin() + 1, other.states.end()}, {}, advantage};
-  for (std::size_t j = 0; j < part->fresh; ++j) {
-    result.landmarks.emplace_back(part->seen[j].landmark, other.landmarks[j].position);
+  for (std::size_t j = 0; j < part->fresh.size(); ++j) {
+    result.landmarks.emplace_back(part->fresh[j], other.landmarks[j].position);
   }
   return result;
 }

@@ -123,7 +123,7 @@ class Engine {
   void scale_sigmas(int landmark, double scale);
 
   /// Makes this the estimate, from which the next update starts. What has been marginalised, or is tied to what has
-  /// been, stays where it is.
+  /// been, and a landmark that came back without its stages being redone, stay where they are.
   void place_state(int i, const ControlState& estimate);
   void place_landmark(int landmark, const Vector3& position);
 

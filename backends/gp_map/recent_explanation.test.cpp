@@ -1,0 +1,94 @@
+#include "backends/gp_map/recent_explanation.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "backends/gp_map/engine/engine.hpp"
+#include "backends/gp_map/factors.hpp"
+#include "core/simulation/random.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr int kStates = 33, kOld = 12, kLandmarks = 90;
+constexpr double kStep = 0.05, kSigma = 0.3;
+
+/// A camera that flies towards a plane and along it, past landmarks that live for 0.5 s: at the true values.
+FactorGraph flight(std::uint64_t seed) {
+  Random random(seed);
+  FactorGraph graph;
+  graph.camera = {200.0, 200.0, 120.0, 90.0};
+  graph.qc = Vector6::Constant(0.1);
+  graph.loss = RobustLoss(RobustLoss::Kind::cauchy, 2.0);
+  ControlState state;
+  for (int i = 0; i < kStates; ++i) {
+    const double t = kStep * i;
+    state.t = t;
+    state.velocity << 0.0, 0.3, 0.0, 0.35 - 0.2 * t, 0.1 * t, 0.35;
+    graph.add_state(state);
+    state.T = state.T * se3::exp(kStep * state.velocity);
+  }
+  for (int j = 0; j < kLandmarks; ++j) {
+    const double from = j < kOld ? 0.0 : 0.1 + 1.45 * (j - kOld) / (kLandmarks - kOld);
+    const auto pose = [&](double t) {
+      const int k = graph.interval_of(t);
+      return GpInterval(graph.states[index(k - 1)], graph.states[index(k)]).pose(t);
+    };
+    const SE3 T = pose(from);
+    const Vector3 ray = T.R() * graph.camera.ray({random.uniform(20.0, 220.0), random.uniform(20.0, 160.0)});
+    const Vector3 normal(-0.3, 0.0, 1.0);  // of the plane z = 2 + 0.3 x
+    const Vector3 point = T.p + (2.0 - normal.dot(T.p)) / normal.dot(ray) * ray;
+    const int landmark = graph.add_landmark(point);
+    for (double t = from + 0.5 * kStep; t < std::min(from + 0.5, kStep * (kStates - 1)); t += 0.5 * kStep) {
+      const Vector3 q = pose(t).inverse() * point;
+      const Vector2 pixel = graph.camera.project(q) + kSigma * Vector2(random.normal(), random.normal());
+      graph.add_observation(landmark, {t, pixel, 1.0 / kSigma});
+    }
+  }
+  graph.pose_priors.push_back({0, graph.states.front().T, Vector6::Constant(1e-4)});
+  for (int j = 0; j < kOld; ++j) graph.landmarks[index(j)].prior = {graph.landmarks[index(j)].position, 1e-3};
+  return graph;
+}
+
+/// Solved from where what is new lies on a plane across the way.
+FactorGraph misled(FactorGraph graph) {
+  const Vector3 across = (graph.states.back().T.p - graph.states.front().T.p).normalized();
+  for (int j = kOld; j < kLandmarks; ++j) {
+    FactorGraph::Landmark& landmark = graph.landmarks[index(j)];
+    const Vector3& p = graph.states[index(landmark.intervals.front())].T.p;
+    const Vector3 ray = landmark.position - p;
+    landmark.position = p + across.dot(Vector3(0.4, 0.0, 2.1) - p) / across.dot(ray) * ray;
+    landmark.prior = {landmark.position, 0.02};
+  }
+  Engine engine(std::move(graph), {});
+  engine.optimise(20, 1e-6);
+  for (int j = kOld; j < kLandmarks; ++j) engine.drop_prior(j);
+  engine.optimise(50, 1e-9);
+  return engine.graph();
+}
+
+FactorGraph solved(FactorGraph graph) {
+  Engine engine(std::move(graph), {});
+  engine.optimise(20, 1e-9);
+  return engine.graph();
+}
+
+double cost(const FactorGraph& graph) { return evaluate(graph).total(); }
+
+}  // namespace
+
+TEST_CASE("lab") {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const FactorGraph truth = solved(flight(seed)), wrong = misled(flight(seed));
+    const Vector3 a = truth.states.back().T.p, b = wrong.states.back().T.p;
+    WARN(cost(truth) << " " << cost(wrong) << " " << a.transpose() << " | " << b.transpose() << " | "
+                     << flight(seed).states.back().T.p.transpose());
+    for (const SupposedPlane plane : {SupposedPlane::frontal, SupposedPlane::dual, SupposedPlane::mirrored}) {
+      const auto x = explain_otherwise(wrong, 0, 6, plane);
+      if (x) WARN("other " << x->first << " " << x->advantage << " " << x->states.back().T.p.transpose());
+      CHECK_FALSE(explain_otherwise(truth, 0, 6, plane));
+    }
+  }
+}
+
+}  // namespace evbench::gp_map
