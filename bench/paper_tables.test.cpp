@@ -115,24 +115,41 @@ TEST_CASE("Landmarks whose depth a slow beginning does not tell do not let the w
   CHECK(metrics.at("final").at("ate").at("trans_percent").get<double>() < 1.0);
 }
 
-TEST_CASE("Outliers that are taken for landmarks close before the camera do not decide how it moved") {
-  if (!data_file("dynamic_6dof/motion.txt")) return;
+namespace {
+
+/// A hand's motion before a wall, with outliers and tracks that slide; returns ATE [% of path] by seed.
+std::vector<double> hand_held(double start, double duration, const std::vector<std::string>& seeds) {
   const TemporaryFolder folder;
   Json config = short_config("gp_map");
   config["source"] = {
       {"type", "simulation"},
-      {"duration", 20},
+      {"duration", duration},
       {"camera", {{"width", 240}, {"height", 180}, {"focal_length", 200}}},
-      {"motion", {{"kind", "trajectory"}, {"trajectory", "${EVBENCH_DATA}/dynamic_6dof/motion.txt"}, {"start", 0}}},
+      {"motion", {{"kind", "trajectory"}, {"trajectory", "${EVBENCH_DATA}/dynamic_6dof/motion.txt"}, {"start", start}}},
       {"scene", {{"kind", "plane"}, {"near", 1.2}, {"far", 2.5}}},
       {"tracks",
        {{"alive", 50}, {"lifetime", {0.3, 2}}, {"noise", 0.5}, {"outlier_share", 0.05}, {"drift_share", 0.05}}}};
   folder.write("c.json", config.dump());
-  std::vector<double> percent;  // of several flights, as one in eight loses its scale
-  for (const std::string seed : {"8", "9", "10", "11", "12"}) {
+  std::vector<double> percent;
+  for (const std::string& seed : seeds) {
     REQUIRE(testing::evbench(folder, "run c.json --quiet --set seed=" + seed + " --out s" + seed).exit_code == 0);
     const Json metrics = metrics_of(folder.file("s" + seed) + "/short").at("gp_map");
     percent.push_back(metrics.at("final").at("ate").at("trans_percent").get<double>());
   }
-  CHECK(median(percent) < 0.4);  // with unbounded leverage 0.68
+  return percent;
+}
+
+}  // namespace
+
+TEST_CASE("Outliers that are taken for landmarks close before the camera do not decide how it moved") {
+  if (!data_file("dynamic_6dof/motion.txt")) return;
+  // Of several flights; with unbounded leverage 0.68.
+  CHECK(median(hand_held(0.0, 20.0, {"8", "9", "10", "11", "12"})) < 0.4);
+}
+
+TEST_CASE("Where the view turns over within a second, near and far do not stay exchanged") {
+  if (!data_file("dynamic_6dof/motion.txt")) return;
+  for (const double percent : hand_held(15.0, 15.0, {"101", "104", "107"})) {
+    CHECK(percent < 1.0);  // without another explanation of what came into view of late 1.4 to 5.3
+  }
 }

@@ -34,6 +34,10 @@ std::optional<Part> newest_part(const FactorGraph& graph, int first_state, std::
     if (!seen.empty() && seen.back() >= part.first) (seen.front() < part.first ? part.held : part.fresh).push_back(j);
   }
   if (part.fresh.size() < enough || part.held.size() < enough) return std::nullopt;
+  const auto& now = graph.intervals.back().groups();
+  const auto known = std::ranges::count_if(
+      now, [&](const auto& group) { return graph.landmarks[index(group.landmark)].intervals.front() < part.first; });
+  if (2 * known > std::ssize(now)) return std::nullopt;  // what is known holds the rest
   return part;
 }
 
