@@ -132,8 +132,10 @@ std::vector<double> hand_held(double start, double duration, const std::vector<s
   folder.write("c.json", config.dump());
   std::vector<double> percent;
   for (const std::string& seed : seeds) {
+    INFO(seed);
     REQUIRE(testing::evbench(folder, "run c.json --quiet --set seed=" + seed + " --out s" + seed).exit_code == 0);
     const Json metrics = metrics_of(folder.file("s" + seed) + "/short").at("gp_map");
+    CHECK(metrics.at("final").at("coverage").get<double>() > 0.95);
     percent.push_back(metrics.at("final").at("ate").at("trans_percent").get<double>());
   }
   return percent;
@@ -150,6 +152,7 @@ TEST_CASE("Outliers that are taken for landmarks close before the camera do not 
 TEST_CASE("Where the view turns over within a second, near and far do not stay exchanged") {
   if (!data_file("dynamic_6dof/motion.txt")) return;
   for (const double percent : hand_held(15.0, 15.0, {"101", "104", "107"})) {
-    CHECK(percent < 1.0);  // without another explanation of what came into view of late 1.4 to 5.3
+    // Without another explanation of what came into view of late 1.4 to 5.3; these seeds were looked at.
+    CHECK(percent < 1.0);
   }
 }

@@ -134,6 +134,7 @@ void GpMap::begin_from(FirstMap map) {
   guessed_.clear();
   next_hindsight_ = graph().states.front().t + kHindsight;
   next_reconsidering_ = next_hindsight_;
+  supposed_ = SupposedPlane::dual;
   returns_ = ReturnBudget(options_.map.returns);
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
   recent_.emplace(
@@ -229,6 +230,7 @@ void GpMap::reconsider_recent() {
   }
   for (const auto& [landmark, position] : other->landmarks) engine_->place_landmark(landmark, position);
   for (int step = 0; step < kSettling; ++step) last_update_ = engine_->update();
+  recent_->forget();
 }
 
 /// What was seen a while ago is known from both sides: tracks show whether they stayed on their points, and the motion

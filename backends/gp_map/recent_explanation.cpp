@@ -1,6 +1,8 @@
 #include "backends/gp_map/recent_explanation.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/factors.hpp"
@@ -107,19 +109,20 @@ std::optional<Plane> suppose(SupposedPlane supposed, const FactorGraph& problem,
   return Plane{normal.normalized(), middle, usual};
 }
 
-/// The same problem, gone through from its beginning: what comes into view begins on the plane.
+/// The same problem, its estimates from going through it once, without expansions: what comes into view begins on the
+/// plane.
 FactorGraph from_plane(const FactorGraph& problem, std::size_t fresh, const Plane& plane) {
   Engine engine(problem.camera, problem.qc, problem.loss);
   engine.add_state(problem.states.front());
   engine.add_pose_prior(problem.pose_priors.front());
   FactorGraph result = problem;
-  std::vector<int> known(problem.landmarks.size(), -1);  // the engine's numbers
+  std::vector<int> in_engine(problem.landmarks.size(), -1);  // the engine's numbers
   for (int k = 1; k < std::ssize(problem.states); ++k) {
     engine.set_next_qc(problem.qcs[index(k)]);
     add_extrapolated_state(engine, problem.states[index(k)].t);
     for (const auto& group : problem.intervals[index(k)].groups()) {
       const auto observations = problem.intervals[index(k)].of(group);
-      int& j = known[index(group.landmark)];
+      int& j = in_engine[index(group.landmark)];
       if (j < 0 && index(group.landmark) < fresh) {
         const SE3& T = engine.graph().states.back().T;
         const Vector3 place = plane.meets(T.p, T.R() * problem.camera.ray(observations.front().pixel));
@@ -134,8 +137,8 @@ FactorGraph from_plane(const FactorGraph& problem, std::size_t fresh, const Plan
   }
   engine.settle();
   result.states = engine.graph().states;
-  for (std::size_t j = 0; j < known.size(); ++j) {
-    if (known[j] >= 0) result.landmarks[j].position = engine.graph().landmarks[index(known[j])].position;
+  for (std::size_t j = 0; j < in_engine.size(); ++j) {
+    if (in_engine[j] >= 0) result.landmarks[j].position = engine.graph().landmarks[index(in_engine[j])].position;
   }
   return result;
 }

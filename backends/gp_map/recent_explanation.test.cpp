@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdint>
+#include <iterator>
 #include <utility>
 
 #include "backends/gp_map/engine/engine.hpp"
@@ -105,7 +107,9 @@ TEST_CASE(
 
 TEST_CASE("The true explanation has no better one, and without known landmarks none is looked for") {
   for (const Way& way : {Way{-0.4, 0.0}, Way{0.0, 0.4}}) {
-    FactorGraph truth = solved(flight(way, 1)), wrong = misled(flight(way, 1));
+    const FactorGraph truth = solved(flight(way, 1)), wrong = misled(flight(way, 1));
+    const bool turning = way.turn != 0.0;
+    REQUIRE(explain_otherwise(wrong, 0, kEnough, turning ? SupposedPlane::frontal : SupposedPlane::dual));
     for (const SupposedPlane plane : {SupposedPlane::frontal, SupposedPlane::dual}) {
       CHECK_FALSE(explain_otherwise(truth, 0, kEnough, plane));
       CHECK_FALSE(explain_otherwise(wrong, 0, kOld + 1, plane));

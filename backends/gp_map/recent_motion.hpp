@@ -24,6 +24,9 @@ class RecentMotion {
   /// After an update of the engine, of which `first_state` is the oldest state that is still being estimated.
   void follow(const FactorGraph& graph, int first_state);
 
+  /// Another explanation has replaced what was told: the next states hang on the engine's alone.
+  void forget() { states_.clear(); }
+
   /// In time order, the newest last: those of the last 0.4 s, 24 at most. The engine's own where nothing can be solved.
   std::span<const ControlState> states() const { return states_; }
 

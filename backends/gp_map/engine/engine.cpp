@@ -130,22 +130,24 @@ void Engine::scale_sigmas(int landmark, double scale) {
   graph_.scale_sigmas(landmark, scale);
 }
 
-void Engine::place_state(int i, const ControlState& estimate) {
-  if (i <= factorisation_.base()) return;
+bool Engine::place_state(int i, const ControlState& estimate) {
+  if (i <= factorisation_.base()) return false;
   const Variable variable{Variable::Kind::state, i};
   const ControlState& point = points_.state(i);
   Vector12 delta;
   delta << se3::log(point.T.inverse() * estimate.T), estimate.velocity - point.velocity;
   points_.set_state_delta(graph_, i, delta);
   move(variable);
+  return true;
 }
 
-void Engine::place_landmark(int landmark, const Vector3& position) {
+bool Engine::place_landmark(int landmark, const Vector3& position) {
   const Variable variable{Variable::Kind::landmark, landmark};
-  if (factorisation_.in_base(variable) || factorisation_.is_forgotten(landmark)) return;
-  if (factorisation_.returns().last_of(landmark) != nullptr) return;
+  if (factorisation_.in_base(variable) || factorisation_.is_forgotten(landmark)) return false;
+  if (factorisation_.returns().last_of(landmark) != nullptr) return false;
   points_.set_landmark_delta(graph_, landmark, position - points_.landmark(landmark));
   move(variable);
+  return true;
 }
 
 /// What is said of a landmark's observations changes.

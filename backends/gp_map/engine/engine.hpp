@@ -122,10 +122,10 @@ class Engine {
   /// what has been marginalised stays as it was.
   void scale_sigmas(int landmark, double scale);
 
-  /// Makes this the estimate, from which the next update starts. What has been marginalised, or is tied to what has
-  /// been, and a landmark that came back without its stages being redone, stay where they are.
-  void place_state(int i, const ControlState& estimate);
-  void place_landmark(int landmark, const Vector3& position);
+  /// Makes this the estimate, from which the next update starts. False, and nothing moved, for what has been
+  /// marginalised, or is tied to what has been, and for a landmark that came back without its stages being redone.
+  bool place_state(int i, const ControlState& estimate);
+  bool place_landmark(int landmark, const Vector3& position);
 
   /// One Gauss-Newton step over what the changes since the last update concern, damped if it would raise the cost.
   UpdateSummary update();

@@ -246,7 +246,7 @@ void RandomSession::scale_sigmas() {
   engine_.scale_sigmas(j, scale);
 }
 
-/// Another estimate of a state and a landmark, from which the problem is linear then; not of what is marginalised.
+/// Moves the estimate of a state and of a landmark, and with it where they are linearised; not of what is marginalised.
 void RandomSession::place() {
   const auto away = [&](const Vector3& from) -> Vector3 {
     return from + 0.1 * Vector3(random_.uniform(-1.0, 1.0), random_.uniform(-1.0, 1.0), random_.uniform(-1.0, 1.0));
@@ -255,18 +255,16 @@ void RandomSession::place() {
   ControlState state = graph().states[i];
   state.T.p = away(state.T.p);
   state.velocity.tail<3>() = away(state.velocity.tail<3>());
-  engine_.place_state(static_cast<int>(i), state);
-  if (graph().states[i].T.p.isApprox(state.T.p)) {
+  if (engine_.place_state(static_cast<int>(i), state)) {
     state_guesses_[i] = state;
-    if (twin_) twin_->place_state(static_cast<int>(i), state);
+    if (twin_) CHECK(twin_->place_state(static_cast<int>(i), state));
+  } else {
+    CHECK(static_cast<int>(i) <= engine_.first_state());
   }
+  if (twin_) return require_finite(graph());  // which of the two may move a landmark that came back, differs
   const int j = any_landmark();
   const Vector3 position = away(graph().landmarks[index(j)].position);
-  engine_.place_landmark(j, position);
-  if (graph().landmarks[index(j)].position.isApprox(position)) {
-    landmark_guesses_[index(j)] = position;
-    if (twin_) twin_->place_landmark(j, position);
-  }
+  if (engine_.place_landmark(j, position)) landmark_guesses_[index(j)] = position;
   require_finite(graph());
 }
 
