@@ -12,9 +12,10 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr int kStates = 32;           ///< of late
-constexpr double kKnown = 0.03;       ///< to which landmarks of before are known, as a share of their distance
-constexpr double kHeld = 1e-4;        ///< [rad, units] of the pose from which it begins
+constexpr int kStates = 32;                ///< of late
+constexpr int kEnoughObservations = 8000;  ///< of about so many at most, each track's are thinned evenly
+constexpr double kKnown = 0.03;            ///< to which landmarks of before are known, as a share of their distance
+constexpr double kHeld = 1e-4;             ///< [rad, units] of the pose from which it begins
 constexpr double kOnPlane = 0.05;     ///< to which new ones are on the plane at first, as a share of the usual depth
 constexpr double kMostOblique = 4.0;  ///< times nearer or farther than usual: not where the plane is seen edge-on
 constexpr double kAdvantage = 10.0;   ///< by which the other explanation's cost must be lower
@@ -55,12 +56,20 @@ FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
   }
   const SE3& begin = problem.states.front().T;
   problem.pose_priors.push_back({0, begin, Vector6::Constant(kHeld)});
+  int observations = 0;
+  for (int k = part.first; k < std::ssize(graph.states); ++k) {
+    observations += static_cast<int>(graph.intervals[index(k)].all().size());
+  }
+  const int every = 1 + observations / kEnoughObservations;
   const auto add = [&](int landmark, const LandmarkPrior& prior) {
     const FactorGraph::Landmark& l = graph.landmarks[index(landmark)];
     const int j = problem.add_landmark(l.position, prior);
+    int seen = 0;
     for (const int k : l.intervals) {
       if (k < part.first) continue;
-      for (const Observation& z : graph.intervals[index(k)].of(landmark)) problem.add_observation(j, z);
+      for (const Observation& z : graph.intervals[index(k)].of(landmark)) {
+        if (seen++ % every == 0) problem.add_observation(j, z);
+      }
     }
   };
   for (const int j : part.fresh) add(j, graph.landmarks[index(j)].prior);
