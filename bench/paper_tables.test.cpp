@@ -149,7 +149,7 @@ TEST_CASE("Outliers that are taken for landmarks close before the camera do not 
   CHECK(median(hand_held(0.0, 20.0, {"8", "9", "10", "11", "12"})) < 0.4);
 }
 
-TEST_CASE("Where the view turns over within a second, near and far do not stay exchanged") {
+TEST_CASE("Where most of the view is replaced within a second, the scale is found again") {
   if (!data_file("dynamic_6dof/motion.txt")) return;
   for (const double percent : hand_held(15.0, 15.0, {"101", "104", "107"})) {
     // Without another explanation of what came into view of late 1.4 to 5.3; these seeds were looked at.

@@ -22,9 +22,10 @@ const Registration<BackEnd, GpMap> registration("gp_map",
 constexpr double kEvery = 0.3, kHindsight = 1.0;
 constexpr double kOneSided = 0.1;  ///< what was seen so shortly ago is known from one side
 constexpr double kYoung = 5.0;     ///< [s] for which another first map is looked for, and no track is judged by it
-constexpr double kReconsidering = 0.15;  ///< [s] between two looks for another explanation
-constexpr int kSettling = 3;             ///< steps from another explanation
-constexpr double kMemory = 10.0;         ///< [s] for which tracks are remembered that ended before there is a map
+constexpr double kMemory = 10.0;   ///< [s] for which tracks are remembered that ended before there is a map
+
+constexpr double kReconsidering = 0.15;  ///< [s] between two looks for another explanation of what is new
+constexpr int kSettling = 3;             ///< steps from such an explanation
 
 }  // namespace
 
@@ -215,7 +216,7 @@ void GpMap::learn() {
   last_update_ = engine_->update();
 }
 
-/// What came into view of late may be explained otherwise.
+/// What came into view of late may be explained otherwise: on one of two planes, in turn.
 void GpMap::reconsider_recent() {
   const double now = graph().states.back().t;
   if (now < next_reconsidering_) return;

@@ -19,8 +19,8 @@ constexpr double kHeld = 1e-4;             ///< [rad, units] of the pose from wh
 constexpr double kOnPlane = 0.05;     ///< to which new ones are on the plane at first, as a share of the usual depth
 constexpr double kMostOblique = 4.0;  ///< times nearer or farther than usual: not where the plane is seen edge-on
 constexpr double kAdvantage = 10.0;   ///< by which the other explanation's cost must be lower
-constexpr int kIterations = 6;
-constexpr double kTolerance = 3e-3;
+constexpr int kIterations = 6;        ///< of each explanation, at most
+constexpr double kTolerance = 3e-3;   ///< relative change of cost with which they end: 10 of some thousands
 
 /// The newest part of a problem.
 struct Part {
@@ -93,7 +93,7 @@ struct Plane {
   }
 };
 
-/// None where what is new lies behind the camera.
+/// None where what is new lies behind the camera, or in it.
 std::optional<Plane> suppose(SupposedPlane supposed, const FactorGraph& problem, std::size_t fresh) {
   struct Sight {
     Vector3 p, ray;  // of depth 1
@@ -112,6 +112,7 @@ std::optional<Plane> suppose(SupposedPlane supposed, const FactorGraph& problem,
   const double usual = median(std::move(depths));
   Vector3 middle = Vector3::Zero();
   for (const Sight& sight : sights) middle += (sight.p + usual * sight.ray) / static_cast<double>(sights.size());
+  if (!middle.allFinite()) return std::nullopt;
   const SE3 &begin = problem.states.front().T, &end = problem.states.back().T;
   const Vector3 normal =
       supposed == SupposedPlane::dual ? Vector3(end.p - begin.p) : Vector3(begin.R().col(2) + end.R().col(2));

@@ -17,16 +17,16 @@ enum class SupposedPlane {
 /// Another explanation of what was seen of late.
 struct RecentExplanation {
   int first = 0;                                   ///< state from which on it says something else
-  std::vector<ControlState> states;                ///< from there on
-  std::vector<std::pair<int, Vector3>> landmarks;  ///< those that came into view since
-  double advantage = 0.0;                          ///< by which its cost is lower
+  std::vector<ControlState> states;                ///< all from there on, the newest last
+  std::vector<std::pair<int, Vector3>> landmarks;  ///< those that came into view since, world frame [units]
+  double advantage = 0.0;                          ///< by which its cost, ½ Σ ρ, is lower
 };
 
 /// The motion of a plane's image has two explanations, in which the plane's normal and the direction of translation
 /// change places (Longuet-Higgins, "The visual ambiguity of a moving plane", 1984); only how the direction changes
 /// tells which is true. Where most of what is in view is replaced within a second, new landmarks can hold each other
-/// and the motion in the wrong one: it had the lower cost when they were few, Gauss-Newton steps don't lead out of it,
-/// and within another second the scale is lost.
+/// and the motion in the wrong one: it may have had the lower cost when they were few, Gauss-Newton steps don't lead
+/// out of it, and within another second the scale is lost.
 ///
 /// So the newest part of the problem, of 32 states, is gone through once more on its own, what was known before being
 /// held, with new landmarks beginning on another plane; then both explanations are solved. Returns nothing unless the
