@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 13);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 14);
 
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
@@ -24,7 +24,7 @@ constexpr double kOneSided = 0.1;  ///< what was seen so shortly ago is known fr
 constexpr double kYoung = 5.0;     ///< [s] for which another first map is looked for, and no track is judged by it
 constexpr double kMemory = 10.0;   ///< [s] for which tracks are remembered that ended before there is a map
 
-constexpr double kReconsidering = 0.15;  ///< [s] between two looks for another explanation of what is new
+constexpr double kReconsidering = 0.15;  ///< [s] at least between two searches for another explanation of what is new
 constexpr int kSettling = 3;             ///< steps from such an explanation
 
 }  // namespace
@@ -134,8 +134,9 @@ void GpMap::begin_from(FirstMap map) {
   engine_.emplace(std::move(map.graph), EngineOptions{.lag = options_.lag});
   guessed_.clear();
   next_hindsight_ = graph().states.front().t + kHindsight;
-  next_reconsidering_ = next_hindsight_;
+  next_search_ = next_hindsight_;
   supposed_ = SupposedPlane::dual;
+  search_.reset();
   returns_ = ReturnBudget(options_.map.returns);
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
   recent_.emplace(
@@ -219,17 +220,18 @@ void GpMap::learn() {
 /// What came into view of late may be explained otherwise: on one of two planes, in turn.
 void GpMap::reconsider_recent() {
   const double now = graph().states.back().t;
-  if (now < next_reconsidering_) return;
-  next_reconsidering_ = now + kReconsidering;
-  supposed_ = supposed_ == SupposedPlane::frontal ? SupposedPlane::dual : SupposedPlane::frontal;
-  const auto other = explain_otherwise(graph(), engine_->first_state(), options_.health.min_landmarks, supposed_);
+  if (!search_ && !(now < next_search_)) {
+    next_search_ = now + kReconsidering;
+    supposed_ = supposed_ == SupposedPlane::frontal ? SupposedPlane::dual : SupposedPlane::frontal;
+    search_ = ExplanationSearch::begin(graph(), engine_->first_state(), options_.health.min_landmarks, supposed_);
+  }
+  if (!search_ || search_->go_on()) return;
+  const auto other = search_->found();
+  search_.reset();
   if (!other) return;
   context_.log(fmt::format("{:.3f} s: what came into view of late is explained better otherwise, by {:.1f}", now,
                            other->advantage));
-  for (std::size_t i = 0; i < other->states.size(); ++i) {
-    engine_->place_state(other->first + static_cast<int>(i), other->states[i]);
-  }
-  for (const auto& [landmark, position] : other->landmarks) engine_->place_landmark(landmark, position);
+  other->place_in(*engine_);
   for (int step = 0; step < kSettling; ++step) last_update_ = engine_->update();
   recent_->forget();
 }

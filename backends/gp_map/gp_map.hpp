@@ -140,9 +140,10 @@ class GpMap : public BackEnd {
   std::optional<RecentMotion> recent_;  ///< as it is told online; from the first map on
   NoiseLearner noise_;
   double next_hindsight_ = 0.0;                   ///< [s]
-  double next_reconsidering_ = 0.0;               ///< [s]
+  double next_search_ = 0.0;                      ///< [s]
   SupposedPlane supposed_ = SupposedPlane::dual;  ///< the last time
-  double seconds_since_step_ = 0.0;               ///< spent on single observations
+  std::optional<ExplanationSearch> search_;
+  double seconds_since_step_ = 0.0;  ///< spent on single observations
   TrackingMonitor monitor_;
   double until_ = 0.0;                                        ///< [s] of the last batch
   double online_ = -std::numeric_limits<double>::infinity();  ///< [s], time of the last pose told

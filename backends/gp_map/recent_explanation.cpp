@@ -21,6 +21,8 @@ constexpr double kMostOblique = 4.0;  ///< times nearer or farther than usual: n
 constexpr double kAdvantage = 10.0;   ///< by which the other explanation's cost must be lower
 constexpr int kIterations = 6;        ///< of each explanation, at most
 constexpr double kTolerance = 3e-3;   ///< relative change of cost with which they end: 10 of some thousands
+constexpr int kShare = 24000;         ///< observations that are linearised at a time, or so
+constexpr int kStatesAPass = 3;       ///< through the problem, which take as long as an iteration
 
 /// The newest part of a problem.
 struct Part {
@@ -80,21 +82,27 @@ FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
   return problem;
 }
 
-/// A plane through the middle of what is new.
-struct Plane {
-  Vector3 normal, point;
-  double usual;  ///< depth
+}  // namespace
 
-  /// Where a ray from p, of depth 1, meets it, within bounds.
-  Vector3 meets(const Vector3& p, const Vector3& ray) const {
-    const double toward = normal.dot(ray), away = normal.dot(point - p);
-    const double most = kMostOblique * usual;
-    return p + (toward * away > 0.0 ? std::clamp(away / toward, usual / kMostOblique, most) : most) * ray;
-  }
-};
+std::optional<ExplanationSearch> ExplanationSearch::begin(const FactorGraph& graph, int first_state, int enough,
+                                                          SupposedPlane supposed) {
+  auto part = newest_part(graph, first_state, index(enough));
+  if (!part) return std::nullopt;
+  FactorGraph problem = problem_of(graph, *part);
+  const auto plane = suppose(supposed, problem, part->fresh.size());
+  if (!plane) return std::nullopt;
+  return ExplanationSearch(part->first, std::move(part->fresh), std::move(problem), *plane);
+}
 
-/// None where what is new lies behind the camera, or in it.
-std::optional<Plane> suppose(SupposedPlane supposed, const FactorGraph& problem, std::size_t fresh) {
+/// Where a ray from p, of depth 1, meets it, within bounds.
+Vector3 ExplanationSearch::Plane::meets(const Vector3& p, const Vector3& ray) const {
+  const double toward = normal.dot(ray), away = normal.dot(point - p);
+  const double most = kMostOblique * usual;
+  return p + (toward * away > 0.0 ? std::clamp(away / toward, usual / kMostOblique, most) : most) * ray;
+}
+
+std::optional<ExplanationSearch::Plane> ExplanationSearch::suppose(SupposedPlane supposed, const FactorGraph& problem,
+                                                                   std::size_t fresh) {
   struct Sight {
     Vector3 p, ray;  // of depth 1
   };
@@ -119,67 +127,107 @@ std::optional<Plane> suppose(SupposedPlane supposed, const FactorGraph& problem,
   return Plane{normal.normalized(), middle, usual};
 }
 
-/// The same problem, its estimates from going through it once, without expansions: what comes into view begins on the
-/// plane.
-FactorGraph from_plane(const FactorGraph& problem, std::size_t fresh, const Plane& plane) {
-  Engine engine(problem.camera, problem.qc, problem.loss);
-  engine.add_state(problem.states.front());
-  engine.add_pose_prior(problem.pose_priors.front());
-  FactorGraph result = problem;
-  std::vector<int> in_engine(problem.landmarks.size(), -1);  // the engine's numbers
-  for (int k = 1; k < std::ssize(problem.states); ++k) {
-    engine.set_next_qc(problem.qcs[index(k)]);
-    add_extrapolated_state(engine, problem.states[index(k)].t);
-    for (const auto& group : problem.intervals[index(k)].groups()) {
-      const auto observations = problem.intervals[index(k)].of(group);
-      int& j = in_engine[index(group.landmark)];
-      if (j < 0 && index(group.landmark) < fresh) {
-        const SE3& T = engine.graph().states.back().T;
-        const Vector3 place = plane.meets(T.p, T.R() * problem.camera.ray(observations.front().pixel));
-        j = engine.add_landmark(place, {place, kOnPlane * plane.usual});
-      } else if (j < 0) {
-        const FactorGraph::Landmark& landmark = problem.landmarks[index(group.landmark)];
-        j = engine.add_landmark(landmark.position, landmark.prior);
-      }
-      for (const Observation& z : observations) engine.add_observation(j, z);
+ExplanationSearch::ExplanationSearch(int first, std::vector<int> fresh, FactorGraph problem, const Plane& plane)
+    : first_(first),
+      fresh_(std::move(fresh)),
+      problem_(std::move(problem)),
+      plane_(plane),
+      passes_(std::max(1, kShare / std::max(1, problem_.observation_count()))),
+      through_(problem_.camera, problem_.qc, problem_.loss),
+      in_engine_(problem_.landmarks.size(), -1) {
+  through_.add_state(problem_.states.front());
+  through_.add_pose_prior(problem_.pose_priors.front());
+}
+
+bool ExplanationSearch::go_on() {
+  for (int i = 0; i < passes_; ++i) {
+    if (!pass()) return false;
+  }
+  return true;
+}
+
+/// Linearises the observations about once. False when there is nothing left to do.
+bool ExplanationSearch::pass() {
+  const int states = static_cast<int>(problem_.states.size());
+  if (!other_) {
+    const int until = std::min(states, gone_through_ + 1 + kStatesAPass);
+    while (gone_through_ + 1 < until) add_state(++gone_through_);
+    if (until == states) begin_solving();
+    return true;
+  }
+  if (!present_) {
+    if (solve(*other_)) return true;
+    if (!(cost_ + kAdvantage < evaluate(problem_).total())) return false;
+    found_ = RecentExplanation{first_, {other_->graph().states.begin() + 1, other_->graph().states.end()}, {}, -cost_};
+    for (std::size_t j = 0; j < fresh_.size(); ++j) {
+      found_->landmarks.emplace_back(fresh_[j], other_->graph().landmarks[j].position);
     }
-    engine.update();
+    present_.emplace(std::move(problem_), EngineOptions{});
+    return true;
   }
-  engine.settle();
-  result.states = engine.graph().states;
-  for (std::size_t j = 0; j < in_engine.size(); ++j) {
-    if (in_engine[j] >= 0) result.landmarks[j].position = engine.graph().landmarks[index(in_engine[j])].position;
-  }
-  return result;
+  if (solve(*present_)) return true;
+  found_->advantage += cost_;
+  if (!(found_->advantage > kAdvantage)) found_.reset();
+  return false;
 }
 
-/// Solves it and returns its cost.
-double solve(FactorGraph& problem) {
-  Engine engine(std::move(problem), {});
-  const double cost = engine.optimise(kIterations, kTolerance).final_cost;
-  problem = engine.graph();
-  return cost;
+/// What comes into view with it begins on the plane.
+void ExplanationSearch::add_state(int k) {
+  through_.set_next_qc(problem_.qcs[index(k)]);
+  add_extrapolated_state(through_, problem_.states[index(k)].t);
+  for (const auto& group : problem_.intervals[index(k)].groups()) {
+    const auto observations = problem_.intervals[index(k)].of(group);
+    int& j = in_engine_[index(group.landmark)];
+    if (j < 0 && index(group.landmark) < fresh_.size()) {
+      const SE3& T = through_.graph().states.back().T;
+      const Vector3 place = plane_.meets(T.p, T.R() * problem_.camera.ray(observations.front().pixel));
+      j = through_.add_landmark(place, {place, kOnPlane * plane_.usual});
+    } else if (j < 0) {
+      const FactorGraph::Landmark& landmark = problem_.landmarks[index(group.landmark)];
+      j = through_.add_landmark(landmark.position, landmark.prior);
+    }
+    for (const Observation& z : observations) through_.add_observation(j, z);
+  }
+  through_.update();
 }
 
-}  // namespace
-
-std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, int first_state, int enough,
-                                                   SupposedPlane supposed) {
-  const auto part = newest_part(graph, first_state, index(enough));
-  if (!part) return std::nullopt;
-  FactorGraph present = problem_of(graph, *part);
-  const auto plane = suppose(supposed, present, part->fresh.size());
-  if (!plane) return std::nullopt;
-  FactorGraph other = from_plane(present, part->fresh.size(), *plane);
-  const double cost = solve(other);
-  if (!(cost + kAdvantage < evaluate(present).total())) return std::nullopt;
-  const double advantage = solve(present) - cost;
-  if (!(advantage > kAdvantage)) return std::nullopt;
-  RecentExplanation result{part->first, {other.states.begin() + 1, other.states.end()}, {}, advantage};
-  for (std::size_t j = 0; j < part->fresh.size(); ++j) {
-    result.landmarks.emplace_back(part->fresh[j], other.landmarks[j].position);
+/// The problem itself, with its expansions and without what held new landmarks to the plane.
+void ExplanationSearch::begin_solving() {
+  through_.settle();
+  FactorGraph other = problem_;
+  other.states = through_.graph().states;
+  for (std::size_t j = 0; j < in_engine_.size(); ++j) {
+    if (in_engine_[j] >= 0) other.landmarks[j].position = through_.graph().landmarks[index(in_engine_[j])].position;
   }
-  return result;
+  other_.emplace(std::move(other), EngineOptions{});
+}
+
+/// One iteration. False, and its cost known, after the last one.
+bool ExplanationSearch::solve(Engine& engine) {
+  const auto summary = engine.optimise(1, kTolerance);
+  cost_ = summary.final_cost;
+  const bool last = summary.converged || ++iterations_ == kIterations;
+  if (last) iterations_ = 0;
+  return !last;
+}
+
+void RecentExplanation::place_in(Engine& engine) const {
+  const FactorGraph& graph = engine.graph();
+  const int end = first + static_cast<int>(states.size());
+  const SE3 along = states.back().T * graph.states[index(end - 1)].T.inverse();
+  for (int k = end; k < std::ssize(graph.states); ++k) {
+    ControlState state = graph.states[index(k)];
+    state.T = along * state.T;
+    engine.place_state(k, state);
+  }
+  for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
+    const FactorGraph::Landmark& landmark = graph.landmarks[index(j)];
+    if (!landmark.intervals.empty() && landmark.intervals.front() >= end) {
+      engine.place_landmark(j, along * landmark.position);
+    }
+  }
+  for (int k = first; k < end; ++k) engine.place_state(k, states[index(k - first)]);
+  for (const auto& [j, position] : landmarks) engine.place_landmark(j, position);
 }
 
 }  // namespace evbench::gp_map

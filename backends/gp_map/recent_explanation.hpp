@@ -1,10 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "backends/gp_map/factor_graph.hpp"
+#include "backends/gp_map/engine/engine.hpp"
 
 namespace evbench::gp_map {
 
@@ -17,9 +18,12 @@ enum class SupposedPlane {
 /// Another explanation of what was seen of late.
 struct RecentExplanation {
   int first = 0;                                   ///< state from which on it says something else
-  std::vector<ControlState> states;                ///< all from there on, the newest last
+  std::vector<ControlState> states;                ///< from there on, the newest of then last
   std::vector<std::pair<int, Vector3>> landmarks;  ///< those that came into view since, world frame [units]
   double advantage = 0.0;                          ///< by which its cost, ½ Σ ρ, is lower
+
+  /// Makes it the estimate; what has been added to the engine since it was looked for goes along.
+  void place_in(Engine& engine) const;
 };
 
 /// The motion of a plane's image has two explanations, in which the plane's normal and the direction of translation
@@ -29,11 +33,51 @@ struct RecentExplanation {
 /// out of it, and within another second the scale is lost.
 ///
 /// So the newest part of the problem, of 32 states, is gone through once more on its own, what was known before being
-/// held, with new landmarks beginning on another plane; then both explanations are solved. Returns nothing unless the
-/// other one's cost is clearly lower; nor where the part reaches back to `first_state`, the oldest one that is being
-/// estimated, where fewer than `enough` landmarks are new or fewer were known before, and where most of those seen in
-/// the newest interval were known before.
-std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, int first_state, int enough,
-                                                   SupposedPlane supposed);
+/// held, with new landmarks beginning on another plane; then both explanations are solved. That takes as long as many
+/// updates, so it is done in shares.
+class ExplanationSearch {
+ public:
+  /// None where the part reaches back to `first_state`, the oldest one that is being estimated, where fewer than
+  /// `enough` landmarks are new or fewer were known before, where most of those seen in the newest interval were known
+  /// before, and where what is new lies behind the camera.
+  static std::optional<ExplanationSearch> begin(const FactorGraph& graph, int first_state, int enough,
+                                                SupposedPlane supposed);
+
+  /// Does a share of about 24,000 observations' linearisation. False when it has come to its end.
+  bool go_on();
+
+  /// At its end: nothing unless the other explanation's cost is clearly lower.
+  const std::optional<RecentExplanation>& found() const { return found_; }
+
+ private:
+  /// A plane through the middle of what is new.
+  struct Plane {
+    Vector3 normal, point;
+    double usual;  ///< depth
+
+    Vector3 meets(const Vector3& p, const Vector3& ray) const;
+  };
+  static std::optional<Plane> suppose(SupposedPlane supposed, const FactorGraph& problem, std::size_t fresh);
+
+  ExplanationSearch(int first, std::vector<int> fresh, FactorGraph problem, const Plane& plane);
+  bool pass();
+  void add_state(int k);
+  void begin_solving();
+  bool solve(Engine& engine);
+
+  int first_;
+  std::vector<int> fresh_;  ///< landmarks of the whole problem: the first ones of this
+  FactorGraph problem_;     ///< the state before the part first, which is held
+  Plane plane_;
+  int passes_;                     ///< a share
+  Engine through_;                 ///< goes through the problem from the plane
+  int gone_through_ = 0;           ///< its newest state
+  std::vector<int> in_engine_;     ///< its landmarks, by those of the problem
+  std::optional<Engine> other_;    ///< solved from where that ended
+  std::optional<Engine> present_;  ///< solved from the present estimate
+  int iterations_ = 0;
+  double cost_ = 0.0;
+  std::optional<RecentExplanation> found_;
+};
 
 }  // namespace evbench::gp_map

@@ -8,6 +8,7 @@
 
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/factors.hpp"
+#include "backends/gp_map/observation_follower.hpp"
 #include "core/simulation/random.hpp"
 
 namespace evbench::gp_map {
@@ -81,6 +82,16 @@ FactorGraph solved(FactorGraph graph) {
   return engine.graph();
 }
 
+/// By a search that is gone through at once.
+std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, int first_state, int enough,
+                                                   SupposedPlane supposed) {
+  auto search = ExplanationSearch::begin(graph, first_state, enough, supposed);
+  if (!search) return std::nullopt;
+  while (search->go_on()) {
+  }
+  return search->found();
+}
+
 double cost(const FactorGraph& graph) { return evaluate(graph).total(); }
 
 }  // namespace
@@ -103,6 +114,32 @@ TEST_CASE(
     }
     CHECK(found >= 2);  // one may be too hard to tell yet
   }
+}
+
+TEST_CASE("What has been added since another explanation was looked for goes along with it") {
+  const FactorGraph wrong = misled(flight({-0.4, 0.0}, 1));
+  const auto other = explain_otherwise(wrong, 0, kEnough, SupposedPlane::frontal);
+  REQUIRE(other);
+  Engine engine(wrong, {});
+  add_extrapolated_state(engine, kStep * kStates);
+  const SE3 newest = engine.graph().states.back().T;
+  const int later = engine.add_landmark(newest * Vector3(0.1, 0.2, 2.0));
+  engine.add_observation(later, {kStep * kStates, wrong.camera.project({0.1, 0.2, 2.0}), 1.0 / kSigma});
+  engine.settle();
+  const FactorGraph before = engine.graph();
+  other->place_in(engine);
+  const FactorGraph& after = engine.graph();
+  CHECK((after.states[kStates - 1].T.p - other->states.back().T.p).norm() < 1e-9);
+  const auto seen_from = [](const SE3& T, const FactorGraph& graph) {
+    return std::pair{Vector3((T.inverse() * graph.states.back().T).p),
+                     Vector3(T.inverse() * graph.landmarks.back().position)};
+  };
+  const auto [p, q] = seen_from(before.states[kStates - 1].T, before);
+  const auto [p_after, q_after] = seen_from(after.states[kStates - 1].T, after);
+  CHECK((p_after - p).norm() < 1e-9);
+  CHECK((q_after - q).norm() < 1e-9);
+  for (int i = 0; i < 20; ++i) engine.settle();
+  CHECK(cost(engine.graph()) < cost(before) - 10.0);
 }
 
 TEST_CASE("The true explanation has no better one, and without known landmarks none is looked for") {
