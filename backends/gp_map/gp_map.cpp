@@ -21,6 +21,7 @@ const Registration<BackEnd, GpMap> registration("gp_map",
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
 constexpr double kOneSided = 0.1;  ///< what was seen so shortly ago is known from one side
+constexpr double kHasty = 2.0;     ///< times farther off than in the end is what goes while running
 constexpr double kYoung = 5.0;     ///< [s] for which another first map is looked for, and no track is judged by it
 constexpr double kMemory = 10.0;   ///< [s] for which tracks are remembered that ended before there is a map
 
@@ -117,8 +118,7 @@ void GpMap::split(TrackId id) {
   const Vector3 position = graph().landmarks[index(track.landmark)].position;
   const double sigma = std::sqrt(known->selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff());
   track = {.role = Track::Role::landmark, .landmark = engine_->add_landmark(position, {position, sigma})};
-  track_of_.push_back(id);
-  leverage_.push_back(1.0);
+  known_.push_back({.track = id});
 }
 
 bool GpMap::initialise(double t) {
@@ -144,10 +144,9 @@ void GpMap::begin_from(FirstMap map) {
           ? std::nullopt
           : std::optional<RecentPrior>(std::in_place, options_.learn.window, options_.learn.memory, graph().qc));
   noise_ = NoiseLearner();
-  track_of_.clear();
-  leverage_.clear();
+  known_.clear();
   landmarks_ = 0;
-  for (const TrackId track : map.tracks) become_landmark(track, static_cast<int>(track_of_.size()));
+  for (const TrackId track : map.tracks) become_landmark(track, static_cast<int>(known_.size()));
   context_.log(
       fmt::format("{:.3f} s: first map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s",
                   graph().states.back().t, graph().landmarks.size(), graph().observation_count(), map.parallax_deg,
@@ -213,7 +212,7 @@ void GpMap::learn() {
   const double now = graph().states.back().t;
   if (now < next_hindsight_) return;
   next_hindsight_ = now + kEvery;
-  learn_with_hindsight({now - kHindsight, now - kOneSided});
+  learn_with_hindsight({now - kHindsight, now - kOneSided}, kHasty * options_.map.outlier_threshold);
   last_update_ = engine_->update();
 }
 
@@ -238,9 +237,13 @@ void GpMap::reconsider_recent() {
 
 /// What was seen a while ago is known from both sides: tracks show whether they stayed on their points, and the motion
 /// how smooth it was. The newest motion, known from one side alone, keeps a prior that allows for what may come.
-void GpMap::learn_with_hindsight(const TimeSpan& span) {
-  const bool is_young = !(graph().states.back().t > graph().states.front().t + kYoung);
-  if (!is_young) judge_tracks(noise_, span);  // a young map itself is not right yet
+void GpMap::learn_with_hindsight(const TimeSpan& span, double outlier_threshold) {
+  const double now = graph().states.back().t;
+  const bool is_young = !(now > graph().states.front().t + kYoung);
+  if (!is_young) judge_tracks(noise_, span, outlier_threshold);  // a young map itself is not right yet
+  if (options_.learn.noise && !violent_motion_.is_yielding(graph())) {
+    weigh_tracks(noise_, span, now - options_.learn.memory);
+  }
   if (options_.learn.prior != LearnPrior::never) learn_prior(*engine_, span);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <limits>
 #include <map>
@@ -67,6 +68,15 @@ class GpMap : public BackEnd {
     std::size_t expected_at = 0;                   ///< so many states
   };
 
+  /// Of a landmark: its track, and what its sigmas are multiplied by.
+  struct Known {
+    TrackId track = 0;
+    double noise = 1.0;     ///< the track's own
+    double leverage = 1.0;  ///< bounded
+
+    double sigma_scale() const { return std::max(noise, leverage); }
+  };
+
   // Algorithm 1, a line each.
   void step(double t);
   void take_observations(double t);
@@ -80,7 +90,7 @@ class GpMap : public BackEnd {
   void bound_leverage();
   void optimise();
   void learn();
-  void learn_with_hindsight(const TimeSpan& span);
+  void learn_with_hindsight(const TimeSpan& span, double outlier_threshold);
   void reconsider_recent();
   void check_support();
   void forget_ended_tracks(double t);
@@ -108,9 +118,9 @@ class GpMap : public BackEnd {
   void tell_online(double t);
   void tell_recent(double t);
   Engine::OptimiseSummary estimate_everything();
-  void judge_tracks(const NoiseLearner& noise, const TimeSpan& span);
+  void judge_tracks(const NoiseLearner& noise, const TimeSpan& span, double threshold);
   void slid_off(int landmark, double from);
-  void weigh_tracks(const NoiseLearner& noise);
+  void weigh_tracks(const NoiseLearner& noise, const TimeSpan& span, double since);
   void record_final_prior();
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
 
@@ -121,12 +131,11 @@ class GpMap : public BackEnd {
   std::optional<Engine> engine_;  ///< from the first map on
   ObservationFollower follower_;
   std::map<TrackId, Track> tracks_;
-  TrackBuffer waiting_;            ///< observations of waiting tracks
-  TrackBuffer young_;              ///< of all tracks, until the first map is settled
-  std::set<TrackId> live_;         ///< tracks that are alive, or have ended since the last step
-  std::vector<TrackId> track_of_;  ///< by landmark, of which a track that came back may have several
-  std::vector<double> leverage_;   ///< by landmark: what its leverage multiplies its sigmas by
-  std::vector<int> guessed_;       ///< landmarks at the scene's depth, until they show parallax
+  TrackBuffer waiting_;       ///< observations of waiting tracks
+  TrackBuffer young_;         ///< of all tracks, until the first map is settled
+  std::set<TrackId> live_;    ///< tracks that are alive, or have ended since the last step
+  std::vector<Known> known_;  ///< by landmark, of which a track that came back may have several
+  std::vector<int> guessed_;  ///< landmarks at the scene's depth, until they show parallax
   ReturnBudget returns_;
   int landmarks_ = 0;                                                  ///< tracks that are landmarks
   std::vector<TrackObservation> pending_;                              ///< later than the newest state

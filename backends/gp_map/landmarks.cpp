@@ -117,8 +117,7 @@ void GpMap::become_landmark(TrackId id, int landmark) {
   Track& track = tracks_.at(id);
   track.role = Track::Role::landmark;
   track.landmark = landmark;
-  track_of_.push_back(id);
-  leverage_.push_back(1.0);
+  known_.push_back({.track = id});
   ++landmarks_;
   waiting_.forget(id);
 }
@@ -131,7 +130,7 @@ void GpMap::become_outlier(int landmark) {
 
 /// What it will show is not of this landmark. False where it came back as another one.
 bool GpMap::end_track_of(int landmark, Track::Role role) {
-  const auto track = tracks_.find(track_of_[index(landmark)]);
+  const auto track = tracks_.find(known_[index(landmark)].track);
   if (track == tracks_.end() || track->second.landmark != landmark) return false;
   track->second.role = role;
   new_outliers_.push_back(track->first);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kBlock = 0.15;            ///< [s]
 constexpr int kFewest = 4;                 ///< observations in a block that is judged
 constexpr double kMedianSquare = 1.38629;  ///< of a two-dimensional standard normal
-constexpr double kOthers = 10.0;           ///< blocks that the noise of all tracks counts for
+constexpr double kOthers = 3.0;            ///< blocks that the noise of all tracks counts for
 
 }  // namespace
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <ranges>
@@ -7,10 +8,13 @@
 
 #include "backends/gp_map/gp_map.hpp"
 #include "backends/gp_map/track_errors.hpp"
+#include "core/support/median.hpp"
 
 // What tracks turn out to be worth, once it is known from both sides where the camera was.
 namespace evbench::gp_map {
 namespace {
+
+constexpr double kChange = 1.5;  ///< by which a track's noise must change to be set anew while running
 
 using Judged = std::vector<std::pair<int, TrackErrors>>;  ///< by landmark
 
@@ -57,8 +61,7 @@ std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double
 }  // namespace
 
 /// By what they show in this span: outliers go, and a track that slid keeps its landmark up to there.
-void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span) {
-  const double threshold = options_.map.outlier_threshold;
+void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span, double threshold) {
   const Judged errors = errors_in(graph(), noise, span);
   for (const int outlier : outliers(graph(), errors, threshold, span)) {
     const int first_seen = graph().landmarks[index(outlier)].intervals.front();
@@ -79,10 +82,27 @@ void GpMap::slid_off(int landmark, double from) {
   end_track_of(landmark, Track::Role::slid);
 }
 
-/// Each track counts with its own noise, within the bounds of its leverage.
-void GpMap::weigh_tracks(const NoiseLearner& noise) {
-  for (const auto& [j, error] : errors_in(graph(), noise, {})) {
-    engine_->scale_sigmas(j, std::max(error.sigma_scale(), leverage_[index(j)]));
+/// Each track that was last seen in this span, and began since then, counts with its own noise, within the bounds of
+/// its leverage: whether it is an outlier is not a question of yes or no. Where most would count for less, it is the
+/// motion that is wrong.
+void GpMap::weigh_tracks(const NoiseLearner& noise, const TimeSpan& span, double since) {
+  const double usual = noise.scale_of_means();
+  std::vector<std::pair<int, double>> own;
+  std::vector<double> scales;
+  for (int j = 0; j < std::ssize(graph().landmarks); ++j) {
+    const std::vector<int>& seen = graph().landmarks[index(j)].intervals;
+    if (seen.empty() || graph().states[index(seen.back())].t <= span.from) continue;
+    if (graph().states[index(seen.front())].t <= since) continue;
+    own.emplace_back(j, TrackErrors(graph(), j, usual, {}).sigma_scale());
+    scales.push_back(own.back().second);
+  }
+  if (own.empty() || median(std::move(scales)) > kChange) return;
+  const double change = since > TimeSpan().from ? kChange : 1.0;
+  for (const auto& [j, scale] : own) {
+    double& present = known_[index(j)].noise;
+    if (scale < change * present && scale > present / change) continue;
+    present = scale;
+    engine_->scale_sigmas(j, known_[index(j)].sigma_scale());
   }
 }
 

@@ -69,6 +69,11 @@ UpdateSummary ViolentMotion::follow(Engine& engine, const NoiseLearner& noise, c
   return last;
 }
 
+bool ViolentMotion::is_yielding(const FactorGraph& graph) const {
+  constexpr double kRecovered = 1.5;
+  return graph.qc.cwiseQuotient(qc_).maxCoeff() > kRecovered;
+}
+
 void ViolentMotion::recover(Engine& engine) const {
   const FactorGraph& graph = engine.graph();
   const double dt = graph.states.back().t - graph.states[graph.states.size() - 2].t;

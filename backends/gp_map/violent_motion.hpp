@@ -21,6 +21,9 @@ class ViolentMotion {
   /// beyond it. Returns the last update's summary. `noise`: of the tracks.
   UpdateSummary follow(Engine& engine, const NoiseLearner& noise, const UpdateSummary& update) const;
 
+  /// Whether the prior yields now: the tracks' errors tell of the motion then.
+  bool is_yielding(const FactorGraph& graph) const;
+
   /// The density of the intervals to come goes back to what it was, as far as time has passed.
   void recover(Engine& engine) const;
 
