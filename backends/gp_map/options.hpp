@@ -55,10 +55,11 @@ struct MapOptions {
             "rotation, and where tracks are short, the scale as well; the guess counts until there is parallax [s]")
         .range(0.0);
     set.add("depth_sigma", depth_sigma, "standard deviation of that guess, as a share of the depth").above(0.0);
-    set.add("outlier_threshold", outlier_threshold,
-            "tracks whose average reprojection error over all their observations is larger are dropped; the final "
-            "estimate drops a track from where its error, averaged over 0.15 s, stays larger [sigmas of such averages, "
-            "which are larger where trackers drift]")
+    set.add(
+           "outlier_threshold", outlier_threshold,
+           "tracks whose average reprojection error over all their observations is larger are dropped; the final "
+           "estimate drops a track from where its error, averaged over 0.15 s, stays larger, and while running that is "
+           "done where it stays twice as large [sigmas of such averages, which are larger where trackers drift]")
         .above(0.0);
     set.add("returns", returns,
             "landmarks that were out of sight at a time and were found again, at most: what comes back beyond that "
@@ -85,12 +86,15 @@ struct LearningOptions {
         "estimate, from everything; always, so also of the newest motion, which can lose the scale where landmarks "
         "live for less than a second or the motion is violent");
     set.add("noise", noise,
-            "learn a scale of the observations' sigmas, and how much of their information counts, as trackers drift");
+            "learn a scale of the observations' sigmas, one more of each track that is noisier than most, and how much "
+            "of their information counts, as trackers drift");
     set.add("window", window,
             "while running, what is learnt follows what these show, and a prior that has yielded to violent motion is "
             "as it was again after a few times this [s]")
         .range(0.01, 100.0);
-    set.add("memory", memory, "and falls back to what these show, where that is little; the noise follows these [s]")
+    set.add("memory", memory,
+            "and falls back to what these show, where that is little; the noise follows these, and while running a "
+            "track's own is learnt until it is so old [s]")
         .range(0.1, 1000.0);
     set.add("rounds", rounds, "of learning from everything, in the final estimate").range(0, 100);
   }
