@@ -227,7 +227,7 @@ void GpMap::reconsider_recent() {
   if (!search_ || search_->go_on()) return;
   const auto other = search_->found();
   search_.reset();
-  if (!other) return;
+  if (!other || other->first <= engine_->first_state() + 1) return;  // a lag may have marginalised it since
   context_.log(fmt::format("{:.3f} s: what came into view of late is explained better otherwise, by {:.1f}", now,
                            other->advantage));
   other->place_in(*engine_);
@@ -241,7 +241,7 @@ void GpMap::learn_with_hindsight(const TimeSpan& span, double outlier_threshold)
   const double now = graph().states.back().t;
   const bool is_young = !(now > graph().states.front().t + kYoung);
   if (!is_young) judge_tracks(noise_, span, outlier_threshold);  // a young map itself is not right yet
-  if (options_.learn.noise && !violent_motion_.is_yielding(graph())) {
+  if (options_.learn.noise && !(options_.learn.prior != LearnPrior::always && violent_motion_.is_yielding(graph()))) {
     weigh_tracks(noise_, span, now - options_.learn.memory);
   }
   if (options_.learn.prior != LearnPrior::never) learn_prior(*engine_, span);

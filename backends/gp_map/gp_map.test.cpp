@@ -112,8 +112,9 @@ TEST_CASE("While running, a track that errs more than the others counts less") {
   backend.finish();
   int erring = 0, told = 0, sound = 0, trusted = 0;
   for (const Landmark& landmark : backend.map()) {
-    const auto& found =
+    const auto found =
         std::ranges::find(backend.graph().landmarks, landmark.position, &FactorGraph::Landmark::position);
+    REQUIRE(found != backend.graph().landmarks.end());
     const auto& states = backend.graph().states;
     const double seen = states[index(found->intervals.back())].t - states[index(found->intervals.front())].t;
     if (seen < 1.5) continue;

@@ -91,7 +91,8 @@ std::optional<ExplanationSearch> ExplanationSearch::begin(const FactorGraph& gra
   FactorGraph problem = problem_of(graph, *part);
   const auto plane = suppose(supposed, problem, part->fresh.size());
   if (!plane) return std::nullopt;
-  return ExplanationSearch(part->first, std::move(part->fresh), std::move(problem), *plane);
+  return ExplanationSearch(part->first, static_cast<int>(graph.landmarks.size()), std::move(part->fresh),
+                           std::move(problem), *plane);
 }
 
 /// Where a ray from p, of depth 1, meets it, within bounds.
@@ -127,8 +128,10 @@ std::optional<ExplanationSearch::Plane> ExplanationSearch::suppose(SupposedPlane
   return Plane{normal.normalized(), middle, usual};
 }
 
-ExplanationSearch::ExplanationSearch(int first, std::vector<int> fresh, FactorGraph problem, const Plane& plane)
+ExplanationSearch::ExplanationSearch(int first, int landmarks_then, std::vector<int> fresh, FactorGraph problem,
+                                     const Plane& plane)
     : first_(first),
+      landmarks_then_(landmarks_then),
       fresh_(std::move(fresh)),
       problem_(std::move(problem)),
       plane_(plane),
@@ -158,7 +161,8 @@ bool ExplanationSearch::pass() {
   if (!present_) {
     if (solve(*other_)) return true;
     if (!(cost_ + kAdvantage < evaluate(problem_).total())) return false;
-    found_ = RecentExplanation{first_, {other_->graph().states.begin() + 1, other_->graph().states.end()}, {}, -cost_};
+    found_ = RecentExplanation{
+        first_, {other_->graph().states.begin() + 1, other_->graph().states.end()}, {}, -cost_, landmarks_then_};
     for (std::size_t j = 0; j < fresh_.size(); ++j) {
       found_->landmarks.emplace_back(fresh_[j], other_->graph().landmarks[j].position);
     }
@@ -206,7 +210,8 @@ void ExplanationSearch::begin_solving() {
 bool ExplanationSearch::solve(Engine& engine) {
   const auto summary = engine.optimise(1, kTolerance);
   cost_ = summary.final_cost;
-  const bool last = summary.converged || ++iterations_ == kIterations;
+  const bool vain = summary.final_cost == summary.initial_cost;
+  const bool last = summary.converged || vain || ++iterations_ == kIterations;
   if (last) iterations_ = 0;
   return !last;
 }
@@ -214,17 +219,19 @@ bool ExplanationSearch::solve(Engine& engine) {
 void RecentExplanation::place_in(Engine& engine) const {
   const FactorGraph& graph = engine.graph();
   const int end = first + static_cast<int>(states.size());
-  const SE3 along = states.back().T * graph.states[index(end - 1)].T.inverse();
+  const auto before = [&](int k) { return graph.states[index(k)].T; };
+  const SE3 along = states.back().T * before(end - 1).inverse();
+  for (int j = landmarks_then; j < std::ssize(graph.landmarks); ++j) {  // may have been seen before then
+    const FactorGraph::Landmark& landmark = graph.landmarks[index(j)];
+    if (landmark.intervals.empty() || landmark.intervals.back() < first) continue;
+    const int k = landmark.intervals.back();
+    const SE3 motion = k < end ? states[index(k - first)].T * before(k).inverse() : along;
+    engine.place_landmark(j, motion * landmark.position);
+  }
   for (int k = end; k < std::ssize(graph.states); ++k) {
     ControlState state = graph.states[index(k)];
     state.T = along * state.T;
     engine.place_state(k, state);
-  }
-  for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
-    const FactorGraph::Landmark& landmark = graph.landmarks[index(j)];
-    if (!landmark.intervals.empty() && landmark.intervals.front() >= end) {
-      engine.place_landmark(j, along * landmark.position);
-    }
   }
   for (int k = first; k < end; ++k) engine.place_state(k, states[index(k - first)]);
   for (const auto& [j, position] : landmarks) engine.place_landmark(j, position);

@@ -21,8 +21,10 @@ struct RecentExplanation {
   std::vector<ControlState> states;                ///< from there on, the newest of then last
   std::vector<std::pair<int, Vector3>> landmarks;  ///< those that came into view since, world frame [units]
   double advantage = 0.0;                          ///< by which its cost, ½ Σ ρ, is lower
+  int landmarks_then = 0;                          ///< of the problem, as it was looked for
 
-  /// Makes it the estimate; what has been added to the engine since it was looked for goes along.
+  /// Makes it the estimate; the states and landmarks that have been added to the engine since it was looked for go
+  /// along. Not for an engine in which the state before the first one has been marginalised.
   void place_in(Engine& engine) const;
 };
 
@@ -59,13 +61,14 @@ class ExplanationSearch {
   };
   static std::optional<Plane> suppose(SupposedPlane supposed, const FactorGraph& problem, std::size_t fresh);
 
-  ExplanationSearch(int first, std::vector<int> fresh, FactorGraph problem, const Plane& plane);
+  ExplanationSearch(int first, int landmarks_then, std::vector<int> fresh, FactorGraph problem, const Plane& plane);
   bool pass();
   void add_state(int k);
   void begin_solving();
   bool solve(Engine& engine);
 
   int first_;
+  int landmarks_then_;
   std::vector<int> fresh_;  ///< landmarks of the whole problem: the first ones of this
   FactorGraph problem_;     ///< the state before the part first, which is held
   Plane plane_;

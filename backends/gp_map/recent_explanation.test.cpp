@@ -122,22 +122,30 @@ TEST_CASE("What has been added since another explanation was looked for goes alo
   REQUIRE(other);
   Engine engine(wrong, {});
   add_extrapolated_state(engine, kStep * kStates);
-  const SE3 newest = engine.graph().states.back().T;
-  const int later = engine.add_landmark(newest * Vector3(0.1, 0.2, 2.0));
-  engine.add_observation(later, {kStep * kStates, wrong.camera.project({0.1, 0.2, 2.0}), 1.0 / kSigma});
+  const Vector3 in_camera(0.1, 0.2, 2.0);
+  // A landmark is added with all that its track has seen: one is seen by the new state, one by an earlier one alone.
+  for (const int k : {kStates, kStates - 3}) {
+    const int landmark = engine.add_landmark(engine.graph().states[index(k)].T * in_camera);
+    engine.add_observation(landmark, {kStep * k, wrong.camera.project(in_camera), 1.0 / kSigma});
+    if (k == kStates) engine.add_observation(landmark, {kStep * (k - 4), wrong.camera.project(in_camera), 1e-6});
+  }
   engine.settle();
   const FactorGraph before = engine.graph();
   other->place_in(engine);
   const FactorGraph& after = engine.graph();
   CHECK((after.states[kStates - 1].T.p - other->states.back().T.p).norm() < 1e-9);
-  const auto seen_from = [](const SE3& T, const FactorGraph& graph) {
-    return std::pair{Vector3((T.inverse() * graph.states.back().T).p),
-                     Vector3(T.inverse() * graph.landmarks.back().position)};
+  CHECK((after.states[kStates - 1].T.p - before.states[kStates - 1].T.p).norm() > 0.01);
+  const auto newest_state = [](const FactorGraph& graph) {
+    return Vector3((graph.states[kStates - 1].T.inverse() * graph.states[kStates].T).p);
   };
-  const auto [p, q] = seen_from(before.states[kStates - 1].T, before);
-  const auto [p_after, q_after] = seen_from(after.states[kStates - 1].T, after);
-  CHECK((p_after - p).norm() < 1e-9);
-  CHECK((q_after - q).norm() < 1e-9);
+  CHECK((newest_state(after) - newest_state(before)).norm() < 1e-9);
+  for (const auto& [k, landmark] : {std::pair{kStates, 0}, {kStates - 3, 1}}) {
+    const auto seen = [&](const FactorGraph& graph) {
+      const Vector3& position = graph.landmarks[index(kLandmarks + landmark)].position;
+      return Vector3(graph.states[index(k)].T.inverse() * position);
+    };
+    CHECK((seen(after) - seen(before)).norm() < 1e-9);
+  }
   for (int i = 0; i < 20; ++i) engine.settle();
   CHECK(cost(engine.graph()) < cost(before) - 10.0);
 }

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -82,10 +81,11 @@ void GpMap::slid_off(int landmark, double from) {
   end_track_of(landmark, Track::Role::slid);
 }
 
-/// Each track that was last seen in this span, and began since then, counts with its own noise, within the bounds of
-/// its leverage: whether it is an outlier is not a question of yes or no. Where most would count for less, it is the
-/// motion that is wrong.
+/// Each track that has been seen since this span began, and itself began since then, counts with its own noise up to
+/// the span's end, within the bounds of its leverage: whether it is an outlier is not a question of yes or no. Where,
+/// while running, most would count for less, it is the motion that is wrong, and all keep what they have.
 void GpMap::weigh_tracks(const NoiseLearner& noise, const TimeSpan& span, double since) {
+  const bool running = since > TimeSpan().from;
   const double usual = noise.scale_of_means();
   std::vector<std::pair<int, double>> own;
   std::vector<double> scales;
@@ -96,13 +96,13 @@ void GpMap::weigh_tracks(const NoiseLearner& noise, const TimeSpan& span, double
     own.emplace_back(j, TrackErrors(graph(), j, usual, {}).sigma_scale());
     scales.push_back(own.back().second);
   }
-  if (own.empty() || median(std::move(scales)) > kChange) return;
-  const double change = since > TimeSpan().from ? kChange : 1.0;
+  if (own.empty() || (running && median(std::move(scales)) > kChange)) return;
+  const double change = running ? kChange : 1.0;
   for (const auto& [j, scale] : own) {
-    double& present = known_[index(j)].noise;
-    if (scale < change * present && scale > present / change) continue;
-    present = scale;
-    engine_->scale_sigmas(j, known_[index(j)].sigma_scale());
+    Known& known = known_[index(j)];
+    if (scale < change * known.noise && scale > known.noise / change) continue;
+    known.noise = scale;
+    if (known.sigma_scale() != graph().landmarks[index(j)].sigma_scale) engine_->scale_sigmas(j, known.sigma_scale());
   }
 }
 
