@@ -81,9 +81,10 @@ void GpMap::slid_off(int landmark, double from) {
   end_track_of(landmark, Track::Role::slid);
 }
 
-/// Each track that has been seen since this span began, and itself began since then, counts with its own noise up to
-/// the span's end, within the bounds of its leverage: whether it is an outlier is not a question of yes or no. Where,
-/// while running, most would count for less, it is the motion that is wrong, and all keep what they have.
+/// Each track that has been seen since this span began, and itself began since then, counts with its own noise, within
+/// the bounds of its leverage: whether it is an outlier is not a question of yes or no. All that it has shown tells,
+/// the newest too, as a sliding track must soon count less. Where, while running, most would count for less, it is the
+/// motion that is wrong, and all keep what they have.
 void GpMap::weigh_tracks(const NoiseLearner& noise, const TimeSpan& span, double since) {
   const bool running = since > TimeSpan().from;
   const double usual = noise.scale_of_means();
