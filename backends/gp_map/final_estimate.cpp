@@ -25,7 +25,7 @@ void GpMap::finish() {
   const auto start = std::chrono::steady_clock::now();
   if (options_.lag > 0.0) {
     for (int round = 0; round < options_.learn.rounds; ++round) {
-      learn_with_hindsight({}, options_.map.outlier_threshold);
+      learn_with_hindsight({});
       engine_->update();
     }
     record_final_prior();
@@ -54,8 +54,8 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
       engine_->set_loss(noise_.loss(options_.loss, options_.loss_width));
     }
     if (learns_prior) learn_prior(*engine_, {});
-    judge_tracks(noise, {}, options_.map.outlier_threshold);
-    if (options_.learn.noise) weigh_tracks(noise, {}, TimeSpan().from);
+    judge_tracks(noise, {});
+    if (options_.learn.noise) weigh_tracks(noise, {});
     const bool settled = engine_->optimise(kIterationsARound, kRoughly).iterations == 1;
     if (settled && round > 0) break;  // what is learnt does not change the estimate any more
   }

@@ -21,7 +21,6 @@ const Registration<BackEnd, GpMap> registration("gp_map",
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
 constexpr double kOneSided = 0.1;  ///< what was seen so shortly ago is known from one side
-constexpr double kHasty = 2.0;     ///< times farther off than in the end is what goes while running
 constexpr double kYoung = 5.0;     ///< [s] for which another first map is looked for, and no track is judged by it
 constexpr double kMemory = 10.0;   ///< [s] for which tracks are remembered that ended before there is a map
 
@@ -212,7 +211,7 @@ void GpMap::learn() {
   const double now = graph().states.back().t;
   if (now < next_hindsight_) return;
   next_hindsight_ = now + kEvery;
-  learn_with_hindsight({now - kHindsight, now - kOneSided}, kHasty * options_.map.outlier_threshold);
+  learn_with_hindsight({now - kHindsight, now - kOneSided});
   last_update_ = engine_->update();
 }
 
@@ -237,13 +236,11 @@ void GpMap::reconsider_recent() {
 
 /// What was seen a while ago is known from both sides: tracks show whether they stayed on their points, and the motion
 /// how smooth it was. The newest motion, known from one side alone, keeps a prior that allows for what may come.
-void GpMap::learn_with_hindsight(const TimeSpan& span, double outlier_threshold) {
-  const double now = graph().states.back().t;
-  const bool is_young = !(now > graph().states.front().t + kYoung);
-  if (!is_young) judge_tracks(noise_, span, outlier_threshold);  // a young map itself is not right yet
-  if (options_.learn.noise && !(options_.learn.prior != LearnPrior::always && violent_motion_.is_yielding(graph()))) {
-    weigh_tracks(noise_, span, now - options_.learn.memory);
-  }
+void GpMap::learn_with_hindsight(const TimeSpan& span) {
+  const bool is_young = !(graph().states.back().t > graph().states.front().t + kYoung);
+  if (!is_young) judge_tracks(noise_, span);  // a young map itself is not right yet
+  const bool yields = options_.learn.prior != LearnPrior::always && violent_motion_.is_yielding(graph());
+  if (options_.learn.noise && !yields) weigh_tracks(noise_, span);
   if (options_.learn.prior != LearnPrior::never) learn_prior(*engine_, span);
 }
 

@@ -90,7 +90,7 @@ class GpMap : public BackEnd {
   void bound_leverage();
   void optimise();
   void learn();
-  void learn_with_hindsight(const TimeSpan& span, double outlier_threshold);
+  void learn_with_hindsight(const TimeSpan& span);
   void reconsider_recent();
   void check_support();
   void forget_ended_tracks(double t);
@@ -118,9 +118,9 @@ class GpMap : public BackEnd {
   void tell_online(double t);
   void tell_recent(double t);
   Engine::OptimiseSummary estimate_everything();
-  void judge_tracks(const NoiseLearner& noise, const TimeSpan& span, double threshold);
+  void judge_tracks(const NoiseLearner& noise, const TimeSpan& span);
   void slid_off(int landmark, double from);
-  void weigh_tracks(const NoiseLearner& noise, const TimeSpan& span, double since);
+  void weigh_tracks(const NoiseLearner& noise, const TimeSpan& span);
   void record_final_prior();
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
 

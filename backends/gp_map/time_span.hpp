@@ -10,6 +10,8 @@ struct TimeSpan {
 
   bool has(double t) const { return from < t && t <= until; }
 
+  bool is_everything() const { return from == TimeSpan().from && until == TimeSpan().until; }
+
   /// Whether some of the times in (t0, t1] are in it.
   bool meets(double t0, double t1) const { return from < t1 && t0 < until; }
 };

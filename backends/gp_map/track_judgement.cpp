@@ -1,4 +1,3 @@
-#include <iterator>
 #include <map>
 #include <optional>
 #include <ranges>
@@ -13,16 +12,20 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kChange = 1.5;  ///< by which a track's noise must change to be set anew while running
+// While running, when less is known than in the end:
+constexpr double kHasty = 2.0;   ///< times farther off than in the end is what goes
+constexpr double kChange = 1.5;  ///< by which a track's noise must change to be set anew
 
 using Judged = std::vector<std::pair<int, TrackErrors>>;  ///< by landmark
 
-Judged errors_in(const FactorGraph& graph, const NoiseLearner& noise, const TimeSpan& span) {
+/// In `span`, of the landmarks that have been seen after `seen` and were not before `begun`.
+Judged errors_in(const FactorGraph& graph, const NoiseLearner& noise, const TimeSpan& span, double seen, double begun) {
   const double usual = noise.scale_of_means();
   Judged errors;
   for (int j = 0; j < static_cast<int>(graph.landmarks.size()); ++j) {
-    const std::vector<int>& seen = graph.landmarks[index(j)].intervals;
-    if (seen.empty() || graph.states[index(seen.back())].t <= span.from) continue;
+    const std::vector<int>& intervals = graph.landmarks[index(j)].intervals;
+    if (intervals.empty() || graph.states[index(intervals.back())].t <= seen) continue;
+    if (graph.states[index(intervals.front())].t <= begun) continue;
     errors.emplace_back(j, TrackErrors(graph, j, usual, span));
   }
   return errors;
@@ -60,8 +63,9 @@ std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double
 }  // namespace
 
 /// By what they show in this span: outliers go, and a track that slid keeps its landmark up to there.
-void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span, double threshold) {
-  const Judged errors = errors_in(graph(), noise, span);
+void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span) {
+  const double threshold = (span.is_everything() ? 1.0 : kHasty) * options_.map.outlier_threshold;
+  const Judged errors = errors_in(graph(), noise, span, span.from, TimeSpan().from);
   for (const int outlier : outliers(graph(), errors, threshold, span)) {
     const int first_seen = graph().landmarks[index(outlier)].intervals.front();
     if (graph().states[index(first_seen)].t > span.from) {
@@ -81,20 +85,17 @@ void GpMap::slid_off(int landmark, double from) {
   end_track_of(landmark, Track::Role::slid);
 }
 
-/// Each track that has been seen since this span began, and itself began since then, counts with its own noise, within
-/// the bounds of its leverage: whether it is an outlier is not a question of yes or no. All that it has shown tells,
-/// the newest too, as a sliding track must soon count less. Where, while running, most would count for less, it is the
-/// motion that is wrong, and all keep what they have.
-void GpMap::weigh_tracks(const NoiseLearner& noise, const TimeSpan& span, double since) {
-  const bool running = since > TimeSpan().from;
-  const double usual = noise.scale_of_means();
+/// Each track that has been seen since this span began counts with its own noise, within the bounds of its leverage:
+/// whether it is an outlier is not a question of yes or no. All that it has shown tells, the newest too, as a sliding
+/// track must soon count less. While running only young tracks are weighed, which bounds how far back stages are
+/// redone; and where most would count for less, it is the motion that is wrong, and all keep what they have.
+void GpMap::weigh_tracks(const NoiseLearner& noise, const TimeSpan& span) {
+  const bool running = !span.is_everything();
+  const double begun = running ? graph().states.back().t - options_.learn.memory : TimeSpan().from;
   std::vector<std::pair<int, double>> own;
   std::vector<double> scales;
-  for (int j = 0; j < std::ssize(graph().landmarks); ++j) {
-    const std::vector<int>& seen = graph().landmarks[index(j)].intervals;
-    if (seen.empty() || graph().states[index(seen.back())].t <= span.from) continue;
-    if (graph().states[index(seen.front())].t <= since) continue;
-    own.emplace_back(j, TrackErrors(graph(), j, usual, {}).sigma_scale());
+  for (const auto& [j, error] : errors_in(graph(), noise, {}, span.from, begun)) {
+    own.emplace_back(j, error.sigma_scale());
     scales.push_back(own.back().second);
   }
   if (own.empty() || (running && median(std::move(scales)) > kChange)) return;
