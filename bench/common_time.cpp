@@ -16,7 +16,7 @@
 namespace evbench {
 namespace {
 
-const Json& scores_of(const RunRecord& run, bool online) { return online ? run.online_scores : run.final_scores; }
+const Json& own_scores(const RunRecord& run, bool online) { return online ? run.online_scores : run.final_scores; }
 
 /// From the first pose compared to the last one.
 std::optional<TimeRange> span_of(const Json& scores) {
@@ -30,7 +30,7 @@ TimeRange both(const TimeRange& a, const TimeRange& b) { return {std::max(a.from
 TimeRange common_time(const std::vector<RunRecord*>& runs, bool online) {
   TimeRange common;
   for (const RunRecord* run : runs) {
-    const Json& scores = scores_of(*run, online);
+    const Json& scores = own_scores(*run, online);
     if (scores.is_null() || !run->competes()) continue;
     if (const std::optional<TimeRange> span = span_of(scores)) common = both(common, *span);
   }
@@ -38,14 +38,14 @@ TimeRange common_time(const std::vector<RunRecord*>& runs, bool online) {
 }
 
 Json score_within(const TimeRange& range, const RunRecord& run, bool online) {
-  if (scores_of(run, online).is_null()) return nullptr;
+  if (own_scores(run, online).is_null()) return nullptr;
   try {
     ScoreOptions options = protocol_of_run(run.folder);
     const bool limited = options.time_range.size() == 2;
     const TimeRange asked = limited ? TimeRange{options.time_range[0], options.time_range[1]} : TimeRange{};
     const TimeRange time = both(asked, range);
     options.time_range = {time.from, time.to};
-    return to_json(score_estimate(run.folder, online, options, run).scores);
+    return scores_of(run.folder, online, options, run);
   } catch (const InputError&) {  // too few poses, or files that are gone: the run's own scores stand all the same
     return nullptr;
   }

@@ -164,6 +164,14 @@ TEST_CASE("A table scores its runs over the time that all of them cover, too") {
     CHECK(common.second <= std::min(a.second, b.second));
     CHECK(record.common_scores.at("coverage") > 0.99);
   }
+  score_common_time(records, true);
+  const double begin = std::max(span(records[0].online_scores).first, span(records[1].online_scores).first);
+  for (const RunRecord& record : records) {
+    const Json& at_latency = record.common_scores.at("equal_latency");
+    CHECK(at_latency.at("latency_s") == 0.2);
+    CHECK(at_latency.at("pairs") < record.online_scores.at("equal_latency").at("pairs"));
+    CHECK(span(at_latency).first >= begin);
+  }
   records[0].folder = "/nowhere";
   score_common_time(records, false);
   CHECK(records[0].common_scores.is_null());

@@ -31,28 +31,31 @@ bool exists(const std::string& path) {
 
 struct RunTrajectories {
   PoseTrajectory ground_truth, estimate;  ///< each empty where there is none
+  std::vector<OnlinePose> told;           ///< likewise; of the online estimate
 };
 
 RunTrajectories read_trajectories(const std::string& folder, bool online) {
-  const std::string truth = folder + "/groundtruth.tum";
-  return {std::filesystem::exists(truth) ? read_tum(truth) : PoseTrajectory(),
-          read_estimate(folder + (online ? "/online.tum" : "/final.tum"))};
+  const std::string truth = folder + "/groundtruth.tum", told = folder + "/told.txt";
+  return {exists(truth) ? read_tum(truth) : PoseTrajectory(),
+          read_estimate(folder + (online ? "/online.tum" : "/final.tum")),
+          online && exists(told) ? read_online_poses(told) : std::vector<OnlinePose>()};
 }
 
 /// Throws InputError with the reason where there are no scores.
-Scores compare(const RunTrajectories& trajectories, ScoreOptions options, const RunRecord& record) {
-  if (trajectories.estimate.empty()) {  // a run that broke off left no ground truth either
+Scores compare(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, ScoreOptions options,
+               const RunRecord& record) {
+  if (estimate.empty()) {  // a run that broke off left no ground truth either
     const std::string reason = record.status ? record.status->status.reason : "";
     throw InputError(reason.empty() ? "no trajectory" : "no trajectory: " + reason);
   }
-  if (trajectories.ground_truth.empty()) throw InputError(kNoGroundTruth);
+  if (ground_truth.empty()) throw InputError(kNoGroundTruth);
   const OptionSet::List asked = options.time_range;
   options.time_range = clip(asked, record.range);
   if (asked.size() == 2 && !(options.time_range[0] < options.time_range[1])) {
     throw InputError(fmt::format("the time range to evaluate, {} to {} s, is outside of the run's, {} to {} s",
                                  asked[0], asked[1], record.range->from, record.range->to));
   }
-  return score(trajectories.ground_truth, trajectories.estimate, options);
+  return score(ground_truth, estimate, options);
 }
 
 /// The scores of what the back-end would have given for each ground-truth pose's time, `latency` later.
@@ -61,12 +64,24 @@ Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<Onl
   std::vector<double> times;
   for (const StampedPose& pose : ground_truth.poses()) times.push_back(pose.t - options.time_offset);
   try {
-    Json json = to_json(compare({ground_truth, estimates_at_latency(told, times, latency)}, options, record));
+    Json json = to_json(compare(ground_truth, estimates_at_latency(told, times, latency), options, record));
     json["latency_s"] = latency;
     return json;
   } catch (const InputError&) {
     return nullptr;
   }
+}
+
+/// With those at zero and at equal latency, where it was told what was known when.
+Json scores_of(const RunTrajectories& trajectories, const ScoreOptions& options, const RunRecord& record) {
+  const auto& [ground_truth, estimate, told] = trajectories;
+  Json scores = to_json(compare(ground_truth, estimate, options, record));
+  if (const std::optional<Delay> delay = delay_of(told)) {
+    scores["delay_s"] = {{"median", delay->median}, {"p99", delay->p99}, {"max", delay->max}};
+    scores["zero_latency"] = scores_at_latency(ground_truth, told, 0.0, options, record);
+    scores["equal_latency"] = scores_at_latency(ground_truth, told, options.latency, options, record);
+  }
+  return scores;
 }
 
 /// By kind.
@@ -89,22 +104,13 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
     scores = nullptr;
     unscored.clear();
     try {
-      scores = to_json(compare(trajectories, options, record));
+      scores = scores_of(trajectories, options, record);
     } catch (const InputError& error) {
       unscored = error.what();
     }
   };
   set(false, record.final_scores, record.final_unscored);
   set(true, record.online_scores, record.online_unscored);
-  if (const std::string path = folder + "/told.txt"; exists(path) && !record.online_scores.is_null()) {
-    const PoseTrajectory ground_truth = read_tum(folder + "/groundtruth.tum");
-    const std::vector<OnlinePose> told = read_online_poses(path);
-    if (const std::optional<Delay> delay = delay_of(told)) {
-      record.online_scores["delay_s"] = {{"median", delay->median}, {"p99", delay->p99}, {"max", delay->max}};
-    }
-    record.online_scores["zero_latency"] = scores_at_latency(ground_truth, told, 0.0, options, record);
-    record.online_scores["equal_latency"] = scores_at_latency(ground_truth, told, options.latency, options, record);
-  }
   record.covariance = nullptr;
   if (const std::string path = folder + "/covariance.txt"; exists(path) && !record.final_scores.is_null()) {
     record.covariance = covariance_scores(read_relative_poses(path), read_tum(folder + "/groundtruth.tum"),
@@ -112,11 +118,15 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
   }
 }
 
+Json scores_of(const std::string& folder, bool online, const ScoreOptions& options, const RunRecord& record) {
+  return scores_of(read_trajectories(folder, online), options, record);
+}
+
 ScoredEstimate score_estimate(const std::string& folder, bool online, const ScoreOptions& options,
                               const RunRecord& record) {
   RunTrajectories trajectories = read_trajectories(folder, online);
   try {
-    Scores scores = compare(trajectories, options, record);
+    Scores scores = compare(trajectories.ground_truth, trajectories.estimate, options, record);
     return {std::move(trajectories.estimate), std::move(scores)};
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", folder, error.what()));

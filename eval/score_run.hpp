@@ -14,14 +14,17 @@ namespace evbench {
 /// files that are missing or damaged.
 void score_run(const std::string& folder, const ScoreOptions& options, RunRecord& record);
 
+/// One of the estimates, scored likewise, as metrics.json has it; what score_run() takes down as the reason why there
+/// are no scores is an InputError here.
+Json scores_of(const std::string& folder, bool online, const ScoreOptions& options, const RunRecord& record);
+
 /// An estimate of a run, and its scores.
 struct ScoredEstimate {
   PoseTrajectory estimate;
   Scores scores;
 };
 
-/// One of the estimates, scored likewise; what score_run() takes down as the reason why there are no scores is an
-/// InputError here.
+/// The same, with the poses that were compared.
 ScoredEstimate score_estimate(const std::string& folder, bool online, const ScoreOptions& options,
                               const RunRecord& record);
 
