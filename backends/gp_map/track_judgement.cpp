@@ -12,9 +12,8 @@
 namespace evbench::gp_map {
 namespace {
 
-// While running, when less is known than in the end:
-constexpr double kHasty = 2.0;   ///< times farther off than in the end is what goes
-constexpr double kChange = 1.5;  ///< by which a track's noise must change to be set anew
+constexpr double kFar = 2.0;     ///< of a mean over a short time, in thresholds for one over a track's life
+constexpr double kChange = 1.5;  ///< by which a track's noise must change while running to be set anew
 
 using Judged = std::vector<std::pair<int, TrackErrors>>;  ///< by landmark
 
@@ -64,7 +63,7 @@ std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double
 
 /// By what they show in this span: outliers go, and a track that slid keeps its landmark up to there.
 void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span) {
-  const double threshold = (span.is_everything() ? 1.0 : kHasty) * options_.map.outlier_threshold;
+  const double threshold = kFar * options_.map.outlier_threshold;
   const Judged errors = errors_in(graph(), noise, span, span.from, TimeSpan().from);
   for (const int outlier : outliers(graph(), errors, threshold, span)) {
     const int first_seen = graph().landmarks[index(outlier)].intervals.front();
