@@ -87,7 +87,7 @@ TEST_CASE("A track that slides off its point keeps its beginning as a landmark, 
       whole += last > end[landmark.track] - 0.2;
     }
   }
-  CHECK(slid >= 8);
+  CHECK(slid >= 18);
   CHECK(beginnings >= slid - 1);
   CHECK(sound > 20);
   CHECK(whole == sound);

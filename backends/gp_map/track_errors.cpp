@@ -31,12 +31,16 @@ TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, double usual, c
   for (Block& block : blocks_) block.square = block.sum.squaredNorm() / (block.count * usual * usual);
 }
 
-double TrackErrors::sigma_scale() const {
-  if (blocks_.empty()) return 1.0;
+std::vector<double> TrackErrors::squares() const {
   std::vector<double> squares;
   for (const Block& block : blocks_) squares.push_back(block.square);
+  return squares;
+}
+
+double TrackErrors::sigma_scale() const {
+  if (blocks_.empty()) return 1.0;
   const auto n = static_cast<double>(blocks_.size());
-  const double own = median(std::move(squares)) / kMedianSquare;
+  const double own = median(squares()) / kMedianSquare;
   return std::sqrt(std::max(1.0, (kOthers + n * own) / (kOthers + n)));
 }
 

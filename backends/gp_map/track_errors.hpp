@@ -16,6 +16,9 @@ class TrackErrors {
   /// At the graph's estimate, of what was observed in this span. `usual`: NoiseLearner::scale_of_means() of all tracks.
   TrackErrors(const FactorGraph& graph, int landmark, double usual, const TimeSpan& span);
 
+  /// Of its means, the squares [sigmas of all tracks' means].
+  std::vector<double> squares() const;
+
   /// Its sigmas over the stated ones, as that of all tracks is learnt apart: at least 1, for a track that is noisier
   /// than most. A robust estimate, which a short track takes from the others.
   double sigma_scale() const;

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <ranges>
@@ -12,8 +15,9 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kFar = 2.0;     ///< of a mean over a short time, in thresholds for one over a track's life
-constexpr double kChange = 1.5;  ///< by which a track's noise must change while running to be set anew
+// While running, when less is known than in the end:
+constexpr double kHasty = 2.0;   ///< times farther off than in the end is what goes
+constexpr double kChange = 1.5;  ///< by which a track's noise must change to be set anew
 
 using Judged = std::vector<std::pair<int, TrackErrors>>;  ///< by landmark
 
@@ -30,8 +34,22 @@ Judged errors_in(const FactorGraph& graph, const NoiseLearner& noise, const Time
   return errors;
 }
 
-/// Landmarks of which the track says something else in this span. Where most of the tracks that are seen together do,
-/// it is the motion that is wrong, and none of them.
+/// How much farther the means of all tracks reach than normally distributed ones of their scale, at least 1: the errors
+/// of trackers have longer tails, and what would be far off otherwise is not for them. By a quantile beyond which all
+/// outliers are, as they are few.
+double tail_of(const Judged& errors) {
+  constexpr double kShare = 0.7;
+  std::vector<double> squares;
+  for (const auto& [j, error] : errors) std::ranges::copy(error.squares(), std::back_inserter(squares));
+  if (squares.empty()) return 1.0;
+  const auto at = squares.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(squares.size() - 1));
+  std::ranges::nth_element(squares, at);
+  const double normal = -2.0 * std::log(1.0 - kShare);
+  return std::sqrt(std::max(1.0, *at / normal));
+}
+
+/// Landmarks of which the track says something else in this span, without a good beginning. Where most of the tracks
+/// that are seen together do, it is the motion that is wrong, and none of them.
 std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double threshold, const TimeSpan& span) {
   const auto seen = [&](int j) {
     return std::views::filter(graph.landmarks[index(j)].intervals, [&](int k) {
@@ -41,7 +59,7 @@ std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double
   std::vector<int> far;
   std::map<int, std::pair<int, int>> far_of;  // by interval: of so many that are seen in it so many are far off
   for (const auto& [j, error] : errors) {
-    const bool is_far = error.is_outlier(threshold);
+    const bool is_far = error.is_outlier(threshold) && !error.slides_from(threshold);
     if (is_far) far.push_back(j);
     for (const int k : seen(j)) {
       ++far_of[k].second;
@@ -63,8 +81,9 @@ std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double
 
 /// By what they show in this span: outliers go, and a track that slid keeps its landmark up to there.
 void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span) {
-  const double threshold = kFar * options_.map.outlier_threshold;
   const Judged errors = errors_in(graph(), noise, span, span.from, TimeSpan().from);
+  const double far = tail_of(errors) * options_.map.outlier_threshold;
+  const double threshold = span.is_everything() ? far : kHasty * far;
   for (const int outlier : outliers(graph(), errors, threshold, span)) {
     const int first_seen = graph().landmarks[index(outlier)].intervals.front();
     if (graph().states[index(first_seen)].t > span.from) {
