@@ -2,7 +2,10 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <vector>
 
+#include "core/data/online_poses.hpp"
 #include "core/data/tum.hpp"
 #include "eval/covariance_scores.hpp"
 #include "eval/latency.hpp"
@@ -31,14 +34,12 @@ bool exists(const std::string& path) {
 
 struct RunTrajectories {
   PoseTrajectory ground_truth, estimate;  ///< each empty where there is none
-  std::vector<OnlinePose> told;           ///< likewise; of the online estimate
 };
 
 RunTrajectories read_trajectories(const std::string& folder, bool online) {
-  const std::string truth = folder + "/groundtruth.tum", told = folder + "/told.txt";
-  return {exists(truth) ? read_tum(truth) : PoseTrajectory(),
-          read_estimate(folder + (online ? "/online.tum" : "/final.tum")),
-          online && exists(told) ? read_online_poses(told) : std::vector<OnlinePose>()};
+  const std::string truth = folder + "/groundtruth.tum";
+  return {std::filesystem::exists(truth) ? read_tum(truth) : PoseTrajectory(),
+          read_estimate(folder + (online ? "/online.tum" : "/final.tum"))};
 }
 
 /// Throws InputError with the reason where there are no scores.
@@ -72,16 +73,17 @@ Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<Onl
   }
 }
 
-/// With those at zero and at equal latency, where it was told what was known when.
-Json scores_of(const RunTrajectories& trajectories, const ScoreOptions& options, const RunRecord& record) {
-  const auto& [ground_truth, estimate, told] = trajectories;
-  Json scores = to_json(compare(ground_truth, estimate, options, record));
+/// To the scores of the online estimate those at zero and at equal latency, where it was told what was known when.
+void add_latencies(const std::string& folder, const PoseTrajectory& ground_truth, const ScoreOptions& options,
+                   const RunRecord& record, Json& scores) {
+  const std::string path = folder + "/told.txt";
+  if (!exists(path)) return;
+  const std::vector<OnlinePose> told = read_online_poses(path);
   if (const std::optional<Delay> delay = delay_of(told)) {
     scores["delay_s"] = {{"median", delay->median}, {"p99", delay->p99}, {"max", delay->max}};
-    scores["zero_latency"] = scores_at_latency(ground_truth, told, 0.0, options, record);
-    scores["equal_latency"] = scores_at_latency(ground_truth, told, options.latency, options, record);
   }
-  return scores;
+  scores["zero_latency"] = scores_at_latency(ground_truth, told, 0.0, options, record);
+  scores["equal_latency"] = scores_at_latency(ground_truth, told, options.latency, options, record);
 }
 
 /// By kind.
@@ -104,10 +106,12 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
     scores = nullptr;
     unscored.clear();
     try {
-      scores = scores_of(trajectories, options, record);
+      scores = to_json(compare(trajectories.ground_truth, trajectories.estimate, options, record));
     } catch (const InputError& error) {
       unscored = error.what();
+      return;
     }
+    if (online) add_latencies(folder, trajectories.ground_truth, options, record, scores);
   };
   set(false, record.final_scores, record.final_unscored);
   set(true, record.online_scores, record.online_unscored);
@@ -119,7 +123,10 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
 }
 
 Json scores_of(const std::string& folder, bool online, const ScoreOptions& options, const RunRecord& record) {
-  return scores_of(read_trajectories(folder, online), options, record);
+  const RunTrajectories trajectories = read_trajectories(folder, online);
+  Json scores = to_json(compare(trajectories.ground_truth, trajectories.estimate, options, record));
+  if (online) add_latencies(folder, trajectories.ground_truth, options, record, scores);
+  return scores;
 }
 
 ScoredEstimate score_estimate(const std::string& folder, bool online, const ScoreOptions& options,

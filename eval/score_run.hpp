@@ -24,7 +24,7 @@ struct ScoredEstimate {
   Scores scores;
 };
 
-/// The same, with the poses that were compared.
+/// Likewise the scores of the estimate alone, with the estimate.
 ScoredEstimate score_estimate(const std::string& folder, bool online, const ScoreOptions& options,
                               const RunRecord& record);
 

@@ -27,7 +27,7 @@ class TrackErrors {
   bool is_outlier(double threshold) const;
 
   /// The time from which all that follows is farther off than that [s]; none where the end is as good as the rest, nor
-  /// where nothing was good before.
+  /// where none was good before.
   std::optional<double> slides_from(double threshold) const;
 
  private:

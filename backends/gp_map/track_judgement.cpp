@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <ranges>
@@ -34,22 +34,27 @@ Judged errors_in(const FactorGraph& graph, const NoiseLearner& noise, const Time
   return errors;
 }
 
-/// How much farther the means of all tracks reach than normally distributed ones of their scale, at least 1: the errors
-/// of trackers have longer tails, and what would be far off otherwise is not for them. By a quantile beyond which all
-/// outliers are, as they are few.
+/// How much farther the means of all tracks reach than normally distributed ones of their scale: the errors of trackers
+/// have longer tails, and what would be far off otherwise is not for them. By a quantile beyond which all outliers are,
+/// as they are few; where they are many, it must not hide them.
 double tail_of(const Judged& errors) {
-  constexpr double kShare = 0.7;
+  constexpr double kShare = 0.7, kLongest = 2.0;
   std::vector<double> squares;
-  for (const auto& [j, error] : errors) std::ranges::copy(error.squares(), std::back_inserter(squares));
+  for (const auto& [j, error] : errors) {
+    for (const double square : error.squares()) {
+      if (std::isfinite(square)) squares.push_back(square);
+    }
+  }
   if (squares.empty()) return 1.0;
   const auto at = squares.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(squares.size() - 1));
   std::ranges::nth_element(squares, at);
   const double normal = -2.0 * std::log(1.0 - kShare);
-  return std::sqrt(std::max(1.0, *at / normal));
+  return std::clamp(std::sqrt(*at / normal), 1.0, kLongest);
 }
 
-/// Landmarks of which the track says something else in this span, without a good beginning. Where most of the tracks
-/// that are seen together do, it is the motion that is wrong, and none of them.
+/// Landmarks of which the track says something else in this span. One that was good before it slid off is none, however
+/// long ago that was: without what follows its landmark will fit, or it goes the next time. Where most of the tracks
+/// that are seen together are far off, it is the motion that is wrong, and none of them.
 std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double threshold, const TimeSpan& span) {
   const auto seen = [&](int j) {
     return std::views::filter(graph.landmarks[index(j)].intervals, [&](int k) {
@@ -59,8 +64,8 @@ std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double
   std::vector<int> far;
   std::map<int, std::pair<int, int>> far_of;  // by interval: of so many that are seen in it so many are far off
   for (const auto& [j, error] : errors) {
-    const bool is_far = error.is_outlier(threshold) && !error.slides_from(threshold);
-    if (is_far) far.push_back(j);
+    const bool is_far = error.is_outlier(threshold);
+    if (is_far && !error.slides_from(threshold)) far.push_back(j);
     for (const int k : seen(j)) {
       ++far_of[k].second;
       if (is_far) ++far_of[k].first;
