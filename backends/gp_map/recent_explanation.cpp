@@ -12,7 +12,10 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr int kStates = 32;                ///< of late
+constexpr double kMost = 0.75;             ///< of what is in view ...
+constexpr double kLongAgo = 2.3;           ///< times as long ago as they came into view: there the newest part begins
+constexpr double kLongest = 2.5;           ///< [s] of it
+constexpr int kFewestStates = 8;           ///< of it
 constexpr int kEnoughObservations = 8000;  ///< of about so many at most, each track's are thinned evenly
 constexpr double kKnown = 0.03;            ///< to which landmarks of before are known, as a share of their distance
 constexpr double kHeld = 1e-4;             ///< [rad, units] of the pose from which it begins
@@ -22,7 +25,7 @@ constexpr double kAdvantage = 10.0;   ///< by which the other explanation's cost
 constexpr int kIterations = 6;        ///< of each explanation, at most
 constexpr double kTolerance = 3e-3;   ///< relative change of cost with which they end: 10 of some thousands
 constexpr int kShare = 24000;         ///< observations that are linearised at a time, or so
-constexpr int kStatesAPass = 3;       ///< through the problem, which take as long as an iteration
+constexpr int kPassesThrough = 10;    ///< to go through the problem, each as long as an iteration
 
 /// The newest part of a problem.
 struct Part {
@@ -30,9 +33,20 @@ struct Part {
   std::vector<int> fresh, held;  ///< landmarks seen in it, which came into view in it or before
 };
 
+/// So long ago that what came into view since has been replaced once more: a time, however densely states stand.
+int newest_parts_first(const FactorGraph& graph) {
+  const double now = graph.states.back().t;
+  std::vector<double> ages;
+  for (const auto& group : graph.intervals.back().groups()) {
+    ages.push_back(now - graph.states[index(graph.landmarks[index(group.landmark)].intervals.front())].t);
+  }
+  const double length = ages.empty() ? 0.0 : std::min(kLongest, kLongAgo * order_statistic(std::move(ages), kMost));
+  return std::min(graph.first_state_after(now - length), static_cast<int>(graph.states.size()) - kFewestStates);
+}
+
 std::optional<Part> newest_part(const FactorGraph& graph, int first_state, std::size_t enough) {
   Part part;
-  part.first = static_cast<int>(graph.states.size()) - kStates;
+  part.first = newest_parts_first(graph);
   if (part.first <= first_state + 1) return std::nullopt;
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
     const std::vector<int>& seen = graph.landmarks[index(j)].intervals;
@@ -153,7 +167,7 @@ bool ExplanationSearch::go_on() {
 bool ExplanationSearch::pass() {
   const int states = static_cast<int>(problem_.states.size());
   if (!other_) {
-    const int until = std::min(states, gone_through_ + 1 + kStatesAPass);
+    const int until = std::min(states, gone_through_ + 1 + std::max(1, states / kPassesThrough));
     while (gone_through_ + 1 < until) add_state(++gone_through_);
     if (until == states) begin_solving();
     return true;

@@ -34,9 +34,9 @@ struct RecentExplanation {
 /// and the motion in the wrong one: it may have had the lower cost when they were few, Gauss-Newton steps don't lead
 /// out of it, and within another second the scale is lost.
 ///
-/// So the newest part of the problem, of 32 states, is gone through once more on its own, what was known before being
-/// held, with new landmarks beginning on another plane; then both explanations are solved. That takes as long as many
-/// updates, so it is done in shares.
+/// So the newest part of the problem, over a time in which most of what is in view has come into it and what was before
+/// has gone, is gone through once more on its own, what was known before being held, with new landmarks beginning on
+/// another plane; then both explanations are solved. That takes as long as many updates, so it is done in shares.
 class ExplanationSearch {
  public:
   /// None where the part reaches back to `first_state`, the oldest one that is being estimated, where fewer than

@@ -46,10 +46,8 @@ double tail_of(const Judged& errors) {
     }
   }
   if (squares.empty()) return 1.0;
-  const auto at = squares.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(squares.size() - 1));
-  std::ranges::nth_element(squares, at);
   const double normal = -2.0 * std::log(1.0 - kShare);
-  return std::clamp(std::sqrt(*at / normal), 1.0, kLongest);
+  return std::clamp(std::sqrt(order_statistic(std::move(squares), kShare) / normal), 1.0, kLongest);
 }
 
 /// Landmarks of which the track says something else in this span. One that was good before it slid off is none, however
