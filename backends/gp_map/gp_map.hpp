@@ -81,7 +81,6 @@ class GpMap : public BackEnd {
   void step(double t);
   void take_observations(double t);
   bool initialise(double t);
-  void reconsider(double t);
   void remove_outliers();
   void extrapolate_state(double t);
   void add_observations();
@@ -92,6 +91,7 @@ class GpMap : public BackEnd {
   void learn();
   void learn_with_hindsight(const TimeSpan& span);
   void reconsider_recent();
+  void recall_outliers();
   void check_support();
   void forget_ended_tracks(double t);
   void predict_tracks();
@@ -100,8 +100,6 @@ class GpMap : public BackEnd {
   void take(const TrackObservation& z);
   bool goes_on(const Track& track);
   void split(TrackId id);
-  void begin_from(FirstMap map);
-  InitialGuess present_map(double t0, double t1) const;
   void become_landmark(TrackId track, int landmark);
   void become_outlier(int landmark);
   bool end_track_of(int landmark, Track::Role role);
@@ -132,7 +130,7 @@ class GpMap : public BackEnd {
   ObservationFollower follower_;
   std::map<TrackId, Track> tracks_;
   TrackBuffer waiting_;       ///< observations of waiting tracks
-  TrackBuffer young_;         ///< of all tracks, until the first map is settled
+  TrackBuffer young_;         ///< of all tracks, while what was seen is young
   std::set<TrackId> live_;    ///< tracks that are alive, or have ended since the last step
   std::vector<Known> known_;  ///< by landmark, of which a track that came back may have several
   std::vector<int> guessed_;  ///< landmarks at the scene's depth, until they show parallax

@@ -1,6 +1,7 @@
 #include "backends/gp_map/recent_explanation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 
@@ -27,14 +28,16 @@ constexpr double kTolerance = 3e-3;   ///< relative change of cost with which th
 constexpr int kShare = 24000;         ///< observations that are linearised at a time, or so
 constexpr int kPassesThrough = 10;    ///< to go through the problem, each as long as an iteration
 
-/// The newest part of a problem.
+/// The newest part of a problem, or all of it.
 struct Part {
-  int first = 0;                 ///< its intervals are those from this one on
+  int first = 0;                 ///< its states and intervals are those from this one on
   std::vector<int> fresh, held;  ///< landmarks seen in it, which came into view in it or before
 };
 
-/// So long ago that what came into view since has been replaced once more: a time, however densely states stand.
+/// So long ago that what came into view since has been replaced once more: a time, however densely states stand. Of a
+/// young problem the oldest state: nothing in it is known for sure.
 int newest_parts_first(const FactorGraph& graph) {
+  if (is_young(graph)) return 0;
   const double now = graph.states.back().t;
   std::vector<double> ages;
   for (const auto& group : graph.intervals.back().groups()) {
@@ -47,12 +50,14 @@ int newest_parts_first(const FactorGraph& graph) {
 std::optional<Part> newest_part(const FactorGraph& graph, int first_state, std::size_t enough) {
   Part part;
   part.first = newest_parts_first(graph);
-  if (part.first <= first_state + 1) return std::nullopt;
+  if (part.first <= first_state + 1 && (part.first > 0 || first_state > 0)) return std::nullopt;
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
     const std::vector<int>& seen = graph.landmarks[index(j)].intervals;
     if (!seen.empty() && seen.back() >= part.first) (seen.front() < part.first ? part.held : part.fresh).push_back(j);
   }
-  if (part.fresh.size() < enough || part.held.size() < enough) return std::nullopt;
+  if (part.fresh.size() < enough) return std::nullopt;
+  if (part.first == 0) return part;
+  if (part.held.size() < enough) return std::nullopt;
   const auto& now = graph.intervals.back().groups();
   const auto known = std::ranges::count_if(
       now, [&](const auto& group) { return graph.landmarks[index(group.landmark)].intervals.front() < part.first; });
@@ -60,12 +65,13 @@ std::optional<Part> newest_part(const FactorGraph& graph, int first_state, std::
   return part;
 }
 
-/// As a problem of its own, its landmarks in this order; the state before it is held.
+/// As a problem of its own, its landmarks in this order. The pose before it is held; where there is none, the first
+/// pose and the scale.
 FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
   FactorGraph problem;
   problem.camera = graph.camera;
   problem.loss = graph.loss;
-  for (int k = part.first - 1; k < std::ssize(graph.states); ++k) {
+  for (int k = std::max(0, part.first - 1); k < std::ssize(graph.states); ++k) {
     problem.qc = graph.qcs[index(k)];
     problem.add_state(graph.states[index(k)]);
     problem.expansions.back() = graph.expansions[index(k)];
@@ -93,10 +99,38 @@ FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
     const Vector3& position = graph.landmarks[index(j)].position;
     add(j, {position, kKnown * (position - begin.p).norm()});
   }
+  if (part.first == 0) {
+    std::vector<int> anchors;
+    for (const int j : graph.anchor.landmarks) {
+      const auto place = std::ranges::lower_bound(part.fresh, j);
+      if (place != part.fresh.end() && *place == j) anchors.push_back(static_cast<int>(place - part.fresh.begin()));
+    }
+    problem.anchor_scale(graph.anchor.origin, std::move(anchors));
+  }
   return problem;
 }
 
+/// Makes the scale the one that its anchor holds.
+void to_held_scale(FactorGraph& graph) {
+  constexpr int kSteps = 20;
+  const Vector3 origin = graph.anchor.origin;
+  for (int i = 0; i < kSteps && !graph.anchor.landmarks.empty(); ++i) {
+    const double larger = graph.anchor.sigma * residual(graph.anchor, graph);  // logarithm of the scale, to first order
+    const double factor = std::exp(-std::clamp(larger, -1.0, 1.0));
+    for (ControlState& state : graph.states) {
+      state.T.p = origin + factor * (state.T.p - origin);
+      state.velocity.tail<3>() *= factor;
+    }
+    for (FactorGraph::Landmark& l : graph.landmarks) l.position = origin + factor * (l.position - origin);
+  }
+}
+
 }  // namespace
+
+bool is_young(const FactorGraph& graph) {
+  constexpr double kYoung = 5.0;  // [s]
+  return !(graph.states.back().t > graph.states.front().t + kYoung);
+}
 
 std::optional<ExplanationSearch> ExplanationSearch::begin(const FactorGraph& graph, int first_state, int enough,
                                                           SupposedPlane supposed) {
@@ -175,8 +209,9 @@ bool ExplanationSearch::pass() {
   if (!present_) {
     if (solve(*other_)) return true;
     if (!(cost_ + kAdvantage < evaluate(problem_).total())) return false;
+    const int held = std::min(1, first_);
     found_ = RecentExplanation{
-        first_, {other_->graph().states.begin() + 1, other_->graph().states.end()}, {}, -cost_, landmarks_then_};
+        first_, {other_->graph().states.begin() + held, other_->graph().states.end()}, {}, -cost_, landmarks_then_};
     for (std::size_t j = 0; j < fresh_.size(); ++j) {
       found_->landmarks.emplace_back(fresh_[j], other_->graph().landmarks[j].position);
     }
@@ -217,6 +252,7 @@ void ExplanationSearch::begin_solving() {
   for (std::size_t j = 0; j < in_engine_.size(); ++j) {
     if (in_engine_[j] >= 0) other.landmarks[j].position = through_.graph().landmarks[index(in_engine_[j])].position;
   }
+  to_held_scale(other);
   other_.emplace(std::move(other), EngineOptions{});
 }
 

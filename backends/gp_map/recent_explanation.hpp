@@ -9,6 +9,10 @@
 
 namespace evbench::gp_map {
 
+/// Whether so little has been seen, 5 s, that any of it may turn out to be otherwise: the first map is the explanation
+/// that was the best one after some tenths of a second.
+bool is_young(const FactorGraph& graph);
+
 /// A plane on which all that came into view of late is supposed to lie, as a beginning.
 enum class SupposedPlane {
   frontal,  ///< parallel to the image: nothing is supposed about what is near and what is far
@@ -17,7 +21,7 @@ enum class SupposedPlane {
 
 /// Another explanation of what was seen of late.
 struct RecentExplanation {
-  int first = 0;                                   ///< state from which on it says something else
+  int first = 0;                                   ///< state from which on it says something else; 0: all is otherwise
   std::vector<ControlState> states;                ///< from there on, the newest of then last
   std::vector<std::pair<int, Vector3>> landmarks;  ///< those that came into view since, world frame [units]
   double advantage = 0.0;                          ///< by which its cost, ½ Σ ρ, is lower
@@ -36,12 +40,13 @@ struct RecentExplanation {
 ///
 /// So the newest part of the problem, over a time in which most of what is in view has come into it and what was before
 /// has gone, is gone through once more on its own, what was known before being held, with new landmarks beginning on
-/// another plane; then both explanations are solved. That takes as long as many updates, so it is done in shares.
+/// another plane; then both explanations are solved. Of a young problem all is gone through, held by nothing but the
+/// first pose and the scale. That takes as long as many updates, so it is done in shares.
 class ExplanationSearch {
  public:
-  /// None where the part reaches back to `first_state`, the oldest one that is being estimated, where fewer than
-  /// `enough` landmarks are new or fewer were known before, where most of those seen in the newest interval were known
-  /// before, and where what is new lies behind the camera.
+  /// None where fewer than `enough` landmarks are new, and where what is new lies behind the camera. Where the problem is
+  /// not young, none either where the part reaches back to `first_state`, the oldest one that is being estimated, where
+  /// fewer than `enough` landmarks were known before, and where most of those seen in the newest interval were.
   static std::optional<ExplanationSearch> begin(const FactorGraph& graph, int first_state, int enough,
                                                 SupposedPlane supposed);
 
@@ -70,7 +75,7 @@ class ExplanationSearch {
   int first_;
   int landmarks_then_;
   std::vector<int> fresh_;  ///< landmarks of the whole problem: the first ones of this
-  FactorGraph problem_;     ///< the state before the part first, which is held
+  FactorGraph problem_;     ///< the state before the part first, if there is one, which is held
   Plane plane_;
   int passes_;                     ///< a share
   Engine through_;                 ///< goes through the problem from the plane
