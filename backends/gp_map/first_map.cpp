@@ -18,11 +18,11 @@ constexpr int kFirstIterations = 3;  ///< after which explanations that cost far
 constexpr double kFarMore = 1.5;
 constexpr double kWidth = 3.0;  ///< of the loss, in median errors
 constexpr int kIterations = 10;
-constexpr double kMotionGrowth = 1.15;     ///< a new attempt has to see this many times the motion of the last one ...
-constexpr double kTimeGrowth = 1.5;        ///< ... or time
-constexpr double kFarOff = 2.0;            ///< times the allowed error: an outlier
-constexpr double kFarthest = 10.0;         ///< [units] where landmarks of the first map may be
-constexpr double kAnchorSigma = 1e-4;      ///< [rad, units] of the gauge: far below what data tell, well conditioned
+constexpr double kMotionGrowth = 1.15;  ///< a new attempt has to see this many times the motion of the last one ...
+constexpr double kTimeGrowth = 1.5;     ///< ... or time
+constexpr double kFarOff = 2.0;         ///< times the allowed error: an outlier
+constexpr double kFarthest = 10.0;      ///< [units] where landmarks of the first map may be
+constexpr double kAnchorSigma = 1e-4;   ///< [rad, units] of the gauge: far below what data tell, well conditioned
 
 double parallax_deg(const FactorGraph& graph) {
   std::vector<double> angles;

@@ -21,7 +21,9 @@ const Registration<BackEnd, GpMap> registration("gp_map",
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
 constexpr double kOneSided = 0.1;  ///< what was seen so shortly ago is known from one side
-constexpr double kMemory = 10.0;   ///< [s] for which tracks are remembered that ended before there is a map
+constexpr double kYoung =
+    5.0;  ///< [s] of a map in which all of it may be explained otherwise, and no track is judged by it
+constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
 
 constexpr double kReconsidering = 0.15;  ///< [s] at least between two searches for another explanation of what is new
 constexpr int kSettling = 3;             ///< steps from such an explanation
@@ -123,6 +125,7 @@ bool GpMap::initialise(double t) {
   young_ = waiting_;
   violent_motion_.begin(map->graph.qc);
   engine_.emplace(std::move(map->graph), EngineOptions{.lag = options_.lag});
+  young_until_ = graph().states.back().t + kYoung;
   next_hindsight_ = graph().states.front().t + kHindsight;
   next_search_ = next_hindsight_;
   recent_.emplace(
@@ -171,14 +174,20 @@ void GpMap::learn() {
   last_update_ = engine_->update();
 }
 
-/// What came into view of late, or all while that is little, may be explained otherwise: on one of two planes, in turn.
+/// What came into view of late, or all of a young map, in turn, may be explained otherwise: on one of two planes, in
+/// turn.
 void GpMap::reconsider_recent() {
-  if (!is_young(graph())) young_ = TrackBuffer();
+  if (!is_young() && !search_) young_ = TrackBuffer();
   const double now = graph().states.back().t;
   if (!search_ && !(now < next_search_)) {
     next_search_ = now + kReconsidering;
-    supposed_ = supposed_ == SupposedPlane::frontal ? SupposedPlane::dual : SupposedPlane::frontal;
-    search_ = ExplanationSearch::begin(graph(), engine_->first_state(), options_.health.min_landmarks, supposed_);
+    const auto supposed = looks_ % 2 == 0 ? SupposedPlane::frontal : SupposedPlane::dual;
+    const auto begin = [&](bool young) {
+      return ExplanationSearch::begin(graph(), engine_->first_state(), options_.health.min_landmarks, supposed, young);
+    };
+    search_ = begin(is_young() && looks_ % 4 < 2);
+    if (!search_ && is_young()) search_ = begin(true);
+    ++looks_;
   }
   if (!search_ || search_->go_on()) return;
   const auto other = search_->found();
@@ -188,19 +197,32 @@ void GpMap::reconsider_recent() {
   context_.log(fmt::format("{:.3f} s: {} is explained better otherwise, by {:.1f}", now,
                            other->first > 0 ? "what came into view of late" : "all that was seen", other->advantage));
   other->place_in(*engine_);
-  if (other->first == 0) recall_outliers();
+  const auto known = static_cast<int>(known_.size());
+  if (other->first == 0) recall_condemned();
+  bound_leverage();
   for (int step = 0; step < kSettling; ++step) last_update_ = engine_->update();
+  for (int j = known; j < std::ssize(known_); ++j) {
+    if (is_outlier(j)) become_outlier(j);
+  }
   recent_->forget();
 }
 
-/// What an explanation that was wrong has condemned may be a landmark of the right one.
-void GpMap::recall_outliers() {
-  for (auto& [id, track] : tracks_) {
-    const auto seen = young_.observations(id);
-    if (track.role != Track::Role::outlier || seen.empty()) continue;
+/// What did not fit an explanation that was wrong may be a landmark of the right one; where one of it lives, it is not
+/// told anew what it knows.
+void GpMap::recall_condemned() {
+  std::set<TrackId> living;
+  for (std::size_t j = 0; j < known_.size(); ++j) {
+    if (graph().landmarks[j].alive) living.insert(known_[j].track);
+  }
+  for (const TrackId id : young_.ids()) {
+    Track& track = tracks_.try_emplace(id, Track{.ended = true}).first->second;
+    track.covariance.reset();
+    if (living.contains(id)) continue;
     track = {.ended = track.ended};
-    waiting_.add(seen);
+    waiting_.forget(id);
+    waiting_.add(young_.observations(id));
     live_.insert(id);
+    std::erase(new_outliers_, id);
   }
   add_landmarks();
 }
@@ -208,7 +230,7 @@ void GpMap::recall_outliers() {
 /// What was seen a while ago is known from both sides: tracks show whether they stayed on their points, and the motion
 /// how smooth it was. The newest motion, known from one side alone, keeps a prior that allows for what may come.
 void GpMap::learn_with_hindsight(const TimeSpan& span) {
-  if (!is_young(graph())) judge_tracks(noise_, span);  // a young map itself is not right yet
+  if (!is_young()) judge_tracks(noise_, span);  // a young map itself is not right yet
   const bool yields = options_.learn.prior != LearnPrior::always && violent_motion_.is_yielding(graph());
   if (options_.learn.noise && !yields) weigh_tracks(noise_, span);
   if (options_.learn.prior != LearnPrior::never) learn_prior(*engine_, span);

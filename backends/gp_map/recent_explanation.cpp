@@ -34,10 +34,8 @@ struct Part {
   std::vector<int> fresh, held;  ///< landmarks seen in it, which came into view in it or before
 };
 
-/// So long ago that what came into view since has been replaced once more: a time, however densely states stand. Of a
-/// young problem the oldest state: nothing in it is known for sure.
+/// So long ago that what came into view since has been replaced once more: a time, however densely states stand.
 int newest_parts_first(const FactorGraph& graph) {
-  if (is_young(graph)) return 0;
   const double now = graph.states.back().t;
   std::vector<double> ages;
   for (const auto& group : graph.intervals.back().groups()) {
@@ -47,16 +45,17 @@ int newest_parts_first(const FactorGraph& graph) {
   return std::min(graph.first_state_after(now - length), static_cast<int>(graph.states.size()) - kFewestStates);
 }
 
-std::optional<Part> newest_part(const FactorGraph& graph, int first_state, std::size_t enough) {
+std::optional<Part> newest_part(const FactorGraph& graph, int first_state, std::size_t enough, bool young) {
   Part part;
-  part.first = newest_parts_first(graph);
-  if (part.first <= first_state + 1 && (part.first > 0 || first_state > 0)) return std::nullopt;
+  const bool everything = young && first_state == 0;
+  if (!everything) part.first = newest_parts_first(graph);
+  if (!everything && part.first <= first_state + 1) return std::nullopt;
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
     const std::vector<int>& seen = graph.landmarks[index(j)].intervals;
     if (!seen.empty() && seen.back() >= part.first) (seen.front() < part.first ? part.held : part.fresh).push_back(j);
   }
   if (part.fresh.size() < enough) return std::nullopt;
-  if (part.first == 0) return part;
+  if (everything) return part;
   if (part.held.size() < enough) return std::nullopt;
   const auto& now = graph.intervals.back().groups();
   const auto known = std::ranges::count_if(
@@ -127,14 +126,9 @@ void to_held_scale(FactorGraph& graph) {
 
 }  // namespace
 
-bool is_young(const FactorGraph& graph) {
-  constexpr double kYoung = 5.0;  // [s]
-  return !(graph.states.back().t > graph.states.front().t + kYoung);
-}
-
 std::optional<ExplanationSearch> ExplanationSearch::begin(const FactorGraph& graph, int first_state, int enough,
-                                                          SupposedPlane supposed) {
-  auto part = newest_part(graph, first_state, index(enough));
+                                                          SupposedPlane supposed, bool young) {
+  auto part = newest_part(graph, first_state, index(enough), young);
   if (!part) return std::nullopt;
   FactorGraph problem = problem_of(graph, *part);
   const auto plane = suppose(supposed, problem, part->fresh.size());

@@ -9,10 +9,6 @@
 
 namespace evbench::gp_map {
 
-/// Whether so little has been seen, 5 s, that any of it may turn out to be otherwise: the first map is the explanation
-/// that was the best one after some tenths of a second.
-bool is_young(const FactorGraph& graph);
-
 /// A plane on which all that came into view of late is supposed to lie, as a beginning.
 enum class SupposedPlane {
   frontal,  ///< parallel to the image: nothing is supposed about what is near and what is far
@@ -21,7 +17,7 @@ enum class SupposedPlane {
 
 /// Another explanation of what was seen of late.
 struct RecentExplanation {
-  int first = 0;                                   ///< state from which on it says something else; 0: all is otherwise
+  int first = 0;                                   ///< state from which on it says something else
   std::vector<ControlState> states;                ///< from there on, the newest of then last
   std::vector<std::pair<int, Vector3>> landmarks;  ///< those that came into view since, world frame [units]
   double advantage = 0.0;                          ///< by which its cost, ½ Σ ρ, is lower
@@ -40,15 +36,17 @@ struct RecentExplanation {
 ///
 /// So the newest part of the problem, over a time in which most of what is in view has come into it and what was before
 /// has gone, is gone through once more on its own, what was known before being held, with new landmarks beginning on
-/// another plane; then both explanations are solved. Of a young problem all is gone through, held by nothing but the
-/// first pose and the scale. That takes as long as many updates, so it is done in shares.
+/// another plane; then both explanations are solved. Of a young map's problem, whose first map is what explained a few
+/// tenths of a second best, all is gone through, held by the first pose, the scale and the landmarks' priors. That
+/// takes as long as many updates, so it is done in shares.
 class ExplanationSearch {
  public:
-  /// None where fewer than `enough` landmarks are new, and where what is new lies behind the camera. Where the problem is
-  /// not young, none either where the part reaches back to `first_state`, the oldest one that is being estimated, where
-  /// fewer than `enough` landmarks were known before, and where most of those seen in the newest interval were.
+  /// Of the newest part, or, when the map is young and nothing has been marginalised, of everything. None where fewer
+  /// than `enough` landmarks are new, and where what is new lies behind the camera; of a part none either where it
+  /// reaches back to `first_state`, the oldest one that is being estimated, where fewer than `enough` landmarks were
+  /// known before, and where most of those seen in the newest interval were.
   static std::optional<ExplanationSearch> begin(const FactorGraph& graph, int first_state, int enough,
-                                                SupposedPlane supposed);
+                                                SupposedPlane supposed, bool young = false);
 
   /// Does a share of about 24,000 observations' linearisation. False when it has come to its end.
   bool go_on();

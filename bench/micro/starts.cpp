@@ -1,7 +1,7 @@
 // How gp_map starts: 20 simulated beginnings of each of ten kinds, 240 x 180 pixels, f = 200, one track in ten an
 // outlier.
 //
-//   first_map_starts [--seeds N] [KIND...]
+//   first_map_starts [--first SEED] [--seeds N] [KIND...]
 //
 // One row a kind. "right" is a share of all starts: the estimated motion goes the true way, to within 30 degrees, and
 // half of the landmarks' depths are, up to scale, within 30 %; at the first map, 2.5 s later, and in the final estimate
