@@ -13,20 +13,21 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kMost = 0.75;             ///< of what is in view ...
-constexpr double kLongAgo = 2.3;           ///< times as long ago as they came into view: there the newest part begins
-constexpr double kLongest = 2.5;           ///< [s] of it
-constexpr int kFewestStates = 8;           ///< of it
-constexpr int kEnoughObservations = 8000;  ///< of about so many at most, each track's are thinned evenly
-constexpr double kKnown = 0.03;            ///< to which landmarks of before are known, as a share of their distance
-constexpr double kHeld = 1e-4;             ///< [rad, units] of the pose from which it begins
+constexpr double kMost = 0.75;    ///< of what is in view ...
+constexpr double kLongAgo = 2.3;  ///< times as long ago as they came into view: there the newest part begins
+constexpr double kLongest = 2.5;  ///< [s] of it
+constexpr int kFewestStates = 8, kMostStates = 256;  ///< of it
+constexpr int kEnoughObservations = 8000;            ///< of about so many at most, each track's are thinned evenly
+constexpr double kKnown = 0.03;       ///< to which landmarks of before are known, as a share of their distance
+constexpr double kHeld = 1e-4;        ///< [rad, units] of the pose from which it begins
 constexpr double kOnPlane = 0.05;     ///< to which new ones are on the plane at first, as a share of the usual depth
 constexpr double kMostOblique = 4.0;  ///< times nearer or farther than usual: not where the plane is seen edge-on
 constexpr double kAdvantage = 10.0;   ///< by which the other explanation's cost must be lower
 constexpr int kIterations = 6;        ///< of each explanation, at most
 constexpr double kTolerance = 3e-3;   ///< relative change of cost with which they end: 10 of some thousands
-constexpr int kShare = 24000;         ///< observations that are linearised at a time, or so
-constexpr int kPassesThrough = 10;    ///< to go through the problem, each as long as an iteration
+constexpr int kShare = 34000;  ///< of work at a time: an observation's linearisation is one, a state's elimination ...
+constexpr int kStateWork = 100;  ///< so much
+constexpr int kStatesAPass = 3;  ///< through the problem, which take as long as an iteration
 
 /// The newest part of a problem, or all of it.
 struct Part {
@@ -42,12 +43,13 @@ int newest_parts_first(const FactorGraph& graph) {
     ages.push_back(now - graph.states[index(graph.landmarks[index(group.landmark)].intervals.front())].t);
   }
   const double length = ages.empty() ? 0.0 : std::min(kLongest, kLongAgo * order_statistic(std::move(ages), kMost));
-  return std::min(graph.first_state_after(now - length), static_cast<int>(graph.states.size()) - kFewestStates);
+  const int states = static_cast<int>(graph.states.size());
+  return std::clamp(graph.first_state_after(now - length), states - kMostStates, states - kFewestStates);
 }
 
 std::optional<Part> newest_part(const FactorGraph& graph, int first_state, std::size_t enough, bool young) {
   Part part;
-  const bool everything = young && first_state == 0;
+  const bool everything = young && first_state == 0 && std::ssize(graph.states) <= kMostStates;
   if (!everything) part.first = newest_parts_first(graph);
   if (!everything && part.first <= first_state + 1) return std::nullopt;
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
@@ -107,6 +109,10 @@ FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
     problem.anchor_scale(graph.anchor.origin, std::move(anchors));
   }
   return problem;
+}
+
+int work_of(const FactorGraph& problem) {
+  return problem.observation_count() + kStateWork * static_cast<int>(problem.states.size());
 }
 
 /// Makes the scale the one that its anchor holds.
@@ -177,7 +183,7 @@ ExplanationSearch::ExplanationSearch(int first, int landmarks_then, std::vector<
       fresh_(std::move(fresh)),
       problem_(std::move(problem)),
       plane_(plane),
-      passes_(std::max(1, kShare / std::max(1, problem_.observation_count()))),
+      passes_(std::max(1, kShare / work_of(problem_))),
       through_(problem_.camera, problem_.qc, problem_.loss),
       in_engine_(problem_.landmarks.size(), -1) {
   through_.add_state(problem_.states.front());
@@ -195,7 +201,7 @@ bool ExplanationSearch::go_on() {
 bool ExplanationSearch::pass() {
   const int states = static_cast<int>(problem_.states.size());
   if (!other_) {
-    const int until = std::min(states, gone_through_ + 1 + std::max(1, states / kPassesThrough));
+    const int until = std::min(states, gone_through_ + 1 + kStatesAPass);
     while (gone_through_ + 1 < until) add_state(++gone_through_);
     if (until == states) begin_solving();
     return true;

@@ -41,14 +41,15 @@ struct RecentExplanation {
 /// takes as long as many updates, so it is done in shares.
 class ExplanationSearch {
  public:
-  /// Of the newest part, or, when the map is young and nothing has been marginalised, of everything. None where fewer
-  /// than `enough` landmarks are new, and where what is new lies behind the camera; of a part none either where it
-  /// reaches back to `first_state`, the oldest one that is being estimated, where fewer than `enough` landmarks were
-  /// known before, and where most of those seen in the newest interval were.
+  /// Of the newest part, or, when the map is young, nothing has been marginalised and states are few, of everything.
+  /// None where fewer than `enough` landmarks are new, and where what is new lies behind the camera; of a part none
+  /// either where it reaches back to `first_state`, the oldest one that is being estimated, where fewer than `enough`
+  /// landmarks were known before, and where most of those seen in the newest interval were.
   static std::optional<ExplanationSearch> begin(const FactorGraph& graph, int first_state, int enough,
                                                 SupposedPlane supposed, bool young = false);
 
-  /// Does a share of about 24,000 observations' linearisation. False when it has come to its end.
+  /// Does a share of about 24,000 observations' linearisation, or what fewer in many states take. False when it has
+  /// come to its end.
   bool go_on();
 
   /// At its end: nothing unless the other explanation's cost is clearly lower.
