@@ -27,7 +27,7 @@ constexpr int kIterations = 6;        ///< of each explanation, at most
 constexpr double kTolerance = 3e-3;   ///< relative change of cost with which they end: 10 of some thousands
 constexpr int kShare = 34000;  ///< of work at a time: an observation's linearisation is one, a state's elimination ...
 constexpr int kStateWork = 100;  ///< so much
-constexpr int kStatesAPass = 3;  ///< through the problem, which take as long as an iteration
+constexpr int kStatesAPass = 6;  ///< through the problem, which take as long as an iteration
 
 /// The newest part of a problem, or all of it.
 struct Part {
