@@ -162,7 +162,7 @@ TEST_CASE("The true explanation has no better one, and without known landmarks n
     for (const SupposedPlane plane : {SupposedPlane::frontal, SupposedPlane::dual}) {
       CHECK_FALSE(explain_otherwise(truth, 0, kEnough, plane));
       CHECK_FALSE(explain_otherwise(wrong, 0, kOld + 1, plane));
-      CHECK_FALSE(explain_otherwise(wrong, kStates - 30, kEnough, plane));  // too little of it may change
+      CHECK_FALSE(explain_otherwise(wrong, kStates - 20, kEnough, plane));  // too little of it may change
     }
   }
 }
