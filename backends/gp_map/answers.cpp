@@ -102,7 +102,7 @@ const std::optional<Matrix2>& GpMap::image_covariance(Track& track, const Eigen:
 
 const std::optional<Matrix12>& GpMap::newest_covariance() {
   if (newest_covariance_.first != graph().states.size()) {
-    newest_covariance_ = {graph().states.size(), covariance(graph().states.back().t)};
+    newest_covariance_ = {graph().states.size(), engine_->covariance(graph().states.back().t)};
   }
   return newest_covariance_.second;
 }
@@ -132,7 +132,14 @@ std::optional<Vector6> GpMap::velocity(double t) const {
   return GpInterval(graph().states[index(k - 1)], graph().states[index(k)]).velocity(t);
 }
 
-std::optional<Matrix12> GpMap::covariance(double t) { return engine_ ? engine_->covariance(t) : std::nullopt; }
+/// None while the map is in doubt: it may be wrong altogether, of which its covariance would tell nothing, until another
+/// explanation of all that was seen has been looked for on both planes.
+std::optional<Matrix12> GpMap::covariance(double t) {
+  if (!engine_ || is_in_doubt()) return std::nullopt;
+  auto result = engine_->covariance(t);
+  if (result) *result *= information_told_;
+  return result;
+}
 
 std::optional<Matrix6> GpMap::relative_covariance(double t0, double t1) {
   if (!engine_) return std::nullopt;
@@ -146,7 +153,7 @@ std::optional<Matrix6> GpMap::relative_covariance(double t0, double t1) {
   const SE3 inverse = graph().states[index(j)].T.inverse() * graph().states[index(i)].T;
   Eigen::Matrix<double, 6, 12> J;  // (T_i Exp δ_i)⁻¹ T_j Exp δ_j = T_i⁻¹ T_j Exp(δ_j − Ad(T_j⁻¹ T_i) δ_i)
   J << -se3::adjoint(inverse), Matrix6::Identity();
-  return Matrix6(J * *joint * J.transpose());
+  return Matrix6(information_told_ * J * *joint * J.transpose());
 }
 
 std::vector<Landmark> GpMap::map() const {

@@ -18,14 +18,11 @@ constexpr int kFirstIterations = 3;  ///< after which explanations that cost far
 constexpr double kFarMore = 1.5;
 constexpr double kWidth = 3.0;  ///< of the loss, in median errors
 constexpr int kIterations = 10;
-constexpr double kDecisive = 0.5;       ///< share of the allowed uncertainty below which the best explanation is taken
-constexpr double kClearlyBetter = 2.0;  ///< [sigmas] for another explanation to replace the present map
-constexpr double kLaterUncertainty = 2.0;  ///< times what is allowed to a first map: later views may be fewer
-constexpr double kMotionGrowth = 1.15;     ///< a new attempt has to see this many times the motion of the last one ...
-constexpr double kTimeGrowth = 1.5;        ///< ... or time
-constexpr double kFarOff = 2.0;            ///< times the allowed error: an outlier
-constexpr double kFarthest = 10.0;         ///< [units] where landmarks of the first map may be
-constexpr double kAnchorSigma = 1e-4;      ///< [rad, units] of the gauge: far below what data tell, well conditioned
+constexpr double kMotionGrowth = 1.15;  ///< a new attempt has to see this many times the motion of the last one ...
+constexpr double kTimeGrowth = 1.5;     ///< ... or time
+constexpr double kFarOff = 2.0;         ///< times the allowed error: an outlier
+constexpr double kFarthest = 10.0;      ///< [units] where landmarks of the first map may be
+constexpr double kAnchorSigma = 1e-4;   ///< [rad, units] of the gauge: far below what data tell, well conditioned
 
 double parallax_deg(const FactorGraph& graph) {
   std::vector<double> angles;
@@ -34,17 +31,6 @@ double parallax_deg(const FactorGraph& graph) {
     angles.push_back(std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / M_PI);
   }
   return median(std::move(angles));
-}
-
-/// Does the camera go the same way, as far as it goes? Two guesses that end in one solution are no ambiguity.
-bool same_way(const ViewsExplained& a, const ViewsExplained& b) {
-  constexpr double kSame = 25.0 * M_PI / 180.0;
-  std::size_t v = 0;
-  for (std::size_t i = 1; i < a.poses.size(); ++i) {
-    if (a.poses[i].p.norm() > a.poses[v].p.norm()) v = i;
-  }
-  const Vector3 &p = a.poses[v].p, &q = b.poses[v].p;
-  return std::atan2(p.cross(q).norm(), p.dot(q)) < kSame;
 }
 
 /// Evenly from one to the other, at least this far apart: so that no observation is in two views.
@@ -63,30 +49,13 @@ FirstMapFinder::FirstMapFinder(const Options& options, const PinholeCamera& came
 std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, double t) {
   const auto look = look_at(tracks, t);
   if (!look) return std::nullopt;
-  const std::vector<ViewsExplained> found = explanations(look->views, look->guesses);
-  if (found.empty()) {
+  const auto found = explanation(*look);
+  if (!found) {
     if (reason_.empty()) reason_ = "no motion explains the tracks";
     return std::nullopt;
   }
-  if (!is_sound(look->views, found.front()) || !is_clear(look->views, found)) return std::nullopt;
-  return map_of(tracks, look->views, found.front());
-}
-
-std::optional<FirstMap> FirstMapFinder::reconsider(const TrackBuffer& tracks, double t, const Present& present) {
-  auto look = look_at(tracks, t);
-  if (!look) return std::nullopt;
-  ++looks_;
-  const std::vector<double>& times = look->views.views().times;
-  const std::vector<ViewsExplained> now = explanations(look->views, {present(times.front(), times.back())});
-  std::vector<ViewsExplained> others = explanations(look->views, look->guesses);
-  if (now.empty() || others.empty()) return std::nullopt;
-  ViewsExplained& other = others.front();
-  look->views.refine(other, now.front().width, kIterations);  // costs of one loss
-  if (same_way(other, now.front()) || advantage(other, now.front()) < kClearlyBetter) return std::nullopt;
-  if (!(median(look->views.distance_sigmas(other)) <= kLaterUncertainty * options_.max_initial_uncertainty))
-    return std::nullopt;
-  looks_ = 0;
-  return map_of(tracks, look->views, other);
+  if (!is_sound(look->views, *found)) return std::nullopt;
+  return map_of(tracks, look->views, *found);
 }
 
 /// None where there is nothing new to see.
@@ -112,33 +81,22 @@ bool FirstMapFinder::worthwhile(const TrackMatches& matches) const {
   return motion >= kMotionGrowth * last_->motion || matches.t1 - matches.t0 >= kTimeGrowth * (last_->t1 - last_->t0);
 }
 
-/// Distinct, best first. The loss gets as wide as the noise of the best one asks for.
-std::vector<ViewsExplained> FirstMapFinder::explanations(const MultiView& views,
-                                                         const std::vector<InitialGuess>& guesses) const {
+/// The best one. The loss gets as wide as the noise of what is best at first asks for.
+std::optional<ViewsExplained> FirstMapFinder::explanation(const Look& look) const {
   const double wide = 2.0 * options_.initialiser.two_view.threshold_px;
   std::vector<ViewsExplained> trials;
-  for (const InitialGuess& guess : guesses) {
-    auto trial = views.start(guess, wide);
+  for (const InitialGuess& guess : look.guesses) {
+    auto trial = look.views.start(guess, wide);
     if (!trial) continue;
-    views.refine(*trial, wide, kFirstIterations);
+    look.views.refine(*trial, wide, kFirstIterations);
     trials.push_back(std::move(*trial));
   }
-  if (trials.empty()) return {};
+  if (trials.empty()) return std::nullopt;
   std::ranges::sort(trials, {}, &ViewsExplained::cost);
-  const double width = kWidth * median(views.errors(trials.front())), enough = kFarMore * trials.front().cost;
-  std::vector<ViewsExplained> result;
-  for (ViewsExplained& trial : trials) {
-    if (trial.cost > enough) break;
-    views.refine(trial, width, kIterations);
-    const auto same = std::ranges::find_if(result, [&](const auto& other) { return same_way(other, trial); });
-    if (same == result.end()) {
-      result.push_back(std::move(trial));
-    } else if (trial.cost < same->cost) {
-      *same = std::move(trial);
-    }
-  }
-  std::ranges::sort(result, {}, &ViewsExplained::cost);
-  return result;
+  const double width = kWidth * median(look.views.errors(trials.front())), enough = kFarMore * trials.front().cost;
+  std::erase_if(trials, [&](const ViewsExplained& trial) { return trial.cost > enough; });
+  for (ViewsExplained& trial : trials) look.views.refine(trial, width, kIterations);
+  return *std::ranges::min_element(trials, {}, &ViewsExplained::cost);
 }
 
 /// Do the errors that are left, and the uncertainty of the structure, allow a map?
@@ -153,19 +111,6 @@ bool FirstMapFinder::is_sound(const MultiView& views, const ViewsExplained& expl
     return true;
   }
   return false;
-}
-
-/// Is the best one so much better than all others, or its structure so certain that it is taken all the same?
-bool FirstMapFinder::is_clear(const MultiView& views, const std::vector<ViewsExplained>& found) {
-  if (median(views.distance_sigmas(found.front())) < kDecisive * options_.max_initial_uncertainty) return true;
-  for (std::size_t i = 1; i < found.size(); ++i) {
-    const double sigmas = advantage(found.front(), found[i]);
-    if (sigmas >= options_.min_advantage) continue;
-    reason_ = fmt::format("two first maps explain the tracks, one better by {:.1f} sigmas, {:.1f} needed", sigmas,
-                          options_.min_advantage);
-    return false;
-  }
-  return true;
 }
 
 FirstMap FirstMapFinder::map_of(const TrackBuffer& tracks, const MultiView& views,

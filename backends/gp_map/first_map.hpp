@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,11 +19,10 @@ struct FirstMap {
 };
 
 /// Finds the first map: guesses from two views (core/structure/initialiser), each refined over some views more
-/// (core/structure/multi_view). The best one is taken when it is significantly better than all others and the noise
-/// that is left allows its structure. Attempts are rare, as the tracks must have moved farther, and look at few places
-/// of a track. From the first view's landmarks the trajectory reaches back as far as there are tracks.
-///
-/// For a while a map is looked at again: what is seen later may tell that another explanation was the true one.
+/// (core/structure/multi_view). The best one is taken when the noise that is left allows its structure, even where
+/// another one is nearly as good: what is seen later tells (recent_explanation.hpp). Attempts are rare, as the tracks
+/// must have moved farther, and look at few places of a track. From the first view's landmarks the trajectory reaches
+/// back as far as there are tracks.
 ///
 /// World frame: the camera at the first view. Unit of length: the landmarks' median distance from there. Gauge and
 /// scale are anchored by a tight prior on the first pose and the mean nearness to it of those landmarks, half of them,
@@ -36,15 +34,6 @@ class FirstMapFinder {
   /// A control state stands at t, later than those before; `tracks` hold the observations up to there.
   std::optional<FirstMap> attempt(const TrackBuffer& tracks, double t);
 
-  /// What a present map says about the time between two views.
-  using Present = std::function<InitialGuess(double t0, double t1)>;
-
-  /// As attempt(), with a present map: another one when that explains the tracks significantly better.
-  std::optional<FirstMap> reconsider(const TrackBuffer& tracks, double t, const Present& present);
-
-  /// Whether the map has been looked at often enough.
-  bool settled() const { return looks_ >= kLooks; }
-
   /// Why the last attempt was vain.
   const std::string& reason() const { return reason_; }
 
@@ -52,8 +41,6 @@ class FirstMapFinder {
   double newest() const { return state_times_.empty() ? 0.0 : state_times_.back(); }
 
  private:
-  static constexpr int kLooks = 10;
-
   /// What tracks had shown at an attempt.
   struct Progress {
     double t0 = 0.0, t1 = 0.0;  ///< [s], views
@@ -68,16 +55,14 @@ class FirstMapFinder {
 
   std::optional<Look> look_at(const TrackBuffer& tracks, double t);
   bool worthwhile(const TrackMatches& matches) const;
-  std::vector<ViewsExplained> explanations(const MultiView& views, const std::vector<InitialGuess>& guesses) const;
+  std::optional<ViewsExplained> explanation(const Look& look) const;
   bool is_sound(const MultiView& views, const ViewsExplained& explained);
-  bool is_clear(const MultiView& views, const std::vector<ViewsExplained>& found);
   FirstMap map_of(const TrackBuffer& tracks, const MultiView& views, const ViewsExplained& explained) const;
 
   Options options_;
   PinholeCamera camera_;
   Initialiser initialiser_;
   std::optional<Progress> last_;
-  int looks_ = 0;
   std::vector<double> state_times_;
   std::string reason_;
 };

@@ -16,13 +16,14 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 16);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 17);
 
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
 constexpr double kOneSided = 0.1;  ///< what was seen so shortly ago is known from one side
-constexpr double kYoung = 5.0;     ///< [s] for which another first map is looked for, and no track is judged by it
-constexpr double kMemory = 10.0;   ///< [s] for which tracks are remembered that ended before there is a map
+constexpr double kYoung =
+    5.0;  ///< [s] of a map in which all of it may be explained otherwise, and no track is judged by it
+constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
 
 constexpr double kReconsidering = 0.15;  ///< [s] at least between two searches for another explanation of what is new
 constexpr int kSettling = 3;             ///< steps from such an explanation
@@ -37,6 +38,7 @@ GpMap::GpMap(const Options& options, const BackEndContext& context)
       returns_(options.map.returns),
       violent_motion_(options.health.min_landmarks, options.learn.window),
       prior_(options.learn.window, options.learn.memory),
+      information_told_(RobustLoss(options.loss, options.loss_width).information_told()),
       monitor_(context.patience) {}
 
 void GpMap::advance(const TrackBatch& batch) {
@@ -55,8 +57,7 @@ void GpMap::step(double t) {
   if (monitor_.lost()) return;
   const auto start = std::chrono::steady_clock::now();
   take_observations(t);
-  const bool had_map = engine_.has_value();
-  if (had_map || initialise(t)) {
+  if (engine_ || initialise(t)) {
     remove_outliers();
     extrapolate_state(t);
     add_observations();
@@ -66,7 +67,6 @@ void GpMap::step(double t) {
     optimise();
     learn();
     reconsider_recent();
-    if (had_map) reconsider(t);
     check_support();
     tell_recent(t);
     predict_tracks();
@@ -124,61 +124,21 @@ bool GpMap::initialise(double t) {
   auto map = first_map_.attempt(waiting_, t);
   if (!map) return false;
   young_ = waiting_;
-  begin_from(std::move(*map));
-  return true;
-}
-
-void GpMap::begin_from(FirstMap map) {
-  violent_motion_.begin(map.graph.qc);
-  engine_.emplace(std::move(map.graph), EngineOptions{.lag = options_.lag});
-  guessed_.clear();
+  violent_motion_.begin(map->graph.qc);
+  engine_.emplace(std::move(map->graph), EngineOptions{.lag = options_.lag});
+  young_until_ = graph().states.back().t + kYoung;
   next_hindsight_ = graph().states.front().t + kHindsight;
   next_search_ = next_hindsight_;
-  supposed_ = SupposedPlane::dual;
-  search_.reset();
-  returns_ = ReturnBudget(options_.map.returns);
-  prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
   recent_.emplace(
       options_.learn.prior == LearnPrior::never
           ? std::nullopt
           : std::optional<RecentPrior>(std::in_place, options_.learn.window, options_.learn.memory, graph().qc));
-  noise_ = NoiseLearner();
-  known_.clear();
-  landmarks_ = 0;
-  for (const TrackId track : map.tracks) become_landmark(track, static_cast<int>(known_.size()));
+  for (const TrackId track : map->tracks) become_landmark(track, static_cast<int>(known_.size()));
   context_.log(
       fmt::format("{:.3f} s: first map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s",
-                  graph().states.back().t, graph().landmarks.size(), graph().observation_count(), map.parallax_deg,
+                  graph().states.back().t, graph().landmarks.size(), graph().observation_count(), map->parallax_deg,
                   graph().states.front().t));
-}
-
-/// A young map is wrong when what has been seen since has a better explanation: then all begins anew from that.
-void GpMap::reconsider(double t) {
-  if (young_.empty()) return;
-  auto other = first_map_.reconsider(young_, t, [this](double t0, double t1) { return present_map(t0, t1); });
-  if (other) {
-    context_.log(fmt::format("{:.3f} s: another first map explains the tracks better", t));
-    for (auto& [id, track] : tracks_) track = {.ended = track.ended};
-    for (const TrackId id : young_.ids()) {
-      tracks_.try_emplace(id, Track{.ended = true});
-      live_.insert(id);
-    }
-    waiting_ = young_;
-    new_.clear();
-    begin_from(std::move(*other));
-  }
-  if (first_map_.settled() || t > graph().states.front().t + kYoung) young_ = TrackBuffer();
-}
-
-/// The world is the camera at t0, the unit the landmarks' median distance.
-InitialGuess GpMap::present_map(double t0, double t1) const {
-  InitialGuess result;
-  result.t0 = t0;
-  result.t1 = t1;
-  const SE3 to_first = pose(t0)->inverse();
-  result.T1 = to_first * *pose(t1);
-  for (const Landmark& landmark : map()) result.landmarks.push_back({landmark.track, to_first * landmark.position});
-  return result;
+  return true;
 }
 
 void GpMap::extrapolate_state(double t) {
@@ -215,30 +175,64 @@ void GpMap::learn() {
   last_update_ = engine_->update();
 }
 
-/// What came into view of late may be explained otherwise: on one of two planes, in turn.
+/// What came into view of late, or all of a young map, in turn, may be explained otherwise: on one of two planes, in
+/// turn.
 void GpMap::reconsider_recent() {
+  if (!is_young() && !search_) young_ = TrackBuffer();
   const double now = graph().states.back().t;
   if (!search_ && !(now < next_search_)) {
     next_search_ = now + kReconsidering;
-    supposed_ = supposed_ == SupposedPlane::frontal ? SupposedPlane::dual : SupposedPlane::frontal;
-    search_ = ExplanationSearch::begin(graph(), engine_->first_state(), options_.health.min_landmarks, supposed_);
+    const auto supposed = looks_ % kPlanes == 0 ? SupposedPlane::frontal : SupposedPlane::dual;
+    const auto begin = [&](bool young) {
+      return ExplanationSearch::begin(graph(), engine_->first_state(), options_.health.min_landmarks, supposed, young);
+    };
+    search_ = begin(is_young() && looks_ % (2 * kPlanes) < kPlanes);
+    if (!search_ && is_young()) search_ = begin(true);
+    ++looks_;
   }
   if (!search_ || search_->go_on()) return;
   const auto other = search_->found();
+  if (search_->is_of_everything()) vain_looks_ = other ? 0 : vain_looks_ + 1;
   search_.reset();
-  if (!other || other->first <= engine_->first_state() + 1) return;  // a lag may have marginalised it since
-  context_.log(fmt::format("{:.3f} s: what came into view of late is explained better otherwise, by {:.1f}", now,
-                           other->advantage));
+  const int oldest = engine_->first_state();
+  if (!other || (oldest > 0 && other->first <= oldest + 1)) return;  // a lag may have marginalised it since
+  context_.log(fmt::format("{:.3f} s: {} is explained better otherwise, by {:.1f}", now,
+                           other->first > 0 ? "what came into view of late" : "all that was seen", other->advantage));
   other->place_in(*engine_);
+  const auto known = static_cast<int>(known_.size());
+  if (other->first == 0) recall_condemned();
+  bound_leverage();
   for (int step = 0; step < kSettling; ++step) last_update_ = engine_->update();
+  for (int j = known; j < std::ssize(known_); ++j) {
+    if (is_outlier(j)) become_outlier(j);
+  }
   recent_->forget();
+}
+
+/// What did not fit an explanation that was wrong may be a landmark of the right one; where one of it lives, it is not
+/// told anew what it knows.
+void GpMap::recall_condemned() {
+  std::set<TrackId> living;
+  for (std::size_t j = 0; j < known_.size(); ++j) {
+    if (graph().landmarks[j].alive) living.insert(known_[j].track);
+  }
+  for (const TrackId id : young_.ids()) {
+    Track& track = tracks_.try_emplace(id, Track{.ended = true}).first->second;
+    track.covariance.reset();
+    if (living.contains(id)) continue;
+    track = {.ended = track.ended};
+    waiting_.forget(id);
+    waiting_.add(young_.observations(id));
+    live_.insert(id);
+    std::erase(new_outliers_, id);
+  }
+  add_landmarks();
 }
 
 /// What was seen a while ago is known from both sides: tracks show whether they stayed on their points, and the motion
 /// how smooth it was. The newest motion, known from one side alone, keeps a prior that allows for what may come.
 void GpMap::learn_with_hindsight(const TimeSpan& span) {
-  const bool is_young = !(graph().states.back().t > graph().states.front().t + kYoung);
-  if (!is_young) judge_tracks(noise_, span);  // a young map itself is not right yet
+  if (!is_young()) judge_tracks(noise_, span);  // a young map itself is not right yet
   const bool yields = options_.learn.prior != LearnPrior::always && violent_motion_.is_yielding(graph());
   if (options_.learn.noise && !yields) weigh_tracks(noise_, span);
   if (options_.learn.prior != LearnPrior::never) learn_prior(*engine_, span);

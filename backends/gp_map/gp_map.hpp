@@ -81,7 +81,6 @@ class GpMap : public BackEnd {
   void step(double t);
   void take_observations(double t);
   bool initialise(double t);
-  void reconsider(double t);
   void remove_outliers();
   void extrapolate_state(double t);
   void add_observations();
@@ -92,6 +91,7 @@ class GpMap : public BackEnd {
   void learn();
   void learn_with_hindsight(const TimeSpan& span);
   void reconsider_recent();
+  void recall_condemned();
   void check_support();
   void forget_ended_tracks(double t);
   void predict_tracks();
@@ -100,9 +100,8 @@ class GpMap : public BackEnd {
   void take(const TrackObservation& z);
   bool goes_on(const Track& track);
   void split(TrackId id);
-  void begin_from(FirstMap map);
-  InitialGuess present_map(double t0, double t1) const;
   void become_landmark(TrackId track, int landmark);
+  bool is_outlier(int landmark);
   void become_outlier(int landmark);
   bool end_track_of(int landmark, Track::Role role);
   void hold_scale_without(int leaving);
@@ -115,6 +114,8 @@ class GpMap : public BackEnd {
   const std::optional<Matrix2>& image_covariance(Track& track, const Eigen::Matrix<double, 2, 12>& J_state,
                                                  const Matrix23& J_landmark);
   int landmarks_in_view() const;
+  bool is_young() const { return !(graph().states.back().t > young_until_); }
+  bool is_in_doubt() const { return is_young() && vain_looks_ < kPlanes; }
   void tell_online(double t);
   void tell_recent(double t);
   Engine::OptimiseSummary estimate_everything();
@@ -124,6 +125,8 @@ class GpMap : public BackEnd {
   void record_final_prior();
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
 
+  static constexpr int kPlanes = 2;  ///< on which another explanation is looked for, in turn
+
   Options options_;
   BackEndContext context_;
   StatePlacement placement_;
@@ -132,7 +135,7 @@ class GpMap : public BackEnd {
   ObservationFollower follower_;
   std::map<TrackId, Track> tracks_;
   TrackBuffer waiting_;       ///< observations of waiting tracks
-  TrackBuffer young_;         ///< of all tracks, until the first map is settled
+  TrackBuffer young_;         ///< of all tracks, while the map is young
   std::set<TrackId> live_;    ///< tracks that are alive, or have ended since the last step
   std::vector<Known> known_;  ///< by landmark, of which a track that came back may have several
   std::vector<int> guessed_;  ///< landmarks at the scene's depth, until they show parallax
@@ -146,11 +149,14 @@ class GpMap : public BackEnd {
   UpdateSummary last_update_;
   ViolentMotion violent_motion_;
   PriorLearner prior_;
+  const double information_told_;       ///< share of the estimate's information that the loss's weights tell
   std::optional<RecentMotion> recent_;  ///< as it is told online; from the first map on
   NoiseLearner noise_;
-  double next_hindsight_ = 0.0;                   ///< [s]
-  double next_search_ = 0.0;                      ///< [s]
-  SupposedPlane supposed_ = SupposedPlane::dual;  ///< the last time
+  double young_until_ = 0.0;     ///< [s]
+  double next_hindsight_ = 0.0;  ///< [s]
+  double next_search_ = 0.0;     ///< [s]
+  int looks_ = 0;                ///< for another explanation
+  int vain_looks_ = 0;           ///< for one of all that was seen, since the last one that was found
   std::optional<ExplanationSearch> search_;
   double seconds_since_step_ = 0.0;  ///< spent on single observations
   TrackingMonitor monitor_;

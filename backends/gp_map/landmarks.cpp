@@ -23,16 +23,22 @@ constexpr double kWellSeen = 1.5;     ///< error of a landmark's first observati
 /// Tracks seen of late whose error was too large at the last optimum, beside what tracks err. What has been observed
 /// since is not counted: its distance from an extrapolated pose tells of the motion first.
 void GpMap::remove_outliers() {
-  const double far = options_.map.outlier_threshold * noise_.scale_of_means();
   std::vector<int> outliers;
   for (const auto& group : graph().intervals.back().groups()) {
-    const double scale = graph().landmarks[index(group.landmark)].sigma_scale;
-    const double inverse_sigma = scale * graph().intervals.back().of(group).back().inverse_sigma;  // as given
-    if (inverse_sigma * engine_->reprojection_mean(group.landmark) > far) outliers.push_back(group.landmark);
+    if (is_outlier(group.landmark)) outliers.push_back(group.landmark);
   }
   // Most tracks at once: then it is the motion that is wrong.
   if (2 * outliers.size() > graph().intervals.back().groups().size()) return;
   for (const int landmark : outliers) become_outlier(landmark);
+}
+
+bool GpMap::is_outlier(int landmark) {
+  const FactorGraph::Landmark& l = graph().landmarks[index(landmark)];
+  if (l.intervals.empty()) return false;
+  const Observation& last = graph().intervals[index(l.intervals.back())].of(landmark).back();
+  const double inverse_sigma = l.sigma_scale * last.inverse_sigma;  // as given
+  const double far = options_.map.outlier_threshold * noise_.scale_of_means();
+  return inverse_sigma * engine_->reprojection_mean(landmark) > far;
 }
 
 void GpMap::add_landmarks() {

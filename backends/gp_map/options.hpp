@@ -124,8 +124,7 @@ struct Options {
   LearningOptions learn;
   InitialiserOptions initialiser{.two_view = {.max_iterations = 200, .min_parallax_deg = 0.0}};  ///< more views decide
   double max_initial_error = 2.0;
-  double max_initial_uncertainty = 0.25;
-  double min_advantage = 3.0;
+  double max_initial_uncertainty = 0.35;
   MapOptions map;
   HealthOptions health;
   double lag = 0.0;
@@ -153,9 +152,6 @@ struct Options {
             "standard deviation of a first map's distances that noise may leave, as a share: the parallax that is "
             "needed follows from the noise")
         .above(0.0);
-    set.add("min_advantage", min_advantage,
-            "a first map must be better than the second-best one by this much, the tracks being witnesses [sigmas]")
-        .range(0.0);
     set.group("map", map, "landmarks");
     set.group("health", health, "degraded and lost");
     set.add("lag", lag,

@@ -1,6 +1,7 @@
 #include "backends/gp_map/recent_explanation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 
@@ -28,9 +29,9 @@ constexpr int kShare = 34000;  ///< of work at a time: an observation's linearis
 constexpr int kStateWork = 100;  ///< so much
 constexpr int kStatesAPass = 6;  ///< through the problem, which take as long as an iteration
 
-/// The newest part of a problem.
+/// The newest part of a problem, or all of it.
 struct Part {
-  int first = 0;                 ///< its intervals are those from this one on
+  int first = 0;                 ///< its states and intervals are those from this one on
   std::vector<int> fresh, held;  ///< landmarks seen in it, which came into view in it or before
 };
 
@@ -46,15 +47,18 @@ int newest_parts_first(const FactorGraph& graph) {
   return std::clamp(graph.first_state_after(now - length), states - kMostStates, states - kFewestStates);
 }
 
-std::optional<Part> newest_part(const FactorGraph& graph, int first_state, std::size_t enough) {
+std::optional<Part> newest_part(const FactorGraph& graph, int first_state, std::size_t enough, bool young) {
   Part part;
-  part.first = newest_parts_first(graph);
-  if (part.first <= first_state + 1) return std::nullopt;
+  const bool everything = young && first_state == 0 && std::ssize(graph.states) <= kMostStates;
+  if (!everything) part.first = newest_parts_first(graph);
+  if (!everything && part.first <= first_state + 1) return std::nullopt;
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
     const std::vector<int>& seen = graph.landmarks[index(j)].intervals;
     if (!seen.empty() && seen.back() >= part.first) (seen.front() < part.first ? part.held : part.fresh).push_back(j);
   }
-  if (part.fresh.size() < enough || part.held.size() < enough) return std::nullopt;
+  if (part.fresh.size() < enough) return std::nullopt;
+  if (everything) return part;
+  if (part.held.size() < enough) return std::nullopt;
   const auto& now = graph.intervals.back().groups();
   const auto known = std::ranges::count_if(
       now, [&](const auto& group) { return graph.landmarks[index(group.landmark)].intervals.front() < part.first; });
@@ -62,12 +66,13 @@ std::optional<Part> newest_part(const FactorGraph& graph, int first_state, std::
   return part;
 }
 
-/// As a problem of its own, its landmarks in this order; the state before it is held.
+/// As a problem of its own, its landmarks in this order. The pose before it is held; where there is none, the first
+/// pose and the scale.
 FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
   FactorGraph problem;
   problem.camera = graph.camera;
   problem.loss = graph.loss;
-  for (int k = part.first - 1; k < std::ssize(graph.states); ++k) {
+  for (int k = std::max(0, part.first - 1); k < std::ssize(graph.states); ++k) {
     problem.qc = graph.qcs[index(k)];
     problem.add_state(graph.states[index(k)]);
     problem.expansions.back() = graph.expansions[index(k)];
@@ -95,6 +100,14 @@ FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
     const Vector3& position = graph.landmarks[index(j)].position;
     add(j, {position, kKnown * (position - begin.p).norm()});
   }
+  if (part.first == 0) {
+    std::vector<int> anchors;
+    for (const int j : graph.anchor.landmarks) {
+      const auto place = std::ranges::lower_bound(part.fresh, j);
+      if (place != part.fresh.end() && *place == j) anchors.push_back(static_cast<int>(place - part.fresh.begin()));
+    }
+    problem.anchor_scale(graph.anchor.origin, std::move(anchors));
+  }
   return problem;
 }
 
@@ -102,11 +115,26 @@ int work_of(const FactorGraph& problem) {
   return problem.observation_count() + kStateWork * static_cast<int>(problem.states.size());
 }
 
+/// Makes the scale the one that its anchor holds.
+void to_held_scale(FactorGraph& graph) {
+  constexpr int kSteps = 20;
+  const Vector3 origin = graph.anchor.origin;
+  for (int i = 0; i < kSteps && !graph.anchor.landmarks.empty(); ++i) {
+    const double larger = graph.anchor.sigma * residual(graph.anchor, graph);  // logarithm of the scale, to first order
+    const double factor = std::exp(-std::clamp(larger, -1.0, 1.0));
+    for (ControlState& state : graph.states) {
+      state.T.p = origin + factor * (state.T.p - origin);
+      state.velocity.tail<3>() *= factor;
+    }
+    for (FactorGraph::Landmark& l : graph.landmarks) l.position = origin + factor * (l.position - origin);
+  }
+}
+
 }  // namespace
 
 std::optional<ExplanationSearch> ExplanationSearch::begin(const FactorGraph& graph, int first_state, int enough,
-                                                          SupposedPlane supposed) {
-  auto part = newest_part(graph, first_state, index(enough));
+                                                          SupposedPlane supposed, bool young) {
+  auto part = newest_part(graph, first_state, index(enough), young);
   if (!part) return std::nullopt;
   FactorGraph problem = problem_of(graph, *part);
   const auto plane = suppose(supposed, problem, part->fresh.size());
@@ -181,8 +209,9 @@ bool ExplanationSearch::pass() {
   if (!present_) {
     if (solve(*other_)) return true;
     if (!(cost_ + kAdvantage < evaluate(problem_).total())) return false;
+    const int held = std::min(1, first_);
     found_ = RecentExplanation{
-        first_, {other_->graph().states.begin() + 1, other_->graph().states.end()}, {}, -cost_, landmarks_then_};
+        first_, {other_->graph().states.begin() + held, other_->graph().states.end()}, {}, -cost_, landmarks_then_};
     for (std::size_t j = 0; j < fresh_.size(); ++j) {
       found_->landmarks.emplace_back(fresh_[j], other_->graph().landmarks[j].position);
     }
@@ -223,6 +252,7 @@ void ExplanationSearch::begin_solving() {
   for (std::size_t j = 0; j < in_engine_.size(); ++j) {
     if (in_engine_[j] >= 0) other.landmarks[j].position = through_.graph().landmarks[index(in_engine_[j])].position;
   }
+  to_held_scale(other);
   other_.emplace(std::move(other), EngineOptions{});
 }
 

@@ -36,18 +36,23 @@ struct RecentExplanation {
 ///
 /// So the newest part of the problem, over a time in which most of what is in view has come into it and what was before
 /// has gone, is gone through once more on its own, what was known before being held, with new landmarks beginning on
-/// another plane; then both explanations are solved. That takes as long as many updates, so it is done in shares.
+/// another plane; then both explanations are solved. Of a young map's problem, whose first map is what explained a few
+/// tenths of a second best, all is gone through, held by the first pose, the scale and the landmarks' priors. That
+/// takes as long as many updates, so it is done in shares.
 class ExplanationSearch {
  public:
-  /// None where the part reaches back to `first_state`, the oldest one that is being estimated, where fewer than
-  /// `enough` landmarks are new or fewer were known before, where most of those seen in the newest interval were known
-  /// before, and where what is new lies behind the camera.
+  /// Of the newest part, or, when the map is young, nothing has been marginalised and states are few, of everything.
+  /// None where fewer than `enough` landmarks are new, and where what is new lies behind the camera; of a part none
+  /// either where it reaches back to `first_state`, the oldest one that is being estimated, where fewer than `enough`
+  /// landmarks were known before, and where most of those seen in the newest interval were.
   static std::optional<ExplanationSearch> begin(const FactorGraph& graph, int first_state, int enough,
-                                                SupposedPlane supposed);
+                                                SupposedPlane supposed, bool young = false);
 
   /// Does a share of about 24,000 observations' linearisation, or what fewer in many states take. False when it has
   /// come to its end.
   bool go_on();
+
+  bool is_of_everything() const { return first_ == 0; }
 
   /// At its end: nothing unless the other explanation's cost is clearly lower.
   const std::optional<RecentExplanation>& found() const { return found_; }
@@ -71,7 +76,7 @@ class ExplanationSearch {
   int first_;
   int landmarks_then_;
   std::vector<int> fresh_;  ///< landmarks of the whole problem: the first ones of this
-  FactorGraph problem_;     ///< the state before the part first, which is held
+  FactorGraph problem_;     ///< the state before the part first, if there is one, which is held
   Plane plane_;
   int passes_;                     ///< a share
   Engine through_;                 ///< goes through the problem from the plane

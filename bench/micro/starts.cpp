@@ -1,7 +1,7 @@
 // How gp_map starts: 20 simulated beginnings of each of ten kinds, 240 x 180 pixels, f = 200, one track in ten an
 // outlier.
 //
-//   first_map_starts [--seeds N] [KIND...]
+//   first_map_starts [--first SEED] [--seeds N] [KIND...]
 //
 // One row a kind. "right" is a share of all starts: the estimated motion goes the true way, to within 30 degrees, and
 // half of the landmarks' depths are, up to scale, within 30 %; at the first map, 2.5 s later, and in the final estimate
@@ -203,8 +203,18 @@ void report(std::string_view name, const std::vector<Start>& starts) {
   std::fflush(stdout);
 }
 
+/// Takes "NAME NUMBER" off the beginning of the arguments, if it is there. False where the number isn't one from 1 on.
+bool take_number(std::vector<std::string_view>& arguments, std::string_view name, int& number) {
+  if (arguments.empty() || arguments.front() != name) return true;
+  if (arguments.size() < 2) return false;
+  const std::string_view text = arguments[1];
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+  arguments.erase(arguments.begin(), arguments.begin() + 2);
+  return read.ec == std::errc() && read.ptr == text.data() + text.size() && number >= 1;
+}
+
 int usage() {
-  fmt::print(stderr, "usage: first_map_starts [--seeds N] [KIND...]; kinds:\n");
+  fmt::print(stderr, "usage: first_map_starts [--first SEED] [--seeds N] [KIND...]; kinds:\n");
   for (const Kind& kind : all_kinds()) fmt::print(stderr, "  \"{}\"\n", kind.name);
   return 2;
 }
@@ -213,14 +223,8 @@ int usage() {
 
 int main(int argc, char** argv) {
   std::vector<std::string_view> names(argv + 1, argv + argc);
-  int seeds = 20;
-  if (!names.empty() && names.front() == "--seeds") {
-    if (names.size() < 2) return usage();
-    const std::string_view count = names[1];
-    const auto read = std::from_chars(count.data(), count.data() + count.size(), seeds);
-    if (read.ec != std::errc() || read.ptr != count.data() + count.size() || seeds < 1) return usage();
-    names.erase(names.begin(), names.begin() + 2);
-  }
+  int first = 1, seeds = 20;
+  if (!take_number(names, "--first", first) || !take_number(names, "--seeds", seeds)) return usage();
   std::vector<Kind> kinds = all_kinds();
   for (const auto name : names) {
     if (std::ranges::find(kinds, name, &Kind::name) == kinds.end()) return usage();
@@ -233,7 +237,7 @@ int main(int argc, char** argv) {
   for (const Kind& kind : kinds) {
     if (!names.empty() && std::ranges::find(names, kind.name) == names.end()) continue;
     std::vector<Start> starts;
-    for (int seed = 1; seed <= seeds; ++seed) {
+    for (int seed = first; seed < first + seeds; ++seed) {
       const auto number = static_cast<std::uint64_t>(seed);
       starts.push_back(start(simulate(kind, number), number));
     }

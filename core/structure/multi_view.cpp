@@ -210,15 +210,11 @@ std::vector<double> MultiView::squared_errors(const ViewsExplained& explained, s
   return result;
 }
 
-void MultiView::take_costs(ViewsExplained& explained) const {
+void MultiView::take_cost(ViewsExplained& explained) const {
   const BoundedLoss loss{explained.width};
-  explained.costs.clear();
   explained.cost = 0.0;
   for (std::size_t i = 0; i < views_.tracks.size(); ++i) {
-    double cost = 0.0;
-    for (const double squared : squared_errors(explained, i)) cost += loss(squared);
-    explained.costs.push_back(cost);
-    explained.cost += cost;
+    for (const double squared : squared_errors(explained, i)) explained.cost += loss(squared);
   }
 }
 
@@ -256,7 +252,7 @@ std::optional<ViewsExplained> MultiView::start(const InitialGuess& guess, double
   }
   normalise(result);
   result.width = width;
-  take_costs(result);
+  take_cost(result);
   return result;
 }
 
@@ -264,7 +260,7 @@ void MultiView::refine(ViewsExplained& explained, double width, int iterations) 
   constexpr double kConverged = 1e-4, kMaxDamping = 1e6;
   double damping = 1e-3;
   explained.width = width;
-  take_costs(explained);
+  take_cost(explained);
   std::vector<Vector6> poses;
   std::vector<Vector3> points;
   for (int iteration = 0; iteration < iterations; ++iteration) {
@@ -278,7 +274,7 @@ void MultiView::refine(ViewsExplained& explained, double width, int iterations) 
           next.points[i] = moved(next.points[i], points[i]);
           next.points[i].inverse = std::max(next.points[i].inverse, kLeastInverse);
         }
-        take_costs(next);
+        take_cost(next);
         lower = next.cost < explained.cost;
         if (lower) {
           const bool converged = explained.cost - next.cost < kConverged * explained.cost;
@@ -318,16 +314,6 @@ std::vector<double> MultiView::errors(const ViewsExplained& explained) const {
     result.push_back(sum / static_cast<double>(squared.size()));
   }
   return result;
-}
-
-double advantage(const ViewsExplained& first, const ViewsExplained& second) {
-  double sum = 0.0, squares = 0.0;
-  for (std::size_t i = 0; i < first.costs.size(); ++i) {
-    const double difference = second.costs[i] - first.costs[i];
-    sum += difference;
-    squares += difference * difference;
-  }
-  return squares > 0.0 ? sum / std::sqrt(squares) : 0.0;
 }
 
 }  // namespace evbench

@@ -25,8 +25,7 @@ struct ViewsExplained {
   std::vector<SE3> poses;            ///< T_world_camera, by view; unit of length: the points' median distance
   std::vector<InversePoint> points;  ///< by track
   double width = 0.0;                ///< [px] of the loss
-  std::vector<double> costs;         ///< by track: Σ of the loss over its places [px²]
-  double cost = 0.0;                 ///< Σ of them
+  double cost = 0.0;                 ///< Σ of the loss over all places [px²]
 };
 
 /// Bundle adjustment of some views from the guesses that two of them give: Levenberg-Marquardt on the reprojection
@@ -57,15 +56,10 @@ class MultiView {
 
   /// Of a track's places, those behind the camera far off [px²].
   std::vector<double> squared_errors(const ViewsExplained& explained, std::size_t track) const;
-  void take_costs(ViewsExplained& explained) const;
+  void take_cost(ViewsExplained& explained) const;
 
   TrackViews views_;
   PinholeCamera camera_;
 };
-
-/// By how many standard deviations the first explanation is better than the second one, the tracks being independent
-/// witnesses (Vuong 1989): their differences in cost, summed, over the root of the sum of their squares. However much
-/// the errors along one track depend on each other, it has one voice.
-double advantage(const ViewsExplained& first, const ViewsExplained& second);
 
 }  // namespace evbench

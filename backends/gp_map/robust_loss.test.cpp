@@ -1,0 +1,41 @@
+#include "backends/gp_map/robust_loss.hpp"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "core/geometry/types.hpp"
+#include "core/simulation/random.hpp"
+
+using namespace evbench;
+using namespace evbench::gp_map;
+
+TEST_CASE("What a loss's weights sum up to, and what of the information they tell, give the covariance of an estimate") {
+  for (const RobustLoss& loss : {RobustLoss(RobustLoss::Kind::cauchy, 2.0), RobustLoss(RobustLoss::Kind::cauchy, 1.0),
+                                 RobustLoss(RobustLoss::Kind::huber, 1.0), RobustLoss()}) {
+    CAPTURE(static_cast<int>(loss.kind()), loss.width());
+    constexpr int kTrials = 4000, kObservations = 50, kIterations = 20;
+    Random random(1);
+    double squared_error = 0.0, weights = 0.0;
+    for (int trial = 0; trial < kTrials; ++trial) {  // a place in the plane, seen with normal errors, is at zero
+      std::vector<Vector2> seen;
+      for (int i = 0; i < kObservations; ++i) seen.emplace_back(random.normal(), random.normal());
+      Vector2 estimate = Vector2::Zero();
+      double sum = 0.0;
+      for (int iteration = 0; iteration < kIterations; ++iteration) {
+        Vector2 weighted = Vector2::Zero();
+        sum = 0.0;
+        for (const Vector2& z : seen) {
+          const double weight = loss.weight((z - estimate).squaredNorm());
+          weighted += weight * z;
+          sum += weight;
+        }
+        estimate = weighted / sum;
+      }
+      squared_error += estimate.squaredNorm() / (2.0 * kTrials);
+      weights += sum / kTrials;
+    }
+    CHECK(squared_error == Approx(loss.information_told() / weights).epsilon(0.05));
+  }
+  CHECK(RobustLoss().information_told() == Approx(1.0));
+  CHECK(RobustLoss(RobustLoss::Kind::cauchy, 2.0).information_told() == Approx(0.79).margin(0.005));
+}
