@@ -8,12 +8,13 @@
 #include "core/geometry/seen_point.hpp"
 #include "core/motion/wnoa.hpp"
 
-// What the back-end tells of its estimate: poses as they are made, feedback, and answers afterwards.
+// What the back-end tells of its estimate: poses as they are made, feedback, and answers afterwards. While the first map
+// is in doubt, until another explanation has been looked for in vain on both planes, no pose and no covariance is told.
 namespace evbench::gp_map {
 
 void GpMap::tell_online(double t) {
   const std::optional<SE3> T = pose(t);  // none where the state has been taken back
-  if (!T || t <= online_) return;
+  if (!T || t <= online_ || is_in_doubt()) return;
   context_.online({{t, *T}, t, velocity(t)});
   online_ = t;
 }
@@ -22,6 +23,7 @@ void GpMap::tell_online(double t) {
 void GpMap::tell_recent(double t) {
   if (graph().states.back().t != t) return;  // it has been taken back
   recent_->follow(graph(), engine_->first_state());
+  if (is_in_doubt()) return;
   const auto states = recent_->states();
   if (options_.per_observation) {
     tell_online(t);  // as between the states
@@ -132,8 +134,7 @@ std::optional<Vector6> GpMap::velocity(double t) const {
   return GpInterval(graph().states[index(k - 1)], graph().states[index(k)]).velocity(t);
 }
 
-/// None while the map is in doubt: it may be wrong altogether, of which its covariance would tell nothing, until another
-/// explanation of all that was seen has been looked for on both planes.
+/// None while the map is in doubt: it may be wrong altogether, of which its covariance would tell nothing.
 std::optional<Matrix12> GpMap::covariance(double t) {
   if (!engine_ || is_in_doubt()) return std::nullopt;
   auto result = engine_->covariance(t);

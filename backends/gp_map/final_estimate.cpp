@@ -18,7 +18,7 @@ void GpMap::finish() {
                   first_map_.reason().empty() ? "no observations" : "no first map: " + first_map_.reason());
     return;
   }
-  vain_looks_ = kPlanes;  // nothing more will tell whether the map is right
+  doubts_ = 0;  // nothing more will tell whether the map is right
   if (options_.final_iterations == 0) {
     engine_->settle();
     return;

@@ -21,12 +21,13 @@ const Registration<BackEnd, GpMap> registration("gp_map",
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
 constexpr double kOneSided = 0.1;  ///< what was seen so shortly ago is known from one side
-constexpr double kYoung =
-    5.0;  ///< [s] of a map in which all of it may be explained otherwise, and no track is judged by it
+constexpr double kYoung = 5.0;  ///< [s] of a map in which all may be explained otherwise, and no track is judged
 constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
 
-constexpr double kReconsidering = 0.15;  ///< [s] at least between two searches for another explanation of what is new
-constexpr int kSettling = 3;             ///< steps from such an explanation
+// Searches for another explanation:
+constexpr double kFirstLook = 0.7;       ///< [s] of data that the first one takes
+constexpr double kReconsidering = 0.15;  ///< [s] at least between two
+constexpr int kSettling = 3;             ///< steps from what one has found
 
 }  // namespace
 
@@ -128,7 +129,7 @@ bool GpMap::initialise(double t) {
   engine_.emplace(std::move(map->graph), EngineOptions{.lag = options_.lag});
   young_until_ = graph().states.back().t + kYoung;
   next_hindsight_ = graph().states.front().t + kHindsight;
-  next_search_ = next_hindsight_;
+  next_search_ = graph().states.front().t + kFirstLook;
   recent_.emplace(
       options_.learn.prior == LearnPrior::never
           ? std::nullopt
@@ -188,11 +189,12 @@ void GpMap::reconsider_recent() {
     };
     search_ = begin(is_young() && looks_ % (2 * kPlanes) < kPlanes);
     if (!search_ && is_young()) search_ = begin(true);
+    if (!search_) --doubts_;  // there is nothing that could be explained otherwise
     ++looks_;
   }
   if (!search_ || search_->go_on()) return;
   const auto other = search_->found();
-  if (search_->is_of_everything()) vain_looks_ = other ? 0 : vain_looks_ + 1;
+  doubts_ = other && is_in_doubt() ? kPlanes : doubts_ - 1;
   search_.reset();
   const int oldest = engine_->first_state();
   if (!other || (oldest > 0 && other->first <= oldest + 1)) return;  // a lag may have marginalised it since

@@ -115,7 +115,7 @@ class GpMap : public BackEnd {
                                                  const Matrix23& J_landmark);
   int landmarks_in_view() const;
   bool is_young() const { return !(graph().states.back().t > young_until_); }
-  bool is_in_doubt() const { return is_young() && vain_looks_ < kPlanes; }
+  bool is_in_doubt() const { return is_young() && doubts_ > 0; }
   void tell_online(double t);
   void tell_recent(double t);
   Engine::OptimiseSummary estimate_everything();
@@ -156,7 +156,7 @@ class GpMap : public BackEnd {
   double next_hindsight_ = 0.0;  ///< [s]
   double next_search_ = 0.0;     ///< [s]
   int looks_ = 0;                ///< for another explanation
-  int vain_looks_ = 0;           ///< for one of all that was seen, since the last one that was found
+  int doubts_ = kPlanes;         ///< vain looks that are missing until the first map is trusted
   std::optional<ExplanationSearch> search_;
   double seconds_since_step_ = 0.0;  ///< spent on single observations
   TrackingMonitor monitor_;

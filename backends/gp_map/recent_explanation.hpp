@@ -52,8 +52,6 @@ class ExplanationSearch {
   /// come to its end.
   bool go_on();
 
-  bool is_of_everything() const { return first_ == 0; }
-
   /// At its end: nothing unless the other explanation's cost is clearly lower.
   const std::optional<RecentExplanation>& found() const { return found_; }
 
