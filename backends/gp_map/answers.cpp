@@ -8,8 +8,9 @@
 #include "core/geometry/seen_point.hpp"
 #include "core/motion/wnoa.hpp"
 
-// What the back-end tells of its estimate: poses as they are made, feedback, and answers afterwards. While the first map
-// is in doubt, until another explanation has been looked for in vain on both planes, no pose and no covariance is told.
+// What the back-end tells of its estimate: poses as they are made, feedback, and answers afterwards. While the first
+// map is in doubt, until another explanation has been looked for in vain on both planes, no pose and no covariance is
+// told.
 namespace evbench::gp_map {
 
 void GpMap::tell_online(double t) {

@@ -9,7 +9,8 @@
 using namespace evbench;
 using namespace evbench::gp_map;
 
-TEST_CASE("What a loss's weights sum up to, and what of the information they tell, give the covariance of an estimate") {
+TEST_CASE(
+    "What a loss's weights sum up to, and what of the information they tell, give the covariance of an estimate") {
   for (const RobustLoss& loss : {RobustLoss(RobustLoss::Kind::cauchy, 2.0), RobustLoss(RobustLoss::Kind::cauchy, 1.0),
                                  RobustLoss(RobustLoss::Kind::huber, 1.0), RobustLoss()}) {
     CAPTURE(static_cast<int>(loss.kind()), loss.width());
