@@ -59,8 +59,7 @@ struct MapOptions {
            "outlier_threshold", outlier_threshold,
            "tracks whose average reprojection error over all their observations is larger are dropped; the final "
            "estimate drops a track from where its error, averaged over 0.15 s, stays larger, and while running that is "
-           "done where it stays twice as large [sigmas of such averages, which are larger where trackers drift; of "
-           "those "
+           "done where it stays twice as large [sigmas of such averages, larger where trackers drift; of those "
            "over 0.15 s, still larger where their errors have longer tails than normal ones]")
         .above(0.0);
     set.add("returns", returns,
