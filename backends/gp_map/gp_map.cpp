@@ -21,13 +21,12 @@ const Registration<BackEnd, GpMap> registration("gp_map",
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
 constexpr double kOneSided = 0.1;  ///< what was seen so shortly ago is known from one side
-constexpr double kYoung = 5.0;     ///< [s] of a map in which all may be explained otherwise, and no track is judged
-constexpr double kMemory = 10.0;   ///< [s] for which tracks are remembered that ended before there is a map
+constexpr double kYoung = 5.0;  ///< [s] of a map in which all may be explained otherwise, and no track is judged
+constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
 
 // Searches for another explanation:
 constexpr double kFirstLook = 0.7;       ///< [s] of data that the first one takes
 constexpr double kReconsidering = 0.15;  ///< [s] at least between two
-constexpr double kRelief = 0.3;          ///< share of the usual depth
 constexpr int kSettling = 3;             ///< steps from what one has found
 
 }  // namespace
@@ -177,22 +176,18 @@ void GpMap::learn() {
   last_update_ = engine_->update();
 }
 
-/// What came into view of late may be explained otherwise, and so may all of a young map, on a plane or with a relief,
-/// in turn; on one of two planes, in turn.
+/// What came into view of late, or all of a young map, in turn, may be explained otherwise: on one of two planes, in
+/// turn.
 void GpMap::reconsider_recent() {
   if (!is_young() && !search_) young_ = TrackBuffer();
   const double now = graph().states.back().t;
   if (!search_ && !(now < next_search_)) {
     next_search_ = now + kReconsidering;
-    enum { everything, everything_with_relief, newest_part, kRounds };
-    const int round = is_young() ? looks_ / kPlanes % kRounds : newest_part;
-    Supposition supposed;
-    if (looks_ % kPlanes != 0) supposed.plane = SupposedPlane::dual;
-    if (round == everything_with_relief) supposed.relief = kRelief;
+    const auto supposed = looks_ % kPlanes == 0 ? SupposedPlane::frontal : SupposedPlane::dual;
     const auto begin = [&](bool young) {
       return ExplanationSearch::begin(graph(), engine_->first_state(), options_.health.min_landmarks, supposed, young);
     };
-    search_ = begin(round != newest_part);
+    search_ = begin(is_young() && looks_ % (2 * kPlanes) < kPlanes);
     if (!search_ && is_young()) search_ = begin(true);
     if (!search_) --doubts_;  // there is nothing that could be explained otherwise
     ++looks_;

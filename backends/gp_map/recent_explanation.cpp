@@ -20,6 +20,7 @@ constexpr int kFewestStates = 8, kMostStates = 256;  ///< of it
 constexpr int kEnoughObservations = 8000;            ///< of about so many at most, each track's are thinned evenly
 constexpr double kKnown = 0.03;       ///< to which landmarks of before are known, as a share of their distance
 constexpr double kHeld = 1e-4;        ///< [rad, units] of the pose from which it begins
+constexpr double kOnPlane = 0.05;     ///< to which new ones are on the plane at first, as a share of the usual depth
 constexpr double kMostOblique = 4.0;  ///< times nearer or farther than usual: not where the plane is seen edge-on
 constexpr double kAdvantage = 10.0;   ///< by which the other explanation's cost must be lower
 constexpr int kIterations = 6;        ///< of each explanation, at most
@@ -132,7 +133,7 @@ void to_held_scale(FactorGraph& graph) {
 }  // namespace
 
 std::optional<ExplanationSearch> ExplanationSearch::begin(const FactorGraph& graph, int first_state, int enough,
-                                                          const Supposition& supposed, bool young) {
+                                                          SupposedPlane supposed, bool young) {
   auto part = newest_part(graph, first_state, index(enough), young);
   if (!part) return std::nullopt;
   FactorGraph problem = problem_of(graph, *part);
@@ -149,8 +150,8 @@ Vector3 ExplanationSearch::Plane::meets(const Vector3& p, const Vector3& ray) co
   return p + (toward * away > 0.0 ? std::clamp(away / toward, usual / kMostOblique, most) : most) * ray;
 }
 
-std::optional<ExplanationSearch::Plane> ExplanationSearch::suppose(const Supposition& supposed,
-                                                                   const FactorGraph& problem, std::size_t fresh) {
+std::optional<ExplanationSearch::Plane> ExplanationSearch::suppose(SupposedPlane supposed, const FactorGraph& problem,
+                                                                   std::size_t fresh) {
   struct Sight {
     Vector3 p, ray;  // of depth 1
   };
@@ -171,8 +172,8 @@ std::optional<ExplanationSearch::Plane> ExplanationSearch::suppose(const Supposi
   if (!middle.allFinite()) return std::nullopt;
   const SE3 &begin = problem.states.front().T, &end = problem.states.back().T;
   const Vector3 normal =
-      supposed.plane == SupposedPlane::dual ? Vector3(end.p - begin.p) : Vector3(begin.R().col(2) + end.R().col(2));
-  return Plane{normal.normalized(), middle, usual, supposed.relief * usual};
+      supposed == SupposedPlane::dual ? Vector3(end.p - begin.p) : Vector3(begin.R().col(2) + end.R().col(2));
+  return Plane{normal.normalized(), middle, usual};
 }
 
 ExplanationSearch::ExplanationSearch(int first, int landmarks_then, std::vector<int> fresh, FactorGraph problem,
@@ -233,7 +234,7 @@ void ExplanationSearch::add_state(int k) {
     if (j < 0 && index(group.landmark) < fresh_.size()) {
       const SE3& T = through_.graph().states.back().T;
       const Vector3 place = plane_.meets(T.p, T.R() * problem_.camera.ray(observations.front().pixel));
-      j = through_.add_landmark(place, {place, plane_.relief});
+      j = through_.add_landmark(place, {place, kOnPlane * plane_.usual});
     } else if (j < 0) {
       const FactorGraph::Landmark& landmark = problem_.landmarks[index(group.landmark)];
       j = through_.add_landmark(landmark.position, landmark.prior);

@@ -15,12 +15,6 @@ enum class SupposedPlane {
   dual,     ///< normal to how the camera seems to have moved: where the other explanation of a plane has it
 };
 
-/// What a search begins with.
-struct Supposition {
-  SupposedPlane plane = SupposedPlane::frontal;
-  double relief = 0.05;  ///< how far, one sigma, landmarks are off it, as a share of the usual depth
-};
-
 /// Another explanation of what was seen of late.
 struct RecentExplanation {
   int first = 0;                                   ///< state from which on it says something else
@@ -52,7 +46,7 @@ class ExplanationSearch {
   /// either where it reaches back to `first_state`, the oldest one that is being estimated, where fewer than `enough`
   /// landmarks were known before, and where most of those seen in the newest interval were.
   static std::optional<ExplanationSearch> begin(const FactorGraph& graph, int first_state, int enough,
-                                                const Supposition& supposed, bool young = false);
+                                                SupposedPlane supposed, bool young = false);
 
   /// Does a share: the linearisation of some 30,000 observations, or of what fewer take as long where states are many.
   /// False when it has come to its end.
@@ -65,12 +59,11 @@ class ExplanationSearch {
   /// A plane through the middle of what is new.
   struct Plane {
     Vector3 normal, point;
-    double usual;   ///< depth
-    double relief;  ///< [units], one sigma
+    double usual;  ///< depth
 
     Vector3 meets(const Vector3& p, const Vector3& ray) const;
   };
-  static std::optional<Plane> suppose(const Supposition& supposed, const FactorGraph& problem, std::size_t fresh);
+  static std::optional<Plane> suppose(SupposedPlane supposed, const FactorGraph& problem, std::size_t fresh);
 
   ExplanationSearch(int first, int landmarks_then, std::vector<int> fresh, FactorGraph problem, const Plane& plane);
   bool pass();

@@ -95,8 +95,8 @@ FactorGraph solved(FactorGraph graph) {
 
 /// By a search that is gone through at once.
 std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, int first_state, int enough,
-                                                   SupposedPlane plane, bool young = false) {
-  auto search = ExplanationSearch::begin(graph, first_state, enough, {plane}, young);
+                                                   SupposedPlane supposed, bool young = false) {
+  auto search = ExplanationSearch::begin(graph, first_state, enough, supposed, young);
   if (!search) return std::nullopt;
   while (search->go_on()) {
   }
