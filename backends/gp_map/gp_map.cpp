@@ -21,8 +21,8 @@ const Registration<BackEnd, GpMap> registration("gp_map",
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
 constexpr double kOneSided = 0.1;  ///< what was seen so shortly ago is known from one side
-constexpr double kYoung = 5.0;  ///< [s] of a map in which all may be explained otherwise, and no track is judged
-constexpr double kMemory = 10.0;  ///< [s] for which tracks are remembered that ended before there is a map
+constexpr double kYoung = 5.0;     ///< [s] of a map in which all may be explained otherwise, and no track is judged
+constexpr double kMemory = 10.0;   ///< [s] for which tracks are remembered that ended before there is a map
 
 // Searches for another explanation:
 constexpr double kFirstLook = 0.7;       ///< [s] of data that the first one takes
@@ -189,12 +189,12 @@ void GpMap::reconsider_recent() {
     };
     search_ = begin(is_young() && looks_ % (2 * kPlanes) < kPlanes);
     if (!search_ && is_young()) search_ = begin(true);
-    if (!search_) --doubts_;  // there is nothing that could be explained otherwise
+    if (!search_ && is_in_doubt()) --doubts_;  // there is nothing that could be explained otherwise
     ++looks_;
   }
   if (!search_ || search_->go_on()) return;
   const auto other = search_->found();
-  doubts_ = other && is_in_doubt() ? kPlanes : doubts_ - 1;
+  if (is_in_doubt()) doubts_ = other ? kPlanes : doubts_ - 1;
   search_.reset();
   const int oldest = engine_->first_state();
   if (!other || (oldest > 0 && other->first <= oldest + 1)) return;  // a lag may have marginalised it since
