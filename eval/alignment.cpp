@@ -120,4 +120,8 @@ Alignment align(std::span<const PosePair> pairs, AlignmentMethod method) {
   return align_umeyama(m, method);
 }
 
+Eigen::Quaterniond common_rotation(std::span<const PosePair> pairs) {
+  return Eigen::Quaterniond(nearest_rotation(moments(pairs).rotations).R);
+}
+
 }  // namespace evbench

@@ -15,6 +15,7 @@ const std::vector<Metric>& known_metrics() {
       {"ate.trans_m.rmse", "ATE [m]", Better::lower, kAll},
       {"ate.trans_percent", "ATE [% of path]", Better::lower, kRowARun},
       {"ate.rot_deg.rmse", "ATE [deg]", Better::lower, kAll},
+      {"ate.rot_centred_deg.rmse", "ATE, centred [deg]", Better::lower, kOnRequest},
       {"rpe.trans_m.rmse", "RPE [m]", Better::lower, kAll},
       {"rpe.rot_deg.rmse", "RPE [deg]", Better::lower, kAll},
       {"common.ate.trans_m.rmse", "ATE, common time [m]", Better::lower, kScreen},

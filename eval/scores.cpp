@@ -52,6 +52,13 @@ void score_segments(const std::vector<SegmentErrors>& segments, Scores& scores) 
   scores.all_segments = {0.0, statistics(trans), statistics(rot)};
 }
 
+/// Absolute errors without the rotation that all poses have in common.
+PoseErrors centred(std::vector<PosePair> pairs) {
+  const SE3 rotation{common_rotation(pairs), Vector3::Zero()};
+  for (PosePair& pair : pairs) pair.estimate = rotation * pair.estimate;
+  return absolute_errors(pairs);
+}
+
 double path_length(const std::vector<PosePair>& pairs) {
   double length = 0.0;
   for (std::size_t i = 1; i < pairs.size(); ++i) {
@@ -90,6 +97,7 @@ Scores score(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate,
   const PoseErrors absolute = absolute_errors(pairs);
   scores.ate.trans_m = statistics(absolute.trans_m);
   scores.ate.rot_deg = statistics(absolute.rot_deg);
+  scores.ate.rot_centred_deg = statistics(centred(pairs).rot_deg);
   if (scores.path_m > 0.0) scores.ate.trans_percent = 100.0 * scores.ate.trans_m.rmse / scores.path_m;
 
   const PoseErrors steps = relative_errors(pairs, delta_pairs(pairs, relative));
@@ -137,6 +145,7 @@ Json to_json(const Scores& scores) {
   Json json;
   json["ate"] = {{"trans_m", to_json(scores.ate.trans_m)},
                  {"rot_deg", to_json(scores.ate.rot_deg)},
+                 {"rot_centred_deg", to_json(scores.ate.rot_centred_deg)},
                  {"trans_percent", std::isfinite(percent) ? Json(percent) : Json(nullptr)}};
   json["rpe"] = {{"trans_m", to_json(scores.rpe.trans_m)}, {"rot_deg", to_json(scores.rpe.rot_deg)},
                  {"pairs", scores.rpe.trans_m.n},          {"delta", options.rpe_delta},

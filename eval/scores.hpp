@@ -69,6 +69,7 @@ struct ScoreOptions {
 
 struct AbsoluteScores {
   Statistics trans_m, rot_deg;
+  Statistics rot_centred_deg;  ///< of rotation, without what is the same in all poses (common_rotation)
   double trans_percent = Statistics::kUndefined;  ///< trans_m.rmse in percent of path_m; undefined when path_m is 0
 };
 

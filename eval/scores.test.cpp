@@ -58,6 +58,19 @@ TEST_CASE("An alignment on a part is applied to all") {
   }
 }
 
+TEST_CASE("Of orientations beside a path that is nearly a line, what all have in common can be left out") {
+  const auto wound = [](double t, double towards, double turned) {
+    const double aside = 1e-3 * std::sin(20.0 * t);
+    return SE3{so3::exp({0.0, 0.0, turned}), {t, aside * std::cos(towards), aside * std::sin(towards)}};
+  };
+  const auto truth = [&](double t) { return wound(t, 0.0, 0.0); };
+  const auto estimate = [&](double t) { return wound(t, 0.5, t < 1.0 ? 0.01 : -0.01); };
+  const Scores scores = score(sample(truth, 200), sample(estimate, 200));
+  constexpr double kDegree = 3.14159265358979 / 180.0;
+  CHECK(scores.ate.rot_deg.rmse > 0.49 / kDegree);  // as the few positions aside ask for
+  CHECK(scores.ate.rot_centred_deg.rmse == Approx(0.01 / kDegree).epsilon(0.01));
+}
+
 TEST_CASE("The error in percent is of the ground truth's path through the compared poses") {
   const auto straight = [](double t) { return SE3{{}, {t, 0.0, 0.0}}; };
   const auto beside = [](double t) { return SE3{{}, {t, 0.05, 0.0}}; };
