@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 17);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 18);
 
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
@@ -233,11 +233,11 @@ void GpMap::recall_condemned() {
 
 /// What was seen a while ago is known from both sides: tracks show whether they stayed on their points, and the motion
 /// how smooth it was. The newest motion, known from one side alone, keeps a prior that allows for what may come.
-void GpMap::learn_with_hindsight(const TimeSpan& span) {
+void GpMap::learn_with_hindsight(const TimeSpan& span, std::span<const double> surplus) {
   if (!is_young()) judge_tracks(noise_, span);  // a young map itself is not right yet
   const bool yields = options_.learn.prior != LearnPrior::always && violent_motion_.is_yielding(graph());
   if (options_.learn.noise && !yields) weigh_tracks(noise_, span);
-  if (options_.learn.prior != LearnPrior::never) learn_prior(*engine_, span);
+  if (options_.learn.prior != LearnPrior::never) learn_prior(*engine_, span, surplus);
 }
 
 /// What is seen next is compared with the newest state's constant velocity.

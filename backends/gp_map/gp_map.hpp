@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -89,7 +90,7 @@ class GpMap : public BackEnd {
   void bound_leverage();
   void optimise();
   void learn();
-  void learn_with_hindsight(const TimeSpan& span);
+  void learn_with_hindsight(const TimeSpan& span, std::span<const double> surplus = {});
   void reconsider_recent();
   void recall_condemned();
   void check_support();

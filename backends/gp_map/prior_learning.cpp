@@ -130,7 +130,18 @@ void PriorLearner::take_evidence(Engine& engine) {
   prior_->take(first, evidence_from(engine, first));
 }
 
-void learn_prior(Engine& engine, const TimeSpan& span) {
+std::vector<double> surplus_expansions(Engine& engine) {
+  const FactorGraph& graph = engine.graph();
+  std::vector<double> surplus(graph.states.size(), 0.0);
+  std::size_t k = index(engine.first_state()) + 1;
+  for (const PriorEvidence& one : evidence_from(engine, static_cast<int>(k))) {
+    surplus[k] = graph.expansions[k] - one.expansion(graph.qcs[k]);
+    ++k;
+  }
+  return surplus;
+}
+
+void learn_prior(Engine& engine, const TimeSpan& span, std::span<const double> surplus) {
   const int first = std::max(engine.first_state() + 1, engine.graph().first_state_after(span.from));
   const std::vector<PriorEvidence> evidence = evidence_from(engine, first);
   PriorEvidence all;
@@ -148,7 +159,9 @@ void learn_prior(Engine& engine, const TimeSpan& span) {
     sum.square += after[k].square - evidence[k].square;
     sum.freedom += after[k].freedom - evidence[k].freedom;
     const Vector6 qc = sum.qc(mean, kGuessWeight);
-    engine.set_qc(first + static_cast<int>(k), qc, evidence[k].expansion(qc));
+    const std::size_t i = index(first) + k;
+    const double expansion = evidence[k].expansion(qc) + (surplus.empty() ? 0.0 : surplus[i]);
+    engine.set_qc(static_cast<int>(i), qc, std::max(0.0, expansion));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "backends/gp_map/engine/engine.hpp"
@@ -75,7 +76,12 @@ class PriorLearner {
   double followed_until_ = -1e300;  ///< [s]
 };
 
-/// Learns the prior of the intervals in this span that are still estimated, from these and from what came after it.
-void learn_prior(Engine& engine, const TimeSpan& span);
+/// How much more than the prior draws together its expansions push apart, by interval; 0 of what is marginalised.
+std::vector<double> surplus_expansions(Engine& engine);
+
+/// Learns the prior of the intervals in this span that are still estimated, from these and from what came after it. The
+/// expansions balance it, with this surplus by interval: where only a part is balanced anew, it gets another scale than
+/// the rest.
+void learn_prior(Engine& engine, const TimeSpan& span, std::span<const double> surplus = {});
 
 }  // namespace evbench::gp_map

@@ -32,6 +32,22 @@ TEST_CASE("The prior that a motion was drawn from is learnt, from one a hundred 
   }
 }
 
+TEST_CASE("Where a part is learnt anew, its expansions keep what they push more than the prior draws") {
+  Engine engine = testing::DrawnProblem({.qc = kTrue, .pixel_sigma = 0.05}, 1).solve_incrementally();
+  for (int k = 1; k < testing::DrawnProblem::kStates; ++k) engine.set_qc(k, Vector6::Constant(10.0 * kTrue), 20.0 + k);
+  engine.update();
+  const std::vector<double> surplus = surplus_expansions(engine);
+  REQUIRE(surplus[1] > 10.0);  // it is not balanced
+  for (int round = 0; round < 3; ++round) {
+    learn_prior(engine, {}, surplus);
+    const std::vector<double> kept = surplus_expansions(engine);
+    for (std::size_t k = 1; k < surplus.size(); ++k) CHECK(kept[k] == Approx(surplus[k]).margin(1e-9));
+    engine.update();
+  }
+  learn_prior(engine, {});
+  for (const double balance : surplus_expansions(engine)) CHECK(balance == Approx(0.0).margin(1e-9));
+}
+
 TEST_CASE("Evidence fades with time, and a guess counts where there is little") {
   PriorEvidence sum{1.0, Vector6::Constant(4.0), Vector6::Constant(2.0)};
   CHECK(sum.qc(Vector6::Ones(), 0.0)[0] == Approx(2.0));
