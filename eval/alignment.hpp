@@ -41,9 +41,9 @@ struct Alignment {
 /// - no horizontal motion (yaw): the yaw that fits the orientations best.
 Alignment align(std::span<const PosePair> pairs, AlignmentMethod method);
 
-/// R with R R_estimate nearest to R_truth over all pairs (chordal mean): what their orientations have in common as error.
-/// Where positions lie nearly on a line, `align` fits the rotation about it to their small rest, and leaves such an
-/// error.
+/// R with R R_estimate nearest to R_truth over all pairs (chordal mean): the error that all orientations have in
+/// common. Where positions lie nearly on a line, `align` fits the rotation about it to their small rest, and such an
+/// error stays.
 Eigen::Quaterniond common_rotation(std::span<const PosePair> pairs);
 
 }  // namespace evbench
