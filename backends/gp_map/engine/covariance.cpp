@@ -210,9 +210,10 @@ Eigen::MatrixXd Factorisation::image_in_root(std::span<const int> rows, const Ei
 
 /// Factorises what has changed or was damped, as it is at the present linearisation points.
 bool Engine::factorise_undamped() {
-  if (restart_ < static_cast<int>(graph_.states.size()) || damped_) {
+  const int states = static_cast<int>(graph_.states.size());
+  if (restart_ < states || factorisation_.done() >= states || damped_) {  // or states were taken back
     if (factorisation_.redo(restart_, graph_, points_, 0.0)) return false;
-    restart_ = static_cast<int>(graph_.states.size());
+    restart_ = states;
     damped_ = factorisation_.factorise_root(points_, 0.0).has_value();  // if it failed, there is no factor to use
     if (damped_) return false;
   }

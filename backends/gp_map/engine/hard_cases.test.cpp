@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "backends/gp_map/testing/drawn_problem.hpp"
 #include "backends/gp_map/testing/random_session.hpp"
 
 namespace evbench::gp_map {
@@ -163,6 +164,17 @@ TEST_CASE("A covariance asked for between a change and its update doesn't keep t
   const Vector3 &a = asked.graph().landmarks[11].position, &b = flight.engine.graph().landmarks[11].position;
   CHECK((b - before).norm() > 1e-3);
   CHECK((a - b).norm() < 1e-4);
+}
+
+TEST_CASE("A covariance asked for after states were taken back is of those that are left") {
+  Engine engine = testing::DrawnProblem({.qc = 0.01, .pixel_sigma = 0.5}, 1).solve_incrementally();
+  for (int taken = 0; taken < 3; ++taken) engine.remove_newest_state();
+  const std::vector<Matrix24> chain = engine.chain_covariances(1);
+  REQUIRE(chain.size() == engine.graph().states.size() - 1);
+  engine.update();
+  const std::vector<Matrix24> after = engine.chain_covariances(1);
+  REQUIRE(after.size() == chain.size());
+  for (std::size_t k = 0; k < chain.size(); ++k) CHECK((chain[k] - after[k]).norm() < 0.1 * after[k].norm());
 }
 
 TEST_CASE("What the newest states learnt one observation at a time reaches the older ones with the update") {
