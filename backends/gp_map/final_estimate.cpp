@@ -25,7 +25,8 @@ void GpMap::finish() {
   }
   const auto start = std::chrono::steady_clock::now();
   if (options_.lag > 0.0) {
-    const std::vector<double> surplus = surplus_expansions(*engine_);  // as has what is settled, at the same scale
+    // What is settled keeps its expansions: balanced anew alone, the rest would get another scale.
+    const std::vector<double> surplus = surplus_expansions(*engine_);
     for (int round = 0; round < options_.learn.rounds; ++round) {
       learn_with_hindsight({}, surplus);
       engine_->update();
