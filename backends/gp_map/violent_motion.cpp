@@ -81,11 +81,13 @@ void ViolentMotion::recover(Engine& engine) const {
 }
 
 /// Median error of the tracks seen in the newest interval, each at its last observation [sigmas of what averages of the
-/// errors would be, as outliers are told by: trackers drift, and that is no motion]; 0: too few.
+/// errors would be, as outliers are told by: trackers drift, and that is no motion; of a few sigmas at most, as many that
+/// drift together are no accident]; 0: too few.
 double ViolentMotion::newest_error(const FactorGraph& graph, const NoiseLearner& noise) const {
+  constexpr double kMostDrift = 3.0;
   const std::size_t k = graph.states.size() - 1;
   const GpInterval interval(graph.states[k - 1], graph.states[k]);
-  const double scale = noise.scale_of_means();
+  const double scale = std::min(kMostDrift * noise.scale(), noise.scale_of_means());
   std::vector<double> errors;
   for (const auto& group : graph.intervals[k].groups()) {
     const Observation& z = graph.intervals[k].of(group).back();
