@@ -134,6 +134,7 @@ function(evbench_fuzz_targets)
 endfunction()
 
 # Headers, libraries and the package files that find_package(evbench) reads: all that a plugin of one's own may use.
+# In the build folder they stand where find_package() does not look: what they include exists only once installed.
 function(evbench_install_package)
   include(CMakePackageConfigHelpers)
   set(libraries)
@@ -153,9 +154,9 @@ function(evbench_install_package)
   set(package ${CMAKE_INSTALL_LIBDIR}/cmake/evbench)
   install(EXPORT evbench_targets NAMESPACE evbench:: DESTINATION ${package})
   configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/evbenchConfig.cmake.in
-                                ${CMAKE_BINARY_DIR}/evbenchConfig.cmake INSTALL_DESTINATION ${package})
-  write_basic_package_version_file(${CMAKE_BINARY_DIR}/evbenchConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-  install(FILES ${CMAKE_BINARY_DIR}/evbenchConfig.cmake ${CMAKE_BINARY_DIR}/evbenchConfigVersion.cmake
+                                ${CMAKE_BINARY_DIR}/package/evbenchConfig.cmake INSTALL_DESTINATION ${package})
+  write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/evbenchConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+  install(FILES ${CMAKE_BINARY_DIR}/package/evbenchConfig.cmake ${CMAKE_BINARY_DIR}/package/evbenchConfigVersion.cmake
                 ${CMAKE_SOURCE_DIR}/cmake/EvbenchPlugin.cmake ${CMAKE_SOURCE_DIR}/cmake/plugin_entry.cpp
           DESTINATION ${package})
 endfunction()

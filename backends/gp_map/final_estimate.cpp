@@ -51,14 +51,13 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
   constexpr double kRoughly = 1e-4, kLearnt = 1e-6, kFixed = 1e-9;  // what is learnt is known no better
   engine_->optimise(kIterationsARound, kRoughly);
   for (int round = 0; round < rounds; ++round) {
-    const NoiseLearner noise = learn_noise(graph());
     if (options_.learn.noise) {
-      noise_ = noise;
+      noise_ = learn_noise(graph());
       engine_->set_loss(noise_.loss(options_.loss, options_.loss_width));
     }
     if (learns_prior) learn_prior(*engine_, {});
-    judge_tracks(noise, {});
-    if (options_.learn.noise) weigh_tracks(noise, {});
+    judge_tracks(noise_, {});
+    if (options_.learn.noise) weigh_tracks(noise_, {});
     const bool settled = engine_->optimise(kIterationsARound, kRoughly).iterations == 1;
     if (settled && round > 0) break;  // what is learnt does not change the estimate any more
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "backends/gp_map/first_trajectory.hpp"
 #include "backends/gp_map/problem_graph.hpp"
@@ -118,11 +119,11 @@ FirstMap FirstMapFinder::map_of(const TrackBuffer& tracks, const MultiView& view
   FirstTrajectory path(tracks, camera_, options_);
   const std::vector<double> errors = views.errors(explained), sigmas = views.distance_sigmas(explained);
   const double certain = median(sigmas);
-  std::vector<TrackId> anchored;
+  std::set<TrackId> anchored;
   for (std::size_t i = 0; i < explained.points.size(); ++i) {
     if (errors[i] > kFarOff * options_.max_initial_error || explained.points[i].inverse < 1.0 / kFarthest) continue;
     path.add_landmark(views.views().tracks[i], explained.points[i]);
-    if (sigmas[i] <= certain) anchored.push_back(views.views().tracks[i]);
+    if (sigmas[i] <= certain) anchored.insert(views.views().tracks[i]);
   }
   path.go_along(explained.poses, views.views().times, state_times_);
 
@@ -137,7 +138,7 @@ FirstMap FirstMapFinder::map_of(const TrackBuffer& tracks, const MultiView& view
   for (const auto& [track, point] : path.landmarks()) {
     map.tracks.push_back(track);
     const int landmark = graph.add_landmark(point.position());
-    if (std::ranges::binary_search(anchored, track)) anchors.push_back(landmark);
+    if (anchored.contains(track)) anchors.push_back(landmark);
     for (const TrackObservation& z : tracks.observations(track)) {
       graph.add_observation(landmark, to_observation(z, options_.sigma_scale));
     }

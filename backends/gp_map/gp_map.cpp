@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 19);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 20);
 
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
@@ -262,7 +262,7 @@ void GpMap::check_support() {
   const std::size_t n = graph().states.size();
   const double from = graph().states[n - 2].t, to = graph().states[n - 1].t;
   const int seen = landmarks_in_view(), enough = options_.health.min_landmarks, few = options_.health.lost_landmarks;
-  if (last_update_.rejected && !last_update_.reason.empty()) {
+  if (last_update_.unsolvable) {
     monitor_.lose(to, last_update_.reason);
   } else if (to > until_) {
     return;  // the data ends, and with it its tracks

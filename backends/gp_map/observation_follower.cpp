@@ -10,6 +10,7 @@ void add_extrapolated_state(Engine& engine, double t) {
 void ObservationFollower::open(Engine& engine, double ahead) {
   if (open_) return;
   add_extrapolated_state(engine, ahead);
+  engine.open_newest();
   open_ = true;
 }
 

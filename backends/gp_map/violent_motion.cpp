@@ -29,9 +29,10 @@ void settle(Engine& engine, UpdateSummary& update, const std::function<double()>
 }
 
 /// Where most tracks are still far from where they should be, the prior over the newest intervals is weakened as long
-/// as that helps. `qc`: where nothing has yielded.
+/// as that helps; where it hardly helped in all, it is as before. `qc`: where nothing has yielded.
 void yield(Engine& engine, UpdateSummary& update, const std::function<double()>& newest_error, const Vector6& qc) {
-  constexpr double kWeaker = 10.0, kWeakest = 1e4, kHelp = 0.8;  // weakest: over the prior that was given
+  constexpr double kWeaker = 10.0, kWeakest = 1e4;  // at a time; over the prior that was given
+  constexpr double kHelp = 0.95, kHelpInAll = 0.8;
   constexpr int kIntervals = 3;
   const FactorGraph& graph = engine.graph();
   const int newest = static_cast<int>(graph.states.size()) - 1;
@@ -44,19 +45,19 @@ void yield(Engine& engine, UpdateSummary& update, const std::function<double()>&
     }
     update = engine.update();
   };
-  double error = newest_error(), factor = 1.0;
-  const double weakest = kWeakest / graph.qc.cwiseQuotient(qc).maxCoeff();
-  while (error > kFar && factor < weakest) {
-    weaken(kWeaker * factor);
+  const double before = newest_error(), weakest = kWeakest / graph.qc.cwiseQuotient(qc).maxCoeff();
+  double error = before, tried = 1.0, kept = 1.0;
+  while (error > kFar && kept < weakest) {
+    tried = kWeaker * kept;
+    weaken(tried);
     const double now = newest_error();
-    if (!(now < kHelp * error)) {
-      weaken(factor);
-      break;
-    }
+    if (!(now < kHelp * error)) break;
     error = now;
-    factor *= kWeaker;
+    kept = tried;
   }
-  if (factor > 1.0) engine.set_next_qc(graph.qcs.back());
+  if (!(error < kHelpInAll * before)) kept = 1.0;
+  if (kept != tried) weaken(kept);
+  if (kept > 1.0) engine.set_next_qc(graph.qcs.back());
 }
 
 }  // namespace
@@ -81,8 +82,8 @@ void ViolentMotion::recover(Engine& engine) const {
 }
 
 /// Median error of the tracks seen in the newest interval, each at its last observation [sigmas of what averages of the
-/// errors would be, as outliers are told by: trackers drift, and that is no motion; of a few sigmas at most, as many that
-/// drift together are no accident]; 0: too few.
+/// errors would be, as outliers are told by: trackers drift, and that is no motion; of a few sigmas at most, as many
+/// that drift together are no accident]; 0: too few.
 double ViolentMotion::newest_error(const FactorGraph& graph, const NoiseLearner& noise) const {
   constexpr double kMostDrift = 3.0;
   const std::size_t k = graph.states.size() - 1;

@@ -172,6 +172,7 @@ double Engine::reprojection_mean(int landmark) {
 }
 
 double Engine::size_of_state(int i, const Vector12& delta) const {
+  if (!delta.allFinite()) return std::numeric_limits<double>::infinity();
   const double dt = i > 0 ? graph_.states[index(i)].t - graph_.states[index(i - 1)].t : 0.0;
   constexpr double kHermiteMaximum = 4.0 / 27.0;  // of s (1 − s)²
   const double rotation = delta.head<3>().norm() + kHermiteMaximum * dt * delta.segment<3>(6).norm();
@@ -184,6 +185,7 @@ double Engine::size_of_state(int i, const Vector12& delta) const {
 double Engine::size_of_landmark(int j, const Vector3& delta) const {
   const auto& seen = graph_.landmarks[index(j)].intervals;
   if (seen.empty()) return 0.0;
+  if (!delta.allFinite()) return std::numeric_limits<double>::infinity();
   constexpr double kParallax = 0.01, kNearest = 1e-9;
   const double square = delta.squaredNorm();
   double largest = 0.0;  // fourth power of the size
@@ -303,6 +305,7 @@ UpdateSummary Engine::update_back(int depth) {
     damping = damping == 0.0 ? kFirstDamping : kDampingGrowth * damping;
     if (damping > kMaxDamping || (!solved && !summary.reason.empty() && damping > 1.0)) {
       summary.rejected = true;
+      summary.unsolvable = !solved;
       break;
     }
     restart_ = first;

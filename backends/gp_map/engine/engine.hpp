@@ -40,14 +40,14 @@ struct EngineOptions {
 
 /// What an update did.
 struct UpdateSummary {
-  int first_stage = 0;    ///< oldest stage that was redone
-  int stages = 0;         ///< redone, repetitions counted
-  int solved_back = 0;    ///< stages whose variables were solved for
-  int linearised = 0;     ///< observations
-  double damping = 0.0;   ///< λ of the accepted step; 0: undamped
-  bool rejected = false;  ///< no step lowered the cost: the estimate is that of before
-  /// Empty unless something was not determined by its factors (it is held by a weak damping then) or the system could
-  /// not be solved at all (rejected).
+  int first_stage = 0;      ///< oldest stage that was redone
+  int stages = 0;           ///< redone, repetitions counted
+  int solved_back = 0;      ///< stages whose variables were solved for
+  int linearised = 0;       ///< observations
+  double damping = 0.0;     ///< λ of the accepted step; 0: undamped
+  bool rejected = false;    ///< no step lowered the cost: the estimate is that of before
+  bool unsolvable = false;  ///< rejected because the system could not be solved at all
+  /// Empty unless something was not determined by its factors (it is held by a weak damping then) or unsolvable.
   std::string reason;
 };
 
@@ -93,6 +93,10 @@ class Engine {
   /// At any time within the states' span, late or not. False, and nothing added, outside it, for a value that is not
   /// finite, a landmark that was removed, and with a lag for what has been marginalised.
   bool add_observation(int landmark, const Observation& observation);
+
+  /// Gets ready for observe() in the interval that ends in the newest state. What is asked for from then on,
+  /// covariances as well, does not change what observations do. False where observe() will only add them.
+  bool open_newest();
 
   /// add_observation that at once brings the newest two states to what their factors so far ask for: exact for the
   /// present linearisation (landmarks and older states follow with the next update). For observations in the newest
@@ -189,7 +193,6 @@ class Engine {
   void move(const Variable& variable);
   bool solve(double damping, UpdateSummary& summary);
   bool factorise_undamped();
-  bool open_live_factor();
   void solve_back(UpdateSummary& summary);
   void clear_returns(int k);
   double separator_change(int k) const;

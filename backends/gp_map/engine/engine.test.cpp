@@ -104,14 +104,21 @@ TEST_CASE("The newest states after each observation are those of an update with 
   next.t += dt;
   next.T = next.T * se3::exp(dt * next.velocity);
   one_by_one.add_state(next);
-  Engine at_once = one_by_one;
+  Engine at_once = one_by_one, asked = one_by_one;
+  REQUIRE(asked.open_newest());
   int live = 0;
   const IntervalObservations& interval = all.intervals[kStates];
   for (const auto& group : interval.groups()) {
     for (int i = group.begin; i < group.end; ++i) {
       const Observation& z = interval.all()[index(i)];
       if (start.landmarks[index(group.landmark)].intervals.empty()) continue;
-      if (!one_by_one.observe(group.landmark, z)) continue;
+      if (live % 3 == 0) CHECK(asked.newest_covariance());  // what is asked for changes nothing
+      const bool followed = one_by_one.observe(group.landmark, z);
+      CHECK(asked.observe(group.landmark, z) == followed);
+      if (!followed) continue;
+      for (const std::size_t k : {kStates - 1, kStates}) {
+        CHECK(asked.graph().states[k].T.p == one_by_one.graph().states[k].T.p);
+      }
       at_once.add_observation(group.landmark, z);
       ++live;
       if (live % 20 != 1) continue;

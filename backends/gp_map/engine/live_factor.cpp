@@ -25,6 +25,8 @@ struct Rotation {
 
 bool LiveFactor::build(const Root& root, int newest, const IntervalLinearisation& open) {
   newest_ = -1;
+  occupants_.clear();
+  for (int slot = 0; slot < root.slots(); ++slot) occupants_.push_back(root.occupant(slot));
   factor_.load(root, newest - 1, 2);
   const int states = factor_.row_of_states();
   for (int c = 0; c < 24; ++c) {
@@ -32,8 +34,8 @@ bool LiveFactor::build(const Root& root, int newest, const IntervalLinearisation
     factor_.b()[states + c] -= open.gradient(c);
   }
   for (const auto& coupling : open.couplings) {
-    if (root.slot_of(coupling.landmark) < 0) continue;
-    const int row = factor_.row_of_slot(root.slot_of(coupling.landmark));
+    if (!has(coupling.landmark)) continue;
+    const int row = factor_.row_of_slot(static_cast<int>(slot_of(coupling.landmark)));
     for (int c = 0; c < 3; ++c) {
       double* column = factor_.column(row + c);
       for (int r = c; r < 3; ++r) column[row + r] += coupling.landmark_landmark(r, c);
@@ -48,17 +50,17 @@ bool LiveFactor::build(const Root& root, int newest, const IntervalLinearisation
   return true;
 }
 
-void LiveFactor::add(int slot, const ObservationRows& rows, double weight) {
+void LiveFactor::add(int landmark, const ObservationRows& rows, double weight) {
   const double scale = std::sqrt(weight);
   const int size = factor_.size(), stride = factor_.stride();
-  const int landmark = factor_.row_of_slot(slot), states = factor_.row_of_states();
+  const int first = factor_.row_of_slot(static_cast<int>(slot_of(landmark))), states = factor_.row_of_states();
   v_.assign(index(stride), 0.0);
   w_.assign(index(stride), 0.0);
   double* v = v_.data();
   double* w = w_.data();
   for (int i = 0; i < 3; ++i) {
-    v[landmark + i] = scale * rows.landmark(0, i);
-    w[landmark + i] = scale * rows.landmark(1, i);
+    v[first + i] = scale * rows.landmark(0, i);
+    w[first + i] = scale * rows.landmark(1, i);
   }
   for (int i = 0; i < 24; ++i) {
     v[states + i] = scale * rows.states(0, i);
@@ -66,7 +68,7 @@ void LiveFactor::add(int slot, const ObservationRows& rows, double weight) {
   }
   v[size] = -scale * rows.e(0);
   w[size] = -scale * rows.e(1);
-  for (int k = landmark; k < states + 24; ++k) {
+  for (int k = first; k < states + 24; ++k) {
     double* L = factor_.column(k);
     const Rotation a(L[k], v[k]);
     const Rotation b(L[k], w[k]);

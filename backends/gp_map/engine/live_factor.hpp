@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "backends/gp_map/engine/root_factor.hpp"
 
 namespace evbench::gp_map {
@@ -23,15 +26,21 @@ class LiveFactor {
   bool is_of(int newest) const { return newest_ == newest; }
   void drop() { newest_ = -1; }
 
-  /// An observation of the landmark in this slot of the root.
-  void add(int slot, const ObservationRows& rows, double weight);
+  /// Whether a landmark was in the root from which it was built. The root may have become another one since.
+  bool has(int landmark) const { return slot_of(landmark) < std::ssize(occupants_); }
+
+  /// An observation of a landmark that it has.
+  void add(int landmark, const ObservationRows& rows, double weight);
 
   /// The increments of states n and n+1.
   Vector24 solve_states() const;
 
  private:
+  std::ptrdiff_t slot_of(int landmark) const { return std::ranges::find(occupants_, landmark) - occupants_.begin(); }
+
   int newest_ = -1;
   RootFactor factor_;
+  std::vector<int> occupants_;  ///< of the root's slots
   Buffer v_, w_;
 };
 

@@ -21,8 +21,8 @@ ObservationRows linearise(const GpInterval& interval, const GpInterval::Derivati
 
 }  // namespace
 
-/// The open interval's factor is built with the first observation in it, from the root of the last update.
-bool Engine::open_live_factor() {
+/// Builds the open interval's factor, from the root of the last update.
+bool Engine::open_newest() {
   const int newest = static_cast<int>(graph_.states.size()) - 1;
   if (live_.is_of(newest)) return true;
   if (newest < 1 || factorisation_.done() != newest - 1 || restart_ < newest) return false;
@@ -36,13 +36,12 @@ bool Engine::open_live_factor() {
 
 bool Engine::observe(int landmark, const Observation& observation) {
   const int newest = static_cast<int>(graph_.states.size()) - 1;
-  const int slot = factorisation_.root().slot_of(landmark);
   // An observation of something else is part of the next update.
-  const bool live = slot >= 0 && graph_.interval_of(observation.t) == newest && open_live_factor();
+  const bool live = graph_.interval_of(observation.t) == newest && open_newest() && live_.has(landmark);
   if (!insert(landmark, observation) || !live) return false;
   const ObservationRows rows = linearise(*live_interval_, live_derivatives_, graph_.camera, points_.landmark(landmark),
                                          graph_.scaled(landmark, observation));
-  live_.add(slot, rows, graph_.loss.weight(rows.e.squaredNorm()));
+  live_.add(landmark, rows, graph_.loss.weight(rows.e.squaredNorm()));
   const Vector24 delta = live_.solve_states();
   if (!delta.allFinite()) return false;
   // What older states are solved from has changed.
