@@ -83,6 +83,10 @@ int run_program(int argc, char** argv) {
       fmt::print(stderr, "{}", text);
       return evbench::kExitBadInput;
     }
+    if (argc == 1) {
+      fmt::print(stderr, "{}", app.help());
+      return evbench::kExitBadInput;
+    }
     return app.exit(error) == 0 ? evbench::kExitDone : evbench::kExitBadInput;
   } catch (const evbench::Interrupted& interrupted) {
     fmt::print(stderr, "evbench: {}\n", interrupted.what());

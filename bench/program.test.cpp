@@ -56,6 +56,7 @@ TEST_CASE("All plugins are listed, and each is described for people and as a JSO
     }
   }
   CHECK_THAT(testing::evbench(folder, "describe config").out, Contains("trajectory_rate"));
+  CHECK(testing::evbench(folder, "describe gp_map").out == testing::evbench(folder, "describe backend gp_map").out);
   CHECK(Json::parse(testing::evbench(folder, "describe config --schema").out).contains("$schema"));
 }
 
@@ -69,14 +70,16 @@ TEST_CASE("A command line that is not understood ends with exit code 2 and says 
     CHECK(outcome.out.empty());
     CHECK_THAT(outcome.err, Contains(message));
   };
-  refused("", "subcommand");
+  refused("", "check-plugin");  // all commands
   refused("frobnicate", "\"frobnicate\" is no command; known: ");
   refused("runn c.json", "\"runn\" is no command; did you mean \"run\"?");
   refused("dataset lst", "\"lst\" is no command; did you mean \"list\"?");
   refused("run", "config is required");
   refused("run c.json --foo", "--foo");
   refused("describe backnd gp_map", "backnd");
-  refused("describe backend", "expected the name of a backend");
+  refused("describe backend", "expected config, a plugin's name");
+  refused("describe gp_mop", "expected config, a plugin's name");
+  refused("describe config gp_map", "expected no name");
   refused("describe backend gp_mop", "did you mean \"gp_map\"?");
   refused("table nowhere", "nowhere: is not a folder");
   refused("table .", "no metrics.json");

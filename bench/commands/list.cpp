@@ -2,11 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <utility>
 
 #include "bench/commands/commands.hpp"
 #include "bench/experiment.hpp"
 #include "core/events/formats.hpp"
 #include "core/plugin/registry.hpp"
+#include "core/support/error.hpp"
 
 namespace evbench {
 namespace {
@@ -18,6 +20,14 @@ void list(const Plugins& plugins) {
     const std::string origin = entry.origin == kBuiltIn ? "" : fmt::format(" ({})", entry.origin);
     fmt::print("  {:<20} {}{}\n", name, entry.text, origin);
   }
+}
+
+/// Of the plugin with this name; empty where there is none.
+std::string kind_of(const Plugins& plugins, const std::string& name) {
+  if (plugins.of<Source>().entries().contains(name)) return PluginKind<Source>::name;
+  if (plugins.of<FrontEnd>().entries().contains(name)) return PluginKind<FrontEnd>::name;
+  if (plugins.of<BackEnd>().entries().contains(name)) return PluginKind<BackEnd>::name;
+  return "";
 }
 
 template <class Interface>
@@ -53,21 +63,31 @@ void add_describe(CLI::App& app, const Plugins& plugins) {
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("describe", "Describe a plugin's options, or a config file");
-  command->add_option("kind", arguments->kind, "source, frontend, backend or config")
-      ->required()
-      ->check(CLI::IsMember({"source", "frontend", "backend", "config"}));
+  command->add_option("kind", arguments->kind, "source, frontend, backend or config; or just a plugin's name")
+      ->required();
   command->add_option("name", arguments->name, "Name of the plugin (evbench list)");
   command->add_flag("--schema", arguments->schema, "Print a JSON Schema, for editors");
   command->callback([arguments, &plugins] {
-    const auto& [kind, name, schema] = *arguments;
+    const bool schema = arguments->schema;
+    std::string kind = arguments->kind, name = arguments->name;
     if (kind == "config") {
+      if (!name.empty()) throw InputError(fmt::format("describe config: expected no name beside it, but got {}", name));
       fmt::print("{}\n", schema ? experiment_schema(plugins).dump(2) : describe_experiment());
       return;
     }
-    if (name.empty())
-      throw InputError(fmt::format("describe {}: expected the name of a {}; see evbench list", kind, kind));
-    describe<Source>(plugins, kind, name, schema) || describe<FrontEnd>(plugins, kind, name, schema) ||
-        describe<BackEnd>(plugins, kind, name, schema);
+    if (name.empty()) {
+      name = std::exchange(kind, kind_of(plugins, kind));
+      if (kind.empty()) {
+        throw InputError(
+            fmt::format("describe {}: expected config, a plugin's name, or source, frontend or backend and a name; see "
+                        "evbench list",
+                        name));
+      }
+    }
+    if (!describe<Source>(plugins, kind, name, schema) && !describe<FrontEnd>(plugins, kind, name, schema) &&
+        !describe<BackEnd>(plugins, kind, name, schema)) {
+      throw InputError(fmt::format("describe {}: expected source, frontend, backend or config", kind));
+    }
   });
 }
 
