@@ -39,7 +39,7 @@ bool EventFrontEnd::advance(const Horizon& horizon, TrackBatch& batch) {
     follow(std::min(tick, horizon.t));
     if (clock_ < tick && clock_ < range_.to) continue;
     ++ticks_;
-    if (!feed_.ended()) look();  // else what is told already could be followed by what is older
+    look();
   }
   const bool ended = feed_.ended() || clock_ >= range_.to;
   told_.tell(ended ? clock_ : complete(), horizon.observations, batch);

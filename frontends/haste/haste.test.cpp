@@ -65,12 +65,6 @@ TEST_CASE("Tracks do not depend on how they are asked for") {
   CHECK(same(usual, track(scene(), {}, 0.01, 7)));
 }
 
-TEST_CASE("Where the events end before the sequence, a few observations at a time are those of all at once") {
-  EventScene source(swing, 1.5, EventScene::quadrangles(150, 1));
-  source.silence(1.0, 1.5);
-  CHECK(same(track(source), track(source, {}, 0.01, 7)));
-}
-
 TEST_CASE("Observations come in time order, and not later than the delay but for those that are counted") {
   Options prompt;
   prompt.delay = 0.0;
