@@ -22,22 +22,16 @@ void list(const Plugins& plugins) {
   }
 }
 
-/// Of the plugin with this name; empty where there is none.
-std::string kind_of(const Plugins& plugins, const std::string& name) {
-  if (plugins.of<Source>().entries().contains(name)) return PluginKind<Source>::name;
-  if (plugins.of<FrontEnd>().entries().contains(name)) return PluginKind<FrontEnd>::name;
-  if (plugins.of<BackEnd>().entries().contains(name)) return PluginKind<BackEnd>::name;
-  return "";
-}
-
+/// False where there is no such plugin of this kind. An empty kind: any.
 template <class Interface>
 bool describe(const Plugins& plugins, const std::string& kind, const std::string& name, bool schema) {
-  if (kind != PluginKind<Interface>::name) return false;
-  const auto& entry = plugins.of<Interface>().find(name, "describe " + kind);
+  const std::string own = PluginKind<Interface>::name;
+  if (kind.empty() ? !plugins.of<Interface>().entries().contains(name) : kind != own) return false;
+  const auto& entry = plugins.of<Interface>().find(name, "describe " + own);
   if (schema) {
     fmt::print("{}\n", entry.schema().dump(2));
   } else {
-    fmt::print("{} {}: {}\n\n{}", kind, name, entry.text, entry.describe());
+    fmt::print("{} {}: {}\n\n{}", own, name, entry.text, entry.describe());
   }
   return true;
 }
@@ -75,18 +69,12 @@ void add_describe(CLI::App& app, const Plugins& plugins) {
       fmt::print("{}\n", schema ? experiment_schema(plugins).dump(2) : describe_experiment());
       return;
     }
-    if (name.empty()) {
-      name = std::exchange(kind, kind_of(plugins, kind));
-      if (kind.empty()) {
-        throw InputError(
-            fmt::format("describe {}: expected config, a plugin's name, or source, frontend or backend and a name; see "
-                        "evbench list",
-                        name));
-      }
-    }
+    if (name.empty()) std::swap(kind, name);
     if (!describe<Source>(plugins, kind, name, schema) && !describe<FrontEnd>(plugins, kind, name, schema) &&
         !describe<BackEnd>(plugins, kind, name, schema)) {
-      throw InputError(fmt::format("describe {}: expected source, frontend, backend or config", kind));
+      throw InputError(fmt::format(
+          "describe {}: expected config, a plugin's name, or source, frontend or backend and a name; see evbench list",
+          arguments->kind));
     }
   });
 }

@@ -35,7 +35,7 @@ bool LiveFactor::build(const Root& root, int newest, const IntervalLinearisation
   }
   for (const auto& coupling : open.couplings) {
     if (!has(coupling.landmark)) continue;
-    const int row = factor_.row_of_slot(static_cast<int>(slot_of(coupling.landmark)));
+    const int row = factor_.row_of_slot(slot_of(coupling.landmark));
     for (int c = 0; c < 3; ++c) {
       double* column = factor_.column(row + c);
       for (int r = c; r < 3; ++r) column[row + r] += coupling.landmark_landmark(r, c);
@@ -53,7 +53,7 @@ bool LiveFactor::build(const Root& root, int newest, const IntervalLinearisation
 void LiveFactor::add(int landmark, const ObservationRows& rows, double weight) {
   const double scale = std::sqrt(weight);
   const int size = factor_.size(), stride = factor_.stride();
-  const int first = factor_.row_of_slot(static_cast<int>(slot_of(landmark))), states = factor_.row_of_states();
+  const int first = factor_.row_of_slot(slot_of(landmark)), states = factor_.row_of_states();
   v_.assign(index(stride), 0.0);
   w_.assign(index(stride), 0.0);
   double* v = v_.data();

@@ -27,7 +27,7 @@ class LiveFactor {
   void drop() { newest_ = -1; }
 
   /// Whether a landmark was in the root from which it was built. The root may have become another one since.
-  bool has(int landmark) const { return slot_of(landmark) < std::ssize(occupants_); }
+  bool has(int landmark) const { return slot_of(landmark) < static_cast<int>(occupants_.size()); }
 
   /// An observation of a landmark that it has.
   void add(int landmark, const ObservationRows& rows, double weight);
@@ -36,11 +36,14 @@ class LiveFactor {
   Vector24 solve_states() const;
 
  private:
-  std::ptrdiff_t slot_of(int landmark) const { return std::ranges::find(occupants_, landmark) - occupants_.begin(); }
+  /// Where it was in that root; beyond all slots where it was not.
+  int slot_of(int landmark) const {
+    return static_cast<int>(std::ranges::find(occupants_, landmark) - occupants_.begin());
+  }
 
   int newest_ = -1;
   RootFactor factor_;
-  std::vector<int> occupants_;  ///< of the root's slots
+  std::vector<int> occupants_;  ///< of that root's slots
   Buffer v_, w_;
 };
 
