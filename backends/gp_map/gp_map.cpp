@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 20);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 21);
 
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
@@ -185,7 +185,8 @@ void GpMap::reconsider_recent() {
     next_search_ = now + kReconsidering;
     const auto supposed = looks_ % kPlanes == 0 ? SupposedPlane::frontal : SupposedPlane::dual;
     const auto begin = [&](bool young) {
-      return ExplanationSearch::begin(graph(), engine_->first_state(), options_.health.min_landmarks, supposed, young);
+      const StateRange states{engine_->first_state(), static_cast<int>(graph().states.size()) - 1};
+      return ExplanationSearch::begin(graph(), states, options_.health.min_landmarks, supposed, young);
     };
     search_ = begin(is_young() && looks_ % (2 * kPlanes) < kPlanes);
     if (!search_ && is_young()) search_ = begin(true);

@@ -29,37 +29,39 @@ constexpr int kShare = 34000;  ///< of work at a time: an observation's linearis
 constexpr int kStateWork = 100;  ///< so much
 constexpr int kStatesAPass = 6;  ///< through the problem, which take as long as an iteration
 
-/// The newest part of a problem, or all of it.
+/// The newest part of some states and the intervals that end in them, or all of it.
 struct Part {
-  int first = 0;                 ///< its states and intervals are those from this one on
+  int first = 0, last = 0;       ///< its states and intervals
   std::vector<int> fresh, held;  ///< landmarks seen in it, which came into view in it or before
 };
 
 /// So long ago that what came into view since has been replaced once more: a time, however densely states stand.
-int newest_parts_first(const FactorGraph& graph) {
-  const double now = graph.states.back().t;
+int newest_parts_first(const FactorGraph& graph, int last) {
+  const double now = graph.states[index(last)].t;
   std::vector<double> ages;
-  for (const auto& group : graph.intervals.back().groups()) {
+  for (const auto& group : graph.intervals[index(last)].groups()) {
     ages.push_back(now - graph.states[index(graph.landmarks[index(group.landmark)].intervals.front())].t);
   }
   const double length = ages.empty() ? 0.0 : std::min(kLongest, kLongAgo * order_statistic(std::move(ages), kMost));
-  const int states = static_cast<int>(graph.states.size());
-  return std::clamp(graph.first_state_after(now - length), states - kMostStates, states - kFewestStates);
+  return std::clamp(graph.first_state_after(now - length), last + 1 - kMostStates, last + 1 - kFewestStates);
 }
 
-std::optional<Part> newest_part(const FactorGraph& graph, int first_state, std::size_t enough, bool young) {
+std::optional<Part> newest_part(const FactorGraph& graph, const StateRange& states, std::size_t enough, bool young) {
   Part part;
-  const bool everything = young && first_state == 0 && std::ssize(graph.states) <= kMostStates;
-  if (!everything) part.first = newest_parts_first(graph);
-  if (!everything && part.first <= first_state + 1) return std::nullopt;
+  part.last = states.newest;
+  const bool everything = young && states.oldest == 0 && states.newest < kMostStates;
+  if (!everything) part.first = newest_parts_first(graph, part.last);
+  if (!everything && part.first <= states.oldest + 1) return std::nullopt;
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
     const std::vector<int>& seen = graph.landmarks[index(j)].intervals;
-    if (!seen.empty() && seen.back() >= part.first) (seen.front() < part.first ? part.held : part.fresh).push_back(j);
+    const auto in_part = std::ranges::lower_bound(seen, part.first);
+    if (in_part == seen.end() || *in_part > part.last) continue;
+    (seen.front() < part.first ? part.held : part.fresh).push_back(j);
   }
   if (part.fresh.size() < enough) return std::nullopt;
   if (everything) return part;
   if (part.held.size() < enough) return std::nullopt;
-  const auto& now = graph.intervals.back().groups();
+  const auto& now = graph.intervals[index(part.last)].groups();
   const auto known = std::ranges::count_if(
       now, [&](const auto& group) { return graph.landmarks[index(group.landmark)].intervals.front() < part.first; });
   if (2 * known > std::ssize(now)) return std::nullopt;  // what is known holds the rest
@@ -72,7 +74,7 @@ FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
   FactorGraph problem;
   problem.camera = graph.camera;
   problem.loss = graph.loss;
-  for (int k = std::max(0, part.first - 1); k < std::ssize(graph.states); ++k) {
+  for (int k = std::max(0, part.first - 1); k <= part.last; ++k) {
     problem.qc = graph.qcs[index(k)];
     problem.add_state(graph.states[index(k)]);
     problem.expansions.back() = graph.expansions[index(k)];
@@ -80,7 +82,7 @@ FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
   const SE3& begin = problem.states.front().T;
   problem.pose_priors.push_back({0, begin, Vector6::Constant(kHeld)});
   int observations = 0;
-  for (int k = part.first; k < std::ssize(graph.states); ++k) {
+  for (int k = part.first; k <= part.last; ++k) {
     observations += static_cast<int>(graph.intervals[index(k)].all().size());
   }
   const int every = 1 + observations / kEnoughObservations;
@@ -89,7 +91,7 @@ FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
     const int j = problem.add_landmark(l.position, prior);
     int seen = 0;
     for (const int k : l.intervals) {
-      if (k < part.first) continue;
+      if (k < part.first || k > part.last) continue;
       for (const Observation& z : graph.intervals[index(k)].of(landmark)) {
         if (seen++ % every == 0) problem.add_observation(j, z);
       }
@@ -115,26 +117,11 @@ int work_of(const FactorGraph& problem) {
   return problem.observation_count() + kStateWork * static_cast<int>(problem.states.size());
 }
 
-/// Makes the scale the one that its anchor holds.
-void to_held_scale(FactorGraph& graph) {
-  constexpr int kSteps = 20;
-  const Vector3 origin = graph.anchor.origin;
-  for (int i = 0; i < kSteps && !graph.anchor.landmarks.empty(); ++i) {
-    const double larger = graph.anchor.sigma * residual(graph.anchor, graph);  // logarithm of the scale, to first order
-    const double factor = std::exp(-std::clamp(larger, -1.0, 1.0));
-    for (ControlState& state : graph.states) {
-      state.T.p = origin + factor * (state.T.p - origin);
-      state.velocity.tail<3>() *= factor;
-    }
-    for (FactorGraph::Landmark& l : graph.landmarks) l.position = origin + factor * (l.position - origin);
-  }
-}
-
 }  // namespace
 
-std::optional<ExplanationSearch> ExplanationSearch::begin(const FactorGraph& graph, int first_state, int enough,
-                                                          SupposedPlane supposed, bool young) {
-  auto part = newest_part(graph, first_state, index(enough), young);
+std::optional<ExplanationSearch> ExplanationSearch::begin(const FactorGraph& graph, const StateRange& states,
+                                                          int enough, SupposedPlane supposed, bool young) {
+  auto part = newest_part(graph, states, index(enough), young);
   if (!part) return std::nullopt;
   FactorGraph problem = problem_of(graph, *part);
   const auto plane = suppose(supposed, problem, part->fresh.size());
@@ -271,9 +258,10 @@ void RecentExplanation::place_in(Engine& engine) const {
   const int end = first + static_cast<int>(states.size());
   const auto before = [&](int k) { return graph.states[index(k)].T; };
   const SE3 along = states.back().T * before(end - 1).inverse();
-  for (int j = landmarks_then; j < std::ssize(graph.landmarks); ++j) {  // may have been seen before then
+  for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
     const FactorGraph::Landmark& landmark = graph.landmarks[index(j)];
     if (landmark.intervals.empty() || landmark.intervals.back() < first) continue;
+    if (j < landmarks_then && landmark.intervals.front() < end) continue;  // those of since may have been seen before
     const int k = landmark.intervals.back();
     const SE3 motion = k < end ? states[index(k - first)].T * before(k).inverse() : along;
     engine.place_landmark(j, motion * landmark.position);
@@ -285,6 +273,20 @@ void RecentExplanation::place_in(Engine& engine) const {
   }
   for (int k = first; k < end; ++k) engine.place_state(k, states[index(k - first)]);
   for (const auto& [j, position] : landmarks) engine.place_landmark(j, position);
+}
+
+void to_held_scale(FactorGraph& graph) {
+  constexpr int kSteps = 20;
+  const Vector3 origin = graph.anchor.origin;
+  for (int i = 0; i < kSteps && !graph.anchor.landmarks.empty(); ++i) {
+    const double larger = graph.anchor.sigma * residual(graph.anchor, graph);  // logarithm of the scale, to first order
+    const double factor = std::exp(-std::clamp(larger, -1.0, 1.0));
+    for (ControlState& state : graph.states) {
+      state.T.p = origin + factor * (state.T.p - origin);
+      state.velocity.tail<3>() *= factor;
+    }
+    for (FactorGraph::Landmark& l : graph.landmarks) l.position = origin + factor * (l.position - origin);
+  }
 }
 
 }  // namespace evbench::gp_map

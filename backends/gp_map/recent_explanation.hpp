@@ -15,16 +15,22 @@ enum class SupposedPlane {
   dual,     ///< normal to how the camera seems to have moved: where the other explanation of a plane has it
 };
 
+/// From an oldest to a newest one, both included.
+struct StateRange {
+  int oldest = 0, newest = 0;
+};
+
 /// Another explanation of what was seen of late.
 struct RecentExplanation {
   int first = 0;                                   ///< state from which on it says something else
-  std::vector<ControlState> states;                ///< from there on, the newest of then last
+  std::vector<ControlState> states;                ///< from there on, the newest it was looked for in last
   std::vector<std::pair<int, Vector3>> landmarks;  ///< those that came into view since, world frame [units]
   double advantage = 0.0;                          ///< by which its cost, ½ Σ ρ, is lower
   int landmarks_then = 0;                          ///< of the problem, as it was looked for
 
-  /// Makes it the estimate; the states and landmarks that have been added to the engine since it was looked for go
-  /// along. Not for an engine in which the state before the first one has been marginalised.
+  /// Makes it the estimate; later states and the landmarks that came into view after it, or have been added to the
+  /// engine since it was looked for, go along. Not for an engine in which the state before the first one has been
+  /// marginalised.
   void place_in(Engine& engine) const;
 };
 
@@ -41,11 +47,12 @@ struct RecentExplanation {
 /// takes as long as many updates, so it is done in shares.
 class ExplanationSearch {
  public:
-  /// Of the newest part, or, when the map is young, nothing has been marginalised and states are few, of everything.
-  /// None where fewer than `enough` landmarks are new, and where what is new lies behind the camera; of a part none
-  /// either where it reaches back to `first_state`, the oldest one that is being estimated, where fewer than `enough`
-  /// landmarks were known before, and where most of those seen in the newest interval were.
-  static std::optional<ExplanationSearch> begin(const FactorGraph& graph, int first_state, int enough,
+  /// Of the newest part of these states, the oldest of which is the oldest one that is being estimated, or, when the
+  /// map is young, nothing has been marginalised and states are few, of everything. None where fewer than `enough`
+  /// landmarks are new, and where what is new lies behind the camera; of a part none either where it reaches back to
+  /// the oldest state, where fewer than `enough` landmarks were known before, and where most of those seen in its
+  /// newest interval were.
+  static std::optional<ExplanationSearch> begin(const FactorGraph& graph, const StateRange& states, int enough,
                                                 SupposedPlane supposed, bool young = false);
 
   /// Does a share: the linearisation of some 30,000 observations, or of what fewer take as long where states are many.
@@ -86,5 +93,8 @@ class ExplanationSearch {
   double cost_ = 0.0;
   std::optional<RecentExplanation> found_;
 };
+
+/// Makes the scale the one that its anchor holds.
+void to_held_scale(FactorGraph& graph);
 
 }  // namespace evbench::gp_map

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+
+#include "backends/gp_map/engine/engine.hpp"
+
+namespace evbench::gp_map {
+
+/// With everything seen, what was explained wrongly when only the past was known can be explained from what came after
+/// it. So the problem is looked through with time running backwards, part by part (recent_explanation.hpp). From a part
+/// that is explained better otherwise on, all is gone through as long as parts are: what is in view there holds the
+/// next part, the scale included. Then everything is solved from there, and where that does not suffice, what lies
+/// before is gone through once more.
+///
+/// A solver of this full history whose cost is clearly lower than `cost`, which the present estimate has; none where
+/// there is no such explanation. `enough` as for ExplanationSearch. A look takes as long as some dozens of updates, and
+/// there is one a second of data.
+std::optional<Engine> explain_earlier(const Engine& engine, double cost, int enough);
+
+}  // namespace evbench::gp_map
