@@ -88,8 +88,9 @@ struct Passage {
 
 }  // namespace
 
-std::optional<Engine> explain_earlier(const Engine& engine, double cost, int enough) {
+std::optional<Engine> explain_earlier(const Engine& engine, int enough) {
   std::optional<Engine> best;
+  std::optional<double> cost;  // to be undercut, as far down as the present explanation leads
   FactorGraph back = backwards(engine.graph());
   const double end = back.states.back().t;
   for (double t = back.states.front().t + kLook; t < end; t += kLook) {
@@ -98,12 +99,13 @@ std::optional<Engine> explain_earlier(const Engine& engine, double cost, int eno
     Passage passage{Engine(back, {}), t};
     passage.take(*other, t);
     passage.go_on(enough, kQuiet);
+    if (passage.advantage > kWorthwhile && !cost) cost = Engine(engine).optimise(kIterations, kTolerance).final_cost;
     bool lower = false;
     for (int attempt = 0; attempt < kAttempts && !lower && passage.advantage > kWorthwhile; ++attempt) {
       Engine all(forwards(passage.back.graph(), engine.graph()), {});
       const double reached = all.optimise(kIterations, kTolerance).final_cost;
       FactorGraph solved = backwards(all.graph());
-      lower = reached + kAdvantage < cost;
+      lower = reached + kAdvantage < *cost;
       if (lower) {
         cost = reached;
         best = std::move(all);

@@ -12,9 +12,9 @@ namespace evbench::gp_map {
 /// next part, the scale included. Then everything is solved from there, and where that does not suffice, what lies
 /// before is gone through once more.
 ///
-/// A solver of this full history whose cost is clearly lower than `cost`, which the present estimate has; none where
-/// there is no such explanation. `enough` as for ExplanationSearch. A look takes as long as some dozens of updates, and
-/// there is one a second of data.
-std::optional<Engine> explain_earlier(const Engine& engine, double cost, int enough);
+/// A solver of this full history whose cost is clearly lower than the one that the present estimate leads to; none
+/// where there is no such explanation. `enough` as for ExplanationSearch. A look takes as long as some dozens of
+/// updates, and there is one a second of data.
+std::optional<Engine> explain_earlier(const Engine& engine, int enough);
 
 }  // namespace evbench::gp_map

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "backends/gp_map/earlier_explanation.hpp"
-#include "backends/gp_map/factors.hpp"
 #include "backends/gp_map/gp_map.hpp"
 #include "core/support/seconds_since.hpp"
 
@@ -51,7 +50,11 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
   const int rounds = learns ? options_.learn.rounds : 1;
   constexpr int kIterationsARound = 3;
   constexpr double kRoughly = 1e-4, kLearnt = 1e-6, kFixed = 1e-9;  // what is learnt is known no better
-  reconsider_earlier(engine_->optimise(kIterationsARound, kRoughly).final_cost);
+  engine_->optimise(kIterationsARound, kRoughly);
+  if (auto other = explain_earlier(*engine_, options_.health.min_landmarks)) {
+    context_.log("what was seen earlier is explained better otherwise by what came after it");
+    engine_ = std::move(other);
+  }
   for (int round = 0; round < rounds; ++round) {
     if (options_.learn.noise) {
       noise_ = learn_noise(graph());
@@ -64,15 +67,6 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
     if (settled && round > 0) break;  // what is learnt does not change the estimate any more
   }
   return engine_->optimise(options_.final_iterations, learns ? kLearnt : kFixed);
-}
-
-/// What was seen when only the past was known may be explained otherwise by what came after it.
-void GpMap::reconsider_earlier(double cost) {
-  auto other = explain_earlier(*engine_, cost, options_.health.min_landmarks);
-  if (!other) return;
-  context_.log(fmt::format("what was seen earlier is explained better otherwise, by {:.1f}",
-                           cost - evaluate(other->graph()).total()));
-  engine_ = std::move(other);
 }
 
 /// Of each control state's update, in place of the density that it began with: that of the interval which ends there.

@@ -120,7 +120,6 @@ class GpMap : public BackEnd {
   void tell_online(double t);
   void tell_recent(double t);
   Engine::OptimiseSummary estimate_everything();
-  void reconsider_earlier(double cost);
   void judge_tracks(const NoiseLearner& noise, const TimeSpan& span);
   void slid_off(int landmark, double from);
   void weigh_tracks(const NoiseLearner& noise, const TimeSpan& span);
