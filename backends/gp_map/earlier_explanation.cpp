@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "backends/gp_map/factors.hpp"
 #include "backends/gp_map/recent_explanation.hpp"
 
 namespace evbench::gp_map {

@@ -12,7 +12,6 @@ namespace {
 using namespace ambiguous_flight;
 
 constexpr int kLong = 2 * kStates;
-constexpr double kTurn = kStep * kStates;  ///< [s]
 
 /// Misled until the turn, after which all is as it was.
 FactorGraph misled_at_first(const FactorGraph& truth) {

@@ -76,6 +76,20 @@ double residual(const ScaleAnchor& anchor, const FactorGraph& graph) {
   return (anchor.mean_nearness - mean_nearness(graph)) / (anchor.change * anchor.sigma);
 }
 
+void to_held_scale(FactorGraph& graph) {
+  constexpr int kSteps = 20;
+  const Vector3 origin = graph.anchor.origin;
+  for (int i = 0; i < kSteps && !graph.anchor.landmarks.empty(); ++i) {
+    const double larger = graph.anchor.sigma * residual(graph.anchor, graph);  // logarithm of the scale, to first order
+    const double factor = std::exp(-std::clamp(larger, -1.0, 1.0));
+    for (ControlState& state : graph.states) {
+      state.T.p = origin + factor * (state.T.p - origin);
+      state.velocity.tail<3>() *= factor;
+    }
+    for (FactorGraph::Landmark& l : graph.landmarks) l.position = origin + factor * (l.position - origin);
+  }
+}
+
 void add_state_priors(const FactorGraph& graph, int state, Matrix12& H, Vector12& g) {
   add_state_priors(graph, state, graph.states[index(state)], H, g);
 }

@@ -40,6 +40,8 @@ Vector6 residual(const PosePrior& prior, const ControlState& state);
 Vector6 residual(const VelocityPrior& prior, const ControlState& state);
 Vector3 residual(const LandmarkPrior& prior, const Vector3& position);  ///< zero without a prior
 double residual(const ScaleAnchor& anchor, const FactorGraph& graph);   ///< zero without an anchor
+/// Scales the estimate about the anchor's origin so that the scale is the one that it holds.
+void to_held_scale(FactorGraph& graph);
 
 /// ½ Σ ρ of the observations in interval k, whose states are those of `interval`.
 double measurement_cost(const FactorGraph& graph, int k, const GpInterval& interval);

@@ -94,7 +94,4 @@ class ExplanationSearch {
   std::optional<RecentExplanation> found_;
 };
 
-/// Makes the scale the one that its anchor holds.
-void to_held_scale(FactorGraph& graph);
-
 }  // namespace evbench::gp_map
