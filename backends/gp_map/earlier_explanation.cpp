@@ -1,5 +1,6 @@
 #include "backends/gp_map/earlier_explanation.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "backends/gp_map/factors.hpp"
@@ -13,10 +14,11 @@ constexpr double kStep = 0.3;         ///< [s] from one part's end to the next o
 constexpr double kQuiet = 0.7;        ///< [s] without another one: here the explanations meet
 constexpr double kPatience = 1.5;     ///< [s] the same once everything has been solved in vain
 constexpr double kWorthwhile = 50.0;  ///< advantages together for which everything is solved
-constexpr int kAttempts = 3;          ///< to solve it
+constexpr int kAttempts = 3;          ///< to solve it from one passage
+constexpr int kWork = 10'000'000;     ///< linearised observations that solving everything may take, all in all
 constexpr int kIterations = 25;
 constexpr double kTolerance = 1e-4;
-constexpr double kAdvantage = 10.0;  ///< by which the cost must be lower
+constexpr double kClearly = 1e-3;  ///< share by which the cost must be lower: ten times what the tolerance leaves open
 
 /// The motion, and how it is observed, with time running backwards; landmarks keep their numbers. Without priors of
 /// poses: it is solved by parts alone.
@@ -90,23 +92,29 @@ struct Passage {
 }  // namespace
 
 std::optional<Engine> explain_earlier(const Engine& engine, int enough) {
+  int solutions = kWork / kIterations / std::max(1, engine.graph().observation_count());
+  if (solutions < 2) return std::nullopt;  // of the present explanation and of another one
   std::optional<Engine> best;
   std::optional<double> cost;  // to be undercut, as far down as the present explanation leads
   FactorGraph back = backwards(engine.graph());
   const double end = back.states.back().t;
-  for (double t = back.states.front().t + kLook; t < end; t += kLook) {
+  for (double t = back.states.front().t + kLook; t < end && solutions > 0; t += kLook) {
     const auto other = explain_otherwise(back, t, enough);
     if (!other) continue;
     Passage passage{Engine(back, {}), t};
     passage.take(*other, t);
     passage.go_on(enough, kQuiet);
-    if (passage.advantage > kWorthwhile && !cost) cost = Engine(engine).optimise(kIterations, kTolerance).final_cost;
+    if (passage.advantage > kWorthwhile && !cost) {
+      cost = Engine(engine).optimise(kIterations, kTolerance).final_cost;
+      --solutions;
+    }
     bool lower = false;
     for (int attempt = 0; attempt < kAttempts && !lower && passage.advantage > kWorthwhile; ++attempt) {
+      if (solutions-- == 0) return best;
       Engine all(forwards(passage.back.graph(), engine.graph()), {});
       const double reached = all.optimise(kIterations, kTolerance).final_cost;
       FactorGraph solved = backwards(all.graph());
-      lower = reached + kAdvantage < *cost;
+      lower = reached < (1.0 - kClearly) * *cost;
       if (lower) {
         cost = reached;
         best = std::move(all);

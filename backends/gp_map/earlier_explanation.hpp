@@ -14,8 +14,8 @@ namespace evbench::gp_map {
 ///
 /// A solver of this full history whose cost is clearly lower than the one that the present estimate leads to; none
 /// where there is no such explanation. `enough` as for ExplanationSearch. A look takes as long as some dozens of
-/// updates, and there are two every 0.6 s of data; solving everything takes longer, and where parts are explained
-/// better it happens several times.
+/// updates, and there are two every 0.6 s of data; everything is solved as often as a bound on that work allows, which
+/// is never from 200,000 observations on: then nothing is looked for.
 std::optional<Engine> explain_earlier(const Engine& engine, int enough);
 
 }  // namespace evbench::gp_map
