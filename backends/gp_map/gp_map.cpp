@@ -71,6 +71,7 @@ void GpMap::step(double t) {
     check_support();
     tell_recent(t);
     predict_tracks();
+    nearly_in_view_.reset();
   }
   forget_ended_tracks(t);
   add_record(t, std::exchange(seconds_since_step_, 0.0) + seconds_since(start), 1, {});
@@ -79,9 +80,16 @@ void GpMap::step(double t) {
 /// Observations up to the new control state, no later ones: the estimate at a time depends on what was seen until then.
 void GpMap::take_observations(double t) {
   const auto later = std::ranges::upper_bound(pending_, t, {}, &TrackObservation::t);
-  for (auto z = pending_.begin(); z != later; ++z) take(*z);
+  for (auto z = pending_.begin(); z != later; ++z) {
+    take_ends([&](const TrackEnd& end) { return end.t < z->t; });
+    take(*z);
+  }
   pending_.erase(pending_.begin(), later);
-  for (; !ending_.empty() && ending_.front().t <= t; ending_.pop_front()) {
+  take_ends([&](const TrackEnd& end) { return end.t <= t; });
+}
+
+void GpMap::take_ends(const std::function<bool(const TrackEnd&)>& is_due) {
+  for (; !ending_.empty() && is_due(ending_.front()); ending_.pop_front()) {
     const auto track = tracks_.find(ending_.front().track);
     if (track != tracks_.end()) track->second.ended = true;
   }
@@ -289,6 +297,7 @@ void GpMap::forget_ended_tracks(double t) {
   std::erase_if(live_, [&](TrackId id) {
     const auto track = tracks_.find(id);
     if (!track->second.ended || (!engine_ && !waiting_.observations(id).empty())) return false;
+    if (track->second.role == Track::Role::landmark) ended_landmarks_.push_back(id);
     if (track->second.role == Track::Role::waiting) {
       waiting_.forget(id);
       tracks_.erase(track);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -99,6 +100,7 @@ class GpMap : public BackEnd {
 
   void follow_observations(double t, double ahead);
   void take(const TrackObservation& z);
+  void take_ends(const std::function<bool(const TrackEnd&)>& is_due);
   bool goes_on(const Track& track);
   void split(TrackId id);
   void become_landmark(TrackId track, int landmark);
@@ -110,6 +112,7 @@ class GpMap : public BackEnd {
   double median_depth() const;
   ControlState newest_seen() const;
   std::vector<ExpectedFeature> expected_features();
+  const std::vector<TrackId>& nearly_in_view();
   std::optional<Matrix3> covariance_of_ended(Track& track);
   const std::optional<Matrix12>& newest_covariance();
   const std::optional<Matrix2>& image_covariance(Track& track, const Eigen::Matrix<double, 2, 12>& J_state,
@@ -147,6 +150,8 @@ class GpMap : public BackEnd {
   std::vector<std::pair<int, Observation>> new_;                       ///< of landmarks, not in the engine yet
   std::pair<std::size_t, std::optional<Matrix12>> newest_covariance_;  ///< and the number of states then
   std::vector<TrackId> new_outliers_;
+  std::vector<TrackId> ended_landmarks_;                ///< tracks that have ended since the last feedback
+  std::optional<std::vector<TrackId>> nearly_in_view_;  ///< as of the newest state
   UpdateSummary last_update_;
   ViolentMotion violent_motion_;
   PriorLearner prior_;

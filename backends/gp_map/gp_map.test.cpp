@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "backends/gp_map/testing/tracked_scene.hpp"
 #include "core/plugin/registration.hpp"
@@ -178,6 +179,26 @@ TEST_CASE("Of landmarks that come back as many go on as the budget has, the othe
   const std::size_t none = landmarks_with(0), some = landmarks_with(8), all = landmarks_with(1000);
   CHECK(none > some + 10);
   CHECK(some > all + 10);
+}
+
+TEST_CASE("A track that ends and is seen again before the next state has not ended") {
+  const TrackedScene scene(4.0);
+  const auto landmarks = [&](bool flickering) {
+    BackEndContext context;
+    context.camera = scene.camera();
+    Options options;
+    options.map.returns = 1000;
+    GpMap backend(options, context);
+    TrackBatch batch{scene.observations(), {}, scene.duration()};
+    std::set<TrackId> seen;
+    for (const TrackObservation& z : batch.observations) {
+      if (!seen.insert(z.track).second && flickering) batch.ended.push_back({z.track, z.t - 1e-6});
+    }
+    backend.advance(batch);
+    CHECK(backend.status().state == RunState::ok);
+    return backend.graph().landmarks.size();
+  };
+  CHECK(landmarks(true) == landmarks(false));
 }
 
 TEST_CASE("A prior that is too strong for violent motion yields to it") {

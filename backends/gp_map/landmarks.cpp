@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -80,26 +81,25 @@ void GpMap::trust_parallax() {
 /// tells rotation, and where landmarks live shortly, nothing else hands the scale on.
 std::optional<std::pair<Vector3, LandmarkPrior>> GpMap::locate(TrackId track) const {
   constexpr std::size_t kViews = 16;  // evenly from all observations: enough for a start
-  std::vector<const TrackObservation*> usable;
-  for (const TrackObservation& z : waiting_.observations(track)) {
-    if (graph().interval_of(z.t) > engine_->first_state()) usable.push_back(&z);
-  }
+  std::span<const TrackObservation> usable = waiting_.observations(track);  // none later than the newest state
+  const auto settled = [&](const TrackObservation& z) { return graph().interval_of(z.t) <= engine_->first_state(); };
+  usable = usable.subspan(index(std::ranges::partition_point(usable, settled) - usable.begin()));
   if (usable.size() < 2) return std::nullopt;
   std::vector<SE3> poses;
   std::vector<Vector2> pixels;
   const std::size_t views = std::min(kViews, usable.size());
   for (std::size_t i = 0; i < views; ++i) {
-    const TrackObservation& z = *usable[i * (usable.size() - 1) / (views - 1)];
+    const TrackObservation& z = usable[i * (usable.size() - 1) / (views - 1)];
     poses.push_back(*pose(z.t));
     pixels.push_back(z.pixel);
   }
   const Triangulation result = triangulate(poses, pixels, context_.camera, options_.map.triangulation);
   if (result.ok()) {
-    const double noise = options_.sigma_scale * usable.back()->sigma * noise_.scale_of_means();
+    const double noise = options_.sigma_scale * usable.back().sigma * noise_.scale_of_means();
     if (result.rms_px > kWellSeen * std::numbers::sqrt2 * noise) return std::nullopt;
     return std::pair{result.point, LandmarkPrior{}};
   }
-  const bool waited = usable.back()->t - usable.front()->t >= options_.map.patience;
+  const bool waited = usable.back().t - usable.front().t >= options_.map.patience;
   if (!waited || result.state != Triangulation::State::low_parallax) return std::nullopt;
   const double depth = median_depth();
   const Vector3 point = poses.back() * (depth * graph().camera.ray(pixels.back()));
