@@ -92,6 +92,23 @@ TEST_CASE("Five seconds without events: the camera stands still, and its traject
   CHECK(error(scene, execution) < 0.02);
 }
 
+TEST_CASE("After the last event a camera stands still, unless the recording may have been cut off") {
+  const auto motion = [](double t) { return swing(std::min(t, 3.0)); };
+  EventScene scene(motion, 7.0, wall());
+  const Execution still = run(scene);
+  CHECK(still.result.status.state == RunState::ok);
+  REQUIRE(still.result.pieces.size() == 1);
+  CHECK(still.result.pieces[0].final_trajectory.end() > 6.9);
+  REQUIRE_FALSE(still.result.still.empty());
+  CHECK(still.result.still.back().to > 6.9);
+
+  scene.cut_off();
+  const Execution over = run(scene);
+  CHECK(over.result.still.empty());
+  REQUIRE_FALSE(over.result.pieces.empty());
+  CHECK(over.result.pieces[0].final_trajectory.end() < 4.5);
+}
+
 TEST_CASE(
     "A sensor that tells nothing while the camera moves on: the run says so, and there is a trajectory afterwards") {
   EventScene scene(swing, 8.0, wall());

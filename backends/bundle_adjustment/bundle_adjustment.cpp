@@ -72,8 +72,9 @@ SolverOptions BundleAdjustment::solver_options(int iterations) const {
 
 void BundleAdjustment::advance(const TrackBatch& batch) {
   until_ = batch.until;
-  for (const TrackObservation& z : batch.observations) live_.insert(z.track);
-  for (const TrackEnd& end : batch.ended) live_.erase(end.track);
+  in_time_order(
+      batch.observations, batch.ended, [&](const TrackObservation& z) { live_.insert(z.track); },
+      [&](const TrackEnd& ended) { live_.erase(ended.track); });
   for (std::span<const TrackObservation> rest(batch.observations); !rest.empty();) {
     const auto last =
         std::ranges::adjacent_find(rest, [](const auto& a, const auto& b) { return b.t - a.t > kShortestSilence; });

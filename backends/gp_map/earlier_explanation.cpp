@@ -105,12 +105,14 @@ std::optional<Engine> explain_earlier(const Engine& engine, int enough) {
     passage.take(*other, t);
     passage.go_on(enough, kQuiet);
     if (passage.advantage > kWorthwhile && !cost) {
-      cost = Engine(engine).optimise(kIterations, kTolerance).final_cost;
+      cost = Engine(FactorGraph(engine.graph()), {}).optimise(kIterations, kTolerance).final_cost;
       --solutions;
     }
     bool lower = false;
-    for (int attempt = 0; attempt < kAttempts && !lower && passage.advantage > kWorthwhile; ++attempt) {
+    double until = passage.until;
+    for (int attempt = 0; attempt < kAttempts && passage.advantage > kWorthwhile; ++attempt) {
       if (solutions-- == 0) return best;
+      until = passage.until;
       Engine all(forwards(passage.back.graph(), engine.graph()), {});
       const double reached = all.optimise(kIterations, kTolerance).final_cost;
       FactorGraph solved = backwards(all.graph());
@@ -119,12 +121,13 @@ std::optional<Engine> explain_earlier(const Engine& engine, int enough) {
         cost = reached;
         best = std::move(all);
         back = std::move(solved);
-      } else {
-        passage = {Engine(std::move(solved), {}), passage.until};
-        passage.go_on(enough, kPatience);
+        break;
       }
+      if (attempt + 1 == kAttempts) break;
+      passage = {Engine(std::move(solved), {}), until};
+      passage.go_on(enough, kPatience);
     }
-    if (!lower) t = passage.until;  // else what has been gone through is looked at once more
+    if (!lower) t = until;  // else what has been gone through is looked at once more
   }
   return best;
 }

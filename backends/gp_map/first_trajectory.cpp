@@ -5,11 +5,13 @@
 #include "core/structure/resection.hpp"
 #include "core/structure/triangulation.hpp"
 #include "core/support/index.hpp"
+#include "core/support/median.hpp"
 
 namespace evbench::gp_map {
 namespace {
 
 constexpr double kLongestGap = 1.0;  ///< [s] that the motion is continued over, back to where enough is seen again
+constexpr double kStill = 0.5;       ///< [s] between states of a stand before the first view
 
 /// The pose at t on the way from view to view.
 SE3 pose_between(std::span<const SE3> views, std::span<const double> times, double t) {
@@ -37,8 +39,10 @@ void FirstTrajectory::go_along(std::span<const SE3> views, std::span<const doubl
   take_velocities();
 }
 
-/// No state stands there where too little is seen. False where what is seen can't be explained.
+/// No state stands there where too little is seen, or where nothing moved until the next state. False where what is
+/// seen can't be explained.
 bool FirstTrajectory::go_back_to(double t) {
+  if (is_stand(t, states_.back().t)) return true;
   const auto enough = index(options_.health.min_landmarks);
   if (sightings(t).points.size() < 2 * enough) triangulate_at(t);
   const Sightings seen = sightings(t);
@@ -50,6 +54,18 @@ bool FirstTrajectory::go_back_to(double t) {
   if (!found || !(found->median_px <= options_.max_initial_error)) return false;
   states_.push_back({t, found->T});
   return true;
+}
+
+bool FirstTrajectory::is_stand(double from, double to) const {
+  if (to - from >= kStill) return false;
+  std::vector<double> motions;
+  for (const TrackId track : tracks_.alive(from, 0.5 * options_.initialiser.window)) {
+    const auto a = tracks_.position(track, from, options_.initialiser.window);
+    const auto b = tracks_.position(track, to, options_.initialiser.window);
+    if (a && b) motions.push_back((*a - *b).norm());
+  }
+  if (std::ssize(motions) < options_.health.min_landmarks) return false;
+  return median(std::move(motions)) < 0.5 * options_.initialiser.two_view.threshold_px;
 }
 
 /// The landmarks of tracks that are alive at t, from where the states so far saw them.

@@ -33,6 +33,7 @@ class FirstTrajectory {
   };
   Sightings sightings(double t) const;
   bool go_back_to(double t);
+  bool is_stand(double from, double to) const;
   void triangulate_at(double t);
   void take_velocities();
 

@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 21);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 22);
 
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
@@ -47,6 +47,7 @@ void GpMap::advance(const TrackBatch& batch) {
   pending_.insert(pending_.end(), batch.observations.begin(), batch.observations.end());
   ending_.insert(ending_.end(), batch.ended.begin(), batch.ended.end());
   until_ = batch.until;
+  ended_landmarks_.clear();
   while (const std::optional<double> next = placement_.next(until_)) {
     if (options_.per_observation) follow_observations(*next, *next);
     step(*next);
@@ -80,19 +81,16 @@ void GpMap::step(double t) {
 /// Observations up to the new control state, no later ones: the estimate at a time depends on what was seen until then.
 void GpMap::take_observations(double t) {
   const auto later = std::ranges::upper_bound(pending_, t, {}, &TrackObservation::t);
-  for (auto z = pending_.begin(); z != later; ++z) {
-    take_ends([&](const TrackEnd& end) { return end.t < z->t; });
-    take(*z);
-  }
-  pending_.erase(pending_.begin(), later);
-  take_ends([&](const TrackEnd& end) { return end.t <= t; });
-}
-
-void GpMap::take_ends(const std::function<bool(const TrackEnd&)>& is_due) {
-  for (; !ending_.empty() && is_due(ending_.front()); ending_.pop_front()) {
-    const auto track = tracks_.find(ending_.front().track);
+  const auto ending_later = std::ranges::upper_bound(ending_, t, {}, &TrackEnd::t);
+  const auto end = [&](const TrackEnd& ended) {
+    const auto track = tracks_.find(ended.track);
     if (track != tracks_.end()) track->second.ended = true;
-  }
+  };
+  in_time_order(
+      std::span(pending_.begin(), later), std::span(ending_.begin(), ending_later),
+      [&](const TrackObservation& z) { take(z); }, end);
+  pending_.erase(pending_.begin(), later);
+  ending_.erase(ending_.begin(), ending_later);
 }
 
 void GpMap::take(const TrackObservation& z) {
@@ -202,11 +200,12 @@ void GpMap::reconsider_recent() {
     ++looks_;
   }
   if (!search_ || search_->go_on()) return;
-  const auto other = search_->found();
-  if (is_in_doubt()) doubts_ = other ? kPlanes : doubts_ - 1;
+  auto other = search_->found();
   search_.reset();
   const int oldest = engine_->first_state();
-  if (!other || (oldest > 0 && other->first <= oldest + 1)) return;  // a lag may have marginalised it since
+  if (other && oldest > 0 && other->first <= oldest + 1) other.reset();  // a lag has marginalised it since
+  if (is_in_doubt()) doubts_ = other ? kPlanes : doubts_ - 1;
+  if (!other) return;
   context_.log(fmt::format("{:.3f} s: {} is explained better otherwise, by {:.1f}", now,
                            other->first > 0 ? "what came into view of late" : "all that was seen", other->advantage));
   other->place_in(*engine_);

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <deque>
-#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -100,7 +98,6 @@ class GpMap : public BackEnd {
 
   void follow_observations(double t, double ahead);
   void take(const TrackObservation& z);
-  void take_ends(const std::function<bool(const TrackEnd&)>& is_due);
   bool goes_on(const Track& track);
   void split(TrackId id);
   void become_landmark(TrackId track, int landmark);
@@ -146,11 +143,11 @@ class GpMap : public BackEnd {
   ReturnBudget returns_;
   int landmarks_ = 0;                                                  ///< tracks that are landmarks
   std::vector<TrackObservation> pending_;                              ///< later than the newest state
-  std::deque<TrackEnd> ending_;                                        ///< likewise
+  std::vector<TrackEnd> ending_;                                       ///< likewise
   std::vector<std::pair<int, Observation>> new_;                       ///< of landmarks, not in the engine yet
   std::pair<std::size_t, std::optional<Matrix12>> newest_covariance_;  ///< and the number of states then
   std::vector<TrackId> new_outliers_;
-  std::vector<TrackId> ended_landmarks_;                ///< tracks that have ended since the last feedback
+  std::vector<TrackId> ended_landmarks_;                ///< tracks that have ended in the last batch
   std::optional<std::vector<TrackId>> nearly_in_view_;  ///< as of the newest state
   UpdateSummary last_update_;
   ViolentMotion violent_motion_;

@@ -246,6 +246,21 @@ TEST_CASE("gp_map's estimate does not depend on how its observations are cut int
   }
 }
 
+TEST_CASE("A stand before the first motion is in the trajectory, with few states, and nothing is told before a look") {
+  constexpr double kStand = 20.0;  // [s]
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const TrackedScene scene(kStand + 4.0, R"({"motion": {"hold": [0, 20]}, "tracks": {"lifetime": [60, 60]}})", seed);
+    const auto result = run(scene);
+    CHECK(result.backend->status().state == RunState::ok);
+    CHECK(result.scores.ate.trans_percent < 1.0);
+    const auto& states = result.backend->graph().states;
+    CHECK(states.front().t < 1.0);
+    const auto still = std::ranges::count_if(states, [&](const ControlState& state) { return state.t < kStand; });
+    CHECK(still < 100);
+    CHECK(result.online.start() > kStand + 0.3);
+  }
+}
+
 TEST_CASE("A short blackout is carried by the prior and said") {
   const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [1.0, 3.0], "blackouts": [3.0, 3.3]}})");
   const auto result = run(scene);

@@ -10,7 +10,7 @@ namespace evbench::gp_map {
 namespace {
 
 constexpr double kBlock = 0.15;            ///< [s]
-constexpr int kFewest = 4;                 ///< observations in a block that is judged
+constexpr int kFewest = 4;                 ///< observations in the last block, which may not be over
 constexpr double kMedianSquare = 1.38629;  ///< of a two-dimensional standard normal
 constexpr double kOthers = 3.0;            ///< blocks that the noise of all tracks counts for
 

@@ -23,8 +23,9 @@ RotationAveraging::RotationAveraging(const Options& options, const BackEndContex
 void RotationAveraging::advance(const TrackBatch& batch) {
   const auto begin = std::chrono::steady_clock::now();
   if (monitor_.lost()) return;
-  for (const TrackObservation& z : batch.observations) take(z);
-  for (const TrackEnd& end : batch.ended) last_.erase(end.track);
+  in_time_order(
+      batch.observations, batch.ended, [&](const TrackObservation& z) { take(z); },
+      [&](const TrackEnd& ended) { last_.erase(ended.track); });
   until_ = batch.until;
   while (start_ && !monitor_.lost() && time_of(rotations_.size()) + options_.longest_gap <= until_) {
     const std::size_t before = rotations_.size();

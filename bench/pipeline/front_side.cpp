@@ -25,7 +25,7 @@ std::optional<TrackBatch> FrontSide::next() {
   while (!begun_ || until_ < range_.to) {
     check_interruption();
     TrackBatch batch = exchange();
-    const bool tells = !begun_ || batch.until > until_;
+    const bool tells = !begun_ || batch.until > until_ || !batch.ended.empty();
     begun_ = true;
     clock_ = *batch.seen;
     until_ = batch.until;
@@ -87,6 +87,9 @@ void FrontSide::check(const TrackBatch& batch, double horizon) const {
     if (z.t <= batch.until && (z.t > until_ || (!begun_ && z.t >= until_))) continue;
     fail(fmt::format("has an observation at {:.6f} s; expected times within the batch", z.t));
   }
+  if (!std::ranges::is_sorted(batch.ended, {}, &TrackEnd::t)) {
+    fail("ends tracks out of time order; expected each not before the one in front of it");
+  }
   for (const TrackEnd& ended : batch.ended) {
     if (ended.t > batch.until) fail(fmt::format("ends a track at {:.6f} s, after itself", ended.t));
   }
@@ -94,9 +97,10 @@ void FrontSide::check(const TrackBatch& batch, double horizon) const {
 
 /// What was given, and, when nothing more comes, that all tracks have ended.
 void FrontSide::count(TrackBatch& batch) {
-  for (const TrackObservation& z : batch.observations) live_.insert(z.track);
+  in_time_order(
+      batch.observations, batch.ended, [&](const TrackObservation& z) { live_.insert(z.track); },
+      [&](const TrackEnd& ended) { live_.erase(ended.track); });
   if (kept_) kept_->insert(kept_->end(), batch.observations.begin(), batch.observations.end());
-  for (const TrackEnd& ended : batch.ended) live_.erase(ended.track);
   if (!batch.observations.empty()) {
     if (!first_) first_ = batch.observations.front().t;
     last_ = batch.observations.back().t;

@@ -316,7 +316,7 @@ TEST_CASE("A front-end that breaks its contract ends the run with a sentence") {
       {{{early}, {}, 1.0}, "has an observation at 0.5"}, {{{late}, {}, 1.0}, "has an observation at 1.5"},
       {{{a, b}, {}, 1.0}, "out of time order"},          {{{}, {{1, 1.2}}, 1.0}, "ends a track at 1.2"},
       {{{}, {}, 2.0}, "ends at a wrong time"},           {{{}, {}, 0.99}, "ends at a wrong time"},
-      {{{}, {}, std::nan("")}, "ends at a wrong time"},
+      {{{}, {}, std::nan("")}, "ends at a wrong time"},  {{{}, {{1, 0.999}, {2, 0.998}}, 1.0}, "ends tracks out of"},
   };
   for (const auto& [batch, message] : cases) {
     for (const char* mode : {"sequential", "concurrent", "free"}) {
@@ -326,6 +326,38 @@ TEST_CASE("A front-end that breaks its contract ends the run with a sentence") {
       CHECK_THROWS_WITH(run(frontend, 2.0, options), Contains(message));
     }
   }
+}
+
+TEST_CASE("An end is told though nothing can be told of the time since") {
+  class Ending : public FrontEnd {
+   public:
+    bool advance(const Horizon& horizon, TrackBatch& batch) override {
+      batch.until = std::min(horizon.t, 0.5);
+      batch.seen = horizon.t;
+      if (horizon.t > 0.7 && !std::exchange(ended_, true)) batch.ended.push_back({3, 0.5});
+      return true;
+    }
+
+   private:
+    bool ended_ = false;
+  };
+  class Hearing : public Mean {
+   public:
+    Hearing(const BackEndContext& context, int& ends) : Mean(context), ends_(ends) {}
+    void advance(const TrackBatch& batch) override {
+      ends_ += static_cast<int>(batch.ended.size());
+      Mean::advance(batch);
+    }
+
+   private:
+    int& ends_;
+  };
+  int ends = 0;
+  Ending frontend;
+  const MakeBackEnd make = [&](const BackEndContext& context) { return std::make_unique<Hearing>(context, ends); };
+  PipelineOptions options;
+  run_pipeline(EmptySource(0.9), frontend, make, {}, options, 0.0);
+  CHECK(ends == 1);
 }
 
 TEST_CASE("An error in the back-end ends a run in two threads, too") {

@@ -21,12 +21,16 @@ void Standstill::apply(TrackBatch& batch) {
   if (after_ == 0.0) return;
   const std::vector<TrackObservation> seen = std::move(batch.observations);
   batch.observations.clear();
-  for (const TrackObservation& z : seen) {  // silence within a long batch, too
-    hold(z.t, batch.observations);
+  const auto observe = [&](const TrackObservation& z) {
+    hold(z.t, batch.observations);  // silence within a long batch, too
     batch.observations.push_back(z);
     remember(z);
-  }
-  for (const TrackEnd& end : batch.ended) live_.erase(end.track);
+  };
+  const auto end = [&](const TrackEnd& ended) {
+    hold(ended.t, batch.observations);
+    live_.erase(ended.track);
+  };
+  in_time_order(seen, batch.ended, observe, end);
   hold(batch.until, batch.observations);
 }
 

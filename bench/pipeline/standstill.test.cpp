@@ -99,6 +99,8 @@ TEST_CASE("One long batch is held like many short ones") {
   std::vector<TrackObservation> parts;
   for (int i = 1; i <= 300; ++i) {
     TrackBatch batch = i <= 100 || i > 200 ? moving(0.01 * i) : silent(0.01 * i);
+    if (i == 151) batch.ended = {{0, 1.503}, {1, 1.504}, {2, 1.505}};
+    whole.ended.insert(whole.ended.end(), batch.ended.begin(), batch.ended.end());
     whole.observations.insert(whole.observations.end(), batch.observations.begin(), batch.observations.end());
     often.apply(batch);
     parts.insert(parts.end(), batch.observations.begin(), batch.observations.end());
@@ -106,5 +108,8 @@ TEST_CASE("One long batch is held like many short ones") {
   whole.until = 3.0;
   once.apply(whole);
   REQUIRE(whole.observations.size() == parts.size());
-  for (std::size_t i = 0; i < parts.size(); ++i) CHECK(whole.observations[i].t == parts[i].t);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    CHECK(whole.observations[i].t == parts[i].t);
+    CHECK(whole.observations[i].track == parts[i].track);
+  }
 }

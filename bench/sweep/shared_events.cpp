@@ -25,6 +25,7 @@ class RecordedEvents : public Source {
     if (!std::filesystem::exists(path_, error)) return source_->all_events();
     return std::make_unique<NativeReader>(path_);
   }
+  bool silence_is_known() const override { return source_->silence_is_known(); }
   std::optional<std::span<const TrackObservation>> true_tracks() const override { return source_->true_tracks(); }
   std::vector<std::string> files() const override { return source_->files(); }
   std::vector<std::string> event_files() const override { return source_->event_files(); }

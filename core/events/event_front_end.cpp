@@ -30,21 +30,21 @@ EventFrontEnd::EventFrontEnd(const FrontEndContext& context, const std::string& 
       range_(context.source.time_range()),
       told_(range_.from),
       clock_(range_.from),
-      feed_(events_of(context, name)) {}
+      feed_(events_of(context, name)),
+      silence_is_known_(context.source.silence_is_known()) {}
 
 bool EventFrontEnd::advance(const Horizon& horizon, TrackBatch& batch) {
   const auto enough = [&] { return horizon.observations > 0 && told_.has(horizon.observations, complete()); };
-  while (clock_ < horizon.t && !enough()) {
+  while (clock_ < horizon.t && !is_over() && !enough()) {
     const double tick = range_.from + static_cast<double>(ticks_ + 1) * kTick;
     follow(std::min(tick, horizon.t));
     if (clock_ < tick && clock_ < range_.to) continue;
     ++ticks_;
     look();
   }
-  const bool ended = feed_.ended() || clock_ >= range_.to;
-  told_.tell(ended ? clock_ : complete(), horizon.observations, batch);
+  told_.tell(is_over() ? clock_ : complete(), horizon.observations, batch);
   batch.seen = clock_;
-  return !(ended && told_.empty());
+  return !is_over() || !told_.empty();
 }
 
 /// All events up to t.

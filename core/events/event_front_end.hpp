@@ -37,8 +37,10 @@ class EventFrontEnd : public FrontEnd {
 
  private:
   void follow(double t);
+  bool is_over() const { return clock_ >= range_.to || (feed_.ended() && !silence_is_known_); }
 
   EventFeed feed_;
+  bool silence_is_known_;
   std::int64_t ticks_ = 0;
 };
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,19 @@ struct TrackBatch {
 
   double known_at() const { return seen.value_or(until); }
 };
+
+/// Goes through observations and ends, each in time order, as they happened: a track that is observed after its end
+/// lives again. An end at the time of an observation comes after it.
+template <class Observe, class End>
+void in_time_order(std::span<const TrackObservation> observations, std::span<const TrackEnd> ended,
+                   const Observe& observe, const End& end) {
+  auto next = ended.begin();
+  for (const TrackObservation& z : observations) {
+    for (; next != ended.end() && next->t < z.t; ++next) end(*next);
+    observe(z);
+  }
+  std::for_each(next, ended.end(), end);
+}
 
 /// Where the estimate stands at an exchange. Worse is larger.
 enum class TrackingState {

@@ -46,6 +46,10 @@ class Source {
   /// it. nullptr where there are none.
   virtual std::unique_ptr<EventReader> all_events() const { return nullptr; }
 
+  /// Whether there are no events after the last one, up to the sequence's end, because nothing was to be seen, as in a
+  /// simulation. A recording may just have been cut off.
+  virtual bool silence_is_known() const { return false; }
+
   /// Track observations with known association (raw pixels, time order), for sources that know it: simulators.
   /// None where the source does not.
   virtual std::optional<std::span<const TrackObservation>> true_tracks() const { return std::nullopt; }

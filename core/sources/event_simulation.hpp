@@ -27,6 +27,7 @@ class EventSimulation : public SimulatedSequence {
   EventSimulation(const Options& options, const SourceContext& context);
 
   std::unique_ptr<EventReader> all_events() const override;
+  bool silence_is_known() const override { return true; }
   std::vector<std::string> remarks() const override;
 
   /// Depth at any pixel and time, and the true track of any point.

@@ -11,6 +11,9 @@
 namespace evbench {
 namespace {
 
+constexpr double kStand = 5.0;  ///< [s] in which slow motion is to be seen
+constexpr double kLead = 1.0;   ///< [s] from the first view of a stand to now
+
 TrackMatches matches_between(const TrackBuffer& buffer, double t0, double t1, double window) {
   TrackMatches result;
   result.t0 = t0;
@@ -70,6 +73,7 @@ Initialiser::Attempt Initialiser::attempt(const TrackBuffer& tracks, double t) {
 }
 
 TrackMatches Initialiser::match(const TrackBuffer& tracks, double t) {
+  pass_stand(tracks, t);
   TrackMatches matches;
   if (reference_) matches = matches_between(tracks, *reference_, t, options_.window);
   if (static_cast<int>(matches.tracks.size()) >= options_.min_tracks) return matches;
@@ -80,6 +84,14 @@ TrackMatches Initialiser::match(const TrackBuffer& tracks, double t) {
   none.reason = enough ? fmt::format("first view set at {:.3f} s with {} tracks", t, now)
                        : fmt::format("{} tracks at {:.3f} s, {} needed", now, t, options_.min_tracks);
   return none;
+}
+
+/// Nothing has moved for a while: the first view is one of a short time ago.
+void Initialiser::pass_stand(const TrackBuffer& tracks, double t) {
+  if (!reference_ || t - *reference_ < kStand) return;
+  const TrackMatches before = matches_between(tracks, t - kStand, t, options_.window);
+  if (static_cast<int>(before.tracks.size()) < options_.min_tracks) return;
+  if (before.median_motion() < 0.5 * options_.two_view.threshold_px) reference_ = t - kLead;
 }
 
 Initialiser::Attempt Initialiser::explain(const TrackMatches& matches) const {

@@ -40,9 +40,10 @@ struct TrackMatches {
 /// Initialisation of monocular odometry from two views (Liu et al. 2022, Algorithm 1, lines 7-9).
 ///
 /// The first view is at a reference time: the first with enough tracks; it moves on when too few of its tracks are
-/// left. Each attempt matches the tracks' places then and now. A planar scene leaves two candidates, and each comes
-/// with its depth reversal (depth_reversal.hpp): refine each over all observations between t0 and t1 and keep the
-/// cheapest, or wait when two different ones cost about the same.
+/// left, and with time while the camera stands still: views of a stand say nothing. Each attempt matches the tracks'
+/// places then and now. A planar scene leaves two candidates, and each comes with its depth reversal
+/// (depth_reversal.hpp): refine each over all observations between t0 and t1 and keep the cheapest, or wait when two
+/// different ones cost about the same.
 class Initialiser {
  public:
   Initialiser(const InitialiserOptions& options, const PinholeCamera& camera) : options_(options), camera_(camera) {}
@@ -63,6 +64,8 @@ class Initialiser {
   std::optional<double> reference_time() const { return reference_; }
 
  private:
+  void pass_stand(const TrackBuffer& tracks, double t);
+
   InitialiserOptions options_;
   PinholeCamera camera_;
   std::optional<double> reference_;

@@ -56,6 +56,11 @@ class EventScene : public Source {
     return std::make_unique<EventList>(list, camera_.width, camera_.height);
   }
 
+  bool silence_is_known() const override { return silence_is_known_; }
+
+  /// It may go on after its last event.
+  void cut_off() { silence_is_known_ = false; }
+
   /// Adds events, in any order.
   void add(const std::vector<Event>& more) {
     list.insert(list.end(), more.begin(), more.end());
@@ -115,6 +120,7 @@ class EventScene : public Source {
 
   Camera camera_;
   double to_;
+  bool silence_is_known_ = true;
   PoseTrajectory truth_;
 };
 

@@ -29,7 +29,7 @@ class LostLandmarks {
     Template look;  ///< as it is expected now
   };
   /// Looks for some of the landmarks in view at t, in turn, those first that were not looked for the longest. None
-  /// within `distance` of what is `taken` [px].
+  /// that is expected within `distance` of what is `taken` [px].
   std::vector<Found> find(const Guidance& guidance, double t, const RecentEvents& recent,
                           std::span<const Vector2> taken, double distance, const Camera& camera);
 
