@@ -147,6 +147,16 @@ ScoreOptions protocol_of_run(const std::string& folder, const std::vector<std::s
   return read_evaluation("", config["evaluation"], overrides, path);
 }
 
+void require_scores(const std::string& folder, const ScoreOptions& options) {
+  const RunRecord before = read_record(folder);
+  RunRecord record = before;
+  score_run(folder, options, record);
+  const bool lost = !before.final_scores.is_null() && record.final_scores.is_null();
+  if (!lost || record.final_unscored == kNoGroundTruth) return;
+  throw InputError(fmt::format("{}: has scores, of which this protocol leaves none: {}; nothing was changed", folder,
+                               record.final_unscored));
+}
+
 RunRecord score_again(const std::string& folder, const ScoreOptions& options) {
   Json config = parse(folder + "/config.json");
   config["evaluation"] = write_options(options);

@@ -96,6 +96,9 @@ RunRecord adopt_run(const std::string& from, const std::string& to, const RunCon
 /// when it has none.
 ScoreOptions protocol_of_run(const std::string& folder, const std::vector<std::string>& overrides = {});
 
+/// Throws InputError where the run has scores, but would have none by this protocol, though there is ground truth.
+void require_scores(const std::string& folder, const ScoreOptions& options);
+
 /// Scores a run's folder again by this protocol, and rewrites metrics.json, and config.json where it is another one.
 RunRecord score_again(const std::string& folder, const ScoreOptions& options);
 

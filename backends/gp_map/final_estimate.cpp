@@ -15,7 +15,7 @@ namespace evbench::gp_map {
 void GpMap::finish() {
   if (const std::optional<double> last = placement_.last()) step(*last);
   if (!engine_) {
-    monitor_.fail(first_map_.newest(),
+    monitor_.fail(std::min(first_map_.newest(), until_),
                   first_map_.reason().empty() ? "no observations" : "no first map: " + first_map_.reason());
     return;
   }

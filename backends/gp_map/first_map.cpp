@@ -52,7 +52,7 @@ std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, doubl
   if (!look) return std::nullopt;
   const auto found = explanation(*look);
   if (!found) {
-    if (reason_.empty()) reason_ = "no motion explains the tracks";
+    if (refused_.empty()) refused_ = "no motion explains the tracks";
     return std::nullopt;
   }
   if (!is_sound(look->views, *found)) return std::nullopt;
@@ -63,21 +63,26 @@ std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, doubl
 std::optional<FirstMapFinder::Look> FirstMapFinder::look_at(const TrackBuffer& tracks, double t) {
   state_times_.push_back(t);
   const TrackMatches matches = initialiser_.match(tracks, t);
-  if (!matches.reason.empty()) reason_ = matches.reason;
+  waiting_ = matches.reason;
   if (!matches.reason.empty() || !worthwhile(matches)) return std::nullopt;
   std::vector<double> times = view_times(matches.t0, matches.t1, options_.initialiser.window);
   if (times.size() < 3) return std::nullopt;
   last_ = Progress{matches.t0, matches.t1, matches.median_motion()};
   Initialiser::Attempt attempt = initialiser_.explain(matches);
-  reason_ = attempt.reason;
+  refused_ = attempt.reason;
   TrackViews views = TrackViews::of(tracks, std::move(times), options_.initialiser.window, kTracks);
   return Look{MultiView(std::move(views), camera_), std::move(attempt.candidates)};
 }
 
 /// Have the tracks moved, and farther or for longer than at the last attempt from this first view?
-bool FirstMapFinder::worthwhile(const TrackMatches& matches) const {
+bool FirstMapFinder::worthwhile(const TrackMatches& matches) {
   const double motion = matches.median_motion();
-  if (motion < 2.0 * options_.initialiser.two_view.threshold_px) return false;
+  const double enough = 2.0 * options_.initialiser.two_view.threshold_px;
+  if (motion < enough) {
+    waiting_ = fmt::format("the tracks have moved by {:.1f} px from {:.3f} to {:.3f} s, {:.1f} needed", motion,
+                           matches.t0, matches.t1, enough);
+    return false;
+  }
   if (!last_ || last_->t0 != matches.t0) return true;
   return motion >= kMotionGrowth * last_->motion || matches.t1 - matches.t0 >= kTimeGrowth * (last_->t1 - last_->t0);
 }
@@ -104,10 +109,10 @@ std::optional<ViewsExplained> FirstMapFinder::explanation(const Look& look) cons
 bool FirstMapFinder::is_sound(const MultiView& views, const ViewsExplained& explained) {
   const double error = median(views.errors(explained)), sigma = median(views.distance_sigmas(explained));
   if (!(error <= options_.max_initial_error)) {
-    reason_ = fmt::format("the best first map leaves {:.2f} px, {:.2f} allowed", error, options_.max_initial_error);
+    refused_ = fmt::format("the best first map leaves {:.2f} px, {:.2f} allowed", error, options_.max_initial_error);
   } else if (!(sigma <= options_.max_initial_uncertainty)) {
-    reason_ = fmt::format("the structure is uncertain by {:.0f} %, {:.0f} % allowed", 100.0 * sigma,
-                          100.0 * options_.max_initial_uncertainty);
+    refused_ = fmt::format("the structure is uncertain by {:.0f} %, {:.0f} % allowed", 100.0 * sigma,
+                           100.0 * options_.max_initial_uncertainty);
   } else {
     return true;
   }

@@ -34,8 +34,8 @@ class FirstMapFinder {
   /// A control state stands at t, later than those before; `tracks` hold the observations up to there.
   std::optional<FirstMap> attempt(const TrackBuffer& tracks, double t);
 
-  /// Why the last attempt was vain.
-  const std::string& reason() const { return reason_; }
+  /// Why there is none: why the last attempt was vain, or what it would have taken to make one.
+  const std::string& reason() const { return refused_.empty() ? waiting_ : refused_; }
 
   /// Of the last state before the first map; 0 before any.
   double newest() const { return state_times_.empty() ? 0.0 : state_times_.back(); }
@@ -54,7 +54,7 @@ class FirstMapFinder {
   };
 
   std::optional<Look> look_at(const TrackBuffer& tracks, double t);
-  bool worthwhile(const TrackMatches& matches) const;
+  bool worthwhile(const TrackMatches& matches);
   std::optional<ViewsExplained> explanation(const Look& look) const;
   bool is_sound(const MultiView& views, const ViewsExplained& explained);
   FirstMap map_of(const TrackBuffer& tracks, const MultiView& views, const ViewsExplained& explained) const;
@@ -64,7 +64,7 @@ class FirstMapFinder {
   Initialiser initialiser_;
   std::optional<Progress> last_;
   std::vector<double> state_times_;
-  std::string reason_;
+  std::string refused_, waiting_;
 };
 
 }  // namespace evbench::gp_map

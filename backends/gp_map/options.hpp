@@ -34,7 +34,9 @@ struct PlacementOptions {
            "them; interpolation between two states errs by about an eighth of it [sigmas of the observations]")
         .above(0.0);
     set.add("min_spacing", min_spacing, "all rules but \"rate\": least time between two [s]").range(1e-3, 10.0);
-    set.add("max_spacing", max_spacing, "all rules but \"rate\": greatest time between two [s]").range(1e-3, 10.0);
+    set.add("max_spacing", max_spacing,
+            "all rules but \"rate\": greatest time between two, unless min_spacing is larger [s]")
+        .range(1e-3, 10.0);
   }
 };
 

@@ -34,7 +34,10 @@ void execute(const ScoreArguments& arguments) {
     std::erase_if(records, [](const RunRecord& run) { return !run.done; });  // a sweep's that are still to come
     if (records.empty()) throw InputError("none of these runs was done yet; expected some to score");
     std::vector<ScoreOptions> protocols;  // all of them first: what is wrong with one is told before any work
-    for (const RunRecord& run : records) protocols.push_back(protocol_of(run.folder, arguments));
+    for (const RunRecord& run : records) {
+      protocols.push_back(protocol_of(run.folder, arguments));
+      require_scores(run.folder, protocols.back());
+    }
     for (std::size_t i = 0; i < records.size(); ++i) {
       check_interruption();
       const std::string found_as = records[i].folder;

@@ -12,6 +12,8 @@
 namespace evbench {
 namespace {
 
+/// At that rate [Hz], if the trajectory is long enough for any; the back-end's own poses where it is not, or the rate
+/// 0.
 PoseTrajectory sample(const BackEnd& backend, double rate) {
   const PoseTrajectory own = backend.trajectory();
   if (rate == 0.0 || own.empty()) return own;
@@ -23,6 +25,7 @@ PoseTrajectory sample(const BackEnd& backend, double rate) {
     if (!T) T = own.pose(t);
     if (T) poses.push_back({t, *T});
   }
+  if (poses.empty()) return own;
   return PoseTrajectory(std::move(poses), "the back-end's trajectory");
 }
 

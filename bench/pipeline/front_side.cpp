@@ -22,7 +22,7 @@ FrontSide::FrontSide(FrontEnd& frontend, const Source& source, const PipelineOpt
       until_(range_.from) {}
 
 std::optional<TrackBatch> FrontSide::next() {
-  while (!begun_ || until_ < range_.to) {
+  while (!begun_ || until_ < frontend_.data_end().value_or(range_.to)) {
     check_interruption();
     TrackBatch batch = exchange();
     const bool tells = !begun_ || batch.until > until_ || !batch.ended.empty();

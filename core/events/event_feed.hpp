@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/events/event_stream.hpp"
@@ -19,6 +21,9 @@ class EventFeed {
   std::span<const Event> until(std::int64_t t);
 
   double seconds() const { return seconds_; }  ///< [s] it took to read them
+
+  /// What had to be left out.
+  std::vector<std::pair<std::string, Faults::Fault>> faults() const { return stream_->faults(); }
 
   /// Nothing is left.
   bool ended() const { return ended_ && next_ == events_.size(); }

@@ -30,6 +30,8 @@ EventFrontEnd::EventFrontEnd(const FrontEndContext& context, const std::string& 
       range_(context.source.time_range()),
       told_(range_.from),
       clock_(range_.from),
+      source_(context.source),
+      place_(context.place),
       feed_(events_of(context, name)),
       silence_is_known_(context.source.silence_is_known()) {}
 
@@ -42,6 +44,7 @@ bool EventFrontEnd::advance(const Horizon& horizon, TrackBatch& batch) {
     ++ticks_;
     look();
   }
+  if (is_over()) require_events();
   told_.tell(is_over() ? clock_ : complete(), horizon.observations, batch);
   batch.seen = clock_;
   return !is_over() || !told_.empty();
@@ -50,8 +53,41 @@ bool EventFrontEnd::advance(const Horizon& horizon, TrackBatch& batch) {
 /// All events up to t.
 void EventFrontEnd::follow(double t) {
   const std::int64_t until = microseconds(t);
-  for (auto events = feed_.until(until); !events.empty(); events = feed_.until(until)) take(events);
+  for (auto events = feed_.until(until); !events.empty(); events = feed_.until(until)) {
+    events_ += std::ssize(events);
+    take(events);
+  }
   clock_ = t;
+}
+
+/// A simulated camera may see nothing; a recording without events in the time range is another one's, or is misread.
+void EventFrontEnd::require_events() const {
+  if (events_ > 0 || silence_is_known_) return;
+  std::vector<Event> first;
+  const auto reader = source_.all_events();
+  while (reader->read(first) && first.empty()) {
+  }
+  const std::string found =
+      first.empty() ? "it has none at all" : fmt::format("its first one is at {} s", seconds(first.front().t));
+  throw InputError(fmt::format("{}: the recording has no events from {} to {} s, the source's time range; {}", place_,
+                               range_.from, range_.to, found));
+}
+
+std::optional<double> EventFrontEnd::data_end() const {
+  return is_over() && clock_ < range_.to ? std::optional(clock_) : std::nullopt;
+}
+
+std::vector<std::string> EventFrontEnd::remarks() const {
+  std::vector<std::string> result = counts();
+  result.push_back(fmt::format("{} events", events_));
+  for (const auto& [kind, fault] : feed_.faults()) {
+    result.push_back(fmt::format("left out: {} {} (the first: {})", fault.count, kind, fault.first));
+  }
+  if (const auto end = data_end()) {
+    result.push_back(fmt::format("the events end at {:.3f} s, before the time range does, {:.3f} s: so does the run",
+                                 *end, range_.to));
+  }
+  return result;
 }
 
 }  // namespace evbench

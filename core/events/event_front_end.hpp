@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/events/event_feed.hpp"
 #include "core/plugin/delayed_tracks.hpp"
@@ -11,11 +13,14 @@ namespace evbench {
 
 /// A front-end that goes through its source's events: what those have in common that do. Events come in pieces; at
 /// every tick, 5 ms of data time apart however the run exchanges, and at the end of the time range, it looks after what
-/// it tracks. Observations may come late and out of order: they are told once none before them can come.
+/// it tracks. Where a recording ends before the time range does, so do the data; one without any event in it is an
+/// InputError. Observations may come late and out of order: they are told once none before them can come.
 class EventFrontEnd : public FrontEnd {
  public:
   bool advance(const Horizon& horizon, TrackBatch& batch) final;
   double waited() const final { return feed_.seconds(); }
+  std::optional<double> data_end() const final;
+  std::vector<std::string> remarks() const final;
 
  protected:
   /// `name`: the front-end's, for messages. Throws InputError for a source without events.
@@ -30,6 +35,9 @@ class EventFrontEnd : public FrontEnd {
   /// [s] All observations up to here have been made.
   virtual double complete() const = 0;
 
+  /// What is to be remarked of the tracks.
+  virtual std::vector<std::string> counts() const = 0;
+
   Camera camera_;
   Source::TimeRange range_;
   DelayedTracks told_;
@@ -37,11 +45,15 @@ class EventFrontEnd : public FrontEnd {
 
  private:
   void follow(double t);
+  void require_events() const;
   bool is_over() const { return clock_ >= range_.to || (feed_.ended() && !silence_is_known_); }
 
+  const Source& source_;
+  std::string place_;
   EventFeed feed_;
   bool silence_is_known_;
   std::int64_t ticks_ = 0;
+  std::int64_t events_ = 0;  ///< taken
 };
 
 }  // namespace evbench

@@ -103,7 +103,7 @@ std::optional<std::string> EventStream::large_loss() const {
   if (10 * lost <= all) return std::nullopt;
   return fmt::format(
       "{}: {:.1f} % of the events, {} of {}, have to be left out, most of them as {} (the first: {}); expected a "
-      "recording with fewer faults, or --lenient",
+      "recording with fewer faults, or --lenient (source.lenient in a run's config)",
       path_, 100.0 * static_cast<double>(lost) / static_cast<double>(all), lost, all, worst.first, worst.second.first);
 }
 

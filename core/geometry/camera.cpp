@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "core/support/error.hpp"
@@ -106,6 +107,12 @@ std::optional<Vector2> Camera::undistort(const Vector2& raw) const {
     if (step.squaredNorm() < 1e-24) return pinhole.project(n.homogeneous());
   }
   return std::nullopt;
+}
+
+void check_border(double border, const Camera& camera, const std::string& place) {
+  if (2.0 * border < std::min(camera.width, camera.height) - 1) return;
+  throw InputError(
+      fmt::format("{}: {} px leave nothing of an image of {} x {}", place, border, camera.width, camera.height));
 }
 
 }  // namespace evbench

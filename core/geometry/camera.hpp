@@ -51,4 +51,7 @@ struct Camera {
   }
 };
 
+/// Throws InputError, with the place of the option, where a border [px] leaves nothing of the image.
+void check_border(double border, const Camera& camera, const std::string& place);
+
 }  // namespace evbench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,13 @@ class FrontEnd {
   /// time, or the time of the observation with which its number was reached (others of that same time belong to the
   /// batch). One whose observations come late says how far it has looked (batch.seen ≤ horizon.t) and ends the batch
   /// earlier: it may do so by as much as it likes, but at the end of the time range nothing is left. Returns false when
-  /// nothing more will come at any time; the run then goes on without observations.
+  /// nothing more will come at any time; the run then goes on without observations, to the end of the time range or of
+  /// the data.
   virtual bool advance(const Horizon& horizon, TrackBatch& batch) = 0;
+
+  /// [s] Where the source's data have turned out to end before its time range does: time goes no farther, as nothing
+  /// is known of it. None: they have not.
+  virtual std::optional<double> data_end() const { return std::nullopt; }
 
   /// What of the feedback is made use of.
   virtual FeedbackNeeds needs() const { return {}; }

@@ -50,6 +50,9 @@ class Source {
   /// simulation. A recording may just have been cut off.
   virtual bool silence_is_known() const { return false; }
 
+  /// Whether events() may leave out however many have to be (EventStream::large_loss).
+  virtual bool is_lenient() const { return false; }
+
   /// Track observations with known association (raw pixels, time order), for sources that know it: simulators.
   /// None where the source does not.
   virtual std::optional<std::span<const TrackObservation>> true_tracks() const { return std::nullopt; }

@@ -97,6 +97,11 @@ Motion from_trajectory(const MotionOptions& options, double duration, const std:
     throw InputError(fmt::format("{}.trajectory: is empty; expected the path of a trajectory", place));
   }
   const PoseTrajectory file = read_poses(resolve_path(options.trajectory, folder)).trajectory;
+  constexpr double kFarApart = 100.0;  // [s] between two poses: those of no camera's motion
+  if (file.size() > 1 && file.end() - file.start() > kFarApart * static_cast<double>(file.size() - 1)) {
+    throw InputError(fmt::format("{}.trajectory: {} has {} poses from {} to {} s; expected times in seconds", place,
+                                 options.trajectory, file.size(), file.start(), file.end()));
+  }
   const double begin = file.start() + options.start;
   if (begin + duration > file.end()) {
     throw InputError(

@@ -181,10 +181,7 @@ void TrackOptions::check(const Camera& camera, const std::string& place) const {
     throw InputError(
         fmt::format("{}: outlier_share + drift_share is {}; expected at most 1", place, outlier_share + drift_share));
   }
-  if (2.0 * border >= std::min(camera.width, camera.height) - 1) {
-    throw InputError(fmt::format("{}.border: {} px leave nothing of an image of {} x {}", place, border, camera.width,
-                                 camera.height));
-  }
+  check_border(border, camera, place + ".border");
 }
 
 SimulatedTracks simulate_tracks(const TrackOptions& options, const Camera& camera, const Motion& motion, Scene& scene,

@@ -68,14 +68,21 @@ void Recording::Options::declare(OptionSet& set) {
   set.add("distortion", distortion, "lens model of a calibration that does not say it")
       .choices({"none", "radial_tangential", "equidistant"});
   set.add("time_range", time_range,
-          "part of the sequence that is used, [from, to] [s]; empty: the ground truth's, or the events'")
+          "part of the sequence that is used, [from, to] [s]; empty: the ground truth's, or, without one, the events', "
+          "where the recording says when they begin and end")
       .size(2)
       .rising();
   set.require_one_of({"dataset", "folder", "events", "calibration"});
+  set.add("columns", columns, "of a text of events, e.g. \"t_us,x,y,p\"; empty: as the file looks");
+  set.add("topic", topic, "of a bag, group of an HDF5 file: whose events; empty: the only one, or the first");
+  set.add("lenient", lenient, "go on however many of the events have to be left out");
   set.add("time_offset", time_offset, "added to the ground truth's times to get the sequence's [s]");
 }
 
 Recording::Recording(const Options& options, const SourceContext& context) : place_(context.place) {
+  read_options_.topic = options.topic;
+  read_options_.lenient = options.lenient;
+  read_options_.columns = options.columns;
   if (!options.dataset.empty() && !options.folder.empty()) {
     throw InputError(fmt::format("{}: dataset and folder are given; expected one of them", place_));
   }
@@ -108,7 +115,7 @@ Recording::Recording(const Options& options, const SourceContext& context) : pla
 
 std::unique_ptr<EventReader> Recording::all_events() const {
   if (events_.empty()) return nullptr;
-  ReadOptions options;
+  ReadOptions options = read_options_;
   options.width = camera_.width;
   options.height = camera_.height;
   return open_events(events_, options);
@@ -126,7 +133,7 @@ Recording::Own Recording::find_own(const Options& options, const std::string& fo
   const std::string path = folder.empty() ? events_ : folder;
   if (path.empty() || (!find_camera && !find_truth)) return own;
   if (path == folder && !std::filesystem::is_directory(folder)) return own;  // what is missing of it is told
-  ReadOptions read_options;
+  ReadOptions read_options = read_options_;
   read_options.width = options.width;
   read_options.height = options.height;
   const auto reader = holds_events(path) ? open_events(path, read_options)

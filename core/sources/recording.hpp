@@ -27,6 +27,8 @@ class Recording : public Source {
     std::string distortion = "radial_tangential";
     std::vector<double> time_range;
     double time_offset = 0.0;
+    std::string columns, topic;
+    bool lenient = false;
 
     void declare(OptionSet& set);
   };
@@ -39,6 +41,7 @@ class Recording : public Source {
   /// Times are the file's own, which are the sequence's. Throws InputError for a file that is missing or of no known
   /// format.
   std::unique_ptr<EventReader> all_events() const override;
+  bool is_lenient() const override { return read_options_.lenient; }
   std::vector<std::string> files() const override { return files_; }
   std::vector<std::string> event_files() const override;
   std::vector<std::string> remarks() const override { return remarks_; }
@@ -52,6 +55,7 @@ class Recording : public Source {
   };
 
   std::string place_, events_;  ///< events: path; empty: none
+  ReadOptions read_options_;
   Camera camera_;
   PoseTrajectory ground_truth_;
   TimeRange range_;

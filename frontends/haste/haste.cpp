@@ -38,7 +38,10 @@ Haste::Haste(const Options& options, const FrontEndContext& context)
       trackers_(camera_.width, camera_.height),
       guidance_(camera_),
       lost_(options.guidance),
-      detected_(range_.from) {}
+      detected_(range_.from) {
+  check_border(options.detection.border, camera_, context.place + ".detection.border");
+  check_border(options.life.border, camera_, context.place + ".life.border");
+}
 
 void Haste::take(std::span<const Event> events) {
   recent_.add(events);
@@ -214,7 +217,7 @@ void Haste::receive(const Feedback& feedback) {
   }
 }
 
-std::vector<std::string> Haste::remarks() const {
+std::vector<std::string> Haste::counts() const {
   const auto ended = [&](End why) { return ended_[index(static_cast<int>(why))]; };
   return {fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
           fmt::format("trackers that ended: {} at the border, {} as their hypotheses were alike, {} before an edge, "

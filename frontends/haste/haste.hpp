@@ -26,9 +26,9 @@ class Haste : public EventFrontEnd {
 
   FeedbackNeeds needs() const override;
   void receive(const Feedback& feedback) override;
-  std::vector<std::string> remarks() const override;
 
  private:
+  std::vector<std::string> counts() const override;
   /// What a tracker is followed for.
   struct Track {
     TrackId id;

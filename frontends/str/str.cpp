@@ -40,7 +40,10 @@ Str::Str(const Options& options, const FrontEndContext& context)
       options_(options),
       batches_(options.batch, options.registration.slice, microseconds(range_.from)),
       registrar_(camera_, options.registration),
-      complete_(range_.from) {}
+      complete_(range_.from) {
+  check_border(options.detection.border, camera_, context.place + ".detection.border");
+  check_border(options.patch.border, camera_, context.place + ".patch.border");
+}
 
 void Str::look() {
   while (const auto batch = batches_.next(microseconds(clock_))) process(*batch);
@@ -235,7 +238,7 @@ void Str::receive(const Feedback& feedback) {
   if (const auto A = expected_motion(feedback, options_.registration.model)) expected_ = A;
 }
 
-std::vector<std::string> Str::remarks() const {
+std::vector<std::string> Str::counts() const {
   const auto batches = [&](Registration::State state) { return registered_[index(static_cast<int>(state))]; };
   using State = Registration::State;
   return {

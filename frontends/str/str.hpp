@@ -23,9 +23,9 @@ class Str : public EventFrontEnd {
 
   FeedbackNeeds needs() const override;
   void receive(const Feedback& feedback) override;
-  std::vector<std::string> remarks() const override;
 
  private:
+  std::vector<std::string> counts() const override;
   struct Track {
     TrackId id;
     Eigen::Vector2f ray;     ///< where it is (x, y, 1)

@@ -126,9 +126,11 @@ std::vector<Column> find_order(const Rows& rows, const std::string& place) {
     }
     both |= first == last && first > 0;
   }
-  throw InputError(fmt::format("{}: has lines like \"{}\", which {} \"t x y p\" {} \"x y p t\"; give --columns", place,
-                               fmt::to_string(fmt::join(rows.front().values, " ")), both ? "may be" : "are neither",
-                               both ? "and" : "nor"));
+  throw InputError(
+      fmt::format("{}: has lines like \"{}\", which {} \"t x y p\" {} \"x y p t\"; give --columns (source.columns in a "
+                  "run's config)",
+                  place, fmt::to_string(fmt::join(rows.front().values, " ")), both ? "may be" : "are neither",
+                  both ? "and" : "nor"));
 }
 
 /// Without a name that says it.
@@ -137,8 +139,9 @@ TimeUnit find_unit(const Rows& rows, std::size_t time, const std::string& place)
   if (std::ranges::any_of(rows, [&](const Row& row) { return row.have_points[time]; })) return TimeUnit::seconds;
   if (rows.front().values[time] < kLatest) return TimeUnit::microseconds;
   throw InputError(
-      fmt::format("{}: has the time {}, too late for microseconds; give --columns with t_ns, if it is that", place,
-                  rows.front().values[time]));
+      fmt::format("{}: has the time {}, too late for microseconds; give --columns (source.columns in a run's config) "
+                  "with t_ns, if it is that",
+                  place, rows.front().values[time]));
 }
 
 }  // namespace
@@ -200,9 +203,11 @@ TextLayout detect_text_layout(std::string_view head, bool whole, const std::stri
     } else {
       const std::size_t expected = layout.columns.empty() ? 4 : layout.columns.size();
       if (columns.size() != expected) {
-        throw InputError(fmt::format("{}: has {} columns; expected {}", place, columns.size(),
-                                     layout.columns.empty() ? "time, x, y and polarity; otherwise give --columns"
-                                                            : fmt::format("{}, as they are named", expected)));
+        throw InputError(
+            fmt::format("{}: has {} columns; expected {}", place, columns.size(),
+                        layout.columns.empty()
+                            ? "time, x, y and polarity; otherwise give --columns (source.columns in a run's config)"
+                            : fmt::format("{}, as they are named", expected)));
       }
       const Rows rows = read_rows(head.substr(layout.begin), expected);
       if (rows.empty()) throw InputError(fmt::format("{}: is \"{:.80}\"; expected numbers", place, line));

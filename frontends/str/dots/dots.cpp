@@ -189,7 +189,7 @@ std::optional<TrackId> Dots::known_at(const Vector2& pixel) const {
   return result;
 }
 
-std::vector<std::string> Dots::remarks() const {
+std::vector<std::string> Dots::counts() const {
   return {fmt::format("batches: {} registered, {} not", registered_, unregistered_),
           fmt::format("{} dots found, {} in view at the end; lost: {} at the border, {} that were no longer round, {} "
                       "without events; {} found again",

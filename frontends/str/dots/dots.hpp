@@ -21,9 +21,8 @@ class Dots : public EventFrontEnd {
 
   Dots(const Options& options, const FrontEndContext& context);
 
-  std::vector<std::string> remarks() const override;
-
  private:
+  std::vector<std::string> counts() const override;
   struct Track {
     TrackId id;
     Dot dot;

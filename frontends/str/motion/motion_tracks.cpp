@@ -123,7 +123,7 @@ void MotionTracks::observe(const Point& point, double t) {
   told_.add({point.id, t, camera_.project(point.ray), options_.sigma});
 }
 
-std::vector<std::string> MotionTracks::remarks() const {
+std::vector<std::string> MotionTracks::counts() const {
   return {fmt::format("batches: {} registered, {} standing still, {} without a motion; {} divided into halves",
                       registered_, still_, unregistered_, divided_),
           fmt::format("{} points begun, {} in view at the end; {} times all ended, as there was no motion", next_id_,

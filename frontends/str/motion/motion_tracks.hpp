@@ -23,9 +23,8 @@ class MotionTracks : public EventFrontEnd {
 
   MotionTracks(const Options& options, const FrontEndContext& context);
 
-  std::vector<std::string> remarks() const override;
-
  private:
+  std::vector<std::string> counts() const override;
   struct Point {
     TrackId id;
     Vector3 ray;  ///< (x, y, 1)
