@@ -140,12 +140,12 @@ struct Options {
             "[units^2/s^3]; a unit is the median depth of the first map")
         .size(6)
         .above(0.0);
-    set.add("qc_scale", qc_scale, "multiplies qc: above 1 is a weaker prior").above(0.0);
+    set.add("qc_scale", qc_scale, "multiplies qc: above 1 is a weaker prior").range(1e-12, 1e12);
     set.add("loss", loss, {"none", "huber", "cauchy"}, "robust loss of reprojection errors");
     set.add("loss_width", loss_width,
             "residual where the loss turns from quadratic [sigmas, learnt ones where they are]")
         .above(0.0);
-    set.add("sigma_scale", sigma_scale, "multiplies the observations' sigmas").above(0.0);
+    set.add("sigma_scale", sigma_scale, "multiplies the observations' sigmas").range(1e-6, 1e6);
     set.group("learn", learn, "prior and noise");
     set.group("initialiser", initialiser, "two-view initialisation");
     set.add("max_initial_error", max_initial_error, "a first map with a larger reprojection error is tried again [px]")

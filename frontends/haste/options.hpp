@@ -85,7 +85,7 @@ struct Options {
         .range(0.0, 1.0);
     set.add("template_learning", tracker.template_learning, "what an event adds to its tracker's template")
         .range(0.0, 1.0);
-    set.add("sigma", sigma, "standard deviation of an observation [px]").above(0.0);
+    set.add("sigma", sigma, "standard deviation of an observation [px]").range(1e-6, 1e6);
     set.add(
         "place", place, {"new_state", "midpoint", "refined"},
         "where a tracker that changes its state is observed: at the new state, which leads by half a step; half-way "

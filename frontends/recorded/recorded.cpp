@@ -26,7 +26,7 @@ void Recorded::Options::declare(OptionSet& set) {
       "id t x y, or HASTE's t x y theta id");
   set.add("time_unit", time_unit, {kTimeUnitNames.begin(), kTimeUnitNames.end()},
           "unit of the file's times; auto: as the column's name says (t_us), or seconds, from 1e17 on nanoseconds");
-  set.add("sigma", sigma, "standard deviation of an observation [px]").above(0.0);
+  set.add("sigma", sigma, "standard deviation of an observation [px]").range(1e-6, 1e6);
   set.add("outside", outside, "what to do with observations outside the image").choices({"keep", "drop"});
   set.add("min_track_length", min_track_length, "tracks with fewer observations are left out").range(1);
 }

@@ -51,7 +51,7 @@ struct Options {
 
   void declare(OptionSet& set) {
     set.add("tracks", tracks, "tracks alive, as far as there is something to track").range(1, 100'000);
-    set.add("sigma", sigma, "standard deviation of an observation [px]").above(0.0);
+    set.add("sigma", sigma, "standard deviation of an observation [px]").range(1e-6, 1e6);
     set.add("interval", interval,
             "a track is observed at events of it that are about this far apart, within a batch [s]")
         .range(1e-4, 10.0);

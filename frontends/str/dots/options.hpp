@@ -38,7 +38,7 @@ struct DotsOptions {
   DotsOptions() { registration.model = MotionModel::planar_4; }
 
   void declare(OptionSet& set) {
-    set.add("sigma", sigma, "standard deviation of an observation [px]").above(0.0);
+    set.add("sigma", sigma, "standard deviation of an observation [px]").range(1e-6, 1e6);
     set.add("delay", delay,
             "an observation stands for the middle of the events that it is made from, and is told this much later; one "
             "that comes later still counts as of then [s]")

@@ -34,7 +34,7 @@ struct MotionTracksOptions {
            "where none is found for so long [s]")
         .range(0.0, 10.0);
     set.add("spacing", spacing, "between points, where they begin [px]").range(5.0, 10'000.0);
-    set.add("sigma", sigma, "standard deviation of an observation, as it is told [px]").above(0.0);
+    set.add("sigma", sigma, "standard deviation of an observation, as it is told [px]").range(1e-6, 1e6);
     set.group("batch", batch, "when a batch ends");
     set.group("registration", registration, "how the motion of a batch is found");
   }
