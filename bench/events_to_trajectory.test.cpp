@@ -103,10 +103,16 @@ TEST_CASE("After the last event a camera stands still, unless the recording may 
   CHECK(still.result.still.back().to > 6.9);
 
   scene.cut_off();
-  const Execution over = run(scene);
-  CHECK(over.result.still.empty());
-  REQUIRE_FALSE(over.result.pieces.empty());
-  CHECK(over.result.pieces[0].final_trajectory.end() < 4.5);
+  for (const char* mode : {"sequential", "concurrent"}) {
+    const Execution over = run(scene, Json::object(), mode);
+    CHECK(over.result.status.state == RunState::ok);
+    CHECK(over.result.still.empty());
+    REQUIRE(over.result.pieces.size() == 1);
+    CHECK(over.result.pieces[0].final_trajectory.end() == Approx(3.0).margin(0.1));
+    CHECK(std::ranges::any_of(over.result.log, [](const std::string& line) {
+      return line.find("the events end at ") != std::string::npos && line.find("7.000 s") != std::string::npos;
+    }));
+  }
 }
 
 TEST_CASE(

@@ -58,6 +58,26 @@ TEST_CASE("A recording without ground truth needs a time range and says that it 
   CHECK_THAT(source.remarks().at(0), Contains("can't be scored"));
 }
 
+TEST_CASE("A recording's text is read by named columns, and with however many faults where that is asked for") {
+  const testing::TemporaryFolder folder;
+  folder.write("calib.txt", kCalibration);
+  folder.write("groundtruth.txt", kGroundTruth);
+  folder.write("events.txt", "5 1.5 7 1\n6 1.6 8 0\n999 1.7 8 0\n");  // the last one is outside the sensor
+  const auto read_all = [&](const char* more) {
+    const Recording source = open(std::string(R"({"folder": ".", "columns": "x,t_s,y,p")") + more + "}", folder.path());
+    const auto stream = source.events();
+    std::vector<Event> all, events;
+    while (stream->read(events)) all.insert(all.end(), events.begin(), events.end());
+    return all;
+  };
+  CHECK_THROWS_WITH(read_all(""), Contains("33.3 % of the events") && Contains("source.lenient"));
+  const std::vector<Event> all = read_all(R"(, "lenient": true)");
+  REQUIRE(all.size() == 2);
+  CHECK(all[1].t == 1'600'000);
+  CHECK(all[1].x == 6);
+  CHECK(all[1].y == 8);
+}
+
 TEST_CASE("A recording reads RobotEvt ground truth") {
   const testing::TemporaryFolder folder;
   folder.write("cam.txt", kCalibration);

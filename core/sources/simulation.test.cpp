@@ -84,4 +84,8 @@ TEST_CASE("A trajectory that ends before the sequence is refused") {
   CHECK_THROWS_WITH(
       simulate(R"({"duration": 4, "motion": {"kind": "trajectory", "trajectory": "path.txt"}})", 1, folder.path()),
       Contains("lasts 1.000 s"));
+  folder.write("path.txt", "20000 0 0 0 0 0 0 1\n30000 0 0 0 0 0 0 1\n40000 0 0 0 0 0 0 1\n");  // microseconds
+  CHECK_THROWS_WITH(
+      simulate(R"({"duration": 4, "motion": {"kind": "trajectory", "trajectory": "path.txt"}})", 1, folder.path()),
+      Contains("path.txt has 3 poses from 20000 to 40000 s; expected times in seconds"));
 }

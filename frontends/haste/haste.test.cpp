@@ -1,5 +1,6 @@
 #include "frontends/haste/haste.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -125,6 +126,44 @@ TEST_CASE("A tracker in a place where nothing happens any more is starved by the
   const std::vector<std::string> remarks = haste.remarks();
   CHECK(ended > 0);
   CHECK_THAT(remarks.at(1), !Catch::Matchers::Contains(" 0 starved"));
+}
+
+TEST_CASE("A recording without events in the time range is refused with the time of its first one") {
+  EventScene source(swing, 1.0, EventScene::quadrangles(20, 1));
+  for (Event& event : source.list) event.t += 10'000'000;
+  source.cut_off();
+  Haste haste({}, {source, 0, "", "c.json: frontend"});
+  TrackBatch batch;
+  CHECK_THROWS_WITH(haste.advance({1.0}, batch),
+                    Catch::Matchers::Contains("c.json: frontend: the recording has no events from 0 to 1 s") &&
+                        Catch::Matchers::Contains("its first one is at 10."));
+}
+
+TEST_CASE("Events that had to be left out are counted in the remarks") {
+  EventScene source(swing, 0.5, EventScene::quadrangles(20, 1));
+  source.list[100].x = 240;
+  source.list[200].t = 0;
+  Haste haste({}, {source, 0, ""});
+  TrackBatch batch;
+  haste.advance({0.5}, batch);
+  const std::vector<std::string> remarks = haste.remarks();
+  const auto has = [&](const char* text) {
+    return std::ranges::any_of(remarks, [&](const std::string& line) { return line.find(text) != std::string::npos; });
+  };
+  CHECK(has("left out: 1 events outside the sensor"));
+  CHECK(has("left out: 1 events out of the order of time"));
+}
+
+TEST_CASE("Borders that leave nothing of the image are refused") {
+  const EventScene source(swing, 0.1, {});
+  Options detecting, living;
+  detecting.detection.border = 90.0;
+  living.life.border = 90.0;
+  CHECK_THROWS_WITH(
+      Haste(detecting, {source, 0, "", "frontend"}),
+      Catch::Matchers::Contains("frontend.detection.border: 90 px leave nothing of an image of 240 x 180"));
+  CHECK_THROWS_WITH(Haste(living, {source, 0, "", "frontend"}),
+                    Catch::Matchers::Contains("frontend.life.border: 90 px"));
 }
 
 TEST_CASE("What is no source of events is refused with a sentence") {
