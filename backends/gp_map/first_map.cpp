@@ -23,6 +23,7 @@ constexpr double kMotionGrowth = 1.15;  ///< a new attempt has to see this many 
 constexpr double kTimeGrowth = 1.5;     ///< ... or time
 constexpr double kFarOff = 2.0;         ///< times the allowed error: an outlier
 constexpr double kFarthest = 10.0;      ///< [units] where landmarks of the first map may be
+constexpr double kNext = 0.15;          ///< [s]
 constexpr double kAnchorSigma = 1e-4;   ///< [rad, units] of the gauge: far below what data tell, well conditioned
 
 double parallax_deg(const FactorGraph& graph) {
@@ -139,13 +140,19 @@ FirstMap FirstMapFinder::map_of(const TrackBuffer& tracks, const MultiView& view
   graph.loss = RobustLoss(options_.loss, options_.loss_width);
   for (const ControlState& state : path.states()) graph.add_state(state);
   graph.pose_priors.push_back({0, graph.states.front().T, Vector6::Constant(kAnchorSigma)});
+  std::vector<bool> stands(graph.states.size(), false);  // of the intervals
+  for (const double t : path.passed_over()) stands[index(std::max(0, graph.interval_of(t)))] = true;
   std::vector<int> anchors;
   for (const auto& [track, point] : path.landmarks()) {
     map.tracks.push_back(track);
     const int landmark = graph.add_landmark(point.position());
     if (anchored.contains(track)) anchors.push_back(landmark);
     for (const TrackObservation& z : tracks.observations(track)) {
-      graph.add_observation(landmark, to_observation(z, options_.sigma_scale));
+      const int k = graph.interval_of(z.t);
+      // A stand says the same again and again: what is seen next to its states is enough.
+      const bool tells = k >= 0 && (!stands[index(k)] || std::min(z.t - graph.states[index(k - 1)].t,
+                                                                  graph.states[index(k)].t - z.t) < kNext);
+      if (tells) graph.add_observation(landmark, to_observation(z, options_.sigma_scale));
     }
   }
   graph.anchor_scale(graph.states.front().T.p, anchors);

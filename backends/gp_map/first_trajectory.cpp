@@ -11,7 +11,7 @@ namespace evbench::gp_map {
 namespace {
 
 constexpr double kLongestGap = 1.0;  ///< [s] that the motion is continued over, back to where enough is seen again
-constexpr double kStill = 0.5;       ///< [s] between states of a stand before the first view
+constexpr double kStill = 0.9;       ///< [s] between states of a stand before the first view, at most
 
 /// The pose at t on the way from view to view.
 SE3 pose_between(std::span<const SE3> views, std::span<const double> times, double t) {
@@ -26,7 +26,8 @@ SE3 pose_between(std::span<const SE3> views, std::span<const double> times, doub
 
 void FirstTrajectory::go_along(std::span<const SE3> views, std::span<const double> view_times,
                                std::span<const double> state_times) {
-  const auto first = std::ranges::lower_bound(state_times, view_times.front());
+  first_view_ = view_times.front();
+  const auto first = std::ranges::lower_bound(state_times, first_view_);
   for (auto t = state_times.end(); t != first;) {
     const SE3 guess = pose_between(views, view_times, *--t);
     const Sightings seen = sightings(*t);
@@ -39,10 +40,13 @@ void FirstTrajectory::go_along(std::span<const SE3> views, std::span<const doubl
   take_velocities();
 }
 
-/// No state stands there where too little is seen, or where nothing moved until the next state. False where what is
-/// seen can't be explained.
+/// No state stands there where too little is seen, or where the camera stands still and the next state is near. False
+/// where what is seen can't be explained.
 bool FirstTrajectory::go_back_to(double t) {
-  if (is_stand(t, states_.back().t)) return true;
+  if (states_.back().t - t < kStill && is_stand(t)) {
+    passed_over_.push_back(t);
+    return true;
+  }
   const auto enough = index(options_.health.min_landmarks);
   if (sightings(t).points.size() < 2 * enough) triangulate_at(t);
   const Sightings seen = sightings(t);
@@ -56,16 +60,16 @@ bool FirstTrajectory::go_back_to(double t) {
   return true;
 }
 
-bool FirstTrajectory::is_stand(double from, double to) const {
-  if (to - from >= kStill) return false;
+/// Is all still where it is in the first view?
+bool FirstTrajectory::is_stand(double t) const {
   std::vector<double> motions;
-  for (const TrackId track : tracks_.alive(from, 0.5 * options_.initialiser.window)) {
-    const auto a = tracks_.position(track, from, options_.initialiser.window);
-    const auto b = tracks_.position(track, to, options_.initialiser.window);
+  for (const TrackId track : tracks_.alive(t, 0.5 * options_.initialiser.window)) {
+    const auto a = tracks_.position(track, t, options_.initialiser.window);
+    const auto b = tracks_.position(track, first_view_, options_.initialiser.window);
     if (a && b) motions.push_back((*a - *b).norm());
   }
   if (std::ssize(motions) < options_.health.min_landmarks) return false;
-  return median(std::move(motions)) < 0.5 * options_.initialiser.two_view.threshold_px;
+  return median(std::move(motions)) < options_.initialiser.two_view.threshold_px;
 }
 
 /// The landmarks of tracks that are alive at t, from where the states so far saw them.

@@ -24,6 +24,8 @@ class FirstTrajectory {
   void go_along(std::span<const SE3> views, std::span<const double> view_times, std::span<const double> state_times);
 
   const std::vector<ControlState>& states() const { return states_; }
+  /// Times of the stand before the first view at which no state stands [s].
+  const std::vector<double>& passed_over() const { return passed_over_; }
   const std::map<TrackId, InversePoint>& landmarks() const { return landmarks_; }
 
  private:
@@ -33,7 +35,7 @@ class FirstTrajectory {
   };
   Sightings sightings(double t) const;
   bool go_back_to(double t);
-  bool is_stand(double from, double to) const;
+  bool is_stand(double t) const;
   void triangulate_at(double t);
   void take_velocities();
 
@@ -41,6 +43,8 @@ class FirstTrajectory {
   PinholeCamera camera_;
   const Options& options_;
   std::map<TrackId, InversePoint> landmarks_;
+  double first_view_ = 0.0;  ///< [s]
+  std::vector<double> passed_over_;
   std::vector<ControlState> states_;  ///< in time order; while going back, the newest first
 };
 

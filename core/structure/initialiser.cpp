@@ -11,8 +11,8 @@
 namespace evbench {
 namespace {
 
-constexpr double kStand = 5.0;  ///< [s] in which slow motion is to be seen
-constexpr double kLead = 1.0;   ///< [s] from the first view of a stand to now
+constexpr double kStand = 10.0;  ///< [s] in which slow motion is to be seen
+constexpr double kLead = 1.0;    ///< [s] from the first view to now, while nothing moves
 
 TrackMatches matches_between(const TrackBuffer& buffer, double t0, double t1, double window) {
   TrackMatches result;
@@ -88,10 +88,11 @@ TrackMatches Initialiser::match(const TrackBuffer& tracks, double t) {
 
 /// Nothing has moved for a while: the first view is one of a short time ago.
 void Initialiser::pass_stand(const TrackBuffer& tracks, double t) {
-  if (!reference_ || t - *reference_ < kStand) return;
-  const TrackMatches before = matches_between(tracks, t - kStand, t, options_.window);
+  if (!reference_ || t - *reference_ < kLead) return;
+  const double known = t - 0.5 * options_.window;  // from both sides
+  const TrackMatches before = matches_between(tracks, t - kStand, known, options_.window);
   if (static_cast<int>(before.tracks.size()) < options_.min_tracks) return;
-  if (before.median_motion() < 0.5 * options_.two_view.threshold_px) reference_ = t - kLead;
+  if (before.median_motion() < options_.two_view.threshold_px) reference_ = t - kLead;
 }
 
 Initialiser::Attempt Initialiser::explain(const TrackMatches& matches) const {
