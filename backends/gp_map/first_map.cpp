@@ -110,7 +110,7 @@ std::optional<ViewsExplained> FirstMapFinder::explanation(const Look& look) cons
 bool FirstMapFinder::is_sound(const MultiView& views, const ViewsExplained& explained) {
   const double error = median(views.errors(explained)), sigma = median(views.distance_sigmas(explained));
   if (!(error <= options_.max_initial_error)) {
-    refused_ = fmt::format("the best first map leaves {:.2f} px, {:.2f} allowed", error, options_.max_initial_error);
+    refused_ = fmt::format("the best first map leaves {:.2f} px, {:.2g} allowed", error, options_.max_initial_error);
   } else if (!(sigma <= options_.max_initial_uncertainty)) {
     refused_ = fmt::format("the structure is uncertain by {:.0f} %, {:.0f} % allowed", 100.0 * sigma,
                            100.0 * options_.max_initial_uncertainty);

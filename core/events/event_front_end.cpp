@@ -68,7 +68,7 @@ void EventFrontEnd::require_events() const {
   while (reader->read(first) && first.empty()) {
   }
   const std::string found =
-      first.empty() ? "it has none at all" : fmt::format("its first one is at {} s", seconds(first.front().t));
+      first.empty() ? "it has none at all" : fmt::format("its first one is at {:.6f} s", seconds(first.front().t));
   throw InputError(fmt::format("{}: the recording has no events from {} to {} s, the source's time range; {}", place_,
                                range_.from, range_.to, found));
 }
