@@ -23,7 +23,7 @@ constexpr double kMotionGrowth = 1.15;  ///< a new attempt has to see this many 
 constexpr double kTimeGrowth = 1.5;     ///< ... or time
 constexpr double kFarOff = 2.0;         ///< times the allowed error: an outlier
 constexpr double kFarthest = 10.0;      ///< [units] where landmarks of the first map may be
-constexpr double kNext = 0.15;          ///< [s]
+constexpr double kNext = 0.15;          ///< [s] from a state of a stand: what is seen there counts
 constexpr double kAnchorSigma = 1e-4;   ///< [rad, units] of the gauge: far below what data tell, well conditioned
 
 double parallax_deg(const FactorGraph& graph) {

@@ -11,7 +11,8 @@ namespace evbench::gp_map {
 namespace {
 
 constexpr double kLongestGap = 1.0;  ///< [s] that the motion is continued over, back to where enough is seen again
-constexpr double kStill = 0.9;       ///< [s] between states of a stand before the first view, at most
+constexpr double kStand = 5.0;       ///< [s] before the first view in which nothing moved: a stand
+constexpr double kStill = 0.9;       ///< [s] between the states of one, at most
 
 /// The pose at t on the way from view to view.
 SE3 pose_between(std::span<const SE3> views, std::span<const double> times, double t) {
@@ -27,6 +28,7 @@ SE3 pose_between(std::span<const SE3> views, std::span<const double> times, doub
 void FirstTrajectory::go_along(std::span<const SE3> views, std::span<const double> view_times,
                                std::span<const double> state_times) {
   first_view_ = view_times.front();
+  begins_with_stand_ = is_still(first_view_ - kStand);
   const auto first = std::ranges::lower_bound(state_times, first_view_);
   for (auto t = state_times.end(); t != first;) {
     const SE3 guess = pose_between(views, view_times, *--t);
@@ -43,7 +45,7 @@ void FirstTrajectory::go_along(std::span<const SE3> views, std::span<const doubl
 /// No state stands there where too little is seen, or where the camera stands still and the next state is near. False
 /// where what is seen can't be explained.
 bool FirstTrajectory::go_back_to(double t) {
-  if (states_.back().t - t < kStill && is_stand(t)) {
+  if (begins_with_stand_ && states_.back().t - t < kStill && is_still(t)) {
     passed_over_.push_back(t);
     return true;
   }
@@ -61,7 +63,7 @@ bool FirstTrajectory::go_back_to(double t) {
 }
 
 /// Is all still where it is in the first view?
-bool FirstTrajectory::is_stand(double t) const {
+bool FirstTrajectory::is_still(double t) const {
   std::vector<double> motions;
   for (const TrackId track : tracks_.alive(t, 0.5 * options_.initialiser.window)) {
     const auto a = tracks_.position(track, t, options_.initialiser.window);

@@ -35,7 +35,7 @@ class FirstTrajectory {
   };
   Sightings sightings(double t) const;
   bool go_back_to(double t);
-  bool is_stand(double t) const;
+  bool is_still(double t) const;
   void triangulate_at(double t);
   void take_velocities();
 
@@ -44,6 +44,7 @@ class FirstTrajectory {
   const Options& options_;
   std::map<TrackId, InversePoint> landmarks_;
   double first_view_ = 0.0;  ///< [s]
+  bool begins_with_stand_ = false;
   std::vector<double> passed_over_;
   std::vector<ControlState> states_;  ///< in time order; while going back, the newest first
 };
