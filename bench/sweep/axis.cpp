@@ -145,12 +145,16 @@ std::optional<double> number(const std::string& text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
-/// A..B, A..B:N or A..B:Nlog; nothing where the text is none of these.
-std::optional<RangeOptions> parse_range(const std::string& text) {
+/// A..B, A..B:N or A..B:Nlog; nothing where the text has no two dots behind a number.
+std::optional<RangeOptions> parse_range(const std::string& text, const std::string& place) {
   const std::size_t dots = text.find(".."), colon = text.find(':');
   if (dots == std::string::npos) return std::nullopt;
-  const auto from = number(text.substr(0, dots)), to = number(text.substr(dots + 2, colon - dots - 2));
-  if (!from || !to) return std::nullopt;
+  const auto from = number(text.substr(0, dots));
+  if (!from) return std::nullopt;
+  const InputError none(
+      fmt::format("{}: \"{}\" is no range; expected A..B, A..B:N or A..B:Nlog, N from 2 on", place, text));
+  const auto to = number(text.substr(dots + 2, colon - dots - 2));
+  if (!to || text[dots + 2] == '.') throw none;
   RangeOptions range;
   range.from = *from;
   range.to = *to;
@@ -161,7 +165,7 @@ std::optional<RangeOptions> parse_range(const std::string& text) {
     count.erase(count.size() - 3);
   }
   const auto values = number(count);
-  if (!values || *values < 1.0 || *values > kMostValues || *values != std::floor(*values)) return std::nullopt;
+  if (!values || *values < 2.0 || *values > kMostValues || *values != std::floor(*values)) throw none;
   range.count = static_cast<int>(*values);
   return range;
 }
@@ -214,7 +218,7 @@ Axis parse_axis(const std::string& text) {
   if (equals + 1 < text.size()) {
     for (const std::string& part : split(text.substr(equals + 1))) {
       if (part.empty()) throw InputError(fmt::format("{}: expected a value between two commas", place));
-      if (const auto range = parse_range(part)) {
+      if (const auto range = parse_range(part, place)) {
         for (const std::string& value : values_of(*range, place)) axis.values.push_back(value_of(axis.name, value));
       } else {
         axis.values.push_back(value_of(axis.name, part));

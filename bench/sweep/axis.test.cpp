@@ -88,4 +88,9 @@ TEST_CASE("An axis that can't be is refused with its place and what was expected
     INFO(text);
     CHECK_THROWS_WITH(parse_axis(text), Contains("--over " + std::string(text)));
   }
+  for (const char* const range : {"1...3", "1..", "1..b", "1..2:1", "0.1..1:0", "0..1:2.5", "0..1:x", "0..1:1000000"}) {
+    INFO(range);
+    CHECK_THROWS_WITH(parse_axis(std::string("a=") + range), Contains("\"" + std::string(range) + "\" is no range"));
+  }
+  CHECK(parse_axis("a=../b..c").values.at(0).text == "../b..c");
 }
