@@ -6,7 +6,9 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
+#include <vector>
 
 #include "core/io/path.hpp"
 #include "core/io/spool.hpp"
@@ -283,9 +285,18 @@ Json read_json(const std::string& path) {
   if (!file) throw InputError(fmt::format("{}: can't be read; expected a JSON config", path));
   std::ostringstream text;
   text << file.rdbuf();
+  std::vector<std::set<std::string>> keys;  // of the objects that are open: of two with one key the first would be lost
+  const auto take = [&](int, Json::parse_event_t event, const Json& parsed) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second) {
+      throw InputError(fmt::format("{}: an object has the key {} twice; expected it once", path, parsed.dump()));
+    }
+    return true;
+  };
   try {
-    return Json::parse(text.str(), nullptr, true, true);  // comments allowed
-  } catch (const Json::exception& error) {                // also for numbers out of range
+    return Json::parse(text.str(), take, true, true);  // comments allowed
+  } catch (const Json::exception& error) {             // also for numbers out of range
     throw InputError(fmt::format("{}: is not JSON: {}", path, json_reason(error)));
   }
 }

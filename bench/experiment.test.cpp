@@ -144,6 +144,8 @@ TEST_CASE("A config that is not as expected is refused with the place and the ne
   CHECK_THROWS_WITH(read_experiment("/", {}, known_plugins()), Contains("is a folder; expected a JSON config"));
   CHECK_THROWS_WITH(read_text(""), Contains("c.json: is not JSON"));
   CHECK_THROWS_WITH(read_text("{\"name\": "), Contains("c.json: is not JSON") && Contains("line 1"));
+  CHECK_THROWS_WITH(read_text(R"({"seed": 1, "source": {"seed": 3}, "seed": 2})"),
+                    Contains("c.json: an object has the key \"seed\" twice"));
   CHECK_THROWS_WITH(read_text("[]"), Contains("expected an object"));
   CHECK_THROWS_WITH(read_text("{}"), Contains("\"source\" is missing"));
   const auto with = [](const char* pointer, const Json& value) {
