@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,10 +14,11 @@
 namespace evbench::gp_map {
 
 void GpMap::finish() {
+  const std::string reason = first_map_.reason();  // while there were data: the last state stands after their end
   if (const std::optional<double> last = placement_.last()) step(*last);
   if (!engine_) {
     monitor_.fail(std::min(first_map_.newest(), until_),
-                  first_map_.reason().empty() ? "no observations" : "no first map: " + first_map_.reason());
+                  reason.empty() ? "no observations" : "no first map: " + reason);
     return;
   }
   doubts_ = 0;  // nothing more will tell whether the map is right

@@ -53,6 +53,7 @@ class FirstMapFinder {
     std::vector<InitialGuess> guesses;
   };
 
+  void fit_window(const TrackBuffer& tracks, bool placed);
   std::optional<Look> look_at(const TrackBuffer& tracks, double t);
   bool worthwhile(const TrackMatches& matches);
   std::optional<ViewsExplained> explanation(const Look& look) const;
@@ -64,6 +65,7 @@ class FirstMapFinder {
   Initialiser initialiser_;
   std::optional<Progress> last_;
   std::vector<double> state_times_;
+  double missed_ = 0.0;  ///< times that too few tracks had a place in both views, of late
   std::string refused_, waiting_;
 };
 

@@ -246,6 +246,17 @@ TEST_CASE("gp_map's estimate does not depend on how its observations are cut int
   }
 }
 
+TEST_CASE("Tracks of a slow tracker give a map, too") {
+  for (const char* scene : {R"({"tracks": {"lifetime": [2, 4], "rate": [20, 20]}})",
+                            R"({"tracks": {"lifetime": [2, 4], "rate": [10, 12]}})"}) {
+    const auto result = run(TrackedScene(6.0, scene));
+    INFO(result.backend->status().reason);
+    CHECK(result.backend->status().state == RunState::ok);
+    CHECK(result.scores.ate.trans_percent < 1.0);
+    CHECK(result.backend->trajectory().start() < 0.1);
+  }
+}
+
 TEST_CASE("A stand before the first motion is in the trajectory, with few states, and nothing is told before a look") {
   constexpr double kStand = 20.0;  // [s]
   for (const std::uint64_t seed : {1, 2, 3}) {

@@ -60,6 +60,9 @@ class Initialiser {
   TrackMatches match(const TrackBuffer& tracks, double t);
   Attempt explain(const TrackMatches& matches) const;
 
+  /// Another window than the options' from now on [s]: for tracks that are observed rarely.
+  void use_window(double window) { options_.window = window; }
+
   /// Time of the first view, once there is one.
   std::optional<double> reference_time() const { return reference_; }
 
