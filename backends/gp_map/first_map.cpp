@@ -63,20 +63,19 @@ std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, doubl
 /// Tracks of a slow tracker have no place in a window that is shorter than the time between their observations: where
 /// too few have one again and again, it becomes wider.
 void FirstMapFinder::fit_window(const TrackBuffer& tracks, bool placed) {
-  constexpr double kMany = 20.0, kMade = 0.25;  // times that too few had a place, and what one counts where enough had
+  constexpr double kMany = 40.0, kMade = 0.25;  // times that too few had a place, and what one counts where enough had
   constexpr double kEnough = 4.0;               // observations in the window: then there is one next to any time
   constexpr double kWidest = 2.0;               // [s]
-  constexpr double kShort = 0.1;  // share of the times between observations: slow motion leaves long ones, too
   missed_ = placed ? std::max(0.0, missed_ - kMade) : missed_ + 1.0;
   if (missed_ < kMany) return;
   std::vector<double> gaps;
   for (const TrackId id : tracks.ids()) {
     const auto seen = tracks.observations(id);
-    for (std::size_t i = 1; i < seen.size(); ++i) gaps.push_back(seen[i].t - seen[i - 1].t);
+    if (seen.size() > 1) gaps.push_back((seen.back().t - seen.front().t) / static_cast<double>(seen.size() - 1));
   }
   if (gaps.empty()) return;
   double& window = options_.initialiser.window;
-  window = std::max(window, std::min(kWidest, kEnough * order_statistic(std::move(gaps), kShort)));
+  window = std::max(window, std::min(kWidest, kEnough * median(std::move(gaps))));
   initialiser_.use_window(window);
 }
 
