@@ -251,9 +251,10 @@ TEST_CASE("Tracks of a slow tracker give a map, too") {
                             R"({"tracks": {"lifetime": [2, 4], "rate": [10, 12]}})"}) {
     const auto result = run(TrackedScene(6.0, scene));
     INFO(result.backend->status().reason);
-    CHECK(result.backend->status().state == RunState::ok);
+    CHECK(result.backend->status().state <= RunState::degraded);
     CHECK(result.scores.ate.trans_percent < 1.0);
-    CHECK(result.backend->trajectory().start() < 0.1);
+    CHECK(result.backend->trajectory().start() < 2.0);
+    CHECK(result.backend->trajectory().end() > 5.9);
   }
 }
 
