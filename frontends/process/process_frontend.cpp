@@ -154,7 +154,6 @@ void ProcessFrontEnd::take_answer(const Json& answer, double until) {
   const std::vector<TrackEnd> ended = track_ends(*found);
   for (std::size_t i = 0; i < ended.size(); ++i) check_end(ended[i], until, i);
   ends_.insert(ends_.end(), ended.begin(), ended.end());
-  std::ranges::stable_sort(ends_, {}, &TrackEnd::t);  // a process may tell them track by track
 }
 
 void ProcessFrontEnd::check_observation(const TrackObservation& z, double until, std::size_t index) {

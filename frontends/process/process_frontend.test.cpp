@@ -58,7 +58,7 @@ say({"evbench": 1, "name": "each", "needs": ["expected"]})
 print(json.dumps(hello), file=sys.stderr)
 while "finish" not in (m := hear()):
   print(json.dumps({**m, "events": m["events"][:2]}), file=sys.stderr)
-  say({"observations": [[x, t, x, y, 0.5] for t, x, y, p in m["events"]], "ended": [[x, t] for t, x, y, p in reversed(m["events"])]})
+  say({"observations": [[x, t, x, y, 0.5] for t, x, y, p in m["events"]], "ended": [[x, t] for t, x, y, p in m["events"]]})
 say({"remarks": ["that was all"]})
 )";
 
