@@ -132,7 +132,7 @@ TEST_CASE("A stream of which more than a tenth is left out ends with an error th
   CHECK_THROWS_WITH(times(events, {}),
                     "list: 15.0 % of the events, 3 of 20, have to be left out, most of them as events "
                     "outside the sensor of 10x10 pixels (the first: 103 us, pixel (10, 1)); expected "
-                    "a recording with fewer faults, or --lenient");
+                    "a recording with fewer faults, or --lenient (source.lenient in a run's config)");
   CHECK(times(events, kLenient).size() == 17);
   CHECK_THROWS_AS(times(events, {.to = 112}), InputError);
 }
