@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "core/structure/initialiser.hpp"
 #include "core/structure/resection.hpp"
 #include "core/structure/triangulation.hpp"
 #include "core/support/index.hpp"
-#include "core/support/median.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -64,14 +64,9 @@ bool FirstTrajectory::go_back_to(double t) {
 
 /// Is all still where it is in the first view?
 bool FirstTrajectory::is_still(double t) const {
-  std::vector<double> motions;
-  for (const TrackId track : tracks_.alive(t, 0.5 * options_.initialiser.window)) {
-    const auto a = tracks_.position(track, t, options_.initialiser.window);
-    const auto b = tracks_.position(track, first_view_, options_.initialiser.window);
-    if (a && b) motions.push_back((*a - *b).norm());
-  }
-  if (std::ssize(motions) < options_.health.min_landmarks) return false;
-  return median(std::move(motions)) < options_.initialiser.two_view.threshold_px;
+  const TrackMatches since = matches_between(tracks_, first_view_, t, options_.initialiser.window);
+  if (std::ssize(since.tracks) < options_.health.min_landmarks) return false;
+  return since.median_motion() < options_.initialiser.two_view.threshold_px;
 }
 
 /// The landmarks of tracks that are alive at t, from where the states so far saw them.

@@ -269,7 +269,7 @@ TEST_CASE("A stand before the first motion is in the trajectory, with few states
     CHECK(states.front().t < 1.0);
     const auto still = std::ranges::count_if(states, [&](const ControlState& state) { return state.t < kStand; });
     CHECK(still < 100);
-    CHECK(result.online.start() > kStand + 0.3);
+    CHECK(result.online.start() > kStand + 0.7);  // a pause after the map it would be 0.6 at most
   }
 }
 

@@ -12,8 +12,7 @@
 namespace evbench {
 namespace {
 
-/// At that rate [Hz], if the trajectory is long enough for any; the back-end's own poses where it is not, or the rate
-/// 0.
+/// At that rate [Hz]; the back-end's own poses where the rate is 0, or so low that there would be none.
 PoseTrajectory sample(const BackEnd& backend, double rate) {
   const PoseTrajectory own = backend.trajectory();
   if (rate == 0.0 || own.empty()) return own;

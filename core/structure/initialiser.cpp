@@ -14,20 +14,6 @@ namespace {
 constexpr double kStand = 10.0;  ///< [s] in which slow motion is to be seen
 constexpr double kLead = 1.0;    ///< [s] from the first view to now, while nothing moves
 
-TrackMatches matches_between(const TrackBuffer& buffer, double t0, double t1, double window) {
-  TrackMatches result;
-  result.t0 = t0;
-  result.t1 = t1;
-  for (const TrackId id : buffer.alive(t1, 0.5 * window)) {
-    const std::optional<Vector2> first = buffer.position(id, t0, window), second = buffer.position(id, t1, window);
-    if (!first || !second) continue;
-    result.tracks.push_back(id);
-    result.first.push_back(*first);
-    result.second.push_back(*second);
-  }
-  return result;
-}
-
 double median_depth(const TwoViewCandidate& candidate) {
   std::vector<double> depths;
   for (std::size_t i = 0; i < candidate.points.size(); ++i) {
@@ -54,6 +40,20 @@ InitialGuess to_guess(const TwoViewCandidate& candidate, const TrackMatches& mat
 }
 
 }  // namespace
+
+TrackMatches matches_between(const TrackBuffer& buffer, double t0, double t1, double window) {
+  TrackMatches result;
+  result.t0 = t0;
+  result.t1 = t1;
+  for (const TrackId id : buffer.alive(t1, 0.5 * window)) {
+    const std::optional<Vector2> first = buffer.position(id, t0, window), second = buffer.position(id, t1, window);
+    if (!first || !second) continue;
+    result.tracks.push_back(id);
+    result.first.push_back(*first);
+    result.second.push_back(*second);
+  }
+  return result;
+}
 
 void InitialiserOptions::declare(OptionSet& set) {
   set.add("min_tracks", min_tracks, "tracks seen in both views").range(8);

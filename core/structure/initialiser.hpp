@@ -37,6 +37,10 @@ struct TrackMatches {
   double median_motion() const;  ///< [px] from the first to the second place; of any but none
 };
 
+/// The places of the tracks that are alive at t1 and have one at both times [s]; window [s] as of
+/// TrackBuffer::position.
+TrackMatches matches_between(const TrackBuffer& buffer, double t0, double t1, double window);
+
 /// Initialisation of monocular odometry from two views (Liu et al. 2022, Algorithm 1, lines 7-9).
 ///
 /// The first view is at a reference time: the first with enough tracks; it moves on when too few of its tracks are

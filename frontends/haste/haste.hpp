@@ -29,6 +29,7 @@ class Haste : public EventFrontEnd {
 
  private:
   std::vector<std::string> counts() const override;
+
   /// What a tracker is followed for.
   struct Track {
     TrackId id;
