@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <ranges>
 #include <utility>
@@ -86,8 +88,14 @@ std::vector<Landmark> GpMap::map() const {
 }
 
 std::vector<std::string> GpMap::learnt() const {
-  return {"noise_scale",   "noise_share",      "qc_rotation_x",    "qc_rotation_y",
-          "qc_rotation_z", "qc_translation_x", "qc_translation_y", "qc_translation_z"};
+  std::vector<std::string> names = {"noise_scale", "noise_share"};
+  for (const char* when : {"", "final_"}) {
+    for (const char* axis :
+         {"rotation_x", "rotation_y", "rotation_z", "translation_x", "translation_y", "translation_z"}) {
+      names.push_back(fmt::format("{}qc_{}", when, axis));
+    }
+  }
+  return names;
 }
 
 std::optional<Problem> GpMap::problem() const {

@@ -58,7 +58,7 @@ std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, dou
   std::optional<RecentExplanation> best;
   const int last = graph.first_state_after(t);
   if (last == std::ssize(graph.states)) return best;
-  for (const SupposedPlane supposed : {SupposedPlane::frontal, SupposedPlane::dual}) {
+  for (const Supposed supposed : {Supposed::frontal_plane, Supposed::dual_plane}) {
     auto search = ExplanationSearch::begin(graph, {0, last}, enough, supposed);
     if (!search) continue;
     while (search->go_on()) {

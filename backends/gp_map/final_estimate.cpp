@@ -24,6 +24,7 @@ void GpMap::finish() {
   doubts_ = 0;  // nothing more will tell whether the map is right
   if (options_.final_iterations == 0) {
     engine_->settle();
+    record_final_prior();
     return;
   }
   const auto start = std::chrono::steady_clock::now();
@@ -34,15 +35,15 @@ void GpMap::finish() {
       learn_with_hindsight({}, surplus);
       engine_->update();
     }
-    record_final_prior();
     add_record(graph().states.back().t, seconds_since(start), options_.learn.rounds, {});
+    record_final_prior();
     return;
   }
   const Engine::OptimiseSummary summary = estimate_everything();
-  record_final_prior();
   context_.log(fmt::format("final estimate: cost {:.2f} after {:.2f}, {} iterations{}", summary.final_cost,
                            summary.initial_cost, summary.iterations, summary.converged ? "" : ", not converged"));
   add_record(graph().states.back().t, seconds_since(start), summary.iterations, summary.final_cost);
+  record_final_prior();
 }
 
 /// Prior, noise, and what each track is worth follow from the estimate, and it from them.
@@ -53,6 +54,7 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
   constexpr int kIterationsARound = 3;
   constexpr double kRoughly = 1e-4, kLearnt = 1e-6, kFixed = 1e-9;  // what is learnt is known no better
   engine_->optimise(kIterationsARound, kRoughly);
+  if (is_young()) reconsider_beginning();
   if (auto other = explain_earlier(*engine_, options_.health.min_landmarks)) {
     context_.log("what was seen earlier is explained better otherwise by what came after it");
     engine_ = std::move(other);
@@ -71,7 +73,18 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
   return engine_->optimise(options_.final_iterations, learns ? kLearnt : kFixed);
 }
 
-/// Of each control state's update, in place of the density that it began with: that of the interval which ends there.
+/// What is near and what is far may have changed places, which little motion does not tell; a map that is older has
+/// seen more. Not while running: before a plane, whose other explanation is looked for already, it misleads.
+void GpMap::reconsider_beginning() {
+  auto search = begin_search(Supposed::reversal, true);
+  if (!search) return;
+  while (search->go_on()) {
+  }
+  if (search->found()) go_on_with(*search->found());
+}
+
+/// Beside what had been learnt by each control state's update: the density, in the end, of the interval which ends
+/// there.
 void GpMap::record_final_prior() {
   for (UpdateRecord& record : updates_) {
     const int k = graph().interval_of(record.t);

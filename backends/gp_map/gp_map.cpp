@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 22);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 23);
 
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
@@ -28,6 +28,7 @@ constexpr double kMemory = 10.0;   ///< [s] for which tracks are remembered that
 constexpr double kFirstLook = 0.7;       ///< [s] of data that the first one takes
 constexpr double kReconsidering = 0.15;  ///< [s] at least between two
 constexpr int kSettling = 3;             ///< steps from what one has found
+constexpr int kPlanes = 2;               ///< on which it is looked for, in turn; until both were, the map is in doubt
 
 }  // namespace
 
@@ -136,6 +137,7 @@ bool GpMap::initialise(double t) {
   young_until_ = graph().states.back().t + kYoung;
   next_hindsight_ = graph().states.front().t + kHindsight;
   next_search_ = graph().states.front().t + kFirstLook;
+  doubts_ = kPlanes;
   recent_.emplace(
       options_.learn.prior == LearnPrior::never
           ? std::nullopt
@@ -189,13 +191,9 @@ void GpMap::reconsider_recent() {
   const double now = graph().states.back().t;
   if (!search_ && !(now < next_search_)) {
     next_search_ = now + kReconsidering;
-    const auto supposed = looks_ % kPlanes == 0 ? SupposedPlane::frontal : SupposedPlane::dual;
-    const auto begin = [&](bool young) {
-      const StateRange states{engine_->first_state(), static_cast<int>(graph().states.size()) - 1};
-      return ExplanationSearch::begin(graph(), states, options_.health.min_landmarks, supposed, young);
-    };
-    search_ = begin(is_young() && looks_ % (2 * kPlanes) < kPlanes);
-    if (!search_ && is_young()) search_ = begin(true);
+    const auto supposed = looks_ % kPlanes == 0 ? Supposed::frontal_plane : Supposed::dual_plane;
+    search_ = begin_search(supposed, is_young() && looks_ % (2 * kPlanes) < kPlanes);
+    if (!search_ && is_young()) search_ = begin_search(supposed, true);
     if (!search_ && is_in_doubt()) --doubts_;  // there is nothing that could be explained otherwise
     ++looks_;
   }
@@ -205,12 +203,20 @@ void GpMap::reconsider_recent() {
   const int oldest = engine_->first_state();
   if (other && oldest > 0 && other->first <= oldest + 1) other.reset();  // a lag has marginalised it since
   if (is_in_doubt()) doubts_ = other ? kPlanes : doubts_ - 1;
-  if (!other) return;
-  context_.log(fmt::format("{:.3f} s: {} is explained better otherwise, by {:.1f}", now,
-                           other->first > 0 ? "what came into view of late" : "all that was seen", other->advantage));
-  other->place_in(*engine_);
+  if (other) go_on_with(*other);
+}
+
+std::optional<ExplanationSearch> GpMap::begin_search(Supposed supposed, bool young) const {
+  const StateRange states{engine_->first_state(), static_cast<int>(graph().states.size()) - 1};
+  return ExplanationSearch::begin(graph(), states, options_.health.min_landmarks, supposed, young);
+}
+
+void GpMap::go_on_with(const RecentExplanation& other) {
+  context_.log(fmt::format("{:.3f} s: {} is explained better otherwise, by {:.1f}", graph().states.back().t,
+                           other.first > 0 ? "what came into view of late" : "all that was seen", other.advantage));
+  other.place_in(*engine_);
   const auto known = static_cast<int>(known_.size());
-  if (other->first == 0) recall_condemned();
+  if (other.first == 0) recall_condemned();
   bound_leverage();
   for (int step = 0; step < kSettling; ++step) last_update_ = engine_->update();
   for (int j = known; j < std::ssize(known_); ++j) {
@@ -245,7 +251,10 @@ void GpMap::learn_with_hindsight(const TimeSpan& span, std::span<const double> s
   if (!is_young()) judge_tracks(noise_, span);  // a young map itself is not right yet
   const bool yields = options_.learn.prior != LearnPrior::always && violent_motion_.is_yielding(graph());
   if (options_.learn.noise && !yields) weigh_tracks(noise_, span);
-  if (options_.learn.prior != LearnPrior::never) learn_prior(*engine_, span, surplus);
+  if (options_.learn.prior == LearnPrior::never) return;
+  learn_prior(*engine_, span, surplus);
+  const int k = graph().first_state_after(span.until) - 1;
+  if (k > engine_->first_state()) hindsight_qc_ = graph().qcs[index(k)];
 }
 
 /// What is seen next is compared with the newest state's constant velocity.
@@ -331,8 +340,9 @@ void GpMap::add_record(double t, double seconds, int iterations, std::optional<d
     record.states = static_cast<int>(graph().states.size());
     record.landmarks = landmarks_;
     record.observations = graph().observation_count();
+    const Vector6& qc = hindsight_qc_ && options_.learn.prior == LearnPrior::hindsight ? *hindsight_qc_ : graph().qc;
     record.learnt = {noise_.scale(), noise_.share()};
-    record.learnt.insert(record.learnt.end(), graph().qc.begin(), graph().qc.end());
+    for (int column = 0; column < 2; ++column) record.learnt.insert(record.learnt.end(), qc.begin(), qc.end());
   }
   updates_.push_back(record);
 }

@@ -91,6 +91,8 @@ class GpMap : public BackEnd {
   void learn();
   void learn_with_hindsight(const TimeSpan& span, std::span<const double> surplus = {});
   void reconsider_recent();
+  std::optional<ExplanationSearch> begin_search(Supposed supposed, bool young) const;
+  void go_on_with(const RecentExplanation& other);
   void recall_condemned();
   void check_support();
   void forget_ended_tracks(double t);
@@ -120,13 +122,12 @@ class GpMap : public BackEnd {
   void tell_online(double t);
   void tell_recent(double t);
   Engine::OptimiseSummary estimate_everything();
+  void reconsider_beginning();
   void judge_tracks(const NoiseLearner& noise, const TimeSpan& span);
   void slid_off(int landmark, double from);
   void weigh_tracks(const NoiseLearner& noise, const TimeSpan& span);
   void record_final_prior();
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
-
-  static constexpr int kPlanes = 2;  ///< on which another explanation is looked for, in turn
 
   Options options_;
   BackEndContext context_;
@@ -155,11 +156,12 @@ class GpMap : public BackEnd {
   const double information_told_;       ///< share of the estimate's information that the loss's weights tell
   std::optional<RecentMotion> recent_;  ///< as it is told online; from the first map on
   NoiseLearner noise_;
-  double young_until_ = 0.0;     ///< [s]
-  double next_hindsight_ = 0.0;  ///< [s]
-  double next_search_ = 0.0;     ///< [s]
-  int looks_ = 0;                ///< for another explanation
-  int doubts_ = kPlanes;         ///< vain looks that are missing until the first map is trusted
+  std::optional<Vector6> hindsight_qc_;  ///< the newest density that has been learnt with hindsight
+  double young_until_ = 0.0;             ///< [s]
+  double next_hindsight_ = 0.0;          ///< [s]
+  double next_search_ = 0.0;             ///< [s]
+  int looks_ = 0;                        ///< for another explanation
+  int doubts_ = 0;                       ///< vain looks that are missing until the first map is trusted
   std::optional<ExplanationSearch> search_;
   double seconds_since_step_ = 0.0;  ///< spent on single observations
   TrackingMonitor monitor_;

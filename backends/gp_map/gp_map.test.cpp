@@ -363,11 +363,14 @@ TEST_CASE("Covariance is positive and smallest at the anchor") {
 }
 
 TEST_CASE("However control states are placed, the error is at most a tenth larger than at 20 Hz") {
-  const char* robot_arm = R"({"motion": {"kind": "robot_arm"}, "tracks": {"lifetime": [1.0, 5.0]}})";
-  const double usual = mean_error(robot_arm, "{}");
+  const char* robot_arm =
+      R"({"motion": {"kind": "robot_arm"}, "tracks": {"lifetime": [0.3, 2.0], "outlier_share": 0.05}})";
+  const double usual = mean_error(robot_arm, R"({"placement": {"rule": "rate", "rate": 20}})");
   for (const char* options :
-       {R"({"placement": {"rate": 10}})", R"({"placement": {"rate": 50}})", R"({"placement": {"rate": 100}})",
-        R"({"placement": {"rule": "observations", "observations": 200}})", R"({"placement": {"rule": "motion"}})"}) {
+       {"{}", R"({"placement": {"rule": "rate", "rate": 10}})", R"({"placement": {"rule": "rate", "rate": 50}})",
+        R"({"placement": {"rule": "rate", "rate": 100}})", R"({"placement": {"max_spacing": 0.1}})",
+        R"({"placement": {"max_spacing": 0.01}})", R"({"placement": {"rule": "observations", "observations": 200}})",
+        R"({"placement": {"rule": "motion"}})"}) {
     INFO(options);
     CHECK(mean_error(robot_arm, options) < 1.1 * usual);
   }
@@ -387,6 +390,32 @@ TEST_CASE("A prior that is learnt while running makes what is told smoother, and
   }
   CHECK(causal[1] < 0.8 * causal[0]);
   CHECK(last[1] < 0.9 * last[0]);
+}
+
+TEST_CASE("What has been learnt by each update is told, and what is learnt in the end beside it") {
+  // From four times a robot arm's pace to a quarter of it. A prior's density begins at 1.
+  const TrackedScene scene(8.0, R"({"motion": {"kind": "robot_arm", "pace": [4, 0.25]}})");
+  for (const std::string options :
+       {"{}", R"({"final_iterations": 0})", R"({"lag": 2})", R"({"learn": {"prior": "never"}})"}) {
+    INFO(options);
+    const auto result = run(scene, {.backend = options.c_str()});
+    const std::vector<std::string> names = result.backend->learnt();
+    const auto learnt = [&](const char* name, double t) {
+      const auto updates = result.backend->updates();
+      const auto update = std::ranges::find_if(updates, [&](const UpdateRecord& u) { return u.t >= t; });
+      REQUIRE(update->learnt.size() == names.size());
+      return update->learnt[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
+    };
+    const bool learns = options.find("never") == std::string::npos;
+    for (const double t : {2.0, 5.0, 7.5}) {
+      for (const char* name : {"qc_rotation_y", "qc_translation_x", "final_qc_rotation_y", "final_qc_translation_x"}) {
+        INFO(name << " at " << t << " s");
+        CHECK((learnt(name, t) < 0.7) == learns);
+      }
+    }
+    CHECK((learnt("final_qc_translation_x", 5.0) == learnt("qc_translation_x", 5.0)) == !learns);
+    if (options == "{}") CHECK(learnt("final_qc_translation_x", 2.0) > 4.0 * learnt("final_qc_translation_x", 7.0));
+  }
 }
 
 TEST_CASE("With one prior, and no outliers to find afterwards, a lag of 2 s costs less than a tenth of the accuracy") {

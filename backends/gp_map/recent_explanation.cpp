@@ -18,13 +18,14 @@ constexpr double kLongAgo = 2.3;  ///< times as long ago as they came into view:
 constexpr double kLongest = 2.5;  ///< [s] of it
 constexpr int kFewestStates = 8, kMostStates = 256;  ///< of it
 constexpr int kEnoughObservations = 8000;            ///< of about so many at most, each track's are thinned evenly
-constexpr double kKnown = 0.03;       ///< to which landmarks of before are known, as a share of their distance
-constexpr double kHeld = 1e-4;        ///< [rad, units] of the pose from which it begins
-constexpr double kOnPlane = 0.05;     ///< to which new ones are on the plane at first, as a share of the usual depth
-constexpr double kMostOblique = 4.0;  ///< times nearer or farther than usual: not where the plane is seen edge-on
-constexpr double kAdvantage = 10.0;   ///< by which the other explanation's cost must be lower
-constexpr int kIterations = 6;        ///< of each explanation, at most
-constexpr double kTolerance = 3e-3;   ///< relative change of cost with which they end: 10 of some thousands
+constexpr double kKnown = 0.03;          ///< to which landmarks of before are known, as a share of their distance
+constexpr double kHeld = 1e-4;           ///< [rad, units] of the pose from which it begins
+constexpr double kThere = 0.05;          ///< to which new ones are where they begin, as a share of the usual depth
+constexpr double kMostOblique = 4.0;     ///< times nearer or farther than usual: not where the plane is seen edge-on
+constexpr double kAdvantage = 10.0;      ///< by which the other explanation's cost must be lower
+constexpr int kIterations = 6;           ///< of each explanation, at most ...
+constexpr int kReversedIterations = 15;  ///< and of a reversed one, which begins farther from where it leads
+constexpr double kTolerance = 3e-3;      ///< relative change of cost with which they end: 10 of some thousands
 constexpr int kShare = 34000;  ///< of work at a time: an observation's linearisation is one, a state's elimination ...
 constexpr int kStateWork = 100;  ///< so much
 constexpr int kStatesAPass = 6;  ///< through the problem, which take as long as an iteration
@@ -120,34 +121,36 @@ int work_of(const FactorGraph& problem) {
 }  // namespace
 
 std::optional<ExplanationSearch> ExplanationSearch::begin(const FactorGraph& graph, const StateRange& states,
-                                                          int enough, SupposedPlane supposed, bool young) {
+                                                          int enough, Supposed supposed, bool young) {
   auto part = newest_part(graph, states, index(enough), young);
   if (!part) return std::nullopt;
   FactorGraph problem = problem_of(graph, *part);
-  const auto plane = suppose(supposed, problem, part->fresh.size());
-  if (!plane) return std::nullopt;
+  auto beginning = suppose(supposed, problem, part->fresh.size());
+  if (!beginning) return std::nullopt;
   return ExplanationSearch(part->first, static_cast<int>(graph.landmarks.size()), std::move(part->fresh),
-                           std::move(problem), *plane);
+                           std::move(problem), std::move(*beginning));
 }
 
-/// Where a ray from p, of depth 1, meets it, within bounds.
-Vector3 ExplanationSearch::Plane::meets(const Vector3& p, const Vector3& ray) const {
+Vector3 ExplanationSearch::Beginning::place(int landmark, const Vector3& p, const Vector3& ray) const {
+  const double nearest = usual / kMostOblique, farthest = usual * kMostOblique;
+  if (!depths.empty()) return p + std::clamp(depths[index(landmark)], nearest, farthest) * ray;
   const double toward = normal.dot(ray), away = normal.dot(point - p);
-  const double most = kMostOblique * usual;
-  return p + (toward * away > 0.0 ? std::clamp(away / toward, usual / kMostOblique, most) : most) * ray;
+  return p + (toward * away > 0.0 ? std::clamp(away / toward, nearest, farthest) : farthest) * ray;
 }
 
-std::optional<ExplanationSearch::Plane> ExplanationSearch::suppose(SupposedPlane supposed, const FactorGraph& problem,
-                                                                   std::size_t fresh) {
+std::optional<ExplanationSearch::Beginning> ExplanationSearch::suppose(Supposed supposed, const FactorGraph& problem,
+                                                                       std::size_t fresh) {
   struct Sight {
     Vector3 p, ray;  // of depth 1
   };
   std::vector<Sight> sights;
-  std::vector<double> depths;
+  std::vector<double> depths;  // of those that lie before the camera, and of all
+  std::vector<double> of_each;
   for (std::size_t j = 0; j < fresh; ++j) {
     const FactorGraph::Landmark& landmark = problem.landmarks[j];
     const SE3& T = problem.states[index(landmark.intervals.front())].T;
     const double depth = (T.inverse() * landmark.position).z();
+    of_each.push_back(depth);
     if (!(depth > 0.0)) continue;
     depths.push_back(depth);
     sights.push_back({T.p, (landmark.position - T.p) / depth});
@@ -159,17 +162,19 @@ std::optional<ExplanationSearch::Plane> ExplanationSearch::suppose(SupposedPlane
   if (!middle.allFinite()) return std::nullopt;
   const SE3 &begin = problem.states.front().T, &end = problem.states.back().T;
   const Vector3 normal =
-      supposed == SupposedPlane::dual ? Vector3(end.p - begin.p) : Vector3(begin.R().col(2) + end.R().col(2));
-  return Plane{normal.normalized(), middle, usual};
+      supposed == Supposed::dual_plane ? Vector3(end.p - begin.p) : Vector3(begin.R().col(2) + end.R().col(2));
+  if (supposed != Supposed::reversal) return Beginning{normal.normalized(), middle, usual, {}};
+  for (double& depth : of_each) depth = depth > 0.0 ? usual * usual / depth : usual;
+  return Beginning{normal.normalized(), middle, usual, std::move(of_each)};
 }
 
 ExplanationSearch::ExplanationSearch(int first, int landmarks_then, std::vector<int> fresh, FactorGraph problem,
-                                     const Plane& plane)
+                                     Beginning beginning)
     : first_(first),
       landmarks_then_(landmarks_then),
       fresh_(std::move(fresh)),
       problem_(std::move(problem)),
-      plane_(plane),
+      beginning_(std::move(beginning)),
       passes_(std::max(1, kShare / work_of(problem_))),
       through_(problem_.camera, problem_.qc, problem_.loss),
       in_engine_(problem_.landmarks.size(), -1) {
@@ -211,7 +216,7 @@ bool ExplanationSearch::pass() {
   return false;
 }
 
-/// What comes into view with it begins on the plane.
+/// What comes into view with it begins where it is supposed to.
 void ExplanationSearch::add_state(int k) {
   through_.set_next_qc(problem_.qcs[index(k)]);
   add_extrapolated_state(through_, problem_.states[index(k)].t);
@@ -220,8 +225,9 @@ void ExplanationSearch::add_state(int k) {
     int& j = in_engine_[index(group.landmark)];
     if (j < 0 && index(group.landmark) < fresh_.size()) {
       const SE3& T = through_.graph().states.back().T;
-      const Vector3 place = plane_.meets(T.p, T.R() * problem_.camera.ray(observations.front().pixel));
-      j = through_.add_landmark(place, {place, kOnPlane * plane_.usual});
+      const Vector3 place =
+          beginning_.place(group.landmark, T.p, T.R() * problem_.camera.ray(observations.front().pixel));
+      j = through_.add_landmark(place, {place, kThere * beginning_.usual});
     } else if (j < 0) {
       const FactorGraph::Landmark& landmark = problem_.landmarks[index(group.landmark)];
       j = through_.add_landmark(landmark.position, landmark.prior);
@@ -231,7 +237,7 @@ void ExplanationSearch::add_state(int k) {
   through_.update();
 }
 
-/// The problem itself, with its expansions and without what held new landmarks to the plane.
+/// The problem itself, with its expansions and without what held new landmarks to their beginnings.
 void ExplanationSearch::begin_solving() {
   through_.settle();
   FactorGraph other = problem_;
@@ -248,7 +254,8 @@ bool ExplanationSearch::solve(Engine& engine) {
   const auto summary = engine.optimise(1, kTolerance);
   cost_ = summary.final_cost;
   const bool vain = summary.final_cost == summary.initial_cost;
-  const bool last = summary.converged || vain || ++iterations_ == kIterations;
+  const int most = beginning_.depths.empty() ? kIterations : kReversedIterations;
+  const bool last = summary.converged || vain || ++iterations_ == most;
   if (last) iterations_ = 0;
   return !last;
 }

@@ -9,10 +9,11 @@
 
 namespace evbench::gp_map {
 
-/// A plane on which all that came into view of late is supposed to lie, as a beginning.
-enum class SupposedPlane {
-  frontal,  ///< parallel to the image: nothing is supposed about what is near and what is far
-  dual,     ///< normal to how the camera seems to have moved: where the other explanation of a plane has it
+/// Where all that came into view of late is supposed to lie, as a beginning.
+enum class Supposed {
+  frontal_plane,  ///< parallel to the image: nothing is supposed about what is near and what is far
+  dual_plane,     ///< normal to how the camera seems to have moved: where the other explanation of a plane has it
+  reversal,       ///< what seems near is far, and what seems far near, as when Necker's cube turns over
 };
 
 /// From an oldest to a newest one, both included.
@@ -45,6 +46,10 @@ struct RecentExplanation {
 /// another plane; then both explanations are solved. Of a young map's problem, whose first map is what explained a few
 /// tenths of a second best, all is gone through, held by the first pose, the scale and the landmarks' priors. That
 /// takes as long as many updates, so it is done in shares.
+///
+/// What has depth has another explanation, too, where little of it is in view and the camera has hardly moved: near and
+/// far change places, and so do the ways to the left and to the right (Necker's reversal; Szeliski and Kang, "Shape
+/// ambiguities in structure from motion", 1997).
 class ExplanationSearch {
  public:
   /// Of the newest part of these states, the oldest of which is the oldest one that is being estimated, or, when the
@@ -53,7 +58,7 @@ class ExplanationSearch {
   /// the oldest state, where fewer than `enough` landmarks were known before, and where most of those seen in its
   /// newest interval were.
   static std::optional<ExplanationSearch> begin(const FactorGraph& graph, const StateRange& states, int enough,
-                                                SupposedPlane supposed, bool young = false);
+                                                Supposed supposed, bool young = false);
 
   /// Does a share: the linearisation of some 30,000 observations, or of what fewer take as long where states are many.
   /// False when it has come to its end.
@@ -63,16 +68,18 @@ class ExplanationSearch {
   const std::optional<RecentExplanation>& found() const { return found_; }
 
  private:
-  /// A plane through the middle of what is new.
-  struct Plane {
+  /// On a plane through the middle of what is new, or at a depth of its own.
+  struct Beginning {
     Vector3 normal, point;
-    double usual;  ///< depth
+    double usual;                ///< depth
+    std::vector<double> depths;  ///< of each landmark that is new, at its first sight; none: on the plane
 
-    Vector3 meets(const Vector3& p, const Vector3& ray) const;
+    /// Of a landmark, where a ray from p, of depth 1, meets it, within bounds.
+    Vector3 place(int landmark, const Vector3& p, const Vector3& ray) const;
   };
-  static std::optional<Plane> suppose(SupposedPlane supposed, const FactorGraph& problem, std::size_t fresh);
+  static std::optional<Beginning> suppose(Supposed supposed, const FactorGraph& problem, std::size_t fresh);
 
-  ExplanationSearch(int first, int landmarks_then, std::vector<int> fresh, FactorGraph problem, const Plane& plane);
+  ExplanationSearch(int first, int landmarks_then, std::vector<int> fresh, FactorGraph problem, Beginning beginning);
   bool pass();
   void add_state(int k);
   void begin_solving();
@@ -82,9 +89,9 @@ class ExplanationSearch {
   int landmarks_then_;
   std::vector<int> fresh_;  ///< landmarks of the whole problem: the first ones of this
   FactorGraph problem_;     ///< the state before the part first, if there is one, which is held
-  Plane plane_;
+  Beginning beginning_;
   int passes_;                     ///< a share
-  Engine through_;                 ///< goes through the problem from the plane
+  Engine through_;                 ///< goes through the problem from that beginning
   int gone_through_ = 0;           ///< its newest state
   std::vector<int> in_engine_;     ///< its landmarks, by those of the problem
   std::optional<Engine> other_;    ///< solved from where that ended

@@ -18,7 +18,7 @@ using namespace ambiguous_flight;
 
 /// By a search that is gone through at once.
 std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, int first_state, int enough,
-                                                   SupposedPlane supposed, bool young = false) {
+                                                   Supposed supposed, bool young = false) {
   auto search = ExplanationSearch::begin(graph, {first_state, static_cast<int>(graph.states.size()) - 1}, enough,
                                          supposed, young);
   if (!search) return std::nullopt;
@@ -31,9 +31,9 @@ std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, int
 
 TEST_CASE(
     "A local minimum, in which a plane and the way past it have changed places, gives way to the true explanation") {
-  for (const auto& [way, plane, young] : {std::tuple{Way{-0.4, 0.0}, SupposedPlane::frontal, false},
-                                          {Way{0.0, 0.4}, SupposedPlane::dual, false},
-                                          {Way{-0.4, 0.0}, SupposedPlane::frontal, true}}) {
+  for (const auto& [way, plane, young] : {std::tuple{Way{-0.4, 0.0}, Supposed::frontal_plane, false},
+                                          {Way{0.0, 0.4}, Supposed::dual_plane, false},
+                                          {Way{-0.4, 0.0}, Supposed::frontal_plane, true}}) {
     int found = 0;
     for (const std::uint64_t seed : {1, 2, 3}) {
       const Vector3 real = flight(way, seed, young).states.back().T.p;
@@ -56,9 +56,32 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("A young map in which near and far have changed places can be turned over once more") {
+  int better = 0, right = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    const FactorGraph truth = solved(flight({}, seed, true)), reversed = turned_over(truth);
+    const auto error = [&truth](const FactorGraph& graph) {
+      return (graph.states.back().T.p - truth.states.back().T.p).norm();
+    };
+    REQUIRE(cost(reversed) > cost(truth) + 100.0);
+    REQUIRE(error(reversed) > 0.3);
+    CHECK_FALSE(explain_otherwise(truth, 0, kEnough, Supposed::reversal, true));
+    const auto other = explain_otherwise(reversed, 0, kEnough, Supposed::reversal, true);
+    if (!other) continue;
+    Engine engine(reversed, {});
+    other->place_in(engine);
+    engine.optimise(20, 1e-9);
+    CHECK(cost(engine.graph()) < cost(reversed) - 10.0);
+    if (error(engine.graph()) < 0.6 * error(reversed)) ++better;
+    if (error(engine.graph()) < 0.01) ++right;
+  }
+  CHECK(better >= 3);  // of 6: a plane that is turned over leads to its dual as well
+  CHECK(right >= 1);
+}
+
 TEST_CASE("What has been added since another explanation was looked for goes along with it") {
   const FactorGraph wrong = misled(flight({-0.4, 0.0}, 1));
-  const auto other = explain_otherwise(wrong, 0, kEnough, SupposedPlane::frontal);
+  const auto other = explain_otherwise(wrong, 0, kEnough, Supposed::frontal_plane);
   REQUIRE(other);
   Engine engine(wrong, {});
   add_extrapolated_state(engine, kStep * kStates);
@@ -94,8 +117,8 @@ TEST_CASE("The true explanation has no better one, and without known landmarks n
   for (const Way& way : {Way{-0.4, 0.0}, Way{0.0, 0.4}}) {
     const FactorGraph truth = solved(flight(way, 1)), wrong = misled(flight(way, 1));
     const bool turning = way.turn != 0.0;
-    REQUIRE(explain_otherwise(wrong, 0, kEnough, turning ? SupposedPlane::frontal : SupposedPlane::dual));
-    for (const SupposedPlane plane : {SupposedPlane::frontal, SupposedPlane::dual}) {
+    REQUIRE(explain_otherwise(wrong, 0, kEnough, turning ? Supposed::frontal_plane : Supposed::dual_plane));
+    for (const Supposed plane : {Supposed::frontal_plane, Supposed::dual_plane}) {
       CHECK_FALSE(explain_otherwise(truth, 0, kEnough, plane));
       CHECK_FALSE(explain_otherwise(solved(flight(way, 1, true)), 0, kEnough, plane, true));
       CHECK_FALSE(explain_otherwise(wrong, 1, kOld + 1, plane, true));  // marginalised: of a part alone

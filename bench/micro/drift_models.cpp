@@ -35,6 +35,7 @@
 #include "bench/experiment.hpp"
 #include "bench/micro/drift_problem.hpp"
 #include "bench/micro/track_noise.hpp"
+#include "core/simulation/track_wander.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/plugin/track_player.hpp"
 #include "core/support/error.hpp"
@@ -267,7 +268,7 @@ void compare(const Arguments& arguments) {
       throw InputError(fmt::format("{}: its front-end tells no tracks; expected some", arguments.config));
     }
     const double stated = observations.front().sigma;
-    if (arguments.drift > 0.0) add_drift(observations, arguments.drift, arguments.time, Random(run.job.seed, 5));
+    if (arguments.drift > 0.0) add_wander(observations, arguments.drift, arguments.time, Random(run.job.seed, 5));
     const FactorGraph graph = final_graph(run.job, source->camera(), observations, plugins);
     TrackNoise noise = estimate_noise(graph);
     if (arguments.true_noise) {

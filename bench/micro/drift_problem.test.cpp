@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bench/micro/track_noise.hpp"
+#include "core/simulation/track_wander.hpp"
 #include "core/motion/wnoa.hpp"
 #include "core/simulation/random.hpp"
 #include "core/support/index.hpp"
@@ -61,7 +62,7 @@ Drawn draw(const TrackNoise& noise, std::uint64_t seed) {
       const SE3 T = GpInterval(result.truth[index(k - 1)], result.truth[index(k)]).pose(t);
       track.push_back({0, t, graph.camera.project(T.inverse() * point), kSigma});
     }
-    add_drift(track, kSigma * noise.drift, noise.time, Random(seed, 1 + static_cast<std::uint64_t>(j)));
+    add_wander(track, kSigma * noise.drift, noise.time, Random(seed, 1 + static_cast<std::uint64_t>(j)));
     for (const TrackObservation& z : track) {
       graph.add_observation(landmark, {z.t, z.pixel + kSigma * noise.white * normal(Vector2()), 1.0 / kSigma});
     }

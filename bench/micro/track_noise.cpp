@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <vector>
 
 #include "backends/gp_map/factors.hpp"
@@ -57,23 +56,6 @@ Variogram variogram_of(const gp_map::FactorGraph& graph) {
 }
 
 }  // namespace
-
-void add_drift(std::span<TrackObservation> observations, double drift, double time, Random random) {
-  struct Offset {
-    double t;
-    Vector2 value;
-  };
-  std::map<TrackId, Offset> offsets;
-  const auto normal = [&] { return Vector2(random.normal(), random.normal()); };
-  for (TrackObservation& z : observations) {
-    const auto [at, begins] = offsets.try_emplace(z.track, Offset{z.t, Vector2::Zero()});
-    Offset& now = at->second;
-    const double kept = begins ? 0.0 : std::exp((now.t - z.t) / time);
-    now = {z.t, kept * now.value + drift * std::sqrt(1.0 - kept * kept) * normal()};
-    z.pixel += now.value;
-    z.sigma = std::hypot(z.sigma, drift);
-  }
-}
 
 TrackNoise estimate_noise(const gp_map::FactorGraph& graph) {
   const Variogram variogram = variogram_of(graph);

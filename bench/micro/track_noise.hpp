@@ -1,10 +1,6 @@
 #pragma once
 
-#include <span>
-
 #include "backends/gp_map/factor_graph.hpp"
-#include "core/data/track.hpp"
-#include "core/simulation/random.hpp"
 
 namespace evbench {
 
@@ -14,9 +10,6 @@ struct TrackNoise {
   double white = 1.0, drift = 0.0;  ///< standard deviations
   double time = 1.0;                ///< [s] of the drift's correlation, exp(−Δt/time)
 };
-
-/// Adds drift to tracks [px], and to the sigmas that their observations state.
-void add_drift(std::span<TrackObservation> observations, double drift, double time, Random random);
 
 /// Estimates it [sigmas that the observations state] from how much residuals of one landmark differ with the time that
 /// lies between them, at the graph's estimate: half the mean square difference is white² + drift² (1 − exp(−Δt/time)),

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "core/simulation/time_spans.hpp"
+#include "core/simulation/track_wander.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
@@ -162,6 +163,10 @@ void TrackOptions::declare(OptionSet& set) {
   set.add("lifetime", lifetime, "smallest and largest lifetime of a track [s]").above(0.0).size(2);
   set.add("rate", rate, "smallest and largest mean update rate of a track [Hz]").range(0.1, 1e5).size(2);
   set.add("noise", noise, "standard deviation of the pixel noise, each axis [px]").range(0.0);
+  set.add("wander", wander,
+          "standard deviation of a slow error besides: each track wanders about its point, each axis [px]")
+      .range(0.0);
+  set.add("wander_time", wander_time, "time in which that is forgotten, exp(-dt/wander_time) [s]").above(0.0);
   set.add("quantisation", quantisation, "pixels are rounded to multiples of this [px]; 0: not rounded").range(0.0);
   set.add("outlier_share", outlier_share, "share of the tracks that move independently of the scene").range(0.0, 1.0);
   set.add("outlier_speed", outlier_speed, "mean speed of those [px/s]").range(0.0);
@@ -188,6 +193,7 @@ SimulatedTracks simulate_tracks(const TrackOptions& options, const Camera& camer
                                 double duration, std::uint64_t seed, const std::string& place) {
   options.check(camera, place);
   SimulatedTracks tracks = TrackSimulator(options, camera, motion, scene, duration, seed, place).run();
+  if (options.wander > 0.0) add_wander(tracks.observations, options.wander, options.wander_time, Random(seed, 2));
   if (tracks.observations.empty()) {
     throw InputError(
         fmt::format("{}: no observation in {} s; the camera sees no point of the scene, or blackouts cover "

@@ -12,6 +12,7 @@ struct TrackOptions {
   std::vector<double> lifetime = {0.5, 2.0};
   std::vector<double> rate = {50.0, 100.0};
   double noise = 0.7;
+  double wander = 0.0, wander_time = 0.3;
   double quantisation = 0.0;
   double outlier_share = 0.0, outlier_speed = 40.0;
   double drift_share = 0.0, drift_speed = 5.0;
@@ -45,8 +46,8 @@ struct SimulatedTracks {
 /// irregular times (gaps of 0.4 to 1.6 mean gaps), with noise and quantisation, until its lifetime is over or it leaves
 /// the image; then another begins elsewhere, with an id of its own (a dot that is seen again is a new track). Times are
 /// whole microseconds, as those of events are. `sigma` of an observation is √(noise² + quantisation²/12), at least 0.1
-/// px. The same arguments give the same bytes. Throws InputError, naming `place`, for options that contradict one
-/// another and when the camera sees no point of the scene at any time.
+/// px, and what it wanders by (track_wander.hpp). The same arguments give the same bytes. Throws InputError, naming
+/// `place`, for options that contradict one another and when the camera sees no point of the scene at any time.
 SimulatedTracks simulate_tracks(const TrackOptions& options, const Camera& camera, const Motion& motion, Scene& scene,
                                 double duration, std::uint64_t seed, const std::string& place);
 

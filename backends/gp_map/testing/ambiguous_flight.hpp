@@ -23,6 +23,9 @@ FactorGraph flight(const Way& way, std::uint64_t seed, bool young = false, int s
 /// Solved from where what is new, and observed, lies on a plane across the way.
 FactorGraph misled(FactorGraph graph);
 
+/// Solved from where near and far have changed places (Necker's reversal).
+FactorGraph turned_over(FactorGraph graph);
+
 FactorGraph solved(FactorGraph graph);
 
 double cost(const FactorGraph& graph);
