@@ -1,0 +1,179 @@
+#include "frontends/haste/lost_landmarks.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "frontends/haste/tracking/testing/event_patterns.hpp"
+#include "frontends/haste/tracking/tracker.hpp"
+
+using namespace evbench;
+using namespace evbench::haste;
+using evbench::haste::testing::corner_lines;
+using evbench::haste::testing::EventPattern;
+using evbench::haste::testing::PatternPose;
+
+namespace {
+
+constexpr TrackId kTrack = 7;
+const Vector2 kExpected(120.0, 90.0);  // [px] where the landmark is predicted
+
+using Lines = std::vector<std::pair<Vector2, Vector2>>;
+
+/// A row of upright lines 8 px apart: as good 8 px beside as where it is.
+Lines fence() {
+  Lines lines;
+  for (int k = -8; k <= 8; ++k) lines.push_back({{8.0 * k, -8.0}, {8.0 * k, 8.0}});
+  return lines;
+}
+
+/// Events of lines about a place [px], turned [rad].
+std::vector<Event> events(const Lines& lines, const Vector2& place, double angle = 0.0, std::uint64_t seed = 5) {
+  EventPattern pattern;
+  pattern.lines = lines;
+  pattern.pose = [=](double) { return PatternPose{place, angle}; };
+  pattern.noise = 0.0;
+  return pattern.events(0.1, seed);
+}
+
+/// As a tracker has learnt it that looked at them.
+Template look(const Lines& lines) {
+  Tracker tracker({}, {0, kExpected, 0.0});
+  for (const Event& event : events(lines, kExpected, 0.0, 6)) tracker.push(event);
+  REQUIRE(tracker.running());
+  return tracker.learnt_template();
+}
+
+/// A landmark that is expected at kExpected, lost at 0 s, and what is seen of late.
+struct Setting {
+  Camera camera;
+  GuidanceOptions options;
+  Matrix2 covariance = Matrix2::Identity();
+  SE3 T_before, T_now;
+
+  Setting() {
+    camera.width = 240;
+    camera.height = 180;
+    camera.pinhole = {200.0, 200.0, 120.0, 90.0};
+  }
+
+  Guidance guidance() const {
+    Guidance result(camera);
+    Feedback feedback;
+    feedback.state = TrackingState::tracking;
+    feedback.newest = ControlState{0.0, T_now, Vector6::Zero()};
+    feedback.expected.push_back({kTrack, {0.0, 0.0, 2.0}, kExpected, covariance});
+    result.receive(feedback);
+    return result;
+  }
+
+  LostLandmarks lost(const Lines& lines) const {
+    LostLandmarks result(options);
+    result.remember(kTrack, 0.0, look(lines), 0.0, T_before);
+    return result;
+  }
+
+  std::vector<LostLandmarks::Found> find(LostLandmarks& lost, const std::vector<Event>& seen, double t = 0.1,
+                                         const std::vector<Vector2>& taken = {}) const {
+    RecentEvents recent(15'000);
+    recent.add(seen);
+    return lost.find(guidance(), t, recent, taken, 6.0, camera);
+  }
+  std::vector<LostLandmarks::Found> find(const Lines& lines, const std::vector<Event>& seen) const {
+    LostLandmarks all = lost(lines);
+    return find(all, seen);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A lost landmark is found where it is, beside the place where it is expected") {
+  const Setting setting;
+  const Vector2 place = kExpected + Vector2(2.0, -1.0);
+  const auto found = setting.find(corner_lines(), events(corner_lines(), place));
+  REQUIRE(found.size() == 1);
+  CHECK(found.front().track == kTrack);
+  CHECK((found.front().pixel - place).norm() <= 1.0);
+  CHECK(found.front().look.mass() > 0.0);
+}
+
+TEST_CASE("What looks otherwise is not taken for a lost landmark") {
+  const Setting setting;
+  const Lines other{{{-12, 3}, {-3, 12}}, {{3, -12}, {12, -3}}, {{4, 12}, {12, 4}}};
+  CHECK(setting.find(corner_lines(), events(other, kExpected)).empty());
+  // Too few events to say.
+  std::vector<Event> few = events(corner_lines(), kExpected);
+  few.resize(kWindowSize / 2);
+  CHECK(setting.find(corner_lines(), few).empty());
+}
+
+TEST_CASE("A look that is as good in two places is taken for none") {
+  Setting setting;
+  setting.covariance = 25.0 * Matrix2::Identity();
+  for (std::uint64_t seed = 10; seed < 20; ++seed) {
+    const std::vector<Event> seen = events(fence(), kExpected + Vector2(1.0, 0.0), 0.0, seed);
+    CAPTURE(seed);
+    setting.options.search = 11;
+    CHECK(setting.find(fence(), seen).empty());
+    setting.options.search = 5;  // there is no second place in reach
+    CHECK(setting.find(fence(), seen).size() == 1);
+  }
+}
+
+TEST_CASE("The best place at the edge of what is searched is none, and how far is searched is as uncertain as it is") {
+  Setting setting;
+  const auto at = [&](double x) { return events(corner_lines(), kExpected + Vector2(x, 0.0)); };
+  REQUIRE(setting.options.search == 4);
+  CHECK(setting.find(corner_lines(), at(2.0)).size() == 1);
+  CHECK(setting.find(corner_lines(), at(4.0)).empty());
+  CHECK(setting.find(corner_lines(), at(6.0)).empty());
+  setting.options.search = 10;
+  CHECK(setting.find(corner_lines(), at(4.0)).size() == 1);  // 2 px + 4 standard deviations
+  CHECK(setting.find(corner_lines(), at(7.0)).empty());
+  setting.covariance = 4.0 * Matrix2::Identity();
+  CHECK(setting.find(corner_lines(), at(7.0)).size() == 1);
+}
+
+TEST_CASE("A lost landmark is looked for as it looks from where the camera is now") {
+  Setting setting;
+  Vector6 roll = Vector6::Zero();
+  roll.z() = 1.0;
+  setting.T_now = se3::exp(roll);  // the image turns the other way
+  CHECK(setting.find(corner_lines(), events(corner_lines(), kExpected, -1.0)).size() == 1);
+  CHECK(setting.find(corner_lines(), events(corner_lines(), kExpected, 0.0)).empty());
+}
+
+TEST_CASE("A lost landmark is not looked for where something is tracked, nor near the border, nor without a motion") {
+  Setting setting;
+  const std::vector<Event> seen = events(corner_lines(), kExpected);
+  LostLandmarks lost = setting.lost(corner_lines());
+  CHECK(setting.find(lost, seen, 0.1, {kExpected + Vector2(5.0, 0.0)}).empty());
+  CHECK(setting.find(lost, seen, 0.2, {kExpected + Vector2(7.0, 0.0)}).size() == 1);
+
+  RecentEvents recent(15'000);
+  recent.add(seen);
+  const Guidance nothing(setting.camera);
+  CHECK(lost.find(nothing, 0.3, recent, {}, 6.0, setting.camera).empty());
+
+  setting.camera.pinhole.cx = 10.0;
+  CHECK(setting.find(lost, events(corner_lines(), {10.0, 90.0}), 0.4).empty());
+}
+
+TEST_CASE("A lost landmark is forgotten in time, when it goes on, and is left alone for a while after a mistake") {
+  Setting setting;
+  setting.options.memory = 2.0;
+  const std::vector<Event> seen = events(corner_lines(), kExpected);
+  LostLandmarks lost = setting.lost(corner_lines());
+  CHECK(setting.find(lost, seen, 0.1).size() == 1);
+  CHECK(setting.find(lost, seen, 0.11).empty());  // just looked for
+  lost.disappoint(kTrack, 0.2);
+  CHECK(setting.find(lost, seen, 0.6).empty());
+  CHECK(setting.find(lost, seen, 0.8).size() == 1);
+  CHECK(setting.find(lost, seen, 2.1).empty());  // longer ago than it is remembered
+
+  LostLandmarks other = setting.lost(corner_lines());
+  other.forget(kTrack);
+  CHECK(setting.find(other, seen).empty());
+  other.remember(kTrack, 0.0, Template{}, 0.0, {});  // one that has learnt nothing
+  CHECK(setting.find(other, seen).empty());
+}

@@ -1,0 +1,200 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "core/testing/event_scene.hpp"
+#include "frontends/haste/haste.hpp"
+#include "frontends/haste/tracking/testing/event_patterns.hpp"
+
+// Why and when tracks end, as whoever takes the observations sees it.
+using namespace evbench;
+using namespace evbench::haste;
+using evbench::haste::testing::EventPattern;
+using evbench::haste::testing::PatternPose;
+using evbench::testing::EventScene;
+using evbench::testing::swing;
+
+namespace {
+
+const EventScene& scene() {
+  static const EventScene result(swing, 1.0, EventScene::quadrangles(150, 1));
+  return result;
+}
+
+/// A front-end, and what it has told so far.
+struct Told {
+  Haste haste;
+  TrackBatch batch = {};
+  double t = 0.0;                                  ///< [s]
+  std::map<TrackId, TrackObservation> alive = {};  ///< newest observations
+  std::map<TrackId, TrackObservation> ended = {};  ///< likewise
+  std::map<TrackId, double> ended_at = {};         ///< [s]
+
+  Told(const Options& options, const Source& source) : haste(options, {source, 0, ""}) {}
+
+  void go_on_to(double to) {
+    while (t < to - 1e-9) {
+      t = std::min(to, t + 0.01);
+      haste.advance({t}, batch);
+      for (const TrackObservation& z : batch.observations) {
+        INFO("track " << z.track << " at " << z.t << " s");
+        CHECK_FALSE((ended_at.contains(z.track) && z.t > ended_at.at(z.track)));
+        alive[z.track] = z;
+      }
+      for (const TrackEnd& end : batch.ended) {
+        ended_at[end.track] = end.t;
+        if (const auto track = alive.find(end.track); track != alive.end()) ended.insert(alive.extract(track));
+      }
+    }
+  }
+
+  /// How many trackers ended for a reason, in the remark's words.
+  int ended_as(const std::string& words) const {
+    const std::string line = haste.remarks().at(1);
+    const std::size_t end = line.find(' ' + words);
+    REQUIRE(end != std::string::npos);
+    return std::stoi(line.substr(line.rfind(' ', end - 1)));
+  }
+};
+
+/// What a back-end that knows the truth says at t [s]: a landmark for each of these observations, where it is seen.
+Feedback truth(double t, const std::vector<TrackObservation>& observed) {
+  Feedback feedback;
+  feedback.t = t;
+  feedback.state = TrackingState::tracking;
+  constexpr double kStep = 1e-3;
+  const Vector6 velocity = se3::log(swing(t).inverse() * swing(t + kStep)) / kStep;
+  feedback.newest = ControlState{t, swing(t), velocity};
+  for (const TrackObservation& z : observed) {
+    const SE3 T = swing(z.t);
+    const Vector3 ray = T.R() * scene().camera().pinhole.ray(z.pixel);
+    feedback.expected.push_back(
+        {z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray, z.pixel, 0.25 * Matrix2::Identity()});
+  }
+  return feedback;
+}
+
+/// Eight tracks as they are at 0.5 s, which without any feedback would live for a while yet.
+std::vector<TrackObservation> eight() {
+  Told told({}, scene());
+  told.go_on_to(0.5);
+  std::map<TrackId, TrackObservation> alive = told.alive;
+  told.go_on_to(0.65);
+  std::vector<TrackObservation> result;
+  for (const auto& [id, z] : alive) {
+    if (result.size() < 8 && told.alive.contains(id)) result.push_back(z);
+  }
+  REQUIRE(result.size() == 8);
+  return result;
+}
+
+/// Moves a landmark by so much in the image [px].
+void shift(ExpectedFeature& feature, const Vector2& by) {
+  feature.position += swing(0.5).R() * Vector3(by.x(), by.y(), 0.0) * EventScene::kDistance / 200.0;
+}
+
+constexpr const char* kVetoed = "far from where they were expected";
+
+/// A square of 8 px that moves over the image, without anything else.
+std::vector<Event> square(const std::function<Vector2(double)>& place, std::uint64_t seed) {
+  EventPattern pattern;
+  pattern.lines = {{{-4, -4}, {4, -4}}, {{4, -4}, {4, 4}}, {{4, 4}, {-4, 4}}, {{-4, 4}, {-4, -4}}};
+  pattern.pose = [=](double t) { return PatternPose{place(t), 0.0}; };
+  pattern.rate = 60e3;
+  pattern.noise = 0.0;
+  return pattern.events(1.5, seed);
+}
+
+}  // namespace
+
+TEST_CASE("A track that the back-end holds for an outlier ends, and is observed no more") {
+  Told told({}, scene());
+  told.go_on_to(0.5);
+  const TrackId outlier = eight()[3].track;
+  Feedback feedback = truth(0.5, {});
+  feedback.outliers = {outlier, 4711};
+  told.haste.receive(feedback);
+  told.go_on_to(0.6);
+  REQUIRE(told.ended_at.contains(outlier));
+  CHECK(told.ended_at.at(outlier) == Approx(0.5).margin(1e-6));
+  told.go_on_to(1.0);
+  CHECK_FALSE(told.alive.contains(outlier));
+  CHECK(told.ended_as("as outliers") == 1);
+
+  Options deaf;
+  deaf.guidance.outliers = false;
+  Told other(deaf, scene());
+  other.go_on_to(0.5);
+  other.haste.receive(feedback);
+  other.go_on_to(0.6);
+  CHECK(other.ended_as("as outliers") == 0);
+}
+
+TEST_CASE(
+    "A tracker far from where its landmark is expected is vetoed, but if most are, it is the expectation's fault") {
+  for (const int far : {0, 1, 8}) {
+    Told told({}, scene());
+    told.go_on_to(0.5);
+    const std::vector<TrackObservation> observed = eight();
+    Feedback feedback = truth(0.5, observed);
+    for (int i = 0; i < far; ++i) {  // hither and thither, as no motion of the camera would
+      shift(feedback.expected[static_cast<std::size_t>(i)], {i % 2 == 0 ? 20.0 : -20.0, i % 4 < 2 ? 20.0 : -20.0});
+    }
+    told.haste.receive(feedback);
+    told.go_on_to(0.55);
+    CAPTURE(far);
+    CHECK(told.ended_as(kVetoed) == (far == 1 ? 1 : 0));
+    CHECK(told.ended_at.contains(observed.front().track) == (far == 1));
+  }
+}
+
+TEST_CASE("Nothing is vetoed where that is switched off, nor by a back-end that is lost") {
+  for (const bool lost : {false, true}) {
+    Options options;
+    options.guidance.veto = lost;
+    Told told(options, scene());
+    told.go_on_to(0.5);
+    Feedback feedback = truth(0.5, eight());
+    shift(feedback.expected.front(), {20.0, 20.0});
+    if (lost) feedback.state = TrackingState::lost;
+    told.haste.receive(feedback);
+    told.go_on_to(0.55);
+    CHECK(told.ended_as(kVetoed) == 0);
+  }
+}
+
+TEST_CASE("Of two trackers that come upon one another the younger ends") {
+  EventScene source(swing, 1.5, {});
+  const auto from = [](double x, double t) { return Vector2(120.0 + x * std::max(0.0, 1.0 - t / 0.9), 90.0); };
+  source.add(square([&](double t) { return from(-25.0, t); }, 1));
+  source.add(square([&](double t) { return from(25.0, t); }, 2));
+  Options options;
+  options.tracks = 2;
+  Told told(options, source);
+  told.go_on_to(0.4);
+  REQUIRE(told.alive.size() == 2);
+  const TrackId older = told.alive.begin()->first, younger = told.alive.rbegin()->first;
+  CHECK((told.alive.at(older).pixel - told.alive.at(younger).pixel).norm() > 15.0);
+  told.go_on_to(1.2);
+  CHECK(told.ended_as("crowded") >= 1);
+  CHECK(told.ended_at.contains(younger));
+  CHECK_FALSE(told.ended_at.contains(older));
+}
+
+TEST_CASE("A tracker that comes near the image's border ends there") {
+  EventScene source(swing, 1.5, {});
+  source.add(square([](double t) { return Vector2(120.0 + 110.0 * t, 90.0); }, 1));
+  Options options;
+  options.tracks = 1;
+  Told told(options, source);
+  told.go_on_to(0.5);
+  REQUIRE(told.alive.size() == 1);
+  const TrackId track = told.alive.begin()->first;
+  told.go_on_to(1.3);
+  REQUIRE(told.ended.contains(track));
+  CHECK(told.ended_as("at the border") >= 1);
+  CHECK(told.ended.at(track).pixel.x() > 239.0 - options.life.border - 6.0);
+  CHECK(told.ended.at(track).pixel.x() < 239.0);
+}
