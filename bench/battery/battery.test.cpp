@@ -4,6 +4,7 @@
 
 #include "core/plugin/registration.hpp"
 #include "core/plugin/tracking_monitor.hpp"
+#include "core/testing/event_scene.hpp"
 
 using namespace evbench;
 using namespace evbench::battery;
@@ -106,6 +107,18 @@ TEST_CASE("The oracle and simulated sources pass the battery") {
   const Json events = Json::parse(
       R"({"duration": 0.2, "camera": {"width": 96, "height": 72, "focal_length": 80}, "tracks": {"alive": 10}})");
   CHECK(joined(failures(source_checks(plugins, "event_simulation", events))) == "");
+}
+
+TEST_CASE("haste passes the battery on events, with what guides it and without, whichever way it places observations") {
+  using testing::EventScene;
+  const EventScene scene(testing::swing, 0.6, EventScene::quadrangles(150, 1));
+  const Plugins plugins = registered_plugins();
+  for (const char* options :
+       {"{}", R"({"guidance": {"outliers": false, "veto": false, "reacquire": false}})",
+        R"({"place": "new_state", "delay": 0})", R"({"detection": {"method": "histogram"}, "tracks": 10})"}) {
+    INFO(options);
+    CHECK(joined(failures(frontend_checks(plugins, "haste", Json::parse(options), scene))) == "");
+  }
 }
 
 TEST_CASE("An unknown plugin is refused before any check") {
