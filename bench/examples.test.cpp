@@ -1,0 +1,85 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "bench/testing/keys.hpp"
+#include "bench/testing/program.hpp"
+
+using namespace evbench;
+using namespace evbench::testing;
+
+namespace {
+
+/// Configs of examples: those of built-in plugins alone, and those that need a program beside them.
+std::vector<std::string> example_configs() {
+  std::vector<std::string> paths;
+  const std::filesystem::path configs = EVBENCH_CONFIGS;
+  for (const auto& entry : std::filesystem::directory_iterator(configs / "examples")) {
+    if (entry.path().extension() == ".json") paths.push_back(entry.path().string());
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(configs / "../examples")) {
+    const std::filesystem::path config = entry.path() / "config.json";
+    if (std::filesystem::exists(config)) paths.push_back(config.string());
+  }
+  return paths;
+}
+
+template <class Interface>
+std::set<std::string> built_in() {
+  std::set<std::string> names;
+  for (const auto& [name, entry] : known_plugins().of<Interface>().entries()) {
+    if (entry.origin == kBuiltIn) names.insert(name);
+  }
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("Each built-in front-end and back-end is in an example, and each pair of them that makes sense") {
+  std::set<std::string> frontends, backends;
+  std::set<std::pair<std::string, std::string>> pairs;
+  for (const std::string& path : example_configs()) {
+    const Json config = Json::parse(read_file(path));
+    const std::string frontend = config.at("frontend").at("type");
+    frontends.insert(frontend);
+    const Json all = config.contains("backends") ? config.at("backends") : Json::array({config.at("backend")});
+    for (const Json& backend : all) {
+      backends.insert(backend.at("type").get<std::string>());
+      pairs.emplace(frontend, backend.at("type"));
+    }
+  }
+  CHECK(frontends == built_in<FrontEnd>());
+  CHECK(backends == built_in<BackEnd>());
+  for (const char* frontend : {"haste", "str", "dots", "recorded", "oracle"}) {
+    CAPTURE(frontend);
+    CHECK(pairs.contains({frontend, "gp_map"}));
+    CHECK(pairs.contains({frontend, "bundle_adjustment"}));
+  }
+  // Of a camera that only turns there is no map to be made.
+  for (const char* frontend : {"haste", "str_motion", "oracle"}) {
+    CAPTURE(frontend);
+    CHECK(pairs.contains({frontend, "rotation_averaging"}));
+  }
+}
+
+TEST_CASE("Examples that need no data of one's own are fine as they are, and one runs with tracks from its file") {
+  const TemporaryFolder folder;
+  int without_data = 0;
+  for (const std::string& path : example_configs()) {
+    if (read_file(path).find("${EVBENCH_DATA}") != std::string::npos) continue;
+    ++without_data;
+    const Outcome checked = testing::evbench(folder, "run --check '" + path + "'");
+    CAPTURE(path, checked.err);
+    CHECK(checked.exit_code == 0);
+  }
+  CHECK(without_data >= 8);
+  const Outcome run = testing::evbench(
+      folder, "run '" + std::string(EVBENCH_CONFIGS) + "/examples/tracks_from_file.json' --quiet --out results");
+  CAPTURE(run.err);
+  CHECK(run.exit_code == 0);
+  for (const std::string& key : names_in(folder.file("results/tracks_from_file"))) {
+    CHECK(Json::parse(read_file(folder.file("results/tracks_from_file/" + key + "/status.json"))).at("state") == "ok");
+  }
+}
