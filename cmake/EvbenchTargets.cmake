@@ -65,7 +65,8 @@ function(evbench_library name kind)
 endfunction()
 
 # evbench_tests(NAME [GROUPED] SOURCES ... LINKS ...): the *.test.cpp of a folder as one test program, each test case a ctest of its
-# own. Tests of real data read EVBENCH_DATA and EVBENCH_PROBLEMS.
+# own, which fails when it hangs: when it takes longer than EVBENCH_TEST_SECONDS. Tests of real data read EVBENCH_DATA and
+# EVBENCH_PROBLEMS.
 function(evbench_tests name)
   if(NOT EVBENCH_TESTS)
     return()
@@ -85,6 +86,7 @@ function(evbench_tests name)
     evbench_group(${name})
   endif()
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:"
+                       TIMEOUT ${EVBENCH_TEST_SECONDS}
                        FAIL_REGULAR_EXPRESSION "No tests ran")  # of a name that ctest takes apart, at a semicolon
 endfunction()
 
