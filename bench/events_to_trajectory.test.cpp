@@ -2,12 +2,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "bench/runner.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/median.hpp"
 #include "core/testing/event_scene.hpp"
 #include "eval/alignment.hpp"
+#include "eval/latency.hpp"
 
 // From events to a trajectory, by haste and gp_map, with what the world throws at a camera.
 using namespace evbench;
@@ -16,22 +18,23 @@ using evbench::testing::swing;
 
 namespace {
 
-Execution run(const Source& source, const Json& frontend = Json::object(), const std::string& mode = "sequential") {
+Execution run(const Source& source, const Json& frontend = Json::object(), const std::string& mode = "sequential",
+              const std::string& backend = "gp_map") {
   const Plugins plugins = registered_plugins();
   Job job;
   job.frontend = {"haste", plugins.of<FrontEnd>().find("haste", "").resolve(frontend, "haste", ""), "frontend"};
-  job.backend = {"gp_map", plugins.of<BackEnd>().find("gp_map", "").resolve(Json::object(), "gp_map", ""), "backend"};
+  job.backend = {backend, plugins.of<BackEnd>().find(backend, "").resolve(Json::object(), backend, ""), "backend"};
   job.pipeline.mode = mode;
   return execute(job, source, plugins, {});
 }
 
-/// Of the pieces that have poses from a time on [s] the one that has most of them; none where there is none.
-const Piece* piece_from(const RunResult& result, double from) {
+/// The piece that has most poses within a span of time [s]; none where none has any.
+const Piece* piece_of(const RunResult& result, double from, double to = 1e9) {
   const Piece* best = nullptr;
   std::ptrdiff_t most = 0;
   for (const Piece& piece : result.pieces) {
-    const auto poses =
-        std::ranges::count_if(piece.final_trajectory.poses(), [&](const StampedPose& pose) { return pose.t >= from; });
+    const auto poses = std::ranges::count_if(piece.final_trajectory.poses(),
+                                             [&](const StampedPose& pose) { return pose.t >= from && pose.t <= to; });
     if (poses > most) {
       most = poses;
       best = &piece;
@@ -44,7 +47,7 @@ const Piece* piece_from(const RunResult& result, double from) {
 /// [s], of the piece that covers it.
 double error(const Source& source, const Execution& execution, double from = 0.0, double to = 1e9) {
   constexpr double kNone = 1e9;
-  const Piece* piece = piece_from(execution.result, from);
+  const Piece* piece = piece_of(execution.result, from, to);
   if (!piece) return kNone;
   std::vector<PosePair> pairs;
   double path = 0.0;
@@ -72,7 +75,7 @@ void check_recovered(const Source& source, const Execution& execution, double fr
   CAPTURE(from, to_string(result.status.state), result.status.reason, result.pieces.size());
   REQUIRE(execution.complete);
   CHECK((result.status.state == RunState::ok) == result.status.reason.empty());
-  const Piece* piece = piece_from(result, from);
+  const Piece* piece = piece_of(result, from);
   REQUIRE(piece);
   CHECK(piece->final_trajectory.start() < from + kMissing);
   CHECK(piece->final_trajectory.end() > source.time_range().to - kMissing);
@@ -112,6 +115,31 @@ TEST_CASE(
       concurrent.result.pieces[0].final_trajectory.poses(), sequential.result.pieces[0].final_trajectory.poses(), {},
       [](const StampedPose& pose) { return std::pair(pose.t, pose.T.p); },
       [](const StampedPose& pose) { return std::pair(pose.t, pose.T.p); }));
+}
+
+TEST_CASE("The trajectory has seen an event within a tenth of a second, as long as there is something to track") {
+  constexpr double kDelay = 0.03;  // [s], of haste's observations
+  const EventScene scene(swing, 3.0, wall());
+  for (const char* backend : {"gp_map", "bundle_adjustment"}) {
+    const Execution execution = run(scene, Json::object(), "sequential", backend);
+    REQUIRE(execution.result.pieces.size() == 1);
+    const auto& told = execution.result.pieces[0].told;
+    const std::optional<Delay> delay = delay_of(told);
+    CAPTURE(backend);
+    REQUIRE(delay);
+    CHECK(delay->median >= kDelay - 1e-6);
+    CHECK(delay->median <= 0.07);
+    CHECK(delay->p99 <= 0.1);
+    CHECK(delay->max <= 0.1);
+    // Nor does it wait with what it tells: from the first pose on there is a newer one at all times.
+    double before = told.front().t;
+    for (const OnlinePose& pose : told) {
+      if (pose.t <= before) continue;
+      CHECK(pose.t - before < 0.1);
+      before = pose.t;
+    }
+    CHECK(before > 2.9);
+  }
 }
 
 TEST_CASE("Landmarks that come back into view are found again, and their tracks go on") {
@@ -169,7 +197,8 @@ TEST_CASE("A sensor that tells nothing for five seconds while the camera moves o
   const RunResult& result = execution.result;
   const bool still = std::ranges::any_of(result.still, [](const StillSpan& s) { return s.from < 3.0 && s.to > 7.0; });
   CHECK((still || result.status.state != RunState::ok));
-  check_recovered(scene, execution, 8.0);
+  check_recovered(scene, execution, 9.0);  // when the back-end's patience with what it knew is over
+  CHECK(error(scene, execution, 0.0, 2.5) < 0.02);
 }
 
 TEST_CASE("A burst of a million events in 10 ms does no lasting harm") {
@@ -181,7 +210,10 @@ TEST_CASE("A burst of a million events in 10 ms does no lasting harm") {
                 static_cast<std::uint16_t>(random.index(180)), i % 2 == 0};
   }
   scene.add(burst);
-  check_recovered(scene, run(scene), 2.2);
+  const Execution execution = run(scene);
+  check_recovered(scene, execution, 2.2);
+  CHECK(error(scene, execution, 0.0, 2.0) < 0.02);  // nor to what was known
+  CHECK(error(scene, execution) < 0.02);            // nor to what connects the two
 }
 
 TEST_CASE("Hot pixels that fire five hundred times a second are borne") {
@@ -211,7 +243,9 @@ TEST_CASE("A light that flickers for a second over half of all pixels does no la
     }
   }
   scene.add(flicker);
-  check_recovered(scene, run(scene), 3.3);
+  const Execution execution = run(scene);
+  check_recovered(scene, execution, 3.3);
+  CHECK(error(scene, execution, 0.0, 2.0) < 0.02);
 }
 
 TEST_CASE("A camera that stands still for ten seconds first has its trajectory when it moves") {
@@ -292,7 +326,7 @@ TEST_CASE("A texture that repeats itself does not fool re-acquisition") {
 }
 
 TEST_CASE("A hand that moves before the camera is rarely taken for the world") {
-  constexpr std::uint64_t kHands = 5;  // of 20 three are, which of them is chance
+  constexpr std::uint64_t kHands = 5;  // of seeds 1 to 20 none is taken for it: all end within 0.4 % of the path
   std::vector<double> errors;
   for (std::uint64_t seed = 9; seed < 9 + kHands; ++seed) {
     EventScene scene(swing, 4.0, wall());
@@ -312,6 +346,7 @@ TEST_CASE("A hand that moves before the camera is rarely taken for the world") {
     errors.push_back(error(scene, execution));
   }
   CHECK(median(errors) < 0.01);
+  CHECK(std::ranges::count_if(errors, [](double e) { return e < 0.01; }) >= 4);  // rarely is not never
 }
 
 TEST_CASE("Events out of order, twice, at the border and outside the sensor are borne") {

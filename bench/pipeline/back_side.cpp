@@ -71,18 +71,23 @@ void BackSide::begin() {
   estimators_.push_back(std::move(estimator));
 }
 
-/// A pose ahead of the data counts as known when its time has come.
+/// A pose ahead of the data counts as known when its time has come. A back-end knows the times of the observations that
+/// it makes poses from; where a front-end tells those late, the poses are known as much later.
 void BackSide::hear(OnlinePose pose, Estimator& estimator) const {
   if (!std::isfinite(pose.t) || !is_finite(pose) || (pose.velocity && !pose.velocity->allFinite())) {
     throw std::runtime_error(fmt::format("the back-end's pose at {:.6f} s is not finite", pose.t));
   }
-  pose.known_at = std::max(pose.t, pose.known_at.value_or(seen_));
+  const double said = std::max(pose.t, pose.known_at.value_or(seen_));
   std::vector<OnlinePose>& told = estimator.told;
-  if (!told.empty() && !(*pose.known_at >= *told.back().known_at)) {
-    throw std::runtime_error(
-        fmt::format("the back-end told an online pose as known at {:.6f} s after one known at {:.6f} s", *pose.known_at,
-                    *told.back().known_at));
+  if (!told.empty() && !(said >= estimator.said)) {
+    throw std::runtime_error(fmt::format(
+        "the back-end told an online pose as known at {:.6f} s after one known at {:.6f} s", said, estimator.said));
   }
+  estimator.said = said;
+  const double late = seen_ - until_;
+  pose.known_at = said < seen_ ? std::min(said + late, seen_) : said;
+  // What comes less late than what was told before it has waited for that.
+  if (!told.empty()) pose.known_at = std::max(*pose.known_at, *told.back().known_at);
   told.push_back(pose);
   if (!estimator.newest || pose.t >= estimator.newest->t) estimator.newest = pose;
 }

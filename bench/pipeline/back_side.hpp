@@ -39,6 +39,7 @@ class BackSide {
   struct Estimator {
     std::unique_ptr<BackEnd> backend;
     std::vector<OnlinePose> told;
+    double said = 0.0;                  ///< [s], when the last of these was known, in the back-end's words
     std::optional<StampedPose> newest;  ///< of these
     CovarianceSamples covariances;
   };

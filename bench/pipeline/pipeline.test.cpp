@@ -202,6 +202,46 @@ TEST_CASE("What a front-end tells late is known late, and feedback waits for it,
   CHECK(sequential.observations == tracks({{0.0, 1.0}}).size());
 }
 
+TEST_CASE("A back-end that says itself when it knew a pose knows it as late, where observations are told late") {
+  class Exact : public BackEnd {
+   public:
+    explicit Exact(const BackEndContext& context) : mean_(quiet(context)), context_(context) {}
+    void advance(const TrackBatch& batch) override {
+      mean_.advance(batch);
+      for (const TrackObservation& z : batch.observations) context_.online({{z.t, {}}, z.t, {}});
+    }
+    Feedback feedback(const FeedbackNeeds& needs) override { return mean_.feedback(needs); }
+    void finish() override { mean_.finish(); }
+    Status status() const override { return mean_.status(); }
+    PoseTrajectory trajectory() const override { return mean_.trajectory(); }
+    std::vector<Landmark> map() const override { return {}; }
+
+   private:
+    static BackEndContext quiet(BackEndContext context) {
+      context.online = [](const OnlinePose&) {};
+      return context;
+    }
+    Mean mean_;
+    BackEndContext context_;
+  };
+  const auto make = [](const BackEndContext& context) { return std::make_unique<Exact>(context); };
+  LateListener late(tracks({{0.0, 1.0}}), {});
+  const RunResult result = run(late, 1.0, {}, make);
+  REQUIRE(result.pieces.size() == 1);
+  const auto& told = result.pieces[0].told;
+  REQUIRE(told.size() > 500);
+  for (const OnlinePose& pose : told) {
+    if (pose.t < 0.05 || pose.t > 0.9) continue;
+    CHECK(*pose.known_at == Approx(pose.t + LateListener::kDelay).margin(1e-9));
+  }
+  CHECK(std::ranges::is_sorted(told, {}, [](const OnlinePose& pose) { return *pose.known_at; }));
+
+  Listener prompt(tracks({{0.0, 1.0}}), {});
+  const RunResult at_once = run(prompt, 1.0, {}, make);
+  REQUIRE(at_once.pieces.size() == 1);
+  for (const OnlinePose& pose : at_once.pieces[0].told) CHECK(*pose.known_at == pose.t);
+}
+
 TEST_CASE("Feedback reaches the front-end after the latency in data time, in order, each once") {
   PipelineOptions options;
   options.latency = 0.025;

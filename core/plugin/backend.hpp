@@ -29,7 +29,8 @@ struct BackEndContext {
   /// Takes poses of the causal estimate as they are made: {t, T}, and with {{t, T}, known_at, velocity} when the data
   /// were complete that are in it, and how it moves. A pose later than all told before is the newest: it is told first
   /// of those that an update makes, at once. What is said of an older time (again) is a better estimate, for whoever
-  /// can wait: for one that smooths. known_at must not decrease.
+  /// can wait: for one that smooths. known_at must not decrease. It is in the observations' time: that a front-end told
+  /// them later (TrackBatch::seen) is added by the harness.
   std::function<void(const OnlinePose&)> online = [](const OnlinePose&) {};
   std::function<void(const std::string&)> log = [](const std::string&) {};  ///< a line for the run's log.txt
 };
