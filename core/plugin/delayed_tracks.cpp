@@ -8,6 +8,10 @@ void DelayedTracks::add(const TrackObservation& z) {
   waiting_.insert(std::ranges::upper_bound(waiting_, z.t, {}, &TrackObservation::t), z);
 }
 
+void DelayedTracks::take_back(TrackId track, double t) {
+  std::erase_if(waiting_, [&](const TrackObservation& z) { return z.track == track && z.t > t; });
+}
+
 void DelayedTracks::tell(double t, std::size_t most, TrackBatch& batch) {
   batch.until = std::max(until_, t);
   if (most > 0 && has(most, batch.until)) batch.until = waiting_[most - 1].t;

@@ -13,6 +13,8 @@ class DelayedTracks {
 
   /// One of a time that has not been told yet.
   void add(const TrackObservation& z);
+  /// Leaves out those of a track that stand for times after `t` and have not been told yet.
+  void take_back(TrackId track, double t);
   /// Ends come in time order.
   void end(const TrackEnd& ended) { ended_.push_back(ended); }
 

@@ -8,6 +8,7 @@
 #include "core/events/event_time.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/index.hpp"
+#include "frontends/haste/tracking/alignment.hpp"
 
 namespace evbench::haste {
 namespace {
@@ -16,7 +17,7 @@ const Registration<FrontEnd, Haste> registration(
     "haste",
     "tracks features in events asynchronously by hypotheses (Alzugaray and "
     "Chli 2020), finds lost landmarks again",
-    2);
+    3);
 
 constexpr double kApart = 1e-6;  ///< [s] between two observations of a track, at least
 
@@ -38,12 +39,16 @@ Haste::Haste(const Options& options, const FrontEndContext& context)
       trackers_(camera_.width, camera_.height),
       guidance_(camera_),
       lost_(options.guidance),
-      detected_(range_.from) {
+      detected_(range_.from),
+      last_event_(range_.from) {
   check_border(options.detection.border, camera_, context.place + ".detection.border");
   check_border(options.life.border, camera_, context.place + ".life.border");
 }
 
 void Haste::take(std::span<const Event> events) {
+  constexpr double kSilence = 0.1;  // [s], longer than from one tick to the next: an end of it is at the front
+  if (seconds(events.front().t) - last_event_ > kSilence) doubt_trackers();
+  last_event_ = seconds(events.back().t);
   recent_.add(events);
   changes_.clear();
   trackers_.push(events, changes_);
@@ -53,7 +58,9 @@ void Haste::take(std::span<const Event> events) {
 void Haste::observe(const Change& change) {
   const auto found = tracks_.find(change.tracker);
   Track& track = found->second;
-  odometer_ += (change.after.position - change.before.position).norm() / static_cast<double>(tracks_.size());
+  const double way = (change.after.position - change.before.position).norm();
+  odometer_ += way / static_cast<double>(tracks_.size());
+  track.way += way;
   track.odometer = odometer_;
   track.pixel = change.after.position;
   TrackObservation z{track.id, seconds(change.after.t), place_of(change, options_.place), options_.sigma};
@@ -63,7 +70,8 @@ void Haste::observe(const Change& change) {
   if (track.probation > 0) {
     if (!is_as_expected(track.id, z.pixel, z.t)) {
       lost_.disappoint(track.id, clock_);
-      track = {.id = next_id_++, .odometer = track.odometer, .pixel = track.pixel};
+      track = {
+          .id = next_id_++, .odometer = track.odometer, .pixel = track.pixel, .from = track.from, .way = track.way};
       z.track = track.id;
     } else if (--track.probation > 0) {
       return;
@@ -82,11 +90,51 @@ bool Haste::is_as_expected(TrackId track, const Vector2& pixel, double t) const 
 }
 
 void Haste::look() {
+  end_wanderers();
+  end_strangers();
   end_trackers();
   correct_guidance();
   if (options_.guidance.veto) veto_strays();
   if (options_.guidance.reacquire) reacquire();
   if (clock_ - detected_ >= options_.detection.interval) replenish();
+}
+
+/// A camera that stood still goes on to see what it saw; one that told nothing meanwhile sees something else, of which
+/// trackers would make the old landmarks.
+void Haste::doubt_trackers() {
+  for (auto& [id, track] : tracks_) {
+    if (const Tracker& tracker = trackers_.tracker(id); tracker.running()) track.doubted = tracker.event_count();
+  }
+}
+
+/// As soon as their windows are of new events.
+void Haste::end_strangers() {
+  for (const std::int64_t id : trackers_.ids()) {
+    const Tracker& tracker = trackers_.tracker(id);
+    Track& track = tracks_.at(id);
+    if (track.doubted < 0 || tracker.event_count() - track.doubted < kWindowSize) continue;
+    track.doubted = -1;
+    const Alignment seen = align(tracker.learnt_template(), recent_.window(track.pixel), tracker.grid_state());
+    if (seen.score < options_.guidance.similarity) end(id, End::silence);
+  }
+}
+
+/// No camera goes far to and fro within a tick; a tracker does so that follows a burst of noise. What it told since the
+/// last tick is no observation, and its way none of the image's.
+void Haste::end_wanderers() {
+  constexpr double kFar = 20.0;    // [px]
+  constexpr double kAstray = 0.5;  // of its way, if it has come no farther than that
+  double way = 0.0;
+  std::vector<std::int64_t> wanderers;
+  for (const auto& [tracker, track] : tracks_) {
+    if (track.way < kFar || (track.pixel - track.from).norm() > kAstray * track.way) continue;
+    way += track.way;
+    wanderers.push_back(tracker);
+  }
+  if (wanderers.empty()) return;
+  odometer_ -= way / static_cast<double>(tracks_.size());
+  for (auto& [tracker, track] : tracks_) track.odometer = std::min(track.odometer, odometer_);
+  for (const std::int64_t tracker : wanderers) end(tracker, End::wandering);
 }
 
 void Haste::end_trackers() {
@@ -98,7 +146,7 @@ void Haste::end_trackers() {
   };
   for (const std::int64_t id : trackers_.ids()) {
     const Tracker& tracker = trackers_.tracker(id);
-    const Track& track = tracks_.at(id);
+    Track& track = tracks_.at(id);
     if (!camera_.contains(track.pixel, life.border)) {
       end(id, End::border);
     } else if (tracker.running() && tracker.scores().spread() < life.spread) {
@@ -109,6 +157,10 @@ void Haste::end_trackers() {
       end(id, End::starvation);
     } else if (crowded(id, track.pixel)) {
       end(id, End::crowding);
+    } else {
+      if (track.doubted < 0) track.found = track.told;
+      track.from = track.pixel;
+      track.way = 0.0;
     }
   }
 }
@@ -185,6 +237,10 @@ void Haste::end(std::int64_t tracker, End why) {
   if (track.probation > 0) {
     lost_.disappoint(track.id, clock_);
   } else {
+    // Nothing of this has been told that is younger than the delay, however the run exchanges.
+    if (why == End::wandering || why == End::silence) {
+      told_.take_back(track.id, std::max(track.found, clock_ - options_.delay));
+    }
     told_.end({track.id, clock_});
     const Tracker& state = trackers_.tracker(tracker);
     const bool itself = why == End::border || why == End::starvation;
@@ -221,9 +277,11 @@ std::vector<std::string> Haste::counts() const {
   const auto ended = [&](End why) { return ended_[index(static_cast<int>(why))]; };
   return {fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
           fmt::format("trackers that ended: {} at the border, {} as their hypotheses were alike, {} before an edge, "
-                      "{} starved, {} crowded, {} far from where they were expected, {} as outliers",
+                      "{} starved, {} crowded, {} far from where they were expected, {} as outliers, {} wandering in "
+                      "noise, {} before something else after a silence",
                       ended(End::border), ended(End::spread), ended(End::edge), ended(End::starvation),
-                      ended(End::crowding), ended(End::veto), ended(End::outlier)),
+                      ended(End::crowding), ended(End::veto), ended(End::outlier), ended(End::wandering),
+                      ended(End::silence)),
           fmt::format("{} landmarks found again, of which {} went on", found_, went_on_),
           fmt::format("{} observations came later than the delay", late_)};
 }

@@ -30,23 +30,32 @@ class Haste : public EventFrontEnd {
  private:
   std::vector<std::string> counts() const override;
 
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
   /// What a tracker is followed for.
   struct Track {
     TrackId id;
     double odometer;                  ///< the image's way when the tracker last changed its state [px]
     Vector2 pixel = Vector2::Zero();  ///< newest place [px]
     int probation = 0;                ///< changes of state until a found landmark's track goes on
-    double told = -std::numeric_limits<double>::infinity();  ///< [s] of its last observation
+    double told = -kInfinity;         ///< [s] of its last observation
+    double found = -kInfinity;        ///< likewise, when the tracker was last found to follow something
+    Vector2 from = pixel;             ///< where it was then [px],
+    double way = 0.0;                 ///< and how far it has gone since [px]
+    std::int64_t doubted = -1;        ///< events that its tracker had when the sensor fell silent; then it is looked at
   };
 
   /// Why tracks end.
-  enum class End { border, spread, edge, starvation, crowding, veto, outlier };
+  enum class End { border, spread, edge, starvation, crowding, veto, outlier, wandering, silence };
 
   void take(std::span<const Event> events) override;
   void look() override;
   double complete() const override { return clock_ - options_.delay; }
   void observe(const Change& change);
   bool is_as_expected(TrackId track, const Vector2& pixel, double t) const;
+  void doubt_trackers();
+  void end_strangers();
+  void end_wanderers();
   void end_trackers();
   void correct_guidance();
   void veto_strays();
@@ -64,9 +73,10 @@ class Haste : public EventFrontEnd {
   LostLandmarks lost_;
   std::vector<Change> changes_;  ///< of the events at hand
   double detected_;              ///< [s] when features were last looked for
+  double last_event_;            ///< [s]
   double odometer_ = 0.0;        ///< the image's way: the trackers' mean one [px]
   TrackId next_id_ = 0;
-  std::array<std::size_t, 7> ended_{};  ///< by End
+  std::array<std::size_t, 9> ended_{};  ///< by End
   std::size_t begun_ = 0, found_ = 0, went_on_ = 0, late_ = 0;
 };
 

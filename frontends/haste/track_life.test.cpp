@@ -165,6 +165,73 @@ TEST_CASE("Nothing is vetoed where that is switched off, nor by a back-end that 
   }
 }
 
+TEST_CASE("Trackers that a burst of noise takes along end, and are observed nowhere it took them") {
+  EventScene source(swing, 1.0, EventScene::quadrangles(150, 1));
+  Random random(3);
+  std::vector<Event> burst(300'000);
+  for (std::size_t i = 0; i < burst.size(); ++i) {
+    burst[i] = {502'000 + static_cast<std::int64_t>(i / 100), static_cast<std::uint16_t>(random.index(240)),
+                static_cast<std::uint16_t>(random.index(180)), i % 2 == 0};
+  }
+  source.add(burst);
+  Told told({}, source);
+  told.go_on_to(0.5);
+  const std::map<TrackId, TrackObservation> before = told.alive;
+  REQUIRE(before.size() > 40);
+  told.go_on_to(0.55);
+  CHECK(told.ended_as("wandering in noise") > 40);
+  for (const auto& [track, last] : told.ended) {
+    if (!before.contains(track)) continue;
+    CAPTURE(track, last.t);
+    CHECK((last.pixel - before.at(track).pixel).norm() < 15.0);
+  }
+  told.go_on_to(1.0);
+  CHECK(told.alive.size() > 40);
+}
+
+TEST_CASE("After a silence trackers go on before what they saw, and end before something else") {
+  const auto standing = [](double t) { return swing(t < 0.5 ? t : std::max(0.5, t - 0.5)); };
+  const EventScene still(standing, 1.3, EventScene::quadrangles(150, 1));
+  const auto shifting = [](double t) {  // by 50 px during the silence
+    SE3 T = swing(t);
+    T.p.x() += 0.5 * std::max(0.0, t - 0.5);
+    return T;
+  };
+  EventScene moved(shifting, 2.0, EventScene::quadrangles(150, 1));
+  moved.silence(0.5, 1.5);
+  struct After {
+    double alive;  ///< share of the tracks from before
+    int ended;
+  };
+  const auto after = [](const Source& source, double resting, double later) {
+    Told told({}, source);
+    told.go_on_to(resting);
+    const std::map<TrackId, TrackObservation> before = told.alive;
+    REQUIRE(before.size() > 40);
+    told.go_on_to(later);
+    const auto alive =
+        std::ranges::count_if(before, [&](const auto& track) { return told.alive.contains(track.first); });
+    return After{static_cast<double>(alive) / static_cast<double>(before.size()),
+                 told.ended_as("before something else after a silence")};
+  };
+  const After same = after(still, 0.9, 1.1), different = after(moved, 1.4, 2.0);
+  CHECK(same.alive > 0.5);
+  CHECK(same.ended <= 3);
+  CHECK(different.alive < 0.2);
+  CHECK(different.ended > 15);
+}
+
+TEST_CASE("A tracker on a hot pixel ends, as it does not go along with the image") {
+  EventScene source(swing, 1.0, EventScene::quadrangles(150, 1));
+  std::erase_if(source.list, [](const Event& event) { return event.x < 80; });
+  std::vector<Event> hot;
+  for (std::int64_t t = 0; t < 1'000'000; t += 500) hot.push_back({t, 40, 90, true});
+  source.add(hot);
+  Told told({}, source);
+  told.go_on_to(1.0);
+  CHECK(told.ended_as("starved") > 0);
+}
+
 TEST_CASE("Of two trackers that come upon one another the younger ends") {
   EventScene source(swing, 1.5, {});
   const auto from = [](double x, double t) { return Vector2(120.0 + x * std::max(0.0, 1.0 - t / 0.9), 90.0); };
