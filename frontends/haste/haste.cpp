@@ -35,6 +35,7 @@ Vector2 place_of(const Change& change, Options::Place place) {
 Haste::Haste(const Options& options, const FrontEndContext& context)
     : EventFrontEnd(context, "haste"),
       options_(options),
+      sigma_(options.sigma),
       recent_(static_cast<std::size_t>(options.detection.events)),
       trackers_(camera_.width, camera_.height),
       guidance_(camera_),
@@ -63,7 +64,8 @@ void Haste::observe(const Change& change) {
   track.way += way;
   track.odometer = odometer_;
   track.pixel = change.after.position;
-  TrackObservation z{track.id, seconds(change.after.t), place_of(change, options_.place), options_.sigma};
+  const double sigma = options_.score_sigma ? sigma_.next(change.scores) : options_.sigma;
+  TrackObservation z{track.id, seconds(change.after.t), place_of(change, options_.place), sigma};
   const double told = std::max(seconds(change.t_event), clock_) - options_.delay;  // what stands for times up to then
   if (z.t <= told) ++late_;
   z.t = std::max({z.t, told, track.told + kApart});

@@ -11,6 +11,7 @@
 #include "frontends/haste/lost_landmarks.hpp"
 #include "frontends/haste/options.hpp"
 #include "frontends/haste/recent_events.hpp"
+#include "frontends/haste/tracking/score_sigma.hpp"
 #include "frontends/haste/tracking/tracker_set.hpp"
 
 namespace evbench::haste {
@@ -66,6 +67,7 @@ class Haste : public EventFrontEnd {
   std::vector<Vector2> taken() const;
 
   Options options_;
+  ScoreSigma sigma_;
   RecentEvents recent_;
   TrackerSet trackers_;
   std::map<std::int64_t, Track> tracks_;  ///< by tracker

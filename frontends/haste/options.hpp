@@ -72,6 +72,7 @@ struct Options {
   GuidanceOptions guidance;
   int tracks = 60;
   double sigma = 0.5;
+  bool score_sigma = false;
   enum class Place { new_state, midpoint, refined } place = Place::refined;
   double delay = 0.03;
 
@@ -85,7 +86,10 @@ struct Options {
         .range(0.0, 1.0);
     set.add("template_learning", tracker.template_learning, "what an event adds to its tracker's template")
         .range(0.0, 1.0);
-    set.add("sigma", sigma, "standard deviation of an observation [px]").range(1e-6, 1e6);
+    set.add("sigma", sigma, "standard deviation of an observation, usually [px]").range(1e-6, 1e6);
+    set.add("score_sigma", score_sigma,
+            "that of each follows from how its hypotheses' scores fall from where they are highest, against how they "
+            "usually do: half to three times as large; false: all are the same");
     set.add(
         "place", place, {"new_state", "midpoint", "refined"},
         "where a tracker that changes its state is observed: at the new state, which leads by half a step; half-way "

@@ -1,5 +1,7 @@
 #include "frontends/haste/tracking/change.hpp"
 
+#include <limits>
+
 namespace evbench::haste {
 
 namespace {
@@ -32,6 +34,13 @@ double Scores::weakest_curvature() const {
   const Paraboloid f(*this);
   const double largest = std::max(std::abs(best()), std::abs(worst()));
   return largest > 0.0 ? -(0.5 * (f.c + f.e) + std::hypot(0.5 * (f.c - f.e), f.d)) / largest : 0.0;
+}
+
+double Scores::flatness() const {
+  const Paraboloid f(*this);
+  const double determinant = f.c * f.e - f.d * f.d, largest = std::max(std::abs(best()), std::abs(worst()));
+  const bool peaks = f.c < 0.0 && determinant > 0.0;
+  return peaks ? -(f.c + f.e) / determinant * largest : std::numeric_limits<double>::infinity();
 }
 
 Vector2 refined_position(const Change& change) {

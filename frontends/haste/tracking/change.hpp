@@ -28,6 +28,10 @@ struct Scores {
   /// least, as a share of the largest magnitude: small before an edge, along which nothing holds a tracker. Negative
   /// where it rises.
   double weakest_curvature() const;
+  /// How uncertain the place is where that paraboloid is highest: the trace of its curvatures' inverse, they being
+  /// shares of the largest magnitude [px²]. What disturbs the slope of the scores moves the highest place by the
+  /// inverse times that. Infinite where it has no maximum.
+  double flatness() const;
 };
 
 /// What happened when a tracker changed its state. The first change of a tracker tells that its window is full: it

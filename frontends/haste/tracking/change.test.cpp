@@ -47,6 +47,17 @@ TEST_CASE("Scores tell how little they fall along the direction along which they
   CHECK(Scores().weakest_curvature() == 0.0);
 }
 
+TEST_CASE("Scores tell how uncertain their maximum is, as the inverse of how they fall about it") {
+  const Scores peak = with_scores([](double x, double y) { return 10.0 - x * x - 2.5 * y * y; }).scores;
+  CHECK(peak.flatness() == Approx(5.0 + 2.0));  // their second derivatives are 2 and 5, of 10
+  const Scores turned =
+      with_scores([](double x, double y) { return 10.0 - 1.75 * (x * x + y * y) + 1.5 * x * y; }).scores;
+  CHECK(turned.flatness() == Approx(peak.flatness()));  // by 45°
+  const Scores saddle = with_scores([](double x, double y) { return 4.0 - x * x + y * y; }).scores;
+  CHECK(std::isinf(saddle.flatness()));
+  CHECK(std::isinf(Scores().flatness()));
+}
+
 TEST_CASE("Scores tell the best, the worst and their spread, of either sign") {
   Scores scores;
   CHECK(scores.spread() == 0.0);

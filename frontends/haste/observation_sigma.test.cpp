@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "core/testing/event_scene.hpp"
+#include "core/testing/told_tracks.hpp"
+#include "frontends/haste/haste.hpp"
+
+using namespace evbench;
+using namespace evbench::haste;
+using evbench::testing::all_told;
+using evbench::testing::EventScene;
+using evbench::testing::swing;
+
+namespace {
+
+const EventScene& scene() {
+  static const EventScene result(swing, 1.0, EventScene::quadrangles(150, 1));
+  return result;
+}
+
+std::vector<TrackObservation> observations(const Options& options) {
+  Haste haste(options, {scene(), 0, ""});
+  return all_told(haste, scene()).observations;
+}
+
+double median(std::vector<double> values) {
+  REQUIRE_FALSE(values.empty());
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+}  // namespace
+
+TEST_CASE("Observations that are said to be known less well are farther from where their points are") {
+  Options options;
+  options.score_sigma = true;
+  std::map<TrackId, Vector3> points;
+  std::vector<double> usual, sharp, vague;
+  std::vector<double> sigmas;
+  for (const TrackObservation& z : observations(options)) {
+    CHECK(z.sigma >= 0.5 * options.sigma);
+    CHECK(z.sigma <= 3.0 * options.sigma);
+    sigmas.push_back(z.sigma);
+    const SE3 T = swing(z.t);
+    if (const auto point = points.find(z.track); point != points.end()) {
+      const double error = (scene().camera().project(T.inverse() * point->second) - z.pixel).norm();
+      (z.sigma < 0.8 * options.sigma ? sharp : z.sigma > 1.25 * options.sigma ? vague : usual).push_back(error);
+    } else {
+      const Vector3 ray = T.R() * scene().camera().pinhole.ray(z.pixel);
+      points.emplace(z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray);
+    }
+  }
+  CHECK(median(sigmas) == Approx(options.sigma).epsilon(0.1));
+  CAPTURE(sharp.size(), usual.size(), vague.size(), median(sharp), median(usual), median(vague));
+  CHECK(median(vague) > 1.2 * median(usual));
+  CHECK(median(vague) > 1.4 * median(sharp));
+}
+
+TEST_CASE("All observations are said to be known as well where scores are not asked") {
+  Options options;
+  options.score_sigma = false;
+  const auto all = observations(options);
+  CHECK_FALSE(all.empty());
+  CHECK(std::ranges::all_of(all, [&](const TrackObservation& z) { return z.sigma == options.sigma; }));
+}
