@@ -44,6 +44,9 @@ class Guidance {
   /// None: the back-end doesn't expect it in view, or it is behind the camera.
   std::optional<Prediction> predict(TrackId track, double t) const;
 
+  /// All that may be in view.
+  const std::map<TrackId, ExpectedFeature>& expected() const { return expected_; }
+
  private:
   const Camera& camera_;
   std::optional<ControlState> newest_;

@@ -79,7 +79,7 @@ void Haste::observe(const Change& change) {
       return;
     } else {
       lost_.forget(track.id);
-      ++went_on_;
+      ++(track.at_corner ? at_corners_ : by_template_).went_on;
     }
   }
   track.told = z.t;
@@ -198,27 +198,40 @@ void Haste::veto_strays() {
 /// Landmarks that come back into view, as long as there is room for them.
 void Haste::reacquire() {
   if (trackers_.size() >= static_cast<std::size_t>(2 * options_.tracks)) return;
-  const auto found = lost_.find(guidance_, clock_, recent_, taken(), options_.life.crowding + 1.0, camera_);
+  const auto found = lost_.find(guidance_, clock_, recent_, tracked(), options_.life.crowding + 1.0, camera_);
   for (const LostLandmarks::Found& landmark : found) {
-    ++found_;
+    ++by_template_.found;
     begin(Tracker(options_.tracker, {0, landmark.pixel, 0.0}, landmark.look),
           {landmark.track, odometer_, landmark.pixel, options_.guidance.probation});
   }
 }
 
-/// New features where there are too few.
+/// New features where there are too few, some of which are lost landmarks.
 void Haste::replenish() {
   const auto wanted = static_cast<std::size_t>(options_.tracks);
   if (trackers_.size() >= wanted || 5 * recent_.events().size() < static_cast<std::size_t>(options_.detection.events)) {
     return;
   }
   detected_ = clock_;
-  const auto features = detect_features(options_.detection, recent_.events(), camera_.width, camera_.height, taken(),
-                                        wanted - trackers_.size());
+  const auto features = detect_features(options_.detection, recent_.events(), camera_.width, camera_.height,
+                                        tracked().places, wanted - trackers_.size());
   for (const Vector2& pixel : features) {
-    ++begun_;
-    begin(Tracker(options_.tracker, {0, pixel, 0.0}), {next_id_++, odometer_, pixel});
+    Tracker tracker(options_.tracker, {0, pixel, 0.0});
+    if (const std::optional<TrackId> landmark = lost_landmark_at(pixel)) {
+      ++at_corners_.found;
+      begin(std::move(tracker), {*landmark, odometer_, pixel, options_.guidance.probation, true});
+    } else {
+      ++begun_;
+      begin(std::move(tracker), {next_id_++, odometer_, pixel});
+    }
   }
+}
+
+/// Those with a template have been looked for by it before.
+std::optional<TrackId> Haste::lost_landmark_at(const Vector2& corner) const {
+  const std::span<const Event> window = recent_.window(corner);
+  if (!options_.guidance.reacquire || !options_.guidance.corners || window.empty()) return std::nullopt;
+  return lost_.at_corner(corner, guidance_, seconds(window[window.size() / 2].t), tracked());
 }
 
 /// With the events that have been around there of late, so that it need not wait for its window to be full.
@@ -254,9 +267,12 @@ void Haste::end(std::int64_t tracker, End why) {
   tracks_.erase(found);
 }
 
-std::vector<Vector2> Haste::taken() const {
-  std::vector<Vector2> result;
-  for (const auto& [tracker, track] : tracks_) result.push_back(track.pixel);
+LostLandmarks::Tracked Haste::tracked() const {
+  LostLandmarks::Tracked result;
+  for (const auto& [tracker, track] : tracks_) {
+    result.tracks.push_back(track.id);
+    result.places.push_back(track.pixel);
+  }
   return result;
 }
 
@@ -284,7 +300,8 @@ std::vector<std::string> Haste::counts() const {
                       ended(End::border), ended(End::spread), ended(End::edge), ended(End::starvation),
                       ended(End::crowding), ended(End::veto), ended(End::outlier), ended(End::wandering),
                       ended(End::silence)),
-          fmt::format("{} landmarks found again, of which {} went on", found_, went_on_),
+          fmt::format("{} landmarks found again, of which {} went on; {} at corners, of which {} went on",
+                      by_template_.found, by_template_.went_on, at_corners_.found, at_corners_.went_on),
           fmt::format("{} observations came later than the delay", late_)};
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,7 @@ class Haste : public EventFrontEnd {
     double odometer;                  ///< the image's way when the tracker last changed its state [px]
     Vector2 pixel = Vector2::Zero();  ///< newest place [px]
     int probation = 0;                ///< changes of state until a found landmark's track goes on
+    bool at_corner = false;           ///< it was found as a corner, not by its template
     double told = -kInfinity;         ///< [s] of its last observation
     double found = -kInfinity;        ///< likewise, when the tracker was last found to follow something
     Vector2 from = pixel;             ///< where it was then [px],
@@ -62,9 +64,10 @@ class Haste : public EventFrontEnd {
   void veto_strays();
   void reacquire();
   void replenish();
+  std::optional<TrackId> lost_landmark_at(const Vector2& corner) const;
   void end(std::int64_t tracker, End why);
   void begin(Tracker tracker, const Track& track);
-  std::vector<Vector2> taken() const;
+  LostLandmarks::Tracked tracked() const;
 
   Options options_;
   ScoreSigma sigma_;
@@ -79,7 +82,10 @@ class Haste : public EventFrontEnd {
   double odometer_ = 0.0;        ///< the image's way: the trackers' mean one [px]
   TrackId next_id_ = 0;
   std::array<std::size_t, 9> ended_{};  ///< by End
-  std::size_t begun_ = 0, found_ = 0, went_on_ = 0, late_ = 0;
+  struct Finds {
+    std::size_t found = 0, went_on = 0;
+  } by_template_, at_corners_;
+  std::size_t begun_ = 0, late_ = 0;
 };
 
 }  // namespace evbench::haste

@@ -15,11 +15,17 @@ void LostLandmarks::remember(TrackId track, double t, const Template& look, doub
 void LostLandmarks::disappoint(TrackId track, double t) {
   constexpr double kPause = 0.5;  // [s]
   if (const auto lost = lost_.find(track); lost != lost_.end()) lost->second.tried = t + kPause;
+  std::erase_if(left_alone_, [&](const auto& entry) { return entry.second <= t; });
+  left_alone_[track] = t + kPause;
+}
+
+bool LostLandmarks::is_left_alone(TrackId track, double t) const {
+  const auto entry = left_alone_.find(track);
+  return entry != left_alone_.end() && t < entry->second;
 }
 
 std::vector<LostLandmarks::Found> LostLandmarks::find(const Guidance& guidance, double t, const RecentEvents& recent,
-                                                      std::span<const Vector2> taken, double distance,
-                                                      const Camera& camera) {
+                                                      const Tracked& tracked, double distance, const Camera& camera) {
   constexpr std::size_t kAtATime = 4;  // a search costs as much as thousands of events
   constexpr double kPause = 0.02;      // [s] between two searches for one
   std::vector<Found> result;
@@ -33,11 +39,11 @@ std::vector<LostLandmarks::Found> LostLandmarks::find(const Guidance& guidance, 
   };
   std::vector<Candidate> candidates;
   for (const auto& [track, lost] : lost_) {
-    if (t - lost.tried < kPause) continue;
+    if (t - lost.tried < kPause || tracked.has(track)) continue;
     const std::optional<Guidance::Prediction> expected = guidance.predict(track, t);
     if (!expected || !camera.contains(expected->pixel, kPatchRadius)) continue;
     const auto is_near = [&](const Vector2& p) { return (p - expected->pixel).norm() < distance; };
-    if (!std::ranges::any_of(taken, is_near)) candidates.push_back({track, *expected, lost.tried});
+    if (!std::ranges::any_of(tracked.places, is_near)) candidates.push_back({track, *expected, lost.tried});
   }
   std::ranges::stable_sort(candidates, {}, &Candidate::tried);
   if (candidates.size() > kAtATime) candidates.resize(kAtATime);
@@ -80,6 +86,23 @@ std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const
   }
   found.pixel = Vector2(best->x, best->y);
   return found;
+}
+
+std::optional<TrackId> LostLandmarks::at_corner(const Vector2& corner, const Guidance& guidance, double t,
+                                                const Tracked& tracked) const {
+  const Matrix2 detection = Matrix2::Identity();  // [px²]: a corner is found somewhere near the point that was tracked
+  std::optional<TrackId> result;
+  for (const auto& [track, feature] : guidance.expected()) {
+    const std::optional<Guidance::Prediction> expected = guidance.predict(track, t);
+    if (!expected || tracked.has(track)) continue;
+    const Vector2 offset = corner - expected->pixel;
+    const Matrix2 covariance = expected->covariance + detection;
+    const double distance = std::sqrt(offset.dot(covariance.inverse() * offset));
+    if (offset.norm() > options_.search || distance > options_.gate) continue;
+    if (result) return std::nullopt;
+    result = track;
+  }
+  return result && !is_left_alone(*result, t) ? result : std::nullopt;
 }
 
 }  // namespace evbench::haste

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
-#include <span>
+#include <vector>
 
 #include "frontends/haste/guidance.hpp"
 #include "frontends/haste/options.hpp"
@@ -11,7 +12,8 @@
 
 namespace evbench::haste {
 
-/// Landmarks whose trackers have ended, each as it looked then, to be found again where the back-end expects them.
+/// Landmarks whose trackers have ended, to be found again where the back-end expects them: by how they looked then, or,
+/// where that is not known or not found, as corners.
 class LostLandmarks {
  public:
   explicit LostLandmarks(const GuidanceOptions& options) : options_(options) {}
@@ -19,7 +21,7 @@ class LostLandmarks {
   /// The landmark of a track that ended at t [s]: its template, turned by `angle` [rad], was seen from a pose.
   void remember(TrackId track, double t, const Template& look, double angle, const SE3& T_world_camera);
   void forget(TrackId track) { lost_.erase(track); }
-  /// One that was found and turned out to be another: it is left alone for a while.
+  /// One that was found and turned out to be another: it is left alone for a while. It need not be remembered.
   void disappoint(TrackId track, double t);
 
   /// A landmark that has been found.
@@ -28,10 +30,21 @@ class LostLandmarks {
     Vector2 pixel;  ///< [px]
     Template look;  ///< as it is expected now
   };
+  /// What has a tracker.
+  struct Tracked {
+    std::vector<TrackId> tracks;
+    std::vector<Vector2> places;  ///< [px]
+    bool has(TrackId track) const { return std::ranges::find(tracks, track) != tracks.end(); }
+  };
   /// Looks for some of the landmarks in view at t, in turn, those first that were not looked for the longest. None
-  /// that is expected within `distance` of what is `taken` [px].
-  std::vector<Found> find(const Guidance& guidance, double t, const RecentEvents& recent,
-                          std::span<const Vector2> taken, double distance, const Camera& camera);
+  /// that is tracked, or expected within `distance` of what is [px].
+  std::vector<Found> find(const Guidance& guidance, double t, const RecentEvents& recent, const Tracked& tracked,
+                          double distance, const Camera& camera);
+
+  /// The landmark that a corner [px] seen at t is, if it is one that nobody tracks: the only such one that is expected
+  /// there. None where two are.
+  std::optional<TrackId> at_corner(const Vector2& corner, const Guidance& guidance, double t,
+                                   const Tracked& tracked) const;
 
  private:
   struct Lost {
@@ -41,11 +54,13 @@ class LostLandmarks {
     double angle;
     SE3 T_world_camera;
   };
+  bool is_left_alone(TrackId track, double t) const;
   std::optional<Found> look_for(TrackId track, const Lost& lost, const Guidance& guidance, const Vector2& about,
                                 const RecentEvents& recent) const;
 
   GuidanceOptions options_;
   std::map<TrackId, Lost> lost_;
+  std::map<TrackId, double> left_alone_;  ///< no corner is taken for it until then [s]
 };
 
 }  // namespace evbench::haste

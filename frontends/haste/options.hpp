@@ -43,6 +43,7 @@ struct GuidanceOptions {
   int probation = 4;
   double tolerance = 3.0;
   double memory = 30.0;
+  bool corners = false;
 
   void declare(OptionSet& set) {
     set.add("outliers", outliers, "tracks that the back-end holds for outliers end");
@@ -62,6 +63,10 @@ struct GuidanceOptions {
         .range(1, 1000);
     set.add("tolerance", tolerance, "and how far off that is meanwhile, at most [px]").above(0.0);
     set.add("memory", memory, "landmarks are looked for that were lost less than this ago [s]").range(0.0, 1e6);
+    set.add(
+        "corners", corners,
+        "and one that isn't found by its template, or has none, is taken to be the corner that is detected near its "
+        "expected place, on probation, if no other lost one is expected there");
   }
 };
 

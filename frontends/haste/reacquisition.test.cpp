@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "core/testing/event_scene.hpp"
+#include "frontends/haste/haste.hpp"
+
+// Guided by hand: a back-end that knows the motion, and says of landmarks what a test wants.
+using namespace evbench;
+using namespace evbench::haste;
+using evbench::testing::EventScene;
+using evbench::testing::swing;
+
+namespace {
+
+constexpr double kStep = 0.01;     // [s] between two exchanges
+constexpr TrackId kKnown = 1'000;  // the first landmark's track: none that haste begins has such an id
+
+const EventScene& scene() {
+  static const EventScene result(swing, 1.0, EventScene::quadrangles(150, 1));
+  return result;
+}
+
+using Landmarks = std::map<TrackId, Vector3>;
+
+/// The points of the wall at which tracks begin when nothing is known, by the ids that they then have.
+const Landmarks& beginnings() {
+  static const Landmarks result = [] {
+    Landmarks points;
+    Haste haste({}, {scene(), 0, ""});
+    TrackBatch batch;
+    for (double t = kStep; t < 0.5; t += kStep) {
+      haste.advance({t}, batch);
+      for (const TrackObservation& z : batch.observations) {
+        const SE3 T = swing(z.t);
+        const Vector3 ray = T.R() * scene().camera().pinhole.ray(z.pixel);
+        points.try_emplace(z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray);
+      }
+    }
+    return points;
+  }();
+  return result;
+}
+
+/// The same as landmarks that a back-end has had before, each `offset` [px] beside.
+Landmarks known(double offset = 0.0, TrackId first = kKnown) {
+  const double aside = offset * EventScene::kDistance / scene().camera().pinhole.fx;
+  Landmarks result;
+  for (const auto& [id, point] : beginnings()) result.emplace(first + id, point + Vector3(aside, 0.0, 0.0));
+  return result;
+}
+
+Feedback feedback(double t, TrackingState state, const Landmarks& landmarks, double sigma) {
+  constexpr double kShort = 1e-4;  // [s]
+  Feedback result;
+  result.t = t;
+  result.state = state;
+  const Vector6 velocity = se3::log(swing(t - kShort).inverse() * swing(t + kShort)) / (2.0 * kShort);
+  result.newest = ControlState{t, swing(t), velocity};
+  for (const auto& [track, position] : landmarks) {
+    const Vector2 pixel = scene().camera().project(swing(t).inverse() * position);
+    result.expected.push_back({track, position, pixel, sigma * sigma * Matrix2::Identity()});
+  }
+  return result;
+}
+
+struct Told {
+  std::vector<TrackObservation> observations;
+  std::string trackers, finds;  ///< remarks
+
+  /// Of landmarks' tracks.
+  std::ptrdiff_t of_known() const {
+    return std::ranges::count_if(observations, [](const TrackObservation& z) { return z.track >= kKnown; });
+  }
+};
+
+/// All that it tells when it gets feedback from `from` [s] on, which says that places are known to `sigma` [px].
+Told track(const Options& options, const Landmarks& landmarks, TrackingState state = TrackingState::tracking,
+           double sigma = 0.5, double from = kStep) {
+  Haste haste(options, {scene(), 0, ""});
+  Told told;
+  TrackBatch batch;
+  for (double t = kStep; t < 1.0; t += kStep) {
+    if (t >= from) haste.receive(feedback(t, state, landmarks, sigma));
+    haste.advance({t}, batch);
+    told.observations.insert(told.observations.end(), batch.observations.begin(), batch.observations.end());
+  }
+  const std::vector<std::string> remarks = haste.remarks();
+  for (const std::string& remark : remarks) {
+    if (remark.starts_with("trackers that ended")) told.trackers = remark;
+    if (remark.find("found again") != std::string::npos) told.finds = remark;
+  }
+  return told;
+}
+
+/// Of an observation, from where its landmark is [px].
+double error(const Landmarks& landmarks, const TrackObservation& z) {
+  return (scene().camera().project(swing(z.t).inverse() * landmarks.at(z.track)) - z.pixel).norm();
+}
+
+double median(std::vector<double> values) {
+  REQUIRE_FALSE(values.empty());
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+Options without_corners() {
+  Options options;
+  options.guidance.corners = false;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("A corner that is detected where a landmark without a template is expected goes on with its track") {
+  const Landmarks landmarks = known();
+  Options options;
+  options.guidance.corners = true;
+  const Told told = track(options, landmarks);
+  CHECK(told.of_known() > 500);
+  std::vector<double> errors;
+  for (const TrackObservation& z : told.observations) {
+    if (z.track >= kKnown) errors.push_back(error(landmarks, z));
+  }
+  CHECK(median(errors) < 1.0);
+  CHECK(track(without_corners(), landmarks).of_known() == 0);
+}
+
+TEST_CASE("A corner that is not where its landmark is expected after all becomes a track of its own") {
+  Options options;
+  options.guidance.corners = true;
+  options.guidance.tolerance = 2.0;
+  const Told told = track(options, known(3.0), TrackingState::tracking, 3.0);
+  CHECK(told.of_known() == 0);
+  CHECK_THAT(told.finds, !Catch::Matchers::Contains(" 0 at corners"));
+  CHECK_FALSE(told.observations.empty());
+}
+
+TEST_CASE("No corner is taken for one of two landmarks that are expected there") {
+  Landmarks landmarks = known();
+  landmarks.merge(known(2.0, 2 * kKnown));
+  Options options;
+  options.guidance.corners = true;
+  const Told told = track(options, landmarks);
+  CHECK(told.of_known() == 0);
+}
