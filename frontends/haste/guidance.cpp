@@ -9,9 +9,10 @@
 namespace evbench::haste {
 
 void Guidance::receive(const Feedback& feedback) {
-  const bool tracks = feedback.state == TrackingState::tracking || feedback.state == TrackingState::standing_still;
+  reliable_ = feedback.state == TrackingState::tracking || feedback.state == TrackingState::standing_still;
+  const bool usable = reliable_ || (degraded_ && feedback.state == TrackingState::degraded);
   correction_ = {};
-  newest_ = tracks ? feedback.newest : std::nullopt;
+  newest_ = usable ? feedback.newest : std::nullopt;
   expected_.clear();
   if (!newest_) return;
   for (const ExpectedFeature& feature : feedback.expected) expected_.emplace(feature.track, feature);

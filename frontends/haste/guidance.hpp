@@ -13,12 +13,15 @@ namespace evbench::haste {
 /// corrected by what the trackers see since.
 class Guidance {
  public:
-  explicit Guidance(const Camera& camera) : camera_(camera) {}
+  /// `degraded`: also while the back-end is.
+  Guidance(const Camera& camera, bool degraded) : camera_(camera), degraded_(degraded) {}
 
   void receive(const Feedback& feedback);
 
   /// Whether the motion is known well enough to predict anything.
   bool available() const { return newest_.has_value(); }
+  /// Whether observations have determined it, not a motion model alone: what contradicts it is wrong.
+  bool reliable() const { return reliable_; }
 
   /// A landmark, where a tracker has it.
   struct Sighting {
@@ -49,6 +52,7 @@ class Guidance {
 
  private:
   const Camera& camera_;
+  bool degraded_, reliable_ = false;
   std::optional<ControlState> newest_;
   SE3 correction_;
   std::map<TrackId, ExpectedFeature> expected_;

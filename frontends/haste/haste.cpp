@@ -38,7 +38,7 @@ Haste::Haste(const Options& options, const FrontEndContext& context)
       sigma_(options.sigma),
       recent_(static_cast<std::size_t>(options.detection.events)),
       trackers_(camera_.width, camera_.height),
-      guidance_(camera_),
+      guidance_(camera_, options.guidance.degraded),
       lost_(options.guidance),
       detected_(range_.from),
       last_event_(range_.from) {
@@ -176,8 +176,10 @@ void Haste::correct_guidance() {
   guidance_.correct(sightings);
 }
 
-/// Trackers far from where their landmarks are expected; but when many are, it is the expectation that is wrong.
+/// Trackers far from where their landmarks are expected; but when many are, it is the expectation that is wrong, and it
+/// may well be where a motion model alone makes it.
 void Haste::veto_strays() {
+  if (!guidance_.reliable()) return;
   const GuidanceOptions& guidance = options_.guidance;
   std::vector<std::int64_t> strays;
   std::size_t expected = 0;

@@ -44,6 +44,7 @@ struct GuidanceOptions {
   double tolerance = 3.0;
   double memory = 30.0;
   bool corners = false;
+  bool degraded = true;
 
   void declare(OptionSet& set) {
     set.add("outliers", outliers, "tracks that the back-end holds for outliers end");
@@ -67,6 +68,8 @@ struct GuidanceOptions {
         "corners", corners,
         "and one that isn't found by its template, or has none, is taken to be the corner that is detected near its "
         "expected place, on probation, if no other lost one is expected there");
+    set.add("degraded", degraded,
+            "landmarks are looked for while the back-end is degraded, too, and a motion model carries the estimate");
   }
 };
 

@@ -144,3 +144,31 @@ TEST_CASE("No corner is taken for one of two landmarks that are expected there")
   const Told told = track(options, landmarks);
   CHECK(told.of_known() == 0);
 }
+
+TEST_CASE("Landmarks are found again while the back-end is degraded, unless that is switched off or it is lost") {
+  Options on;
+  on.guidance.corners = true;
+  on.guidance.degraded = true;
+  Options off = on;
+  off.guidance.degraded = false;
+  CHECK(track(on, known(), TrackingState::degraded).of_known() > 500);
+  CHECK(track(off, known(), TrackingState::degraded).of_known() == 0);
+  CHECK(track(on, known(), TrackingState::lost).of_known() == 0);
+}
+
+TEST_CASE("Trackers far from where landmarks are expected end, but not while a motion model alone expects them there") {
+  Landmarks landmarks = beginnings();
+  int moved = 0;
+  for (auto& [id, position] : landmarks) {
+    if (id % 8 != 0) continue;
+    position.x() += 0.12;  // 12 px
+    ++moved;
+  }
+  REQUIRE(moved > 3);
+  Options options;
+  options.guidance.degraded = true;
+  CHECK_THAT(track(options, landmarks, TrackingState::tracking, 0.5, 0.6).trackers,
+             !Catch::Matchers::Contains(" 0 far from where they were expected"));
+  CHECK_THAT(track(options, landmarks, TrackingState::degraded, 0.5, 0.6).trackers,
+             Catch::Matchers::Contains(" 0 far from where they were expected"));
+}
