@@ -90,13 +90,13 @@ std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const
 
 std::optional<TrackId> LostLandmarks::at_corner(const Vector2& corner, const Guidance& guidance, double t,
                                                 const Tracked& tracked) const {
-  const Matrix2 detection = Matrix2::Identity();  // [px²]: a corner is found somewhere near the point that was tracked
+  constexpr double kPlace = 0.5;  // [px] between a corner as it is found and the point that was tracked
   std::optional<TrackId> result;
   for (const auto& [track, feature] : guidance.expected()) {
     const std::optional<Guidance::Prediction> expected = guidance.predict(track, t);
     if (!expected || tracked.has(track)) continue;
     const Vector2 offset = corner - expected->pixel;
-    const Matrix2 covariance = expected->covariance + detection;
+    const Matrix2 covariance = expected->covariance + kPlace * kPlace * Matrix2::Identity();
     const double distance = std::sqrt(offset.dot(covariance.inverse() * offset));
     if (offset.norm() > options_.search || distance > options_.gate) continue;
     if (result) return std::nullopt;

@@ -138,7 +138,7 @@ TEST_CASE("A corner that is not where its landmark is expected after all becomes
 
 TEST_CASE("No corner is taken for one of two landmarks that are expected there") {
   Landmarks landmarks = known();
-  landmarks.merge(known(2.0, 2 * kKnown));
+  landmarks.merge(known(1.0, 2 * kKnown));
   Options options;
   options.guidance.corners = true;
   const Told told = track(options, landmarks);
