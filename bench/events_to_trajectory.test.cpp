@@ -216,6 +216,30 @@ TEST_CASE("A burst of a million events in 10 ms does no lasting harm") {
   CHECK(error(scene, execution) < 0.02);            // nor to what connects the two
 }
 
+TEST_CASE("A camera that sees nothing but noise for a while, and loses all trackers, goes on in the same map") {
+  constexpr double kGap = 0.3;  // [s]
+  int lost_without = 0;
+  for (const std::uint64_t seed : {1, 2}) {
+    EventScene scene(swing, 5.0, EventScene::quadrangles(150, seed));
+    scene.silence(3.0, 3.0 + kGap);
+    Random random(seed);
+    std::vector<Event> noise(static_cast<std::size_t>(1e6 * kGap));
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+      noise[i] = {3'000'000 + static_cast<std::int64_t>(i), static_cast<std::uint16_t>(random.index(240)),
+                  static_cast<std::uint16_t>(random.index(180)), true};
+    }
+    scene.add(noise);
+    const Execution execution = run(scene);
+    CAPTURE(seed, execution.result.status.reason);
+    CHECK(execution.result.pieces.size() == 1);
+    CHECK(execution.result.status.state != RunState::lost);
+    CHECK(error(scene, execution) < 0.08);
+    const Execution without = run(scene, {{"guidance", {{"corners", "never"}}}});
+    if (without.result.status.state == RunState::lost) ++lost_without;
+  }
+  CHECK(lost_without > 0);
+}
+
 TEST_CASE("Hot pixels that fire five hundred times a second are borne") {
   EventScene scene(swing, 4.0, wall());
   std::vector<Event> hot;

@@ -122,6 +122,11 @@ Feedback ProcessBackEnd::feedback(const FeedbackNeeds& needs) {
   return result;
 }
 
+std::optional<Matrix12> ProcessBackEnd::covariance(double t) {
+  if (!feedback_.newest || feedback_.newest->t != t) return std::nullopt;
+  return feedback_.covariance;
+}
+
 void ProcessBackEnd::finish() {
   dialogue_.finish([this](const Json& answer) { take_final(answer); });
   if (left_out_ > 0) context_.log(fmt::format("{} observations that are not finite (not told)", left_out_));

@@ -24,6 +24,8 @@ class ProcessBackEnd : public BackEnd {
 
   Status status() const override { return final_status_.value_or(monitor_.status()); }
   PoseTrajectory trajectory() const override { return trajectory_; }
+  /// Of the newest pose, where the last answer had it.
+  std::optional<Matrix12> covariance(double t) override;
   std::vector<Landmark> map() const override { return map_; }
   std::span<const UpdateRecord> updates() const override { return updates_; }
 

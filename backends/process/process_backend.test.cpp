@@ -140,7 +140,23 @@ TEST_CASE("Feedback of a back-end process has outliers since the last one, and a
   REQUIRE(feedback.newest);
   CHECK((feedback.newest->velocity - (Vector6() << 0, 0, 0, 1, 0, 0).finished()).norm() < 1e-12);
   CHECK_FALSE(feedback.covariance);
+  CHECK_FALSE(session.backend->covariance(1.0));
   CHECK(session.backend->feedback({true, false, false}).outliers.empty());
+}
+
+TEST_CASE("The covariance that a back-end process tells is that of its newest pose") {
+  Session session(R"(
+say({"evbench": 1})
+while "finish" not in (m := hear()):
+  t = m["until"]
+  say({"state": "tracking", "newest": pose(t, 1), "covariance": [4.0 * (i % 13 == 0) for i in range(144)]})
+say({"trajectory": [pose(0, 0)]})
+)");
+  session.backend->advance({{}, {}, 0.5});
+  REQUIRE(session.backend->covariance(0.5));
+  CHECK(*session.backend->covariance(0.5) == Matrix12(4.0 * Matrix12::Identity()));
+  CHECK_FALSE(session.backend->covariance(0.4));
+  CHECK(session.backend->feedback({true, true, true}).covariance);
 }
 
 TEST_CASE("The status of a run follows from the states that a process answers") {

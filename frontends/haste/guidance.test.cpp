@@ -51,7 +51,7 @@ std::vector<Guidance::Sighting> sightings(const Camera& camera, const Feedback& 
 
 TEST_CASE("What the back-end knows is carried on with constant velocity") {
   const Camera camera = pinhole();
-  Guidance guidance(camera);
+  Guidance guidance(camera, true);
   CHECK_FALSE(guidance.available());
   CHECK_FALSE(guidance.predict(0, 1.0));
 
@@ -69,24 +69,29 @@ TEST_CASE("What the back-end knows is carried on with constant velocity") {
   CHECK_FALSE(guidance.predict(3, 1.1));  // not expected in view
 }
 
-TEST_CASE("A back-end that does not track predicts nothing, and what it knew before is forgotten") {
+TEST_CASE("A back-end that does not track predicts nothing, but for a degraded one where that is wanted") {
   const Camera camera = pinhole();
-  Guidance guidance(camera);
-  for (const TrackingState state : {TrackingState::no_map, TrackingState::degraded, TrackingState::lost}) {
-    guidance.receive(feedback(3));
-    REQUIRE(guidance.predict(0, 1.0));
-    Feedback known = feedback(3);
-    known.state = state;
-    guidance.receive(known);
-    CHECK_FALSE(guidance.available());
-    CHECK_FALSE(guidance.predict(0, 1.0));
-    CHECK_FALSE(guidance.position(0));
+  for (const bool degraded : {false, true}) {
+    Guidance guidance(camera, degraded);
+    for (const TrackingState state : {TrackingState::no_map, TrackingState::degraded, TrackingState::lost}) {
+      guidance.receive(feedback(3));
+      REQUIRE(guidance.predict(0, 1.0));
+      CHECK(guidance.reliable());
+      Feedback known = feedback(3);
+      known.state = state;
+      guidance.receive(known);
+      const bool predicts = degraded && state == TrackingState::degraded;
+      CHECK(guidance.available() == predicts);
+      CHECK(guidance.predict(0, 1.0).has_value() == predicts);
+      CHECK(guidance.position(0).has_value() == predicts);
+      CHECK_FALSE(guidance.reliable());
+    }
   }
 }
 
 TEST_CASE("A landmark behind the camera is not predicted") {
   const Camera camera = pinhole();
-  Guidance guidance(camera);
+  Guidance guidance(camera, true);
   Feedback known = feedback(1);
   known.expected.front().position = {0.1, 0.0, -2.0};
   guidance.receive(known);
@@ -99,7 +104,7 @@ TEST_CASE("The predicted motion is turned and shifted to fit what is seen, one s
   const Feedback known = feedback(10);
   const SE3 truth = turned(0.03, {0.04, -0.02, 0.03});
   for (const bool stray : {false, true}) {
-    Guidance guidance(camera);
+    Guidance guidance(camera, true);
     guidance.receive(known);
     std::vector<Guidance::Sighting> seen = sightings(camera, known, truth, 1.05);
     if (stray) seen[4].pixel += Vector2(25.0, -10.0);
@@ -118,7 +123,7 @@ TEST_CASE("Seven sightings are too few to correct the predicted motion by, eight
   const Feedback known = feedback(8);
   const SE3 truth = turned(0.0, {0.05, 0.0, 0.0});
   std::vector<Guidance::Sighting> seen = sightings(camera, known, truth, 1.0);
-  Guidance guidance(camera);
+  Guidance guidance(camera, true);
   guidance.receive(known);
   guidance.correct(std::span(seen).first(7));
   CHECK(guidance.pose(1.0).p.norm() == 0.0);

@@ -58,7 +58,7 @@ struct Setting {
   }
 
   Guidance guidance() const {
-    Guidance result(camera);
+    Guidance result(camera, true);
     Feedback feedback;
     feedback.state = TrackingState::tracking;
     feedback.newest = ControlState{0.0, T_now, Vector6::Zero()};
@@ -77,7 +77,7 @@ struct Setting {
                                          const std::vector<Vector2>& taken = {}) const {
     RecentEvents recent(15'000);
     recent.add(seen);
-    return lost.find(guidance(), t, recent, taken, 6.0, camera);
+    return lost.find(guidance(), t, recent, {{}, taken}, 6.0, camera);
   }
   std::vector<LostLandmarks::Found> find(const Lines& lines, const std::vector<Event>& seen) const {
     LostLandmarks all = lost(lines);
@@ -152,7 +152,7 @@ TEST_CASE("A lost landmark is not looked for where something is tracked, nor nea
 
   RecentEvents recent(15'000);
   recent.add(seen);
-  const Guidance nothing(setting.camera);
+  const Guidance nothing(setting.camera, true);
   CHECK(lost.find(nothing, 0.3, recent, {}, 6.0, setting.camera).empty());
 
   setting.camera.pinhole.cx = 10.0;
