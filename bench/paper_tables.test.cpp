@@ -19,6 +19,7 @@ const std::string kConfigs = EVBENCH_CONFIGS;
 std::map<std::string, Json> metrics_of(const std::string& experiment) {
   std::map<std::string, Json> metrics;
   for (const auto& run : std::filesystem::directory_iterator(experiment)) {
+    if (!run.is_directory()) continue;  // what a sweep keeps of its plan
     const Json json = Json::parse(read_file(run.path().string() + "/metrics.json"));
     metrics[json.at("label").get<std::string>()] = json;
   }

@@ -104,7 +104,7 @@ void ProcessBackEnd::take_newest(const Json& answer, double until) {
   }
   if (const Json* const found = find(answer, "covariance")) {
     if (!feedback_.newest) throw MessageError("covariance: expected \"newest\" with it: the pose that it is of");
-    feedback_.covariance = covariance(*found);
+    feedback_.covariance = evbench::process::covariance(*found);
   }
   if (const Json* const found = find(answer, "expected")) feedback_.expected = expected_features(*found);
   if (const Json* const found = find(answer, "outliers")) {

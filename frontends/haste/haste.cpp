@@ -215,12 +215,11 @@ void Haste::replenish() {
     return;
   }
   detected_ = clock_;
-  const bool reacquires = takes_corners();
   const auto features = detect_features(options_.detection, recent_.events(), camera_.width, camera_.height,
                                         tracked().places, wanted - trackers_.size());
   for (const Vector2& pixel : features) {
     Tracker tracker(options_.tracker, {0, pixel, 0.0});
-    if (const auto landmark = reacquires ? lost_landmark_at(pixel) : std::nullopt) {
+    if (const std::optional<TrackId> landmark = lost_landmark_at(pixel)) {
       ++at_corners_.found;
       begin(std::move(tracker), {*landmark, odometer_, pixel, options_.guidance.probation, true});
     } else {
@@ -230,20 +229,10 @@ void Haste::replenish() {
   }
 }
 
-/// Whether corners are taken for lost landmarks.
-bool Haste::takes_corners() const {
-  using Corners = GuidanceOptions::Corners;
-  if (!options_.guidance.reacquire || options_.guidance.corners == Corners::never) return false;
-  if (options_.guidance.corners == Corners::always) return true;
-  const auto known = std::ranges::count_if(
-      tracks_, [&](const auto& entry) { return guidance_.expected().contains(entry.second.id); });
-  return 4 * known < options_.tracks;
-}
-
 /// Those with a template have been looked for by it before.
 std::optional<TrackId> Haste::lost_landmark_at(const Vector2& corner) const {
   const std::span<const Event> window = recent_.window(corner);
-  if (window.empty()) return std::nullopt;
+  if (!options_.guidance.reacquire || !options_.guidance.corners || window.empty()) return std::nullopt;
   return lost_.at_corner(corner, guidance_, seconds(window[window.size() / 2].t), tracked());
 }
 

@@ -64,7 +64,6 @@ class Haste : public EventFrontEnd {
   void veto_strays();
   void reacquire();
   void replenish();
-  bool takes_corners() const;
   std::optional<TrackId> lost_landmark_at(const Vector2& corner) const;
   void end(std::int64_t tracker, End why);
   void begin(Tracker tracker, const Track& track);

@@ -43,8 +43,7 @@ struct GuidanceOptions {
   int probation = 4;
   double tolerance = 3.0;
   double memory = 30.0;
-  /// When corners are taken for lost landmarks.
-  enum class Corners { never, few, always } corners = Corners::few;
+  bool corners = false;
   bool degraded = true;
 
   void declare(OptionSet& set) {
@@ -65,10 +64,9 @@ struct GuidanceOptions {
         .range(1, 1000);
     set.add("tolerance", tolerance, "and how far off that is meanwhile, at most [px]").above(0.0);
     set.add("memory", memory, "landmarks are looked for that were lost less than this ago [s]").range(0.0, 1e6);
-    set.add("corners", corners, {"never", "few", "always"},
-            "when a landmark that isn't found by its template, or has none, is taken to be the corner that is detected "
-            "near its expected place, on probation, if no other lost one is expected there; few: while fewer than "
-            "a quarter of the trackers follow landmarks; not without reacquire");
+    set.add("corners", corners,
+            "a landmark that isn't found by its template, or has none, is taken to be the corner that is detected near "
+            "its expected place, on probation, if no other lost one is expected there; not without reacquire");
     set.add("degraded", degraded,
             "landmarks are looked for while the back-end is degraded, too, and a motion model carries the estimate");
   }
