@@ -3,6 +3,12 @@
 # target: ./setup.sh fuzz; ./setup.sh release evbench
 set -euo pipefail
 cd "$(dirname "$0")"
+for argument in "$@"; do
+  case $argument in
+    -h | --help) sed -n '2,3s/^# //p' setup.sh && exit ;;
+    -*) echo "setup.sh: $argument is no preset or target" >&2 && exit 2 ;;
+  esac
+done
 preset=${1:-release}
 
 missing=()
