@@ -50,6 +50,7 @@ TEST_CASE("Each built-in front-end and back-end is in an example, and each pair 
       pairs.emplace(frontend, backend.at("type"));
     }
   }
+  REQUIRE_FALSE(built_in<FrontEnd>().empty());
   CHECK(frontends == built_in<FrontEnd>());
   CHECK(backends == built_in<BackEnd>());
   for (const char* frontend : {"haste", "str", "dots", "recorded", "oracle"}) {

@@ -402,6 +402,7 @@ TEST_CASE("What has been learnt by each update is told, and what is learnt in th
     const auto learnt = [&](const char* name, double t) {
       const auto updates = result.backend->updates();
       const auto update = std::ranges::find_if(updates, [&](const UpdateRecord& u) { return u.t >= t; });
+      REQUIRE(update != updates.end());
       REQUIRE(update->learnt.size() == names.size());
       return update->learnt[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
     };

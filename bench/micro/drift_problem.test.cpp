@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "bench/micro/track_noise.hpp"
-#include "core/simulation/track_wander.hpp"
 #include "core/motion/wnoa.hpp"
 #include "core/simulation/random.hpp"
+#include "core/simulation/track_wander.hpp"
 #include "core/support/index.hpp"
 
 namespace evbench {

@@ -84,8 +84,8 @@ void BackSide::hear(OnlinePose pose, Estimator& estimator) const {
         "the back-end told an online pose as known at {:.6f} s after one known at {:.6f} s", said, estimator.said));
   }
   estimator.said = said;
-  const double late = seen_ - until_;
-  pose.known_at = said < seen_ ? std::min(said + late, seen_) : said;
+  const double complete = pose.known_at.value_or(seen_), late = seen_ - until_;
+  pose.known_at = std::max(pose.t, complete < seen_ ? std::min(complete + late, seen_) : complete);
   // What comes less late than what was told before it has waited for that.
   if (!told.empty()) pose.known_at = std::max(*pose.known_at, *told.back().known_at);
   told.push_back(pose);

@@ -142,10 +142,7 @@ class TrackSimulator {
   }
 
   void observe(double t, const Vector2& ideal) {
-    Vector2 pixel = ideal + options_.noise * Vector2(random_.normal(), random_.normal());
-    if (options_.quantisation > 0.0) {
-      pixel = options_.quantisation * (pixel / options_.quantisation).array().round().matrix();
-    }
+    const Vector2 pixel = ideal + options_.noise * Vector2(random_.normal(), random_.normal());
     result_.observations.push_back({static_cast<TrackId>(result_.tracks.size()), t, pixel, sigma_});
   }
 };
@@ -194,6 +191,9 @@ SimulatedTracks simulate_tracks(const TrackOptions& options, const Camera& camer
   options.check(camera, place);
   SimulatedTracks tracks = TrackSimulator(options, camera, motion, scene, duration, seed, place).run();
   if (options.wander > 0.0) add_wander(tracks.observations, options.wander, options.wander_time, Random(seed, 2));
+  for (TrackObservation& z : tracks.observations) {
+    if (options.quantisation > 0.0) z.pixel = options.quantisation * (z.pixel / options.quantisation).array().round();
+  }
   if (tracks.observations.empty()) {
     throw InputError(
         fmt::format("{}: no observation in {} s; the camera sees no point of the scene, or blackouts cover "

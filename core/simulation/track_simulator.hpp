@@ -46,8 +46,9 @@ struct SimulatedTracks {
 /// irregular times (gaps of 0.4 to 1.6 mean gaps), with noise and quantisation, until its lifetime is over or it leaves
 /// the image; then another begins elsewhere, with an id of its own (a dot that is seen again is a new track). Times are
 /// whole microseconds, as those of events are. `sigma` of an observation is √(noise² + quantisation²/12), at least 0.1
-/// px, and what it wanders by (track_wander.hpp). The same arguments give the same bytes. Throws InputError, naming
-/// `place`, for options that contradict one another and when the camera sees no point of the scene at any time.
+/// px, and with `wander` the root of the sum of both squares (track_wander.hpp). The same arguments give the same
+/// bytes. Throws InputError, naming `place`, for options that contradict one another and when the camera sees no point
+/// of the scene at any time.
 SimulatedTracks simulate_tracks(const TrackOptions& options, const Camera& camera, const Motion& motion, Scene& scene,
                                 double duration, std::uint64_t seed, const std::string& place);
 

@@ -167,3 +167,40 @@ TEST_CASE("No two tracks follow the same dot at the same time") {
     entry->second = track.back().t;
   }
 }
+
+TEST_CASE("Tracks that wander are off by as much as is stated, and what they are off by is forgotten in time") {
+  Sequence plain, wandering;
+  for (Sequence* s : {&plain, &wandering}) {
+    s->options.lifetime = {4.0, 4.0};
+    s->options.noise = 0.3;
+  }
+  wandering.options.wander = 0.8;
+  wandering.options.wander_time = 0.3;
+  plain.run();
+  wandering.run();
+  REQUIRE(plain.result.observations.size() == wandering.result.observations.size());
+  double square = 0.0, product = 0.0, expected = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < plain.result.observations.size(); ++i) {
+    CHECK(wandering.result.observations[i].sigma == Approx(std::hypot(0.3, 0.8)));
+    square += (wandering.result.observations[i].pixel - plain.result.observations[i].pixel).squaredNorm();
+    count += 2;
+  }
+  const auto before = plain.by_track();
+  for (const auto& [id, track] : wandering.by_track()) {
+    const auto& other = before.at(id);
+    for (std::size_t i = 0, j = 0; i < track.size(); ++i) {
+      while (j < track.size() && track[j].t < track[i].t + 0.2) ++j;
+      if (j == track.size()) break;
+      product += (track[i].pixel - other[i].pixel).dot(track[j].pixel - other[j].pixel);
+      expected += 2.0 * std::exp((track[i].t - track[j].t) / 0.3);
+    }
+  }
+  CHECK(std::sqrt(square / count) == Approx(0.8).epsilon(0.05));
+  CHECK(product / expected == Approx(0.64).epsilon(0.1));
+  wandering.options.quantisation = 0.5;
+  wandering.run();
+  for (const TrackObservation& z : wandering.result.observations) {
+    CHECK((2.0 * z.pixel - (2.0 * z.pixel).array().round().matrix()).norm() < 1e-9);
+  }
+}

@@ -116,8 +116,10 @@ void Haste::end_strangers() {
     Track& track = tracks_.at(id);
     if (track.doubted < 0 || tracker.event_count() - track.doubted < kWindowSize) continue;
     track.doubted = -1;
-    const Alignment seen = align(tracker.learnt_template(), recent_.window(track.pixel), tracker.grid_state());
-    if (seen.score < options_.guidance.similarity) end(id, End::silence);
+    std::vector<Event> window;
+    for (int i = 0; i < kWindowSize; ++i) window.push_back(tracker.window().event(i));
+    const Alignment seen = align(tracker.learnt_template(), window, tracker.grid_state());
+    if (seen.score < options_.life.recognition) end(id, End::silence);
   }
 }
 
@@ -255,12 +257,13 @@ void Haste::end(std::int64_t tracker, End why) {
     lost_.disappoint(track.id, clock_);
   } else {
     // Nothing of this has been told that is younger than the delay, however the run exchanges.
-    if (why == End::wandering || why == End::silence) {
+    const bool doubted = track.doubted >= 0;  // it ends before it could be looked at
+    if (why == End::wandering || why == End::silence || doubted) {
       told_.take_back(track.id, std::max(track.found, clock_ - options_.delay));
     }
     told_.end({track.id, clock_});
     const Tracker& state = trackers_.tracker(tracker);
-    const bool itself = why == End::border || why == End::starvation;
+    const bool itself = !doubted && (why == End::border || why == End::starvation);
     if (options_.guidance.reacquire && itself && guidance_.position(track.id)) {
       lost_.remember(track.id, clock_, state.learnt_template(), state.state().angle, guidance_.pose(clock_));
     }

@@ -98,7 +98,7 @@ std::optional<TrackId> LostLandmarks::at_corner(const Vector2& corner, const Gui
     const Vector2 offset = corner - expected->pixel;
     const Matrix2 covariance = expected->covariance + kPlace * kPlace * Matrix2::Identity();
     const double distance = std::sqrt(offset.dot(covariance.inverse() * offset));
-    if (offset.norm() > options_.search || distance > options_.gate) continue;
+    if (!(offset.norm() <= options_.search && distance <= options_.gate)) continue;
     if (result) return std::nullopt;
     result = track;
   }

@@ -13,6 +13,7 @@ struct LifeOptions {
   double border = 8.0;
   double starvation = 15.0;
   double crowding = 5.0;
+  double recognition = 0.45;
 
   void declare(OptionSet& set) {
     set.add("spread", spread,
@@ -28,6 +29,10 @@ struct LifeOptions {
             "nobody; 0: never")
         .range(0.0, 10000.0);
     set.add("crowding", crowding, "an older one is this near [px]; 0: never").range(0.0, 1000.0);
+    set.add("recognition", recognition,
+            "what it sees after the whole sensor has told nothing for 0.1 s looks less like its template than this "
+            "[cosine]: the camera has moved meanwhile; 0: never")
+        .range(0.0, 1.0);
   }
 };
 
