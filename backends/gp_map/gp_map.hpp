@@ -91,13 +91,13 @@ class GpMap : public BackEnd {
   void learn();
   void learn_with_hindsight(const TimeSpan& span, std::span<const double> surplus = {});
   void reconsider_recent();
-  std::optional<ExplanationSearch> begin_search(Supposed supposed, bool young) const;
-  void go_on_with(const RecentExplanation& other);
   void recall_condemned();
   void check_support();
   void forget_ended_tracks(double t);
   void predict_tracks();
 
+  std::optional<ExplanationSearch> begin_search(Supposed supposed, bool young) const;
+  void go_on_with(const RecentExplanation& other);
   void follow_observations(double t, double ahead);
   void take(const TrackObservation& z);
   bool goes_on(const Track& track);

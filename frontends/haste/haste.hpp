@@ -81,7 +81,7 @@ class Haste : public EventFrontEnd {
   double last_event_;            ///< [s]
   double odometer_ = 0.0;        ///< the image's way: the trackers' mean one [px]
   TrackId next_id_ = 0;
-  std::array<std::size_t, 9> ended_{};  ///< by End
+  std::array<std::size_t, static_cast<std::size_t>(End::silence) + 1> ended_{};  ///< by End
   struct Finds {
     std::size_t found = 0, went_on = 0;
   } by_template_, at_corners_;

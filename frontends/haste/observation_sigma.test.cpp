@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "core/support/median.hpp"
 #include "core/testing/event_scene.hpp"
 #include "core/testing/told_tracks.hpp"
 #include "frontends/haste/haste.hpp"
@@ -22,12 +23,6 @@ const EventScene& scene() {
 std::vector<TrackObservation> observations(const Options& options) {
   Haste haste(options, {scene(), 0, ""});
   return all_told(haste, scene()).observations;
-}
-
-double median(std::vector<double> values) {
-  REQUIRE_FALSE(values.empty());
-  std::ranges::sort(values);
-  return values[values.size() / 2];
 }
 
 }  // namespace
@@ -51,6 +46,7 @@ TEST_CASE("Observations that are said to be known less well are farther from whe
       points.emplace(z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray);
     }
   }
+  REQUIRE_FALSE((sigmas.empty() || sharp.empty() || usual.empty() || vague.empty()));
   CHECK(median(sigmas) == Approx(options.sigma).epsilon(0.1));
   CAPTURE(sharp.size(), usual.size(), vague.size(), median(sharp), median(usual), median(vague));
   CHECK(median(vague) > 1.2 * median(usual));
