@@ -105,6 +105,17 @@ TEST_CASE("Nothing is printed by --quiet, the table and the folder without") {
   }
 }
 
+TEST_CASE("A run that is watched says how far it is, where its errors go") {
+  const TemporaryFolder folder;
+  folder.write("c.json", short_config().dump());
+  const Outcome watched = testing::evbench(folder, "run c.json --watch");
+  CHECK(watched.exit_code == 0);
+  for (const char* const part : {"of 3.00 s", " tracks, ", " landmarks, ", " states, delay ", "x real time\n"}) {
+    CHECK_THAT(watched.err, Contains(part));
+  }
+  CHECK_THAT(watched.out, Contains("written: results/short") && !Contains("x real time"));
+}
+
 TEST_CASE("An override is one value, so that the config may stand behind it") {
   const TemporaryFolder folder;
   folder.write("c.json", short_config().dump());

@@ -121,6 +121,7 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
   record.times = {times.source, times.frontend, times.backend, times.waiting, times.harness, times.total};
   std::vector<double> updates;
   for (const UpdateRecord& update : result.updates) updates.push_back(update.seconds);
+  record.times->slowest_5s = times.slowest_5s;
   record.times->frontend_ms = step_times(times.frontend_batches);
   record.times->backend_ms = step_times(updates);
   record.peak_rss_mib = result.peak_rss_mib;

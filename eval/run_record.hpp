@@ -44,6 +44,7 @@ struct RecordedTimes {
   double waiting = 0.0;                       ///< the back-end's thread, for the front-end's
   double harness = 0.0;                       ///< the rest: exchanges, undistortion, hashing, sampling
   double total = 0.0;                         ///< from the first exchange to the last estimate
+  std::optional<double> slowest_5s = {};      ///< data time / processing time of the slowest 5 s; none: shorter
   std::optional<StepTimes> frontend_ms = {};  ///< of each batch of observations
   std::optional<StepTimes> backend_ms = {};   ///< of each update of the estimate
 };

@@ -31,7 +31,7 @@ RunRecord full_record() {
   record.runtime_s = 1.0 / 7.0;
   record.data_s = 29.9;
   record.realtime_factor = *record.data_s / *record.runtime_s;
-  record.times = {0.05, 0.1, 0.2, 0.3, 0.4, 1.0, std::nullopt, StepTimes{1.5, 2.5, 4.0}};
+  record.times = {0.05, 0.1, 0.2, 0.3, 0.4, 1.0, 2.5, std::nullopt, StepTimes{1.5, 2.5, 4.0}};
   record.peak_rss_mib = 31.25;
   RunStatus status;
   status.status = {RunState::lost, "2 tracks, 15 needed", 3.051, {{1.0, 1.5, "8 tracks"}}};

@@ -97,7 +97,7 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
       ->type_name("FILE");
   command
       .add_option("--calib", options.calibration,
-                  "Calibration for compensation, text or YAML; default: the recording's")
+                  "Calibration for compensation and for a run's landmarks, text or YAML; default: the recording's")
       ->type_name("FILE");
   command.add_option("--camera", options.camera, "Which camera of a --calib that has several (Kalibr)")
       ->type_name("NAME");

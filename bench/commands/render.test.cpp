@@ -40,6 +40,24 @@ TEST_CASE("render writes a picture, a folder of pictures, or a video, and says s
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", "a.mp4", "a.png", "pictures"});
 }
 
+TEST_CASE("render draws a run's tracks over its events") {
+  const TemporaryFolder folder;
+  write_recording_of_events(folder);
+  folder.write("calib.txt", "20 20 10 5 0 0 0 0 0\n");
+  folder.write("c.json", short_config().dump());
+  REQUIRE(testing::evbench(folder, "run c.json --tracks --quiet").exit_code == 0);
+  const std::string run = "results/short/" + *names_in(folder.file("results/short")).begin();
+  CHECK(testing::evbench(folder, "render a.evb plain.png --to 0.05").exit_code == 0);
+  CHECK(testing::evbench(folder, "render a.evb run.png --to 0.05 --calib calib.txt --run " + run).exit_code == 0);
+  const cv::Mat plain = cv::imread(folder.file("plain.png")), drawn = cv::imread(folder.file("run.png"));
+  REQUIRE_FALSE(drawn.empty());
+  CHECK((drawn.size() != plain.size() || cv::norm(plain, drawn) > 0.0));
+  std::filesystem::remove(folder.file(run + "/tracks.txt"));
+  const Outcome without = testing::evbench(folder, "render a.evb none.png --calib calib.txt --run " + run);
+  CHECK(without.exit_code == 2);
+  CHECK_THAT(without.err, Contains("--tracks"));
+}
+
 TEST_CASE("render refuses with exit code 2 and a sentence what it can't draw") {
   const TemporaryFolder folder;
   write_recording_of_events(folder);

@@ -106,6 +106,7 @@ void BackSide::take(TrackBatch batch) {
   Estimator& estimator = *estimators_.back();
   watch_.time([&] { estimator.backend->advance(batch); });
   if (estimator.newest) estimator.covariances.take(*estimator.newest, *estimator.backend);
+  work_.push_back({seen_, watch_.seconds() - std::exchange(counted_, watch_.seconds())});
 }
 
 Feedback BackSide::feedback(const FeedbackNeeds& needs) {

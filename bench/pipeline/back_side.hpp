@@ -32,7 +32,8 @@ class BackSide {
   /// of the final trajectories [Hz]; 0: the back-end's own poses.
   void finish(double rate, RunResult& result);
 
-  double seconds() const { return watch_.seconds(); }  ///< in the back-ends
+  double seconds() const { return watch_.seconds(); }      ///< in the back-ends
+  const std::vector<Work>& work() const { return work_; }  ///< of that, for each batch
 
  private:
   /// A back-end and what it told.
@@ -62,6 +63,8 @@ class BackSide {
   std::string digested_;  ///< what is to be hashed
   std::size_t observations_ = 0, left_out_ = 0;
   Stopwatch watch_;
+  std::vector<Work> work_;
+  double counted_ = 0.0;  ///< [s] of the stopwatch
 };
 
 }  // namespace evbench

@@ -13,7 +13,7 @@
 namespace evbench {
 namespace {
 
-constexpr std::string_view kBegin = "evbench batches 1\n";
+constexpr std::string_view kBegin = "evbench batches 2\n";
 constexpr std::size_t kDigestLength = 64;
 
 template <class Value>
@@ -42,9 +42,11 @@ void append(std::string& bytes, const TrackBatch& batch) {
 
 /// Behind the batches: the facts as JSON, their length, the digest.
 std::string format_facts(const FrontFacts& facts) {
+  Json work = Json::array();
+  for (const Work& of_batch : facts.work) work.push_back({of_batch.until, of_batch.seconds});
   const Json json = {{"source_s", facts.source_s},
                      {"frontend_s", facts.frontend_s},
-                     {"batch_s", facts.batch_s},
+                     {"work", work},
                      {"data_s", facts.data_s},
                      {"log", facts.log}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -80,9 +82,10 @@ RecordedBatches::RecordedBatches(std::string bytes) : bytes_(std::move(bytes)) {
   end_ = bytes_.size() - sizeof(std::uint64_t) - length;
   at_ = kBegin.size();
   const Json json = Json::parse(bytes_.substr(end_, length));
-  facts_ = {json.at("source_s").get<double>(), json.at("frontend_s").get<double>(),
-            json.at("batch_s").get<std::vector<double>>(), json.at("data_s").get<double>(),
-            json.at("log").get<std::vector<std::string>>()};
+  std::vector<Work> work;
+  for (const Json& of_batch : json.at("work")) work.push_back({of_batch[0].get<double>(), of_batch[1].get<double>()});
+  facts_ = {json.at("source_s").get<double>(), json.at("frontend_s").get<double>(), std::move(work),
+            json.at("data_s").get<double>(), json.at("log").get<std::vector<std::string>>()};
 }
 
 template <class Value>

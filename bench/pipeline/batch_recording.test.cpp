@@ -19,7 +19,9 @@ class ThreeBatches : public BatchStream {
     if (count_ == 2) batch.ended.push_back({-1, 0.15});
     return batch;
   }
-  FrontFacts facts() const override { return {0.1, 1.0 / 3.0, {0.1, 0.7}, 2.0, {"source: x", "frontend: \xff"}}; }
+  FrontFacts facts() const override {
+    return {0.1, 1.0 / 3.0, {{1.0, 0.1}, {2.0, 0.7}}, 2.0, {"source: x", "frontend: \xff"}};
+  }
   double spent() const override { return 0.0; }
 
  private:
@@ -52,7 +54,7 @@ TEST_CASE("A recording plays the same batches, bit by bit, and the facts of the 
   const FrontFacts facts = played->facts();
   CHECK(facts.source_s == 0.1);
   CHECK(facts.frontend_s == 1.0 / 3.0);
-  CHECK(facts.batch_s == std::vector<double>{0.1, 0.7});
+  CHECK(facts.work == std::vector<Work>{{1.0, 0.1}, {2.0, 0.7}});
   CHECK(facts.data_s == 2.0);
   CHECK(facts.log.at(0) == "source: x");
   CHECK(facts.log.size() == 2);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/pipeline/pace.hpp"
 #include "core/plugin/exchange.hpp"
 
 namespace evbench {
@@ -12,7 +13,7 @@ namespace evbench {
 struct FrontFacts {
   double source_s = 0.0;         ///< [s] its waiting for events
   double frontend_s = 0.0;       ///< [s] its own work
-  std::vector<double> batch_s;   ///< [s] of it, for each exchange
+  std::vector<Work> work;        ///< of that, for each exchange
   double data_s = 0.0;           ///< [s] from the first to the last observation that it gave
   std::vector<std::string> log;  ///< what source and front-end remarked, for the run's log
 };

@@ -37,7 +37,7 @@ std::optional<TrackBatch> FrontSide::next() {
 }
 
 FrontFacts FrontSide::facts() const {
-  FrontFacts facts{frontend_.waited(), seconds(), batch_seconds_, first_ ? last_ - *first_ : 0.0, {}};
+  FrontFacts facts{frontend_.waited(), seconds(), work_, first_ ? last_ - *first_ : 0.0, {}};
   for (const std::string& remark : source_.remarks()) facts.log.push_back("source: " + remark);
   for (const std::string& remark : frontend_.remarks()) facts.log.push_back("frontend: " + remark);
   return facts;
@@ -58,7 +58,7 @@ TrackBatch FrontSide::exchange() {
     count(batch);
   }
   batch.seen = batch.known_at();
-  batch_seconds_.push_back(seconds() - before);
+  work_.push_back({*batch.seen, seconds() - before});
   return batch;
 }
 

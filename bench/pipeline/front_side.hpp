@@ -52,7 +52,7 @@ class FrontSide : public BatchStream {
   std::optional<double> first_;
   double last_ = 0.0;
   Stopwatch watch_;
-  std::vector<double> batch_seconds_;
+  std::vector<Work> work_;
 };
 
 }  // namespace evbench

@@ -83,7 +83,8 @@ RunResult run(const Source& source, BatchStream& front, const FeedbackNeeds& nee
   const double elsewhere = sequential ? front.spent() : result.times.waiting;
   result.times.source = facts.source_s;
   result.times.frontend = facts.frontend_s;
-  result.times.frontend_batches = facts.batch_s;
+  for (const Work& of_batch : facts.work) result.times.frontend_batches.push_back(of_batch.seconds);
+  result.times.slowest_5s = slowest_pace({facts.work, back.work()}, source.time_range().from, 5.0);
   result.times.backend = back.seconds();
   result.times.harness = std::max(0.0, total.seconds() - back.seconds() - elsewhere);
   result.times.total = total.seconds() + (sequential ? facts.source_s + facts.frontend_s - front.spent() : 0.0);

@@ -38,6 +38,8 @@ struct RunTimes {
   double total = 0.0;     ///< of the loop, from the first exchange to the last estimate
   /// Making observations, of each exchange.
   std::vector<double> frontend_batches;
+  /// Data time / processing time of the slowest 5 s of the data, without the final estimate; none: there are fewer.
+  std::optional<double> slowest_5s;
 };
 
 /// What a run of front-end and back-end ended with.

@@ -54,10 +54,12 @@ std::int64_t first_end(const std::string& path, const StreamOptions& options, co
 }
 
 void check_options(const RenderOptions& options) {
-  if (options.mode != RenderMode::compensated &&
-      (!options.trajectory.empty() || !options.calibration.empty() || options.depth)) {
-    throw InputError(
-        "trajectory, calibration and depth are for motion-compensated pictures; this mode has no use for them");
+  const bool compensated = options.mode == RenderMode::compensated;
+  if (!compensated && (!options.trajectory.empty() || options.depth)) {
+    throw InputError("trajectory and depth are for motion-compensated pictures; this mode has no use for them");
+  }
+  if (!compensated && options.run.empty() && !options.calibration.empty()) {
+    throw InputError("a calibration is for motion-compensated pictures and for those of a run; this has no use for it");
   }
   if (options.speed / options.fps < 1e-6) {
     throw InputError(fmt::format("{} pictures a second at speed {}: one every {:.3g} us; expected 1 us or more",

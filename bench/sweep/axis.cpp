@@ -59,7 +59,7 @@ std::string rounded(double value, int digits) {
 }
 
 std::vector<std::string> values_of(const RangeOptions& range, const std::string& place) {
-  if (!(range.from < range.to)) {
+  if (!(range.from <= range.to)) {
     throw InputError(fmt::format("{}: from {} to {}; expected the smaller value first", place, range.from, range.to));
   }
   if (range.step > 0.0 && range.count > 0) throw InputError(fmt::format("{}: expected a step or a count", place));

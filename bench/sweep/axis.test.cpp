@@ -37,6 +37,7 @@ TEST_CASE("An axis is said on a command line in the same ways") {
   CHECK(texts(parse_axis("a=1..3,7")) == Texts{"1", "2", "3", "7"});
   CHECK(texts(parse_axis("a=0..1:3")) == Texts{"0", "0.5", "1"});
   CHECK(texts(parse_axis("a=1..100:3log,x")) == Texts{"1", "10", "100", "x"});
+  CHECK(texts(parse_axis("a=5..5")) == Texts{"5"});
   CHECK(texts(parse_axis("a=[1,2],{\"b\":1,\"c\":2},\"d,e\"")) == Texts{"[1,2]", "{\"b\":1,\"c\":2}", "\"d,e\""});
   const Axis axis = parse_axis("backend.rate=2..3");
   CHECK(axis.name == "backend.rate");

@@ -1,0 +1,22 @@
+#include "bench/pipeline/pace.hpp"
+
+#include <algorithm>
+
+namespace evbench {
+
+std::optional<double> slowest_pace(const std::vector<std::vector<Work>>& parts, double begin, double window) {
+  std::vector<Work> all;
+  for (const std::vector<Work>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  std::ranges::stable_sort(all, {}, &Work::until);
+  double most = 0.0, inside = 0.0;
+  auto first = all.begin();
+  for (const Work& work : all) {
+    inside += work.seconds;
+    for (; first->until <= work.until - window; ++first) inside -= first->seconds;
+    if (work.until >= begin + window) most = std::max(most, inside);
+  }
+  if (!(most > 0.0)) return std::nullopt;
+  return window / most;
+}
+
+}  // namespace evbench

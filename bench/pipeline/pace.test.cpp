@@ -1,0 +1,22 @@
+#include "bench/pipeline/pace.hpp"
+
+#include <catch2/catch.hpp>
+
+namespace evbench {
+
+TEST_CASE("The slowest pace is that of the window in which all parts together took longest") {
+  const std::vector<Work> front = {{11.0, 0.1}, {12.0, 0.2}, {13.0, 0.1}, {14.0, 0.1}};
+  const std::vector<Work> back = {{11.0, 0.3}, {12.5, 0.8}, {14.0, 0.4}};
+  CHECK(slowest_pace({front}, 10.0, 2.0) == Approx(2.0 / 0.3));
+  CHECK(slowest_pace({front, back}, 10.0, 2.0) ==
+        Approx(2.0 / 1.4));  // 10 to 12.5 is longer; 11 to 13: 0.2 + 0.8 + 0.1
+  CHECK(slowest_pace({front, back}, 10.0, 4.0) == Approx(4.0 / 2.0));
+}
+
+TEST_CASE("Work of less than the window has no slowest pace, nor has none") {
+  CHECK_FALSE(slowest_pace({{{11.0, 0.1}, {14.9, 0.1}}}, 10.0, 5.0));
+  CHECK_FALSE(slowest_pace({}, 0.0, 5.0));
+  CHECK_FALSE(slowest_pace({{}, {}}, 0.0, 5.0));
+}
+
+}  // namespace evbench
