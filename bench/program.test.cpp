@@ -116,6 +116,27 @@ TEST_CASE("A run that is watched says how far it is, where its errors go") {
   CHECK_THAT(watched.out, Contains("written: results/short") && !Contains("x real time"));
 }
 
+TEST_CASE("What a run's front-end told is told again by the front-end recorded") {
+  const TemporaryFolder folder;
+  Json config = short_config();
+  config["source"]["tracks"]["dropout_rate"] = 2;
+  folder.write("c.json", config.dump());
+  REQUIRE(testing::evbench(folder, "run c.json --tracks --quiet --out first").exit_code == 0);
+  const auto run = [&](const std::string& out) {
+    const std::string experiment = folder.file(out + "/short");
+    return experiment + "/" + *names_in(experiment).begin();
+  };
+  config["frontend"] = {{"type", "recorded"}, {"tracks", run("first") + "/tracks.txt"}};
+  config["frontend"]["ends"] = run("first") + "/track_ends.txt";
+  folder.write("again.json", config.dump());
+  REQUIRE(testing::evbench(folder, "run again.json --tracks --quiet --out second").exit_code == 0);
+  for (const char* const file : {"/tracks.txt", "/track_ends.txt"}) {
+    const std::string told = read_file(run("first") + file);
+    CHECK_FALSE(told.empty());
+    CHECK(read_file(run("second") + file) == told);
+  }
+}
+
 TEST_CASE("An override is one value, so that the config may stand behind it") {
   const TemporaryFolder folder;
   folder.write("c.json", short_config().dump());

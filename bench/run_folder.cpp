@@ -172,7 +172,10 @@ RunRecord RunFolder::write(const RunConfig& config, const JobIdentity& identity,
   if (problem && !result.pieces.empty() && result.pieces[result.longest].problem) {
     folder_.write("problem.txt", format_problem(*result.pieces[result.longest].problem));
   }
-  if (!result.tracks.empty()) folder_.write("tracks.txt", format_tracks(result.tracks));
+  if (result.tracks) {
+    folder_.write("tracks.txt", format_tracks(result.tracks->observations));
+    folder_.write("track_ends.txt", format_track_ends(result.tracks->ended));
+  }
   RunRecord record = record_of(config, identity, execution);
   record.range = {source.time_range().from, source.time_range().to};
   return finish(config, identity, execution, std::move(record));

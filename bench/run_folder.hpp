@@ -34,7 +34,7 @@ class EmptyFolders {
 ///   groundtruth.tum  the source's, in the time range of the run (and 1 s around it), where there is one
 ///   metrics.json, status.json        eval/metrics.md
 ///   timing.csv       a line an update
-///   tracks.txt       what the front-end told, raw pixels, where it was asked for
+///   tracks.txt, track_ends.txt       what the front-end told, raw pixels, where it was asked for
 ///   learnt.csv       what the back-end has learnt of its parameters by then, where it does
 ///   log.txt
 ///
@@ -49,7 +49,7 @@ class RunFolder {
 
   /// Writes a run, scored by its config. `ground_truth` is what ground_truth_tum() gives. With `problem`, also
   /// problem.txt, the estimation problem that the run ended with, where the back-end has one. Tracks that were kept are
-  /// tracks.txt.
+  /// tracks.txt and track_ends.txt.
   RunRecord write(const RunConfig& config, const JobIdentity& identity, const Source& source,
                   const std::string& ground_truth, const Execution& execution, bool problem = false);
 

@@ -196,8 +196,10 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->add_flag("--problem", arguments->problem,
                     "Also write problem.txt: the problem that gp_map ended with, for evbench solve and other solvers");
-  command->add_flag("--tracks", arguments->tracks,
-                    "Also write tracks.txt: what the front-end told, for evbench render and the front-end recorded");
+  command->add_flag(
+      "--tracks", arguments->tracks,
+      "Also write tracks.txt and track_ends.txt: what the front-end told, for evbench render and the front-end "
+      "recorded");
   command->add_flag("--watch", arguments->watch,
                     "Print a line each second, on the standard error: how far, tracks, landmarks, states, delay, pace");
   command->add_flag("--check", arguments->check, "Check the config, and that its files can be read, and stop");

@@ -10,7 +10,7 @@
 namespace evbench {
 
 FrontSide::FrontSide(FrontEnd& frontend, const Source& source, const PipelineOptions& options, FeedbackLine& feedback,
-                     std::vector<TrackObservation>* kept)
+                     TrackBatch* kept)
     : frontend_(frontend),
       source_(source),
       range_(source.time_range()),
@@ -100,7 +100,10 @@ void FrontSide::count(TrackBatch& batch) {
   in_time_order(
       batch.observations, batch.ended, [&](const TrackObservation& z) { live_.insert(z.track); },
       [&](const TrackEnd& ended) { live_.erase(ended.track); });
-  if (kept_) kept_->insert(kept_->end(), batch.observations.begin(), batch.observations.end());
+  if (kept_) {
+    kept_->observations.insert(kept_->observations.end(), batch.observations.begin(), batch.observations.end());
+    kept_->ended.insert(kept_->ended.end(), batch.ended.begin(), batch.ended.end());
+  }
   if (!batch.observations.empty()) {
     if (!first_) first_ = batch.observations.front().t;
     last_ = batch.observations.back().t;

@@ -18,9 +18,9 @@ namespace evbench {
 /// where the front-end has nothing more to give: time passes all the same.
 class FrontSide : public BatchStream {
  public:
-  /// `kept`: where all observations are to be appended; may be none.
+  /// `kept`: where all observations and ends are to be appended; may be none.
   FrontSide(FrontEnd& frontend, const Source& source, const PipelineOptions& options, FeedbackLine& feedback,
-            std::vector<TrackObservation>* kept = nullptr);
+            TrackBatch* kept = nullptr);
 
   /// Hands over what feedback is due before. Throws std::runtime_error for a front-end that breaks its contract
   /// (frontend.hpp), saying how.
@@ -41,7 +41,7 @@ class FrontSide : public BatchStream {
   Source::TimeRange range_;
   const PipelineOptions& options_;
   FeedbackLine& feedback_;
-  std::vector<TrackObservation>* kept_;
+  TrackBatch* kept_;
   FeedbackNeeds needs_;
   bool more_ = true;
   double clock_;  ///< [s] the front-end has looked at the data up to here

@@ -101,12 +101,12 @@ RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackE
                        BackEndContext context, const PipelineOptions& options, double trajectory_rate,
                        const Progress& progress, bool keep_tracks) {
   reset_peak_memory();
-  std::vector<TrackObservation> tracks;
+  TrackBatch tracks;
   FeedbackLine feedback(options.latency, options.mode == "free");
   FrontSide front(frontend, source, options, feedback, keep_tracks ? &tracks : nullptr);
   RunResult result = run(source, front, frontend.needs(), feedback, make_backend, std::move(context), options,
                          trajectory_rate, progress);
-  result.tracks = std::move(tracks);
+  if (keep_tracks) result.tracks = std::move(tracks);
   return result;
 }
 

@@ -110,11 +110,26 @@ TrackFile read_tracks(const std::string& path, int width, int height, const Trac
   return file;
 }
 
+std::vector<TrackEnd> read_track_ends(const std::string& path) {
+  std::vector<TrackEnd> ends;
+  for (TextReader reader(path); reader.next();) {
+    reader.expect_columns(2, "id t");
+    ends.push_back({reader.integer(0, "the id"), reader.number(1, "the time")});
+  }
+  return ends;
+}
+
 std::string format_tracks(std::span<const TrackObservation> observations) {
   fmt::memory_buffer text;
   for (const TrackObservation& o : observations) {
     fmt::format_to(std::back_inserter(text), "{} {} {} {}\n", o.track, o.t, o.pixel.x(), o.pixel.y());
   }
+  return fmt::to_string(text);
+}
+
+std::string format_track_ends(std::span<const TrackEnd> ends) {
+  fmt::memory_buffer text;
+  for (const TrackEnd& end : ends) fmt::format_to(std::back_inserter(text), "{} {}\n", end.track, end.t);
   return fmt::to_string(text);
 }
 

@@ -40,7 +40,13 @@ struct TrackFile {
 /// that is not finite, an id that is not an integer, and a file without observations.
 TrackFile read_tracks(const std::string& path, int width, int height, const TrackFileOptions& options = {});
 
+/// Reads where tracks end, a line `id t` [s] each, in any order; a track may end more than once, as it may be found
+/// again. Throws InputError, naming file and line, for anything else. A file without a line is one of tracks that never
+/// end.
+std::vector<TrackEnd> read_track_ends(const std::string& path);
+
 /// The shortest digits that read back as the same numbers.
 std::string format_tracks(std::span<const TrackObservation> observations);
+std::string format_track_ends(std::span<const TrackEnd> ends);
 
 }  // namespace evbench

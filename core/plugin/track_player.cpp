@@ -2,12 +2,19 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace evbench {
 
-TrackPlayer::TrackPlayer(std::span<const TrackObservation> observations) : observations_(observations) {
+TrackPlayer::TrackPlayer(std::span<const TrackObservation> observations, std::vector<TrackEnd> ends)
+    : observations_(observations), ends_(std::move(ends)) {
   std::map<TrackId, double> last;
   for (const TrackObservation& z : observations) last[z.track] = z.t;
+  std::erase_if(ends_, [&](const TrackEnd& end) { return !last.contains(end.track); });
+  for (const TrackEnd& end : ends_) {
+    const auto open = last.find(end.track);
+    if (open != last.end() && end.t >= open->second) last.erase(open);
+  }
   for (const auto& [track, t] : last) ends_.push_back({track, t});
   std::ranges::stable_sort(ends_, {}, &TrackEnd::t);
 }

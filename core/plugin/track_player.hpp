@@ -8,14 +8,14 @@
 
 namespace evbench {
 
-/// For front-ends whose tracks are known beforehand: plays each observation once, and the end of each track with its
-/// last one.
+/// For front-ends whose tracks are known beforehand: plays each observation once, and their ends.
 class TrackPlayer {
  public:
   TrackPlayer() = default;
 
-  /// The observations in time order; they must outlive the player.
-  explicit TrackPlayer(std::span<const TrackObservation> observations);
+  /// The observations in time order; they must outlive the player. `ends`: where tracks end, in any order, also those
+  /// that go on later. A track of which none is at its last observation or after it ends with that.
+  explicit TrackPlayer(std::span<const TrackObservation> observations, std::vector<TrackEnd> ends = {});
 
   /// As FrontEnd::advance().
   bool advance(const FrontEnd::Horizon& horizon, TrackBatch& batch);

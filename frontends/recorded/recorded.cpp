@@ -20,6 +20,9 @@ const Registration<FrontEnd, Recorded> registration("recorded",
 
 void Recorded::Options::declare(OptionSet& set) {
   set.add("tracks", tracks, "path of the track file").required().path();
+  set.add("ends", ends,
+          "path of a file of where tracks end (id t), which may go on later; empty: each with its last observation")
+      .path();
   set.add(
       "columns", columns,
       "order of the file's columns, e.g. \"t x y - id\", - being one that is not read; empty: as a line of names says, "
@@ -69,7 +72,9 @@ Recorded::Recorded(const Options& options, const FrontEndContext& context)
         "expected some",
         path_, range.from, range.to, options.min_track_length));
   }
-  player_ = TrackPlayer(observations_);
+  player_ =
+      TrackPlayer(observations_, options.ends.empty() ? std::vector<TrackEnd>()
+                                                      : read_track_ends(resolve_path(options.ends, context.folder)));
 }
 
 void Recorded::drop_short_tracks(int min_length) {

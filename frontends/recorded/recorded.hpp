@@ -14,7 +14,7 @@ class Recorded : public FrontEnd {
   static constexpr bool reads_events = false;
 
   struct Options {
-    std::string tracks = {}, columns = {};
+    std::string tracks = {}, ends = {}, columns = {};
     TimeUnit time_unit = TimeUnit::unsaid;
     double sigma = 1.0;
     std::string outside = "drop";

@@ -88,6 +88,23 @@ TEST_CASE("Observations outside the image are kept on request, short tracks are 
   CHECK(observations[1].pixel == Vector2(-1, 30));
 }
 
+TEST_CASE("Recorded tracks end where a file says so, and may go on") {
+  const testing::TemporaryFolder folder;
+  folder.write("tracks.txt", "1 0.1 10 10\n1 0.5 12 10\n2 0.2 20 20\n");
+  folder.write("ends.txt", "2 0.7\n1 0.3\n");
+  const FakeSource source({0.0, 1.0});
+  Recorded frontend = open(R"({"tracks": "tracks.txt", "ends": "ends.txt"})", folder, source);
+  TrackBatch batch;
+  frontend.advance({0.4}, batch);
+  REQUIRE(batch.ended.size() == 1);
+  CHECK(batch.ended[0].track == 1);
+  CHECK(batch.ended[0].t == 0.3);
+  folder.write("ends.txt", "2 0.7\n1\n");
+  CHECK_THROWS_WITH(open(R"({"tracks": "tracks.txt", "ends": "ends.txt"})", folder, source),
+                    Contains("ends.txt:2") && Contains("id t"));
+  CHECK_THROWS_WITH(open(R"({"tracks": "tracks.txt", "ends": "no.txt"})", folder, source), Contains("no such file"));
+}
+
 TEST_CASE("Recorded tracks that are missing, or of another time, are refused") {
   const testing::TemporaryFolder folder;
   folder.write("tracks.txt", kTracks);
