@@ -8,6 +8,7 @@
 #include "core/events/event_time.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/index.hpp"
+#include "core/support/median.hpp"
 #include "frontends/haste/tracking/alignment.hpp"
 
 namespace evbench::haste {
@@ -15,9 +16,7 @@ namespace {
 
 const Registration<FrontEnd, Haste> registration(
     "haste",
-    "tracks features in events asynchronously by hypotheses (Alzugaray and "
-    "Chli 2020), finds lost landmarks again",
-    3);
+    "tracks features in events asynchronously by hypotheses (Alzugaray and Chli 2020), finds lost landmarks again", 4);
 
 constexpr double kApart = 1e-6;  ///< [s] between two observations of a track, at least
 
@@ -62,6 +61,7 @@ void Haste::observe(const Change& change) {
   const double way = (change.after.position - change.before.position).norm();
   odometer_ += way / static_cast<double>(tracks_.size());
   track.way += way;
+  track.visited.extend(change.after.position);
   track.odometer = odometer_;
   track.pixel = change.after.position;
   const double sigma = options_.score_sigma ? sigma_.next(change.scores) : options_.sigma;
@@ -72,8 +72,12 @@ void Haste::observe(const Change& change) {
   if (track.probation > 0) {
     if (!is_as_expected(track.id, z.pixel, z.t)) {
       lost_.disappoint(track.id, clock_);
-      track = {
-          .id = next_id_++, .odometer = track.odometer, .pixel = track.pixel, .from = track.from, .way = track.way};
+      track = {.id = next_id_++,
+               .odometer = track.odometer,
+               .pixel = track.pixel,
+               .from = track.from,
+               .way = track.way,
+               .visited = track.visited};
       z.track = track.id;
     } else if (--track.probation > 0) {
       return;
@@ -123,15 +127,29 @@ void Haste::end_strangers() {
   }
 }
 
-/// No camera goes far to and fro within a tick; a tracker does so that follows a burst of noise. What it told since the
-/// last tick is no observation, and its way none of the image's.
+/// Within a tick, no camera goes far to and fro, and what it sees goes about the same way everywhere: a tracker has
+/// been between where it was and where it is, but for the small steps to and fro that each makes, and goes with the
+/// others. A burst of noise takes each of them somewhere else. What one told since the last tick is then no
+/// observation, and its way none of the image's.
 void Haste::end_wanderers() {
-  constexpr double kFar = 20.0;    // [px]
-  constexpr double kAstray = 0.5;  // of its way, if it has come no farther than that
+  constexpr double kAside = 4.0;  // [px]
+  constexpr double kFromOthers =
+      0.05;  // of the image's width: turning by 660 degrees a second it is 0.03 at the border
+  constexpr std::size_t kEnough = 5;
+  std::vector<double> x, y;
+  for (const auto& [tracker, track] : tracks_) {
+    x.push_back(track.pixel.x() - track.from.x());
+    y.push_back(track.pixel.y() - track.from.y());
+  }
+  if (x.empty()) return;
+  const bool enough = x.size() >= kEnough;
+  const Vector2 usual(median(std::move(x)), median(std::move(y)));
   double way = 0.0;
   std::vector<std::int64_t> wanderers;
   for (const auto& [tracker, track] : tracks_) {
-    if (track.way < kFar || (track.pixel - track.from).norm() > kAstray * track.way) continue;
+    const Vector2 moved = track.pixel - track.from;
+    const bool aside = track.visited.diagonal().norm() - moved.norm() > kAside;
+    if (!aside && !(enough && (moved - usual).norm() > kFromOthers * camera_.width)) continue;
     way += track.way;
     wanderers.push_back(tracker);
   }
@@ -165,6 +183,7 @@ void Haste::end_trackers() {
       if (track.doubted < 0) track.found = track.told;
       track.from = track.pixel;
       track.way = 0.0;
+      track.visited = Eigen::AlignedBox2d(track.pixel);
     }
   }
 }

@@ -37,15 +37,16 @@ class Haste : public EventFrontEnd {
   /// What a tracker is followed for.
   struct Track {
     TrackId id;
-    double odometer;                  ///< the image's way when the tracker last changed its state [px]
-    Vector2 pixel = Vector2::Zero();  ///< newest place [px]
-    int probation = 0;                ///< changes of state until a found landmark's track goes on
-    bool at_corner = false;           ///< it was found as a corner, not by its template
-    double told = -kInfinity;         ///< [s] of its last observation
-    double found = -kInfinity;        ///< likewise, when the tracker was last found to follow something
-    Vector2 from = pixel;             ///< where it was then [px],
-    double way = 0.0;                 ///< and how far it has gone since [px]
-    std::int64_t doubted = -1;        ///< events that its tracker had when the sensor fell silent; then it is looked at
+    double odometer;                     ///< the image's way when the tracker last changed its state [px]
+    Vector2 pixel = Vector2::Zero();     ///< newest place [px]
+    int probation = 0;                   ///< changes of state until a found landmark's track goes on
+    bool at_corner = false;              ///< it was found as a corner, not by its template
+    double told = -kInfinity;            ///< [s] of its last observation
+    double found = -kInfinity;           ///< likewise, when the tracker was last found to follow something
+    Vector2 from = pixel;                ///< where it was then [px],
+    double way = 0.0;                    ///< how far it has gone since [px],
+    Eigen::AlignedBox2d visited{pixel};  ///< and where it has been
+    std::int64_t doubted = -1;  ///< events that its tracker had when the sensor fell silent; then it is looked at
   };
 
   /// Why tracks end.
