@@ -165,6 +165,26 @@ TEST_CASE("Nothing is vetoed where that is switched off, nor by a back-end that 
   }
 }
 
+TEST_CASE(
+    "Few trackers are taken for wanderers that step to and fro where they follow, as noise and haste make them do") {
+  constexpr double kNoise = 6e6;  // [events/s]
+  const auto fast = [](double t) { return swing(6.0 * t); };
+  EventScene source(fast, 0.6, EventScene::quadrangles(150, 1));
+  Random random(5);
+  std::vector<Event> noise(static_cast<std::size_t>(kNoise * 0.6));
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    noise[i] = {static_cast<std::int64_t>(1e6 * static_cast<double>(i) / kNoise),
+                static_cast<std::uint16_t>(random.index(240)), static_cast<std::uint16_t>(random.index(180)),
+                i % 2 == 0};
+  }
+  source.add(noise);
+  Told told({}, source);
+  told.go_on_to(0.6);
+  CHECK(told.alive.size() > 40);
+  CHECK(told.ended.size() > 100);
+  CHECK(10 * told.ended_as("wandering in noise") < std::ssize(told.ended));
+}
+
 TEST_CASE("Trackers that a burst of noise takes along end, and are observed nowhere it took them") {
   EventScene source(swing, 1.0, EventScene::quadrangles(150, 1));
   Random random(3);
