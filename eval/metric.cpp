@@ -52,7 +52,7 @@ const std::vector<Metric>& known_metrics() {
       {"times.frontend_s", "front-end [s]", Better::neither, kScreen, 3},
       {"times.backend_s", "back-end [s]", Better::lower, kScreen, 3},
       {"times.waiting_s", "waiting [s]", Better::neither, kRowARun, 3},
-      {"times.slowest_5s", "real-time factor, slowest 5 s", Better::higher, kOnRequest},
+      {"times.slowest_5s_factor", "real-time factor, slowest 5 s", Better::higher, kOnRequest},
       {"times.frontend_ms.median", "front-end, batch [ms]", Better::neither, kSummary},
       {"times.frontend_ms.p99", "front-end, batch, p99 [ms]", Better::neither, kOnRequest},
       {"times.frontend_ms.max", "front-end, batch, max [ms]", Better::neither, kOnRequest},

@@ -30,7 +30,7 @@ Json to_json(const RecordedTimes& times) {
           {"waiting_s", times.waiting},
           {"harness_s", times.harness},
           {"total_s", times.total},
-          {"slowest_5s", or_null(times.slowest_5s)},
+          {"slowest_5s_factor", or_null(times.slowest_5s)},
           {"frontend_ms", to_json(times.frontend_ms)},
           {"backend_ms", to_json(times.backend_ms)}};
 }
@@ -49,7 +49,7 @@ RecordedTimes read_times(const RecordReader& json) {
           json.number("waiting_s"),
           json.number("harness_s"),
           json.number("total_s"),
-          json.number_or_null("slowest_5s"),
+          json.number_or_null("slowest_5s_factor"),
           read_step_times(json, "frontend_ms"),
           read_step_times(json, "backend_ms")};
 }

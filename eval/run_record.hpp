@@ -38,13 +38,13 @@ std::optional<StepTimes> step_times(std::vector<double> seconds);
 
 /// Where the time of a run went [s], wall clock.
 struct RecordedTimes {
-  double source = 0.0;                        ///< the front-end's waiting for events
-  double frontend = 0.0;                      ///< making observations
-  double backend = 0.0;                       ///< estimating
-  double waiting = 0.0;                       ///< the back-end's thread, for the front-end's
-  double harness = 0.0;                       ///< the rest: exchanges, undistortion, hashing, sampling
-  double total = 0.0;                         ///< from the first exchange to the last estimate
-  std::optional<double> slowest_5s = {};      ///< data time / processing time of the slowest 5 s; none: shorter
+  double source = 0.0;                    ///< the front-end's waiting for events
+  double frontend = 0.0;                  ///< making observations
+  double backend = 0.0;                   ///< estimating
+  double waiting = 0.0;                   ///< the back-end's thread, for the front-end's
+  double harness = 0.0;                   ///< the rest: exchanges, undistortion, hashing, sampling
+  double total = 0.0;                     ///< from the first exchange to the last estimate
+  std::optional<double> slowest_5s = {};  ///< data / processing time of the slowest 5 s while running; none: shorter
   std::optional<StepTimes> frontend_ms = {};  ///< of each batch of observations
   std::optional<StepTimes> backend_ms = {};   ///< of each update of the estimate
 };

@@ -90,7 +90,7 @@ class Runs {
     const auto lacks = [&](bool wanted, const char* file) {
       return wanted && folder && !std::filesystem::exists(*folder + file);
     };
-    if (lacks(arguments_.problem, "/problem.txt") || lacks(arguments_.tracks, "/tracks.txt")) return std::nullopt;
+    if (lacks(arguments_.problem, "/problem.txt") || lacks(arguments_.tracks, "/track_ends.txt")) return std::nullopt;
     return folder;
   }
 

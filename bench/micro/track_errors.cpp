@@ -5,8 +5,8 @@
 // of the folders of runs that kept their tracks (`evbench run CONFIG --tracks`, a source `event_simulation`). A track
 // errs by its distance from where the point of the scene is seen that its first observation shows; tracks that begin
 // where nothing is, and observations of points that are hidden or outside the image, tell nothing. At an age, the
-// observation that is next after it, for tracks that are old enough; alive are those that are still observed then. A
-// landmark that is found again goes on with its track.
+// observation that is next after it, for tracks that are old enough; alive are those that are still observed then. What
+// is found again after a track's end counts as another track, which begins there.
 
 #include <fmt/format.h>
 
@@ -19,6 +19,7 @@
 
 #include "bench/experiment.hpp"
 #include "core/data/tracks.hpp"
+#include "core/plugin/exchange.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/sources/event_simulation.hpp"
 #include "core/support/error.hpp"
@@ -38,11 +39,26 @@ struct Quality {
   std::size_t observations = 0, far = 0;
 };
 
-Quality measure(const SceneTruth& truth, const std::vector<TrackObservation>& observations, double end) {
-  std::map<TrackId, std::vector<const TrackObservation*>> tracks;
-  for (const TrackObservation& z : observations) tracks[z.track].push_back(&z);
+using Track = std::vector<const TrackObservation*>;  // from its beginning to an end
+
+std::vector<Track> split(const std::vector<TrackObservation>& observations, std::vector<TrackEnd> ends) {
+  std::ranges::stable_sort(ends, {}, &TrackEnd::t);
+  std::vector<Track> tracks;
+  std::map<TrackId, std::size_t> alive;
+  in_time_order(
+      observations, ends,
+      [&](const TrackObservation& z) {
+        const auto [track, is_new] = alive.try_emplace(z.track, tracks.size());
+        if (is_new) tracks.emplace_back();
+        tracks[track->second].push_back(&z);
+      },
+      [&](const TrackEnd& end) { alive.erase(end.track); });
+  return tracks;
+}
+
+Quality measure(const SceneTruth& truth, const std::vector<Track>& tracks, double end) {
   Quality result;
-  for (const auto& [id, track] : tracks) {
+  for (const Track& track : tracks) {
     const double begin = track.front()->t;
     const double life = track.back()->t - begin;
     const auto point = truth.point(track.front()->pixel, begin);
@@ -67,8 +83,9 @@ Quality measure(const SceneTruth& truth, const std::vector<TrackObservation>& ob
 
 void print(const std::string& name, const Quality& quality) {
   fmt::print("| {} |", name);
-  for (const std::vector<double>& errors : quality.errors) {
-    if (errors.empty()) throw InputError(name + ": no track lives for a second");
+  for (std::size_t i = 0; i < kAges.size(); ++i) {
+    const std::vector<double>& errors = quality.errors[i];
+    if (errors.empty()) throw InputError(fmt::format("{}: no track is seen {} s after it began", name, kAges[i]));
     fmt::print(" {:.2f} / {:.2f} |", median(errors), order_statistic(errors, 0.9));
   }
   for (std::size_t i = 0; i < kAges.size(); ++i) {
@@ -102,7 +119,8 @@ int main(int argc, char** argv) {
       }
       const Camera& camera = simulation->camera();
       const TrackFile tracks = read_tracks(run + "/tracks.txt", camera.width, camera.height);
-      print(run, measure(simulation->truth(), tracks.observations, simulation->time_range().to));
+      const std::vector<Track> lives = split(tracks.observations, read_track_ends(run + "/track_ends.txt"));
+      print(run, measure(simulation->truth(), lives, simulation->time_range().to));
     }
   } catch (const std::exception& error) {
     fmt::print(stderr, "track_errors: {}\n", error.what());

@@ -32,8 +32,10 @@ class BackSide {
   /// of the final trajectories [Hz]; 0: the back-end's own poses.
   void finish(double rate, RunResult& result);
 
-  double seconds() const { return watch_.seconds(); }      ///< in the back-ends
-  const std::vector<Work>& work() const { return work_; }  ///< of that, for each batch
+  double seconds() const { return watch_.seconds(); }  ///< in the back-ends
+  const std::vector<Work>& work() const {
+    return work_;
+  }  ///< of that, until each batch was taken, since the one before
 
  private:
   /// A back-end and what it told.

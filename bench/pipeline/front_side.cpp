@@ -100,17 +100,17 @@ void FrontSide::count(TrackBatch& batch) {
   in_time_order(
       batch.observations, batch.ended, [&](const TrackObservation& z) { live_.insert(z.track); },
       [&](const TrackEnd& ended) { live_.erase(ended.track); });
-  if (kept_) {
-    kept_->observations.insert(kept_->observations.end(), batch.observations.begin(), batch.observations.end());
-    kept_->ended.insert(kept_->ended.end(), batch.ended.begin(), batch.ended.end());
-  }
   if (!batch.observations.empty()) {
     if (!first_) first_ = batch.observations.front().t;
     last_ = batch.observations.back().t;
   }
-  if (more_) return;
-  for (const TrackId track : live_) batch.ended.push_back({track, batch.until});
-  live_.clear();
+  if (!more_) {
+    for (const TrackId track : live_) batch.ended.push_back({track, batch.until});
+    live_.clear();
+  }
+  if (!kept_) return;
+  kept_->observations.insert(kept_->observations.end(), batch.observations.begin(), batch.observations.end());
+  kept_->ended.insert(kept_->ended.end(), batch.ended.begin(), batch.ended.end());
 }
 
 }  // namespace evbench

@@ -13,6 +13,11 @@ TEST_CASE("The slowest pace is that of the window in which all parts together to
   CHECK(slowest_pace({front, back}, 10.0, 4.0) == Approx(4.0 / 2.0));
 }
 
+TEST_CASE("A window may be as long as all of the data, however their times are rounded") {
+  CHECK(slowest_pace({{{0.1 + 0.2, 0.5}}}, 0.1, 0.2) == Approx(0.4));
+  CHECK(slowest_pace({{{0.3, 0.5}}}, 0.1, 0.2) == Approx(0.4));
+}
+
 TEST_CASE("Work of less than the window has no slowest pace, nor has none") {
   CHECK_FALSE(slowest_pace({{{11.0, 0.1}, {14.9, 0.1}}}, 10.0, 5.0));
   CHECK_FALSE(slowest_pace({}, 0.0, 5.0));

@@ -41,11 +41,10 @@ struct TrackFile {
 TrackFile read_tracks(const std::string& path, int width, int height, const TrackFileOptions& options = {});
 
 /// Reads where tracks end, a line `id t` [s] each, in any order; a track may end more than once, as it may be found
-/// again. Throws InputError, naming file and line, for anything else. A file without a line is one of tracks that never
-/// end.
+/// again. Throws InputError, naming file and line, for anything else. A file may be empty.
 std::vector<TrackEnd> read_track_ends(const std::string& path);
 
-/// The shortest digits that read back as the same numbers.
+/// As read_tracks() and read_track_ends() read them, in the shortest digits that read back as the same numbers.
 std::string format_tracks(std::span<const TrackObservation> observations);
 std::string format_track_ends(std::span<const TrackEnd> ends);
 

@@ -2,20 +2,29 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace evbench {
 
 TrackPlayer::TrackPlayer(std::span<const TrackObservation> observations, std::vector<TrackEnd> ends)
     : observations_(observations), ends_(std::move(ends)) {
-  std::map<TrackId, double> last;
-  for (const TrackObservation& z : observations) last[z.track] = z.t;
-  std::erase_if(ends_, [&](const TrackEnd& end) { return !last.contains(end.track); });
-  for (const TrackEnd& end : ends_) {
-    const auto open = last.find(end.track);
-    if (open != last.end() && end.t >= open->second) last.erase(open);
+  std::map<TrackId, double> first, last;
+  for (const TrackObservation& z : observations) {
+    first.try_emplace(z.track, z.t);
+    last[z.track] = z.t;
   }
-  for (const auto& [track, t] : last) ends_.push_back({track, t});
+  std::erase_if(ends_, [&](const TrackEnd& end) {
+    const auto begin = first.find(end.track);
+    return begin == first.end() || end.t < begin->second;
+  });
+  std::set<TrackId> closed;
+  for (const TrackEnd& end : ends_) {
+    if (end.t >= last.at(end.track)) closed.insert(end.track);
+  }
+  for (const auto& [track, t] : last) {
+    if (!closed.contains(track)) ends_.push_back({track, t});
+  }
   std::ranges::stable_sort(ends_, {}, &TrackEnd::t);
 }
 
@@ -30,7 +39,7 @@ bool TrackPlayer::advance(const FrontEnd::Horizon& horizon, TrackBatch& batch) {
   next_ += batch.observations.size();
   batch.ended.clear();
   while (next_end_ < ends_.size() && ends_[next_end_].t <= batch.until) batch.ended.push_back(ends_[next_end_++]);
-  return next_ < observations_.size();
+  return next_ < observations_.size() || next_end_ < ends_.size();
 }
 
 }  // namespace evbench

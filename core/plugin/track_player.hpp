@@ -8,13 +8,15 @@
 
 namespace evbench {
 
-/// For front-ends whose tracks are known beforehand: plays each observation once, and their ends.
+/// For front-ends whose tracks are known beforehand: plays each observation and each end of a track
+/// once.
 class TrackPlayer {
  public:
   TrackPlayer() = default;
 
   /// The observations in time order; they must outlive the player. `ends`: where tracks end, in any order, also those
-  /// that go on later. A track of which none is at its last observation or after it ends with that.
+  /// that go on later. A track of which none is at its last observation or after it ends with that; those before its
+  /// first one are none.
   explicit TrackPlayer(std::span<const TrackObservation> observations, std::vector<TrackEnd> ends = {});
 
   /// As FrontEnd::advance().

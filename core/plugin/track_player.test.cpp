@@ -33,12 +33,14 @@ TEST_CASE("Known tracks are played once, up to the time asked for, and end with 
 
 TEST_CASE("Known tracks end where that is known, more than once if need be, and with their last observation else") {
   const std::vector<TrackObservation> all = {seen(1, 0.1), seen(2, 0.2), seen(1, 0.5), seen(3, 0.6)};
-  TrackPlayer player(all, {{2, 0.4}, {1, 0.3}, {9, 0.2}});
+  TrackPlayer player(all, {{2, 0.4}, {1, 0.3}, {9, 0.2}, {2, 0.1}, {3, 0.9}});
   TrackBatch batch;
-  player.advance({1.0}, batch);
   std::vector<std::pair<TrackId, double>> ended;
-  for (const TrackEnd& end : batch.ended) ended.emplace_back(end.track, end.t);
-  CHECK(ended == std::vector<std::pair<TrackId, double>>{{1, 0.3}, {2, 0.4}, {1, 0.5}, {3, 0.6}});
+  for (const double t : {0.45, 0.7, 1.0}) {
+    CHECK(player.advance({t}, batch) == (t < 1.0));
+    for (const TrackEnd& end : batch.ended) ended.emplace_back(end.track, end.t);
+  }
+  CHECK(ended == std::vector<std::pair<TrackId, double>>{{1, 0.3}, {2, 0.4}, {1, 0.5}, {3, 0.9}});
 }
 
 TEST_CASE("A number of observations ends at the time of the last of them, with others of that time") {

@@ -128,13 +128,12 @@ void Haste::end_strangers() {
 }
 
 /// Within a tick, no camera goes far to and fro, and what it sees goes about the same way everywhere: a tracker has
-/// been between where it was and where it is, but for the small steps to and fro that each makes, and goes with the
-/// others. A burst of noise takes each of them somewhere else. What one told since the last tick is then no
+/// been in the box between where it was and where it is, but for the small steps to and fro that each makes, and goes
+/// with the others. A burst of noise takes each of them somewhere else. What one told since the last tick is then no
 /// observation, and its way none of the image's.
 void Haste::end_wanderers() {
-  constexpr double kAside = 4.0;  // [px]
-  constexpr double kFromOthers =
-      0.05;  // of the image's width: turning by 660 degrees a second it is 0.03 at the border
+  constexpr double kAside = 4.0;        // [px] by which the box that it has been in is longer than what it moved
+  constexpr double kFromOthers = 0.05;  // of the image's width; 0.03 at its border in a turn by 660 degrees a second
   constexpr std::size_t kEnough = 5;
   std::vector<double> x, y;
   for (const auto& [tracker, track] : tracks_) {

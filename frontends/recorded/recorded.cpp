@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "core/data/tracks.hpp"
 #include "core/io/path.hpp"
@@ -21,7 +22,7 @@ const Registration<FrontEnd, Recorded> registration("recorded",
 void Recorded::Options::declare(OptionSet& set) {
   set.add("tracks", tracks, "path of the track file").required().path();
   set.add("ends", ends,
-          "path of a file of where tracks end (id t), which may go on later; empty: each with its last observation")
+          "path of a file of where tracks end (id t [s]), which may go on later; empty: each with its last observation")
       .path();
   set.add(
       "columns", columns,
@@ -72,9 +73,10 @@ Recorded::Recorded(const Options& options, const FrontEndContext& context)
         "expected some",
         path_, range.from, range.to, options.min_track_length));
   }
-  player_ =
-      TrackPlayer(observations_, options.ends.empty() ? std::vector<TrackEnd>()
-                                                      : read_track_ends(resolve_path(options.ends, context.folder)));
+  std::vector<TrackEnd> ends;
+  if (!options.ends.empty()) ends = read_track_ends(resolve_path(options.ends, context.folder));
+  for (TrackEnd& end : ends) end.t = std::min(end.t, range.to);
+  player_ = TrackPlayer(observations_, std::move(ends));
 }
 
 void Recorded::drop_short_tracks(int min_length) {

@@ -99,6 +99,11 @@ TEST_CASE("Recorded tracks end where a file says so, and may go on") {
   REQUIRE(batch.ended.size() == 1);
   CHECK(batch.ended[0].track == 1);
   CHECK(batch.ended[0].t == 0.3);
+  folder.write("ends.txt", "");
+  Recorded endless = open(R"({"tracks": "tracks.txt", "ends": "ends.txt"})", folder, source);
+  endless.advance({0.4}, batch);
+  REQUIRE(batch.ended.size() == 1);
+  CHECK(batch.ended[0].track == 2);  // with its last observation
   folder.write("ends.txt", "2 0.7\n1\n");
   CHECK_THROWS_WITH(open(R"({"tracks": "tracks.txt", "ends": "ends.txt"})", folder, source),
                     Contains("ends.txt:2") && Contains("id t"));
