@@ -302,6 +302,6 @@ TEST_CASE("The sweeps that come with evbench can be planned") {
   sweep["config"] = EVBENCH_SOURCE "/configs/paper/table1_simulated.json";
   folder.write("batching.json", sweep.dump());
   const SweepPlan made = plan(folder, "batching.json");
-  CHECK(made.runs.size() == 3 * 10 * (1 + 8 + 8));
+  CHECK(made.runs.size() == 3 * 10 * (1 + 8 + 8 + 1));  // gp_map, both kinds of frames by duration, adaptive ones
   CHECK(made.axes.size() == 5);
 }
