@@ -44,8 +44,9 @@ const Piece* piece_of(const RunResult& result, double from, double to = 1e9) {
 }
 
 /// Root mean square distance from the truth after a Sim(3) alignment, as a share of the path, within a span of time
-/// [s], of the piece that covers it.
-double error(const Source& source, const Execution& execution, double from = 0.0, double to = 1e9) {
+/// [s], of the piece that covers it; what is within `without` is left out.
+double error(const Source& source, const Execution& execution, double from = 0.0, double to = 1e9,
+             const StillSpan& without = {}) {
   constexpr double kNone = 1e9;
   const Piece* piece = piece_of(execution.result, from, to);
   if (!piece) return kNone;
@@ -53,7 +54,7 @@ double error(const Source& source, const Execution& execution, double from = 0.0
   double path = 0.0;
   for (const StampedPose& pose : piece->final_trajectory.poses()) {
     const auto T = source.ground_truth().pose(pose.t);
-    if (!T || pose.t < from || pose.t > to) continue;
+    if (!T || pose.t < from || pose.t > to || (pose.t > without.from && pose.t < without.to)) continue;
     if (!pairs.empty()) path += (pairs.back().ground_truth.p - T->p).norm();
     pairs.push_back({pose.t, *T, pose.T});
   }
@@ -99,6 +100,19 @@ int went_on(const Execution& execution) {
 
 const std::vector<EventScene::Outline>& wall() {
   static const auto result = EventScene::quadrangles(150, 1);
+  return result;
+}
+
+/// A texture that repeats itself.
+std::vector<EventScene::Outline> tiles() {
+  std::vector<EventScene::Outline> result;
+  for (int i = -12; i <= 12; ++i) {
+    for (int k = -9; k <= 9; ++k) {
+      const Vector2 c(0.25 * i, 0.25 * k);
+      result.push_back(
+          {c + Vector2(-0.06, -0.06), c + Vector2(0.06, -0.06), c + Vector2(0.06, 0.06), c + Vector2(-0.06, 0.06)});
+    }
+  }
   return result;
 }
 
@@ -192,15 +206,47 @@ TEST_CASE("After the last event a camera stands still, unless the recording may 
   }
 }
 
-TEST_CASE("A sensor that tells nothing for five seconds while the camera moves on: said, and right again afterwards") {
-  EventScene scene(swing, 11.0, wall());
-  scene.silence(2.5, 7.5);
-  const Execution execution = run(scene);
-  const RunResult& result = execution.result;
-  const bool still = std::ranges::any_of(result.still, [](const StillSpan& s) { return s.from < 3.0 && s.to > 7.0; });
-  CHECK((still || result.status.state != RunState::ok));
-  check_recovered(scene, execution, 9.0);  // when the back-end's patience with what it knew is over
-  CHECK(error(scene, execution, 0.0, 2.5) < 0.02);
+TEST_CASE("A sensor that tells nothing while the camera moves on: said, and then the run goes on in the same world") {
+  for (const double silence : {2.0, 3.0, 5.0}) {
+    for (const std::uint64_t seed : {1, 2}) {
+      EventScene scene(swing, silence + 6.0, EventScene::quadrangles(150, seed));
+      const StillSpan gap{2.5, 2.5 + silence};
+      scene.silence(gap.from, gap.to);
+      const Execution execution = run(scene);
+      const RunResult& result = execution.result;
+      CAPTURE(silence, seed, result.status.reason);
+      CHECK(result.still.empty());
+      CHECK(result.status.state == RunState::degraded);
+      CHECK(result.status.reason == "lost: the camera moved while nothing was seen; then found in the same world");
+      REQUIRE(result.pieces.size() == 1);
+      check_recovered(scene, execution, gap.to + 1.0);
+      CHECK(error(scene, execution, 0.0, 1e9, gap) < 0.015);
+      CHECK(std::ranges::none_of(result.pieces[0].final_trajectory.poses(), [&](const StampedPose& pose) {
+        return pose.t > gap.from + 0.1 && pose.t < gap.to - 0.1;
+      }));
+    }
+  }
+}
+
+TEST_CASE("What looks the same everywhere, or is elsewhere, is not taken for the world of before") {
+  std::vector<EventScene::Outline> far = wall();
+  for (const EventScene::Outline& outline : EventScene::quadrangles(150, 2)) {
+    far.push_back(outline);
+    for (Vector2& corner : far.back()) corner.x() += 10.0;
+  }
+  const auto away = [](double t) {
+    SE3 T = swing(t);
+    if (t > 3.5) T.p.x() += 10.0;
+    return T;
+  };
+  const EventScene scenes[] = {EventScene(swing, 8.0, tiles()), EventScene(away, 8.0, far)};
+  for (EventScene scene : scenes) {
+    scene.silence(2.5, 4.5);
+    const Execution execution = run(scene);
+    check_recovered(scene, execution, 5.5);
+    CHECK(execution.result.status.state == RunState::lost);
+    CHECK(execution.result.pieces.size() == 2);
+  }
 }
 
 TEST_CASE("A burst of a million events in 10 ms does no lasting harm") {
@@ -329,20 +375,12 @@ TEST_CASE("A single straight edge ends with a reason, and when there is more to 
 }
 
 TEST_CASE("A texture that repeats itself does not fool re-acquisition") {
-  std::vector<EventScene::Outline> tiles;
-  for (int i = -12; i <= 12; ++i) {
-    for (int k = -9; k <= 9; ++k) {
-      const Vector2 c(0.25 * i, 0.25 * k);
-      tiles.push_back(
-          {c + Vector2(-0.06, -0.06), c + Vector2(0.06, -0.06), c + Vector2(0.06, 0.06), c + Vector2(-0.06, 0.06)});
-    }
-  }
   const auto motion = [](double t) {
     SE3 T = swing(t);
     T.p.x() += 0.6 * (1.0 - std::cos(1.6 * t));
     return T;
   };
-  const EventScene scene(motion, 5.0, tiles);
+  const EventScene scene(motion, 5.0, tiles());
   const Execution with = run(scene), without = run(scene, Json::parse(R"({"guidance": {"reacquire": false}})"));
   CHECK(with.result.status.state == RunState::ok);
   check_recovered(scene, with, 0.5);

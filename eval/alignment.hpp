@@ -3,17 +3,10 @@
 #include <span>
 #include <string>
 
+#include "core/geometry/similarity.hpp"
 #include "eval/association.hpp"
 
 namespace evbench {
-
-/// A similarity transformation that carries the estimate's world to the ground truth's: p' = R (scale p) + t, R' = R
-/// R_p.
-struct Similarity {
-  double scale = 1.0;
-  SE3 T;
-  SE3 operator*(const SE3& pose) const { return T * SE3{pose.q, scale * pose.p}; }
-};
 
 /// How the estimate is carried to the ground truth before absolute errors are taken. All but `origin` are least squares
 /// on positions.

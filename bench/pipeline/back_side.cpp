@@ -3,41 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
-#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
 namespace evbench {
 namespace {
-
-/// At that rate [Hz]; the back-end's own poses where the rate is 0, or so low that there would be none.
-PoseTrajectory sample(const BackEnd& backend, double rate) {
-  const PoseTrajectory own = backend.trajectory();
-  if (rate == 0.0 || own.empty()) return own;
-  std::vector<StampedPose> poses;
-  const auto first = static_cast<std::int64_t>(std::ceil(own.start() * rate - 1e-9));
-  for (std::int64_t k = first; static_cast<double>(k) / rate <= own.end(); ++k) {
-    const double t = static_cast<double>(k) / rate;
-    std::optional<SE3> T = backend.pose(t);
-    if (!T) T = own.pose(t);
-    if (T) poses.push_back({t, *T});
-  }
-  if (poses.empty()) return own;
-  return PoseTrajectory(std::move(poses), "the back-end's trajectory");
-}
-
-bool is_finite(const StampedPose& pose) { return pose.T.p.allFinite() && pose.T.q.coeffs().allFinite(); }
-
-/// Each pose that was the newest when it was told.
-PoseTrajectory newest_poses(const std::vector<OnlinePose>& told) {
-  std::vector<StampedPose> poses;
-  for (const OnlinePose& pose : told) {
-    if (poses.empty() || pose.t > poses.back().t) poses.push_back(pose);
-  }
-  return PoseTrajectory(std::move(poses), "the online trajectory");
-}
 
 template <class Value>
 void append(std::string& bytes, const Value& value) {
@@ -45,7 +16,20 @@ void append(std::string& bytes, const Value& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-double length(const Piece& piece) { return piece.final_trajectory.end() - piece.final_trajectory.start(); }
+/// In the world to which `transform` carries that of the feedback.
+void carry(Feedback& feedback, const Similarity& transform) {
+  if (feedback.newest) {
+    feedback.newest->T = transform * feedback.newest->T;
+    feedback.newest->velocity.tail<3>() *= transform.scale;
+  }
+  if (feedback.covariance) {
+    for (const int translation : {3, 9}) {
+      feedback.covariance->middleRows<3>(translation) *= transform.scale;
+      feedback.covariance->middleCols<3>(translation) *= transform.scale;
+    }
+  }
+  for (ExpectedFeature& feature : feedback.expected) feature.position = transform * feature.position;
+}
 
 }  // namespace
 
@@ -56,6 +40,7 @@ BackSide::BackSide(const MakeBackEnd& make, BackEndContext context, const Camera
       camera_(camera),
       range_(range),
       standstill_(options.still_after),
+      relocalises_(options.relocalise),
       until_(range.from),
       seen_(range.from) {
   context_.camera = camera.pinhole;
@@ -64,32 +49,13 @@ BackSide::BackSide(const MakeBackEnd& make, BackEndContext context, const Camera
 }
 
 void BackSide::begin() {
-  auto estimator = std::make_unique<Estimator>();
+  auto estimator = std::make_unique<Estimator>(estimators_.size());
   BackEndContext context = context_;
-  context.online = [this, &heard = *estimator](const OnlinePose& pose) { hear(pose, heard); };
+  context.online = [this, &heard = *estimator](const OnlinePose& pose) { heard.hear(pose, until_, seen_); };
+  remembered_.clear();
+  begun_ = until_;
   estimator->backend = watch_.time([&] { return make_(context); });
   estimators_.push_back(std::move(estimator));
-}
-
-/// A pose ahead of the data counts as known when its time has come. A back-end knows the times of the observations that
-/// it makes poses from; where a front-end tells those late, the poses are known as much later.
-void BackSide::hear(OnlinePose pose, Estimator& estimator) const {
-  if (!std::isfinite(pose.t) || !is_finite(pose) || (pose.velocity && !pose.velocity->allFinite())) {
-    throw std::runtime_error(fmt::format("the back-end's pose at {:.6f} s is not finite", pose.t));
-  }
-  const double said = std::max(pose.t, pose.known_at.value_or(seen_));
-  std::vector<OnlinePose>& told = estimator.told;
-  if (!told.empty() && !(said >= estimator.said)) {
-    throw std::runtime_error(fmt::format(
-        "the back-end told an online pose as known at {:.6f} s after one known at {:.6f} s", said, estimator.said));
-  }
-  estimator.said = said;
-  const double complete = pose.known_at.value_or(seen_), late = seen_ - until_;
-  pose.known_at = std::max(pose.t, complete < seen_ ? std::min(complete + late, seen_) : complete);
-  // What comes less late than what was told before it has waited for that.
-  if (!told.empty()) pose.known_at = std::max(*pose.known_at, *told.back().known_at);
-  told.push_back(pose);
-  if (!estimator.newest || pose.t >= estimator.newest->t) estimator.newest = pose;
 }
 
 void BackSide::take(TrackBatch batch) {
@@ -97,7 +63,8 @@ void BackSide::take(TrackBatch batch) {
   undistort(batch);
   standstill_.apply(batch);
   digest(batch);
-  if (estimators_.back()->backend->status().state == RunState::lost) {
+  if (standstill_.refuted()) take_back(*standstill_.refuted());
+  if (estimators_.back()->status().state == RunState::lost) {
     context_.log(fmt::format("{:.3f} s: another back-end starts, in a world frame of its own", until_));
     begin();
   }
@@ -105,13 +72,78 @@ void BackSide::take(TrackBatch batch) {
   seen_ = batch.known_at();
   Estimator& estimator = *estimators_.back();
   watch_.time([&] { estimator.backend->advance(batch); });
+  relocalise();
   if (estimator.newest) estimator.covariances.take(*estimator.newest, *estimator.backend);
   work_.push_back({seen_, watch_.seconds() - std::exchange(counted_, watch_.seconds())});
+}
+
+/// What it was told of a stand was wrong: its estimate ends where that began.
+void BackSide::take_back(const Standstill::Refuted& stand) {
+  Estimator& estimator = *estimators_.back();
+  Status status = estimator.status();
+  if (!estimator.newest || estimator.newest->t < stand.span.from || status.state >= RunState::lost) return;
+  status.state = RunState::lost;
+  status.reason = "the camera moved while nothing was seen";
+  status.time = stand.span.from;
+  std::erase_if(status.degraded, [&](const DegradedSpan& span) { return span.from >= stand.span.from; });
+  estimator.ended = status;
+  estimator.doubtful = stand.survivors;
+}
+
+/// Often while its map is young; then now and then, by landmarks that have joined.
+void BackSide::relocalise() {
+  constexpr double kPause = 0.1;    // [s] at least
+  constexpr double kGrowth = 0.05;  // of the time since it began
+  Estimator& estimator = *estimators_.back();
+  if (!relocalises_ || estimators_.size() < 2 || !estimator.newest || until_ < next_relocalisation_) return;
+  const bool was_elsewhere = estimator.is_elsewhere();
+  for (std::size_t i = estimators_.size() - 1; i-- > 0;) {
+    const auto landmarks = estimator.find_in(*estimators_[i], context_.camera);
+    if (!landmarks) continue;
+    if (!was_elsewhere) {
+      context_.log(fmt::format("{:.3f} s: found in the world of before, by {} landmarks", until_, *landmarks));
+    }
+    remember_landmarks();
+    break;
+  }
+  next_relocalisation_ = until_ + std::max(kPause, kGrowth * (until_ - begun_));
+}
+
+void BackSide::remember_landmarks() {
+  remembered_.clear();
+  for (const auto& estimator : estimators_) {
+    if (estimator->world != estimators_.back()->world) continue;
+    for (const Landmark& landmark : estimator->backend->map()) {
+      if (estimator == estimators_.back()) {
+        remembered_.erase(landmark.track);
+      } else {
+        remembered_[landmark.track] = estimator->to_world * landmark.position;
+      }
+    }
+  }
+}
+
+/// Those that may be in the image, as far as the newest state carries.
+void BackSide::expect_remembered(Feedback& feedback) const {
+  constexpr double kNear = 1e-3;  // of the scene's scale
+  constexpr double kSigma = 1.5;  // [px], of worlds that were found in one another
+  if (!feedback.newest) return;
+  const SE3 T = extrapolate(*feedback.newest, until_ - feedback.newest->t).T.inverse();
+  for (const auto& [track, position] : remembered_) {
+    const Vector3 seen = T * position;
+    if (seen.z() < kNear) continue;
+    const Matrix2 covariance = kSigma * kSigma * Matrix2::Identity();
+    feedback.expected.push_back({track, position, context_.camera.project(seen), covariance});
+  }
 }
 
 Feedback BackSide::feedback(const FeedbackNeeds& needs) {
   Feedback feedback = watch_.time([&] { return estimators_.back()->backend->feedback(needs); });
   feedback.t = until_;
+  const Estimator& estimator = *estimators_.back();
+  feedback.world = estimator.world;
+  carry(feedback, estimator.to_world);
+  if (needs.expected) expect_remembered(feedback);
   if (standstill_.holds() && feedback.state == TrackingState::tracking) feedback.state = TrackingState::standing_still;
   for (ExpectedFeature& feature : feedback.expected) {
     feature.pixel = camera_.project(camera_.pinhole.ray(feature.pixel));
@@ -159,16 +191,9 @@ RunProgress BackSide::progress() const {
 }
 
 void BackSide::finish(double rate, RunResult& result) {
-  std::vector<bool> has_piece;
-  for (const auto& estimator : estimators_) {
-    watch_.time([&] { estimator->backend->finish(); });
-    const std::size_t before = result.pieces.size();
-    add_piece(*estimator, rate, result);
-    has_piece.push_back(result.pieces.size() > before);
-  }
-  result.status = merged_status(has_piece);
+  add_pieces(rate, result);
   for (std::size_t i = 1; i < result.pieces.size(); ++i) {
-    if (length(result.pieces[i]) > length(result.pieces[result.longest])) result.longest = i;
+    if (result.pieces[i].length() > result.pieces[result.longest].length()) result.longest = i;
   }
   result.still = standstill_.spans();
   result.observations = observations_;
@@ -178,40 +203,53 @@ void BackSide::finish(double rate, RunResult& result) {
   }
 }
 
-/// The estimator's piece, where it has one, and its updates.
-void BackSide::add_piece(Estimator& estimator, double rate, RunResult& result) const {
-  BackEnd& backend = *estimator.backend;
-  result.learnt = backend.learnt();
-  result.updates.insert(result.updates.end(), backend.updates().begin(), backend.updates().end());
-  Piece piece;
-  piece.final_trajectory = sample(backend, rate);
-  if (!std::ranges::all_of(piece.final_trajectory.poses(), is_finite)) {
-    throw std::runtime_error("the back-end's trajectory is not finite");
+/// Of each world that an estimator has made: by final estimates, worlds lie otherwise in one another than while data
+/// came in.
+void BackSide::add_pieces(double rate, RunResult& result) {
+  std::map<std::size_t, std::size_t> piece_of;  // by world
+  std::vector<bool> has_piece;
+  for (const auto& estimator : estimators_) {
+    BackEnd& backend = *estimator->backend;
+    watch_.time([&] { backend.finish(); });
+    result.learnt = backend.learnt();
+    result.updates.insert(result.updates.end(), backend.updates().begin(), backend.updates().end());
+    const std::size_t stood_in = std::exchange(estimator->world, estimator->number);
+    for (std::size_t i = estimator->number; relocalises_ && i-- > 0 && !estimator->is_elsewhere();) {
+      if (has_piece[i]) estimator->find_in(*estimators_[i], context_.camera);
+    }
+    auto piece = estimator->piece(rate);
+    has_piece.push_back(piece.has_value());
+    if (!piece) continue;
+    const auto [entry, is_new] = piece_of.try_emplace(estimator->world, result.pieces.size());
+    if (is_new) {
+      result.pieces.push_back(std::move(*piece));
+    } else {
+      if (stood_in != estimator->world) estimator->told_there.clear();
+      go_on(result.pieces[entry->second], std::move(*piece), estimator->to_world, std::move(estimator->told_there));
+    }
   }
-  const Status status = backend.status();
-  if (piece.final_trajectory.empty() || status.state == RunState::failed) return;
-  // What was told after the data had ended is no estimate from data.
-  piece.told = std::move(estimator.told);
-  if (status.state == RunState::lost) {
-    std::erase_if(piece.told, [&](const OnlinePose& pose) { return pose.t > status.time; });
-  }
-  piece.online_trajectory = newest_poses(piece.told);
-  piece.map = backend.map();
-  piece.problem = backend.problem();
-  piece.relative = estimator.covariances.finish(backend);
-  result.pieces.push_back(std::move(piece));
+  result.status = merged_status(has_piece);
 }
 
-/// One back-end's status is the run's; with several, the run was lost when the first was, and parts are missing.
+/// One back-end's status is the run's. With several the run was lost when the first was, and parts are missing; but
+/// where all that followed were found in the world of the first, it went on.
 Status BackSide::merged_status(const std::vector<bool>& has_piece) const {
-  Status merged = estimators_.front()->backend->status();
+  constexpr const char* kFound = "then found in the same world";
+  Status merged = estimators_.front()->status();
+  bool went_on = estimators_.size() > 1;
   for (std::size_t i = 0; i + 1 < estimators_.size(); ++i) {
-    const Status lost = estimators_[i]->backend->status();
-    const Status next = estimators_[i + 1]->backend->status();
-    const bool anew = has_piece[i + 1];
-    merged.degraded.push_back(
-        {lost.time, anew ? estimators_[i + 1]->backend->trajectory().start() : range_.to, "lost: " + lost.reason});
-    merged.degraded.insert(merged.degraded.end(), next.degraded.begin(), next.degraded.end());
+    const Status lost = estimators_[i]->status();
+    const Estimator& next = *estimators_[i + 1];
+    const Status status = next.status();
+    const bool anew = has_piece[i + 1], found = anew && next.world == estimators_.front()->world;
+    merged.degraded.push_back({lost.time, anew ? next.backend->trajectory().start() : range_.to,
+                               fmt::format("lost: {}{}", lost.reason, found ? fmt::format("; {}", kFound) : "")});
+    merged.degraded.insert(merged.degraded.end(), status.degraded.begin(), status.degraded.end());
+    went_on = went_on && found && (i + 2 < estimators_.size() || status.state != RunState::lost);
+  }
+  if (went_on && merged.state == RunState::lost) {
+    merged.state = RunState::degraded;
+    merged.reason = fmt::format("lost: {}; {}", merged.reason, kFound);
   }
   if (std::ranges::none_of(has_piece, std::identity{})) {
     merged.state = RunState::failed;

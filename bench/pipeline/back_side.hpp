@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "bench/pipeline/covariance_samples.hpp"
+#include "bench/pipeline/estimator.hpp"
 #include "bench/pipeline/pipeline.hpp"
 #include "bench/pipeline/standstill.hpp"
 #include "bench/pipeline/stopwatch.hpp"
@@ -13,8 +14,9 @@
 
 namespace evbench {
 
-/// The back-end's side of a run: undistorts what the front-end saw, holds tracks while the camera stands still, and
-/// gives a back-end that is lost a successor. Pixels are raw on the front-end's side of it, undistorted on the other.
+/// The back-end's side of a run: undistorts what the front-end saw, holds tracks while the camera stands still,
+/// gives a back-end that is lost a successor, and finds that one's world in the world of those before it. Pixels are
+/// raw on the front-end's side of it, undistorted on the other.
 class BackSide {
  public:
   BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera, const Source::TimeRange& range,
@@ -38,20 +40,14 @@ class BackSide {
   }  ///< of that, until each batch was taken, since the one before
 
  private:
-  /// A back-end and what it told.
-  struct Estimator {
-    std::unique_ptr<BackEnd> backend;
-    std::vector<OnlinePose> told;
-    double said = 0.0;                  ///< [s], when the last of these was known, in the back-end's words
-    std::optional<StampedPose> newest;  ///< of these
-    CovarianceSamples covariances;
-  };
-
   void begin();
-  void hear(OnlinePose pose, Estimator& estimator) const;
   void undistort(TrackBatch& batch);
   void digest(const TrackBatch& batch);
-  void add_piece(Estimator& estimator, double rate, RunResult& result) const;
+  void take_back(const Standstill::Refuted& stand);
+  void relocalise();
+  void remember_landmarks();
+  void expect_remembered(Feedback& feedback) const;
+  void add_pieces(double rate, RunResult& result);
   Status merged_status(const std::vector<bool>& has_piece) const;
 
   const MakeBackEnd& make_;
@@ -59,8 +55,12 @@ class BackSide {
   const Camera& camera_;
   Source::TimeRange range_;
   Standstill standstill_;
+  bool relocalises_;
   std::vector<std::unique_ptr<Estimator>> estimators_;  ///< the last one is at work
-  double until_, seen_;                                 ///< [s] of the last batch
+  double begun_ = 0.0, next_relocalisation_ = 0.0;      ///< [s] when it began; when its world is next looked for
+  /// Of estimators that were lost, in whose world the present one stands; it doesn't know them itself. In that world.
+  std::map<TrackId, Vector3> remembered_;
+  double until_, seen_;  ///< [s] of the last batch
   Sha256 hash_;
   std::string digested_;  ///< what is to be hashed
   std::size_t observations_ = 0, left_out_ = 0;

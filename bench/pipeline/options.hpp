@@ -14,6 +14,7 @@ struct PipelineOptions {
   std::string mode = "sequential";
   int queue = 4;
   double patience = 1.0;
+  bool relocalise = true;
   double still_after = 0.1;
 
   void declare(OptionSet& set) {
@@ -33,6 +34,10 @@ struct PipelineOptions {
             "how long a motion model alone may carry the estimate; a back-end is lost then, and starts anew where "
             "there are tracks [s]")
         .above(0.0);
+    set.add(
+        "relocalise", relocalise,
+        "one that starts anew goes on in the world of before once enough landmarks are in both maps: front-ends are "
+        "then told where the others of before are expected");
     set.add("still_after", still_after,
             "when no track has been observed for so long and tracks are alive, the camera stands still: the tracks are "
             "told to be where they were [s]; 0: never")

@@ -8,25 +8,13 @@
 
 #include "bench/pipeline/batch_stream.hpp"
 #include "bench/pipeline/options.hpp"
+#include "bench/pipeline/piece.hpp"
 #include "bench/pipeline/standstill.hpp"
-#include "core/data/relative_poses.hpp"
 #include "core/plugin/backend.hpp"
 #include "core/plugin/frontend.hpp"
 #include "core/plugin/source.hpp"
 
 namespace evbench {
-
-/// A part of the estimate in one world frame and scale, made by one back-end: until it was lost, or the run ended.
-struct Piece {
-  PoseTrajectory final_trajectory;   ///< after the fact, at the rate asked for
-  PoseTrajectory online_trajectory;  ///< causal, the back-end's own times: each pose as it was first told
-  std::vector<OnlinePose> told;      ///< all that was told while the data came in, known_at set
-  std::vector<Landmark> map;
-  std::optional<Problem> problem;  ///< that the back-end ended with, where it has one
-  /// With covariances, where the back-end has them: "newest", poses told while the data came in, since the first pose;
-  /// "over_100ms" and "over_1s", of the final estimate.
-  std::vector<RelativePose> relative;
-};
 
 /// Where the time of a run went [s], wall clock.
 struct RunTimes {

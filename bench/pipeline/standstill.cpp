@@ -13,11 +13,13 @@ constexpr double kInterval =
 constexpr double kSigma = 0.5;   ///< [px] at least: a tracker's next step may be about to come
 constexpr double kStep = 1.5;    ///< [px] that a tracker may have moved when it tells that there is motion again
 constexpr double kLong = 4.0;    ///< times the usual time between observations: a silence
+constexpr double kSoon = 0.1;    ///< [s] from the end of a silence: what it was is seen
 constexpr double kMemory = 1.0;  ///< [s] in which what is usual is forgotten
 
 }  // namespace
 
 void Standstill::apply(TrackBatch& batch) {
+  refuted_.reset();
   if (after_ == 0.0) return;
   const std::vector<TrackObservation> seen = std::move(batch.observations);
   batch.observations.clear();
@@ -28,7 +30,7 @@ void Standstill::apply(TrackBatch& batch) {
   };
   const auto end = [&](const TrackEnd& ended) {
     hold(ended.t, batch.observations);
-    live_.erase(ended.track);
+    forget(ended);
   };
   in_time_order(seen, batch.ended, observe, end);
   hold(batch.until, batch.observations);
@@ -44,6 +46,36 @@ void Standstill::remember(const TrackObservation& z) {
   last_ = z.t;
   held_ = 0;
   still_ = false;
+  if (seen_again_ || stood_ == 0) return;
+  seen_again_ = z.t;
+  if (z.t - gone_at_ > kSoon) gone_ = 0;  // they ended while nothing was seen
+  doubt();
+}
+
+void Standstill::forget(const TrackEnd& ended) {
+  live_.erase(ended.track);
+  if (held_tracks_.erase(ended.track) == 0 || (seen_again_ && ended.t > *seen_again_ + kSoon)) return;
+  ++gone_;
+  gone_at_ = ended.t;
+  doubt();
+}
+
+/// Has the camera moved while nothing was told?
+void Standstill::doubt() {
+  if (2 * gone_ <= stood_ || !seen_again_) return;
+  refuted_ = {spans_.back(), std::exchange(held_tracks_, {})};
+  spans_.pop_back();
+  stood_ = gone_ = 0;
+}
+
+void Standstill::begin_stand(double t) {
+  spans_.push_back({last_, t});
+  still_ = true;
+  seen_again_.reset();
+  held_tracks_.clear();
+  for (const auto& [track, z] : live_) held_tracks_.insert(track);
+  stood_ = live_.size();
+  gone_ = 0;
 }
 
 /// Adds what the silence from the last observation up to `until` says.
@@ -54,8 +86,7 @@ void Standstill::hold(double until, std::vector<TrackObservation>& observations)
   }
   const double first = last_ + std::max(after_, kLong * usual_);
   for (double t = 0.0; (t = first + kInterval * static_cast<double>(held_)) <= until; ++held_) {
-    if (!still_) spans_.push_back({last_, t});
-    still_ = true;
+    if (!still_) begin_stand(t);
     spans_.back().to = t;
     for (const auto& [track, z] : live_) {
       observations.push_back({track, t, z.pixel, std::max(z.sigma, kSigma)});

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <map>
+#include <optional>
+#include <set>
 #include <vector>
 
 #include "core/plugin/exchange.hpp"
@@ -17,6 +19,9 @@ struct StillSpan {
 /// of a tracker. When for a while no track has been observed and enough are alive, each is therefore observed again at
 /// its last place: every back-end then holds its estimate, with whatever model it has, and none is lost. A silence is
 /// one that is long beside the usual time between observations, so that tracks of slow frames are not taken for it.
+///
+/// A sensor that told nothing while the camera moved looks the same, until it tells again: then most tracks end at
+/// once, as what they were on is elsewhere. Such a stand is taken back.
 class Standstill {
  public:
   /// `after` [s] without any observation; 0: never.
@@ -31,9 +36,20 @@ class Standstill {
   bool holds() const { return still_; }
   const std::vector<StillSpan>& spans() const { return spans_; }
 
+  /// A stand that was none, and the tracks that were held in it and have not ended: they may be on something else.
+  struct Refuted {
+    StillSpan span;
+    std::set<TrackId> survivors;
+  };
+  /// Shown by the last batch.
+  const std::optional<Refuted>& refuted() const { return refuted_; }
+
  private:
+  void begin_stand(double t);
   void hold(double until, std::vector<TrackObservation>& observations);
   void remember(const TrackObservation& z);
+  void forget(const TrackEnd& ended);
+  void doubt();
 
   double after_;
   std::map<TrackId, TrackObservation> live_;  ///< the last observation of each track that has not ended
@@ -42,6 +58,12 @@ class Standstill {
   std::int64_t held_ = 0;                     ///< times that the tracks were held since
   bool still_ = false;
   std::vector<StillSpan> spans_;
+
+  std::set<TrackId> held_tracks_;     ///< in the last stand, that have not ended since
+  std::size_t stood_ = 0, gone_ = 0;  ///< how many were held; of these, ended about when something was seen again
+  double gone_at_ = 0.0;              ///< [s] when the last of these ended
+  std::optional<double> seen_again_;  ///< [s], first observation since that stand
+  std::optional<Refuted> refuted_;
 };
 
 }  // namespace evbench

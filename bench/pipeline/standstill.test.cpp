@@ -1,6 +1,7 @@
 #include "bench/pipeline/standstill.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 using namespace evbench;
 
@@ -111,5 +112,49 @@ TEST_CASE("One long batch is held like many short ones") {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     CHECK(whole.observations[i].t == parts[i].t);
     CHECK(whole.observations[i].track == parts[i].track);
+  }
+}
+
+namespace {
+
+/// After a second of motion and a silence: some tracks end, and some other time the others and ten new ones are seen.
+Standstill after_silence(TrackId ending, double ends_at, double seen_again_at) {
+  Standstill standstill(0.1);
+  TrackBatch batch;
+  for (int i = 1; i <= 100; ++i) standstill.apply(batch = moving(0.01 * i));
+  for (int i = 101; i <= 600; ++i) {
+    batch = silent(0.01 * i);
+    if (std::abs(batch.until - ends_at) < 0.005) {
+      for (TrackId track = 0; track < ending; ++track) batch.ended.push_back({track, batch.until - 0.001});
+    }
+    if (std::abs(batch.until - seen_again_at) < 0.005) {
+      for (TrackId track = ending; track < 20; ++track) {
+        batch.observations.push_back({track, batch.until - 0.002, Vector2(60.0, 20.0), 0.2});
+      }
+    }
+    standstill.apply(batch);
+    if (standstill.refuted()) break;
+  }
+  return standstill;
+}
+
+}  // namespace
+
+TEST_CASE("A stand after which most tracks end unseen was none") {
+  const Standstill refuted = after_silence(8, 3.02, 3.0);
+  REQUIRE(refuted.refuted());
+  CHECK(refuted.refuted()->span.from == Approx(1.0).margin(0.01));
+  CHECK(refuted.refuted()->span.to == Approx(3.0).margin(0.06));
+  CHECK(refuted.refuted()->survivors.size() == 4);  // when more than half are gone
+  CHECK(refuted.spans().empty());
+  CHECK(after_silence(8, 2.9, 3.0).refuted());  // whichever comes first
+}
+
+TEST_CASE("A stand is one where most tracks go on, or end while nothing else is seen") {
+  for (const Standstill& standstill :
+       {after_silence(4, 3.02, 3.0), after_silence(8, 2.0, 4.0), after_silence(8, 4.0, 3.0)}) {
+    CHECK_FALSE(standstill.refuted());
+    REQUIRE_FALSE(standstill.spans().empty());
+    CHECK(standstill.spans()[0].from == Approx(1.0).margin(0.01));
   }
 }

@@ -69,6 +69,9 @@ struct Feedback {
   /// Landmarks in view, predicted at t: those of live tracks and those that were seen before. A front-end that finds
   /// one of these again goes on with its track.
   std::vector<ExpectedFeature> expected;
+  /// Which world frame `newest` and `expected` are in: another one after a loss, and the earlier one again once the
+  /// camera has been found in it. Set by the harness.
+  std::size_t world = 0;
 };
 
 /// What of the feedback a front-end makes use of: the rest is not computed. None: the back-end is not asked at all, and

@@ -12,7 +12,7 @@ using State = Triangulation::State;
 
 namespace {
 
-std::vector<SE3> sideways(int count, double baseline) {
+std::vector<SE3> to_the_side(int count, double baseline) {
   std::vector<SE3> poses;
   for (int i = 0; i < count; ++i) {
     poses.push_back(se3::exp((Vector6() << 0.0, -0.02 * i, 0.0, baseline * i, 0.1 * baseline * i, 0.0).finished()));
@@ -31,7 +31,7 @@ std::vector<Vector2> pixels_of(const Vector3& point, const std::vector<SE3>& pos
 TEST_CASE("a point is triangulated exactly from exact pixels") {
   const Vector3 point(0.3, -0.2, 2.5);
   for (const int views : {2, 3, 10}) {
-    const auto poses = sideways(views, 0.1);
+    const auto poses = to_the_side(views, 0.1);
     const Triangulation result = triangulate(poses, pixels_of(point, poses), davis());
     REQUIRE(result.ok());
     CHECK((result.point - point).norm() < 1e-9);
@@ -44,7 +44,7 @@ TEST_CASE("a point is triangulated exactly from exact pixels") {
 TEST_CASE("a point is triangulated from noisy pixels to the accuracy that the baseline allows") {
   Random random(1);
   const Vector3 point(0.3, -0.2, 2.5);
-  const auto poses = sideways(20, 0.05);
+  const auto poses = to_the_side(20, 0.05);
   auto pixels = pixels_of(point, poses);
   for (Vector2& pixel : pixels) pixel += testing::noise(0.7, random);
   const Triangulation result = triangulate(poses, pixels, davis());
@@ -54,10 +54,10 @@ TEST_CASE("a point is triangulated from noisy pixels to the accuracy that the ba
 }
 
 TEST_CASE("what cannot be triangulated says why") {
-  const auto poses = sideways(3, 0.1);
+  const auto poses = to_the_side(3, 0.1);
   const Vector3 point(0.3, -0.2, 2.5);
   SECTION("one view") {
-    CHECK(triangulate(std::span(poses).first(1), pixels_of(point, sideways(1, 0.1)), davis()).state ==
+    CHECK(triangulate(std::span(poses).first(1), pixels_of(point, to_the_side(1, 0.1)), davis()).state ==
           State::too_few_views);
   }
   SECTION("a point at infinity") {

@@ -10,6 +10,7 @@ namespace evbench::haste {
 
 void Guidance::receive(const Feedback& feedback) {
   reliable_ = feedback.state == TrackingState::tracking || feedback.state == TrackingState::standing_still;
+  world_ = feedback.world;
   const bool usable = reliable_ || (degraded_ && feedback.state == TrackingState::degraded);
   correction_ = {};
   newest_ = usable ? feedback.newest : std::nullopt;

@@ -23,6 +23,9 @@ class Guidance {
   /// Whether observations have determined it, not a motion model alone: what contradicts it is wrong.
   bool reliable() const { return reliable_; }
 
+  /// The number of the world that all of it is in.
+  std::size_t world() const { return world_; }
+
   /// A landmark, where a tracker has it.
   struct Sighting {
     TrackId track;
@@ -53,6 +56,7 @@ class Guidance {
  private:
   const Camera& camera_;
   bool degraded_, reliable_ = false;
+  std::size_t world_ = 0;
   std::optional<ControlState> newest_;
   SE3 correction_;
   std::map<TrackId, ExpectedFeature> expected_;

@@ -102,6 +102,7 @@ void Haste::look() {
   correct_guidance();
   if (options_.guidance.veto) veto_strays();
   if (options_.guidance.reacquire) reacquire();
+  if (options_.guidance.reacquire) recognise();
   if (clock_ - detected_ >= options_.detection.interval) replenish();
 }
 
@@ -109,8 +110,17 @@ void Haste::look() {
 /// trackers would make the old landmarks.
 void Haste::doubt_trackers() {
   for (auto& [id, track] : tracks_) {
-    if (const Tracker& tracker = trackers_.tracker(id); tracker.running()) track.doubted = tracker.event_count();
+    const Tracker& tracker = trackers_.tracker(id);
+    if (!tracker.running()) continue;
+    track.doubted = tracker.event_count();
+    remember(track, tracker);
   }
+}
+
+/// As the landmark that it is looks now, where it is one.
+void Haste::remember(const Track& track, const Tracker& tracker) {
+  if (!options_.guidance.reacquire || track.probation > 0 || !guidance_.position(track.id)) return;
+  lost_.remember(track.id, clock_, tracker.learnt_template(), tracker.state().angle, guidance_);
 }
 
 /// As soon as their windows are of new events.
@@ -123,7 +133,11 @@ void Haste::end_strangers() {
     std::vector<Event> window;
     for (int i = 0; i < kWindowSize; ++i) window.push_back(tracker.window().event(i));
     const Alignment seen = align(tracker.learnt_template(), window, tracker.grid_state());
-    if (seen.score < options_.life.recognition) end(id, End::silence);
+    if (seen.score < options_.life.recognition) {
+      end(id, End::silence);
+    } else {
+      lost_.forget(track.id);
+    }
   }
 }
 
@@ -228,6 +242,31 @@ void Haste::reacquire() {
   }
 }
 
+/// After a loss new trackers may be on landmarks of the map that there was, wherever these are now: a few of them are
+/// compared at a time.
+void Haste::recognise() {
+  constexpr std::size_t kAtATime = 4;
+  constexpr int kTimes = 3;
+  if (!lost_.has_of_before(guidance_.world())) return;
+  std::vector<std::int64_t> candidates;
+  for (const auto& [tracker, track] : tracks_) {
+    const bool is_new = track.looked_at < kTimes && track.probation == 0 && !guidance_.position(track.id);
+    if (is_new && trackers_.tracker(tracker).running()) candidates.push_back(tracker);
+  }
+  std::ranges::stable_sort(candidates, {}, [&](std::int64_t tracker) { return tracks_.at(tracker).looked_at; });
+  if (candidates.size() > kAtATime) candidates.resize(kAtATime);
+  for (const std::int64_t tracker : candidates) {
+    Track& track = tracks_.at(tracker);
+    ++track.looked_at;
+    auto found = lost_.recognise(track.pixel, guidance_.world(), recent_, clock_, tracked());
+    if (!found) continue;
+    end(tracker, End::recognised);
+    lost_.forget(found->track);
+    begin(Tracker(options_.tracker, {0, found->pixel, 0.0}, found->look),
+          {.id = found->track, .odometer = odometer_, .pixel = found->pixel, .looked_at = kTimes});
+  }
+}
+
 /// New features where there are too few, some of which are lost landmarks.
 void Haste::replenish() {
   const auto wanted = static_cast<std::size_t>(options_.tracks);
@@ -280,11 +319,8 @@ void Haste::end(std::int64_t tracker, End why) {
       told_.take_back(track.id, std::max(track.found, clock_ - options_.delay));
     }
     told_.end({track.id, clock_});
-    const Tracker& state = trackers_.tracker(tracker);
     const bool itself = !doubted && (why == End::border || why == End::starvation);
-    if (options_.guidance.reacquire && itself && guidance_.position(track.id)) {
-      lost_.remember(track.id, clock_, state.learnt_template(), state.state().angle, guidance_.pose(clock_));
-    }
+    if (itself) remember(track, trackers_.tracker(tracker));
   }
   trackers_.remove(tracker);
   tracks_.erase(found);
@@ -323,8 +359,10 @@ std::vector<std::string> Haste::counts() const {
                       ended(End::border), ended(End::spread), ended(End::edge), ended(End::starvation),
                       ended(End::crowding), ended(End::veto), ended(End::outlier), ended(End::wandering),
                       ended(End::silence)),
-          fmt::format("{} landmarks found again, of which {} went on; {} at corners, of which {} went on",
-                      by_template_.found, by_template_.went_on, at_corners_.found, at_corners_.went_on),
+          fmt::format(
+              "{} landmarks found again, of which {} went on; {} at corners, of which {} went on; {} recognised "
+              "after a loss",
+              by_template_.found, by_template_.went_on, at_corners_.found, at_corners_.went_on, ended(End::recognised)),
           fmt::format("{} observations came later than the delay", late_)};
 }
 

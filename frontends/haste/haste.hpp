@@ -46,11 +46,12 @@ class Haste : public EventFrontEnd {
     Vector2 from = pixel;                ///< where it was then [px],
     double way = 0.0;                    ///< how far it has gone since [px],
     Eigen::AlignedBox2d visited{pixel};  ///< and where it has been
+    int looked_at = 0;                   ///< times that it was compared with lost landmarks
     std::int64_t doubted = -1;  ///< events that its tracker had when the sensor fell silent; then it is looked at
   };
 
   /// Why tracks end.
-  enum class End { border, spread, edge, starvation, crowding, veto, outlier, wandering, silence };
+  enum class End { border, spread, edge, starvation, crowding, veto, outlier, wandering, silence, recognised };
 
   void take(std::span<const Event> events) override;
   void look() override;
@@ -58,12 +59,14 @@ class Haste : public EventFrontEnd {
   void observe(const Change& change);
   bool is_as_expected(TrackId track, const Vector2& pixel, double t) const;
   void doubt_trackers();
+  void remember(const Track& track, const Tracker& tracker);
   void end_strangers();
   void end_wanderers();
   void end_trackers();
   void correct_guidance();
   void veto_strays();
   void reacquire();
+  void recognise();
   void replenish();
   std::optional<TrackId> lost_landmark_at(const Vector2& corner) const;
   void end(std::int64_t tracker, End why);
@@ -82,7 +85,7 @@ class Haste : public EventFrontEnd {
   double last_event_;            ///< [s]
   double odometer_ = 0.0;        ///< the image's way: the trackers' mean one [px]
   TrackId next_id_ = 0;
-  std::array<std::size_t, static_cast<std::size_t>(End::silence) + 1> ended_{};  ///< by End
+  std::array<std::size_t, static_cast<std::size_t>(End::recognised) + 1> ended_{};  ///< by End
   struct Finds {
     std::size_t found = 0, went_on = 0;
   } by_template_, at_corners_;

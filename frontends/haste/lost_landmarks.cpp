@@ -4,12 +4,18 @@
 #include <cmath>
 #include <vector>
 
+#include "frontends/haste/recognition.hpp"
 #include "frontends/haste/tracking/alignment.hpp"
 
 namespace evbench::haste {
 
-void LostLandmarks::remember(TrackId track, double t, const Template& look, double angle, const SE3& T_world_camera) {
-  if (look.mass() > 0.0) lost_.insert_or_assign(track, Lost{t, t, look, angle, T_world_camera});
+void LostLandmarks::remember(TrackId track, double t, const Template& look, double angle, const Guidance& guidance) {
+  if (!(look.mass() > 0.0)) return;
+  lost_.insert_or_assign(track, Lost{t, t, look, angle, guidance.pose(t), guidance.world()});
+}
+
+void LostLandmarks::forget_before(double t) {
+  std::erase_if(lost_, [&](const auto& entry) { return entry.second.t < t; });
 }
 
 void LostLandmarks::disappoint(TrackId track, double t) {
@@ -30,7 +36,7 @@ std::vector<LostLandmarks::Found> LostLandmarks::find(const Guidance& guidance, 
   constexpr double kPause = 0.02;      // [s] between two searches for one
   std::vector<Found> result;
   if (!guidance.available() || recent.events().empty()) return result;
-  std::erase_if(lost_, [&](const auto& entry) { return t - entry.second.t > options_.memory; });
+  forget_before(t - options_.memory);
 
   struct Candidate {
     TrackId track;
@@ -39,7 +45,7 @@ std::vector<LostLandmarks::Found> LostLandmarks::find(const Guidance& guidance, 
   };
   std::vector<Candidate> candidates;
   for (const auto& [track, lost] : lost_) {
-    if (t - lost.tried < kPause || tracked.has(track)) continue;
+    if (t - lost.tried < kPause || lost.world != guidance.world() || tracked.has(track)) continue;
     const std::optional<Guidance::Prediction> expected = guidance.predict(track, t);
     if (!expected || !camera.contains(expected->pixel, kPatchRadius)) continue;
     const auto is_near = [&](const Vector2& p) { return (p - expected->pixel).norm() < distance; };
@@ -86,6 +92,19 @@ std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const
   }
   found.pixel = Vector2(best->x, best->y);
   return found;
+}
+
+std::optional<LostLandmarks::Found> LostLandmarks::recognise(const Vector2& about, std::size_t world,
+                                                             const RecentEvents& recent, double t,
+                                                             const Tracked& tracked) {
+  forget_before(t - options_.memory);
+  std::vector<KnownLook> looks;
+  for (const auto& [track, lost] : lost_) {
+    if (lost.world < world && !tracked.has(track)) looks.push_back({track, &lost.look, lost.angle});
+  }
+  const auto found = haste::recognise(looks, recent.window(about), about, options_.recognition);
+  if (!found) return std::nullopt;
+  return Found{found->track, found->pixel, lost_.at(found->track).look.warped(found->angle, 1.0)};
 }
 
 std::optional<TrackId> LostLandmarks::at_corner(const Vector2& corner, const Guidance& guidance, double t,

@@ -18,8 +18,13 @@ class LostLandmarks {
  public:
   explicit LostLandmarks(const GuidanceOptions& options) : options_(options) {}
 
-  /// The landmark of a track that ended at t [s]: its template, turned by `angle` [rad], was seen from a pose.
-  void remember(TrackId track, double t, const Template& look, double angle, const SE3& T_world_camera);
+  /// The landmark of a track that ended at t [s]: its template, turned by `angle` [rad], was seen from where the
+  /// guidance has the camera then.
+  void remember(TrackId track, double t, const Template& look, double angle, const Guidance& guidance);
+  /// Whether any is of a world before this one.
+  bool has_of_before(std::size_t world) const {
+    return std::ranges::any_of(lost_, [&](const auto& entry) { return entry.second.world < world; });
+  }
   void forget(TrackId track) { lost_.erase(track); }
   /// One that was found and turned out to be another: it is left alone for a while. It need not be remembered.
   void disappoint(TrackId track, double t);
@@ -41,6 +46,11 @@ class LostLandmarks {
   std::vector<Found> find(const Guidance& guidance, double t, const RecentEvents& recent, const Tracked& tracked,
                           double distance, const Camera& camera);
 
+  /// The landmark of a world before this one that is seen about a place [px] by its look alone, which the camera may
+  /// have turned: it may be anywhere. None of those that are tracked; none where two look as much so.
+  std::optional<Found> recognise(const Vector2& about, std::size_t world, const RecentEvents& recent, double t,
+                                 const Tracked& tracked);
+
   /// The landmark that a corner [px] seen at t is, if it is one that nobody tracks: the only such one that is expected
   /// there. None where two are.
   std::optional<TrackId> at_corner(const Vector2& corner, const Guidance& guidance, double t,
@@ -53,7 +63,9 @@ class LostLandmarks {
     Template look;
     double angle;
     SE3 T_world_camera;
+    std::size_t world;
   };
+  void forget_before(double t);
   bool is_left_alone(TrackId track, double t) const;
   std::optional<Found> look_for(TrackId track, const Lost& lost, const Guidance& guidance, const Vector2& about,
                                 const RecentEvents& recent) const;

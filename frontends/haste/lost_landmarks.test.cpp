@@ -57,11 +57,13 @@ struct Setting {
     camera.pinhole = {200.0, 200.0, 120.0, 90.0};
   }
 
-  Guidance guidance() const {
+  Guidance guidance() const { return guidance_at(T_now); }
+  Guidance guidance_at(const SE3& T, std::size_t world = 0) const {
     Guidance result(camera, true);
     Feedback feedback;
     feedback.state = TrackingState::tracking;
-    feedback.newest = ControlState{0.0, T_now, Vector6::Zero()};
+    feedback.newest = ControlState{0.0, T, Vector6::Zero()};
+    feedback.world = world;
     feedback.expected.push_back({kTrack, {0.0, 0.0, 2.0}, kExpected, covariance});
     result.receive(feedback);
     return result;
@@ -69,7 +71,7 @@ struct Setting {
 
   LostLandmarks lost(const Lines& lines) const {
     LostLandmarks result(options);
-    result.remember(kTrack, 0.0, look(lines), 0.0, T_before);
+    result.remember(kTrack, 0.0, look(lines), 0.0, guidance_at(T_before));
     return result;
   }
 
@@ -174,6 +176,48 @@ TEST_CASE("A lost landmark is forgotten in time, when it goes on, and is left al
   LostLandmarks other = setting.lost(corner_lines());
   other.forget(kTrack);
   CHECK(setting.find(other, seen).empty());
-  other.remember(kTrack, 0.0, Template{}, 0.0, {});  // one that has learnt nothing
+  other.remember(kTrack, 0.0, Template{}, 0.0, setting.guidance_at({}));  // one that has learnt nothing
   CHECK(setting.find(other, seen).empty());
+}
+
+TEST_CASE("After a loss a landmark of before is recognised by its look, wherever and however turned it is") {
+  const Setting setting;
+  const std::size_t now = 1;  // the number of the world
+  const Vector2 place(60.0, 50.0);
+  for (const double angle : {0.0, 0.3, -0.45}) {
+    LostLandmarks lost = setting.lost(corner_lines());
+    RecentEvents recent(15'000);
+    recent.add(events(corner_lines(), place, angle));
+    const auto found = lost.recognise(place + Vector2(2.0, -1.0), now, recent, 0.1, {});
+    CAPTURE(angle);
+    REQUIRE(found);
+    CHECK(found->track == kTrack);
+    CHECK((found->pixel - place).norm() <= 1.5);
+    CHECK(found->look.mass() > 0.0);
+    CHECK_FALSE(lost.recognise(place, 0, recent, 0.1, {}));                // it is of this world
+    CHECK_FALSE(lost.recognise(place, now, recent, 0.1, {{kTrack}, {}}));  // it has a tracker
+    CHECK_FALSE(lost.recognise({200.0, 150.0}, now, recent, 0.1, {}));     // nothing is seen there
+    CHECK_FALSE(lost.recognise(place, now, recent, 100.0, {}));            // longer ago than it is remembered
+  }
+}
+
+TEST_CASE("Of two landmarks that look the same none is recognised") {
+  const Setting setting;
+  LostLandmarks lost = setting.lost(corner_lines());
+  CHECK(lost.has_of_before(1));
+  CHECK_FALSE(lost.has_of_before(0));
+  RecentEvents recent(15'000);
+  recent.add(events(corner_lines(), kExpected));
+  CHECK(lost.recognise(kExpected, 1, recent, 0.1, {}));
+  lost.remember(kTrack + 1, 0.0, look(corner_lines()), 0.0, setting.guidance());
+  CHECK_FALSE(lost.recognise(kExpected, 1, recent, 0.1, {}));
+}
+
+TEST_CASE("A landmark of another world is not looked for where this one's map expects it") {
+  const Setting setting;
+  LostLandmarks lost = setting.lost(corner_lines());
+  RecentEvents recent(15'000);
+  recent.add(events(corner_lines(), kExpected));
+  CHECK(lost.find(setting.guidance_at(setting.T_now, 1), 0.1, recent, {}, 6.0, setting.camera).empty());
+  CHECK(lost.find(setting.guidance(), 0.1, recent, {}, 6.0, setting.camera).size() == 1);
 }

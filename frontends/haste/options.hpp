@@ -45,6 +45,7 @@ struct GuidanceOptions {
   double veto_distance = 5.0;
   int search = 4;
   double similarity = 0.45;
+  double recognition = 0.55;
   int probation = 4;
   double tolerance = 3.0;
   double memory = 30.0;
@@ -62,6 +63,10 @@ struct GuidanceOptions {
             "a landmark is looked for within this of its expected place along each axis, at most [px]")
         .range(1, 50);
     set.add("similarity", similarity, "it is found where the events look at least this much like its template [cosine]")
+        .range(0.0, 1.0);
+    set.add("recognition", recognition,
+            "while the back-end has no map after a loss, trackers go on with the tracks of lost landmarks that the "
+            "events look at least this much like, wherever they are [cosine]; not without reacquire")
         .range(0.0, 1.0);
     set.add("probation", probation,
             "changes of state through which a found one must be where it is expected before its track goes on; else "

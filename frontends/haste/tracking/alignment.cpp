@@ -4,26 +4,33 @@
 
 namespace evbench::haste {
 
-Alignment align(const Template& wanted, std::span<const Event> events, const GridState& place) {
-  Alignment result{place.x, place.y};
+Sight sight(std::span<const Event> events, const GridState& place) {
+  Sight result;
   const Footprints& footprints = Footprints::of(place.angle);
-  Template seen;
   for (auto event = events.rbegin(); event != events.rend() && result.event_count < kWindowSize; ++event) {
     const int dx = event->x - place.x, dy = event->y - place.y;
     if (!in_range(dx, dy)) continue;
-    seen.add(footprints, Footprints::place(dx, dy), 1.0F);
+    result.patch.add(footprints, Footprints::place(dx, dy), 1.0F);
     ++result.event_count;
   }
-  double product = 0.0, wanted_square = 0.0, seen_square = 0.0;
-  for (std::size_t i = 0; i < seen.cells().size(); ++i) {
-    const double t = wanted.cells()[i], e = seen.cells()[i];
-    product += t * e;
-    wanted_square += t * t;
-    seen_square += e * e;
-  }
-  const double norm = std::sqrt(wanted_square * seen_square);
-  if (norm > 0.0) result.score = product / norm;
   return result;
+}
+
+double likeness(const Template& a, const Template& b) {
+  double product = 0.0, a_square = 0.0, b_square = 0.0;
+  for (std::size_t i = 0; i < a.cells().size(); ++i) {
+    const double x = a.cells()[i], y = b.cells()[i];
+    product += x * y;
+    a_square += x * x;
+    b_square += y * y;
+  }
+  const double norm = std::sqrt(a_square * b_square);
+  return norm > 0.0 ? product / norm : 0.0;
+}
+
+Alignment align(const Template& wanted, std::span<const Event> events, const GridState& place) {
+  const Sight seen = sight(events, place);
+  return {place.x, place.y, seen.event_count, likeness(wanted, seen.patch)};
 }
 
 std::vector<Alignment> align_around(const Template& wanted, std::span<const Event> events, const GridState& place,

@@ -8,12 +8,23 @@
 
 namespace evbench::haste {
 
+/// The newest kWindowSize of some events in range of a place, as a patch there that is turned by so many steps of
+/// angle.
+struct Sight {
+  Template patch;
+  int event_count = 0;
+};
+/// The events in time order.
+Sight sight(std::span<const Event> events, const GridState& place);
+
+/// Cosine between two patches as images: Σ A·B / √(ΣA² ΣB²), in [0, 1]; 0 where one is empty.
+double likeness(const Template& a, const Template& b);
+
 /// How well a template explains the newest events around a place.
 struct Alignment {
   int x = 0, y = 0;     ///< the place [px]
   int event_count = 0;  ///< in range of it, at most kWindowSize
-  /// Cosine between the template and the events, both as images: Σ T·E / √(ΣT² ΣE²), in [0, 1]; 0 without events.
-  double score = 0.0;
+  double score = 0.0;   ///< likeness of the template and what is seen there
 };
 
 /// The template, turned by so many steps of angle, at a place, with the newest kWindowSize of the events (in time

@@ -1,0 +1,104 @@
+#include "bench/pipeline/estimator.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "core/structure/map_alignment.hpp"
+#include "core/support/index.hpp"
+
+namespace evbench {
+namespace {
+
+/// At that rate [Hz]; the back-end's own poses where the rate is 0, or so low that there would be none.
+PoseTrajectory sample(const BackEnd& backend, double rate) {
+  const PoseTrajectory own = backend.trajectory();
+  if (rate == 0.0 || own.empty()) return own;
+  std::vector<StampedPose> poses;
+  const auto first = static_cast<std::int64_t>(std::ceil(own.start() * rate - 1e-9));
+  for (std::int64_t k = first; static_cast<double>(k) / rate <= own.end(); ++k) {
+    const double t = static_cast<double>(k) / rate;
+    std::optional<SE3> T = backend.pose(t);
+    if (!T) T = own.pose(t);
+    if (T) poses.push_back({t, *T});
+  }
+  if (poses.empty()) return own;
+  return PoseTrajectory(std::move(poses), "the back-end's trajectory");
+}
+
+bool is_finite(const StampedPose& pose) { return pose.T.p.allFinite() && pose.T.q.coeffs().allFinite(); }
+
+/// Evenly from all of the trajectory.
+std::vector<SE3> views_of(const PoseTrajectory& trajectory) {
+  constexpr std::size_t kViews = 24;
+  std::vector<SE3> views;
+  const std::size_t count = std::min(kViews, trajectory.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    views.push_back(trajectory.poses()[i * (trajectory.size() - 1) / std::max<std::size_t>(count - 1, 1)].T);
+  }
+  return views;
+}
+
+}  // namespace
+
+/// A pose ahead of the data counts as known when its time has come. A back-end knows the times of the observations that
+/// it makes poses from; where a front-end tells those late, the poses are known as much later.
+void Estimator::hear(OnlinePose pose, double until, double seen) {
+  if (!std::isfinite(pose.t) || !is_finite(pose) || (pose.velocity && !pose.velocity->allFinite())) {
+    throw std::runtime_error(fmt::format("the back-end's pose at {:.6f} s is not finite", pose.t));
+  }
+  const double now = std::max(pose.t, pose.known_at.value_or(seen));
+  if (!told.empty() && !(now >= said)) {
+    throw std::runtime_error(
+        fmt::format("the back-end told an online pose as known at {:.6f} s after one known at {:.6f} s", now, said));
+  }
+  said = now;
+  const double complete = pose.known_at.value_or(seen), late = seen - until;
+  pose.known_at = std::max(pose.t, complete < seen ? std::min(complete + late, seen) : complete);
+  // What comes less late than what was told before it has waited for that.
+  if (!told.empty()) pose.known_at = std::max(*pose.known_at, *told.back().known_at);
+  told.push_back(pose);
+  if (!newest || pose.t >= newest->t) newest = pose;
+  if (is_elsewhere()) told_there.push_back(carried(pose, to_world));
+}
+
+std::optional<int> Estimator::find_in(const Estimator& other, const PinholeCamera& camera) {
+  const std::vector<SE3> views = views_of(backend->trajectory());
+  std::vector<Landmark> there = other.backend->map();
+  std::erase_if(there, [&](const Landmark& landmark) { return other.doubtful.contains(landmark.track); });
+  const auto alignment = align_maps(backend->map(), views, there, camera);
+  if (!alignment) return std::nullopt;
+  world = other.world;
+  to_world = other.to_world * alignment->transform.inverse();
+  return alignment->landmarks;
+}
+
+std::optional<Piece> Estimator::piece(double rate) {
+  Piece result;
+  result.final_trajectory = sample(*backend, rate);
+  if (!std::ranges::all_of(result.final_trajectory.poses(), is_finite)) {
+    throw std::runtime_error("the back-end's trajectory is not finite");
+  }
+  const Status its_status = status();
+  if (its_status.state == RunState::lost && !result.final_trajectory.empty()) {
+    result.final_trajectory = result.final_trajectory.cut(result.final_trajectory.start(), its_status.time);
+  }
+  if (result.final_trajectory.empty() || its_status.state == RunState::failed) return std::nullopt;
+  // What was told after the data had ended is no estimate from data.
+  if (its_status.state == RunState::lost) {
+    const auto late = [&](const OnlinePose& pose) { return pose.t > its_status.time; };
+    std::erase_if(told, late);
+    std::erase_if(told_there, late);
+  }
+  result.told = std::move(told);
+  result.online_trajectory = newest_poses(result.told);
+  result.map = backend->map();
+  result.problem = backend->problem();
+  result.relative = covariances.finish(*backend);
+  return result;
+}
+
+}  // namespace evbench

@@ -1,0 +1,52 @@
+#include "bench/pipeline/piece.hpp"
+
+#include <map>
+#include <utility>
+
+namespace evbench {
+namespace {
+
+RelativePose carried(RelativePose relative, double scale) {
+  relative.T.p *= scale;
+  relative.covariance.bottomRows<3>() *= scale;
+  relative.covariance.rightCols<3>() *= scale;
+  return relative;
+}
+
+}  // namespace
+
+OnlinePose carried(OnlinePose pose, const Similarity& transform) {
+  pose.T = transform * pose.T;
+  if (pose.velocity) pose.velocity->tail<3>() *= transform.scale;
+  return pose;
+}
+
+void go_on(Piece& piece, Piece later, const Similarity& transform, std::vector<OnlinePose> told) {
+  if (later.length() > piece.length()) piece.problem = std::move(later.problem);
+  std::vector<StampedPose> poses = std::move(piece.final_trajectory).poses();
+  const double end = poses.back().t;
+  for (const StampedPose& pose : later.final_trajectory.poses()) {
+    if (pose.t > end) poses.push_back({pose.t, transform * pose.T});
+  }
+  piece.final_trajectory = PoseTrajectory(std::move(poses), "the back-ends' trajectory");
+  piece.told.insert(piece.told.end(), told.begin(), told.end());
+  piece.online_trajectory = newest_poses(piece.told);
+  std::map<TrackId, Vector3> map;
+  for (const Landmark& landmark : piece.map) map[landmark.track] = landmark.position;
+  for (const Landmark& landmark : later.map) map[landmark.track] = transform * landmark.position;
+  piece.map.clear();
+  for (const auto& [track, position] : map) piece.map.push_back({track, position});
+  for (RelativePose& relative : later.relative) {
+    piece.relative.push_back(carried(std::move(relative), transform.scale));
+  }
+}
+
+PoseTrajectory newest_poses(const std::vector<OnlinePose>& told) {
+  std::vector<StampedPose> poses;
+  for (const OnlinePose& pose : told) {
+    if (poses.empty() || pose.t > poses.back().t) poses.push_back(pose);
+  }
+  return PoseTrajectory(std::move(poses), "the online trajectory");
+}
+
+}  // namespace evbench

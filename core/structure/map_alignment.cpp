@@ -1,0 +1,167 @@
+#include "core/structure/map_alignment.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <unordered_map>
+#include <vector>
+
+#include "core/geometry/so3.hpp"
+#include "core/support/index.hpp"
+
+namespace evbench {
+namespace {
+
+using Matrix7 = Eigen::Matrix<double, 7, 7>;
+using Vector7 = Eigen::Matrix<double, 7, 1>;
+
+constexpr std::size_t kEnough = 8;                       ///< landmarks
+constexpr std::size_t kLeastPart = 3;                    ///< one in so many of those that are in both maps
+constexpr double kScaleSigma = 0.03, kLeastError = 0.5;  ///< of a landmark in the images at least [px]
+constexpr double kSameDepth = 1.3;                       ///< times as far at most
+constexpr double kRough = 6.0, kFine = 3.0;  ///< [px] off at most, of a sample's alignment and of the refined one
+
+/// A landmark of both maps.
+struct Pair {
+  Vector3 here, there;
+  std::vector<const SE3*> views;  ///< that have it in their image
+};
+
+std::vector<Pair> pairs_of(std::span<const Landmark> map, std::span<const SE3> views, std::span<const Landmark> other,
+                           const PinholeCamera& camera) {
+  std::unordered_map<TrackId, Vector3> there;
+  for (const Landmark& landmark : other) there.emplace(landmark.track, landmark.position);
+  std::vector<Pair> pairs;
+  for (const Landmark& landmark : map) {
+    const auto known = there.find(landmark.track);
+    if (known == there.end()) continue;
+    Pair pair{landmark.position, known->second, {}};
+    for (const SE3& T : views) {
+      const Vector3 seen = T.inverse() * pair.here;
+      if (!(seen.z() > 0.0)) continue;
+      const Vector2 offset = camera.project(seen) - Vector2(camera.cx, camera.cy);
+      if (std::abs(offset.x()) < camera.cx && std::abs(offset.y()) < camera.cy) pair.views.push_back(&T);
+    }
+    if (!pair.views.empty()) pairs.push_back(std::move(pair));
+  }
+  return pairs;
+}
+
+/// In a view that has the pair.
+bool agrees(const Pair& pair, const SE3& view, const Similarity& X, const PinholeCamera& camera, double px) {
+  const SE3 T = view.inverse();
+  const Vector3 here = T * pair.here, there = T * (X * pair.there);
+  if (!(there.z() * kSameDepth > here.z() && here.z() * kSameDepth > there.z())) return false;
+  return (camera.project(there) - camera.project(here)).norm() < px;
+}
+
+/// In its middle view, or in most views.
+std::vector<const Pair*> agreeing(std::span<const Pair> pairs, const Similarity& X, const PinholeCamera& camera,
+                                  double px, bool everywhere) {
+  std::vector<const Pair*> result;
+  for (const Pair& pair : pairs) {
+    if (!everywhere) {
+      if (agrees(pair, *pair.views[pair.views.size() / 2], X, camera, px)) result.push_back(&pair);
+      continue;
+    }
+    const auto count = static_cast<std::size_t>(
+        std::ranges::count_if(pair.views, [&](const SE3* view) { return agrees(pair, *view, X, camera, px); }));
+    if (2 * count > pair.views.size()) result.push_back(&pair);
+  }
+  return result;
+}
+
+/// Through three pairs; none where they lie on a line.
+std::optional<Similarity> through(const std::array<const Pair*, 3>& sample) {
+  Matrix3 here, there;
+  for (int i = 0; i < 3; ++i) {
+    here.col(i) = sample[index(i)]->here;
+    there.col(i) = sample[index(i)]->there;
+  }
+  const Eigen::Matrix4d M = Eigen::umeyama(there, here, true);
+  const double scale = std::cbrt(M.topLeftCorner<3, 3>().determinant());
+  if (!M.allFinite() || !(scale > 0.0)) return std::nullopt;
+  const Matrix3 R = M.topLeftCorner<3, 3>() / scale;
+  return Similarity{scale, {Eigen::Quaterniond(R).normalized(), M.topRightCorner<3, 1>()}};
+}
+
+/// The one of many samples with which most pairs agree.
+std::optional<Similarity> by_samples(std::span<const Pair> pairs, const PinholeCamera& camera) {
+  constexpr int kSamples = 400;
+  std::mt19937 random(1);  // the same for the same maps
+  const auto draw = [&] { return &pairs[random() % pairs.size()]; };
+  std::optional<Similarity> best;
+  std::size_t most = kEnough - 1;
+  for (int i = 0; i < kSamples; ++i) {
+    const std::array<const Pair*, 3> sample = {draw(), draw(), draw()};
+    if (sample[0] == sample[1] || sample[0] == sample[2] || sample[1] == sample[2]) continue;
+    const auto X = through(sample);
+    if (!X) continue;
+    if (const std::size_t count = agreeing(pairs, *X, camera, kRough, false).size(); count > most) {
+      most = count;
+      best = X;
+    }
+  }
+  return best;
+}
+
+/// Of (rotation, translation, log scale), X ← Exp(δ) X: by the distances in the images, a pair's as one observation.
+struct NormalEquations {
+  Matrix7 H = Matrix7::Zero();
+  Vector7 g = Vector7::Zero();
+  double sum = 0.0;  ///< of squares, weighted [px²]
+};
+
+NormalEquations linearise(const std::vector<const Pair*>& pairs, const Similarity& X, const PinholeCamera& camera) {
+  constexpr double kWidth = 1.0;  // [px] where the Cauchy loss turns from quadratic
+  NormalEquations result;
+  for (const Pair* pair : pairs) {
+    const Vector3 point = X * pair->there;
+    Eigen::Matrix<double, 3, 7> J_point;
+    J_point << -so3::hat(point), Matrix3::Identity(), point;
+    for (const SE3* view : pair->views) {
+      const SE3 T = view->inverse();
+      const Vector3 seen = T * point;
+      if (!(seen.z() > 0.0)) continue;
+      const Vector2 e = camera.project(seen) - camera.project(T * pair->here);
+      const Eigen::Matrix<double, 2, 7> J = camera.project_jacobian(seen) * T.R() * J_point;
+      const double weight = 1.0 / (1.0 + e.squaredNorm() / (kWidth * kWidth)) / static_cast<double>(pair->views.size());
+      result.H += weight * J.transpose() * J;
+      result.g += weight * J.transpose() * e;
+      result.sum += weight * e.squaredNorm();
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<MapAlignment> align_maps(std::span<const Landmark> map, std::span<const SE3> views,
+                                       std::span<const Landmark> other, const PinholeCamera& camera) {
+  constexpr int kIterations = 10;
+  const std::vector<Pair> pairs = pairs_of(map, views, other, camera);
+  if (pairs.size() < kEnough) return std::nullopt;
+  const auto sampled = by_samples(pairs, camera);
+  if (!sampled) return std::nullopt;
+  Similarity X = *sampled;
+  std::vector<const Pair*> agree = agreeing(pairs, X, camera, kRough, false);
+  NormalEquations equations;
+  for (int i = 0; i < kIterations; ++i) {
+    equations = linearise(agree, X, camera);
+    const Vector7 step = equations.H.ldlt().solve(-equations.g);
+    if (!step.allFinite()) return std::nullopt;
+    const double scale = std::exp(step[6]);
+    X = Similarity{scale, {so3::exp(step.head<3>()), step.segment<3>(3)}} * X;
+    agree = agreeing(pairs, X, camera, kFine, true);
+    if (agree.size() < kEnough || agree.size() * kLeastPart < pairs.size()) return std::nullopt;
+  }
+  equations = linearise(agree, X, camera);
+  const double variance = std::max(kLeastError * kLeastError, equations.sum / static_cast<double>(agree.size()));
+  const Vector7 scale = equations.H.ldlt().solve(Vector7::Unit(6));
+  if (!(std::sqrt(variance * scale[6]) < kScaleSigma)) return std::nullopt;
+  return MapAlignment{X, static_cast<int>(agree.size()), std::sqrt(equations.sum / static_cast<double>(agree.size()))};
+}
+
+}  // namespace evbench

@@ -1,0 +1,97 @@
+#include "core/structure/map_alignment.hpp"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "core/geometry/so3.hpp"
+#include "core/testing/point_scene.hpp"
+
+namespace evbench {
+namespace {
+
+using testing::PointScene;
+
+/// How the earlier map's world lies in the later one's.
+const Similarity kTruth = {2.5, {so3::exp({0.4, -0.2, 0.6}), {3.0, -1.0, 0.5}}};
+
+/// A camera that moves to the right, and two maps of what it sees, each with errors along the rays of its own.
+struct Maps {
+  std::vector<SE3> views;
+  std::vector<Landmark> now, before;
+
+  Maps(PointScene scene, double baseline, double depth_error, int count = 40, std::uint64_t seed = 1) {
+    Random random(seed);
+    for (int i = 0; i < 5; ++i) views.push_back({Eigen::Quaterniond::Identity(), {0.25 * baseline * i, 0.0, 0.0}});
+    TrackId track = 0;
+    for (const Vector3& point : testing::scene_points(scene, count, random, 1.6)) {
+      const Vector3 middle(0.5 * baseline, 0.0, 0.0);
+      now.push_back({track, middle + (1.0 + depth_error * random.normal()) * (point - middle)});
+      before.push_back({track++, kTruth.inverse() * point});
+    }
+  }
+
+  std::optional<MapAlignment> align() const { return align_maps(now, views, before, testing::davis()); }
+
+  /// By how much a point before the camera is displaced.
+  double error(const MapAlignment& found) const {
+    const Vector3 point(0.1, 0.2, 2.0);
+    return (found.transform * (kTruth.inverse() * point) - point).norm();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A similarity and its inverse carry points and poses there and back") {
+  const Vector3 point(0.3, -2.0, 1.0);
+  const SE3 pose{so3::exp({0.1, 0.2, -0.3}), {1.0, 2.0, 3.0}};
+  CHECK((kTruth.inverse() * (kTruth * point) - point).norm() < 1e-12);
+  CHECK(((kTruth.inverse() * kTruth) * point - point).norm() < 1e-12);
+  CHECK(((kTruth * pose) * (2.5 * point) - kTruth * (pose * point)).norm() < 1e-12);
+}
+
+TEST_CASE("Two maps of the same landmarks are aligned exactly where both are exact") {
+  for (const PointScene scene : {PointScene::volume, PointScene::plane}) {
+    const Maps maps(scene, 0.5, 0.0);
+    const auto found = maps.align();
+    REQUIRE(found);
+    CHECK(found->landmarks == 40);
+    CHECK(found->transform.scale == Approx(kTruth.scale).epsilon(1e-6));
+    CHECK(maps.error(*found) < 1e-5);
+  }
+}
+
+TEST_CASE("Uncertain distances from a short baseline, and wrong landmarks, are borne") {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Maps maps(PointScene::volume, 0.3, 0.02, 60, seed);
+    Random random(seed);
+    for (int i = 0; i < 30; ++i) {  // half of them
+      maps.before[static_cast<std::size_t>(2 * i)].position +=
+          Vector3(random.normal(), random.normal(), random.normal());
+    }
+    const auto found = maps.align();
+    REQUIRE(found);
+    CHECK(found->landmarks >= 24);
+    CHECK(maps.error(*found) < 0.03);
+  }
+}
+
+TEST_CASE("Maps with nothing in common are not aligned, nor those with too little") {
+  Maps strangers(PointScene::volume, 0.5, 0.0, 60);
+  Random random(7);
+  for (Landmark& landmark : strangers.before) {
+    landmark.position = Vector3(random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0), random.uniform(1.0, 3.0));
+  }
+  CHECK_FALSE(strangers.align());
+
+  Maps few(PointScene::volume, 0.5, 0.0);
+  few.before.resize(7);
+  CHECK_FALSE(few.align());
+  CHECK_FALSE(align_maps({}, few.views, few.before, testing::davis()));
+  CHECK_FALSE(align_maps(few.now, {}, few.before, testing::davis()));
+}
+
+TEST_CASE("From a single view the scale stays unknown, and there is no alignment") {
+  CHECK_FALSE(Maps(PointScene::volume, 0.0, 0.0).align());
+}
+
+}  // namespace evbench

@@ -1,0 +1,89 @@
+#include "frontends/haste/recognition.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "frontends/haste/tracking/alignment.hpp"
+
+namespace evbench::haste {
+namespace {
+
+constexpr int kStep = 2;             ///< [px] between places that are compared at first,
+constexpr int kTurn = 3;             ///< and steps of angle between turns
+constexpr int kTurns = 3;            ///< so many to either side
+constexpr std::size_t kBest = 3;     ///< looks that are then compared at all places in between
+constexpr double kAmbiguous = 0.95;  ///< what is more than this share as like as the best is as good
+
+/// A place of a look, and how like it is.
+struct Candidate {
+  const KnownLook* known;
+  GridState place;
+  double likeness = 0.0;
+};
+
+/// What is seen about a place, turned by every angle that is asked for: made once, for many looks.
+class Sights {
+ public:
+  Sights(std::span<const Event> window, const GridState& about) : window_(window), about_(about) {}
+
+  /// The look where it is most like what is seen.
+  Candidate best(const KnownLook& known) {
+    Candidate result{&known, about_};
+    const int usual = static_cast<int>(std::lround(known.angle / kAngleStep / kTurn));
+    for (int turn = usual - kTurns; turn <= usual + kTurns; ++turn) {
+      for (const auto& [place, patch] : at(kTurn * turn)) {
+        const double like = likeness(*known.look, patch);
+        if (like > result.likeness) result = {&known, place, like};
+      }
+    }
+    return result;
+  }
+
+ private:
+  using Patches = std::vector<std::pair<GridState, Template>>;
+
+  const Patches& at(int angle) {
+    Patches& patches = by_angle_[angle];
+    if (!patches.empty()) return patches;
+    for (const int y : {-kStep, 0, kStep}) {
+      for (const int x : {-kStep, 0, kStep}) {
+        const GridState place = about_ + Step{x, y, angle};
+        patches.emplace_back(place, sight(window_, place).patch);
+      }
+    }
+    return patches;
+  }
+
+  std::span<const Event> window_;
+  GridState about_;
+  std::map<int, Patches> by_angle_;
+};
+
+}  // namespace
+
+std::optional<Recognised> recognise(std::span<const KnownLook> looks, std::span<const Event> window,
+                                    const Vector2& about, double similarity) {
+  Sights sights(window, {static_cast<int>(std::lround(about.x())), static_cast<int>(std::lround(about.y())), 0});
+  std::vector<Candidate> candidates;
+  for (const KnownLook& known : looks) candidates.push_back(sights.best(known));
+  const std::size_t count = std::min(kBest, candidates.size());
+  const auto more_like = [](const Candidate& a, const Candidate& b) { return a.likeness > b.likeness; };
+  std::partial_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count), candidates.end(),
+                    more_like);
+  candidates.resize(count);
+  for (Candidate& candidate : candidates) {
+    for (const Alignment& seen : align_around(*candidate.known->look, window, candidate.place, kStep - 1)) {
+      if (seen.score <= candidate.likeness) continue;
+      candidate = {candidate.known, {seen.x, seen.y, candidate.place.angle}, seen.score};
+    }
+  }
+  std::ranges::sort(candidates, more_like);
+  if (candidates.empty() || candidates[0].likeness < similarity) return std::nullopt;
+  if (count > 1 && candidates[1].likeness > kAmbiguous * candidates[0].likeness) return std::nullopt;
+  const Candidate& best = candidates.front();
+  return Recognised{best.known->track, Vector2(best.place.x, best.place.y), kAngleStep * best.place.angle};
+}
+
+}  // namespace evbench::haste
