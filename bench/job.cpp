@@ -17,7 +17,7 @@ namespace {
 /// Raised when the pipeline itself comes to give other results for the same job (which exchanges there are, when
 /// feedback is handed over, how a run starts anew, how trajectories are sampled, what is written of them): older runs
 /// are then done again.
-constexpr int kPipelineVersion = 3;
+constexpr int kPipelineVersion = 4;
 
 std::string digest_of_folder(const std::string& path) {
   std::vector<std::string> files;

@@ -4,6 +4,7 @@
 
 #include "core/io/path.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/simulation/time_spans.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
@@ -41,6 +42,7 @@ EventSimulation::EventSimulation(const Options& options, const SourceContext& co
       place_(context.place + ".scene"),
       rendering_(options.rendering),
       simulator_(options.simulator) {
+  parse_time_spans(simulator_.outages, context.place + ".simulator.outages");
   check_rendered_scene(look_, camera(), motion(), duration(), place_);
   if (!look_.picture.empty()) {
     add_file(resolve_path(look_.picture, folder_));

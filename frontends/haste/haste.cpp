@@ -16,7 +16,7 @@ namespace {
 
 const Registration<FrontEnd, Haste> registration(
     "haste",
-    "tracks features in events asynchronously by hypotheses (Alzugaray and Chli 2020), finds lost landmarks again", 4);
+    "tracks features in events asynchronously by hypotheses (Alzugaray and Chli 2020), finds lost landmarks again", 5);
 
 constexpr double kApart = 1e-6;  ///< [s] between two observations of a track, at least
 
@@ -39,6 +39,7 @@ Haste::Haste(const Options& options, const FrontEndContext& context)
       trackers_(camera_.width, camera_.height),
       guidance_(camera_, options.guidance.degraded),
       lost_(options.guidance),
+      looked_(range_.from),
       detected_(range_.from),
       last_event_(range_.from) {
   check_border(options.detection.border, camera_, context.place + ".detection.border");
@@ -101,8 +102,12 @@ void Haste::look() {
   end_trackers();
   correct_guidance();
   if (options_.guidance.veto) veto_strays();
-  if (options_.guidance.reacquire) reacquire();
-  if (options_.guidance.reacquire) recognise();
+  if (last_event_ <= looked_) return;  // nothing is seen in which there was nothing before
+  looked_ = clock_;
+  if (options_.guidance.reacquire) {
+    reacquire();
+    recognise();
+  }
   if (clock_ - detected_ >= options_.detection.interval) replenish();
 }
 

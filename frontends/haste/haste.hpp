@@ -81,7 +81,8 @@ class Haste : public EventFrontEnd {
   Guidance guidance_;
   LostLandmarks lost_;
   std::vector<Change> changes_;  ///< of the events at hand
-  double detected_;              ///< [s] when features were last looked for
+  double looked_;                ///< [s] when landmarks and features were last looked for in new events,
+  double detected_;              ///< and when features were
   double last_event_;            ///< [s]
   double odometer_ = 0.0;        ///< the image's way: the trackers' mean one [px]
   TrackId next_id_ = 0;

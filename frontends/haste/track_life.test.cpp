@@ -241,6 +241,19 @@ TEST_CASE("After a silence trackers go on before what they saw, and end before s
   CHECK(different.ended > 15);
 }
 
+TEST_CASE("While nothing is told nothing new is found") {
+  EventScene quiet(swing, 3.0, EventScene::quadrangles(20, 3));  // so few that features are wanted
+  quiet.silence(1.0, 2.5);
+  Told told({}, quiet);
+  told.go_on_to(1.1);
+  const std::size_t known = told.alive.size() + told.ended.size();
+  REQUIRE(told.alive.size() < 60);
+  told.go_on_to(2.5);
+  CHECK(told.alive.size() + told.ended.size() == known);
+  told.go_on_to(3.0);
+  CHECK(told.alive.size() + told.ended.size() > known);
+}
+
 TEST_CASE("A tracker on a hot pixel ends, as it does not go along with the image") {
   EventScene source(swing, 1.0, EventScene::quadrangles(150, 1));
   std::erase_if(source.list, [](const Event& event) { return event.x < 80; });

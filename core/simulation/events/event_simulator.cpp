@@ -60,12 +60,15 @@ void SimulatorOptions::declare(OptionSet& set) {
   set.add("time_accuracy", time_accuracy, "error of event times from straight lines in log intensity [s]")
       .range(1e-7, 1.0);
   set.add("threads", threads, "threads; 0: one a processor; they do not change the events").range(0, 1024);
+  set.add("outages", outages,
+          "spans in which the read-out tells nothing, while pixels go on [from, to, from, to, ...] [s]");
 }
 
 EventSimulator::EventSimulator(std::unique_ptr<Brightness> brightness, const SimulatorOptions& options, double duration,
                                std::uint64_t seed)
     : brightness_(std::move(brightness)),
       options_(options),
+      outages_(parse_time_spans(options.outages, "simulator.outages")),
       duration_(duration),
       seed_(seed),
       faults_("simulated events", false) {
@@ -114,7 +117,7 @@ void EventSimulator::step() {
   parallel_for(options_.threads, info_.height, [this](int y) { advance_row(y); });
   t_ = interval_end_;
   for (std::vector<Event>& row : rows_) {
-    waiting_.insert(waiting_.end(), row.begin(), row.end());
+    std::ranges::copy_if(row, std::back_inserter(waiting_), [this](const Event& event) { return is_told(event); });
     row.clear();
   }
   // Jitter is at most four standard deviations, and times are rounded.
@@ -141,6 +144,11 @@ void EventSimulator::advance_pixel(int x, int y, std::vector<Event>& events) {
     events[i].x = static_cast<std::uint16_t>(x);
     events[i].y = static_cast<std::uint16_t>(y);
   }
+}
+
+bool EventSimulator::is_told(const Event& event) const {
+  const double t = 1e-6 * static_cast<double>(event.t);
+  return std::ranges::none_of(outages_, [t](const TimeSpan& span) { return t >= span.from && t < span.to; });
 }
 
 /// Makes the waiting events before a time [s] ready.

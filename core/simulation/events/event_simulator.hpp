@@ -6,6 +6,7 @@
 #include "core/events/reader.hpp"
 #include "core/simulation/events/brightness.hpp"
 #include "core/simulation/events/pixel_model.hpp"
+#include "core/simulation/time_spans.hpp"
 
 namespace evbench {
 
@@ -13,6 +14,7 @@ struct SimulatorOptions {
   SensorOptions sensor;
   double time_accuracy = 5e-6;
   int threads = 0;
+  OptionSet::List outages = {};
 
   void declare(OptionSet& set);
 };
@@ -23,7 +25,7 @@ struct SimulatorOptions {
 /// x). Equal brightness, options and seed give equal bytes, whatever the number of threads.
 class EventSimulator : public EventReader {
  public:
-  /// From 0 to `duration` [s].
+  /// From 0 to `duration` [s]. Throws InputError for outages that are no spans of time.
   EventSimulator(std::unique_ptr<Brightness> brightness, const SimulatorOptions& options, double duration,
                  std::uint64_t seed);
 
@@ -39,9 +41,11 @@ class EventSimulator : public EventReader {
   void advance_row(int y);
   void advance_pixel(int x, int y, std::vector<Event>& events);
   void release(double until);
+  bool is_told(const Event& event) const;
 
   std::unique_ptr<Brightness> brightness_;
   SimulatorOptions options_;
+  std::vector<TimeSpan> outages_;
   double duration_;
   std::uint64_t seed_;
   StreamInfo info_;
