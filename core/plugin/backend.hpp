@@ -68,7 +68,8 @@ class BackEnd {
 
   virtual Status status() const = 0;
 
-  /// The estimate's own poses: control states, frames. Empty before initialisation.
+  /// The estimate's own poses: control states, frames. Empty before initialisation. Asked for while data come in, too,
+  /// as is the map: to find one back-end's world in another's.
   virtual PoseTrajectory trajectory() const = 0;
 
   /// Pose at any time that the trajectory covers, for back-ends with a continuous model; none for the others, between

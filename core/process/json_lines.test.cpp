@@ -81,6 +81,7 @@ TEST_CASE("Feedback that is written reads as what it was") {
   feedback.t = 0.25;
   feedback.state = TrackingState::degraded;
   feedback.outliers = {7, 9};
+  feedback.world = 2;
   ControlState newest_state;
   newest_state.t = 0.2;
   newest_state.T = se3::exp((Vector6() << 0.1, 0.2, 0.3, 1, 2, 3).finished());
@@ -102,6 +103,7 @@ TEST_CASE("Feedback that is written reads as what it was") {
   REQUIRE(expected.size() == 1);
   CHECK(expected[0].pixel == Vector2(10.5, 20.25));
   CHECK(message.at("outliers").dump() == "[7,9]");
+  CHECK(message.at("world") == 2);
   feedback.newest->T.p.x() = NAN;
   Line without;
   write_feedback(without, feedback);

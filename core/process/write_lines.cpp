@@ -63,7 +63,7 @@ int write_batch(Line& line, const TrackBatch& batch) {
 }
 
 void write_feedback(Line& line, const Feedback& feedback) {
-  put(line, "{{\"t\":{},\"state\":\"{}\"", feedback.t, name_of(feedback.state));
+  put(line, "{{\"t\":{},\"state\":\"{}\",\"world\":{}", feedback.t, name_of(feedback.state), feedback.world);
   const bool usable = feedback.newest && feedback.newest->T.p.allFinite() &&
                       feedback.newest->T.q.coeffs().allFinite() && feedback.newest->velocity.allFinite();
   if (usable) put_newest(line, *feedback.newest);
