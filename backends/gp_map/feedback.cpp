@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "backends/gp_map/gp_map.hpp"
+#include "core/geometry/in_view.hpp"
 #include "core/geometry/seen_point.hpp"
 #include "core/motion/wnoa.hpp"
 #include "core/support/index.hpp"
@@ -13,7 +14,7 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kView = 1.5;  ///< of the principal point's distance from the border: lenses see farther than pinholes
+constexpr double kView = 1.5;  ///< as in_view() has it
 
 }  // namespace
 
@@ -57,8 +58,7 @@ std::vector<ExpectedFeature> GpMap::expected_features() {
     const Vector3 point = T_camera_world * position;
     if (point.z() < kNear) continue;
     const Vector2 pixel = camera.project(point);
-    if (std::abs(pixel.x() - camera.cx) > kView * camera.cx || std::abs(pixel.y() - camera.cy) > kView * camera.cy)
-      continue;
+    if (!in_view(camera, pixel, kView)) continue;
     const Matrix23 J_point = camera.project_jacobian(point), J_landmark = J_point * T_camera_world.R();
     const Matrix26 J_image = J_point * seen_point_jacobian(point);
     const auto& known = image_covariance(track, J_image * J_pose, J_landmark);

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 #include <type_traits>
 #include <utility>
+
+#include "core/geometry/in_view.hpp"
 
 namespace evbench {
 namespace {
@@ -53,23 +56,24 @@ void BackSide::begin() {
   BackEndContext context = context_;
   context.online = [this, &heard = *estimator](const OnlinePose& pose) { heard.hear(pose, until_, seen_); };
   remembered_.clear();
-  begun_ = until_;
+  begun_ = next_relocalisation_ = until_;
   estimator->backend = watch_.time([&] { return make_(context); });
   estimators_.push_back(std::move(estimator));
 }
 
 void BackSide::take(TrackBatch batch) {
+  if (standstill_.refuted()) take_back(*standstill_.refuted());
   observations_ += batch.observations.size();
   undistort(batch);
   standstill_.apply(batch);
   digest(batch);
-  if (standstill_.refuted()) take_back(*standstill_.refuted());
   if (estimators_.back()->status().state == RunState::lost) {
     context_.log(fmt::format("{:.3f} s: another back-end starts, in a world frame of its own", until_));
     begin();
   }
   until_ = batch.until;
   seen_ = batch.known_at();
+  resolve_doubts(batch.ended);
   Estimator& estimator = *estimators_.back();
   watch_.time([&] { estimator.backend->advance(batch); });
   relocalise();
@@ -81,13 +85,23 @@ void BackSide::take(TrackBatch batch) {
 void BackSide::take_back(const Standstill::Refuted& stand) {
   Estimator& estimator = *estimators_.back();
   Status status = estimator.status();
-  if (!estimator.newest || estimator.newest->t < stand.span.from || status.state >= RunState::lost) return;
+  context_.log(fmt::format("{:.3f} s: from {:.3f} s on the camera did not stand still", until_, stand.span.from));
+  if (!estimator.newest || status.state >= RunState::lost) return;
   status.state = RunState::lost;
   status.reason = "the camera moved while nothing was seen";
   status.time = stand.span.from;
   std::erase_if(status.degraded, [&](const DegradedSpan& span) { return span.from >= stand.span.from; });
   estimator.ended = status;
   estimator.doubtful = stand.survivors;
+}
+
+/// What ends in time has not been followed to something else, and may be recognised.
+void BackSide::resolve_doubts(const std::vector<TrackEnd>& ended) {
+  constexpr double kSoon = 0.1;  // [s], before it is a landmark of the new map
+  if (until_ - begun_ > kSoon) return;
+  for (const auto& estimator : estimators_) {
+    for (const TrackEnd& end : ended) estimator->doubtful.erase(end.track);
+  }
 }
 
 /// Often while its map is young; then now and then, by landmarks that have joined.
@@ -98,6 +112,7 @@ void BackSide::relocalise() {
   if (!relocalises_ || estimators_.size() < 2 || !estimator.newest || until_ < next_relocalisation_) return;
   const bool was_elsewhere = estimator.is_elsewhere();
   for (std::size_t i = estimators_.size() - 1; i-- > 0;) {
+    if (was_elsewhere && estimators_[i]->world != estimator.world) continue;
     const auto landmarks = estimator.find_in(*estimators_[i], context_.camera);
     if (!landmarks) continue;
     if (!was_elsewhere) {
@@ -113,7 +128,7 @@ void BackSide::remember_landmarks() {
   remembered_.clear();
   for (const auto& estimator : estimators_) {
     if (estimator->world != estimators_.back()->world) continue;
-    for (const Landmark& landmark : estimator->backend->map()) {
+    for (const Landmark& landmark : estimator->trusted_map()) {
       if (estimator == estimators_.back()) {
         remembered_.erase(landmark.track);
       } else {
@@ -123,17 +138,20 @@ void BackSide::remember_landmarks() {
   }
 }
 
-/// Those that may be in the image, as far as the newest state carries.
+/// Those that may be in the image, and that the back-end has not told itself.
 void BackSide::expect_remembered(Feedback& feedback) const {
-  constexpr double kNear = 1e-3;  // of the scene's scale
+  constexpr double kView = 1.5;   // as in_view() has it
   constexpr double kSigma = 1.5;  // [px], of worlds that were found in one another
   if (!feedback.newest) return;
   const SE3 T = extrapolate(*feedback.newest, until_ - feedback.newest->t).T.inverse();
+  std::set<TrackId> told;
+  for (const ExpectedFeature& feature : feedback.expected) told.insert(feature.track);
   for (const auto& [track, position] : remembered_) {
     const Vector3 seen = T * position;
-    if (seen.z() < kNear) continue;
+    if (!(seen.z() > 0.0) || told.contains(track)) continue;
+    const Vector2 pixel = context_.camera.project(seen);
     const Matrix2 covariance = kSigma * kSigma * Matrix2::Identity();
-    feedback.expected.push_back({track, position, context_.camera.project(seen), covariance});
+    if (in_view(context_.camera, pixel, kView)) feedback.expected.push_back({track, position, pixel, covariance});
   }
 }
 
@@ -193,7 +211,7 @@ RunProgress BackSide::progress() const {
 void BackSide::finish(double rate, RunResult& result) {
   add_pieces(rate, result);
   for (std::size_t i = 1; i < result.pieces.size(); ++i) {
-    if (result.pieces[i].length() > result.pieces[result.longest].length()) result.longest = i;
+    if (result.pieces[i].covered > result.pieces[result.longest].covered) result.longest = i;
   }
   result.still = standstill_.spans();
   result.observations = observations_;
@@ -213,7 +231,9 @@ void BackSide::add_pieces(double rate, RunResult& result) {
     watch_.time([&] { backend.finish(); });
     result.learnt = backend.learnt();
     result.updates.insert(result.updates.end(), backend.updates().begin(), backend.updates().end());
-    const std::size_t stood_in = std::exchange(estimator->world, estimator->number);
+    const std::size_t stood_in = estimator->world;
+    std::vector<OnlinePose> told_there = std::move(estimator->told_there);
+    estimator->stand_alone();
     for (std::size_t i = estimator->number; relocalises_ && i-- > 0 && !estimator->is_elsewhere();) {
       if (has_piece[i]) estimator->find_in(*estimators_[i], context_.camera);
     }
@@ -224,8 +244,11 @@ void BackSide::add_pieces(double rate, RunResult& result) {
     if (is_new) {
       result.pieces.push_back(std::move(*piece));
     } else {
-      if (stood_in != estimator->world) estimator->told_there.clear();
-      go_on(result.pieces[entry->second], std::move(*piece), estimator->to_world, std::move(estimator->told_there));
+      const Status status = estimator->status();
+      std::erase_if(told_there, [&](const OnlinePose& pose) {
+        return stood_in != estimator->world || (status.state == RunState::lost && pose.t > status.time);
+      });
+      go_on(result.pieces[entry->second], std::move(*piece), estimator->to_world, std::move(told_there));
     }
   }
   result.status = merged_status(has_piece);

@@ -44,6 +44,7 @@ class BackSide {
   void undistort(TrackBatch& batch);
   void digest(const TrackBatch& batch);
   void take_back(const Standstill::Refuted& stand);
+  void resolve_doubts(const std::vector<TrackEnd>& ended);
   void relocalise();
   void remember_landmarks();
   void expect_remembered(Feedback& feedback) const;

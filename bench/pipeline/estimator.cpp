@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/structure/map_alignment.hpp"
-#include "core/support/index.hpp"
 
 namespace evbench {
 namespace {
@@ -65,12 +64,17 @@ void Estimator::hear(OnlinePose pose, double until, double seen) {
   if (is_elsewhere()) told_there.push_back(carried(pose, to_world));
 }
 
+std::vector<Landmark> Estimator::trusted_map() const {
+  std::vector<Landmark> result = backend->map();
+  std::erase_if(result, [&](const Landmark& landmark) { return doubtful.contains(landmark.track); });
+  return result;
+}
+
 std::optional<int> Estimator::find_in(const Estimator& other, const PinholeCamera& camera) {
   const std::vector<SE3> views = views_of(backend->trajectory());
-  std::vector<Landmark> there = other.backend->map();
-  std::erase_if(there, [&](const Landmark& landmark) { return other.doubtful.contains(landmark.track); });
-  const auto alignment = align_maps(backend->map(), views, there, camera);
+  const auto alignment = align_maps(trusted_map(), views, other.trusted_map(), camera);
   if (!alignment) return std::nullopt;
+  if (world != other.world) told_there.clear();
   world = other.world;
   to_world = other.to_world * alignment->transform.inverse();
   return alignment->landmarks;
@@ -91,13 +95,16 @@ std::optional<Piece> Estimator::piece(double rate) {
   if (its_status.state == RunState::lost) {
     const auto late = [&](const OnlinePose& pose) { return pose.t > its_status.time; };
     std::erase_if(told, late);
-    std::erase_if(told_there, late);
   }
   result.told = std::move(told);
   result.online_trajectory = newest_poses(result.told);
-  result.map = backend->map();
+  result.map = trusted_map();
   result.problem = backend->problem();
   result.relative = covariances.finish(*backend);
+  if (its_status.state == RunState::lost) {
+    std::erase_if(result.relative, [&](const RelativePose& relative) { return relative.t1 > its_status.time; });
+  }
+  result.covered = result.final_trajectory.end() - result.final_trajectory.start();
   return result;
 }
 

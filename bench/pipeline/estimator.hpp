@@ -31,6 +31,11 @@ struct Estimator {
   Similarity to_world;                   ///< carries its own world to that one
   std::vector<OnlinePose> told_there{};  ///< what it told since it was found there, in that world
 
+  void stand_alone() {
+    world = number;
+    to_world = {};
+  }
+
   Status status() const { return ended ? *ended : backend->status(); }
 
   bool is_elsewhere() const { return world != number; }
@@ -38,6 +43,9 @@ struct Estimator {
   /// Takes a pose that was told while data up to `seen` were looked at, of which a batch up to `until` was made [s].
   /// Throws std::runtime_error for one that is not finite or known before what was told already.
   void hear(OnlinePose pose, double until, double seen);
+
+  /// But for landmarks of doubtful tracks.
+  std::vector<Landmark> trusted_map() const;
 
   /// Looks for its world in another one's, by landmarks that both have. The number of these that agree; none: it
   /// stands where it stood.

@@ -22,7 +22,7 @@ OnlinePose carried(OnlinePose pose, const Similarity& transform) {
 }
 
 void go_on(Piece& piece, Piece later, const Similarity& transform, std::vector<OnlinePose> told) {
-  if (later.length() > piece.length()) piece.problem = std::move(later.problem);
+  piece.covered += later.covered;
   std::vector<StampedPose> poses = std::move(piece.final_trajectory).poses();
   const double end = poses.back().t;
   for (const StampedPose& pose : later.final_trajectory.poses()) {

@@ -19,13 +19,13 @@ struct Piece {
   PoseTrajectory online_trajectory;  ///< causal, the back-end's own times: each pose as it was first told
   std::vector<OnlinePose> told;      ///< all that was told while the data came in, known_at set
   std::vector<Landmark> map;
-  /// That the back-end ended with, where it has one: of several, the one of the longest time, in its own world.
+  /// That the back-end ended with, where it has one: of several, the first one's.
   std::optional<Problem> problem;
   /// With covariances, where the back-end has them: "newest", poses told while the data came in, since the first pose;
   /// "over_100ms" and "over_1s", of the final estimate.
   std::vector<RelativePose> relative;
 
-  double length() const { return final_trajectory.end() - final_trajectory.start(); }  ///< [s]; not of an empty one
+  double covered = 0.0;  ///< [s], of the final trajectory, without the time while lost
 };
 
 /// In the world to which `transform` carries that of the pose: body velocities scale with it.

@@ -33,8 +33,8 @@ struct RunTimes {
 /// What a run of front-end and back-end ended with.
 struct RunResult {
   Status status;              ///< of the whole run
-  std::vector<Piece> pieces;  ///< in time order; none when the run failed
-  std::size_t longest = 0;    ///< of the pieces, by time: the one that is scored
+  std::vector<Piece> pieces;  ///< in the order of their beginnings; none when the run failed
+  std::size_t longest = 0;    ///< of the pieces, by the time that it covers: the one that is scored
   std::vector<StillSpan> still;
   std::vector<UpdateRecord> updates;
   std::vector<std::string> learnt;  ///< names of the updates' `learnt`

@@ -307,6 +307,19 @@ TEST_CASE("A camera that stands still for ten seconds is not lost, and its stand
   }
 }
 
+TEST_CASE("A stand just before the end of the data remains one, though all tracks end then") {
+  std::vector<TrackObservation> before = tracks({{0.0, 2.0}});
+  for (TrackId track = 0; track < 10; ++track) before.push_back({track, 4.95, Vector2(60.0, 80.0), 1.0});
+  before.resize(before.size() - 9);  // one of them moves
+  for (TrackId track = 1; track < 10; ++track) before.push_back({track, 4.995, Vector2(60.0, 80.0), 1.0});
+  Listener frontend(before, {true, false, false});
+  const RunResult result = run(frontend, 5.0);
+  CHECK(result.status.state == RunState::ok);
+  REQUIRE(result.still.size() >= 1);
+  CHECK(result.still[0].from == Approx(2.0).margin(0.01));
+  CHECK(result.pieces.size() == 1);
+}
+
 TEST_CASE("After a loss another back-end starts, the trajectory is in pieces, and the longest one is told") {
   Listener frontend(tracks({{0.0, 1.0}, {4.0, 7.0}}), {true, false, false});
   const RunResult result = run(frontend, 7.0);

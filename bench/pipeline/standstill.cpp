@@ -48,24 +48,24 @@ void Standstill::remember(const TrackObservation& z) {
   still_ = false;
   if (seen_again_ || stood_ == 0) return;
   seen_again_ = z.t;
-  if (z.t - gone_at_ > kSoon) gone_ = 0;  // they ended while nothing was seen
+  std::erase_if(gone_at_, [&](double t) { return z.t - t > kSoon; });  // they ended while nothing was seen
   doubt();
 }
 
 void Standstill::forget(const TrackEnd& ended) {
   live_.erase(ended.track);
   if (held_tracks_.erase(ended.track) == 0 || (seen_again_ && ended.t > *seen_again_ + kSoon)) return;
-  ++gone_;
-  gone_at_ = ended.t;
+  gone_at_.push_back(ended.t);
   doubt();
 }
 
 /// Has the camera moved while nothing was told?
 void Standstill::doubt() {
-  if (2 * gone_ <= stood_ || !seen_again_) return;
-  refuted_ = {spans_.back(), std::exchange(held_tracks_, {})};
+  if (2 * gone_at_.size() <= stood_ || !seen_again_) return;
+  refuted_ = {refuted_ ? refuted_->span : spans_.back(), std::exchange(held_tracks_, {})};
   spans_.pop_back();
-  stood_ = gone_ = 0;
+  stood_ = 0;
+  gone_at_.clear();
 }
 
 void Standstill::begin_stand(double t) {
@@ -75,7 +75,7 @@ void Standstill::begin_stand(double t) {
   held_tracks_.clear();
   for (const auto& [track, z] : live_) held_tracks_.insert(track);
   stood_ = live_.size();
-  gone_ = 0;
+  gone_at_.clear();
 }
 
 /// Adds what the silence from the last observation up to `until` says.

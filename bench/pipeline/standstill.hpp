@@ -41,7 +41,7 @@ class Standstill {
     StillSpan span;
     std::set<TrackId> survivors;
   };
-  /// Shown by the last batch.
+  /// Shown by the last batch; of several the first. At the end of the data all tracks end, which shows nothing.
   const std::optional<Refuted>& refuted() const { return refuted_; }
 
  private:
@@ -60,8 +60,8 @@ class Standstill {
   std::vector<StillSpan> spans_;
 
   std::set<TrackId> held_tracks_;     ///< in the last stand, that have not ended since
-  std::size_t stood_ = 0, gone_ = 0;  ///< how many were held; of these, ended about when something was seen again
-  double gone_at_ = 0.0;              ///< [s] when the last of these ended
+  std::size_t stood_ = 0;             ///< how many were held
+  std::vector<double> gone_at_;       ///< [s], of these, those that have ended about when something was seen again
   std::optional<double> seen_again_;  ///< [s], first observation since that stand
   std::optional<Refuted> refuted_;
 };

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/geometry/in_view.hpp"
 #include "core/geometry/so3.hpp"
 #include "core/support/index.hpp"
 
@@ -41,8 +42,7 @@ std::vector<Pair> pairs_of(std::span<const Landmark> map, std::span<const SE3> v
     for (const SE3& T : views) {
       const Vector3 seen = T.inverse() * pair.here;
       if (!(seen.z() > 0.0)) continue;
-      const Vector2 offset = camera.project(seen) - Vector2(camera.cx, camera.cy);
-      if (std::abs(offset.x()) < camera.cx && std::abs(offset.y()) < camera.cy) pair.views.push_back(&T);
+      if (in_view(camera, camera.project(seen), 1.0)) pair.views.push_back(&T);
     }
     if (!pair.views.empty()) pairs.push_back(std::move(pair));
   }
@@ -160,8 +160,8 @@ std::optional<MapAlignment> align_maps(std::span<const Landmark> map, std::span<
   equations = linearise(agree, X, camera);
   const double variance = std::max(kLeastError * kLeastError, equations.sum / static_cast<double>(agree.size()));
   const Vector7 scale = equations.H.ldlt().solve(Vector7::Unit(6));
-  if (!(std::sqrt(variance * scale[6]) < kScaleSigma)) return std::nullopt;
-  return MapAlignment{X, static_cast<int>(agree.size()), std::sqrt(equations.sum / static_cast<double>(agree.size()))};
+  if (!(scale[6] > 0.0 && std::sqrt(variance * scale[6]) < kScaleSigma)) return std::nullopt;
+  return MapAlignment{X, static_cast<int>(agree.size())};
 }
 
 }  // namespace evbench

@@ -13,7 +13,6 @@ namespace evbench {
 struct MapAlignment {
   Similarity transform;  ///< carries the other map's world to this one's
   int landmarks = 0;     ///< of both maps, that agree
-  double rms_px = 0.0;   ///< how far apart these are in the images, large distances weighted down
 };
 
 /// Aligns `other` with `map` by the landmarks that both have, told by their tracks. They are compared in the images of

@@ -24,9 +24,7 @@ PoseTrajectory sample(const Motion& motion, int count, double step = 0.01, doubl
 
 /// The poses seen from another world: moved by `transform`'s inverse, so that aligning finds `transform`.
 inline PoseTrajectory seen_from(const PoseTrajectory& trajectory, const Similarity& transform) {
-  const Similarity inverse = {
-      1.0 / transform.scale,
-      {transform.T.q.conjugate(), -(transform.T.q.conjugate() * transform.T.p) / transform.scale}};
+  const Similarity inverse = transform.inverse();
   std::vector<StampedPose> poses;
   for (const StampedPose& pose : trajectory.poses()) poses.push_back({pose.t, inverse * pose.T});
   return PoseTrajectory(std::move(poses));

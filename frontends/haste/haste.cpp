@@ -252,7 +252,7 @@ void Haste::reacquire() {
 void Haste::recognise() {
   constexpr std::size_t kAtATime = 4;
   constexpr int kTimes = 3;
-  if (!lost_.has_of_before(guidance_.world())) return;
+  if (!lost_.has_of_another(guidance_.world())) return;
   std::vector<std::int64_t> candidates;
   for (const auto& [tracker, track] : tracks_) {
     const bool is_new = track.looked_at < kTimes && track.probation == 0 && !guidance_.position(track.id);

@@ -100,7 +100,7 @@ std::optional<LostLandmarks::Found> LostLandmarks::recognise(const Vector2& abou
   forget_before(t - options_.memory);
   std::vector<KnownLook> looks;
   for (const auto& [track, lost] : lost_) {
-    if (lost.world < world && !tracked.has(track)) looks.push_back({track, &lost.look, lost.angle});
+    if (lost.world != world && !tracked.has(track)) looks.push_back({track, &lost.look, lost.angle});
   }
   const auto found = haste::recognise(looks, recent.window(about), about, options_.recognition);
   if (!found) return std::nullopt;

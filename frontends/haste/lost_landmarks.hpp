@@ -21,9 +21,9 @@ class LostLandmarks {
   /// The landmark of a track that ended at t [s]: its template, turned by `angle` [rad], was seen from where the
   /// guidance has the camera then.
   void remember(TrackId track, double t, const Template& look, double angle, const Guidance& guidance);
-  /// Whether any is of a world before this one.
-  bool has_of_before(std::size_t world) const {
-    return std::ranges::any_of(lost_, [&](const auto& entry) { return entry.second.world < world; });
+  /// Whether any is of another world than this one.
+  bool has_of_another(std::size_t world) const {
+    return std::ranges::any_of(lost_, [&](const auto& entry) { return entry.second.world != world; });
   }
   void forget(TrackId track) { lost_.erase(track); }
   /// One that was found and turned out to be another: it is left alone for a while. It need not be remembered.
@@ -46,8 +46,8 @@ class LostLandmarks {
   std::vector<Found> find(const Guidance& guidance, double t, const RecentEvents& recent, const Tracked& tracked,
                           double distance, const Camera& camera);
 
-  /// The landmark of a world before this one that is seen about a place [px] by its look alone, which the camera may
-  /// have turned: it may be anywhere. None of those that are tracked; none where two look as much so.
+  /// The landmark of another world than this one that is seen about a place [px] by its look alone, which the camera
+  /// may have turned: it may be anywhere. None of those that are tracked; none where two look as much so.
   std::optional<Found> recognise(const Vector2& about, std::size_t world, const RecentEvents& recent, double t,
                                  const Tracked& tracked);
 

@@ -204,8 +204,8 @@ TEST_CASE("After a loss a landmark of before is recognised by its look, wherever
 TEST_CASE("Of two landmarks that look the same none is recognised") {
   const Setting setting;
   LostLandmarks lost = setting.lost(corner_lines());
-  CHECK(lost.has_of_before(1));
-  CHECK_FALSE(lost.has_of_before(0));
+  CHECK(lost.has_of_another(1));
+  CHECK_FALSE(lost.has_of_another(0));
   RecentEvents recent(15'000);
   recent.add(events(corner_lines(), kExpected));
   CHECK(lost.recognise(kExpected, 1, recent, 0.1, {}));

@@ -65,8 +65,9 @@ struct GuidanceOptions {
     set.add("similarity", similarity, "it is found where the events look at least this much like its template [cosine]")
         .range(0.0, 1.0);
     set.add("recognition", recognition,
-            "while the back-end has no map after a loss, trackers go on with the tracks of lost landmarks that the "
-            "events look at least this much like, wherever they are [cosine]; not without reacquire")
+            "after a loss, until the camera has been found in the world of before, new trackers go on with the tracks "
+            "of "
+            "landmarks that the events look at least this much like, wherever they are [cosine]; not without reacquire")
         .range(0.0, 1.0);
     set.add("probation", probation,
             "changes of state through which a found one must be where it is expected before its track goes on; else "

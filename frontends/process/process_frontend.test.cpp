@@ -172,8 +172,8 @@ TEST_CASE("A front-end process is told the feedback that it needs") {
   session.frontend->receive(feedback);
   session.frontend->receive(feedback);
   session.frontend->advance({1.0}, batch);
-  const std::string told =
-      R"({"t": 0.5, "state": "tracking", "world": 0, "outliers": [], "expected": [[4, 1, 2, 3, 10.5, 20.25, 1, 0, 1]]})";
+  const std::string told = R"({"t": 0.5, "state": "tracking", "world": 0, "outliers": [], )"
+                           R"("expected": [[4, 1, 2, 3, 10.5, 20.25, 1, 0, 1]]})";
   CHECK_THAT(session.remarks(), Contains("\"feedback\": []") && Contains("\"feedback\": [" + told + ", " + told + "]"));
 }
 

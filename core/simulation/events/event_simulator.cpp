@@ -6,6 +6,7 @@
 #include <limits>
 #include <tuple>
 
+#include "core/events/event_time.hpp"
 #include "core/support/index.hpp"
 #include "core/support/parallel.hpp"
 
@@ -147,7 +148,7 @@ void EventSimulator::advance_pixel(int x, int y, std::vector<Event>& events) {
 }
 
 bool EventSimulator::is_told(const Event& event) const {
-  const double t = 1e-6 * static_cast<double>(event.t);
+  const double t = seconds(event.t);
   return std::ranges::none_of(outages_, [t](const TimeSpan& span) { return t >= span.from && t < span.to; });
 }
 
