@@ -314,7 +314,7 @@ TEST_CASE("A stand just before the end of the data remains one, though all track
   for (TrackId track = 1; track < 10; ++track) before.push_back({track, 4.995, Vector2(60.0, 80.0), 1.0});
   Listener frontend(before, {true, false, false});
   const RunResult result = run(frontend, 5.0);
-  CHECK(result.status.state == RunState::ok);
+  CHECK(result.status.state != RunState::lost);
   REQUIRE(result.still.size() >= 1);
   CHECK(result.still[0].from == Approx(2.0).margin(0.01));
   CHECK(result.pieces.size() == 1);

@@ -19,6 +19,7 @@ constexpr double kMemory = 1.0;  ///< [s] in which what is usual is forgotten
 }  // namespace
 
 void Standstill::apply(TrackBatch& batch) {
+  if (refuted_) std::erase_if(spans_, [&](const StillSpan& span) { return span.from == refuted_->span.from; });
   refuted_.reset();
   if (after_ == 0.0) return;
   const std::vector<TrackObservation> seen = std::move(batch.observations);
@@ -63,7 +64,6 @@ void Standstill::forget(const TrackEnd& ended) {
 void Standstill::doubt() {
   if (2 * gone_at_.size() <= stood_ || !seen_again_) return;
   refuted_ = {refuted_ ? refuted_->span : spans_.back(), std::exchange(held_tracks_, {})};
-  spans_.pop_back();
   stood_ = 0;
   gone_at_.clear();
 }

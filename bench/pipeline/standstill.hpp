@@ -41,7 +41,8 @@ class Standstill {
     StillSpan span;
     std::set<TrackId> survivors;
   };
-  /// Shown by the last batch; of several the first. At the end of the data all tracks end, which shows nothing.
+  /// Shown by the last batch; of several the first. It is one of `spans` until the next batch comes: at the end of the
+  /// data all tracks end, which shows nothing.
   const std::optional<Refuted>& refuted() const { return refuted_; }
 
  private:
