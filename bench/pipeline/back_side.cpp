@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <set>
 #include <type_traits>
@@ -17,6 +18,11 @@ template <class Value>
 void append(std::string& bytes, const Value& value) {
   static_assert(std::is_trivially_copyable_v<Value> && sizeof(TrackId) == sizeof(double));  // no padding
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+bool agree(const Similarity& a, const Similarity& b) {
+  constexpr double kScale = 0.03, kAngle = 0.02;  // relative; [rad]
+  return std::abs(std::log(a.scale / b.scale)) < kScale && a.T.q.angularDistance(b.T.q) < kAngle;
 }
 
 /// In the world to which `transform` carries that of the feedback.
@@ -57,6 +63,7 @@ void BackSide::begin() {
   context.online = [this, &heard = *estimator](const OnlinePose& pose) { heard.hear(pose, until_, seen_); };
   remembered_.clear();
   begun_ = next_relocalisation_ = until_;
+  found_.reset();
   estimator->backend = watch_.time([&] { return make_(context); });
   estimators_.push_back(std::move(estimator));
 }
@@ -104,23 +111,26 @@ void BackSide::resolve_doubts(const std::vector<TrackEnd>& ended) {
   }
 }
 
-/// Often while its map is young; then now and then, by landmarks that have joined.
+/// Often while its map is young; then now and then, by landmarks that have joined. It counts when it is found in the
+/// same place twice in succession: a young map may still change.
 void BackSide::relocalise() {
   constexpr double kPause = 0.1;    // [s] at least
   constexpr double kGrowth = 0.05;  // of the time since it began
   Estimator& estimator = *estimators_.back();
   if (!relocalises_ || estimators_.size() < 2 || !estimator.newest || until_ < next_relocalisation_) return;
-  const bool was_elsewhere = estimator.is_elsewhere();
-  for (std::size_t i = estimators_.size() - 1; i-- > 0;) {
-    if (was_elsewhere && estimators_[i]->world != estimator.world) continue;
-    const auto landmarks = estimator.find_in(*estimators_[i], context_.camera);
-    if (!landmarks) continue;
-    if (!was_elsewhere) {
-      context_.log(fmt::format("{:.3f} s: found in the world of before, by {} landmarks", until_, *landmarks));
-    }
-    remember_landmarks();
-    break;
+  std::optional<Estimator::Found> found;
+  for (std::size_t i = estimators_.size() - 1; i-- > 0 && !found;) {
+    if (estimator.is_elsewhere() && estimators_[i]->world != estimator.world) continue;
+    found = estimator.find_in(*estimators_[i], context_.camera);
   }
+  if (found && found_ && found->world == found_->world && agree(found->to_world, found_->to_world)) {
+    if (!estimator.is_elsewhere()) {
+      context_.log(fmt::format("{:.3f} s: found in the world of before, by {} landmarks", until_, found->landmarks));
+    }
+    estimator.stand_in(*found);
+    remember_landmarks();
+  }
+  found_ = found;
   next_relocalisation_ = until_ + std::max(kPause, kGrowth * (until_ - begun_));
 }
 
@@ -235,7 +245,8 @@ void BackSide::add_pieces(double rate, RunResult& result) {
     std::vector<OnlinePose> told_there = std::move(estimator->told_there);
     estimator->stand_alone();
     for (std::size_t i = estimator->number; relocalises_ && i-- > 0 && !estimator->is_elsewhere();) {
-      if (has_piece[i]) estimator->find_in(*estimators_[i], context_.camera);
+      if (!has_piece[i]) continue;
+      if (const auto found = estimator->find_in(*estimators_[i], context_.camera)) estimator->stand_in(*found);
     }
     auto piece = estimator->piece(rate);
     has_piece.push_back(piece.has_value());

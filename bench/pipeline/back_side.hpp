@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,7 @@ class BackSide {
   bool relocalises_;
   std::vector<std::unique_ptr<Estimator>> estimators_;  ///< the last one is at work
   double begun_ = 0.0, next_relocalisation_ = 0.0;      ///< [s] when it began; when its world is next looked for
+  std::optional<Estimator::Found> found_;               ///< where it was last found
   /// Of estimators that were lost, in whose world the present one stands; it doesn't know them itself. In that world.
   std::map<TrackId, Vector3> remembered_;
   double until_, seen_;  ///< [s] of the last batch

@@ -70,14 +70,17 @@ std::vector<Landmark> Estimator::trusted_map() const {
   return result;
 }
 
-std::optional<int> Estimator::find_in(const Estimator& other, const PinholeCamera& camera) {
+std::optional<Estimator::Found> Estimator::find_in(const Estimator& other, const PinholeCamera& camera) const {
   const std::vector<SE3> views = views_of(backend->trajectory());
   const auto alignment = align_maps(trusted_map(), views, other.trusted_map(), camera);
   if (!alignment) return std::nullopt;
-  if (world != other.world) told_there.clear();
-  world = other.world;
-  to_world = other.to_world * alignment->transform.inverse();
-  return alignment->landmarks;
+  return Found{other.world, other.to_world * alignment->transform.inverse(), alignment->landmarks};
+}
+
+void Estimator::stand_in(const Found& found) {
+  if (world != found.world) told_there.clear();
+  world = found.world;
+  to_world = found.to_world;
 }
 
 std::optional<Piece> Estimator::piece(double rate) {

@@ -47,9 +47,15 @@ struct Estimator {
   /// But for landmarks of doubtful tracks.
   std::vector<Landmark> trusted_map() const;
 
-  /// Looks for its world in another one's, by landmarks that both have. The number of these that agree; none: it
-  /// stands where it stood.
-  std::optional<int> find_in(const Estimator& other, const PinholeCamera& camera);
+  /// Where it stands in another one's world, and by how many landmarks.
+  struct Found {
+    std::size_t world;
+    Similarity to_world;
+    int landmarks;
+  };
+  /// Looks for its world in that of another one, by landmarks that both have.
+  std::optional<Found> find_in(const Estimator& other, const PinholeCamera& camera) const;
+  void stand_in(const Found& found);
 
   /// Its estimate in its own world, once it is finished; none where it has none. `rate`: of the final trajectory [Hz];
   /// 0: the back-end's own poses. Throws std::runtime_error for a trajectory that is not finite.
