@@ -12,12 +12,6 @@
 // What the front-end is told: how things stand, and where landmarks are expected in the image. A first map that is in
 // doubt guides it, too: tracks go on either way.
 namespace evbench::gp_map {
-namespace {
-
-constexpr double kView = 1.5;  ///< as in_view() has it
-
-}  // namespace
-
 Feedback GpMap::feedback(const FeedbackNeeds& needs) {
   Feedback feedback{until_, monitor_.state(), {}, {}, std::exchange(new_outliers_, {}), {}};
   if (!engine_ || monitor_.lost()) return feedback;
@@ -58,7 +52,7 @@ std::vector<ExpectedFeature> GpMap::expected_features() {
     const Vector3 point = T_camera_world * position;
     if (point.z() < kNear) continue;
     const Vector2 pixel = camera.project(point);
-    if (!in_view(camera, pixel, kView)) continue;
+    if (!in_view(camera, pixel, kLensReach)) continue;
     const Matrix23 J_point = camera.project_jacobian(point), J_landmark = J_point * T_camera_world.R();
     const Matrix26 J_image = J_point * seen_point_jacobian(point);
     const auto& known = image_covariance(track, J_image * J_pose, J_landmark);
@@ -78,7 +72,7 @@ const std::vector<TrackId>& GpMap::nearly_in_view() {
   const ControlState& newest = graph().states.back();
   const double longest = std::max(placement_.upcoming() - newest.t, std::abs(until_ - newest.t));
   const Vector6 increment = 2.0 * longest * newest.velocity;
-  const double corner = std::atan(kView * std::hypot(camera.cx / camera.fx, camera.cy / camera.fy));
+  const double corner = std::atan(kLensReach * std::hypot(camera.cx / camera.fx, camera.cy / camera.fy));
   const double least = std::cos(std::min(corner + increment.head<3>().norm() + kMargin, std::numbers::pi));
   const double close = kClose * increment.tail<3>().norm();
   const Vector3 axis = newest.T.R().col(2);

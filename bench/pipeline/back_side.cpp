@@ -20,6 +20,7 @@ void append(std::string& bytes, const Value& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
+/// By scale and rotation: one that is right in both has its landmarks elsewhere where the translation is wrong.
 bool agree(const Similarity& a, const Similarity& b) {
   constexpr double kScale = 0.03, kAngle = 0.02;  // relative; [rad]
   return std::abs(std::log(a.scale / b.scale)) < kScale && a.T.q.angularDistance(b.T.q) < kAngle;
@@ -150,7 +151,6 @@ void BackSide::remember_landmarks() {
 
 /// Those that may be in the image, and that the back-end has not told itself.
 void BackSide::expect_remembered(Feedback& feedback) const {
-  constexpr double kView = 1.5;   // as in_view() has it
   constexpr double kSigma = 1.5;  // [px], of worlds that were found in one another
   if (!feedback.newest) return;
   const SE3 T = extrapolate(*feedback.newest, until_ - feedback.newest->t).T.inverse();
@@ -161,7 +161,7 @@ void BackSide::expect_remembered(Feedback& feedback) const {
     if (!(seen.z() > 0.0) || told.contains(track)) continue;
     const Vector2 pixel = context_.camera.project(seen);
     const Matrix2 covariance = kSigma * kSigma * Matrix2::Identity();
-    if (in_view(context_.camera, pixel, kView)) feedback.expected.push_back({track, position, pixel, covariance});
+    if (in_view(context_.camera, pixel, kLensReach)) feedback.expected.push_back({track, position, pixel, covariance});
   }
 }
 

@@ -8,8 +8,7 @@
 
 namespace evbench {
 
-/// For front-ends whose tracks are known beforehand: plays each observation and each end of a track
-/// once.
+/// For front-ends whose tracks are known beforehand: plays each observation and each end of a track once.
 class TrackPlayer {
  public:
   TrackPlayer() = default;

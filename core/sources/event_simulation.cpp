@@ -42,7 +42,7 @@ EventSimulation::EventSimulation(const Options& options, const SourceContext& co
       place_(context.place + ".scene"),
       rendering_(options.rendering),
       simulator_(options.simulator) {
-  parse_time_spans(simulator_.outages, context.place + ".simulator.outages");
+  parse_time_spans(simulator_.outages, context.place + ".simulator.outages");  // what is wrong is told at once
   check_rendered_scene(look_, camera(), motion(), duration(), place_);
   if (!look_.picture.empty()) {
     add_file(resolve_path(look_.picture, folder_));

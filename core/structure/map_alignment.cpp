@@ -18,10 +18,11 @@ namespace {
 using Matrix7 = Eigen::Matrix<double, 7, 7>;
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 
-constexpr std::size_t kEnough = 8;                       ///< landmarks
-constexpr std::size_t kLeastPart = 3;                    ///< one in so many of those that are in both maps
-constexpr double kScaleSigma = 0.03, kLeastError = 0.5;  ///< of a landmark in the images at least [px]
-constexpr double kSameDepth = 1.3;                       ///< times as far at most
+constexpr std::size_t kEnough = 8;           ///< landmarks
+constexpr std::size_t kLeastPart = 3;        ///< one in so many of those that are in both maps
+constexpr double kScaleSigma = 0.03;         ///< of the transform, relative, at most
+constexpr double kLeastError = 0.5;          ///< [px], of a landmark in the images, at least
+constexpr double kSameDepth = 1.3;           ///< times as far at most
 constexpr double kRough = 6.0, kFine = 3.0;  ///< [px] off at most, of a sample's alignment and of the refined one
 
 /// A landmark of both maps.
@@ -57,23 +58,29 @@ bool agrees(const Pair& pair, const SE3& view, const Similarity& X, const Pinhol
   return (camera.project(there) - camera.project(here)).norm() < px;
 }
 
-/// In its middle view, or in most views.
+/// Roughly, in its middle view.
+bool agrees_roughly(const Pair& pair, const Similarity& X, const PinholeCamera& camera) {
+  return agrees(pair, *pair.views[pair.views.size() / 2], X, camera, kRough);
+}
+
+/// In most views.
+bool agrees_finely(const Pair& pair, const Similarity& X, const PinholeCamera& camera) {
+  const auto count = static_cast<std::size_t>(
+      std::ranges::count_if(pair.views, [&](const SE3* view) { return agrees(pair, *view, X, camera, kFine); }));
+  return 2 * count > pair.views.size();
+}
+
+template <class Agrees>
 std::vector<const Pair*> agreeing(std::span<const Pair> pairs, const Similarity& X, const PinholeCamera& camera,
-                                  double px, bool everywhere) {
+                                  const Agrees& agrees) {
   std::vector<const Pair*> result;
   for (const Pair& pair : pairs) {
-    if (!everywhere) {
-      if (agrees(pair, *pair.views[pair.views.size() / 2], X, camera, px)) result.push_back(&pair);
-      continue;
-    }
-    const auto count = static_cast<std::size_t>(
-        std::ranges::count_if(pair.views, [&](const SE3* view) { return agrees(pair, *view, X, camera, px); }));
-    if (2 * count > pair.views.size()) result.push_back(&pair);
+    if (agrees(pair, X, camera)) result.push_back(&pair);
   }
   return result;
 }
 
-/// Through three pairs; none where they lie on a line.
+/// Through three pairs. Those on a line leave a rotation open: then few others agree.
 std::optional<Similarity> through(const std::array<const Pair*, 3>& sample) {
   Matrix3 here, there;
   for (int i = 0; i < 3; ++i) {
@@ -99,7 +106,7 @@ std::optional<Similarity> by_samples(std::span<const Pair> pairs, const PinholeC
     if (sample[0] == sample[1] || sample[0] == sample[2] || sample[1] == sample[2]) continue;
     const auto X = through(sample);
     if (!X) continue;
-    if (const std::size_t count = agreeing(pairs, *X, camera, kRough, false).size(); count > most) {
+    if (const std::size_t count = agreeing(pairs, *X, camera, agrees_roughly).size(); count > most) {
       most = count;
       best = X;
     }
@@ -146,7 +153,7 @@ std::optional<MapAlignment> align_maps(std::span<const Landmark> map, std::span<
   const auto sampled = by_samples(pairs, camera);
   if (!sampled) return std::nullopt;
   Similarity X = *sampled;
-  std::vector<const Pair*> agree = agreeing(pairs, X, camera, kRough, false);
+  std::vector<const Pair*> agree = agreeing(pairs, X, camera, agrees_roughly);
   NormalEquations equations;
   for (int i = 0; i < kIterations; ++i) {
     equations = linearise(agree, X, camera);
@@ -154,7 +161,7 @@ std::optional<MapAlignment> align_maps(std::span<const Landmark> map, std::span<
     if (!step.allFinite()) return std::nullopt;
     const double scale = std::exp(step[6]);
     X = Similarity{scale, {so3::exp(step.head<3>()), step.segment<3>(3)}} * X;
-    agree = agreeing(pairs, X, camera, kFine, true);
+    agree = agreeing(pairs, X, camera, agrees_finely);
     if (agree.size() < kEnough || agree.size() * kLeastPart < pairs.size()) return std::nullopt;
   }
   equations = linearise(agree, X, camera);
