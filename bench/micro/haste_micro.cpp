@@ -1,14 +1,14 @@
 // What tracking costs, and how far off tracks are:
 //
-//   haste_micro [SECONDS [TRAJECTORY [START [SCENE]]]]
+//   haste_micro [SECONDS [TRAJECTORY [START [SCENE [VARIANT [THREADS]]]]]]
 //
 // of simulated events: a 240x180 sensor that sees SCENE (plane) along a file's motion from START [s] on (EVBENCH_DATA's
 // haste_simulated/dynamic_plane, 0). 60 trackers are kept alive: seeds by cv::goodFeaturesToTrack on the image of the
 // last 15,000 events, 15 px apart; ended 15 px from the border and where the scores' spread is below 0.1
-// (correlations). Each variant's time is the processor's in TrackerSet::push alone, of each call (10,000 events) the
-// least of seven equal runs; beside it that of the plain transcription on the events of some of the trackers. Errors:
-// of each change of state against the true track of the point at which its tracker started, median over those between
-// 0.1 and 0.2 s later.
+// (correlations). Each variant's time (of VARIANT: those whose names contain it) is the processor's in TrackerSet::push
+// alone, with THREADS (1) above 1 that of the clock, of each call (10,000 events) the least of seven equal runs; beside
+// it that of the plain transcription on the events of some of the trackers. Errors: of each change of state against the
+// true track of the point at which its tracker started, median over those between 0.1 and 0.2 s later.
 
 #include <fmt/format.h>
 
@@ -23,6 +23,7 @@
 #include "core/simulation/events/event_simulator.hpp"
 #include "core/simulation/events/scene_brightness.hpp"
 #include "core/simulation/events/scene_truth.hpp"
+#include "core/support/median.hpp"
 #include "frontends/haste/tracking/testing/plain_tracker.hpp"
 #include "frontends/haste/tracking/tracker_set.hpp"
 
@@ -37,10 +38,10 @@ constexpr std::size_t kCall = 10'000;  // events that a set is given at a time
 constexpr int kRuns = 7;
 constexpr int kMargin = kPatchRadius;  // [px]
 
-/// Processor time of this thread [s]: the machine may have other work.
-double now() {
+/// [s], of this thread's processor where there is no other one: the machine may have other work.
+double now(int threads) {
   timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  clock_gettime(threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
@@ -104,9 +105,9 @@ struct Tracking {
   std::map<std::int64_t, Seed> seeds;
 };
 
-Tracking track(std::span<const Event> all, const TrackerOptions& options) {
+Tracking track(std::span<const Event> all, const TrackerOptions& options, int threads) {
   Tracking result;
-  TrackerSet set(kWidth, kHeight);
+  TrackerSet set(kWidth, kHeight, threads);
   const auto end = [&](std::int64_t id) {
     result.in_range += set.tracker(id).event_count();
     set.remove(id);
@@ -122,9 +123,9 @@ Tracking track(std::span<const Event> all, const TrackerOptions& options) {
         }
       }
     }
-    const double start = now();
+    const double start = now(threads);
     set.push(all.subspan(i, kCall), result.changes);
-    result.seconds.push_back(now() - start);
+    result.seconds.push_back(now(threads) - start);
     const bool correlation = options.variant <= Variant::haste_correlation_star;
     for (const std::int64_t id : set.ids()) {
       const Tracker& tracker = set.tracker(id);
@@ -148,9 +149,9 @@ double plain_cost(const std::vector<Event>& events, const TrackerOptions& option
       if (offset.norm() < 20.0) near.push_back(events[i]);
     }
     testing::PlainTracker plain(options, {static_cast<int>(seed.position.x()), static_cast<int>(seed.position.y()), 0});
-    const double start = now();
+    const double start = now(1);
     for (const Event& event : near) count += plain.push(event) != Tracker::Update::out_of_range;
-    seconds += now() - start;
+    seconds += now(1) - start;
   }
   return 1e9 * seconds / count;
 }
@@ -179,10 +180,8 @@ Errors errors(const Recording& recording, const Tracking& tracking) {
   return result;
 }
 
-double quantile(std::vector<double> values, double part) {
-  if (values.empty()) return 0.0;
-  std::ranges::sort(values);
-  return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+double quantile(const std::vector<double>& values, double share) {
+  return values.empty() ? 0.0 : order_statistic(values, share);
 }
 
 }  // namespace
@@ -194,6 +193,7 @@ int main(int argc, char** argv) try {
       argc > 2 ? argv[2] : std::string(data != nullptr ? data : ".") + "/haste_simulated/dynamic_plane/groundtruth.txt";
   const Recording recording =
       simulate(seconds, trajectory, argc > 3 ? std::atof(argv[3]) : 0.0, argc > 4 ? argv[4] : "plane");
+  const int threads = argc > 6 ? std::atoi(argv[6]) : 1;
   fmt::print("{:.2f} million events in {} s\n\n", 1e-6 * static_cast<double>(recording.events.size()), seconds);
   fmt::print(
       "| variant | ns an event in range | plain [ns] | plain / this | in range, trackers an event | changes [%] | "
@@ -212,9 +212,9 @@ int main(int argc, char** argv) try {
     const bool slow = variant == Variant::correlation || variant == Variant::haste_difference;
     const auto some = std::span(recording.events).first(slow ? recording.events.size() / 4 : recording.events.size());
     const auto count = static_cast<double>(some.size());
-    Tracking tracking = track(some, options);
+    Tracking tracking = track(some, options, threads);
     for (int i = 1; i < (slow ? 2 : kRuns); ++i) {
-      const std::vector<double> again = track(some, options).seconds;
+      const std::vector<double> again = track(some, options, threads).seconds;
       for (std::size_t call = 0; call < again.size(); ++call) {
         tracking.seconds[call] = std::min(tracking.seconds[call], again[call]);
       }

@@ -36,7 +36,7 @@ Haste::Haste(const Options& options, const FrontEndContext& context)
       options_(options),
       sigma_(options.sigma),
       recent_(static_cast<std::size_t>(options.detection.events)),
-      trackers_(camera_.width, camera_.height),
+      trackers_(camera_.width, camera_.height, options.threads),
       guidance_(camera_, options.guidance.degraded),
       lost_(options.guidance),
       looked_(range_.from),

@@ -89,6 +89,7 @@ struct Options {
   LifeOptions life;
   GuidanceOptions guidance;
   int tracks = 60;
+  int threads = 1;
   double sigma = 0.5;
   bool score_sigma = false;
   enum class Place { new_state, midpoint, refined } place = Place::refined;
@@ -96,6 +97,9 @@ struct Options {
 
   void declare(OptionSet& set) {
     set.add("tracks", tracks, "trackers alive, as far as there is something to track").range(1, 100'000);
+    set.add("threads", threads,
+            "threads that trackers are spread over; 0: one a processor; they do not change what is tracked")
+        .range(0, 1024);
     set.add("variant", tracker.variant,
             {"correlation", "haste_correlation", "haste_correlation_star", "haste_difference", "haste_difference_star"},
             "how hypotheses are scored, by the published names");

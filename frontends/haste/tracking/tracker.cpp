@@ -112,14 +112,6 @@ void Tracker::change_to(std::size_t h) {
   std::visit([&](auto& scoring) { scoring.change_to(h, input()); }, scoring_);
 }
 
-void Tracker::move_by(const Vector2& translation, double angle) {
-  const Step step{static_cast<int>(std::lround(translation.x())), static_cast<int>(std::lround(translation.y())),
-                  static_cast<int>(std::lround(angle / kAngleStep))};
-  learn_waiting(kMiddle + 1);
-  set_grid(grid_ + step, state_.t);
-  if (running_) std::visit([&](auto& scoring) { scoring.start(input()); }, scoring_);
-}
-
 void Tracker::set_grid(const GridState& grid, std::int64_t t) {
   grid_ = grid;
   state_ = {t, Vector2(grid.x, grid.y) + remainder_, kAngleStep * grid.angle + angle_remainder_};

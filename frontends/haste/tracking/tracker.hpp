@@ -63,10 +63,6 @@ class Tracker {
   /// Empty until it runs, unless one was given.
   Template learnt_template() const;
 
-  /// Sets it elsewhere, as many whole pixels and steps of angle from where it is as come nearest, with its window and
-  /// template: for who knows better where it should be. No change is reported.
-  void move_by(const Vector2& translation, double angle);
-
  private:
   ScoringInput input() const { return {window_, grid_, learnt_}; }
   Update take(const Event& event);

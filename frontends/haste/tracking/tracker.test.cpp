@@ -174,24 +174,6 @@ TEST_CASE("A tracker with a kept template stays on its point, where it is found 
   CHECK((second.state().position - Vector2(130, 110)).norm() < 1.5);
 }
 
-TEST_CASE("A tracker that is moved away and back is where it was, and goes on as before") {
-  const EventPattern pattern = moving([](double t) { return PatternPose{{80 + 50 * t, 60}, 0.5 * t}; });
-  for (const Variant variant : kVariants) {
-    Tracker moved(options_of(variant), {0, {80.5, 60}, 0.0}), left(options_of(variant), {0, {80.5, 60}, 0.0});
-    bool done = false;
-    for (const Event& event : pattern.events(0.05, 1)) {
-      REQUIRE(moved.push(event) == left.push(event));
-      if (done || moved.event_count() < 500 || moved.change().t_event != event.t) continue;
-      moved.move_by({4.2, -3.0}, 2.1 * kAngleStep);
-      CHECK(moved.state().position.isApprox(left.state().position + Vector2(4, -3)));
-      moved.move_by({-4.0, 3.3}, -1.9 * kAngleStep);
-      done = true;
-    }
-    CHECK(moved.state().position == left.state().position);
-    CHECK(moved.scores().of == left.scores().of);
-  }
-}
-
 TEST_CASE("A template that is empty keeps the state and gives finite scores") {
   for (const Variant variant : kVariants) {
     TrackerOptions options = options_of(variant);
