@@ -29,10 +29,12 @@ void settle(Engine& engine, UpdateSummary& update, const std::function<double()>
 }
 
 /// Where most tracks are still far from where they should be, the prior over the newest intervals is weakened as long
-/// as that helps; where it hardly helped in all, it is as before. `qc`: where nothing has yielded.
+/// as that helps, and stays so as far as it was worth it: a motion that the prior held back comes near, a few tracks
+/// that err together by chance come a little nearer each time, however weak it is. `qc`: where nothing has yielded.
 void yield(Engine& engine, UpdateSummary& update, const std::function<double()>& newest_error, const Vector6& qc) {
   constexpr double kWeaker = 10.0, kWeakest = 1e4;  // at a time; over the prior that was given
-  constexpr double kHelp = 0.95, kHelpInAll = 0.8;
+  constexpr double kHelp = 0.95;
+  constexpr double kWorth = 0.8;  // of the error may be left, each time in the mean
   constexpr int kIntervals = 3;
   const FactorGraph& graph = engine.graph();
   const int newest = static_cast<int>(graph.states.size()) - 1;
@@ -45,17 +47,17 @@ void yield(Engine& engine, UpdateSummary& update, const std::function<double()>&
     }
     update = engine.update();
   };
-  const double before = newest_error(), weakest = kWeakest / graph.qc.cwiseQuotient(qc).maxCoeff();
-  double error = before, tried = 1.0, kept = 1.0;
-  while (error > kFar && kept < weakest) {
-    tried = kWeaker * kept;
+  const double weakest = kWeakest / graph.qc.cwiseQuotient(qc).maxCoeff();
+  double error = newest_error(), worth = error, tried = 1.0, kept = 1.0;
+  while (error > kFar && tried < weakest) {
+    tried *= kWeaker;
+    worth *= kWorth;
     weaken(tried);
     const double now = newest_error();
     if (!(now < kHelp * error)) break;
     error = now;
-    kept = tried;
+    if (error < worth) kept = tried;
   }
-  if (!(error < kHelpInAll * before)) kept = 1.0;
   if (kept != tried) weaken(kept);
   if (kept > 1.0) engine.set_next_qc(graph.qcs.back());
 }
