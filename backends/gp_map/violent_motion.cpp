@@ -28,41 +28,50 @@ void settle(Engine& engine, UpdateSummary& update, const std::function<double()>
   }
 }
 
-/// Where most tracks are still far from where they should be, the prior over the newest intervals is weakened as long
-/// as that helps, and stays so as far as it was worth it: a motion that the prior held back comes near, a few tracks
-/// that err together by chance come a little nearer each time, however weak it is. `qc`: where nothing has yielded.
+/// Where most tracks are still far from where they should be, the prior over the newest intervals is weakened as far as
+/// that is worth it. `qc`: where nothing has yielded.
 void yield(Engine& engine, UpdateSummary& update, const std::function<double()>& newest_error, const Vector6& qc) {
-  constexpr double kWeaker = 10.0, kWeakest = 1e4;  // at a time; over the prior that was given
-  constexpr double kHelp = 0.95;
-  constexpr double kWorth = 0.8;  // of the error may be left, each time in the mean
+  constexpr double kWeakest = 1e4;  // over the prior that was given
   constexpr int kIntervals = 3;
   const FactorGraph& graph = engine.graph();
   const int newest = static_cast<int>(graph.states.size()) - 1;
   const int first = std::max(engine.first_state() + 1, newest - kIntervals + 1);
   const std::vector<Vector6> learnt(graph.qcs.begin() + first, graph.qcs.end());
   const std::vector<double> expansions(graph.expansions.begin() + first, graph.expansions.end());
+  double tried = 1.0;
   const auto weaken = [&](double factor) {
+    tried = factor;
     for (std::size_t i = 0; i < learnt.size(); ++i) {
       engine.set_qc(first + static_cast<int>(i), factor * learnt[i], expansions[i] / factor);
     }
     update = engine.update();
+    return newest_error();
   };
-  const double weakest = kWeakest / graph.qc.cwiseQuotient(qc).maxCoeff();
-  double error = newest_error(), worth = error, tried = 1.0, kept = 1.0;
-  while (error > kFar && tried < weakest) {
-    tried *= kWeaker;
-    worth *= kWorth;
-    weaken(tried);
-    const double now = newest_error();
-    if (!(now < kHelp * error)) break;
-    error = now;
-    if (error < worth) kept = tried;
-  }
+  const double most = kWeakest / graph.qc.cwiseQuotient(qc).maxCoeff();
+  const double kept = worth_weakening(newest_error(), most, weaken);
   if (kept != tried) weaken(kept);
   if (kept > 1.0) engine.set_next_qc(graph.qcs.back());
 }
 
 }  // namespace
+
+double worth_weakening(double error, double most, const std::function<double(double)>& error_at) {
+  constexpr double kWeaker = 10.0, kHelp = 0.95;  // at a time; while so much is left
+  constexpr double kWorth = 0.8;                  // may be left each time, in the mean since the last one that is kept
+  double worth = error, kept = 1.0;
+  for (double tried = 1.0; error > kFar && tried < most;) {
+    tried *= kWeaker;
+    worth *= kWorth;
+    const double now = error_at(tried);
+    if (!(now < kHelp * error)) break;
+    error = now;
+    if (error < worth) {
+      kept = tried;
+      worth = error;
+    }
+  }
+  return kept;
+}
 
 UpdateSummary ViolentMotion::follow(Engine& engine, const NoiseLearner& noise, const UpdateSummary& update) const {
   UpdateSummary last = update;

@@ -1,9 +1,16 @@
 #pragma once
 
+#include <functional>
+
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/noise_learning.hpp"
 
 namespace evbench::gp_map {
+
+/// How many times as weak the prior should be, by factors of ten up to `most`, to bring most tracks near that are
+/// `error` off [sigmas]; `error_at(f)` is what they are off when it is f times as weak. As far as that was worth it: a
+/// motion that the prior held back comes near, a few tracks that err together by chance come a little nearer each time.
+double worth_weakening(double error, double most, const std::function<double(double)>& error_at);
 
 /// Keeps hold of a camera that moves more violently than the prior expects: brings the newest state to where its
 /// observations ask for it, by more Gauss-Newton steps where one has not arrived, and by a weaker prior where that one

@@ -2,9 +2,11 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 
-#include "backends/gp_map/problem_graph.hpp"
+#include "backends/gp_map/observation_follower.hpp"
 #include "backends/gp_map/testing/drawn_problem.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -37,6 +39,21 @@ double yields_to(int seen, double aside, double turn) {
 }
 
 }  // namespace
+
+TEST_CASE("A prior is as many times as weak as was worth it") {
+  const auto kept = [](const std::vector<double>& errors, double most = 1e4) {
+    const auto error_at = [&](double factor) { return errors.at(index(std::lround(std::log10(factor)))); };
+    return worth_weakening(errors.front(), most, error_at);
+  };
+  CHECK(kept({2.9}) == 1.0);
+  CHECK(kept({4.05, 1.5}) == 10.0);
+  CHECK(kept({4.05, 3.63, 3.38, 3.19, 2.83}) == 1.0);  // by chance, a little each time
+  CHECK(kept({20.0, 18.0, 5.0, 2.0}) == 1000.0);       // the robust loss hardly pulls at first
+  CHECK(kept({20.0, 18.0, 5.0, 4.9}) == 100.0);
+  CHECK(kept({20.0, 6.0, 5.5, 5.1, 4.8}) == 10.0);  // what the first one brought does not pay for the others
+  CHECK(kept({20.0, 19.5}) == 1.0);
+  CHECK(kept({20.0, 12.0, 7.0}, 100.0) == 100.0);
+}
 
 TEST_CASE("The prior yields to a motion that it holds back, not to tracks that err each in its own way") {
   for (const int seen : {kEnough, 12}) {

@@ -5,10 +5,11 @@
 // of simulated events: a 240x180 sensor that sees SCENE (plane) along a file's motion from START [s] on (EVBENCH_DATA's
 // haste_simulated/dynamic_plane, 0). 60 trackers are kept alive: seeds by cv::goodFeaturesToTrack on the image of the
 // last 15,000 events, 15 px apart; ended 15 px from the border and where the scores' spread is below 0.1
-// (correlations). Each variant's time (of VARIANT: those whose names contain it) is the processor's in TrackerSet::push
-// alone, with THREADS (1) above 1 that of the clock, of each call (10,000 events) the least of seven equal runs; beside
-// it that of the plain transcription on the events of some of the trackers. Errors: of each change of state against the
-// true track of the point at which its tracker started, median over those between 0.1 and 0.2 s later.
+// (correlations). Only variants whose names contain VARIANT are measured. A variant's time is that of TrackerSet::push
+// alone, of the processor with one thread and by the clock with more, of each call (10,000 events) the least of seven
+// equal runs; beside it that of the plain transcription on the events of some of the trackers. Errors: of each change
+// of state against the true track of the point at which its tracker started, median over those between 0.1 and 0.2 s
+// later.
 
 #include <fmt/format.h>
 
@@ -38,7 +39,7 @@ constexpr std::size_t kCall = 10'000;  // events that a set is given at a time
 constexpr int kRuns = 7;
 constexpr int kMargin = kPatchRadius;  // [px]
 
-/// [s], of this thread's processor where there is no other one: the machine may have other work.
+/// Processor time with one thread, as the machine may have other work, else time by the clock [s].
 double now(int threads) {
   timespec time{};
   clock_gettime(threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &time);

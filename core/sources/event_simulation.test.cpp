@@ -1,6 +1,7 @@
 #include "core/sources/event_simulation.hpp"
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 #include <catch2/catch.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -49,6 +50,7 @@ TEST_CASE("A source of tracks has no events") {
 }
 
 TEST_CASE("Every scene gives the same events with any number of threads, and others with another seed") {
+  const tbb::global_control four(tbb::global_control::max_allowed_parallelism, 4);
   const std::string scene = GENERATE("plane", "dots", "shapes", "boxes");
   const auto events = [&](int threads, std::uint64_t seed) {
     return events_of(simulation(

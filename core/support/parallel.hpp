@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -7,16 +8,18 @@
 
 namespace evbench {
 
-/// On which this program may run.
-inline int processors() { return tbb::this_task_arena::max_concurrency(); }
+/// How many threads may run at a time: one a processor, unless a tbb::global_control says otherwise.
+inline int processors() {
+  return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
 
-/// Calls work(i) once for each i in [0, count), on up to `threads` threads (0: one a processor, and never more), in no
+/// Calls work(i) once for each i in [0, count), on up to `threads` threads (0: processors(), and never more), in no
 /// particular order. `work` must not throw, and what it computes must not depend on the order. One thread allocates
-/// nothing.
+/// nothing. The threads wait for more when it is done: a program that forks must not have called it before.
 template <class Work>
 void parallel_for(int threads, int count, const Work& work) {
-  threads = std::min({threads > 0 ? threads : processors(), processors(), count});
-  if (threads < 2) {
+  if (threads != 1) threads = std::min({threads > 0 ? threads : processors(), processors(), count});
+  if (threads <= 1) {
     for (int i = 0; i < count; ++i) work(i);
     return;
   }

@@ -1,5 +1,7 @@
 #include "core/simulation/events/event_simulator.hpp"
 
+#include <tbb/global_control.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -191,6 +193,7 @@ TEST_CASE("Noise, leak and hot pixels make events at their rates where nothing c
 }
 
 TEST_CASE("The number of threads does not change the events, and another seed does") {
+  const tbb::global_control four(tbb::global_control::max_allowed_parallelism, 4);
   SimulatorOptions options;
   options.sensor.jitter = 20e-6;
   options.sensor.hot_share = 0.01;

@@ -1,5 +1,7 @@
 #include "core/simulation/rendering/renderer.hpp"
 
+#include <tbb/global_control.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -121,6 +123,7 @@ TEST_CASE("The nearest surface hides others, and a room is seen from inside") {
 }
 
 TEST_CASE("A single pixel is the picture's, and threads do not change the picture") {
+  const tbb::global_control four(tbb::global_control::max_allowed_parallelism, 4);
   const auto surfaces = wall();
   const Texture texture = checkers(32);
   const Renderer renderer(camera(), surfaces, texture, 0.45);

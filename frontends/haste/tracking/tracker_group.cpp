@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
+
+#include "core/support/index.hpp"
 
 namespace evbench::haste {
 

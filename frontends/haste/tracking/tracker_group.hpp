@@ -13,7 +13,7 @@ namespace evbench::haste {
 /// each of its cells the trackers that are near, so that the others cost nothing. Events are taken some thousand at a
 /// time, first sorted by trackers and then handed to one tracker after the other, which so stays in the processor's
 /// cache; a tracker that in the meantime has gone farther than the grid allows for looks at all the rest. A tracker's
-/// changes do not depend on what other trackers there are. No allocation once the group has been as busy as it gets.
+/// changes do not depend on what other trackers there are.
 class TrackerGroup {
  public:
   /// A start or a change of state.
@@ -24,13 +24,14 @@ class TrackerGroup {
 
   TrackerGroup(int width, int height);  ///< of the sensor [px]
 
-  /// Where it is from now on; its changes are told as those of `id`.
+  /// Returns its slot, which may be used again once it is removed. Its changes are told as those of `id`.
   std::size_t add(std::int64_t id, Tracker tracker);
   void remove(std::size_t slot);
   const Tracker& tracker(std::size_t slot) const { return *slots_[slot].tracker; }
   std::size_t size() const { return size_; }
 
-  /// Hands events, in time order, to the trackers in whose range they are; those outside the sensor reach none.
+  /// Hands events, in time order, to the trackers in whose range they are; those outside the sensor reach none. Nothing
+  /// is allocated once the group has been as busy as it gets.
   void push(std::span<const Event> events);
   /// By the last push, in no particular order.
   const std::vector<Found>& found() const { return found_; }

@@ -1,7 +1,10 @@
 #include "frontends/haste/tracking/tracker_set.hpp"
 
+#include <tbb/global_control.h>
+
 #include <catch2/catch.hpp>
 #include <map>
+#include <utility>
 
 #include "frontends/haste/tracking/testing/event_patterns.hpp"
 
@@ -59,11 +62,12 @@ class BruteForce {
 
 TEST_CASE(
     "A set tells what each tracker would if it saw every event, however events are cut, in one thread or in three") {
+  const tbb::global_control four(tbb::global_control::max_allowed_parallelism, 4);
   for (const double speed : {50.0, 2000.0}) {
-    for (const std::size_t cut : {std::size_t{1}, std::size_t{777}, std::size_t{100'000}}) {
+    for (const auto& [cut, threads] : {std::pair(1UL, 1), {777UL, 1}, {777UL, 3}, {100'000UL, 1}, {100'000UL, 3}}) {
       const std::vector<Event> events = flying_lines(speed, 3);
       Random random(4);
-      TrackerSet set(100, 80, cut == 1 ? 1 : 3);
+      TrackerSet set(100, 80, threads);
       BruteForce brute_force;
       std::vector<Change> changes, expected;
       const auto add = [&] {
