@@ -56,16 +56,17 @@ void yield(Engine& engine, UpdateSummary& update, const std::function<double()>&
 }  // namespace
 
 double worth_weakening(double error, double most, const std::function<double(double)>& error_at) {
-  constexpr double kWeaker = 10.0, kHelp = 0.95;  // at a time; while so much is left
-  constexpr double kWorth = 0.8;                  // may be left each time, in the mean since the last one that is kept
+  constexpr double kWeaker = 10.0, kHelp = 0.95;         // at a time; while so much is left
+  constexpr double kWorthInAll = 0.8, kWorthEach = 0.9;  // may be left; each time, in the mean since the last one kept
+  const double before = error;
   double worth = error, kept = 1.0;
   for (double tried = 1.0; error > kFar && tried < most;) {
     tried *= kWeaker;
-    worth *= kWorth;
+    worth *= kWorthEach;
     const double now = error_at(tried);
     if (!(now < kHelp * error)) break;
     error = now;
-    if (error < worth) {
+    if (error < worth && error < kWorthInAll * before) {
       kept = tried;
       worth = error;
     }
