@@ -12,6 +12,7 @@
 // What the front-end is told: how things stand, and where landmarks are expected in the image. A first map that is in
 // doubt guides it, too: tracks go on either way.
 namespace evbench::gp_map {
+
 Feedback GpMap::feedback(const FeedbackNeeds& needs) {
   Feedback feedback{until_, monitor_.state(), {}, {}, std::exchange(new_outliers_, {}), {}};
   if (!engine_ || monitor_.lost()) return feedback;

@@ -10,7 +10,7 @@
 namespace evbench::haste {
 
 TrackerSet::TrackerSet(int width, int height, int threads) {
-  const int groups = threads > 0 ? std::min(threads, processors()) : processors();
+  const int groups = at_most_processors(threads);
   for (int i = 0; i < groups; ++i) groups_.emplace_back(width, height);
 }
 

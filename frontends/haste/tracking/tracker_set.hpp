@@ -19,7 +19,6 @@ class TrackerSet {
   /// Ids count up from 0 and are not used again.
   std::int64_t add(Tracker tracker);
   void remove(std::int64_t id);
-  bool contains(std::int64_t id) const { return places_.contains(id); }
   /// Throws std::out_of_range for one that is not there.
   const Tracker& tracker(std::int64_t id) const;
   std::size_t size() const { return places_.size(); }

@@ -108,7 +108,6 @@ TEST_CASE("Ids count up and are not used again") {
   CHECK(set.add(Tracker({}, {0, {20, 20}, 0.0})) == 2);
   CHECK(set.ids() == std::vector<std::int64_t>{1, 2});
   CHECK(set.size() == 2);
-  CHECK_FALSE(set.contains(0));
   CHECK_THROWS_AS(set.tracker(0), std::out_of_range);
 }
 
