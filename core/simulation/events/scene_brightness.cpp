@@ -42,7 +42,7 @@ double SceneBrightness::advance(double limit) {
       const std::size_t i =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(x);
       if (frame_.hits[i].surface < 0) continue;
-      const Vector3 local = frame_.hits[i].depth * renderer_.ray(i);
+      const Vector3 local = frame_.hits[i].depth * renderer_.ray(i).homogeneous();
       probes_.push_back({renderer_.camera().pinhole.project(local), T * local});
     }
   }

@@ -10,8 +10,8 @@ SceneTruth::SceneTruth(const Camera& camera, std::shared_ptr<const RenderedScene
 std::optional<double> SceneTruth::depth(const Vector2& pixel, double t) const {
   const std::optional<Vector2> ideal = camera_.undistort(pixel);
   if (!ideal) return std::nullopt;
-  const std::optional<Hit> hit = View(scene_->surfaces, motion_(t)).hit(camera_.pinhole.ray(*ideal));
-  return hit ? std::optional(hit->depth) : std::nullopt;
+  const Hit hit = View(scene_->surfaces, motion_(t)).hit(camera_.pinhole.ray(*ideal).hnormalized());
+  return hit.surface >= 0 ? std::optional(hit.depth) : std::nullopt;
 }
 
 std::optional<Vector3> SceneTruth::point(const Vector2& pixel, double t) const {
@@ -30,8 +30,8 @@ bool SceneTruth::unoccluded(const SE3& T_world_camera, const Vector3& point) con
   constexpr double kTolerance = 1e-6;  // of the depth: the point's own surface is not in front of it
   const Vector3 local = T_world_camera.inverse() * point;
   if (local.z() <= 0.0) return false;
-  const std::optional<Hit> hit = View(scene_->surfaces, T_world_camera).hit(local / local.z());
-  return !hit || hit->depth > local.z() * (1.0 - kTolerance);
+  const Hit hit = View(scene_->surfaces, T_world_camera).hit(local.hnormalized());
+  return hit.surface < 0 || hit.depth > local.z() * (1.0 - kTolerance);
 }
 
 }  // namespace evbench

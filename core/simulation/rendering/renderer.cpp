@@ -10,8 +10,6 @@
 namespace evbench {
 namespace {
 
-constexpr int kEdgeRays = 32;
-
 /// Axes of a pixel's footprint that differ by less than this are taken as equal, of their squares.
 constexpr double kRound = 1.25;
 
@@ -39,28 +37,28 @@ float log_of(float intensity) { return std::log(intensity); }
 Renderer::Renderer(const Camera& camera, const std::vector<Surface>& surfaces, const Texture& texture, double blur)
     : camera_(camera), surfaces_(&surfaces), texture_(&texture), blur_(blur) {
   for (int y = 0; y < camera.height; ++y) {
-    for (int x = 0; x < camera.width; ++x) rays_.push_back(make_ray(Vector2(x, y)));
+    for (int x = 0; x < camera.width; ++x) add_ray(Vector2(x, y));
   }
-  for (int i = 0; i < kEdgeRays; ++i) {  // Hammersley's points, spread as a Gaussian
-    spread_.push_back(
-        blur * Vector2(normal_quantile((i + 0.5) / kEdgeRays), normal_quantile(van_der_corput(i) + 0.5 / kEdgeRays)));
+  for (std::size_t i = 0; i < kEdgeRays; ++i) {  // Hammersley's points, spread as a Gaussian
+    spread_[i] = blur * Vector2(normal_quantile((static_cast<double>(i) + 0.5) / kEdgeRays),
+                                normal_quantile(van_der_corput(static_cast<int>(i)) + 0.5 / kEdgeRays));
   }
 }
 
-Renderer::Ray Renderer::make_ray(const Vector2& pixel) const {
+void Renderer::add_ray(const Vector2& pixel) {
   constexpr double kH = 0.5;
-  const Ray blind{Vector2::Constant(std::numeric_limits<double>::quiet_NaN()), Eigen::Matrix2f::Zero()};
+  Vector2& ray = rays_.emplace_back(Vector2::Constant(std::numeric_limits<double>::quiet_NaN()));
+  Eigen::Matrix2f& jacobian = jacobians_.emplace_back(Eigen::Matrix2f::Zero());
   const std::optional<Vector2> centre = camera_.undistort(pixel);
-  if (!centre) return blind;
-  Ray ray{camera_.pinhole.ray(*centre).head<2>(), {}};
+  if (!centre) return;
   for (Eigen::Index axis = 0; axis < 2; ++axis) {
     const Vector2 step = kH * Vector2::Unit(axis);
     const std::optional<Vector2> before = camera_.undistort(pixel - step), after = camera_.undistort(pixel + step);
-    if (!before || !after) return blind;
+    if (!before || !after) return;
     const Vector3 slope = (camera_.pinhole.ray(*after) - camera_.pinhole.ray(*before)) / (2.0 * kH);
-    ray.jacobian.col(axis) = slope.head<2>().cast<float>();
+    jacobian.col(axis) = slope.head<2>().cast<float>();
   }
-  return ray;
+  ray = camera_.pinhole.ray(*centre).head<2>();
 }
 
 void Renderer::render(const SE3& T_world_camera, int threads, Frame& frame) const {
@@ -72,19 +70,14 @@ void Renderer::render(const SE3& T_world_camera, int threads, Frame& frame) cons
   const auto row = [width](int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width); };
   std::vector<std::uint8_t> even(static_cast<std::size_t>(height));  // rows that see a single face
   parallel_for(threads, height, [&](int y) {
-    for (std::size_t i = row(y); i < row(y + 1); ++i) {
-      frame.hits[i] = rays_[i].valid() ? seen.hit(rays_[i].direction()).value_or(Hit{}) : Hit{};
-    }
+    seen.hit(std::span(rays_).subspan(row(y), index(width)), std::span(frame.hits).subspan(row(y), index(width)));
     const auto begin = frame.hits.begin() + static_cast<std::ptrdiff_t>(row(y));
     even[index(y)] = std::all_of(begin, begin + width, [&](const Hit& h) { return h.same_face(*begin); });
   });
   parallel_for(threads, height, [&](int y) {
     mark_edges(y, even, frame);
     for (std::size_t i = row(y); i < row(y + 1); ++i) {
-      const Ray& ray = rays_[i];
-      frame.log_intensity[i] = log_of(!ray.valid()    ? texture_->mean()
-                                      : frame.edge[i] ? intensity_at_edge(seen, ray)
-                                                      : intensity(seen, frame.hits[i], ray));
+      frame.log_intensity[i] = log_of(frame.edge[i] ? intensity_at_edge(seen, i) : intensity(seen, frame.hits[i], i));
     }
   });
 }
@@ -111,16 +104,13 @@ void Renderer::mark_edges(int y, const std::vector<std::uint8_t>& even, Frame& f
 }
 
 float Renderer::pixel(const View& view, std::size_t index, bool edge) const {
-  const Ray& ray = rays_[index];
-  if (!ray.valid()) return log_of(texture_->mean());
-  if (edge) return log_of(intensity_at_edge(view, ray));
-  return log_of(intensity(view, view.hit(ray.direction()).value_or(Hit{}), ray));
+  return log_of(edge ? intensity_at_edge(view, index) : intensity(view, view.hit(rays_[index]), index));
 }
 
-float Renderer::intensity(const View& view, const Hit& hit, const Ray& ray) const {
+float Renderer::intensity(const View& view, const Hit& hit, std::size_t index) const {
   if (hit.surface < 0) return texture_->mean();
-  const View::Place place = view.place(hit, ray.direction());
-  const Matrix2 step = blur_ * (place.jacobian * ray.jacobian.cast<double>());
+  const View::Place place = view.place(hit, rays_[index]);
+  const Matrix2 step = blur_ * (place.jacobian * jacobians_[index].cast<double>());
   const Matrix2 covariance = step * step.transpose();
   const double mean = 0.5 * covariance.trace();
   const double difference = std::sqrt(std::max(0.0, mean * mean - covariance.determinant()));
@@ -150,18 +140,21 @@ float Renderer::row_of_samples(const Vector2& centre, const Matrix2& covariance,
   return sum / static_cast<float>(n * n);
 }
 
-float Renderer::intensity_at_edge(const View& view, const Ray& ray) const {
+float Renderer::intensity_at_edge(const View& view, std::size_t index) const {
   constexpr double kFootprint = 0.3;  // of a ray, as a share of the blur
-  const Matrix2 jacobian = ray.jacobian.cast<double>();
+  const Matrix2 jacobian = jacobians_[index].cast<double>();
+  std::array<Vector2, kEdgeRays> rays;
+  std::ranges::transform(spread_, rays.begin(),
+                         [&](const Vector2& offset) -> Vector2 { return rays_[index] + jacobian * offset; });
+  std::array<Hit, kEdgeRays> hits;
+  view.hit(rays, hits);
   float sum = 0.0F;
-  for (const Vector2& offset : spread_) {
-    const Vector3 cast = (ray.centre + jacobian * offset).homogeneous();
-    const std::optional<Hit> hit = view.hit(cast);
-    if (!hit) {
+  for (std::size_t i = 0; i < kEdgeRays; ++i) {
+    if (hits[i].surface < 0) {
       sum += texture_->mean();
       continue;
     }
-    const View::Place place = view.place(*hit, cast);
+    const View::Place place = view.place(hits[i], rays[i]);
     const Matrix2 step = kFootprint * blur_ * (place.jacobian * jacobian);
     sum += texture_->sample(place.texture, std::max(step.col(0).squaredNorm(), step.col(1).squaredNorm()));
   }

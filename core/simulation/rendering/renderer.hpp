@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cmath>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -34,29 +34,26 @@ class Renderer {
   /// One pixel of a picture; `edge` as in Frame.
   float pixel(const View& view, std::size_t index, bool edge) const;
 
-  /// The ray (x, y, 1) of a pixel's centre; NaN where the lens model has no inverse: such a pixel sees nothing.
-  Vector3 ray(std::size_t index) const { return rays_[index].direction(); }
+  /// x and y of the ray (x, y, 1) of a pixel's centre; NaN where the lens model has no inverse: such a pixel sees
+  /// nothing.
+  const Vector2& ray(std::size_t index) const { return rays_[index]; }
 
  private:
-  struct Ray {
-    Vector2 centre;            ///< x and y of (x, y, 1), undistorted; NaN: sees nothing
-    Eigen::Matrix2f jacobian;  ///< of x and y by the pixel
+  static constexpr std::size_t kEdgeRays = 32;
 
-    bool valid() const { return !std::isnan(centre.x()); }
-    Vector3 direction() const { return {centre.x(), centre.y(), 1.0}; }
-  };
-  Ray make_ray(const Vector2& pixel) const;
-  float intensity(const View& view, const Hit& hit, const Ray& ray) const;
+  void add_ray(const Vector2& pixel);
+  float intensity(const View& view, const Hit& hit, std::size_t index) const;
   float row_of_samples(const Vector2& centre, const Matrix2& covariance, double longer, double shorter) const;
-  float intensity_at_edge(const View& view, const Ray& ray) const;
+  float intensity_at_edge(const View& view, std::size_t index) const;
   void mark_edges(int y, const std::vector<std::uint8_t>& even, Frame& frame) const;
 
   Camera camera_;
   const std::vector<Surface>* surfaces_;
   const Texture* texture_;
   double blur_;
-  std::vector<Ray> rays_;
-  std::vector<Vector2> spread_;  ///< offsets of the rays at an edge [px]
+  std::vector<Vector2> rays_;               ///< of the pixels' centres, undistorted
+  std::vector<Eigen::Matrix2f> jacobians_;  ///< of the rays by the pixel
+  std::array<Vector2, kEdgeRays> spread_;   ///< offsets of the rays at an edge [px]
 };
 
 }  // namespace evbench

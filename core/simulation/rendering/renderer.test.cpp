@@ -147,15 +147,15 @@ TEST_CASE("The Jacobian of a place on the texture equals differences, on planes 
   for (const std::vector<Surface>& surfaces : {std::vector<Surface>{tilted}, std::vector<Surface>{box}}) {
     const View view(surfaces, {});
     for (int i = 0; i < 100; ++i) {
-      const Vector3 ray(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 1.0);
-      const std::optional<Hit> hit = view.hit(ray);
-      REQUIRE(hit);
-      const View::Place place = view.place(*hit, ray);
+      const Vector2 ray(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
+      const Hit hit = view.hit(ray);
+      REQUIRE(hit.surface >= 0);
+      const View::Place place = view.place(hit, ray);
       for (Eigen::Index axis = 0; axis < 2; ++axis) {
-        const Vector3 moved = ray + 1e-6 * Vector3::Unit(axis);
-        const std::optional<Hit> other = view.hit(moved);
-        if (!other || other->face != hit->face) continue;
-        const Vector2 difference = (view.place(*other, moved).texture - place.texture) / 1e-6;
+        const Vector2 moved = ray + 1e-6 * Vector2::Unit(axis);
+        const Hit other = view.hit(moved);
+        if (other.surface < 0 || other.face != hit.face) continue;
+        const Vector2 difference = (view.place(other, moved).texture - place.texture) / 1e-6;
         REQUIRE((difference - place.jacobian.col(axis)).norm() < 1e-4);
       }
     }

@@ -1,5 +1,7 @@
 #include "core/simulation/rendering/view.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/support/index.hpp"
@@ -8,6 +10,12 @@ namespace evbench {
 namespace {
 
 constexpr double kNearest = 1e-6;  // [m]
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// How a ray (x, y, 1) goes along an axis.
+inline double along(const Matrix3& R, Eigen::Index axis, double x, double y) {
+  return R(axis, 0) * x + (R(axis, 1) * y + R(axis, 2));
+}
 
 }  // namespace
 
@@ -16,60 +24,119 @@ View::View(const std::vector<Surface>& surfaces, const SE3& T_world_camera) {
   for (const Surface& surface : surfaces) {
     const SE3 T_camera_surface = T_camera_world * surface.T_world_surface;
     const Matrix3 R = T_camera_surface.R().transpose();
+    const Vector3 eye = -(R * T_camera_surface.p);
     const Vector3& centre = T_camera_surface.p;
-    seen_.push_back({&surface, R, -(R * centre), centre, centre.squaredNorm() - surface.half.squaredNorm()});
+    const double radius = surface.half.norm();
+    seen_.push_back({&surface, R, eye, -surface.half - eye, surface.half - eye, centre, radius,
+                     std::sqrt(std::max(0.0, centre.squaredNorm() - radius * radius))});
   }
 }
 
-std::optional<Hit> View::hit(const Vector3& ray) const {
-  std::optional<Hit> nearest;
-  const double length_square = ray.squaredNorm();
-  for (std::size_t i = 0; i < seen_.size(); ++i) {
-    const Seen& seen = seen_[i];
-    if (seen.surface->kind == Surface::Kind::box && seen.tangent_square > 0.0) {
-      const double along = seen.centre.dot(ray);  // does the ray meet the sphere around the box?
-      if (along < 0.0 || along * along < seen.tangent_square * length_square) continue;
+void View::hit(std::span<const Vector2> rays, std::span<Hit> hits) const {
+  for (std::size_t i = 0; i < rays.size(); i += kTogether) {
+    const std::size_t count = std::min(kTogether, rays.size() - i);
+    hit_together(rays.subspan(i, count), hits.subspan(i, count));
+  }
+}
+
+Hit View::hit(const Vector2& ray) const {
+  Hit hit;
+  hit_together({&ray, 1}, {&hit, 1});
+  return hit;
+}
+
+void View::hit_together(std::span<const Vector2> rays, std::span<Hit> hits) const {
+  Bundle bundle;
+  Vector2 least = Vector2::Constant(kInfinity), most = -least;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    bundle.x[i] = rays[i].x();
+    bundle.y[i] = rays[i].y();
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
+      least[axis] = std::min(least[axis], rays[i][axis]);
+      most[axis] = std::max(most[axis], rays[i][axis]);
     }
-    std::optional<Hit> met = meet(seen, ray);
-    if (!met || (nearest && nearest->depth <= met->depth)) continue;
-    met->surface = static_cast<int>(i);
-    nearest = met;
   }
-  return nearest;
+  Beam beam{Vector2(0.5 * (least + most)).homogeneous(), 0.5 * (most - least).norm(), 0.0, 0.0};
+  beam.length = beam.middle.norm();
+  beam.cosine = std::sqrt(1.0 - beam.radius * beam.radius);
+  std::array<double, kTogether> nearest;
+  nearest.fill(kInfinity);
+  std::ranges::fill(hits, Hit{});
+  Meeting meeting;
+  for (std::size_t s = 0; s < seen_.size(); ++s) {
+    const Seen& seen = seen_[s];
+    switch (seen.surface->kind) {
+      case Surface::Kind::plane: meet_plane(seen, bundle, rays.size(), meeting); break;
+      case Surface::Kind::room: meet_box<true>(seen, bundle, rays.size(), meeting); break;
+      case Surface::Kind::box:
+        if (!may_reach(seen, beam)) continue;
+        meet_box<false>(seen, bundle, rays.size(), meeting);
+        break;
+    }
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (!(meeting.depth[i] < nearest[i])) continue;
+      nearest[i] = meeting.depth[i];
+      hits[i] = {static_cast<int>(s), static_cast<int>(meeting.face[i]), meeting.depth[i]};
+    }
+  }
 }
 
-std::optional<Hit> View::meet(const Seen& seen, const Vector3& ray) {
-  const Vector3 d = seen.R * ray;
-  if (seen.surface->kind == Surface::Kind::plane) {
-    const double depth = -seen.eye.z() / d.z();
-    if (!(depth > kNearest && depth < std::numeric_limits<double>::infinity())) return std::nullopt;
-    return Hit{-1, 4, depth};
+/// Whether the sphere around the box and then the slabs' widest intervals can be met by a ray whose x and y are no
+/// farther from the middle one's.
+bool View::may_reach(const Seen& seen, const Beam& beam) {
+  constexpr double kRounding = 1e-9;
+  if (seen.tangent > 0.0) {
+    // A ray is off the middle one by an angle whose sine is the radius at most; one that touches the sphere is off its
+    // centre by an angle whose sine is the sphere's radius by the centre's distance.
+    const double least = seen.tangent * beam.cosine - seen.radius * beam.radius;
+    if (seen.centre.dot(beam.middle) < beam.length * least - kRounding) return false;
   }
-  // The ray is inside the box between the last of its entries into the slabs and the first of its exits.
-  Hit entry{-1, 0, -std::numeric_limits<double>::infinity()}, exit{-1, 0, std::numeric_limits<double>::infinity()};
+  const Vector3 d = seen.R * beam.middle;
+  double from = 0.0, to = kInfinity;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const int low = 2 * static_cast<int>(axis);
-    const double half = seen.surface->half[axis], eye = seen.eye[axis], direction = d[axis];
-    if (direction == 0.0) {
-      if (std::abs(eye) > half) return std::nullopt;
-      continue;
-    }
-    const double to_low = (-half - eye) / direction, to_high = (half - eye) / direction;
-    const bool forward = direction > 0.0;
-    const Hit in{-1, forward ? low : low + 1, forward ? to_low : to_high};
-    const Hit out{-1, forward ? low + 1 : low, forward ? to_high : to_low};
-    if (in.depth > entry.depth) entry = in;
-    if (out.depth < exit.depth) exit = out;
+    const double least = d[axis] - beam.radius - kRounding, most = d[axis] + beam.radius + kRounding;
+    if (least <= 0.0 && most >= 0.0) continue;
+    const double low = seen.low[axis], high = seen.high[axis];
+    const auto [nearest, farthest] = std::minmax({low / least, low / most, high / least, high / most});
+    from = std::max(from, nearest);
+    to = std::min(to, farthest);
   }
-  const Hit& met = seen.surface->kind == Surface::Kind::room ? exit : entry;
-  if (entry.depth > exit.depth || met.depth < kNearest) return std::nullopt;
-  return met;
+  return from <= to;
 }
 
-View::Place View::place(const Hit& hit, const Vector3& ray) const {
+void View::meet_plane(const Seen& seen, const Bundle& rays, std::size_t count, Meeting& meeting) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double depth = -seen.eye.z() / along(seen.R, 2, rays.x[i], rays.y[i]);
+    meeting.depth[i] = depth > kNearest ? depth : kInfinity;
+    meeting.face[i] = 4.0;
+  }
+}
+
+/// A ray is inside a box between the last of its entries into the slabs and the first of its exits. Along an axis that
+/// it does not follow it is always inside, or never. kInside: the box is seen from inside.
+template <bool kInside>
+void View::meet_box(const Seen& seen, const Bundle& rays, std::size_t count, Meeting& meeting) {
+  for (std::size_t i = 0; i < count; ++i) {
+    double entry = -kInfinity, exit = kInfinity, face = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double d = along(seen.R, axis, rays.x[i], rays.y[i]);
+      const double to_low = seen.low[axis] / d, to_high = seen.high[axis] / d;
+      const double in = to_low < to_high ? to_low : to_high, out = to_low < to_high ? to_high : to_low;
+      const bool decides = kInside ? out < exit : in > entry;
+      face = decides ? 2.0 * axis + ((d > 0.0) == kInside ? 1.0 : 0.0) : face;
+      entry = in > entry ? in : entry;
+      exit = out < exit ? out : exit;
+    }
+    const double depth = kInside ? exit : entry;
+    meeting.depth[i] = entry <= exit && depth >= kNearest ? depth : kInfinity;
+    meeting.face[i] = face;
+  }
+}
+
+View::Place View::place(const Hit& hit, const Vector2& ray) const {
   const Seen& seen = seen_[index(hit.surface)];
   const Eigen::Index axis = hit.face / 2;
-  const Vector3 d = seen.R * ray;
+  const Vector3 d = seen.R * ray.homogeneous();
   Place place{seen.surface->offsets[index(hit.face)], {}};
   for (Eigen::Index i = 0; i < 2; ++i) {
     const Eigen::Index along = (axis + 1 + i) % 3;

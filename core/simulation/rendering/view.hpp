@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/geometry/se3.hpp"
@@ -34,30 +34,52 @@ struct Hit {
   bool same_face(const Hit& other) const { return surface == other.surface && face == other.face; }
 };
 
-/// Surfaces as a camera sees them from one place: rays and hits in the camera's frame.
+/// Surfaces as a camera sees them from one place: rays (x, y, 1) and hits in the camera's frame.
 class View {
  public:
   View(const std::vector<Surface>& surfaces, const SE3& T_world_camera);
 
-  /// The nearest surface on a ray (x, y, 1); none where it leaves the scene.
-  std::optional<Hit> hit(const Vector3& ray) const;
+  /// The nearest surface on each ray, given by its x and y; surface −1 where it leaves the scene, or is NaN. Rays that
+  /// follow one another share the search for surfaces near them: they had best be close together.
+  void hit(std::span<const Vector2> rays, std::span<Hit> hits) const;
+  Hit hit(const Vector2& ray) const;
 
   /// Where on the texture a hit is, and how it moves with the ray's x and y.
   struct Place {
     Vector2 texture;
     Matrix2 jacobian;
   };
-  Place place(const Hit& hit, const Vector3& ray) const;
+  Place place(const Hit& hit, const Vector2& ray) const;
 
  private:
   struct Seen {
     const Surface* surface;
-    Matrix3 R;              ///< camera to surface
-    Vector3 eye;            ///< camera in the surface's frame
-    Vector3 centre;         ///< of the surface in the camera's frame
-    double tangent_square;  ///< |centre|² − radius² of the sphere around a box
+    Matrix3 R;          ///< camera to surface
+    Vector3 eye;        ///< camera in the surface's frame
+    Vector3 low, high;  ///< from the camera to the faces −half and +half, along the surface's axes
+    Vector3 centre;     ///< in the camera's frame
+    double radius;      ///< of the sphere around a box
+    double tangent;     ///< from the camera to where a ray touches that; 0 within it
   };
-  static std::optional<Hit> meet(const Seen& seen, const Vector3& ray);
+  static constexpr std::size_t kTogether = 32;
+  /// Rays whose x and y are no farther from those of the middle one than the radius.
+  struct Beam {
+    Vector3 middle;
+    double radius;
+    double length;  ///< of the middle one
+    double cosine;  ///< of the angle whose sine is the radius
+  };
+  struct Bundle {
+    std::array<double, kTogether> x, y;
+  };
+  struct Meeting {
+    std::array<double, kTogether> depth, face;  ///< depth: infinite where a ray does not meet it
+  };
+  void hit_together(std::span<const Vector2> rays, std::span<Hit> hits) const;
+  static bool may_reach(const Seen& seen, const Beam& beam);
+  static void meet_plane(const Seen& seen, const Bundle& rays, std::size_t count, Meeting& meeting);
+  template <bool kInside>
+  static void meet_box(const Seen& seen, const Bundle& rays, std::size_t count, Meeting& meeting);
 
   std::vector<Seen> seen_;
 };
