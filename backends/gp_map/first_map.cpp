@@ -60,31 +60,20 @@ std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, doubl
   return map_of(tracks, look->views, *found);
 }
 
-/// Tracks of a slow tracker have no place in a window that is shorter than the time between their observations: where
-/// too few have one again and again, it becomes wider.
-void FirstMapFinder::fit_window(const TrackBuffer& tracks, bool placed) {
-  constexpr double kMany = 40.0, kMade = 0.25;  // times that too few had a place, and what one counts where enough had
-  constexpr double kEnough = 4.0;               // observations in the window: then there is one next to any time
-  constexpr double kWidest = 2.0;               // [s]
-  missed_ = placed ? std::max(0.0, missed_ - kMade) : missed_ + 1.0;
-  if (missed_ < kMany) return;
-  std::vector<double> gaps;
-  for (const TrackId id : tracks.ids()) {
-    const auto seen = tracks.observations(id);
-    if (seen.size() > 1) gaps.push_back((seen.back().t - seen.front().t) / static_cast<double>(seen.size() - 1));
-  }
-  if (gaps.empty()) return;
-  double& window = options_.initialiser.window;
-  window = std::max(window, std::min(kWidest, kEnough * median(std::move(gaps))));
-  initialiser_.use_window(window);
+void FirstMapFinder::pass(double t) {
+  if (t > newest()) state_times_.push_back(t);
+}
+
+void FirstMapFinder::begin_anew() {
+  initialiser_ = Initialiser(options_.initialiser, camera_);
+  last_.reset();
 }
 
 /// None where there is nothing new to see.
 std::optional<FirstMapFinder::Look> FirstMapFinder::look_at(const TrackBuffer& tracks, double t) {
-  state_times_.push_back(t);
+  pass(t);
   const TrackMatches matches = initialiser_.match(tracks, t);
   waiting_ = matches.reason;
-  fit_window(tracks, matches.reason.empty());
   if (!matches.reason.empty() || !worthwhile(matches)) return std::nullopt;
   std::vector<double> times = view_times(matches.t0, matches.t1, options_.initialiser.window);
   if (times.size() < 3) return std::nullopt;

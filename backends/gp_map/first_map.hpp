@@ -34,6 +34,12 @@ class FirstMapFinder {
   /// A control state stands at t, later than those before; `tracks` hold the observations up to there.
   std::optional<FirstMap> attempt(const TrackBuffer& tracks, double t);
 
+  /// A control state stands at t, where none is looked for.
+  void pass(double t);
+
+  /// The last map was none: another one is looked for from the next view on.
+  void begin_anew();
+
   /// Why there is none: why the last attempt was vain, or what it would have taken to make one.
   const std::string& reason() const { return refused_.empty() ? waiting_ : refused_; }
 
@@ -53,7 +59,6 @@ class FirstMapFinder {
     std::vector<InitialGuess> guesses;
   };
 
-  void fit_window(const TrackBuffer& tracks, bool placed);
   std::optional<Look> look_at(const TrackBuffer& tracks, double t);
   bool worthwhile(const TrackMatches& matches);
   std::optional<ViewsExplained> explanation(const Look& look) const;
@@ -65,7 +70,6 @@ class FirstMapFinder {
   Initialiser initialiser_;
   std::optional<Progress> last_;
   std::vector<double> state_times_;
-  double missed_ = 0.0;  ///< times that too few tracks had a place in both views, of late
   std::string refused_, waiting_;
 };
 

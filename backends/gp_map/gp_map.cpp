@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 24);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 25);
 
 // Learning with hindsight while running [s]:
 constexpr double kEvery = 0.3, kHindsight = 1.0;
@@ -70,10 +70,14 @@ void GpMap::step(double t) {
     optimise();
     learn();
     reconsider_recent();
-    check_support();
-    tell_recent(t);
-    predict_tracks();
     nearly_in_view_.reset();
+    if (is_refuted()) {
+      begin_anew();
+    } else {
+      check_support();
+      tell_recent(t);
+      predict_tracks();
+    }
   }
   forget_ended_tracks(t);
   add_record(t, std::exchange(seconds_since_step_, 0.0) + seconds_since(start), 1, {});
@@ -194,7 +198,7 @@ void GpMap::reconsider_recent() {
     const auto supposed = looks_ % kPlanes == 0 ? Supposed::frontal_plane : Supposed::dual_plane;
     search_ = begin_search(supposed, is_young() && looks_ % (2 * kPlanes) < kPlanes);
     if (!search_ && is_young()) search_ = begin_search(supposed, true);
-    if (!search_ && is_in_doubt()) --doubts_;  // there is nothing that could be explained otherwise
+    if (!search_ && doubts_ > 0) --doubts_;  // there is nothing that could be explained otherwise
     ++looks_;
   }
   if (!search_ || search_->go_on()) return;
@@ -202,7 +206,7 @@ void GpMap::reconsider_recent() {
   search_.reset();
   const int oldest = engine_->first_state();
   if (other && oldest > 0 && other->first <= oldest + 1) other.reset();  // a lag has marginalised it since
-  if (is_in_doubt()) doubts_ = other ? kPlanes : doubts_ - 1;
+  if (doubts_ > 0) doubts_ = other ? kPlanes : doubts_ - 1;
   if (other) go_on_with(*other);
 }
 
@@ -243,6 +247,50 @@ void GpMap::recall_condemned() {
     std::erase(new_outliers_, id);
   }
   add_landmarks();
+}
+
+/// Of the tracks that are alive, those that are not where the map lets expect them: the landmarks of a map that is wrong
+/// are condemned or go out of view, and for most of what comes into it there is no place.
+int GpMap::misfits() const {
+  return static_cast<int>(std::ranges::count_if(live_, [&](TrackId id) {
+    const Track& track = tracks_.at(id);
+    return track.role == Track::Role::waiting ? track.tried_with > 0 : track.role != Track::Role::landmark;
+  }));
+}
+
+bool GpMap::is_in_doubt() const { return is_young() && (doubts_ > 0 || misfits() > landmarks_in_view()); }
+
+/// A first map can be wrong altogether.
+bool GpMap::is_refuted() const {
+  constexpr int kMost = 2;  // times as many as are landmarks
+  return is_young() && doubts_ == 0 && misfits() >= options_.initialiser.min_tracks &&
+         misfits() > kMost * landmarks_in_view();
+}
+
+/// Without a map, as before the first one; from the next one the trajectory reaches back to where this one began.
+void GpMap::begin_anew() {
+  context_.log(fmt::format("{:.3f} s: the first map has no place for most tracks: another one is looked for",
+                           graph().states.back().t));
+  for (const ControlState& state : graph().states) first_map_.pass(state.t);
+  first_map_.begin_anew();
+  engine_.reset();
+  search_.reset();
+  follower_ = {};
+  recent_.reset();
+  noise_ = {};
+  prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
+  hindsight_qc_.reset();
+  known_.clear();
+  guessed_.clear();
+  new_.clear();
+  ended_landmarks_.clear();
+  landmarks_ = 0;
+  for (auto& [id, track] : tracks_) track = {.ended = track.ended};
+  waiting_ = std::exchange(young_, {});
+  for (const TrackId id : waiting_.ids()) {
+    tracks_.try_emplace(id, Track{.ended = true});
+    live_.insert(id);
+  }
 }
 
 /// What was seen a while ago is known from both sides: tracks show whether they stayed on their points, and the motion

@@ -92,6 +92,9 @@ class GpMap : public BackEnd {
   void learn_with_hindsight(const TimeSpan& span, std::span<const double> surplus = {});
   void reconsider_recent();
   void recall_condemned();
+  int misfits() const;
+  bool is_refuted() const;
+  void begin_anew();
   void check_support();
   void forget_ended_tracks(double t);
   void predict_tracks();
@@ -118,7 +121,7 @@ class GpMap : public BackEnd {
                                                  const Matrix23& J_landmark);
   int landmarks_in_view() const;
   bool is_young() const { return !(graph().states.back().t > young_until_); }
-  bool is_in_doubt() const { return is_young() && doubts_ > 0; }
+  bool is_in_doubt() const;
   void tell_online(double t);
   void tell_recent(double t);
   Engine::OptimiseSummary estimate_everything();

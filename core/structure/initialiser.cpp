@@ -45,9 +45,10 @@ TrackMatches matches_between(const TrackBuffer& buffer, double t0, double t1, do
   TrackMatches result;
   result.t0 = t0;
   result.t1 = t1;
-  for (const TrackId id : buffer.alive(t1, 0.5 * window)) {
-    const std::optional<Vector2> first = buffer.position(id, t0, window), second = buffer.position(id, t1, window);
-    if (!first || !second) continue;
+  for (const TrackId id : buffer.ids()) {
+    const std::optional<Vector2> second = buffer.position(id, t1, window);
+    const std::optional<Vector2> first = second ? buffer.position(id, t0, window) : std::nullopt;
+    if (!first) continue;
     result.tracks.push_back(id);
     result.first.push_back(*first);
     result.second.push_back(*second);

@@ -37,8 +37,7 @@ struct TrackMatches {
   double median_motion() const;  ///< [px] from the first to the second place; of any but none
 };
 
-/// The places of the tracks that are alive at t1 and have one at both times [s]; window [s] as of
-/// TrackBuffer::position.
+/// The places of the tracks that have one at both times [s]; window [s] as of TrackBuffer::position.
 TrackMatches matches_between(const TrackBuffer& buffer, double t0, double t1, double window);
 
 /// Initialisation of monocular odometry from two views (Liu et al. 2022, Algorithm 1, lines 7-9).
@@ -63,9 +62,6 @@ class Initialiser {
   /// The same in two parts: the matches are cheap, what they are explained by is not.
   TrackMatches match(const TrackBuffer& tracks, double t);
   Attempt explain(const TrackMatches& matches) const;
-
-  /// Another window than the options' from now on [s]: for tracks that are observed rarely.
-  void use_window(double window) { options_.window = window; }
 
   /// Time of the first view, once there is one.
   std::optional<double> reference_time() const { return reference_; }

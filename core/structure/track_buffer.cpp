@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/support/median.hpp"
 
 namespace evbench {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr auto by_time = [](const TrackObservation& a, const TrackObservation& b) { return a.t < b.t; };
 
@@ -94,19 +97,27 @@ std::vector<TrackId> TrackBuffer::alive(double t, double margin) const {
 }
 
 std::optional<Vector2> TrackBuffer::position(TrackId track, double t, double window) const {
+  constexpr std::ptrdiff_t kEnough = 4;
+  constexpr double kFarthest = 1.0;  // [s]
   const std::span<const TrackObservation> all = observations(track);
   TrackObservation bound;
   bound.t = t - 0.5 * window;
-  const auto begin = std::lower_bound(all.begin(), all.end(), bound, by_time);
+  auto begin = std::lower_bound(all.begin(), all.end(), bound, by_time);
   bound.t = t + 0.5 * window;
-  const auto end = std::upper_bound(begin, all.end(), bound, by_time);
+  auto end = std::upper_bound(begin, all.end(), bound, by_time);
+  while (end - begin < kEnough) {
+    const double before = begin == all.begin() ? kInfinity : t - (begin - 1)->t;
+    const double after = end == all.end() ? kInfinity : end->t - t;
+    if (std::min(before, after) > kFarthest) break;
+    before < after ? --begin : ++end;
+  }
   if (begin == end) return std::nullopt;
   const std::span<const TrackObservation> near(begin, end);
-  if (near.front().t == near.back().t) {
-    if (near.front().t != t) return std::nullopt;
-  } else if (near.front().t > t + 0.25 * window || near.back().t < t - 0.25 * window) {
-    return std::nullopt;
-  }
+  const double span = near.back().t - near.front().t;
+  if (span == 0.0 && near.front().t != t) return std::nullopt;
+  const double beside =
+      std::max(0.25 * window, span / static_cast<double>(std::max<std::ptrdiff_t>(end - begin - 1, 1)));
+  if (near.front().t > t + beside || near.back().t < t - beside) return std::nullopt;
   return robust_line_at(near, t);
 }
 
