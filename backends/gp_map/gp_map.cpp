@@ -249,12 +249,12 @@ void GpMap::recall_condemned() {
   add_landmarks();
 }
 
-/// Of the tracks that are alive, those that are not where the map lets expect them: the landmarks of a map that is wrong
-/// are condemned or go out of view, and for most of what comes into it there is no place.
+/// Of the tracks that are alive, those that are not where the map lets expect them: the landmarks of a map that is
+/// wrong are condemned or go out of view, and for most of what comes into it there is no place.
 int GpMap::misfits() const {
   return static_cast<int>(std::ranges::count_if(live_, [&](TrackId id) {
     const Track& track = tracks_.at(id);
-    return track.role == Track::Role::waiting ? track.tried_with > 0 : track.role != Track::Role::landmark;
+    return track.role == Track::Role::waiting ? track.misfit : track.role != Track::Role::landmark;
   }));
 }
 

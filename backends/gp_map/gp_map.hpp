@@ -60,8 +60,9 @@ class GpMap : public BackEnd {
   /// A track that waits until its landmark can be located, is a landmark, slid off one, or was an outlier.
   struct Track {
     enum class Role { waiting, landmark, slid, outlier } role = Role::waiting;
-    int landmark = -1;   ///< the engine's number
-    int tried_with = 0;  ///< observations at the last vain attempt to locate it
+    int landmark = -1;    ///< the engine's number
+    int tried_with = 0;   ///< observations at the last vain attempt to locate it
+    bool misfit = false;  ///< that was vain as no place fits them
     bool ended = false;
     std::optional<Matrix3> covariance = {};        ///< of the landmark, once it is asked for after the track's end
     std::optional<Matrix2> image_covariance = {};  ///< of where it is expected in the image [px²], as of
@@ -110,7 +111,7 @@ class GpMap : public BackEnd {
   void become_outlier(int landmark);
   bool end_track_of(int landmark, Track::Role role);
   void hold_scale_without(int leaving);
-  std::optional<std::pair<Vector3, LandmarkPrior>> locate(TrackId track) const;
+  std::optional<std::pair<Vector3, LandmarkPrior>> locate(TrackId id);
   double median_depth() const;
   ControlState newest_seen() const;
   std::vector<ExpectedFeature> expected_features();

@@ -79,9 +79,9 @@ void GpMap::trust_parallax() {
 
 /// Where a track's landmark is, by triangulation over its observations; without parallax, at the scene's depth: it
 /// tells rotation, and where landmarks live shortly, nothing else hands the scale on.
-std::optional<std::pair<Vector3, LandmarkPrior>> GpMap::locate(TrackId track) const {
+std::optional<std::pair<Vector3, LandmarkPrior>> GpMap::locate(TrackId id) {
   constexpr std::size_t kViews = 16;  // evenly from all observations: enough for a start
-  std::span<const TrackObservation> usable = waiting_.observations(track);  // none later than the newest state
+  std::span<const TrackObservation> usable = waiting_.observations(id);  // none later than the newest state
   const auto settled = [&](const TrackObservation& z) { return graph().interval_of(z.t) <= engine_->first_state(); };
   usable = usable.subspan(index(std::ranges::partition_point(usable, settled) - usable.begin()));
   if (usable.size() < 2) return std::nullopt;
@@ -94,13 +94,13 @@ std::optional<std::pair<Vector3, LandmarkPrior>> GpMap::locate(TrackId track) co
     pixels.push_back(z.pixel);
   }
   const Triangulation result = triangulate(poses, pixels, context_.camera, options_.map.triangulation);
-  if (result.ok()) {
-    const double noise = options_.sigma_scale * usable.back().sigma * noise_.scale_of_means();
-    if (result.rms_px > kWellSeen * std::numbers::sqrt2 * noise) return std::nullopt;
+  const double noise = options_.sigma_scale * usable.back().sigma * noise_.scale_of_means();
+  if (result.ok() && result.rms_px <= kWellSeen * std::numbers::sqrt2 * noise) {
     return std::pair{result.point, LandmarkPrior{}};
   }
   const bool waited = usable.back().t - usable.front().t >= options_.map.patience;
-  if (!waited || result.state != Triangulation::State::low_parallax) return std::nullopt;
+  tracks_.at(id).misfit = result.state != Triangulation::State::low_parallax;
+  if (!waited || tracks_.at(id).misfit) return std::nullopt;
   const double depth = median_depth();
   const Vector3 point = poses.back() * (depth * graph().camera.ray(pixels.back()));
   return std::pair{point, LandmarkPrior{point, options_.map.depth_sigma * depth}};

@@ -97,7 +97,7 @@ std::vector<TrackId> TrackBuffer::alive(double t, double margin) const {
 }
 
 std::optional<Vector2> TrackBuffer::position(TrackId track, double t, double window) const {
-  constexpr std::ptrdiff_t kEnough = 4;
+  constexpr std::ptrdiff_t kEnough = 2;
   constexpr double kFarthest = 1.0;  // [s]
   const std::span<const TrackObservation> all = observations(track);
   TrackObservation bound;

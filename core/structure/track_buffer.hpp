@@ -28,7 +28,7 @@ class TrackBuffer {
   std::vector<TrackId> alive(double t, double margin = 0.0) const;
 
   /// Where a track is at time t [px]: a robust straight line through its observations within ± window/2 [s], read at t;
-  /// this averages quantisation and noise without the lag of a mean. Where there are fewer than four, as of a slow
+  /// this averages quantisation and noise without the lag of a mean. Where there are fewer than two, as of a slow
   /// tracker or in slow motion, the nearest ones within 1 s make up for it. The line needs observations that bracket t,
   /// or end no farther from it than window/4 or the usual time between them; a single observation at t itself will do.
   /// None where the track doesn't cover t.
