@@ -60,10 +60,6 @@ std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, doubl
   return map_of(tracks, look->views, *found);
 }
 
-void FirstMapFinder::pass(double t) {
-  if (t > newest()) state_times_.push_back(t);
-}
-
 void FirstMapFinder::begin_anew() {
   initialiser_ = Initialiser(options_.initialiser, camera_);
   last_.reset();
@@ -71,7 +67,7 @@ void FirstMapFinder::begin_anew() {
 
 /// None where there is nothing new to see.
 std::optional<FirstMapFinder::Look> FirstMapFinder::look_at(const TrackBuffer& tracks, double t) {
-  pass(t);
+  state_times_.push_back(t);
   const TrackMatches matches = initialiser_.match(tracks, t);
   waiting_ = matches.reason;
   if (!matches.reason.empty() || !worthwhile(matches)) return std::nullopt;

@@ -34,8 +34,8 @@ class FirstMapFinder {
   /// A control state stands at t, later than those before; `tracks` hold the observations up to there.
   std::optional<FirstMap> attempt(const TrackBuffer& tracks, double t);
 
-  /// A control state stands at t, where none is looked for.
-  void pass(double t);
+  /// A control state stands at t, likewise, where no map is looked for.
+  void pass(double t) { state_times_.push_back(t); }
 
   /// The last map was none: another one is looked for from the next view on.
   void begin_anew();

@@ -268,10 +268,14 @@ bool GpMap::is_refuted() const {
 }
 
 /// Without a map, as before the first one; from the next one the trajectory reaches back to where this one began.
+/// States that stood close together, as predictions from a wrong map are far off, would slow down its looks.
 void GpMap::begin_anew() {
+  constexpr double kApart = 0.02;  // [s]
   context_.log(fmt::format("{:.3f} s: the first map has no place for most tracks: another one is looked for",
                            graph().states.back().t));
-  for (const ControlState& state : graph().states) first_map_.pass(state.t);
+  for (const ControlState& state : graph().states) {
+    if (state.t >= first_map_.newest() + kApart) first_map_.pass(state.t);
+  }
   first_map_.begin_anew();
   engine_.reset();
   search_.reset();
@@ -280,6 +284,7 @@ void GpMap::begin_anew() {
   noise_ = {};
   prior_ = PriorLearner(options_.learn.window, options_.learn.memory);
   hindsight_qc_.reset();
+  monitor_ = TrackingMonitor(context_.patience);  // what it said was of that map
   known_.clear();
   guessed_.clear();
   new_.clear();
