@@ -57,7 +57,7 @@ std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, doubl
     return std::nullopt;
   }
   if (!is_sound(look->views, *found)) return std::nullopt;
-  return map_of(tracks, look->views, *found);
+  return map_of(tracks, *look, *found);
 }
 
 void FirstMapFinder::begin_anew() {
@@ -76,8 +76,9 @@ std::optional<FirstMapFinder::Look> FirstMapFinder::look_at(const TrackBuffer& t
   last_ = Progress{matches.t0, matches.t1, matches.median_motion()};
   Initialiser::Attempt attempt = initialiser_.explain(matches);
   refused_ = attempt.reason;
-  TrackViews views = TrackViews::of(tracks, std::move(times), options_.initialiser.window, kTracks);
-  return Look{MultiView(std::move(views), camera_), std::move(attempt.candidates)};
+  const PlaceWindow window(options_.initialiser.window, matches.or_nearest);
+  TrackViews views = TrackViews::of(tracks, std::move(times), window, kTracks);
+  return Look{MultiView(std::move(views), camera_), std::move(attempt.candidates), window};
 }
 
 /// Have the tracks moved, and farther or for longer than at the last attempt from this first view?
@@ -125,9 +126,9 @@ bool FirstMapFinder::is_sound(const MultiView& views, const ViewsExplained& expl
   return false;
 }
 
-FirstMap FirstMapFinder::map_of(const TrackBuffer& tracks, const MultiView& views,
-                                const ViewsExplained& explained) const {
-  FirstTrajectory path(tracks, camera_, options_);
+FirstMap FirstMapFinder::map_of(const TrackBuffer& tracks, const Look& look, const ViewsExplained& explained) const {
+  const MultiView& views = look.views;
+  FirstTrajectory path(tracks, camera_, options_, look.window);
   const std::vector<double> errors = views.errors(explained), sigmas = views.distance_sigmas(explained);
   const double certain = median(sigmas);
   std::set<TrackId> anchored;

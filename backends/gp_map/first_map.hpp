@@ -57,13 +57,14 @@ class FirstMapFinder {
   struct Look {
     MultiView views;
     std::vector<InitialGuess> guesses;
+    PlaceWindow window;  ///< of the views
   };
 
   std::optional<Look> look_at(const TrackBuffer& tracks, double t);
   bool worthwhile(const TrackMatches& matches);
   std::optional<ViewsExplained> explanation(const Look& look) const;
   bool is_sound(const MultiView& views, const ViewsExplained& explained);
-  FirstMap map_of(const TrackBuffer& tracks, const MultiView& views, const ViewsExplained& explained) const;
+  FirstMap map_of(const TrackBuffer& tracks, const Look& look, const ViewsExplained& explained) const;
 
   Options options_;
   PinholeCamera camera_;

@@ -64,19 +64,19 @@ bool FirstTrajectory::go_back_to(double t) {
 
 /// Is all still where it is in the first view?
 bool FirstTrajectory::is_still(double t) const {
-  const TrackMatches since = matches_between(tracks_, first_view_, t, options_.initialiser.window);
+  const TrackMatches since = matches_between(tracks_, first_view_, t, window_);
   if (std::ssize(since.tracks) < options_.health.min_landmarks) return false;
   return since.median_motion() < options_.initialiser.two_view.threshold_px;
 }
 
 /// The landmarks of tracks that are alive at t, from where the states so far saw them.
 void FirstTrajectory::triangulate_at(double t) {
-  for (const TrackId track : tracks_.alive(t, 0.5 * options_.initialiser.window)) {
+  for (const TrackId track : tracks_.alive(t, 0.5 * window_.length)) {
     if (landmarks_.contains(track)) continue;
     std::vector<SE3> poses;
     std::vector<Vector2> pixels;
     for (const ControlState& state : states_) {
-      const auto place = tracks_.position(track, state.t, options_.initialiser.window);
+      const auto place = tracks_.position(track, state.t, window_);
       if (!place) continue;
       poses.push_back(state.T);
       pixels.push_back(*place);
@@ -89,7 +89,7 @@ void FirstTrajectory::triangulate_at(double t) {
 FirstTrajectory::Sightings FirstTrajectory::sightings(double t) const {
   Sightings result;
   for (const auto& [track, point] : landmarks_) {
-    const auto place = tracks_.position(track, t, options_.initialiser.window);
+    const auto place = tracks_.position(track, t, window_);
     if (!place) continue;
     result.points.push_back(point);
     result.pixels.push_back(*place);

@@ -15,8 +15,9 @@ namespace evbench::gp_map {
 /// far as tracks that are landmarks, or that can be triangulated on the way, reach.
 class FirstTrajectory {
  public:
-  FirstTrajectory(const TrackBuffer& tracks, const PinholeCamera& camera, const Options& options)
-      : tracks_(tracks), camera_(camera), options_(options) {}
+  FirstTrajectory(const TrackBuffer& tracks, const PinholeCamera& camera, const Options& options,
+                  const PlaceWindow& window)
+      : tracks_(tracks), camera_(camera), options_(options), window_(window) {}
 
   void add_landmark(TrackId track, const InversePoint& point) { landmarks_[track] = point; }
 
@@ -42,6 +43,7 @@ class FirstTrajectory {
   const TrackBuffer& tracks_;
   PinholeCamera camera_;
   const Options& options_;
+  PlaceWindow window_;
   std::map<TrackId, InversePoint> landmarks_;
   double first_view_ = 0.0;  ///< [s]
   bool begins_with_stand_ = false;

@@ -41,10 +41,11 @@ InitialGuess to_guess(const TwoViewCandidate& candidate, const TrackMatches& mat
 
 }  // namespace
 
-TrackMatches matches_between(const TrackBuffer& buffer, double t0, double t1, double window) {
+TrackMatches matches_between(const TrackBuffer& buffer, double t0, double t1, const PlaceWindow& window) {
   TrackMatches result;
   result.t0 = t0;
   result.t1 = t1;
+  result.or_nearest = window.or_nearest;
   for (const TrackId id : buffer.ids()) {
     const std::optional<Vector2> second = buffer.position(id, t1, window);
     const std::optional<Vector2> first = second ? buffer.position(id, t0, window) : std::nullopt;
@@ -75,15 +76,21 @@ Initialiser::Attempt Initialiser::attempt(const TrackBuffer& tracks, double t) {
 
 TrackMatches Initialiser::match(const TrackBuffer& tracks, double t) {
   pass_stand(tracks, t);
-  TrackMatches matches;
-  if (reference_) matches = matches_between(tracks, *reference_, t, options_.window);
-  if (static_cast<int>(matches.tracks.size()) >= options_.min_tracks) return matches;
-  const std::size_t now = matches_between(tracks, t, t, options_.window).tracks.size();
-  const bool enough = static_cast<int>(now) >= options_.min_tracks;
-  reference_ = enough ? std::optional(t) : std::nullopt;
+  const auto are_enough = [this](const TrackMatches& matches) {
+    return static_cast<int>(matches.tracks.size()) >= options_.min_tracks;
+  };
+  TrackMatches now;
+  for (const bool or_nearest : {false, true}) {
+    const PlaceWindow window(options_.window, or_nearest);
+    TrackMatches matches;
+    if (reference_) matches = matches_between(tracks, *reference_, t, window);
+    if (are_enough(matches)) return matches;
+    if (!are_enough(now)) now = matches_between(tracks, t, t, window);
+  }
+  reference_ = are_enough(now) ? std::optional(t) : std::nullopt;
   TrackMatches none;
-  none.reason = enough ? fmt::format("first view set at {:.3f} s with {} tracks", t, now)
-                       : fmt::format("{} tracks at {:.3f} s, {} needed", now, t, options_.min_tracks);
+  none.reason = reference_ ? fmt::format("first view set at {:.3f} s with {} tracks", t, now.tracks.size())
+                           : fmt::format("{} tracks at {:.3f} s, {} needed", now.tracks.size(), t, options_.min_tracks);
   return none;
 }
 

@@ -33,20 +33,21 @@ struct TrackMatches {
   double t0 = 0.0, t1 = 0.0;
   std::vector<TrackId> tracks;
   std::vector<Vector2> first, second;  ///< [px]
+  bool or_nearest = false;             ///< as of their PlaceWindow
 
   double median_motion() const;  ///< [px] from the first to the second place; of any but none
 };
 
-/// The places of the tracks that have one at both times [s]; window [s] as of TrackBuffer::position.
-TrackMatches matches_between(const TrackBuffer& buffer, double t0, double t1, double window);
+/// The places of the tracks that have one at both times [s]; window as of TrackBuffer::position.
+TrackMatches matches_between(const TrackBuffer& buffer, double t0, double t1, const PlaceWindow& window);
 
 /// Initialisation of monocular odometry from two views (Liu et al. 2022, Algorithm 1, lines 7-9).
 ///
 /// The first view is at a reference time: the first with enough tracks; it moves on when too few of its tracks are
 /// left, and with time while the camera stands still: views of a stand say nothing. Each attempt matches the tracks'
-/// places then and now. A planar scene leaves two candidates, and each comes with its depth reversal
-/// (depth_reversal.hpp): refine each over all observations between t0 and t1 and keep the cheapest, or wait when two
-/// different ones cost about the same.
+/// places then and now, those of slow ones, too, where there are too few others. A planar scene leaves two candidates,
+/// and each comes with its depth reversal (depth_reversal.hpp): refine each over all observations between t0 and t1 and
+/// keep the cheapest, or wait when two different ones cost about the same.
 class Initialiser {
  public:
   Initialiser(const InitialiserOptions& options, const PinholeCamera& camera) : options_(options), camera_(camera) {}

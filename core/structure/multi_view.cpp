@@ -41,7 +41,8 @@ void normalise(ViewsExplained& explained) {
 
 }  // namespace
 
-TrackViews TrackViews::of(const TrackBuffer& tracks, std::vector<double> times, double window, std::size_t most) {
+TrackViews TrackViews::of(const TrackBuffer& tracks, std::vector<double> times, const PlaceWindow& window,
+                          std::size_t most) {
   constexpr int kFewest = 3;
   struct Candidate {
     TrackId track;

@@ -17,7 +17,8 @@ struct TrackViews {
   double sigma = 0.0;                                       ///< [px] of one observation, median over the tracks
 
   /// Those with a place in at least three of them; no more than `most`, those with most places.
-  static TrackViews of(const TrackBuffer& tracks, std::vector<double> times, double window, std::size_t most);
+  static TrackViews of(const TrackBuffer& tracks, std::vector<double> times, const PlaceWindow& window,
+                       std::size_t most);
 };
 
 /// Poses and points that explain the views. The world is the camera at the first one.

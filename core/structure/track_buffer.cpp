@@ -61,6 +61,34 @@ Vector2 robust_line_at(std::span<const TrackObservation> observations, double t)
   return line.at_t;
 }
 
+std::span<const TrackObservation> within(std::span<const TrackObservation> all, double from, double to) {
+  TrackObservation bound;
+  bound.t = from;
+  const auto begin = std::lower_bound(all.begin(), all.end(), bound, by_time);
+  bound.t = to;
+  return {begin, std::upper_bound(begin, all.end(), bound, by_time)};
+}
+
+/// Of a slow tracker: none where the time between them is not about what passes between those before and after them.
+std::span<const TrackObservation> nearest_two(std::span<const TrackObservation> all, double t) {
+  constexpr double kFarthest = 1.0;  // [s]
+  constexpr double kUnusual = 4.0;
+  constexpr std::ptrdiff_t kBeside = 2;
+  TrackObservation bound;
+  bound.t = t;
+  auto begin = std::lower_bound(all.begin(), all.end(), bound, by_time), end = begin;
+  while (end - begin < 2) {
+    const double before = begin == all.begin() ? kInfinity : t - (begin - 1)->t;
+    const double after = end == all.end() ? kInfinity : end->t - t;
+    if (std::min(before, after) > kFarthest) return {};
+    before < after ? --begin : ++end;
+  }
+  const auto first = begin - std::min(kBeside, begin - all.begin()), last = end + std::min(kBeside, all.end() - end);
+  const double between = (end - 1)->t - begin->t, rest = (last - 1)->t - first->t - between;
+  const auto steps = static_cast<double>(last - first - 2);
+  return between * steps <= kUnusual * rest ? std::span(begin, end) : std::span<const TrackObservation>();
+}
+
 }  // namespace
 
 void TrackBuffer::add(std::span<const TrackObservation> observations) {
@@ -96,27 +124,18 @@ std::vector<TrackId> TrackBuffer::alive(double t, double margin) const {
   return result;
 }
 
-std::optional<Vector2> TrackBuffer::position(TrackId track, double t, double window) const {
-  constexpr std::ptrdiff_t kEnough = 2;
-  constexpr double kFarthest = 1.0;  // [s]
+std::optional<Vector2> TrackBuffer::position(TrackId track, double t, const PlaceWindow& window) const {
   const std::span<const TrackObservation> all = observations(track);
-  TrackObservation bound;
-  bound.t = t - 0.5 * window;
-  auto begin = std::lower_bound(all.begin(), all.end(), bound, by_time);
-  bound.t = t + 0.5 * window;
-  auto end = std::upper_bound(begin, all.end(), bound, by_time);
-  while (end - begin < kEnough) {
-    const double before = begin == all.begin() ? kInfinity : t - (begin - 1)->t;
-    const double after = end == all.end() ? kInfinity : end->t - t;
-    if (std::min(before, after) > kFarthest) break;
-    before < after ? --begin : ++end;
+  std::span<const TrackObservation> near = within(all, t - 0.5 * window.length, t + 0.5 * window.length);
+  double beside = 0.25 * window.length;
+  if (window.or_nearest && near.size() < 2) {
+    if (const auto pair = nearest_two(all, t); pair.size() == 2) {
+      near = pair;
+      beside = std::max(beside, pair.back().t - pair.front().t);
+    }
   }
-  if (begin == end) return std::nullopt;
-  const std::span<const TrackObservation> near(begin, end);
-  const double span = near.back().t - near.front().t;
-  if (span == 0.0 && near.front().t != t) return std::nullopt;
-  const double beside =
-      std::max(0.25 * window, span / static_cast<double>(std::max<std::ptrdiff_t>(end - begin - 1, 1)));
+  if (near.empty()) return std::nullopt;
+  if (near.front().t == near.back().t && near.front().t != t) return std::nullopt;
   if (near.front().t > t + beside || near.back().t < t - beside) return std::nullopt;
   return robust_line_at(near, t);
 }

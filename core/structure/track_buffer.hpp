@@ -10,6 +10,15 @@
 
 namespace evbench {
 
+/// Of the observations that give a track's place at a time.
+struct PlaceWindow {
+  double length;  ///< [s], the time in its middle
+  bool or_nearest =
+      false;  ///< where fewer than two are in it, those next to the time: of slow trackers, in slow motion
+
+  PlaceWindow(double seconds, bool nearest = false) : length(seconds), or_nearest(nearest) {}
+};
+
 /// Track observations so far, by track. Every query is deterministic: tracks come in the order of their ids,
 /// a track's observations in the order of their times.
 class TrackBuffer {
@@ -27,12 +36,12 @@ class TrackBuffer {
   /// Tracks whose span of time, widened by `margin` [s] at both ends, contains t.
   std::vector<TrackId> alive(double t, double margin = 0.0) const;
 
-  /// Where a track is at time t [px]: a robust straight line through its observations within ± window/2 [s], read at t;
-  /// this averages quantisation and noise without the lag of a mean. Where there are fewer than two, as of a slow
-  /// tracker or in slow motion, the nearest ones within 1 s make up for it. The line needs observations that bracket t,
-  /// or end no farther from it than window/4 or the usual time between them; a single observation at t itself will do.
-  /// None where the track doesn't cover t.
-  std::optional<Vector2> position(TrackId track, double t, double window) const;
+  /// Where a track is at time t [px]: a robust straight line through its observations in the window, read at t; this
+  /// averages quantisation and noise without the lag of a mean. Those next to t, where they are asked for, are the two
+  /// nearest, none farther than 1 s, if as much time passes between the observations before and after them, too. The
+  /// line needs observations that bracket t, or end no farther from it than a quarter of the window, or the time
+  /// between those two; a single observation at t itself will do. None where the track doesn't cover t.
+  std::optional<Vector2> position(TrackId track, double t, const PlaceWindow& window) const;
 
   /// Removes a track (an outlier); whatever comes of it later is ignored.
   void remove(TrackId track);

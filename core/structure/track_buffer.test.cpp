@@ -91,14 +91,15 @@ TEST_CASE("a slow tracker's place at a time is the line through its nearest obse
   for (int i = 0; i < 10; ++i) observations.push_back(observation(1, 0.2 * i, at(0.2 * i).x(), at(0.2 * i).y()));
   observations.push_back(observation(1, 5.0, 30, 30));
   buffer.add(observations);
-  for (const double t : {0.5, 0.61, 1.7, 1.8, 1.95}) {
+  for (const double t : {0.5, 0.61, 1.7, 1.81, 1.95}) {
     INFO(t);
-    const auto place = buffer.position(1, t, 0.1);
+    const auto place = buffer.position(1, t, {0.1, true});
+    CHECK_FALSE(buffer.position(1, t, 0.1));
     REQUIRE(place);
     CHECK((*place - at(t)).norm() < 1e-9);
   }
-  CHECK(buffer.position(1, -0.15, 0.1));        // less than one of its steps before it begins
-  CHECK_FALSE(buffer.position(1, -0.25, 0.1));  // and more
-  CHECK_FALSE(buffer.position(1, 2.1, 0.1));
-  CHECK_FALSE(buffer.position(1, 3.4, 0.1));
+  CHECK(buffer.position(1, -0.15, {0.1, true}));        // less than one of its steps before it begins
+  CHECK_FALSE(buffer.position(1, -0.25, {0.1, true}));  // and more
+  CHECK_FALSE(buffer.position(1, 2.1, {0.1, true}));
+  CHECK_FALSE(buffer.position(1, 3.4, {0.1, true}));
 }
