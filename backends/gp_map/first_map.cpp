@@ -56,7 +56,7 @@ std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, doubl
     if (refused_.empty()) refused_ = "no motion explains the tracks";
     return std::nullopt;
   }
-  if (!is_sound(look->views, *found)) return std::nullopt;
+  if (!is_sound(*look, *found)) return std::nullopt;
   return map_of(tracks, *look, *found);
 }
 
@@ -112,14 +112,16 @@ std::optional<ViewsExplained> FirstMapFinder::explanation(const Look& look) cons
   return *std::ranges::min_element(trials, {}, &ViewsExplained::cost);
 }
 
-/// Do the errors that are left, and the uncertainty of the structure, allow a map?
-bool FirstMapFinder::is_sound(const MultiView& views, const ViewsExplained& explained) {
-  const double error = median(views.errors(explained)), sigma = median(views.distance_sigmas(explained));
+/// Do the errors that are left, and the uncertainty of the structure, allow a map? In slow motion tracks' errors hang
+/// together for as long as they take to show parallax: less is allowed then.
+bool FirstMapFinder::is_sound(const Look& look, const ViewsExplained& explained) {
+  constexpr double kSlow = 0.5;
+  const double error = median(look.views.errors(explained)), sigma = median(look.views.distance_sigmas(explained));
+  const double allowed = (look.window.or_nearest ? kSlow : 1.0) * options_.max_initial_uncertainty;
   if (!(error <= options_.max_initial_error)) {
     refused_ = fmt::format("the best first map leaves {:.2f} px, {:.2g} allowed", error, options_.max_initial_error);
-  } else if (!(sigma <= options_.max_initial_uncertainty)) {
-    refused_ = fmt::format("the structure is uncertain by {:.0f} %, {:.0f} % allowed", 100.0 * sigma,
-                           100.0 * options_.max_initial_uncertainty);
+  } else if (!(sigma <= allowed)) {
+    refused_ = fmt::format("the structure is uncertain by {:.0f} %, {:.0f} % allowed", 100.0 * sigma, 100.0 * allowed);
   } else {
     return true;
   }

@@ -63,7 +63,7 @@ class FirstMapFinder {
   std::optional<Look> look_at(const TrackBuffer& tracks, double t);
   bool worthwhile(const TrackMatches& matches);
   std::optional<ViewsExplained> explanation(const Look& look) const;
-  bool is_sound(const MultiView& views, const ViewsExplained& explained);
+  bool is_sound(const Look& look, const ViewsExplained& explained);
   FirstMap map_of(const TrackBuffer& tracks, const Look& look, const ViewsExplained& explained) const;
 
   Options options_;
