@@ -1,7 +1,6 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "bench/testing/program.hpp"
 

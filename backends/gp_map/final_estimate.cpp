@@ -21,7 +21,7 @@ void GpMap::finish() {
                   reason.empty() ? "no observations" : "no first map: " + reason);
     return;
   }
-  doubts_ = 0;  // nothing more will tell whether the map is right
+  finished_ = true;
   if (options_.final_iterations == 0) {
     engine_->settle();
     record_final_prior();

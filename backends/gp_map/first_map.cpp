@@ -35,7 +35,8 @@ double parallax_deg(const FactorGraph& graph) {
   return median(std::move(angles));
 }
 
-/// Evenly from one to the other, at least this far apart: so that no observation is in two views.
+/// Evenly from one to the other, at least this far apart: so that no observation is in two views, unless tracks are
+/// slow.
 std::vector<double> view_times(double from, double to, double apart) {
   const int steps = std::min(kViews - 1, static_cast<int>((to - from) / apart + 1e-9));
   std::vector<double> times;
@@ -63,6 +64,8 @@ std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, doubl
 void FirstMapFinder::begin_anew() {
   initialiser_ = Initialiser(options_.initialiser, camera_);
   last_.reset();
+  refused_.clear();
+  waiting_ = "the last one had no place for most tracks";
 }
 
 /// None where there is nothing new to see.
@@ -112,8 +115,8 @@ std::optional<ViewsExplained> FirstMapFinder::explanation(const Look& look) cons
   return *std::ranges::min_element(trials, {}, &ViewsExplained::cost);
 }
 
-/// Do the errors that are left, and the uncertainty of the structure, allow a map? In slow motion tracks' errors hang
-/// together for as long as they take to show parallax: less is allowed then.
+/// Do the errors that are left, and the uncertainty of the structure, allow a map? In slow motion views share
+/// observations, and errors hang together for as long as it takes to show parallax: less is allowed then.
 bool FirstMapFinder::is_sound(const Look& look, const ViewsExplained& explained) {
   constexpr double kSlow = 0.5;
   const double error = median(look.views.errors(explained)), sigma = median(look.views.distance_sigmas(explained));

@@ -258,13 +258,19 @@ int GpMap::misfits() const {
   }));
 }
 
-bool GpMap::is_in_doubt() const { return is_young() && (doubts_ > 0 || misfits() > landmarks_in_view()); }
+bool GpMap::is_in_doubt() const {
+  if (finished_ || !is_young()) return false;  // nothing more will tell whether the map is right
+  return doubts_ > 0 || misfits() > landmarks_in_view();
+}
 
-/// A first map can be wrong altogether.
+/// A first map can be wrong altogether. Where most tracks follow nothing, none is better: that is found out soon.
 bool GpMap::is_refuted() const {
-  constexpr int kMost = 2;  // times as many as are landmarks
-  return is_young() && doubts_ == 0 && misfits() >= options_.initialiser.min_tracks &&
-         misfits() > kMost * landmarks_in_view();
+  constexpr int kMost = 2;   // times as many as are landmarks
+  constexpr int kTimes = 3;  // that one makes way
+  const bool data_go_on = graph().states.back().t < until_;
+  if (!is_young() || doubts_ > 0 || !data_go_on || times_refuted_ == kTimes) return false;
+  const int without_place = misfits();
+  return without_place >= options_.initialiser.min_tracks && without_place > kMost * landmarks_in_view();
 }
 
 /// Without a map, as before the first one; from the next one the trajectory reaches back to where this one began.
@@ -277,8 +283,10 @@ void GpMap::begin_anew() {
     if (state.t >= first_map_.newest() + kApart) first_map_.pass(state.t);
   }
   first_map_.begin_anew();
+  ++times_refuted_;
   engine_.reset();
   search_.reset();
+  looks_ = 0;
   follower_ = {};
   recent_.reset();
   noise_ = {};
@@ -289,6 +297,9 @@ void GpMap::begin_anew() {
   guessed_.clear();
   new_.clear();
   ended_landmarks_.clear();
+  new_outliers_.clear();
+  newest_covariance_ = {};
+  returns_ = ReturnBudget(options_.map.returns);
   landmarks_ = 0;
   for (auto& [id, track] : tracks_) track = {.ended = track.ended};
   waiting_ = std::exchange(young_, {});

@@ -53,7 +53,7 @@ class GpMap : public BackEnd {
   std::span<const UpdateRecord> updates() const override { return updates_; }
   std::vector<std::string> learnt() const override;
 
-  /// The problem with its present estimate; not before initialisation.
+  /// The problem with its present estimate; only where there is a map.
   const FactorGraph& graph() const { return engine_->graph(); }
 
  private:
@@ -137,7 +137,7 @@ class GpMap : public BackEnd {
   BackEndContext context_;
   StatePlacement placement_;
   FirstMapFinder first_map_;
-  std::optional<Engine> engine_;  ///< from the first map on
+  std::optional<Engine> engine_;  ///< from the first map on, unless that is refuted
   ObservationFollower follower_;
   std::map<TrackId, Track> tracks_;
   TrackBuffer waiting_;       ///< observations of waiting tracks
@@ -165,7 +165,9 @@ class GpMap : public BackEnd {
   double next_hindsight_ = 0.0;          ///< [s]
   double next_search_ = 0.0;             ///< [s]
   int looks_ = 0;                        ///< for another explanation
-  int doubts_ = 0;                       ///< vain looks that are missing until the first map is trusted
+  int times_refuted_ = 0;                ///< of first maps
+  bool finished_ = false;
+  int doubts_ = 0;  ///< vain looks that are missing until the first map is trusted
   std::optional<ExplanationSearch> search_;
   double seconds_since_step_ = 0.0;  ///< spent on single observations
   TrackingMonitor monitor_;

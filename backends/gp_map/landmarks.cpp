@@ -50,6 +50,7 @@ void GpMap::add_landmarks() {
     const int enough = options_.map.min_observations;
     if (count < enough || count < track.tried_with + enough / 2) continue;
     track.tried_with = count;
+    track.misfit = false;
     const auto place = locate(id);
     if (!place) continue;
     const int landmark = engine_->add_landmark(place->first, place->second);

@@ -76,9 +76,6 @@ Initialiser::Attempt Initialiser::attempt(const TrackBuffer& tracks, double t) {
 
 TrackMatches Initialiser::match(const TrackBuffer& tracks, double t) {
   pass_stand(tracks, t);
-  const auto are_enough = [this](const TrackMatches& matches) {
-    return static_cast<int>(matches.tracks.size()) >= options_.min_tracks;
-  };
   TrackMatches now;
   for (const bool or_nearest : {false, true}) {
     const PlaceWindow window(options_.window, or_nearest);
@@ -98,8 +95,9 @@ TrackMatches Initialiser::match(const TrackBuffer& tracks, double t) {
 void Initialiser::pass_stand(const TrackBuffer& tracks, double t) {
   if (!reference_ || t - *reference_ < kLead) return;
   const double known = t - 0.5 * options_.window;  // from both sides
-  const TrackMatches before = matches_between(tracks, t - kStand, known, options_.window);
-  if (static_cast<int>(before.tracks.size()) < options_.min_tracks) return;
+  TrackMatches before = matches_between(tracks, t - kStand, known, options_.window);
+  if (!are_enough(before)) before = matches_between(tracks, t - kStand, known, {options_.window, true});
+  if (!are_enough(before)) return;
   if (before.median_motion() < options_.two_view.threshold_px) reference_ = t - kLead;
 }
 

@@ -69,6 +69,9 @@ class Initialiser {
 
  private:
   void pass_stand(const TrackBuffer& tracks, double t);
+  bool are_enough(const TrackMatches& matches) const {
+    return static_cast<int>(matches.tracks.size()) >= options_.min_tracks;
+  }
 
   InitialiserOptions options_;
   PinholeCamera camera_;

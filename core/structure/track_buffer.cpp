@@ -69,7 +69,7 @@ std::span<const TrackObservation> within(std::span<const TrackObservation> all, 
   return {begin, std::upper_bound(begin, all.end(), bound, by_time)};
 }
 
-/// Of a slow tracker: none where the time between them is not about what passes between those before and after them.
+/// Of a slow tracker: none where far more time passes between them than between those before and after them.
 std::span<const TrackObservation> nearest_two(std::span<const TrackObservation> all, double t) {
   constexpr double kFarthest = 1.0;  // [s]
   constexpr double kUnusual = 4.0;

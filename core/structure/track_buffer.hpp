@@ -13,8 +13,8 @@ namespace evbench {
 /// Of the observations that give a track's place at a time.
 struct PlaceWindow {
   double length;  ///< [s], the time in its middle
-  bool or_nearest =
-      false;  ///< where fewer than two are in it, those next to the time: of slow trackers, in slow motion
+  /// Where fewer than two are in it, the two nearest: of slow trackers, and in slow motion.
+  bool or_nearest;
 
   PlaceWindow(double seconds, bool nearest = false) : length(seconds), or_nearest(nearest) {}
 };
@@ -37,9 +37,9 @@ class TrackBuffer {
   std::vector<TrackId> alive(double t, double margin = 0.0) const;
 
   /// Where a track is at time t [px]: a robust straight line through its observations in the window, read at t; this
-  /// averages quantisation and noise without the lag of a mean. Those next to t, where they are asked for, are the two
-  /// nearest, none farther than 1 s, if as much time passes between the observations before and after them, too. The
-  /// line needs observations that bracket t, or end no farther from it than a quarter of the window, or the time
+  /// averages quantisation and noise without the lag of a mean. The two nearest, where they are asked for, are none
+  /// farther than 1 s, and none between which more than four times as much time passes as between those around them.
+  /// The line needs observations that bracket t, or end no farther from it than a quarter of the window, or the time
   /// between those two; a single observation at t itself will do. None where the track doesn't cover t.
   std::optional<Vector2> position(TrackId track, double t, const PlaceWindow& window) const;
 

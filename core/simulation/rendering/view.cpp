@@ -82,7 +82,7 @@ void View::hit_together(std::span<const Vector2> rays, std::span<Hit> hits) cons
 }
 
 /// Whether the sphere around the box and then the slabs' widest intervals can be met by a ray whose x and y are no
-/// farther from the middle one's.
+/// farther from the middle one's than the beam's radius.
 bool View::may_reach(const Seen& seen, const Beam& beam) {
   constexpr double kRounding = 1e-9;
   if (seen.tangent > 0.0) {
@@ -113,7 +113,8 @@ void View::meet_plane(const Seen& seen, const Bundle& rays, std::size_t count, M
 }
 
 /// A ray is inside a box between the last of its entries into the slabs and the first of its exits. Along an axis that
-/// it does not follow it is always inside, or never. kInside: the box is seen from inside.
+/// it does not follow it is always inside, or never; one that lies in a face misses the box.
+/// kInside: the box is seen from inside.
 template <bool kInside>
 void View::meet_box(const Seen& seen, const Bundle& rays, std::size_t count, Meeting& meeting) {
   for (std::size_t i = 0; i < count; ++i) {

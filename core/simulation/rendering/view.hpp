@@ -61,7 +61,8 @@ class View {
     double radius;      ///< of the sphere around a box
     double tangent;     ///< from the camera to where a ray touches that; 0 within it
   };
-  static constexpr std::size_t kTogether = 32;
+  static constexpr std::size_t kTogether = 32;  ///< as many as an edge asks for
+
   /// Rays whose x and y are no farther from those of the middle one than the radius.
   struct Beam {
     Vector3 middle;
