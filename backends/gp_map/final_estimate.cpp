@@ -21,7 +21,7 @@ void GpMap::finish() {
                   reason.empty() ? "no observations" : "no first map: " + reason);
     return;
   }
-  finished_ = true;
+  trusted_ = true;
   if (options_.final_iterations == 0) {
     engine_->settle();
     record_final_prior();

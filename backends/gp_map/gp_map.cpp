@@ -71,6 +71,7 @@ void GpMap::step(double t) {
     learn();
     reconsider_recent();
     nearly_in_view_.reset();
+    if (doubts_ == 0 && misfits() <= landmarks_in_view()) trusted_ = true;
     if (is_refuted()) {
       begin_anew();
     } else {
@@ -142,6 +143,7 @@ bool GpMap::initialise(double t) {
   next_hindsight_ = graph().states.front().t + kHindsight;
   next_search_ = graph().states.front().t + kFirstLook;
   doubts_ = kPlanes;
+  trusted_ = false;
   recent_.emplace(
       options_.learn.prior == LearnPrior::never
           ? std::nullopt
@@ -258,17 +260,13 @@ int GpMap::misfits() const {
   }));
 }
 
-bool GpMap::is_in_doubt() const {
-  if (finished_ || !is_young()) return false;  // nothing more will tell whether the map is right
-  return doubts_ > 0 || misfits() > landmarks_in_view();
-}
-
-/// A first map can be wrong altogether. Where most tracks follow nothing, none is better: that is found out soon.
+/// A first map can be wrong altogether. One that most tracks have fitted is not: what they do later has other reasons.
+/// Where most tracks follow nothing, none is better: that is found out soon.
 bool GpMap::is_refuted() const {
   constexpr int kMost = 2;   // times as many as are landmarks
   constexpr int kTimes = 3;  // that one makes way
   const bool data_go_on = graph().states.back().t < until_;
-  if (!is_young() || doubts_ > 0 || !data_go_on || times_refuted_ == kTimes) return false;
+  if (!is_in_doubt() || doubts_ > 0 || !data_go_on || times_refuted_ == kTimes) return false;
   const int without_place = misfits();
   return without_place >= options_.initialiser.min_tracks && without_place > kMost * landmarks_in_view();
 }

@@ -122,7 +122,7 @@ class GpMap : public BackEnd {
                                                  const Matrix23& J_landmark);
   int landmarks_in_view() const;
   bool is_young() const { return !(graph().states.back().t > young_until_); }
-  bool is_in_doubt() const;
+  bool is_in_doubt() const { return is_young() && !trusted_; }
   void tell_online(double t);
   void tell_recent(double t);
   Engine::OptimiseSummary estimate_everything();
@@ -166,8 +166,8 @@ class GpMap : public BackEnd {
   double next_search_ = 0.0;             ///< [s]
   int looks_ = 0;                        ///< for another explanation
   int times_refuted_ = 0;                ///< of first maps
-  bool finished_ = false;
-  int doubts_ = 0;  ///< vain looks that are missing until the first map is trusted
+  int doubts_ = 0;                       ///< vain looks that are missing until the first map is trusted
+  bool trusted_ = false;                 ///< those were made, and most tracks fitted it then, or nothing more will tell
   std::optional<ExplanationSearch> search_;
   double seconds_since_step_ = 0.0;  ///< spent on single observations
   TrackingMonitor monitor_;

@@ -89,8 +89,7 @@ TEST_CASE("a slow tracker's place at a time is the line through its nearest obse
   std::vector<TrackObservation> observations;
   const auto at = [](double t) { return Vector2(10.0 + 4.0 * t, 20.0 - 3.0 * t); };
   for (int i = 0; i < 10; ++i) observations.push_back(observation(1, 0.2 * i, at(0.2 * i).x(), at(0.2 * i).y()));
-  observations.push_back(observation(1, 2.7, 30, 30));  // after a gap that is not usual
-  observations.push_back(observation(1, 5.0, 30, 30));
+  for (const double t : {2.7, 2.9, 3.1}) observations.push_back(observation(1, t, 30, 30));  // after an unusual gap
   buffer.add(observations);
   for (const double t : {0.5, 0.61, 1.7, 1.81, 1.95}) {
     INFO(t);
