@@ -8,8 +8,8 @@
 #include "backends/gp_map/problem_graph.hpp"
 
 // What the back-end tells of its estimate: poses as they are made, and answers afterwards. While the first map is in
-// doubt, until another explanation has been looked for in vain on both planes, and until no more
-// tracks have no place in it than are landmarks, no online pose and no covariance is told.
+// doubt, until another explanation has been looked for in vain on both planes and most tracks fit it, no online pose
+// and no covariance is told.
 namespace evbench::gp_map {
 
 void GpMap::tell_online(double t) {

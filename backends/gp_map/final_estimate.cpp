@@ -21,7 +21,7 @@ void GpMap::finish() {
                   reason.empty() ? "no observations" : "no first map: " + reason);
     return;
   }
-  trusted_ = true;
+  trusted_ = true;  // nothing more will tell whether the map is right
   if (options_.final_iterations == 0) {
     engine_->settle();
     record_final_prior();

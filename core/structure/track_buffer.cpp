@@ -69,7 +69,8 @@ std::span<const TrackObservation> within(std::span<const TrackObservation> all, 
   return {begin, std::upper_bound(begin, all.end(), bound, by_time)};
 }
 
-/// Of a slow tracker: none where far more time passes between them than between those before and after them.
+/// The observations of a slow tracker that are nearest to t: none where far more time passes between them than between
+/// those before and after them.
 std::span<const TrackObservation> nearest_two(std::span<const TrackObservation> all, double t) {
   constexpr double kFarthest = 1.0;  // [s]
   constexpr double kUnusual = 4.0;
