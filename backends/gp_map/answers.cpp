@@ -22,9 +22,9 @@ void GpMap::tell_online(double t) {
 /// The newest state, and those of late anew: what is seen now tells of them, too.
 void GpMap::tell_recent(double t) {
   if (graph().states.back().t != t) return;  // it has been taken back
-  recent_->follow(graph(), engine_->first_state());
+  world_->recent.follow(graph(), world_->engine.first_state());
   if (is_in_doubt()) return;
-  const auto states = recent_->states();
+  const auto states = world_->recent.states();
   if (options_.per_observation) {
     tell_online(t);  // as between the states
   } else {
@@ -38,39 +38,39 @@ void GpMap::tell_recent(double t) {
 
 PoseTrajectory GpMap::trajectory() const {
   std::vector<StampedPose> poses;
-  if (!engine_) return {};
+  if (!world_) return {};
   for (const ControlState& state : graph().states) poses.push_back({state.t, state.T});
   return PoseTrajectory(std::move(poses));
 }
 
 std::optional<SE3> GpMap::pose(double t) const {
-  const int k = engine_ ? graph().interval_of(t) : -1;
+  const int k = world_ ? graph().interval_of(t) : -1;
   if (k < 0) return std::nullopt;
   return GpInterval(graph().states[index(k - 1)], graph().states[index(k)]).pose(t);
 }
 
 std::optional<Vector6> GpMap::velocity(double t) const {
-  const int k = engine_ ? graph().interval_of(t) : -1;
+  const int k = world_ ? graph().interval_of(t) : -1;
   if (k < 0) return std::nullopt;
   return GpInterval(graph().states[index(k - 1)], graph().states[index(k)]).velocity(t);
 }
 
 /// None while the map is in doubt: it may be wrong altogether, of which its covariance would tell nothing.
 std::optional<Matrix12> GpMap::covariance(double t) {
-  if (!engine_ || is_in_doubt()) return std::nullopt;
-  auto result = engine_->covariance(t);
+  if (!world_ || is_in_doubt()) return std::nullopt;
+  auto result = world_->engine.covariance(t);
   if (result) *result *= information_told_;
   return result;
 }
 
 std::optional<Matrix6> GpMap::relative_covariance(double t0, double t1) {
-  if (!engine_) return std::nullopt;
+  if (!world_) return std::nullopt;
   const auto state_at = [&](double t) {
     const auto found = std::ranges::lower_bound(graph().states, t, {}, &ControlState::t);
     return static_cast<int>(found - graph().states.begin());
   };
   const int i = state_at(t0), j = state_at(t1);
-  const std::optional<Matrix12> joint = engine_->poses(i, j);
+  const std::optional<Matrix12> joint = world_->engine.poses(i, j);
   if (!joint) return std::nullopt;
   const SE3 inverse = graph().states[index(j)].T.inverse() * graph().states[index(i)].T;
   Eigen::Matrix<double, 6, 12> J;  // (T_i Exp δ_i)⁻¹ T_j Exp δ_j = T_i⁻¹ T_j Exp(δ_j − Ad(T_j⁻¹ T_i) δ_i)
@@ -99,7 +99,7 @@ std::vector<std::string> GpMap::learnt() const {
 }
 
 std::optional<Problem> GpMap::problem() const {
-  if (!engine_ || options_.lag > 0.0) return std::nullopt;
+  if (!world_ || options_.lag > 0.0) return std::nullopt;
   return to_problem(graph());
 }
 

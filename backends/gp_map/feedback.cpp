@@ -14,8 +14,12 @@
 namespace evbench::gp_map {
 
 Feedback GpMap::feedback(const FeedbackNeeds& needs) {
-  Feedback feedback{until_, monitor_.state(), {}, {}, std::exchange(new_outliers_, {}), {}};
-  if (!engine_ || monitor_.lost()) return feedback;
+  Feedback feedback;
+  feedback.t = until_;
+  feedback.state = monitor_.state();
+  if (!world_) return feedback;
+  feedback.outliers = std::exchange(world_->outliers, {});
+  if (monitor_.lost()) return feedback;
   feedback.newest = newest_seen();
   if (needs.covariance) feedback.covariance = covariance(feedback.newest->t);
   if (needs.expected) feedback.expected = expected_features();
@@ -34,7 +38,7 @@ ControlState GpMap::newest_seen() const {
 std::vector<ExpectedFeature> GpMap::expected_features() {
   constexpr double kNear = 1e-3;  // [units] before the camera: nearer has no image
   // While it is near the newest state: later, finding it takes a long walk back.
-  for (const TrackId id : std::exchange(ended_landmarks_, {})) {
+  for (const TrackId id : std::exchange(world_->ended_landmarks, {})) {
     const auto track = tracks_.find(id);
     if (track != tracks_.end() && track->second.role == Track::Role::landmark) covariance_of_ended(track->second);
   }
@@ -67,8 +71,8 @@ std::vector<ExpectedFeature> GpMap::expected_features() {
 const std::vector<TrackId>& GpMap::nearly_in_view() {
   constexpr double kMargin = 0.2;  // [rad] beyond what the newest velocity asks for
   constexpr double kClose = 5.0;   // so many times as far as the camera goes: what is nearer may come in from any side
-  if (nearly_in_view_) return *nearly_in_view_;
-  std::vector<TrackId>& tracks = nearly_in_view_.emplace();
+  if (world_->nearly_in_view) return *world_->nearly_in_view;
+  std::vector<TrackId>& tracks = world_->nearly_in_view.emplace();
   const PinholeCamera& camera = context_.camera;
   const ControlState& newest = graph().states.back();
   const double longest = std::max(placement_.upcoming() - newest.t, std::abs(until_ - newest.t));
@@ -77,12 +81,12 @@ const std::vector<TrackId>& GpMap::nearly_in_view() {
   const double least = std::cos(std::min(corner + increment.head<3>().norm() + kMargin, std::numbers::pi));
   const double close = kClose * increment.tail<3>().norm();
   const Vector3 axis = newest.T.R().col(2);
-  for (std::size_t j = 0; j < known_.size(); ++j) {
+  for (std::size_t j = 0; j < world_->known.size(); ++j) {
     const FactorGraph::Landmark& landmark = graph().landmarks[j];
     const Vector3 ray = landmark.position - newest.T.p;
     const double distance = ray.norm();
     if (!landmark.alive || (distance > close && axis.dot(ray) < least * distance)) continue;
-    const auto track = tracks_.find(known_[j].track);
+    const auto track = tracks_.find(world_->known[j].track);
     if (track == tracks_.end() || track->second.role != Track::Role::landmark) continue;
     if (index(track->second.landmark) == j) tracks.push_back(track->first);
   }
@@ -99,7 +103,7 @@ const std::optional<Matrix2>& GpMap::image_covariance(Track& track, const Eigen:
   track.image_covariance.reset();
   if (!track.ended) {
     track.covariance.reset();
-    track.image_covariance = engine_->predicted_covariance(track.landmark, J_state, J_landmark);
+    track.image_covariance = world_->engine.predicted_covariance(track.landmark, J_state, J_landmark);
   } else {
     const std::optional<Matrix12>& state = newest_covariance();
     const std::optional<Matrix3> own = covariance_of_ended(track);
@@ -111,15 +115,15 @@ const std::optional<Matrix2>& GpMap::image_covariance(Track& track, const Eigen:
 }
 
 const std::optional<Matrix12>& GpMap::newest_covariance() {
-  if (newest_covariance_.first != graph().states.size()) {
-    newest_covariance_ = {graph().states.size(), engine_->covariance(graph().states.back().t)};
+  if (world_->newest_covariance.first != graph().states.size()) {
+    world_->newest_covariance = {graph().states.size(), world_->engine.covariance(graph().states.back().t)};
   }
-  return newest_covariance_.second;
+  return world_->newest_covariance.second;
 }
 
 /// As it was when the track had ended: what is learnt of it afterwards is little.
 std::optional<Matrix3> GpMap::covariance_of_ended(Track& track) {
-  if (!track.covariance) track.covariance = engine_->landmark_covariance(track.landmark);
+  if (!track.covariance) track.covariance = world_->engine.landmark_covariance(track.landmark);
   return track.covariance;
 }
 

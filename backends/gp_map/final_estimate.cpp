@@ -16,24 +16,24 @@ namespace evbench::gp_map {
 void GpMap::finish() {
   const std::string reason = first_map_.reason();  // while there were data: the last state stands after their end
   if (const std::optional<double> last = placement_.last()) step(*last);
-  if (!engine_) {
+  if (!world_) {
     monitor_.fail(std::min(first_map_.newest(), until_),
                   reason.empty() ? "no observations" : "no first map: " + reason);
     return;
   }
-  trusted_ = true;  // nothing more will tell whether the map is right
+  world_->trusted = true;  // nothing more will tell whether the map is right
   if (options_.final_iterations == 0) {
-    engine_->settle();
+    world_->engine.settle();
     record_final_prior();
     return;
   }
   const auto start = std::chrono::steady_clock::now();
   if (options_.lag > 0.0) {
     // What is settled keeps its expansions: balanced anew alone, the rest would get another scale.
-    const std::vector<double> surplus = surplus_expansions(*engine_);
+    const std::vector<double> surplus = surplus_expansions(world_->engine);
     for (int round = 0; round < options_.learn.rounds; ++round) {
       learn_with_hindsight({}, surplus);
-      engine_->update();
+      world_->engine.update();
     }
     add_record(graph().states.back().t, seconds_since(start), options_.learn.rounds, {});
     record_final_prior();
@@ -53,24 +53,24 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
   const int rounds = learns ? options_.learn.rounds : 1;
   constexpr int kIterationsARound = 3;
   constexpr double kRoughly = 1e-4, kLearnt = 1e-6, kFixed = 1e-9;  // what is learnt is known no better
-  engine_->optimise(kIterationsARound, kRoughly);
+  world_->engine.optimise(kIterationsARound, kRoughly);
   if (is_young()) reconsider_beginning();
-  if (auto other = explain_earlier(*engine_, options_.health.min_landmarks)) {
+  if (auto other = explain_earlier(world_->engine, options_.health.min_landmarks)) {
     context_.log("what was seen earlier is explained better otherwise by what came after it");
-    engine_ = std::move(other);
+    world_->engine = std::move(*other);
   }
   for (int round = 0; round < rounds; ++round) {
     if (options_.learn.noise) {
-      noise_ = learn_noise(graph());
-      engine_->set_loss(noise_.loss(options_.loss, options_.loss_width));
+      world_->noise = learn_noise(graph());
+      world_->engine.set_loss(world_->noise.loss(options_.loss, options_.loss_width));
     }
-    if (learns_prior) learn_prior(*engine_, {});
-    judge_tracks(noise_, {});
-    if (options_.learn.noise) weigh_tracks(noise_, {});
-    const bool settled = engine_->optimise(kIterationsARound, kRoughly).iterations == 1;
+    if (learns_prior) learn_prior(world_->engine, {});
+    judge_tracks(world_->noise, {});
+    if (options_.learn.noise) weigh_tracks(world_->noise, {});
+    const bool settled = world_->engine.optimise(kIterationsARound, kRoughly).iterations == 1;
     if (settled && round > 0) break;  // what is learnt does not change the estimate any more
   }
-  return engine_->optimise(options_.final_iterations, learns ? kLearnt : kFixed);
+  return world_->engine.optimise(options_.final_iterations, learns ? kLearnt : kFixed);
 }
 
 /// What is near and what is far may have changed places, which little motion does not tell; a map that is older has

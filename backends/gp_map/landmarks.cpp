@@ -38,8 +38,8 @@ bool GpMap::is_outlier(int landmark) {
   if (l.intervals.empty()) return false;
   const Observation& last = graph().intervals[index(l.intervals.back())].of(landmark).back();
   const double inverse_sigma = l.sigma_scale * last.inverse_sigma;  // as given
-  const double far = options_.map.outlier_threshold * noise_.scale_of_means();
-  return inverse_sigma * engine_->reprojection_mean(landmark) > far;
+  const double far = options_.map.outlier_threshold * world_->noise.scale_of_means();
+  return inverse_sigma * world_->engine.reprojection_mean(landmark) > far;
 }
 
 void GpMap::add_landmarks() {
@@ -50,14 +50,14 @@ void GpMap::add_landmarks() {
     const int enough = options_.map.min_observations;
     if (count < enough || count < track.tried_with + enough / 2) continue;
     track.tried_with = count;
-    track.misfit = false;
-    const auto place = locate(id);
+    const auto [place, misfit] = locate(id);
+    track.misfit = misfit;
     if (!place) continue;
-    const int landmark = engine_->add_landmark(place->first, place->second);
+    const int landmark = world_->engine.add_landmark(place->first, place->second);
     for (const TrackObservation& z : observations) {
-      engine_->add_observation(landmark, to_observation(z, options_.sigma_scale));
+      world_->engine.add_observation(landmark, to_observation(z, options_.sigma_scale));
     }
-    if (std::isfinite(place->second.sigma)) guessed_.push_back(landmark);
+    if (std::isfinite(place->second.sigma)) world_->guessed.push_back(landmark);
     become_landmark(id, landmark);
   }
 }
@@ -67,25 +67,27 @@ void GpMap::add_landmarks() {
 void GpMap::trust_parallax() {
   const double least = std::sin(options_.map.triangulation.min_parallax_deg * std::numbers::pi / 180.0);
   const std::vector<ControlState>& states = graph().states;
-  std::erase_if(guessed_, [&](int j) {
+  std::erase_if(world_->guessed, [&](int j) {
     const FactorGraph::Landmark& landmark = graph().landmarks[index(j)];
     const std::vector<int>& seen = landmark.intervals;
     if (!landmark.alive || seen.empty() || states.back().t > states[index(seen.back())].t + kFoundAgain) return true;
     const auto ray = [&](int k) { return (landmark.position - states[index(k)].T.p).normalized().eval(); };
     if (ray(seen.front()).cross(ray(seen.back())).norm() < least) return false;
-    engine_->drop_prior(j);
+    world_->engine.drop_prior(j);
     return true;
   });
 }
 
 /// Where a track's landmark is, by triangulation over its observations; without parallax, at the scene's depth: it
 /// tells rotation, and where landmarks live shortly, nothing else hands the scale on.
-std::optional<std::pair<Vector3, LandmarkPrior>> GpMap::locate(TrackId id) {
+GpMap::Location GpMap::locate(TrackId id) const {
   constexpr std::size_t kViews = 16;  // evenly from all observations: enough for a start
   std::span<const TrackObservation> usable = waiting_.observations(id);  // none later than the newest state
-  const auto settled = [&](const TrackObservation& z) { return graph().interval_of(z.t) <= engine_->first_state(); };
+  const auto settled = [&](const TrackObservation& z) {
+    return graph().interval_of(z.t) <= world_->engine.first_state();
+  };
   usable = usable.subspan(index(std::ranges::partition_point(usable, settled) - usable.begin()));
-  if (usable.size() < 2) return std::nullopt;
+  if (usable.size() < 2) return {};
   std::vector<SE3> poses;
   std::vector<Vector2> pixels;
   const std::size_t views = std::min(kViews, usable.size());
@@ -95,16 +97,15 @@ std::optional<std::pair<Vector3, LandmarkPrior>> GpMap::locate(TrackId id) {
     pixels.push_back(z.pixel);
   }
   const Triangulation result = triangulate(poses, pixels, context_.camera, options_.map.triangulation);
-  const double noise = options_.sigma_scale * usable.back().sigma * noise_.scale_of_means();
+  const double noise = options_.sigma_scale * usable.back().sigma * world_->noise.scale_of_means();
   if (result.ok() && result.rms_px <= kWellSeen * std::numbers::sqrt2 * noise) {
-    return std::pair{result.point, LandmarkPrior{}};
+    return {.place = std::pair{result.point, LandmarkPrior{}}};
   }
-  const bool waited = usable.back().t - usable.front().t >= options_.map.patience;
-  tracks_.at(id).misfit = result.state != Triangulation::State::low_parallax;
-  if (!waited || tracks_.at(id).misfit) return std::nullopt;
+  if (result.state != Triangulation::State::low_parallax) return {.misfit = true};
+  if (usable.back().t - usable.front().t < options_.map.patience) return {};
   const double depth = median_depth();
   const Vector3 point = poses.back() * (depth * graph().camera.ray(pixels.back()));
-  return std::pair{point, LandmarkPrior{point, options_.map.depth_sigma * depth}};
+  return {.place = std::pair{point, LandmarkPrior{point, options_.map.depth_sigma * depth}}};
 }
 
 /// Of the landmarks seen last, from the newest pose.
@@ -124,23 +125,23 @@ void GpMap::become_landmark(TrackId id, int landmark) {
   Track& track = tracks_.at(id);
   track.role = Track::Role::landmark;
   track.landmark = landmark;
-  known_.push_back({.track = id});
-  ++landmarks_;
+  world_->known.push_back({.track = id});
+  ++world_->tracks;
   waiting_.forget(id);
 }
 
 void GpMap::become_outlier(int landmark) {
   hold_scale_without(landmark);
-  engine_->remove_landmark(landmark);
-  if (end_track_of(landmark, Track::Role::outlier)) --landmarks_;
+  world_->engine.remove_landmark(landmark);
+  if (end_track_of(landmark, Track::Role::outlier)) --world_->tracks;
 }
 
 /// What it will show is not of this landmark. False where it came back as another one.
 bool GpMap::end_track_of(int landmark, Track::Role role) {
-  const auto track = tracks_.find(known_[index(landmark)].track);
+  const auto track = tracks_.find(world_->known[index(landmark)].track);
   if (track == tracks_.end() || track->second.landmark != landmark) return false;
   track->second.role = role;
-  new_outliers_.push_back(track->first);
+  world_->outliers.push_back(track->first);
   return true;
 }
 
@@ -153,7 +154,7 @@ void GpMap::hold_scale_without(int leaving) {
   }
   context_.log(fmt::format("{:.3f} s: most landmarks that held the scale were outliers; {} hold it now",
                            graph().states.back().t, anchors.size()));
-  engine_->anchor_scale(graph().anchor.origin, {anchors.begin(), anchors.end()});
+  world_->engine.anchor_scale(graph().anchor.origin, {anchors.begin(), anchors.end()});
 }
 
 }  // namespace evbench::gp_map

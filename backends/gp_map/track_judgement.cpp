@@ -101,7 +101,7 @@ void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span) {
 }
 
 void GpMap::slid_off(int landmark, double from) {
-  engine_->remove_observations(landmark, from);
+  world_->engine.remove_observations(landmark, from);
   end_track_of(landmark, Track::Role::slid);
 }
 
@@ -121,10 +121,11 @@ void GpMap::weigh_tracks(const NoiseLearner& noise, const TimeSpan& span) {
   if (own.empty() || (running && median(std::move(scales)) > kChange)) return;
   const double change = running ? kChange : 1.0;
   for (const auto& [j, scale] : own) {
-    Known& known = known_[index(j)];
+    World::Known& known = world_->known[index(j)];
     if (scale < change * known.noise && scale > known.noise / change) continue;
     known.noise = scale;
-    if (known.sigma_scale() != graph().landmarks[index(j)].sigma_scale) engine_->scale_sigmas(j, known.sigma_scale());
+    if (known.sigma_scale() != graph().landmarks[index(j)].sigma_scale)
+      world_->engine.scale_sigmas(j, known.sigma_scale());
   }
 }
 

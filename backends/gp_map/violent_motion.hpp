@@ -18,11 +18,9 @@ double worth_weakening(double error, double most, const std::function<double(dou
 class ViolentMotion {
  public:
   /// `min_landmarks`: in view, with fewer nothing is concluded; `window`: in which a prior that has yielded is as it
-  /// was again [s].
-  ViolentMotion(int min_landmarks, double window) : min_landmarks_(min_landmarks), window_(window) {}
-
-  /// A new map, with the prior's density as it is when nothing has yielded.
-  void begin(const Vector6& qc) { qc_ = qc; }
+  /// was again [s]; `qc`: the prior's density where nothing has yielded.
+  ViolentMotion(int min_landmarks, double window, const Vector6& qc)
+      : min_landmarks_(min_landmarks), window_(window), qc_(qc) {}
 
   /// Once an update of the engine is done and may have left most tracks far from where they should be: what is needed
   /// beyond it. Returns the last update's summary. `noise`: of the tracks.
@@ -39,7 +37,7 @@ class ViolentMotion {
 
   int min_landmarks_;
   double window_;
-  Vector6 qc_ = Vector6::Ones();
+  Vector6 qc_;
 };
 
 }  // namespace evbench::gp_map

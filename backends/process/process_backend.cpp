@@ -65,7 +65,8 @@ void ProcessBackEnd::take_state(const Json& answer, double until) {
   const std::string reason = told != nullptr ? text(*told, {"reason"}) : "the process says so";
   const double from = updates_.empty() ? until : updates_.back().t;
   if (now == no_map && before != no_map) {
-    throw MessageError("state: expected \"lost\" where there was a map and is none, found \"no_map\"");
+    if (told_) throw MessageError("state: expected \"lost\" where poses were told of a map, found \"no_map\"");
+    monitor_ = TrackingMonitor(context_.patience);  // what it said was of a map that was wrong
   }
   if (now == lost) {
     const bool was_degraded = before == degraded && !monitor_.status().degraded.empty();
@@ -85,6 +86,7 @@ void ProcessBackEnd::take_online(const Json& answer, double until) {
     const auto [pose, velocity] = moving_pose((*found)[i], {"online", i});
     check_not_later(pose.t, until, {"online", i});
     context_.online({pose, until, velocity});
+    told_ = true;
   }
 }
 

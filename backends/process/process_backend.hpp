@@ -44,7 +44,8 @@ class ProcessBackEnd : public BackEnd {
   PoseTrajectory trajectory_;
   std::vector<Landmark> map_;
   std::vector<UpdateRecord> updates_;
-  int left_out_ = 0;  ///< observations that are not finite
+  bool told_ = false;  ///< an online pose
+  int left_out_ = 0;   ///< observations that are not finite
 };
 
 }  // namespace evbench::process

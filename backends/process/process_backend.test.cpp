@@ -179,6 +179,8 @@ TEST_CASE("The status of a run follows from the states that a process answers") 
   CHECK(lost.state == RunState::lost);
   CHECK(lost.time == 0.1);
   CHECK(status("['tracking', 'tracking', 'lost']", one_pose).time == 0.2);
+  // A map that was wrong, of which no pose was told:
+  CHECK(status("['degraded', 'no_map', 'tracking']", one_pose).state == RunState::ok);
   const Status none = status("['no_map'] * 3", "{'trajectory': []}");
   CHECK(none.state == RunState::failed);
   CHECK_THAT(none.reason, Contains("no trajectory"));
@@ -217,7 +219,8 @@ TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence
              Contains("quaternion's norm is 2"));
   CHECK_THAT(failure("{'state': 'tracking', 'online': [[t, 0, 0, 0, 0, 0, 1]]}"), Contains("expected 8 numbers"));
   CHECK_THAT(failure("{'state': 'tracking', 'covariance': [0] * 144}"), Contains("expected \"newest\" with it"));
-  CHECK_THAT(failure("{'state': 'tracking' if t < 0.15 else 'no_map'}"), Contains("expected \"lost\""));
+  CHECK_THAT(failure("{'state': 'tracking' if t < 0.15 else 'no_map', 'online': [pose(0.1, 0)]}"),
+             Contains("expected \"lost\" where poses were told"));
   CHECK_THAT(failure("{'error': 'I can not see'}"), Contains("says: I can not see; it had been told the batch"));
   const std::string good = "{'state': 'tracking'}";
   CHECK_THAT(failure(good, "{}"),

@@ -16,7 +16,7 @@ namespace {
 
 const Registration<FrontEnd, Haste> registration(
     "haste",
-    "tracks features in events asynchronously by hypotheses (Alzugaray and Chli 2020), finds lost landmarks again", 5);
+    "tracks features in events asynchronously by hypotheses (Alzugaray and Chli 2020), finds lost landmarks again", 6);
 
 constexpr double kApart = 1e-6;  ///< [s] between two observations of a track, at least
 
@@ -348,6 +348,7 @@ FeedbackNeeds Haste::needs() const {
 
 void Haste::receive(const Feedback& feedback) {
   guidance_.receive(feedback);
+  if (feedback.state == TrackingState::no_map) lost_.forget_world(feedback.world);  // where there was a map, it is gone
   if (!options_.guidance.outliers || feedback.outliers.empty()) return;
   for (const std::int64_t tracker : trackers_.ids()) {
     const Track& track = tracks_.at(tracker);

@@ -26,6 +26,10 @@ class LostLandmarks {
     return std::ranges::any_of(lost_, [&](const auto& entry) { return entry.second.world != world; });
   }
   void forget(TrackId track) { lost_.erase(track); }
+  /// From where these were seen is not known.
+  void forget_world(std::size_t world) {
+    std::erase_if(lost_, [&](const auto& entry) { return entry.second.world == world; });
+  }
   /// One that was found and turned out to be another: it is left alone for a while. It need not be remembered.
   void disappoint(TrackId track, double t);
 

@@ -213,6 +213,20 @@ TEST_CASE("Of two landmarks that look the same none is recognised") {
   CHECK_FALSE(lost.recognise(kExpected, 1, recent, 0.1, {}));
 }
 
+TEST_CASE("What was lost in a map that is gone is neither looked for nor recognised") {
+  const Setting setting;
+  LostLandmarks lost = setting.lost(corner_lines());
+  const std::vector<Event> seen = events(corner_lines(), kExpected);
+  RecentEvents recent(15'000);
+  recent.add(seen);
+  lost.forget_world(1);
+  CHECK(setting.find(lost, seen).size() == 1);
+  lost.forget_world(0);
+  CHECK(setting.find(lost, seen, 0.2).empty());
+  CHECK_FALSE(lost.has_of_another(1));
+  CHECK_FALSE(lost.recognise(kExpected, 1, recent, 0.2, {}));
+}
+
 TEST_CASE("A landmark of another world is not looked for where this one's map expects it") {
   const Setting setting;
   LostLandmarks lost = setting.lost(corner_lines());

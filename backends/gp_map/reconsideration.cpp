@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "backends/gp_map/gp_map.hpp"
+
+// A map may be wrong: what is explained better otherwise goes on so, and a first map that most tracks do not fit makes
+// way for another one, unless they fitted it once.
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kReconsidering = 0.15;  ///< [s] at least between two looks for another explanation
+constexpr int kSettling = 3;             ///< steps from what one has found
+
+}  // namespace
+
+/// What came into view of late, or all of a young map, in turn, may be explained otherwise: on one of two planes, in
+/// turn.
+void GpMap::reconsider_recent() {
+  if (!is_young() && !world_->search) young_ = TrackBuffer();
+  const double now = graph().states.back().t;
+  if (!world_->search && !(now < world_->next_look)) {
+    world_->next_look = now + kReconsidering;
+    const auto supposed = world_->looks % World::kPlanes == 0 ? Supposed::frontal_plane : Supposed::dual_plane;
+    world_->search = begin_search(supposed, is_young() && world_->looks % (2 * World::kPlanes) < World::kPlanes);
+    if (!world_->search && is_young()) world_->search = begin_search(supposed, true);
+    if (!world_->search && world_->doubts > 0) --world_->doubts;  // there is nothing that could be explained otherwise
+    ++world_->looks;
+  }
+  if (!world_->search || world_->search->go_on()) return;
+  auto other = world_->search->found();
+  world_->search.reset();
+  const int oldest = world_->engine.first_state();
+  if (other && oldest > 0 && other->first <= oldest + 1) other.reset();  // a lag has marginalised it since
+  if (world_->doubts > 0) world_->doubts = other ? World::kPlanes : world_->doubts - 1;
+  if (other) go_on_with(*other);
+}
+
+std::optional<ExplanationSearch> GpMap::begin_search(Supposed supposed, bool young) const {
+  const StateRange states{world_->engine.first_state(), static_cast<int>(graph().states.size()) - 1};
+  return ExplanationSearch::begin(graph(), states, options_.health.min_landmarks, supposed, young);
+}
+
+void GpMap::go_on_with(const RecentExplanation& other) {
+  context_.log(fmt::format("{:.3f} s: {} is explained better otherwise, by {:.1f}", graph().states.back().t,
+                           other.first > 0 ? "what came into view of late" : "all that was seen", other.advantage));
+  other.place_in(world_->engine);
+  const auto known = static_cast<int>(world_->known.size());
+  if (other.first == 0) recall_condemned();
+  bound_leverage();
+  for (int step = 0; step < kSettling; ++step) world_->last_update = world_->engine.update();
+  for (int j = known; j < std::ssize(world_->known); ++j) {
+    if (is_outlier(j)) become_outlier(j);
+  }
+  world_->recent.forget();
+}
+
+/// What did not fit an explanation that was wrong may be a landmark of the right one; where one of it lives, it is not
+/// told anew what it knows.
+void GpMap::recall_condemned() {
+  std::set<TrackId> living;
+  for (std::size_t j = 0; j < world_->known.size(); ++j) {
+    if (graph().landmarks[j].alive) living.insert(world_->known[j].track);
+  }
+  for (const TrackId id : young_.ids()) {
+    Track& track = tracks_.try_emplace(id, Track{.ended = true}).first->second;
+    track.covariance.reset();
+    if (living.contains(id)) continue;
+    track = {.ended = track.ended};
+    waiting_.forget(id);
+    waiting_.add(young_.observations(id));
+    live_.insert(id);
+    std::erase(world_->outliers, id);
+  }
+  add_landmarks();
+}
+
+/// Of the tracks that are alive, those that are not where the map lets expect them: the landmarks of a map that is
+/// wrong are condemned or go out of view, and for most of what comes into it there is no place.
+int GpMap::misfits() const {
+  return static_cast<int>(std::ranges::count_if(live_, [&](TrackId id) {
+    const Track& track = tracks_.at(id);
+    return track.role == Track::Role::waiting ? track.misfit : track.role != Track::Role::landmark;
+  }));
+}
+
+/// Both were looked for in vain, another explanation and a reason to doubt.
+void GpMap::trust_what_fits() {
+  if (world_->doubts == 0 && misfits() <= landmarks_in_view()) world_->trusted = true;
+}
+
+/// A first map can be wrong altogether. One that most tracks have fitted is not: what they do later has other reasons.
+/// Where most tracks follow nothing, none is better: that is found out soon.
+bool GpMap::is_refuted() const {
+  constexpr int kMost = 2;   // times as many as are landmarks
+  constexpr int kTimes = 3;  // that one makes way
+  const bool data_go_on = graph().states.back().t < until_;
+  if (!is_in_doubt() || world_->doubts > 0 || !data_go_on || times_refuted_ == kTimes) return false;
+  const int without_place = misfits();
+  return without_place >= options_.initialiser.min_tracks && without_place > kMost * landmarks_in_view();
+}
+
+/// Without a map, as before the first one; from the next one the trajectory reaches back to where this one began.
+/// States that stood close together, as predictions from a wrong map are far off, would slow down its looks.
+void GpMap::begin_anew() {
+  constexpr double kApart = 0.02;  // [s]
+  context_.log(fmt::format("{:.3f} s: the first map has no place for most tracks: another one is looked for",
+                           graph().states.back().t));
+  for (const ControlState& state : graph().states) {
+    if (state.t >= first_map_.newest() + kApart) first_map_.pass(state.t);
+  }
+  first_map_.begin_anew();
+  ++times_refuted_;
+  world_.reset();
+  monitor_ = TrackingMonitor(context_.patience);  // what it said was of that map
+  for (auto& [id, track] : tracks_) track = {.ended = track.ended};
+  waiting_ = std::exchange(young_, {});
+  for (const TrackId id : waiting_.ids()) {
+    tracks_.try_emplace(id, Track{.ended = true});
+    live_.insert(id);
+  }
+}
+
+}  // namespace evbench::gp_map
