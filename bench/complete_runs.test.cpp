@@ -27,8 +27,7 @@ struct Comparison {
 
   /// The run of this label below results/EXPERIMENT.
   std::string path(const std::string& label, const std::string& experiment = "short") const {
-    for (const auto& run : std::filesystem::directory_iterator(folder.file("results/" + experiment))) {
-      const std::string path = run.path().string();
+    for (const std::string& path : runs_of(folder.file("results/" + experiment))) {
       if (Json::parse(read_file(path + "/metrics.json")).at("label") == label) return path;
     }
     FAIL("no run is labelled " << label);

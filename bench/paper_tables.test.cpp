@@ -18,9 +18,8 @@ const std::string kConfigs = EVBENCH_CONFIGS;
 /// metrics.json of each run of an experiment by label.
 std::map<std::string, Json> metrics_of(const std::string& experiment) {
   std::map<std::string, Json> metrics;
-  for (const auto& run : std::filesystem::directory_iterator(experiment)) {
-    if (!run.is_directory()) continue;  // what a sweep keeps of its plan
-    const Json json = Json::parse(read_file(run.path().string() + "/metrics.json"));
+  for (const std::string& run : runs_of(experiment)) {
+    const Json json = Json::parse(read_file(run + "/metrics.json"));
     metrics[json.at("label").get<std::string>()] = json;
   }
   return metrics;

@@ -26,9 +26,8 @@ const std::set<std::string> kFiles = {"config.json",  "job.json",   "manifest.js
 std::map<std::string, std::string> run_folders(const TemporaryFolder& folder, const std::string& out) {
   std::map<std::string, std::string> folders;
   for (const auto& experiment : std::filesystem::directory_iterator(folder.file(out))) {
-    for (const auto& run : std::filesystem::directory_iterator(experiment.path())) {
-      const Json metrics = Json::parse(read_file(run.path().string() + "/metrics.json"));
-      folders[metrics.at("label").get<std::string>()] = run.path().string();
+    for (const std::string& run : runs_of(experiment.path().string())) {
+      folders[Json::parse(read_file(run + "/metrics.json")).at("label").get<std::string>()] = run;
     }
   }
   return folders;

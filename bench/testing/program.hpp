@@ -40,6 +40,15 @@ inline std::set<std::string> names_in(const std::string& path) {
   return names;
 }
 
+/// Folders of an experiment's runs, beside which a sweep keeps its plan.
+inline std::set<std::string> runs_of(const std::string& experiment) {
+  std::set<std::string> runs;
+  for (const std::string& name : names_in(experiment)) {
+    if (std::filesystem::is_directory(experiment + "/" + name)) runs.insert(experiment + "/" + name);
+  }
+  return runs;
+}
+
 /// A simulated sequence of 3 s with few tracks, seen by one back-end.
 inline Json short_config(const std::string& backend = "bundle_adjustment") {
   return {{"name", "short"},
