@@ -41,7 +41,9 @@ TEST_CASE("A first map from a camera that hardly goes on is wrong at first, and 
     const TemporaryFolder folder;
     folder.write("start.json", config.dump());
     REQUIRE(testing::evbench(folder, "run start.json --quiet").exit_code == 0);
-    const std::string run = *runs_of(folder.file("results/start")).begin();
+    const std::set<std::string> runs = runs_of(folder.file("results/start"));
+    REQUIRE(runs.size() == 1);
+    const std::string& run = *runs.begin();
     const Json metrics = Json::parse(read_file(run + "/metrics.json"));
     CHECK(metrics.at("status").at("state") == "ok");
     CHECK(metrics.at("final").at("ate").at("trans_percent").get<double>() < 3.0);

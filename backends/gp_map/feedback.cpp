@@ -16,6 +16,7 @@ namespace evbench::gp_map {
 Feedback GpMap::feedback(const FeedbackNeeds& needs) {
   Feedback feedback;
   feedback.t = until_;
+  if (std::exchange(begun_anew_, false)) return feedback;  // no map, even where there is another one already
   feedback.state = monitor_.state();
   if (!world_) return feedback;
   feedback.outliers = std::exchange(world_->outliers, {});

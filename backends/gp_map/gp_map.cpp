@@ -18,7 +18,7 @@ namespace {
 const Registration<BackEnd, GpMap> registration("gp_map",
                                                 "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 25);
 
-constexpr double kEvery = 0.3;     ///< [s] between two times that is learnt with hindsight while running
+constexpr double kEvery = 0.3;     ///< [s] from one learning with hindsight to the next while running
 constexpr double kOneSided = 0.1;  ///< [s] what was seen so shortly ago is known from one side
 constexpr double kMemory = 10.0;   ///< [s] for which tracks are remembered that ended before there is a map
 

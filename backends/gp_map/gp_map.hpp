@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <limits>
 #include <map>
 #include <optional>
@@ -138,6 +137,7 @@ class GpMap : public BackEnd {
   std::vector<TrackEnd> ending_;           ///< likewise
   const double information_told_;          ///< share of the estimate's information that the loss's weights tell
   int times_refuted_ = 0;                  ///< of first maps
+  bool begun_anew_ = false;                ///< since the last feedback
   double seconds_since_step_ = 0.0;        ///< spent on single observations
   TrackingMonitor monitor_;
   double until_ = 0.0;                                        ///< [s] of the last batch

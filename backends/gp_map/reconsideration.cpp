@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -97,6 +98,7 @@ bool GpMap::is_refuted() const {
   constexpr int kMost = 2;   // times as many as are landmarks
   constexpr int kTimes = 3;  // that one makes way
   const bool data_go_on = graph().states.back().t < until_;
+  if (std::isfinite(online_)) return false;  // it was told of
   if (!is_in_doubt() || world_->doubts > 0 || !data_go_on || times_refuted_ == kTimes) return false;
   const int without_place = misfits();
   return without_place >= options_.initialiser.min_tracks && without_place > kMost * landmarks_in_view();
@@ -113,6 +115,7 @@ void GpMap::begin_anew() {
   }
   first_map_.begin_anew();
   ++times_refuted_;
+  begun_anew_ = true;
   world_.reset();
   monitor_ = TrackingMonitor(context_.patience);  // what it said was of that map
   for (auto& [id, track] : tracks_) track = {.ended = track.ended};

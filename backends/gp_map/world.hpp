@@ -78,8 +78,8 @@ struct World {
   int doubts = kPlanes;                     ///< vain looks that are missing until it is trusted
   bool trusted = false;  ///< those were made, and most tracks fitted it then, or nothing more will tell
 
-  // What is found once a state, for the front-end: feedback.cpp.
-  std::pair<std::size_t, std::optional<Matrix12>> newest_covariance;  ///< and the number of states then
+  // For the front-end: feedback.cpp.
+  std::pair<std::size_t, std::optional<Matrix12>> newest_covariance;  ///< as of so many states
   std::optional<std::vector<TrackId>> nearly_in_view;                 ///< as of the newest state
   std::vector<TrackId> ended_landmarks;                               ///< tracks that have ended in the last batch
 };

@@ -65,7 +65,9 @@ void ProcessBackEnd::take_state(const Json& answer, double until) {
   const std::string reason = told != nullptr ? text(*told, {"reason"}) : "the process says so";
   const double from = updates_.empty() ? until : updates_.back().t;
   if (now == no_map && before != no_map) {
-    if (told_) throw MessageError("state: expected \"lost\" where poses were told of a map, found \"no_map\"");
+    if (told_ || before == lost) {
+      throw MessageError("state: expected \"lost\", as poses were told or it was said before, found \"no_map\"");
+    }
     monitor_ = TrackingMonitor(context_.patience);  // what it said was of a map that was wrong
   }
   if (now == lost) {

@@ -220,7 +220,8 @@ TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence
   CHECK_THAT(failure("{'state': 'tracking', 'online': [[t, 0, 0, 0, 0, 0, 1]]}"), Contains("expected 8 numbers"));
   CHECK_THAT(failure("{'state': 'tracking', 'covariance': [0] * 144}"), Contains("expected \"newest\" with it"));
   CHECK_THAT(failure("{'state': 'tracking' if t < 0.15 else 'no_map', 'online': [pose(0.1, 0)]}"),
-             Contains("expected \"lost\" where poses were told"));
+             Contains("expected \"lost\", as poses were told"));
+  CHECK_THAT(failure("{'state': 'lost' if t < 0.15 else 'no_map', 'reason': 'fog'}"), Contains("expected \"lost\""));
   CHECK_THAT(failure("{'error': 'I can not see'}"), Contains("says: I can not see; it had been told the batch"));
   const std::string good = "{'state': 'tracking'}";
   CHECK_THAT(failure(good, "{}"),

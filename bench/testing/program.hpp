@@ -32,7 +32,7 @@ inline Outcome evbench(const TemporaryFolder& folder, const std::string& argumen
   return shell(folder, "\"$evbench\" " + arguments);
 }
 
-/// Names in a folder, "" when there is none.
+/// Names in a folder, none when there is none.
 inline std::set<std::string> names_in(const std::string& path) {
   std::set<std::string> names;
   if (!std::filesystem::is_directory(path)) return names;

@@ -70,7 +70,8 @@ struct Feedback {
   /// one of these again goes on with its track.
   std::vector<ExpectedFeature> expected;
   /// Which world frame `newest` and `expected` are in: another one after a loss, and the earlier one again once the
-  /// camera has been found in it. Set by the harness.
+  /// camera has been found in it. Set by the harness. After `no_map` the same number may stand for another frame: what
+  /// was known in it is void.
   std::size_t world = 0;
 };
 

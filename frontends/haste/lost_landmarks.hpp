@@ -26,7 +26,7 @@ class LostLandmarks {
     return std::ranges::any_of(lost_, [&](const auto& entry) { return entry.second.world != world; });
   }
   void forget(TrackId track) { lost_.erase(track); }
-  /// From where these were seen is not known.
+  /// Those of this world, whose map is gone: from where they were seen is not known any more.
   void forget_world(std::size_t world) {
     std::erase_if(lost_, [&](const auto& entry) { return entry.second.world == world; });
   }

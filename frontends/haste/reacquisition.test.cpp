@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
+#include <optional>
 
 #include "core/support/median.hpp"
 #include "core/testing/event_scene.hpp"
@@ -75,13 +76,15 @@ struct Told {
   }
 };
 
-/// All that it tells when it gets feedback from `from` [s] on, which says that places are known to `sigma` [px].
+/// All that it tells when it gets feedback from `from` [s] on, which says that places are known to `sigma` [px], after
+/// one of this state, if there is one.
 Told track(const Options& options, const Landmarks& landmarks, TrackingState state = TrackingState::tracking,
-           double sigma = 0.5, double from = kStep) {
+           double sigma = 0.5, double from = kStep, std::optional<TrackingState> before = std::nullopt) {
   Haste haste(options, {scene(), 0, ""});
   Told told;
   TrackBatch batch;
   for (double t = kStep; t < 1.0; t += kStep) {
+    if (t >= from && before) haste.receive(feedback(t, *before, {}, sigma));
     if (t >= from) haste.receive(feedback(t, state, landmarks, sigma));
     haste.advance({t}, batch);
     told.observations.insert(told.observations.end(), batch.observations.begin(), batch.observations.end());
@@ -150,6 +153,16 @@ TEST_CASE("Landmarks are found again while the back-end is degraded, unless that
   CHECK(track(on, known(), TrackingState::degraded).of_known() > 500);
   CHECK(track(off, known(), TrackingState::degraded).of_known() == 0);
   CHECK(track(on, known(), TrackingState::lost).of_known() == 0);
+}
+
+TEST_CASE("What was lost in a map that makes way is not looked for in the next one") {
+  Options options;
+  options.life.border = 40.0;  // trackers end where what they were on is still in view
+  const auto finds = [&](TrackingState before) {
+    return track(options, beginnings(), TrackingState::tracking, 0.5, kStep, before).finds;
+  };
+  CHECK_THAT(finds(TrackingState::degraded), !Catch::Matchers::StartsWith("0 landmarks found again"));
+  CHECK_THAT(finds(TrackingState::no_map), Catch::Matchers::StartsWith("0 landmarks found again"));
 }
 
 TEST_CASE("Trackers far from where landmarks are expected end, but not while a motion model alone expects them there") {
