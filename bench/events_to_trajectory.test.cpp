@@ -221,9 +221,8 @@ TEST_CASE("A sensor that tells nothing while the camera moves on: said, and then
       REQUIRE(result.pieces.size() == 1);
       check_recovered(scene, execution, gap.to + 1.0);
       CHECK(error(scene, execution, 0.0, 1e9, gap) < 0.015);
-      CHECK(std::ranges::none_of(result.pieces[0].final_trajectory.poses(), [&](const StampedPose& pose) {
-        return pose.t > gap.from + 0.2 && pose.t < gap.to;
-      }));
+      CHECK(std::ranges::none_of(result.pieces[0].final_trajectory.poses(),
+                                 [&](const StampedPose& pose) { return pose.t > gap.from + 0.2 && pose.t < gap.to; }));
     }
   }
 }
