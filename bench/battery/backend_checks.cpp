@@ -155,7 +155,8 @@ void stands_still(const Candidate& candidate) {
   require(early && late, "it has no pose while the camera stands still");
   double extent = 0.0;
   for (const StampedPose& pose : trajectory.poses()) extent = std::max(extent, (pose.T.p - early->p).norm());
-  require((late->p - early->p).norm() <= 0.1 * extent, "it moves by {:.1f} % of the path's extent during the standstill",
+  require((late->p - early->p).norm() <= 0.1 * extent,
+          "it moves by {:.1f} % of the path's extent during the standstill",
           100.0 * (late->p - early->p).norm() / extent);
 }
 

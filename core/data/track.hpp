@@ -17,8 +17,8 @@ struct TrackObservation {
   double sigma = 1.0;               ///< isotropic standard deviation [px]
 };
 
-/// A track has ended: no observation of it follows, unless its landmark is found again by a front-end that looks for what
-/// the back-end expects (exchange.hpp). Then it goes on.
+/// A track has ended: no observation of it follows, unless its landmark is found again by a front-end that looks for
+/// what the back-end expects (exchange.hpp). Then it goes on.
 struct TrackEnd {
   TrackId track = 0;
   double t = 0.0;  ///< [s], sequence time; not before the track's last observation

@@ -264,7 +264,9 @@ TEST_CASE("The pictures' times beside the events are told") {
 
 TEST_CASE("Times too late for microseconds ask for their unit, times of day are read to the microsecond") {
   const std::string nanoseconds = "1700000000123456789 1 2 1\n";
-  CHECK_THROWS_WITH(text(nanoseconds), Catch::Contains("too late for microseconds; give --columns (source.columns in a run's config) with t_ns"));
+  CHECK_THROWS_WITH(
+      text(nanoseconds),
+      Catch::Contains("too late for microseconds; give --columns (source.columns in a run's config) with t_ns"));
   CHECK(read_all(*text(nanoseconds, {.columns = "t_ns,x,y,p"})).front().t == 1'700'000'000'123'457);
   CHECK(events_of("1700000000.123456789 1 2 1\n").front().t == 1'700'000'000'123'457);
 }
