@@ -87,7 +87,7 @@ int GpMap::misfits() const {
   }));
 }
 
-/// Both were looked for in vain, another explanation and a reason to doubt.
+/// Once another explanation was looked for in vain on each plane, a map that most tracks fit is doubted no more.
 void GpMap::trust_what_fits() {
   if (world_->doubts == 0 && misfits() <= landmarks_in_view()) world_->trusted = true;
 }
@@ -97,9 +97,8 @@ void GpMap::trust_what_fits() {
 bool GpMap::is_refuted() const {
   constexpr int kMost = 2;   // times as many as are landmarks
   constexpr int kTimes = 3;  // that one makes way
-  const bool data_go_on = graph().states.back().t < until_;
-  if (std::isfinite(online_)) return false;  // it was told of
-  if (!is_in_doubt() || world_->doubts > 0 || !data_go_on || times_refuted_ == kTimes) return false;
+  const bool was_told = std::isfinite(online_), data_go_on = graph().states.back().t < until_;
+  if (was_told || !is_in_doubt() || world_->doubts > 0 || !data_go_on || times_refuted_ == kTimes) return false;
   const int without_place = misfits();
   return without_place >= options_.initialiser.min_tracks && without_place > kMost * landmarks_in_view();
 }
