@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 25);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 26);
 
 constexpr double kEvery = 0.3;     ///< [s] from one learning with hindsight to the next while running
 constexpr double kOneSided = 0.1;  ///< [s] what was seen so shortly ago is known from one side
@@ -57,6 +57,7 @@ void GpMap::step(double t) {
     add_landmarks();
     bound_leverage();
     optimise();
+    check_reappeared();
     learn();
     reconsider_recent();
     world_->nearly_in_view.reset();
@@ -79,7 +80,9 @@ void GpMap::take_observations(double t) {
   const auto ending_later = std::ranges::upper_bound(ending_, t, {}, &TrackEnd::t);
   const auto end = [&](const TrackEnd& ended) {
     const auto track = tracks_.find(ended.track);
-    if (track != tracks_.end()) track->second.ended = true;
+    if (track == tracks_.end()) return;
+    track->second.ended = true;
+    track->second.astray = false;
   };
   in_time_order(
       std::span(pending_.begin(), later), std::span(ending_.begin(), ending_later),
@@ -90,13 +93,25 @@ void GpMap::take_observations(double t) {
 
 void GpMap::take(const TrackObservation& z) {
   Track& track = tracks_[z.track];
+  if (track.astray) return;
   live_.insert(z.track);
-  if (track.role == Track::Role::landmark && !goes_on(track)) split(z.track);
+  if (track.role == Track::Role::landmark) see_landmark(track, z);
   track.ended = false;
   if (track.role == Track::Role::waiting) waiting_.add({&z, 1});
   if (!young_.empty()) young_.add({&z, 1});
   if (track.role == Track::Role::landmark)
     world_->new_observations.emplace_back(track.landmark, to_observation(z, options_.sigma_scale));
+}
+
+/// A landmark that is seen, perhaps again.
+void GpMap::see_landmark(Track& track, const TrackObservation& z) {
+  const bool reappears = track.ended;
+  const std::vector<int>& seen = graph().landmarks[index(track.landmark)].intervals;
+  const int last = seen.empty() ? 0 : seen.back();
+  if (!goes_on(track)) split(z.track);
+  if (reappears && last > 0 && track.role == Track::Role::landmark) {
+    world_->reappeared.emplace_back(z.track, Reappearance{track.landmark, z.t, z.pixel, last});
+  }
 }
 
 /// Whether the landmark of a track that is seen now is the one that it was.

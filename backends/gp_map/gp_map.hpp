@@ -57,6 +57,7 @@ class GpMap : public BackEnd {
     int tried_with = 0;   ///< observations at the last vain attempt to locate it
     bool misfit = false;  ///< that was vain as no place fits them
     bool ended = false;
+    bool astray = false;                           ///< what it shows, until it ends, is not its landmark
     std::optional<Matrix3> covariance = {};        ///< of the landmark, once it is asked for after the track's end
     std::optional<Matrix2> image_covariance = {};  ///< of where it is expected in the image [px²], as of
     std::size_t expected_at = 0;                   ///< so many states
@@ -79,6 +80,7 @@ class GpMap : public BackEnd {
   void trust_parallax();
   void bound_leverage();
   void optimise();
+  void check_reappeared();
   void learn();
   void learn_with_hindsight(const TimeSpan& span, std::span<const double> surplus = {});
   void reconsider_recent();
@@ -95,6 +97,7 @@ class GpMap : public BackEnd {
   int misfits() const;
   void follow_observations(double t, double ahead);
   void take(const TrackObservation& z);
+  void see_landmark(Track& track, const TrackObservation& z);
   bool goes_on(const Track& track);
   void split(TrackId id);
   void become_landmark(TrackId track, int landmark);

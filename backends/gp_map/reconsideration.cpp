@@ -7,8 +7,8 @@
 
 #include "backends/gp_map/gp_map.hpp"
 
-// A map may be wrong: what is explained better otherwise goes on so, and a first map that most tracks do not fit makes
-// way for another one, unless they fitted it once.
+// A map may be wrong: what is explained better otherwise goes on so, a camera that landmarks of before see elsewhere
+// goes on there, and a first map that most tracks do not fit makes way for another one, unless they fitted it once.
 namespace evbench::gp_map {
 namespace {
 
@@ -56,6 +56,41 @@ void GpMap::go_on_with(const RecentExplanation& other) {
     if (is_outlier(j)) become_outlier(j);
   }
   world_->recent.forget();
+}
+
+/// Landmarks that have come back beside where they are expected: the camera is elsewhere, or else those that stay far
+/// off are not what they were taken for, and go back to where they were.
+void GpMap::check_reappeared() {
+  constexpr double kOfLate = 0.2;  // [s]
+  constexpr double kPause = 0.04;  // [s] from one time that the camera may be found elsewhere to the next
+  constexpr double kFar = 3.0;     // [px]
+  auto& reappeared = world_->reappeared;
+  std::erase_if(reappeared, [&](const auto& entry) {
+    const auto track = tracks_.find(entry.first);
+    return track == tracks_.end() || track->second.role != Track::Role::landmark ||
+           track->second.landmark != entry.second.landmark;
+  });
+  const double now = graph().states.back().t;
+  if (!(now < world_->next_relocation)) {
+    world_->next_relocation = now + kPause;
+    std::vector<Reappearance> seen;
+    for (const auto& [track, reappearance] : reappeared) seen.push_back(reappearance);
+    if (relocate(world_->engine, seen)) {
+      context_.log(fmt::format("{:.3f} s: the camera is elsewhere, as landmarks tell that came back", now));
+      world_->recent.forget();
+      reappeared.clear();
+    }
+  }
+  std::erase_if(reappeared, [&](const auto& entry) {
+    const auto& [id, seen] = entry;
+    if (now - seen.t < kOfLate) return false;
+    if (reappearance_error(graph(), seen) > kFar) {
+      world_->engine.remove_observations(seen.landmark, seen.t);
+      tracks_.at(id).ended = tracks_.at(id).astray = true;
+      world_->outliers.push_back(id);
+    }
+    return true;
+  });
 }
 
 /// What did not fit an explanation that was wrong may be a landmark of the right one; where one of it lives, it is not

@@ -13,6 +13,7 @@
 #include "backends/gp_map/prior_learning.hpp"
 #include "backends/gp_map/recent_explanation.hpp"
 #include "backends/gp_map/recent_motion.hpp"
+#include "backends/gp_map/relocation.hpp"
 #include "backends/gp_map/return_budget.hpp"
 #include "backends/gp_map/violent_motion.hpp"
 
@@ -38,7 +39,8 @@ struct World {
                                                 engine.graph().qc)),
         next_hindsight(engine.graph().states.front().t + kHindsight),
         young_until(engine.graph().states.back().t + kYoung),
-        next_look(engine.graph().states.front().t + kFirstLook) {}
+        next_look(engine.graph().states.front().t + kFirstLook),
+        next_relocation(engine.graph().states.back().t) {}
 
   /// Of a landmark: its track, and what its sigmas are multiplied by.
   struct Known {
@@ -77,6 +79,9 @@ struct World {
   std::optional<ExplanationSearch> search;  ///< the look that is under way
   int doubts = kPlanes;                     ///< vain looks that are missing until it is trusted
   bool trusted = false;  ///< those were made, and most tracks fitted it then, or nothing more will tell
+
+  std::vector<std::pair<TrackId, Reappearance>> reappeared;  ///< of late
+  double next_relocation;                                    ///< [s] when these may tell that the camera is elsewhere
 
   // For the front-end: feedback.cpp.
   std::pair<std::size_t, std::optional<Matrix12>> newest_covariance;  ///< as of so many states

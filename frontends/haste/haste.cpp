@@ -16,7 +16,7 @@ namespace {
 
 const Registration<FrontEnd, Haste> registration(
     "haste",
-    "tracks features in events asynchronously by hypotheses (Alzugaray and Chli 2020), finds lost landmarks again", 6);
+    "tracks features in events asynchronously by hypotheses (Alzugaray and Chli 2020), finds lost landmarks again", 7);
 
 constexpr double kApart = 1e-6;  ///< [s] between two observations of a track, at least
 
@@ -87,6 +87,10 @@ void Haste::observe(const Change& change) {
       ++(track.at_corner ? at_corners_ : by_template_).went_on;
     }
   }
+  if (track.displaced && is_as_expected(track.id, z.pixel, z.t)) {
+    track.displaced = false;
+    lost_.forget(track.id);
+  }
   track.told = z.t;
   told_.add(z);
 }
@@ -106,6 +110,7 @@ void Haste::look() {
   looked_ = clock_;
   if (options_.guidance.reacquire) {
     reacquire();
+    reacquire_displaced();
     recognise();
   }
   if (clock_ - detected_ >= options_.detection.interval) replenish();
@@ -124,7 +129,8 @@ void Haste::doubt_trackers() {
 
 /// As the landmark that it is looks now, where it is one.
 void Haste::remember(const Track& track, const Tracker& tracker) {
-  if (!options_.guidance.reacquire || track.probation > 0 || !guidance_.position(track.id)) return;
+  const bool itself = track.probation == 0 && !track.displaced && guidance_.position(track.id);
+  if (!options_.guidance.reacquire || !itself) return;
   lost_.remember(track.id, clock_, tracker.learnt_template(), tracker.state().angle, guidance_);
 }
 
@@ -224,7 +230,8 @@ void Haste::veto_strays() {
   std::size_t expected = 0;
   for (const auto& [tracker, track] : tracks_) {
     const TrackerState& state = trackers_.tracker(tracker).state();
-    const auto prediction = track.probation > 0 ? std::nullopt : guidance_.predict(track.id, seconds(state.t));
+    if (track.probation > 0 || track.displaced) continue;
+    const auto prediction = guidance_.predict(track.id, seconds(state.t));
     if (!prediction) continue;
     ++expected;
     const Vector2 error = state.position - prediction->pixel;
@@ -244,6 +251,21 @@ void Haste::reacquire() {
     ++by_template_.found;
     begin(Tracker(options_.tracker, {0, landmark.pixel, 0.0}, landmark.look),
           {landmark.track, odometer_, landmark.pixel, options_.guidance.probation});
+  }
+}
+
+/// Where the camera has turned unnoticed; trackers that are there are on these landmarks. Whether they are what they
+/// seem is for the back-end to say.
+void Haste::reacquire_displaced() {
+  for (const LostLandmarks::Found& landmark : lost_.find_displaced(guidance_, clock_, recent_, tracked(), camera_)) {
+    std::vector<std::int64_t> there;
+    for (const auto& [tracker, track] : tracks_) {
+      if ((track.pixel - landmark.pixel).norm() < options_.life.crowding) there.push_back(tracker);
+    }
+    for (const std::int64_t tracker : there) end(tracker, End::displaced);
+    ++displaced_;
+    begin(Tracker(options_.tracker, {0, landmark.pixel, 0.0}, landmark.look),
+          {.id = landmark.track, .odometer = odometer_, .pixel = landmark.pixel, .displaced = true});
   }
 }
 
@@ -358,18 +380,20 @@ void Haste::receive(const Feedback& feedback) {
 
 std::vector<std::string> Haste::counts() const {
   const auto ended = [&](End why) { return ended_[index(static_cast<int>(why))]; };
-  return {fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
-          fmt::format("trackers that ended: {} at the border, {} as their hypotheses were alike, {} before an edge, "
-                      "{} starved, {} crowded, {} far from where they were expected, {} as outliers, {} wandering in "
-                      "noise, {} before something else after a silence",
-                      ended(End::border), ended(End::spread), ended(End::edge), ended(End::starvation),
-                      ended(End::crowding), ended(End::veto), ended(End::outlier), ended(End::wandering),
-                      ended(End::silence)),
-          fmt::format(
-              "{} landmarks found again, of which {} went on; {} at corners, of which {} went on; {} recognised "
-              "after a loss",
-              by_template_.found, by_template_.went_on, at_corners_.found, at_corners_.went_on, ended(End::recognised)),
-          fmt::format("{} observations came later than the delay", late_)};
+  return {
+      fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
+      fmt::format("trackers that ended: {} at the border, {} as their hypotheses were alike, {} before an edge, "
+                  "{} starved, {} crowded, {} far from where they were expected, {} as outliers, {} wandering in "
+                  "noise, {} before something else after a silence",
+                  ended(End::border), ended(End::spread), ended(End::edge), ended(End::starvation),
+                  ended(End::crowding), ended(End::veto), ended(End::outlier), ended(End::wandering),
+                  ended(End::silence)),
+      fmt::format(
+          "{} landmarks found again, of which {} went on; {} at corners, of which {} went on; {} displaced together; "
+          "{} recognised after a loss",
+          by_template_.found, by_template_.went_on, at_corners_.found, at_corners_.went_on, displaced_,
+          ended(End::recognised)),
+      fmt::format("{} observations came later than the delay", late_)};
 }
 
 }  // namespace evbench::haste

@@ -41,6 +41,7 @@ class Haste : public EventFrontEnd {
     Vector2 pixel = Vector2::Zero();     ///< newest place [px]
     int probation = 0;                   ///< changes of state until a found landmark's track goes on
     bool at_corner = false;              ///< it was found as a corner, not by its template
+    bool displaced = false;              ///< it was found beside where it is expected, and still is there
     double told = -kInfinity;            ///< [s] of its last observation
     double found = -kInfinity;           ///< likewise, when the tracker was last found to follow something
     Vector2 from = pixel;                ///< where it was then [px],
@@ -51,7 +52,19 @@ class Haste : public EventFrontEnd {
   };
 
   /// Why tracks end.
-  enum class End { border, spread, edge, starvation, crowding, veto, outlier, wandering, silence, recognised };
+  enum class End {
+    border,
+    spread,
+    edge,
+    starvation,
+    crowding,
+    veto,
+    outlier,
+    wandering,
+    silence,
+    displaced,
+    recognised
+  };
 
   void take(std::span<const Event> events) override;
   void look() override;
@@ -66,6 +79,7 @@ class Haste : public EventFrontEnd {
   void correct_guidance();
   void veto_strays();
   void reacquire();
+  void reacquire_displaced();
   void recognise();
   void replenish();
   std::optional<TrackId> lost_landmark_at(const Vector2& corner) const;
@@ -90,7 +104,7 @@ class Haste : public EventFrontEnd {
   struct Finds {
     std::size_t found = 0, went_on = 0;
   } by_template_, at_corners_;
-  std::size_t begun_ = 0, late_ = 0;
+  std::size_t displaced_ = 0, begun_ = 0, late_ = 0;
 };
 
 }  // namespace evbench::haste

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "frontends/haste/displacement.hpp"
 #include "frontends/haste/recognition.hpp"
 #include "frontends/haste/tracking/alignment.hpp"
 
@@ -30,6 +31,27 @@ bool LostLandmarks::is_left_alone(TrackId track, double t) const {
   return entry != left_alone_.end() && t < entry->second;
 }
 
+std::vector<LostLandmarks::Candidate> LostLandmarks::expected_in_view(const Guidance& guidance, double t,
+                                                                      const Tracked& tracked,
+                                                                      const Camera& camera) const {
+  std::vector<Candidate> result;
+  for (const auto& [track, lost] : lost_) {
+    if (lost.world != guidance.world() || tracked.has(track)) continue;
+    const std::optional<Guidance::Prediction> expected = guidance.predict(track, t);
+    if (expected && camera.contains(expected->pixel, kPatchRadius)) {
+      result.push_back({track, expected->pixel, lost.tried});
+    }
+  }
+  return result;
+}
+
+/// At no place yet.
+LostLandmarks::Found LostLandmarks::as_expected(TrackId track, const Lost& lost, const Guidance& guidance,
+                                                double t) const {
+  const AppearanceChange change = appearance_change(lost.T_world_camera, guidance.pose(t), *guidance.position(track));
+  return {track, {}, lost.look.warped(lost.angle + change.angle, change.scale)};
+}
+
 std::vector<LostLandmarks::Found> LostLandmarks::find(const Guidance& guidance, double t, const RecentEvents& recent,
                                                       const Tracked& tracked, double distance, const Camera& camera) {
   constexpr std::size_t kAtATime = 4;  // a search costs as much as thousands of events
@@ -38,25 +60,17 @@ std::vector<LostLandmarks::Found> LostLandmarks::find(const Guidance& guidance, 
   if (!guidance.available() || recent.events().empty()) return result;
   forget_before(t - options_.memory);
 
-  struct Candidate {
-    TrackId track;
-    Guidance::Prediction expected;
-    double tried;
-  };
-  std::vector<Candidate> candidates;
-  for (const auto& [track, lost] : lost_) {
-    if (t - lost.tried < kPause || lost.world != guidance.world() || tracked.has(track)) continue;
-    const std::optional<Guidance::Prediction> expected = guidance.predict(track, t);
-    if (!expected || !camera.contains(expected->pixel, kPatchRadius)) continue;
-    const auto is_near = [&](const Vector2& p) { return (p - expected->pixel).norm() < distance; };
-    if (!std::ranges::any_of(tracked.places, is_near)) candidates.push_back({track, *expected, lost.tried});
-  }
+  std::vector<Candidate> candidates = expected_in_view(guidance, t, tracked, camera);
+  std::erase_if(candidates, [&](const Candidate& candidate) {
+    const auto is_near = [&](const Vector2& p) { return (p - candidate.expected).norm() < distance; };
+    return t - candidate.tried < kPause || std::ranges::any_of(tracked.places, is_near);
+  });
   std::ranges::stable_sort(candidates, {}, &Candidate::tried);
   if (candidates.size() > kAtATime) candidates.resize(kAtATime);
   for (const Candidate& candidate : candidates) {
     Lost& lost = lost_.at(candidate.track);
     lost.tried = t;
-    auto found = look_for(candidate.track, lost, guidance, candidate.expected.pixel, recent);
+    auto found = look_for(candidate.track, lost, guidance, candidate.expected, recent);
     if (!found) continue;
     const auto is_near = [&](const Found& other) { return (other.pixel - found->pixel).norm() < distance; };
     if (std::ranges::none_of(result, is_near)) result.push_back(std::move(*found));
@@ -77,8 +91,7 @@ std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const
   if (!expected) return std::nullopt;
   const double sigma = std::sqrt(expected->covariance.diagonal().maxCoeff());
   const int radius = std::min(options_.search, static_cast<int>(std::ceil(kNearest + options_.gate * sigma)));
-  const AppearanceChange change = appearance_change(lost.T_world_camera, guidance.pose(t), *guidance.position(track));
-  Found found{track, {}, lost.look.warped(lost.angle + change.angle, change.scale)};
+  Found found = as_expected(track, lost, guidance, t);
   const GridState place{static_cast<int>(std::lround(expected->pixel.x())),
                         static_cast<int>(std::lround(expected->pixel.y())), 0};
   const std::vector<Alignment> places = align_around(found.look, recent.events(), place, radius);
@@ -92,6 +105,32 @@ std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const
   }
   found.pixel = Vector2(best->x, best->y);
   return found;
+}
+
+std::vector<LostLandmarks::Found> LostLandmarks::find_displaced(const Guidance& guidance, double t,
+                                                                const RecentEvents& recent, const Tracked& tracked,
+                                                                const Camera& camera) {
+  constexpr double kPause = 0.05, kQuietPause = 0.2;  // [s] to the next look; where enough are where they should be
+  constexpr std::size_t kMost = 40;                   // looked for at a time
+  if (t < next_displaced_ || !guidance.available() || options_.displacement == 0) return {};
+  next_displaced_ = t + kPause;
+  const std::vector<Candidate> candidates = expected_in_view(guidance, t, tracked, camera);
+  std::vector<Displaced> seen;
+  const std::size_t count = std::min(candidates.size(), kMost);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Candidate& candidate = candidates[i * candidates.size() / count];  // those lost long ago as well as of late
+    const Template look = as_expected(candidate.track, lost_.at(candidate.track), guidance, t).look;
+    const auto place = most_like(look, recent.events(), candidate.expected, options_.displacement, options_.similarity);
+    if (place) seen.push_back({candidate.track, *place, *place - candidate.expected});
+  }
+  const std::vector<Displaced> displaced = agreeing_displacement(seen, options_.search);
+  if (displaced.empty() && !agreeing_displacement(seen, 0.0).empty()) next_displaced_ = t + kQuietPause;
+  std::vector<Found> result;
+  for (const Displaced& one : displaced) {
+    result.push_back(as_expected(one.track, lost_.at(one.track), guidance, t));
+    result.back().pixel = one.pixel;
+  }
+  return result;
 }
 
 std::optional<LostLandmarks::Found> LostLandmarks::recognise(const Vector2& about, std::size_t world,

@@ -50,6 +50,11 @@ class LostLandmarks {
   std::vector<Found> find(const Guidance& guidance, double t, const RecentEvents& recent, const Tracked& tracked,
                           double distance, const Camera& camera);
 
+  /// Where the camera is not where the back-end has it, none is where it is expected, but most are displaced by nearly
+  /// the same way: those that agree on one, if they are enough of those that are seen at all. Looks now and then.
+  std::vector<Found> find_displaced(const Guidance& guidance, double t, const RecentEvents& recent,
+                                    const Tracked& tracked, const Camera& camera);
+
   /// The landmark of another world than this one that is seen about a place [px] by its look alone, which the camera
   /// may have turned: it may be anywhere. None of those that are tracked; none where two look as much so.
   std::optional<Found> recognise(const Vector2& about, std::size_t world, const RecentEvents& recent, double t,
@@ -69,13 +74,24 @@ class LostLandmarks {
     SE3 T_world_camera;
     std::size_t world;
   };
+  /// One that is in view, as far as is known.
+  struct Candidate {
+    TrackId track;
+    Vector2 expected;  ///< [px]
+    double tried;      ///< [s]
+  };
+
   void forget_before(double t);
+  std::vector<Candidate> expected_in_view(const Guidance& guidance, double t, const Tracked& tracked,
+                                          const Camera& camera) const;
+  Found as_expected(TrackId track, const Lost& lost, const Guidance& guidance, double t) const;
   bool is_left_alone(TrackId track, double t) const;
   std::optional<Found> look_for(TrackId track, const Lost& lost, const Guidance& guidance, const Vector2& about,
                                 const RecentEvents& recent) const;
 
   GuidanceOptions options_;
   std::map<TrackId, Lost> lost_;
+  double next_displaced_ = 0.0;           ///< [s] when displaced ones are looked for next
   std::map<TrackId, double> left_alone_;  ///< no corner is taken for it until then [s]
 };
 

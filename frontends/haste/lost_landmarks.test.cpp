@@ -1,9 +1,11 @@
 #include "frontends/haste/lost_landmarks.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
+#include "core/support/index.hpp"
 #include "frontends/haste/tracking/testing/event_patterns.hpp"
 #include "frontends/haste/tracking/tracker.hpp"
 
@@ -178,6 +180,49 @@ TEST_CASE("A lost landmark is forgotten in time, when it goes on, and is left al
   CHECK(setting.find(other, seen).empty());
   other.remember(kTrack, 0.0, Template{}, 0.0, setting.guidance_at({}));  // one that has learnt nothing
   CHECK(setting.find(other, seen).empty());
+}
+
+TEST_CASE("Lost landmarks that are displaced together are found, those that are where they should be are not") {
+  const Setting setting;
+  Feedback feedback;
+  feedback.state = TrackingState::tracking;
+  feedback.newest = ControlState{};
+  std::vector<Vector2> places;
+  for (const double y : {50.0, 120.0}) {
+    for (const double x : {50.0, 110.0, 170.0}) {
+      const Vector2 place(x, y);
+      const Vector3 position = 2.0 * setting.camera.pinhole.ray(place);
+      feedback.expected.push_back({static_cast<TrackId>(places.size()), position, place, setting.covariance});
+      places.push_back(place);
+    }
+  }
+  Guidance guidance(setting.camera, true);
+  guidance.receive(feedback);
+  const auto find = [&](const GuidanceOptions& options, const Vector2& displacement) {
+    std::vector<Event> seen;
+    for (const Vector2& place : places) {
+      const std::vector<Event> here = events(corner_lines(), place + displacement);
+      seen.insert(seen.end(), here.begin(), here.end());
+    }
+    std::ranges::stable_sort(seen, {}, &Event::t);
+    RecentEvents recent(15'000);
+    recent.add(seen);
+    LostLandmarks lost(options);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      lost.remember(static_cast<TrackId>(i), 0.0, look(corner_lines()), 0.0, guidance);
+    }
+    auto found = lost.find_displaced(guidance, 0.1, recent, {}, setting.camera);
+    CHECK(lost.find_displaced(guidance, 0.11, recent, {}, setting.camera).empty());  // just looked for
+    return found;
+  };
+  const Vector2 aside(11.0, 6.0);
+  const auto found = find(setting.options, aside);
+  CHECK(found.size() == places.size());
+  for (const LostLandmarks::Found& one : found) CHECK((one.pixel - places[index(one.track)] - aside).norm() < 1.5);
+  CHECK(find(setting.options, {1.0, 0.0}).empty());
+  GuidanceOptions never = setting.options;
+  never.displacement = 0;
+  CHECK(find(never, aside).empty());
 }
 
 TEST_CASE("After a loss a landmark of before is recognised by its look, wherever and however turned it is") {

@@ -45,6 +45,7 @@ struct GuidanceOptions {
   double veto_distance = 5.0;
   int search = 4;
   double similarity = 0.45;
+  int displacement = 20;
   double recognition = 0.55;
   int probation = 4;
   double tolerance = 3.0;
@@ -64,6 +65,10 @@ struct GuidanceOptions {
         .range(1, 50);
     set.add("similarity", similarity, "it is found where the events look at least this much like its template [cosine]")
         .range(0.0, 1.0);
+    set.add("displacement", displacement,
+            "where landmarks are displaced together, as the camera is not where the back-end has it, they are looked "
+            "for within this of their expected places along each axis, now and then [px]; 0: never")
+        .range(0, 100);
     set.add("recognition", recognition,
             "after a loss, until the camera has been found in the world of before, new trackers go on with the tracks "
             "of "

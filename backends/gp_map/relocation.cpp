@@ -1,0 +1,205 @@
+#include "backends/gp_map/relocation.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "backends/gp_map/factors.hpp"
+#include "backends/gp_map/observation_follower.hpp"
+#include "core/geometry/seen_point.hpp"
+#include "core/support/median.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr double kAside = 1.5;       ///< [px] by which most are beside where they are expected, else nothing is wrong
+constexpr std::size_t kEnough = 5;   ///< landmarks that one motion explains,
+constexpr double kMost = 2.0 / 3.0;  ///< as a share of all,
+constexpr double kExplained = 2.0;   ///< to so many pixels,
+constexpr double kStillThere = 3.0;  ///< and so many once nothing holds the pose any more
+constexpr double kHeld = 1e-3;       ///< [rad, units] of the newest pose,
+constexpr double kAhead = 1e-3;      ///< at a state so much later [s]
+constexpr int kHoldingSteps = 8, kSettlingSteps = 4;
+/// What contradicted the present estimate has been taken out of the problem, so its cost is lower than it should be.
+constexpr double kDearer = 0.01, kDearerAnyway = 10.0;
+
+/// Between the states around a time.
+GpInterval interval_at(const FactorGraph& graph, double t) {
+  const std::size_t k = index(graph.interval_of(t));
+  return {graph.states[k - 1], graph.states[k]};
+}
+
+/// A motion of the world frame, T ← D T, and the landmarks that are where they were seen by it.
+struct Displacement {
+  SE3 motion;
+  std::vector<Reappearance> explained;
+};
+
+/// By robust least squares, as if no time passed between the landmarks' first observations.
+std::optional<Displacement> find_displacement(const FactorGraph& graph, std::span<const Reappearance> seen) {
+  constexpr int kIterations = 12, kWideIterations = 4;
+  constexpr double kWide = 8.0;   // [px], the loss's width in the first ones
+  constexpr double kHold = 1e-6;  // damping, for what they don't determine
+  std::vector<SE3> poses;
+  for (const Reappearance& z : seen) poses.push_back(interval_at(graph, z.t).pose(z.t));
+  const SE3& frame = poses.back();  // all are nearly the same
+  Displacement result;
+  const auto point = [&](std::size_t i) -> Vector3 {
+    return (result.motion * poses[i]).inverse() * graph.landmarks[index(seen[i].landmark)].position;
+  };
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const double width = iteration < kWideIterations ? kWide : kExplained;
+    Matrix6 H = kHold * Matrix6::Identity();
+    Vector6 b = Vector6::Zero();
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const Vector3 q = point(i);
+      if (!(q.z() > 0.0)) continue;
+      const Vector2 e = graph.camera.project(q) - seen[i].pixel;
+      const Matrix26 J = graph.camera.project_jacobian(q) * seen_point_jacobian(q);
+      const double share = width * width / (e.squaredNorm() + width * width);
+      H += share * share * J.transpose() * J;
+      b -= share * share * J.transpose() * e;
+    }
+    const Vector6 step = H.ldlt().solve(b);
+    if (!step.allFinite()) return std::nullopt;
+    result.motion = result.motion * frame * se3::exp(step) * frame.inverse();
+  }
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const Vector3 q = point(i);
+    const bool explained = q.z() > 0.0 && (graph.camera.project(q) - seen[i].pixel).norm() < kExplained;
+    if (explained) result.explained.push_back(seen[i]);
+  }
+  return result;
+}
+
+bool has(std::span<const Reappearance> seen, int landmark) {
+  return std::ranges::find(seen, landmark, &Reappearance::landmark) != seen.end();
+}
+
+/// For each state from `first` on, what share of a displacement has come about by then: where time passed, and few
+/// landmarks held the states together, but for those that are seen again. All of it at the newest state but one.
+std::vector<double> shares(const FactorGraph& graph, int first, std::span<const Reappearance> seen) {
+  std::vector<int> holding(graph.states.size() - index(first), 0);  // landmarks seen before a state and after it
+  for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
+    const FactorGraph::Landmark& landmark = graph.landmarks[index(j)];
+    if (!landmark.alive || landmark.intervals.empty() || has(seen, j)) continue;
+    for (int k = std::max(first, landmark.intervals.front()); k < landmark.intervals.back(); ++k) {
+      ++holding[index(k - first)];
+    }
+  }
+  std::vector<double> result;
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < holding.size(); ++i) {
+    const std::size_t k = index(first) + i;
+    const double few = 1.0 / std::max(1, holding[i]);
+    sum += few * few * (graph.states[k].t - graph.states[k - 1].t);
+    result.push_back(sum);
+  }
+  result.push_back(sum);
+  for (double& share : result) share /= sum;
+  return result;
+}
+
+/// Of the intervals from `first` on.
+double cost_since(const FactorGraph& graph, int first) {
+  double cost = 0.0;
+  for (int k = first; k < std::ssize(graph.intervals); ++k) cost += interval_cost(graph, k);
+  return cost;
+}
+
+/// The newest part of an estimate, to go back to.
+class Estimate {
+ public:
+  /// States from `first` on, and the landmarks that are seen there.
+  Estimate(const FactorGraph& graph, int first)
+      : first_(first), states_(graph.states.begin() + first, graph.states.end()) {
+    for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
+      const FactorGraph::Landmark& landmark = graph.landmarks[index(j)];
+      const bool seen = !landmark.intervals.empty() && landmark.intervals.back() >= first;
+      if (landmark.alive && seen) landmarks_.emplace_back(j, landmark.position);
+    }
+  }
+
+  const std::vector<std::pair<int, Vector3>>& landmarks() const { return landmarks_; }
+
+  void place_in(Engine& engine) const {
+    for (std::size_t i = 0; i < states_.size(); ++i) engine.place_state(first_ + static_cast<int>(i), states_[i]);
+    for (const auto& [j, position] : landmarks_) engine.place_landmark(j, position);
+  }
+
+ private:
+  int first_;
+  std::vector<ControlState> states_;
+  std::vector<std::pair<int, Vector3>> landmarks_;
+};
+
+/// Each state, and what was mostly seen since, by its share of a motion; what is seen again stays where it is.
+void displace(Engine& engine, const Estimate& estimate, int first, const SE3& motion,
+              std::span<const Reappearance> seen) {
+  const FactorGraph& graph = engine.graph();
+  const std::vector<double> share = shares(graph, first, seen);
+  const Vector6 increment = se3::log(motion);
+  const auto motion_at = [&](int k) { return se3::exp(share[index(k - first)] * increment); };
+  for (const auto& [j, position] : estimate.landmarks()) {
+    if (has(seen, j)) continue;
+    const std::vector<int>& intervals = graph.landmarks[index(j)].intervals;
+    const int middle = intervals[intervals.size() / 2];
+    if (middle >= first) engine.place_landmark(j, motion_at(middle) * position);
+  }
+  for (int k = first; k < std::ssize(graph.states); ++k) {
+    ControlState state = graph.states[index(k)];
+    state.T = motion_at(k) * state.T;
+    engine.place_state(k, state);
+  }
+}
+
+/// Gauss-Newton steps with the newest pose held where it is.
+void settle_held(Engine& engine) {
+  add_extrapolated_state(engine, engine.graph().states.back().t + kAhead);
+  const int ahead = static_cast<int>(engine.graph().states.size()) - 1;
+  engine.add_pose_prior({ahead, engine.graph().states.back().T, Vector6::Constant(kHeld)});
+  for (int step = 0; step < kHoldingSteps; ++step) engine.update();
+  engine.remove_newest_state();
+}
+
+bool are_most(std::ptrdiff_t some, std::size_t all) {
+  return static_cast<double>(some) >= kMost * static_cast<double>(all);
+}
+
+}  // namespace
+
+double reappearance_error(const FactorGraph& graph, const Reappearance& seen) {
+  const Vector3& position = graph.landmarks[index(seen.landmark)].position;
+  return reprojection_error(interval_at(graph, seen.t), position, {seen.t, seen.pixel, 1.0}, graph.camera);
+}
+
+bool relocate(Engine& engine, std::span<const Reappearance> seen) {
+  if (seen.size() < kEnough) return false;
+  const FactorGraph& graph = engine.graph();
+  std::vector<double> errors;
+  for (const Reappearance& z : seen) errors.push_back(reappearance_error(graph, z));
+  if (median(std::move(errors)) < kAside) return false;
+  const auto found = find_displacement(graph, seen);
+  if (!found || found->explained.size() < kEnough || !are_most(std::ssize(found->explained), seen.size())) return false;
+  const int last = std::ranges::max(found->explained, {}, &Reappearance::last).last;
+  const int first = std::max(last, engine.first_state() + 1) + 1;
+  if (first + 1 >= std::ssize(graph.states)) return false;
+
+  const Estimate before(graph, first);
+  const double cost = cost_since(graph, first);
+  displace(engine, before, first, found->motion, seen);
+  settle_held(engine);
+  for (int step = 0; step < kSettlingSteps; ++step) engine.update();
+  const auto there = std::ranges::count_if(
+      found->explained, [&](const Reappearance& z) { return reappearance_error(graph, z) < kStillThere; });
+  const double most = (1.0 + kDearer) * cost + kDearerAnyway;
+  if (are_most(there, found->explained.size()) && cost_since(graph, first) < most) return true;
+  before.place_in(engine);
+  engine.update();
+  return false;
+}
+
+}  // namespace evbench::gp_map

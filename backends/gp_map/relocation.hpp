@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+
+#include "backends/gp_map/engine/engine.hpp"
+
+namespace evbench::gp_map {
+
+/// A landmark that was seen again after it had been out of view.
+struct Reappearance {
+  int landmark = 0;
+  double t = 0.0;                   ///< [s] of the first observation since
+  Vector2 pixel = Vector2::Zero();  ///< of that, undistorted [px]
+  int last = 0;                     ///< the interval in which it was seen before
+};
+
+/// Distance of its image, at the present estimate, from where it was seen [px]; infinite behind the camera.
+double reappearance_error(const FactorGraph& graph, const Reappearance& seen);
+
+/// In violent motion a turn of the camera and its way can be taken for one another for a moment, and all that comes
+/// into view from then on is placed as the wrong motion says. Gauss-Newton steps do not lead back: landmarks of before,
+/// which are seen again beside where they are expected, are outliers to the robust loss. But by chance hardly any two
+/// of those would be displaced by the same motion.
+///
+/// If that explains most of them, and enough, it is spread over the states since they were seen last, most of it where
+/// few landmarks hold the states together, and the problem is solved from there, at first with the newest pose held.
+/// That stays, unless the landmarks do not, or its cost is clearly higher: then all is as it was. Returns whether it
+/// stays.
+bool relocate(Engine& engine, std::span<const Reappearance> seen);
+
+}  // namespace evbench::gp_map

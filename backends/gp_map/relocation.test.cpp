@@ -1,0 +1,151 @@
+#include "backends/gp_map/relocation.hpp"
+
+#include <catch2/catch.hpp>
+#include <functional>
+#include <vector>
+
+#include "core/simulation/random.hpp"
+
+namespace evbench::gp_map {
+namespace {
+
+constexpr int kStates = 80, kTurn = 40;  // it turns violently in the interval that ends in this state
+constexpr double kStep = 0.01, kSigma = 0.3;
+constexpr int kOld = 12, kNew = 30;
+const Vector6 kUnnoticed = (Vector6() << 0.0, 0.2, 0.0, -0.3, 0.0, 0.0).finished();  // of the camera, there
+
+/// Past landmarks that are seen until the turn and, for the last 0.05 s, again, and others that come into view after
+/// it. `spanning` ones are seen all the time, and tell of the turn; the tracks of `slid` ones go on for a moment as if
+/// it had not been.
+struct Scene {
+  FactorGraph truth;
+  std::vector<Reappearance> seen;
+
+  Scene(int spanning, int slid, const std::function<Vector2(const Vector2&, Random&)>& seen_at) {
+    Random random(3);
+    truth.camera = {200.0, 200.0, 120.0, 90.0};
+    truth.qc = Vector6::Constant(1e3);
+    truth.loss = RobustLoss(RobustLoss::Kind::cauchy, 2.0);
+    ControlState state;
+    state.velocity << 0.0, 0.1, 0.0, 0.3, 0.0, 0.0;
+    for (int k = 0; k < kStates; ++k) {
+      state.t = kStep * k;
+      truth.add_state(state);
+      state.T = state.T * se3::exp(kStep * state.velocity);
+    }
+    truth.pose_priors.push_back({0, truth.states.front().T, Vector6::Constant(1e-4)});
+    const auto add = [&](int from, int until) {
+      const SE3& T = truth.states[index((from + until) / 2)].T;
+      const double depth = random.uniform(1.5, 4.0);
+      const Vector3 ray = truth.camera.ray({random.uniform(30.0, 210.0), random.uniform(30.0, 150.0)});
+      const int j = truth.add_landmark(T * Vector3(depth * ray));
+      observe(j, from, until, random);
+      return j;
+    };
+    for (int i = 0; i < kOld; ++i) {
+      const int j = add(1, kTurn - 1), from = kStates - 5;
+      truth.landmarks[index(j)].prior = {truth.landmarks[index(j)].position, 1e-3};
+      for (int k = from; k < kStates; ++k) {
+        const Vector2 pixel = seen_at(image(j, k), random);
+        if (k == from) seen.push_back({j, kStep * k, pixel, kTurn - 1});
+        truth.add_observation(j, {kStep * k, pixel, 1.0 / kSigma});
+      }
+    }
+    for (int i = 0; i < kNew; ++i) add(kTurn, kStates - 1);
+    for (int i = 0; i < spanning; ++i) add(1, kStates - 1);
+    for (int i = 0; i < slid; ++i) {
+      const int j = add(1, kTurn - 1);
+      for (int k = kTurn; k < kTurn + 5; ++k) {
+        const Vector3 q = (unnoticed() * truth.states[index(k)].T).inverse() * truth.landmarks[index(j)].position;
+        truth.add_observation(j, {kStep * k, truth.camera.project(q), 1.0 / kSigma});
+      }
+    }
+  }
+
+  /// Solved from where the turn was not noticed.
+  Engine misled() const {
+    FactorGraph wrong = truth;
+    const SE3 motion = unnoticed();
+    for (int k = kTurn; k < kStates; ++k) wrong.states[index(k)].T = motion * wrong.states[index(k)].T;
+    for (FactorGraph::Landmark& landmark : wrong.landmarks) {
+      if (landmark.intervals.front() >= kTurn) landmark.position = motion * landmark.position;
+    }
+    return Engine(std::move(wrong), {});
+  }
+
+  double error(const Engine& engine) const {
+    return se3::log(truth.states.back().T.inverse() * engine.graph().states.back().T).norm();
+  }
+
+ private:
+  /// Of the world frame, by which all since the turn is wrong.
+  SE3 unnoticed() const {
+    const SE3& T = truth.states[kTurn].T;
+    return T * se3::exp(kUnnoticed) * T.inverse();
+  }
+
+  Vector2 image(int j, int k) const {
+    return truth.camera.project(truth.states[index(k)].T.inverse() * truth.landmarks[index(j)].position);
+  }
+
+  void observe(int j, int from, int until, Random& random) {
+    for (int k = from; k <= until; ++k) {
+      const Vector2 noise(random.normal(), random.normal());
+      truth.add_observation(j, {kStep * k, image(j, k) + kSigma * noise, 1.0 / kSigma});
+    }
+  }
+};
+
+Vector2 where_it_is(const Vector2& pixel, Random& random) {
+  return pixel + kSigma * Vector2(random.normal(), random.normal());
+}
+
+Vector2 anywhere(const Vector2& pixel, Random& random) {
+  return pixel + Vector2(random.uniform(-20.0, 20.0), random.uniform(-20.0, 20.0));
+}
+
+Vector2 all_aside(const Vector2& pixel, Random& random) { return where_it_is(pixel, random) + Vector2(12.0, 3.0); }
+
+}  // namespace
+
+TEST_CASE("A camera that turned unnoticed is found where most landmarks of before see it") {
+  const Scene scene(0, 10, where_it_is);
+  Engine engine = scene.misled();
+  for (int i = 0; i < 5; ++i) engine.update();
+  REQUIRE(scene.error(engine) > 0.05);  // its steps don't lead back
+  const auto states = engine.graph().states.size();
+  CHECK(relocate(engine, scene.seen));
+  CHECK(engine.graph().states.size() == states);
+  for (const Reappearance& seen : scene.seen) CHECK(reappearance_error(engine.graph(), seen) < 2.0);
+  Engine knowing(scene.truth, {});
+  for (int i = 0; i < 5; ++i) {
+    engine.update();
+    knowing.update();
+  }
+  const SE3 T = engine.graph().states.back().T.inverse() * knowing.graph().states.back().T;
+  CHECK(se3::log(T).norm() < 0.05 * kUnnoticed.norm());  // nearly as if it had been noticed
+  CHECK_FALSE(relocate(engine, scene.seen));             // nothing is wrong any more
+}
+
+TEST_CASE("What few landmarks say, or each says otherwise, moves nothing") {
+  for (const bool few : {true, false}) {
+    const Scene scene(0, 10, few ? where_it_is : anywhere);
+    Engine engine = scene.misled();
+    engine.update();
+    const ControlState before = engine.graph().states.back();
+    CHECK_FALSE(relocate(engine, std::span(scene.seen).first(few ? 4 : scene.seen.size())));
+    CHECK(engine.graph().states.back().T.p == before.T.p);
+  }
+}
+
+TEST_CASE("Landmarks that most others contradict leave the estimate as it was") {
+  const Scene scene(40, 0, all_aside);
+  Engine engine(scene.truth, {});
+  for (int i = 0; i < 5; ++i) engine.update();
+  REQUIRE(scene.error(engine) < 0.005);
+  CHECK_FALSE(relocate(engine, scene.seen));
+  for (int i = 0; i < 5; ++i) engine.update();
+  CHECK(scene.error(engine) < 0.005);
+}
+
+}  // namespace evbench::gp_map
