@@ -103,14 +103,16 @@ void GpMap::take(const TrackObservation& z) {
     world_->new_observations.emplace_back(track.landmark, to_observation(z, options_.sigma_scale));
 }
 
-/// A landmark that is seen, perhaps again.
+/// A landmark that is seen, perhaps again after it had been gone.
 void GpMap::see_landmark(Track& track, const TrackObservation& z) {
-  const bool reappears = track.ended;
-  const std::vector<int>& seen = graph().landmarks[index(track.landmark)].intervals;
-  const int last = seen.empty() ? 0 : seen.back();
-  if (!goes_on(track)) split(z.track);
-  if (reappears && last > 0 && track.role == Track::Role::landmark) {
-    world_->reappeared.emplace_back(z.track, Reappearance{track.landmark, z.t, z.pixel, last});
+  constexpr double kGone = 0.05;  // [s] at least
+  const std::vector<int>& intervals = graph().landmarks[index(track.landmark)].intervals;
+  const int last = intervals.empty() ? 0 : intervals.back();
+  const bool reappears = track.ended && last > 0 && z.t - graph().states[index(last)].t > kGone;
+  if (!goes_on(track)) {
+    split(z.track);
+  } else if (reappears && !world_->reappeared.contains(z.track)) {
+    world_->reappeared[z.track] = {track.landmark, z.t, z.pixel, last};
   }
 }
 
@@ -205,7 +207,7 @@ void GpMap::predict_tracks() {
   placement_.predict([this, noise, newest = graph().states.back()](const TrackObservation& z) {
     std::optional<double> deviation;
     const auto track = tracks_.find(z.track);
-    if (track == tracks_.end() || track->second.role != Track::Role::landmark) return deviation;
+    if (track == tracks_.end() || track->second.role != Track::Role::landmark || track->second.astray) return deviation;
     const SE3 T = extrapolate(newest, z.t - newest.t).T;
     const Vector3 point = T.inverse() * graph().landmarks[index(track->second.landmark)].position;
     if (point.z() > 0.0) {

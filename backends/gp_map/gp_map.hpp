@@ -94,6 +94,7 @@ class GpMap : public BackEnd {
   std::optional<ExplanationSearch> begin_search(Supposed supposed, bool young) const;
   void go_on_with(const RecentExplanation& other);
   void recall_condemned();
+  void send_back(TrackId id, const Reappearance& seen);
   int misfits() const;
   void follow_observations(double t, double ahead);
   void take(const TrackObservation& z);

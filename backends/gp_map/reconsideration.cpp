@@ -59,11 +59,13 @@ void GpMap::go_on_with(const RecentExplanation& other) {
 }
 
 /// Landmarks that have come back beside where they are expected: the camera is elsewhere, or else those that stay far
-/// off are not what they were taken for, and go back to where they were.
+/// off are not what they were taken for, and go back to where they were; unless most are, as then it is the motion that
+/// is wrong.
 void GpMap::check_reappeared() {
   constexpr double kOfLate = 0.2;  // [s]
   constexpr double kPause = 0.04;  // [s] from one time that the camera may be found elsewhere to the next
   constexpr double kFar = 3.0;     // [px]
+  constexpr std::ptrdiff_t kMany = 5;
   auto& reappeared = world_->reappeared;
   std::erase_if(reappeared, [&](const auto& entry) {
     const auto track = tracks_.find(entry.first);
@@ -77,20 +79,29 @@ void GpMap::check_reappeared() {
     for (const auto& [track, reappearance] : reappeared) seen.push_back(reappearance);
     if (relocate(world_->engine, seen)) {
       context_.log(fmt::format("{:.3f} s: the camera is elsewhere, as landmarks tell that came back", now));
+      world_->search.reset();  // it looks for another explanation of what was before
       world_->recent.forget();
-      reappeared.clear();
     }
   }
+  const auto is_far = [&](const auto& entry) { return reappearance_error(graph(), entry.second) > kFar; };
+  const auto far = std::ranges::count_if(reappeared, is_far);
+  const bool judged = !is_young() && (std::ssize(reappeared) < kMany || 2 * far <= std::ssize(reappeared));
   std::erase_if(reappeared, [&](const auto& entry) {
-    const auto& [id, seen] = entry;
-    if (now - seen.t < kOfLate) return false;
-    if (reappearance_error(graph(), seen) > kFar) {
-      world_->engine.remove_observations(seen.landmark, seen.t);
-      tracks_.at(id).ended = tracks_.at(id).astray = true;
-      world_->outliers.push_back(id);
-    }
+    if (now - entry.second.t < kOfLate) return false;
+    if (judged && is_far(entry)) send_back(entry.first, entry.second);
     return true;
   });
+}
+
+/// A track that came back is not its landmark, at least until it ends.
+void GpMap::send_back(TrackId id, const Reappearance& seen) {
+  Track& track = tracks_.at(id);
+  world_->engine.remove_observations(seen.landmark, seen.t);
+  if (!track.ended) {
+    track.astray = true;
+    world_->outliers.push_back(id);
+  }
+  track.ended = true;
 }
 
 /// What did not fit an explanation that was wrong may be a landmark of the right one; where one of it lives, it is not

@@ -185,7 +185,8 @@ bool relocate(Engine& engine, std::span<const Reappearance> seen) {
   const auto found = find_displacement(graph, seen);
   if (!found || found->explained.size() < kEnough || !are_most(std::ssize(found->explained), seen.size())) return false;
   const int last = std::ranges::max(found->explained, {}, &Reappearance::last).last;
-  const int first = std::max(last, engine.first_state() + 1) + 1;
+  constexpr int kSettling = 8;  // states that may be marginalised while it is tried
+  const int first = std::max(last, engine.first_state() > 0 ? engine.first_state() + kSettling : 1) + 1;
   if (first + 1 >= std::ssize(graph.states)) return false;
 
   const Estimate before(graph, first);

@@ -22,10 +22,10 @@ double reappearance_error(const FactorGraph& graph, const Reappearance& seen);
 /// which are seen again beside where they are expected, are outliers to the robust loss. But by chance hardly any two
 /// of those would be displaced by the same motion.
 ///
-/// If that explains most of them, and enough, it is spread over the states since they were seen last, most of it where
-/// few landmarks hold the states together, and the problem is solved from there, at first with the newest pose held.
-/// That stays, unless the landmarks do not, or its cost is clearly higher: then all is as it was. Returns whether it
-/// stays.
+/// If one motion of the camera explains most of them, and enough, it is spread over the states since they were seen
+/// last, most of it where few landmarks hold the states together, and the problem is solved from there, at first with
+/// the newest pose held. That stays, unless the landmarks do not, or its cost is clearly higher: then the estimate goes
+/// back to what it was, but for some Gauss-Newton steps. Returns whether it stays.
 bool relocate(Engine& engine, std::span<const Reappearance> seen);
 
 }  // namespace evbench::gp_map

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -80,8 +81,8 @@ struct World {
   int doubts = kPlanes;                     ///< vain looks that are missing until it is trusted
   bool trusted = false;  ///< those were made, and most tracks fitted it then, or nothing more will tell
 
-  std::vector<std::pair<TrackId, Reappearance>> reappeared;  ///< of late
-  double next_relocation;                                    ///< [s] when these may tell that the camera is elsewhere
+  std::map<TrackId, Reappearance> reappeared;  ///< of late
+  double next_relocation;                      ///< [s] when these may tell that the camera is elsewhere
 
   // For the front-end: feedback.cpp.
   std::pair<std::size_t, std::optional<Matrix12>> newest_covariance;  ///< as of so many states

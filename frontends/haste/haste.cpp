@@ -216,7 +216,7 @@ void Haste::correct_guidance() {
   std::vector<Guidance::Sighting> sightings;
   for (const auto& [tracker, track] : tracks_) {
     const TrackerState& state = trackers_.tracker(tracker).state();
-    if (track.probation == 0) sightings.push_back({track.id, seconds(state.t), state.position});
+    if (track.probation == 0 && !track.displaced) sightings.push_back({track.id, seconds(state.t), state.position});
   }
   guidance_.correct(sightings);
 }
@@ -257,13 +257,14 @@ void Haste::reacquire() {
 /// Where the camera has turned unnoticed; trackers that are there are on these landmarks. Whether they are what they
 /// seem is for the back-end to say.
 void Haste::reacquire_displaced() {
+  if (trackers_.size() >= static_cast<std::size_t>(2 * options_.tracks)) return;
   for (const LostLandmarks::Found& landmark : lost_.find_displaced(guidance_, clock_, recent_, tracked(), camera_)) {
     std::vector<std::int64_t> there;
     for (const auto& [tracker, track] : tracks_) {
       if ((track.pixel - landmark.pixel).norm() < options_.life.crowding) there.push_back(tracker);
     }
     for (const std::int64_t tracker : there) end(tracker, End::displaced);
-    ++displaced_;
+    ++begun_displaced_;
     begin(Tracker(options_.tracker, {0, landmark.pixel, 0.0}, landmark.look),
           {.id = landmark.track, .odometer = odometer_, .pixel = landmark.pixel, .displaced = true});
   }
@@ -346,6 +347,7 @@ void Haste::end(std::int64_t tracker, End why) {
       told_.take_back(track.id, std::max(track.found, clock_ - options_.delay));
     }
     told_.end({track.id, clock_});
+    if (track.displaced && why == End::outlier) lost_.disappoint(track.id, clock_);
     const bool itself = !doubted && (why == End::border || why == End::starvation);
     if (itself) remember(track, trackers_.tracker(tracker));
   }
@@ -391,7 +393,7 @@ std::vector<std::string> Haste::counts() const {
       fmt::format(
           "{} landmarks found again, of which {} went on; {} at corners, of which {} went on; {} displaced together; "
           "{} recognised after a loss",
-          by_template_.found, by_template_.went_on, at_corners_.found, at_corners_.went_on, displaced_,
+          by_template_.found, by_template_.went_on, at_corners_.found, at_corners_.went_on, begun_displaced_,
           ended(End::recognised)),
       fmt::format("{} observations came later than the delay", late_)};
 }

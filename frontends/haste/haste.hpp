@@ -104,7 +104,7 @@ class Haste : public EventFrontEnd {
   struct Finds {
     std::size_t found = 0, went_on = 0;
   } by_template_, at_corners_;
-  std::size_t displaced_ = 0, begun_ = 0, late_ = 0;
+  std::size_t begun_ = 0, begun_displaced_ = 0, late_ = 0;
 };
 
 }  // namespace evbench::haste

@@ -2,13 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 #include <vector>
 
+#include "core/events/event_time.hpp"
 #include "frontends/haste/displacement.hpp"
 #include "frontends/haste/recognition.hpp"
 #include "frontends/haste/tracking/alignment.hpp"
 
 namespace evbench::haste {
+namespace {
+
+/// [s] The events that a tracker looks at stand for the time of the middle one.
+double middle_of(std::span<const Event> window) { return seconds(window[window.size() / 2].t); }
+
+}  // namespace
 
 void LostLandmarks::remember(TrackId track, double t, const Template& look, double angle, const Guidance& guidance) {
   if (!(look.mass() > 0.0)) return;
@@ -84,9 +93,7 @@ std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const
   constexpr double kBeside = 3.0;      // [px] a second place is farther than this from the best one,
   constexpr double kAmbiguous = 0.95;  // and as good if its score is more than this share of the best one
   constexpr double kNearest = 2.0;     // [px] looked at anyway
-  // The events that a tracker looks at stand for the time of the middle one.
-  const std::span<const Event> window = recent.window(about);
-  const double t = static_cast<double>(window[window.size() / 2].t) / 1e6;
+  const double t = middle_of(recent.window(about));
   const auto expected = guidance.predict(track, t);
   if (!expected) return std::nullopt;
   const double sigma = std::sqrt(expected->covariance.diagonal().maxCoeff());
@@ -112,24 +119,35 @@ std::vector<LostLandmarks::Found> LostLandmarks::find_displaced(const Guidance& 
                                                                 const Camera& camera) {
   constexpr double kPause = 0.05, kQuietPause = 0.2;  // [s] to the next look; where enough are where they should be
   constexpr std::size_t kMost = 40;                   // looked for at a time
-  if (t < next_displaced_ || !guidance.available() || options_.displacement == 0) return {};
+  constexpr double kApart = 5.0;                      // [px]: nearer, two landmarks are one corner's
+  if (t < next_displaced_ || !guidance.available() || recent.events().empty() || options_.displacement == 0) return {};
+  forget_before(t - options_.memory);
   next_displaced_ = t + kPause;
-  const std::vector<Candidate> candidates = expected_in_view(guidance, t, tracked, camera);
+  std::vector<Candidate> candidates = expected_in_view(guidance, t, tracked, camera);
+  std::erase_if(candidates, [&](const Candidate& candidate) { return candidate.tried > t; });
   std::vector<Displaced> seen;
+  std::vector<Found> looks;
   const std::size_t count = std::min(candidates.size(), kMost);
   for (std::size_t i = 0; i < count; ++i) {
-    const Candidate& candidate = candidates[i * candidates.size() / count];  // those lost long ago as well as of late
-    const Template look = as_expected(candidate.track, lost_.at(candidate.track), guidance, t).look;
-    const auto place = most_like(look, recent.events(), candidate.expected, options_.displacement, options_.similarity);
-    if (place) seen.push_back({candidate.track, *place, *place - candidate.expected});
+    const auto& [track, about, tried] = candidates[i * candidates.size() / count];  // lost long ago as well as of late
+    const double middle = middle_of(recent.window(about));
+    const auto expected = guidance.predict(track, middle);
+    if (!expected) continue;
+    Found found = as_expected(track, lost_.at(track), guidance, middle);
+    const auto place =
+        most_like(found.look, recent.events(), expected->pixel, options_.displacement, options_.similarity);
+    const auto is_near = [&](const Displaced& other) { return (other.pixel - *place).norm() < kApart; };
+    if (!place || std::ranges::any_of(seen, is_near)) continue;
+    found.pixel = *place;
+    looks.push_back(std::move(found));
+    seen.push_back({track, *place, *place - expected->pixel});
   }
   const std::vector<Displaced> displaced = agreeing_displacement(seen, options_.search);
   if (displaced.empty() && !agreeing_displacement(seen, 0.0).empty()) next_displaced_ = t + kQuietPause;
   std::vector<Found> result;
-  for (const Displaced& one : displaced) {
-    result.push_back(as_expected(one.track, lost_.at(one.track), guidance, t));
-    result.back().pixel = one.pixel;
-  }
+  std::ranges::copy_if(looks, std::back_inserter(result), [&](const Found& found) {
+    return std::ranges::find(displaced, found.track, &Displaced::track) != displaced.end();
+  });
   return result;
 }
 

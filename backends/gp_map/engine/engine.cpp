@@ -265,7 +265,8 @@ void Engine::choose_points() {
     const Variable landmark{Variable::Kind::landmark, returns[i].landmark};
     if (first_stage(landmark) == returns[i].before) move_if_far(landmark);
   }
-  for (int k = std::max(restart_, 0); k <= factorisation_.done(); ++k) {
+  const int newest = static_cast<int>(graph_.states.size()) - 1;  // stages may be done of one that was taken back
+  for (int k = std::max(restart_, 0); k <= std::min(factorisation_.done(), newest); ++k) {
     move_if_far({Variable::Kind::state, k});
     for (const int j : factorisation_.stage(k).entered) move_if_far({Variable::Kind::landmark, j});
   }
