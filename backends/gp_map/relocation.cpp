@@ -15,7 +15,7 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kAside = 1.5;       ///< [px] by which most are beside where they are expected, else nothing is wrong
+constexpr double kAside = 0.8;       ///< [px] by which most are beside where they are expected, else nothing is wrong
 constexpr std::size_t kEnough = 5;   ///< landmarks that one motion explains,
 constexpr double kMost = 2.0 / 3.0;  ///< as a share of all,
 constexpr double kExplained = 2.0;   ///< to so many pixels,
