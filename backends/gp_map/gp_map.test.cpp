@@ -181,6 +181,53 @@ TEST_CASE("Of landmarks that come back as many go on as the budget has, the othe
   CHECK(some > all + 10);
 }
 
+TEST_CASE("A track that comes back beside its landmark is told as an outlier, and its landmark can come back later") {
+  constexpr double kGone = 6.5, kAside = 7.0, kGoneAgain = 7.5, kBack = 8.0, kEnd = 10.0;  // [s]
+  const TrackedScene scene(kEnd, R"({"tracks": {"lifetime": [9.5, 10.0]}})");
+  const auto strays = [](TrackId track) { return track % 30 == 7; };
+  BackEndContext context;
+  context.camera = scene.camera();
+  GpMap backend({}, context);
+  std::set<TrackId> before, aside, after, told;
+  std::set<TrackId> live;
+  TrackBatch batch;
+  for (TrackObservation z : scene.observations()) {
+    if (strays(z.track)) {
+      if ((z.t > kGone && z.t < kAside) || (z.t > kGoneAgain && z.t < kBack)) {
+        if (live.erase(z.track) > 0) batch.ended.push_back({z.track, z.t});
+        continue;
+      }
+      live.insert(z.track);
+      if (z.t < kGone - 1.0) before.insert(z.track);
+      if (z.t > kBack) after.insert(z.track);
+      if (z.t > kAside && z.t < kBack) {
+        aside.insert(z.track);
+        z.pixel += Vector2(12.0, 5.0 * std::sin(z.track));
+      }
+    }
+    batch.observations.push_back(z);
+    if (z.t < batch.until + 0.05) continue;
+    batch.until = z.t;
+    backend.advance(batch);
+    for (const TrackId track : backend.feedback({.any = true}).outliers) told.insert(track);
+    batch = {{}, {}, batch.until};
+  }
+  std::vector<TrackId> all_the_time;
+  for (const TrackId track : before) {
+    if (aside.contains(track) && after.contains(track)) all_the_time.push_back(track);
+  }
+  CHECK(all_the_time.size() >= 2);
+  for (const TrackId track : all_the_time) CHECK(told.contains(track));
+  const auto time = [&](int k) { return backend.graph().states[index(k)].t; };
+  const auto comes_back = [&](const FactorGraph::Landmark& landmark) {
+    return std::ranges::adjacent_find(landmark.intervals, [&](int a, int b) {
+             return time(a) < kAside && time(b) > kBack;
+           }) != landmark.intervals.end();
+  };
+  CHECK(std::ranges::count_if(backend.graph().landmarks, comes_back) == std::ssize(all_the_time));
+  CHECK(backend.status().state == RunState::ok);
+}
+
 TEST_CASE("A track that ends and is seen again before the next state has not ended") {
   const TrackedScene scene(4.0);
   const auto landmarks = [&](bool flickering) {

@@ -181,3 +181,17 @@ TEST_CASE("Trackers far from where landmarks are expected end, but not while a m
   CHECK_THAT(track(options, landmarks, TrackingState::degraded, 0.5, 0.6).trackers,
              Catch::Matchers::Contains(" 0 far from where they were expected"));
 }
+
+TEST_CASE("Lost landmarks that are displaced together are told as what they seem to be, unless that is switched off") {
+  Landmarks landmarks = beginnings();
+  for (auto& [id, position] : landmarks) {
+    if (id % 2 != 0) position.x() += 0.1;  // 10 px; the others tell where the camera is
+  }
+  Options on;
+  on.life.border = 40.0;  // trackers end where what they were on is still in view
+  Options off = on;
+  off.guidance.displacement = 0;
+  CHECK_THAT(track(on, landmarks).finds, !Catch::Matchers::Contains(" 0 displaced together"));
+  CHECK_THAT(track(off, landmarks).finds, Catch::Matchers::Contains(" 0 displaced together"));
+  CHECK_THAT(track(on, beginnings()).finds, Catch::Matchers::Contains(" 0 displaced together"));
+}
