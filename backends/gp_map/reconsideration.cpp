@@ -59,8 +59,8 @@ void GpMap::go_on_with(const RecentExplanation& other) {
 }
 
 /// Landmarks that have come back beside where they are expected: the camera is elsewhere, or else those that stay far
-/// off are not what they were taken for, and go back to where they were; unless most are, as then it is the motion that
-/// is wrong.
+/// off are not what they were taken for, and go back to where they were; unless most of many are, as then it is the
+/// motion that is wrong.
 void GpMap::check_reappeared() {
   constexpr double kOfLate = 0.2;  // [s]
   constexpr double kPause = 0.04;  // [s] from one time that the camera may be found elsewhere to the next

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@ namespace evbench::gp_map {
 namespace {
 
 constexpr double kAside = 0.8;       ///< [px] by which most are beside where they are expected, else nothing is wrong
+constexpr double kLeft = 0.5;        ///< share of that which one motion leaves, or it explains nothing
 constexpr std::size_t kEnough = 5;   ///< landmarks that one motion explains,
 constexpr double kMost = 2.0 / 3.0;  ///< as a share of all,
 constexpr double kExplained = 2.0;   ///< to so many pixels,
@@ -35,6 +37,7 @@ GpInterval interval_at(const FactorGraph& graph, double t) {
 /// A motion of the world frame, T ← D T, and the landmarks that are where they were seen by it.
 struct Displacement {
   SE3 motion;
+  double median_error = 0.0;  ///< of all, by it [px]
   std::vector<Reappearance> explained;
 };
 
@@ -67,11 +70,14 @@ std::optional<Displacement> find_displacement(const FactorGraph& graph, std::spa
     if (!step.allFinite()) return std::nullopt;
     result.motion = result.motion * frame * se3::exp(step) * frame.inverse();
   }
+  std::vector<double> errors;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const Vector3 q = point(i);
-    const bool explained = q.z() > 0.0 && (graph.camera.project(q) - seen[i].pixel).norm() < kExplained;
-    if (explained) result.explained.push_back(seen[i]);
+    constexpr double kBehind = std::numeric_limits<double>::infinity();
+    errors.push_back(q.z() > 0.0 ? (graph.camera.project(q) - seen[i].pixel).norm() : kBehind);
+    if (errors.back() < kExplained) result.explained.push_back(seen[i]);
   }
+  result.median_error = median(std::move(errors));
   return result;
 }
 
@@ -163,6 +169,7 @@ void settle_held(Engine& engine) {
   engine.add_pose_prior({ahead, engine.graph().states.back().T, Vector6::Constant(kHeld)});
   for (int step = 0; step < kHoldingSteps; ++step) engine.update();
   engine.remove_newest_state();
+  engine.place_state(ahead - 1, engine.graph().states.back());  // its stage is redone: the one ahead took its landmarks
 }
 
 bool are_most(std::ptrdiff_t some, std::size_t all) {
@@ -181,9 +188,11 @@ bool relocate(Engine& engine, std::span<const Reappearance> seen) {
   const FactorGraph& graph = engine.graph();
   std::vector<double> errors;
   for (const Reappearance& z : seen) errors.push_back(reappearance_error(graph, z));
-  if (median(std::move(errors)) < kAside) return false;
+  const double aside = median(std::move(errors));
+  if (aside < kAside) return false;
   const auto found = find_displacement(graph, seen);
-  if (!found || found->explained.size() < kEnough || !are_most(std::ssize(found->explained), seen.size())) return false;
+  if (!found || !(found->median_error < kLeft * aside)) return false;
+  if (found->explained.size() < kEnough || !are_most(std::ssize(found->explained), seen.size())) return false;
   const int last = std::ranges::max(found->explained, {}, &Reappearance::last).last;
   constexpr int kSettling = 8;  // states that may be marginalised while it is tried
   const int first = std::max(last, engine.first_state() > 0 ? engine.first_state() + kSettling : 1) + 1;

@@ -2,9 +2,11 @@
 
 #include <catch2/catch.hpp>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/simulation/random.hpp"
+#include "core/support/median.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -136,6 +138,20 @@ TEST_CASE("What few landmarks say, or each says otherwise, moves nothing") {
     CHECK_FALSE(relocate(engine, std::span(scene.seen).first(few ? 4 : scene.seen.size())));
     CHECK(engine.graph().states.back().T.p == before.T.p);
   }
+}
+
+TEST_CASE("Landmarks that are a little aside, each another way, tell of no motion") {
+  const Scene scene(40, 0, [](const Vector2& pixel, Random& random) -> Vector2 {
+    return pixel + Vector2(random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0));
+  });
+  Engine engine(scene.truth, {});
+  for (int i = 0; i < 5; ++i) engine.update();
+  std::vector<double> errors;
+  for (const Reappearance& seen : scene.seen) errors.push_back(reappearance_error(engine.graph(), seen));
+  REQUIRE(median(std::move(errors)) > 1.0);
+  const ControlState before = engine.graph().states.back();
+  CHECK_FALSE(relocate(engine, scene.seen));
+  CHECK(engine.graph().states.back().T.p == before.T.p);
 }
 
 TEST_CASE("Landmarks that most others contradict leave the estimate as it was") {

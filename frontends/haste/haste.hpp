@@ -41,7 +41,7 @@ class Haste : public EventFrontEnd {
     Vector2 pixel = Vector2::Zero();     ///< newest place [px]
     int probation = 0;                   ///< changes of state until a found landmark's track goes on
     bool at_corner = false;              ///< it was found as a corner, not by its template
-    bool displaced = false;              ///< it was found beside where it is expected, and still is there
+    bool displaced = false;              ///< it was found with displaced ones, and not where it is expected since
     double told = -kInfinity;            ///< [s] of its last observation
     double found = -kInfinity;           ///< likewise, when the tracker was last found to follow something
     Vector2 from = pixel;                ///< where it was then [px],
