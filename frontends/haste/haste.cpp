@@ -263,7 +263,7 @@ void Haste::reacquire_displaced() {
     for (const auto& [tracker, track] : tracks_) {
       if ((track.pixel - landmark.pixel).norm() < options_.life.crowding) there.push_back(tracker);
     }
-    for (const std::int64_t tracker : there) end(tracker, End::displaced);
+    for (const std::int64_t tracker : there) end(tracker, End::crowding);
     ++begun_displaced_;
     begin(Tracker(options_.tracker, {0, landmark.pixel, 0.0}, landmark.look),
           {.id = landmark.track, .odometer = odometer_, .pixel = landmark.pixel, .displaced = true});

@@ -52,19 +52,7 @@ class Haste : public EventFrontEnd {
   };
 
   /// Why tracks end.
-  enum class End {
-    border,
-    spread,
-    edge,
-    starvation,
-    crowding,
-    veto,
-    outlier,
-    wandering,
-    silence,
-    displaced,
-    recognised
-  };
+  enum class End { border, spread, edge, starvation, crowding, veto, outlier, wandering, silence, recognised };
 
   void take(std::span<const Event> events) override;
   void look() override;
