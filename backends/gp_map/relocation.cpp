@@ -1,13 +1,16 @@
 #include "backends/gp_map/relocation.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "backends/gp_map/factors.hpp"
 #include "backends/gp_map/observation_follower.hpp"
-#include "core/structure/resection.hpp"
+#include "core/geometry/seen_point.hpp"
 #include "core/support/median.hpp"
 
 namespace evbench::gp_map {
@@ -38,25 +41,43 @@ struct Displacement {
   std::vector<Reappearance> explained;
 };
 
-/// By resection: each landmark, as it is expected from the pose at its time, is a point, and what the camera has moved
-/// from there is taken to be the same for all.
+/// By robust least squares, as if no time passed between the landmarks' first observations.
 std::optional<Displacement> find_displacement(const FactorGraph& graph, std::span<const Reappearance> seen) {
-  std::vector<InversePoint> points;
-  std::vector<Vector2> pixels;
-  for (const Reappearance& z : seen) {
-    const SE3 T = interval_at(graph, z.t).pose(z.t);
-    const Vector3 point = T.inverse() * graph.landmarks[index(z.landmark)].position;
-    points.push_back({point.normalized(), 1.0 / point.norm()});
-    pixels.push_back(z.pixel);
+  constexpr int kIterations = 12, kWideIterations = 4;
+  constexpr double kWide = 8.0;   // [px], the loss's width in the first ones
+  constexpr double kHold = 1e-6;  // damping, for what they don't determine
+  std::vector<SE3> poses;
+  for (const Reappearance& z : seen) poses.push_back(interval_at(graph, z.t).pose(z.t));
+  const SE3& frame = poses.back();  // all are nearly the same
+  Displacement result;
+  const auto point = [&](std::size_t i) -> Vector3 {
+    return (result.motion * poses[i]).inverse() * graph.landmarks[index(seen[i].landmark)].position;
+  };
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const double width = iteration < kWideIterations ? kWide : kExplained;
+    Matrix6 H = kHold * Matrix6::Identity();
+    Vector6 b = Vector6::Zero();
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const Vector3 q = point(i);
+      if (!(q.z() > 0.0)) continue;
+      const Vector2 e = graph.camera.project(q) - seen[i].pixel;
+      const Matrix26 J = graph.camera.project_jacobian(q) * seen_point_jacobian(q);
+      const double share = width * width / (e.squaredNorm() + width * width);
+      H += share * share * J.transpose() * J;
+      b -= share * share * J.transpose() * e;
+    }
+    const Vector6 step = H.ldlt().solve(b);
+    if (!step.allFinite()) return std::nullopt;
+    result.motion = result.motion * frame * se3::exp(step) * frame.inverse();
   }
-  const auto moved = resect(SE3(), points, pixels, graph.camera, kExplained);
-  if (!moved) return std::nullopt;
-  const SE3 frame = interval_at(graph, seen.back().t).pose(seen.back().t);
-  Displacement result{frame * moved->T * frame.inverse(), moved->median_px, {}};
+  std::vector<double> errors;
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    const auto error = image_error(moved->T, points[i], pixels[i], graph.camera);
-    if (error && error->norm() < kExplained) result.explained.push_back(seen[i]);
+    const Vector3 q = point(i);
+    constexpr double kBehind = std::numeric_limits<double>::infinity();
+    errors.push_back(q.z() > 0.0 ? (graph.camera.project(q) - seen[i].pixel).norm() : kBehind);
+    if (errors.back() < kExplained) result.explained.push_back(seen[i]);
   }
+  result.median_error = median(std::move(errors));
   return result;
 }
 
