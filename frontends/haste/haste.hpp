@@ -59,20 +59,24 @@ class Haste : public EventFrontEnd {
   double complete() const override { return clock_ - options_.delay; }
   void observe(const Change& change);
   bool is_as_expected(TrackId track, const Vector2& pixel, double t) const;
+  void correct_guidance();
+  void replenish();
+  void begin(Tracker tracker, const Track& track);
+
+  // track_life.cpp
   void doubt_trackers();
-  void remember(const Track& track, const Tracker& tracker);
   void end_strangers();
   void end_wanderers();
   void end_trackers();
-  void correct_guidance();
   void veto_strays();
+  void end(std::int64_t tracker, End why);
+
+  // reacquisition.cpp
+  void remember(const Track& track, const Tracker& tracker);
   void reacquire();
   void reacquire_displaced();
   void recognise();
-  void replenish();
   std::optional<TrackId> lost_landmark_at(const Vector2& corner) const;
-  void end(std::int64_t tracker, End why);
-  void begin(Tracker tracker, const Track& track);
   LostLandmarks::Tracked tracked() const;
 
   Options options_;

@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "backends/gp_map/gp_map.hpp"
+#include "backends/gp_map/testing/tracked_scene.hpp"
+#include "core/support/index.hpp"
+
+namespace evbench::gp_map {
+
+using testing::TrackedScene;
+
+TEST_CASE("A track that slides off its point keeps its beginning as a landmark, and one that does not all") {
+  const TrackedScene scene(10.0, R"({"tracks": {"lifetime": [4.0, 5.0]}})");
+  constexpr double kAfter = 1.0, kSpeed = 3.0;  // [s], [px/s]: its mean error stays far below the outliers'
+  const auto slides = [](TrackId track) { return track % 5 == 0; };
+  std::map<TrackId, double> begin, end;
+  std::vector<TrackObservation> observations;
+  for (TrackObservation z : scene.observations()) {
+    begin.try_emplace(z.track, z.t);
+    end[z.track] = z.t;
+    const double angle = static_cast<double>(z.track), since = z.t - begin[z.track] - kAfter;
+    if (slides(z.track) && since > 0.0) z.pixel += kSpeed * since * Vector2(std::cos(angle), std::sin(angle));
+    observations.push_back(z);
+  }
+  BackEndContext context;
+  context.camera = scene.camera();
+  GpMap backend({}, context);
+  backend.advance({observations, {}, scene.duration()});
+  backend.finish();
+  int slid = 0, beginnings = 0, sound = 0, whole = 0;
+  for (const Landmark& landmark : backend.map()) {
+    if (end[landmark.track] < begin[landmark.track] + 2.5) continue;
+    const auto& found =
+        std::ranges::find(backend.graph().landmarks, landmark.position, &FactorGraph::Landmark::position);
+    const double last = backend.graph().states[index(found->intervals.back())].t;
+    if (slides(landmark.track)) {
+      ++slid;
+      beginnings += last > begin[landmark.track] + 0.5 && last < end[landmark.track] - 0.5;
+    } else {
+      ++sound;
+      whole += last > end[landmark.track] - 0.2;
+    }
+  }
+  CHECK(slid >= 18);
+  CHECK(beginnings >= slid - 1);
+  CHECK(sound > 20);
+  CHECK(whole == sound);
+}
+
+TEST_CASE("While running, a track that errs more than the others counts less") {
+  const TrackedScene scene(8.0, R"({"tracks": {"lifetime": [2.0, 3.0]}})");
+  const auto errs = [](TrackId track) { return track % 4 == 0; };
+  constexpr double kPeriod = 0.3, kAmplitude = 4.0;  // [s], [px]
+  std::vector<TrackObservation> observations;
+  for (TrackObservation z : scene.observations()) {
+    const double phase = 2.0 * std::numbers::pi * (z.t / kPeriod + 0.1 * static_cast<double>(z.track));
+    if (errs(z.track)) z.pixel += kAmplitude * std::cos(phase) * Vector2(std::cos(z.track), std::sin(z.track));
+    observations.push_back(z);
+  }
+  BackEndContext context;
+  context.camera = scene.camera();
+  Options options;
+  options.final_iterations = 0;
+  GpMap backend(options, context);
+  backend.advance({observations, {}, scene.duration()});
+  backend.finish();
+  int erring = 0, told = 0, sound = 0, trusted = 0;
+  for (const Landmark& landmark : backend.map()) {
+    const auto found =
+        std::ranges::find(backend.graph().landmarks, landmark.position, &FactorGraph::Landmark::position);
+    REQUIRE(found != backend.graph().landmarks.end());
+    const auto& states = backend.graph().states;
+    const double seen = states[index(found->intervals.back())].t - states[index(found->intervals.front())].t;
+    if (seen < 1.5) continue;
+    errs(landmark.track) ? ++erring : ++sound;
+    if (errs(landmark.track))
+      told += found->sigma_scale > 1.5;
+    else
+      trusted += found->sigma_scale < 1.5;
+  }
+  INFO(told << " of " << erring << ", " << trusted << " of " << sound);
+  CHECK(erring >= 5);
+  CHECK(told > 0.8 * erring);
+  CHECK(trusted > 0.9 * sound);
+}
+
+TEST_CASE("Of landmarks that come back as many go on as the budget has, the others become new ones at the same place") {
+  const TrackedScene scene(8.0, R"({"tracks": {"lifetime": [6.0, 8.0]}})");
+  constexpr double kPeriod = 2.0, kGone = 0.7;  // [s]
+  const auto phase = [](const TrackObservation& z) { return z.t + 0.37 * static_cast<double>(z.track); };
+  const auto is_seen = [&](const TrackObservation& z) { return std::fmod(phase(z), kPeriod) > kGone; };
+  const auto landmarks_with = [&](int returns) {
+    BackEndContext context;
+    context.camera = scene.camera();
+    Options options;
+    options.map.returns = returns;
+    GpMap backend(options, context);
+    std::map<TrackId, double> last;
+    TrackBatch batch;
+    for (const TrackObservation& z : scene.observations()) {
+      if (!is_seen(z)) continue;
+      last[z.track] = z.t;
+      for (auto i = last.begin(); i != last.end();) {
+        const bool gone = z.t > i->second + 0.2;
+        if (gone) batch.ended.push_back({i->first, z.t});
+        i = gone ? last.erase(i) : std::next(i);
+      }
+      batch.observations.push_back(z);
+      if (z.t < batch.until + 0.05) continue;
+      batch.until = z.t;
+      backend.advance(batch);
+      batch = {{}, {}, batch.until};
+    }
+    backend.finish();
+    CHECK(backend.status().state == RunState::ok);
+    std::vector<StampedPose> poses;
+    for (const StampedPose& pose : backend.trajectory().poses()) poses.push_back(pose);
+    const Scores scores =
+        score(scene.ground_truth(), PoseTrajectory(std::move(poses)), {.association = "interpolated"});
+    CHECK(scores.ate.trans_percent < 0.5);
+    std::vector<int> over(backend.graph().states.size());
+    for (const FactorGraph::Landmark& landmark : backend.graph().landmarks) {
+      for (std::size_t i = 1; i < landmark.intervals.size(); ++i) {
+        const int from = landmark.intervals[i - 1], to = landmark.intervals[i];
+        const double gap = backend.graph().states[index(to - 1)].t - backend.graph().states[index(from)].t;
+        for (int k = from; gap > 0.5 && k < to; ++k) ++over[index(k)];
+      }
+    }
+    CHECK(std::ranges::max(over) <= returns);
+    return backend.graph().landmarks.size();
+  };
+  const std::size_t none = landmarks_with(0), some = landmarks_with(8), all = landmarks_with(1000);
+  CHECK(none > some + 10);
+  CHECK(some > all + 10);
+}
+
+TEST_CASE("A track that comes back beside its landmark is told as an outlier, and its landmark can come back later") {
+  constexpr double kGone = 6.5, kAside = 7.0, kGoneAgain = 7.5, kBack = 8.0, kEnd = 10.0;  // [s]
+  const TrackedScene scene(kEnd, R"({"tracks": {"lifetime": [9.5, 10.0]}})");
+  const auto strays = [](TrackId track) { return track % 30 == 7; };
+  BackEndContext context;
+  context.camera = scene.camera();
+  GpMap backend({}, context);
+  std::set<TrackId> before, aside, after, told;
+  std::set<TrackId> live;
+  TrackBatch batch;
+  for (TrackObservation z : scene.observations()) {
+    if (strays(z.track)) {
+      if ((z.t > kGone && z.t < kAside) || (z.t > kGoneAgain && z.t < kBack)) {
+        if (live.erase(z.track) > 0) batch.ended.push_back({z.track, z.t});
+        continue;
+      }
+      live.insert(z.track);
+      if (z.t < kGone - 1.0) before.insert(z.track);
+      if (z.t > kBack) after.insert(z.track);
+      if (z.t > kAside && z.t < kBack) {
+        aside.insert(z.track);
+        z.pixel += Vector2(12.0, 5.0 * std::sin(z.track));
+      }
+    }
+    batch.observations.push_back(z);
+    if (z.t < batch.until + 0.05) continue;
+    batch.until = z.t;
+    backend.advance(batch);
+    for (const TrackId track : backend.feedback({.any = true}).outliers) told.insert(track);
+    batch = {{}, {}, batch.until};
+  }
+  std::vector<TrackId> all_the_time;
+  for (const TrackId track : before) {
+    if (aside.contains(track) && after.contains(track)) all_the_time.push_back(track);
+  }
+  CHECK(all_the_time.size() >= 2);
+  for (const TrackId track : all_the_time) CHECK(told.contains(track));
+  const auto time = [&](int k) { return backend.graph().states[index(k)].t; };
+  const auto comes_back = [&](const FactorGraph::Landmark& landmark) {
+    return std::ranges::adjacent_find(landmark.intervals, [&](int a, int b) {
+             return time(a) < kAside && time(b) > kBack;
+           }) != landmark.intervals.end();
+  };
+  CHECK(std::ranges::count_if(backend.graph().landmarks, comes_back) == std::ssize(all_the_time));
+  CHECK(backend.status().state == RunState::ok);
+}
+
+TEST_CASE("A track that ends and is seen again before the next state has not ended") {
+  const TrackedScene scene(4.0);
+  const auto landmarks = [&](bool flickering) {
+    BackEndContext context;
+    context.camera = scene.camera();
+    Options options;
+    options.map.returns = 1000;
+    GpMap backend(options, context);
+    TrackBatch batch{scene.observations(), {}, scene.duration()};
+    std::set<TrackId> seen;
+    for (const TrackObservation& z : batch.observations) {
+      if (!seen.insert(z.track).second && flickering) batch.ended.push_back({z.track, z.t - 1e-6});
+    }
+    backend.advance(batch);
+    CHECK(backend.status().state == RunState::ok);
+    return backend.graph().landmarks.size();
+  };
+  CHECK(landmarks(true) == landmarks(false));
+}
+
+}  // namespace evbench::gp_map

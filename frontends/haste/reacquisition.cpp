@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <utility>
+
+#include "core/events/event_time.hpp"
+#include "frontends/haste/haste.hpp"
+
+// Landmarks whose trackers have ended are found again: where they are expected, displaced together, by their look alone
+// after a loss, or as a corner.
+namespace evbench::haste {
+
+/// As the landmark that it is looks now, where it is one.
+void Haste::remember(const Track& track, const Tracker& tracker) {
+  const bool itself = track.probation == 0 && !track.displaced && guidance_.position(track.id);
+  if (!options_.guidance.reacquire || !itself) return;
+  lost_.remember(track.id, clock_, tracker.learnt_template(), tracker.state().angle, guidance_);
+}
+
+/// Landmarks that come back into view, as long as there is room for them.
+void Haste::reacquire() {
+  if (trackers_.size() >= static_cast<std::size_t>(2 * options_.tracks)) return;
+  const auto found = lost_.find(guidance_, clock_, recent_, tracked(), options_.life.crowding + 1.0, camera_);
+  for (const LostLandmarks::Found& landmark : found) {
+    ++by_template_.found;
+    begin(Tracker(options_.tracker, {0, landmark.pixel, 0.0}, landmark.look),
+          {landmark.track, odometer_, landmark.pixel, options_.guidance.probation});
+  }
+}
+
+/// Where the camera has turned unnoticed; trackers that are there are on these landmarks. Whether they are what they
+/// seem is for the back-end to say.
+void Haste::reacquire_displaced() {
+  if (trackers_.size() >= static_cast<std::size_t>(2 * options_.tracks)) return;
+  for (const LostLandmarks::Found& landmark : lost_.find_displaced(guidance_, clock_, recent_, tracked(), camera_)) {
+    std::vector<std::int64_t> there;
+    for (const auto& [tracker, track] : tracks_) {
+      if ((track.pixel - landmark.pixel).norm() < options_.life.crowding) there.push_back(tracker);
+    }
+    for (const std::int64_t tracker : there) end(tracker, End::crowding);
+    ++begun_displaced_;
+    begin(Tracker(options_.tracker, {0, landmark.pixel, 0.0}, landmark.look),
+          {.id = landmark.track, .odometer = odometer_, .pixel = landmark.pixel, .displaced = true});
+  }
+}
+
+/// After a loss new trackers may be on landmarks of the map that there was, wherever these are now: a few of them are
+/// compared at a time.
+void Haste::recognise() {
+  constexpr std::size_t kAtATime = 4;
+  constexpr int kTimes = 3;
+  if (!lost_.has_of_another(guidance_.world())) return;
+  std::vector<std::int64_t> candidates;
+  for (const auto& [tracker, track] : tracks_) {
+    const bool is_new = track.looked_at < kTimes && track.probation == 0 && !guidance_.position(track.id);
+    if (is_new && trackers_.tracker(tracker).running()) candidates.push_back(tracker);
+  }
+  std::ranges::stable_sort(candidates, {}, [&](std::int64_t tracker) { return tracks_.at(tracker).looked_at; });
+  if (candidates.size() > kAtATime) candidates.resize(kAtATime);
+  for (const std::int64_t tracker : candidates) {
+    Track& track = tracks_.at(tracker);
+    ++track.looked_at;
+    auto found = lost_.recognise(track.pixel, guidance_.world(), recent_, clock_, tracked());
+    if (!found) continue;
+    end(tracker, End::recognised);
+    lost_.forget(found->track);
+    begin(Tracker(options_.tracker, {0, found->pixel, 0.0}, found->look),
+          {.id = found->track, .odometer = odometer_, .pixel = found->pixel, .looked_at = kTimes});
+  }
+}
+
+/// Those with a template have been looked for by it before.
+std::optional<TrackId> Haste::lost_landmark_at(const Vector2& corner) const {
+  const std::span<const Event> window = recent_.window(corner);
+  if (!options_.guidance.reacquire || !options_.guidance.corners || window.empty()) return std::nullopt;
+  return lost_.at_corner(corner, guidance_, seconds(window[window.size() / 2].t), tracked());
+}
+
+LostLandmarks::Tracked Haste::tracked() const {
+  LostLandmarks::Tracked result;
+  for (const auto& [tracker, track] : tracks_) {
+    result.tracks.push_back(track.id);
+    result.places.push_back(track.pixel);
+  }
+  return result;
+}
+
+}  // namespace evbench::haste

@@ -1,0 +1,148 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/events/event_time.hpp"
+#include "core/support/index.hpp"
+#include "core/support/median.hpp"
+#include "frontends/haste/haste.hpp"
+#include "frontends/haste/tracking/alignment.hpp"
+
+// A tracker ends where what it follows can't be told from its surroundings, or is not what it was.
+namespace evbench::haste {
+
+/// A camera that stood still goes on to see what it saw; one that told nothing meanwhile sees something else, of which
+/// trackers would make the old landmarks.
+void Haste::doubt_trackers() {
+  for (auto& [id, track] : tracks_) {
+    const Tracker& tracker = trackers_.tracker(id);
+    if (!tracker.running()) continue;
+    track.doubted = tracker.event_count();
+    remember(track, tracker);
+  }
+}
+
+/// As soon as their windows are of new events.
+void Haste::end_strangers() {
+  for (const std::int64_t id : trackers_.ids()) {
+    const Tracker& tracker = trackers_.tracker(id);
+    Track& track = tracks_.at(id);
+    if (track.doubted < 0 || tracker.event_count() - track.doubted < kWindowSize) continue;
+    track.doubted = -1;
+    std::vector<Event> window;
+    for (int i = 0; i < kWindowSize; ++i) window.push_back(tracker.window().event(i));
+    const Alignment seen = align(tracker.learnt_template(), window, tracker.grid_state());
+    if (seen.score < options_.life.recognition) {
+      end(id, End::silence);
+    } else {
+      lost_.forget(track.id);
+    }
+  }
+}
+
+/// Within a tick, no camera goes far to and fro, and what it sees goes about the same way everywhere: a tracker has
+/// been in the box between where it was and where it is, but for the small steps to and fro that each makes, and goes
+/// with the others. A burst of noise takes each of them somewhere else. What one told since the last tick is then no
+/// observation, and its way none of the image's.
+void Haste::end_wanderers() {
+  constexpr double kAside = 4.0;        // [px] by which the box that it has been in is longer than what it moved
+  constexpr double kFromOthers = 0.05;  // of the image's width; 0.03 at its border in a turn by 660 degrees a second
+  constexpr std::size_t kEnough = 5;
+  std::vector<double> x, y;
+  for (const auto& [tracker, track] : tracks_) {
+    x.push_back(track.pixel.x() - track.from.x());
+    y.push_back(track.pixel.y() - track.from.y());
+  }
+  if (x.empty()) return;
+  const bool enough = x.size() >= kEnough;
+  const Vector2 usual(median(std::move(x)), median(std::move(y)));
+  double way = 0.0;
+  std::vector<std::int64_t> wanderers;
+  for (const auto& [tracker, track] : tracks_) {
+    const Vector2 moved = track.pixel - track.from;
+    const bool aside = track.visited.diagonal().norm() - moved.norm() > kAside;
+    if (!aside && !(enough && (moved - usual).norm() > kFromOthers * camera_.width)) continue;
+    way += track.way;
+    wanderers.push_back(tracker);
+  }
+  if (wanderers.empty()) return;
+  odometer_ -= way / static_cast<double>(tracks_.size());
+  for (auto& [tracker, track] : tracks_) track.odometer = std::min(track.odometer, odometer_);
+  for (const std::int64_t tracker : wanderers) end(tracker, End::wandering);
+}
+
+void Haste::end_trackers() {
+  const LifeOptions& life = options_.life;
+  const auto crowded = [&](std::int64_t tracker, const Vector2& pixel) {
+    return std::ranges::any_of(tracks_, [&](const auto& other) {
+      return other.first < tracker && (other.second.pixel - pixel).norm() < life.crowding;
+    });
+  };
+  for (const std::int64_t id : trackers_.ids()) {
+    const Tracker& tracker = trackers_.tracker(id);
+    Track& track = tracks_.at(id);
+    if (!camera_.contains(track.pixel, life.border)) {
+      end(id, End::border);
+    } else if (tracker.running() && tracker.scores().spread() < life.spread) {
+      end(id, End::spread);
+    } else if (tracker.running() && tracker.scores().weakest_curvature() < life.curvature) {
+      end(id, End::edge);
+    } else if (life.starvation > 0.0 && odometer_ - track.odometer > life.starvation) {
+      end(id, End::starvation);
+    } else if (crowded(id, track.pixel)) {
+      end(id, End::crowding);
+    } else {
+      if (track.doubted < 0) track.found = track.told;
+      track.from = track.pixel;
+      track.way = 0.0;
+      track.visited = Eigen::AlignedBox2d(track.pixel);
+    }
+  }
+}
+
+/// Trackers far from where their landmarks are expected; but when many are, it is the expectation that is wrong, and it
+/// may well be where a motion model alone makes it.
+void Haste::veto_strays() {
+  if (!guidance_.reliable()) return;
+  const GuidanceOptions& guidance = options_.guidance;
+  std::vector<std::int64_t> strays;
+  std::size_t expected = 0;
+  for (const auto& [tracker, track] : tracks_) {
+    const TrackerState& state = trackers_.tracker(tracker).state();
+    if (track.probation > 0 || track.displaced) continue;
+    const auto prediction = guidance_.predict(track.id, seconds(state.t));
+    if (!prediction) continue;
+    ++expected;
+    const Vector2 error = state.position - prediction->pixel;
+    const Matrix2 covariance = prediction->covariance + options_.sigma * options_.sigma * Matrix2::Identity();
+    const double distance = std::sqrt(error.dot(covariance.inverse() * error));
+    if (error.norm() > guidance.veto_distance && distance > guidance.gate) strays.push_back(tracker);
+  }
+  if (3 * strays.size() > expected) return;
+  for (const std::int64_t tracker : strays) end(tracker, End::veto);
+}
+
+/// One whose track is the back-end's landmark is remembered as it looks now, unless it is not that any more.
+void Haste::end(std::int64_t tracker, End why) {
+  const auto found = tracks_.find(tracker);
+  const Track& track = found->second;
+  ++ended_[index(static_cast<int>(why))];
+  if (track.probation > 0) {
+    lost_.disappoint(track.id, clock_);
+  } else {
+    // Nothing of this has been told that is younger than the delay, however the run exchanges.
+    const bool doubted = track.doubted >= 0;  // it ends before it could be looked at
+    if (why == End::wandering || why == End::silence || doubted) {
+      told_.take_back(track.id, std::max(track.found, clock_ - options_.delay));
+    }
+    told_.end({track.id, clock_});
+    if (track.displaced && why == End::outlier) lost_.disappoint(track.id, clock_);
+    const bool itself = !doubted && (why == End::border || why == End::starvation);
+    if (itself) remember(track, trackers_.tracker(tracker));
+  }
+  trackers_.remove(tracker);
+  tracks_.erase(found);
+}
+
+}  // namespace evbench::haste
