@@ -156,7 +156,7 @@ EmptyFolders::~EmptyFolders() {
 }
 
 std::string ground_truth_tum(const Source& source) {
-  const Source::TimeRange range = source.time_range();
+  const TimeRange range = source.time_range();
   return format_tum(source.ground_truth().cut(range.from - kGroundTruthMargin, range.to + kGroundTruthMargin));
 }
 

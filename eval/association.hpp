@@ -1,9 +1,9 @@
 #pragma once
 
-#include <limits>
 #include <span>
 #include <vector>
 
+#include "core/data/time_range.hpp"
 #include "core/motion/pose_trajectory.hpp"
 #include "eval/names.hpp"
 
@@ -15,12 +15,6 @@ enum class AssociationMode {
   interpolated,  ///< the ground truth at the estimate's own time (position linear, rotation slerp)
 };
 inline constexpr NameList<2> kAssociationNames = {"nearest", "interpolated"};
-
-struct TimeRange {
-  double from = -std::numeric_limits<double>::infinity();  ///< [s], closed
-  double to = std::numeric_limits<double>::infinity();     ///< [s], closed
-  bool contains(double t) const { return t >= from && t <= to; }
-};
 
 struct AssociationOptions {
   AssociationMode mode = AssociationMode::nearest;

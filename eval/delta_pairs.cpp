@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "core/geometry/so3.hpp"
@@ -75,9 +74,7 @@ IndexPairs chain(const std::vector<std::size_t>& indices) {
   return result;
 }
 
-double angle_between(const SE3& a, const SE3& b) {
-  return so3::log(a.q.conjugate() * b.q).norm() * 180.0 / std::numbers::pi;
-}
+double angle_between(const SE3& a, const SE3& b) { return so3::log(a.q.conjugate() * b.q).norm() * kDegrees; }
 
 IndexPairs pairs_by_metres(const std::vector<SE3>& poses, const RelativeOptions& options) {
   std::vector<double> steps, place = {0.0};

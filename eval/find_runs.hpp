@@ -15,7 +15,7 @@ namespace evbench {
 /// `unreadable` gets a sentence for each run that can't be read, or whose metrics are missing; nullptr: such a one is
 /// an InputError.
 ///
-/// The runs of a sweep, whose folder has a sweep.json (sweep_plan.hpp), stand in its order, with their places on its
+/// The runs of a sweep, whose folder has a sweep.json (sweep_record.hpp), stand in its order, with their places on its
 /// axes; those that it plans and that are not there, or can't be read, have `done` false; those that it does not plan
 /// (any more) are passed over.
 std::vector<RunRecord> find_runs(std::span<const std::string> folders, std::vector<std::string>* unreadable = nullptr);

@@ -1,14 +1,13 @@
 #include "eval/pose_error.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "core/geometry/so3.hpp"
 
 namespace evbench {
 namespace {
 
-double angle_deg(const Eigen::Quaterniond& q) { return so3::log(q).norm() * 180.0 / std::numbers::pi; }
+double angle_deg(const Eigen::Quaterniond& q) { return so3::log(q).norm() * kDegrees; }
 
 }  // namespace
 

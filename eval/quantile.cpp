@@ -19,6 +19,11 @@ double quantile(std::span<const double> sorted, double p) {
   return low + share * (high - low);
 }
 
+double quantile_of(std::vector<double> values, double p) {
+  std::ranges::sort(values);
+  return quantile(values, p);
+}
+
 Quartiles quartiles(std::vector<double> values) {
   std::ranges::sort(values);
   return {quantile(values, 0.25), quantile(values, 0.5), quantile(values, 0.75)};

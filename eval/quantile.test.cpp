@@ -16,6 +16,7 @@ TEST_CASE("Quartiles are numpy's") {
   CHECK(quantile(sorted, 0.99) == Approx(9.72));  // numpy.percentile(..., 99)
   CHECK(quantile(sorted, 0.0) == 0.0);
   CHECK(quantile(sorted, 1.0) == 10.0);
+  CHECK(quantile_of({2.0, 0.0, 1.0}, 0.75) == 1.5);
   CHECK(std::isnan(quantile({}, 0.5)));
 }
 

@@ -21,8 +21,8 @@ struct BatchSummary {
 };
 
 /// Levenberg-Marquardt over the problem's states and landmarks with a supernodal sparse Cholesky factorisation
-/// (CHOLMOD) of the normal equations. The reference that incremental solvers are
-/// compared with. The estimate never gets worse: steps that raise the cost are undone.
+/// (CHOLMOD) of the normal equations. The reference that incremental solvers are compared with. The estimate never gets
+/// worse: steps that raise the cost are undone.
 BatchSummary solve_batch(FactorGraph& graph, const BatchOptions& options);
 
 /// Marginal covariances at the present estimate (Gauss-Newton approximation, increments on the right).

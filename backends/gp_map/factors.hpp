@@ -45,10 +45,9 @@ void to_held_scale(FactorGraph& graph);
 
 /// ½ Σ ρ of the observations in interval k, whose states are those of `interval`.
 double measurement_cost(const FactorGraph& graph, int k, const GpInterval& interval);
-/// ½ Σ ρ of an interval's observations and motion prior, and of the priors on a state.
 /// The harmonic mean distance of the landmarks seen in interval k from state k − 1; 1 where none is seen.
 double scene_distance(const FactorGraph& graph, int k);
-double expansion_cost(const FactorGraph& graph, int k);
+/// ½ Σ ρ of an interval's observations and motion prior, and of the priors on a state.
 double interval_cost(const FactorGraph& graph, int k);
 double state_prior_cost(const FactorGraph& graph, int state);
 double mean_nearness(const FactorGraph& graph);  ///< of the scale anchor's landmarks; 0 without any

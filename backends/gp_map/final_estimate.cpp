@@ -21,7 +21,8 @@ void GpMap::finish() {
                   reason.empty() ? "no observations" : "no first map: " + reason);
     return;
   }
-  world_->trusted = true;  // nothing more will tell whether the map is right
+  world_->trusted = true;      // nothing more will tell whether the map is right,
+  world_->reappeared.clear();  // nor whether the camera is
   if (options_.final_iterations == 0) {
     world_->engine.settle();
     record_final_prior();

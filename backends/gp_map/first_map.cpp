@@ -30,7 +30,7 @@ double parallax_deg(const FactorGraph& graph) {
   std::vector<double> angles;
   for (const auto& landmark : graph.landmarks) {
     const Vector3 a = landmark.position - graph.states.front().T.p, b = landmark.position - graph.states.back().T.p;
-    angles.push_back(std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / M_PI);
+    angles.push_back(std::atan2(a.cross(b).norm(), a.dot(b)) * kDegrees);
   }
   return median(std::move(angles));
 }

@@ -35,11 +35,17 @@ void GpMap::remove_outliers() {
 
 bool GpMap::is_outlier(int landmark) {
   const FactorGraph::Landmark& l = graph().landmarks[index(landmark)];
-  if (l.intervals.empty()) return false;
+  if (l.intervals.empty() || came_back(landmark)) return false;
   const Observation& last = graph().intervals[index(l.intervals.back())].of(landmark).back();
   const double inverse_sigma = l.sigma_scale * last.inverse_sigma;  // as given
   const double far = options_.map.outlier_threshold * world_->noise.scale_of_means();
   return inverse_sigma * world_->engine.reprojection_mean(landmark) > far;
+}
+
+/// Of late: whether it is where it was is being looked at (check_reappeared()).
+bool GpMap::came_back(int landmark) const {
+  const auto seen = world_->reappeared.find(world_->known[index(landmark)].track);
+  return seen != world_->reappeared.end() && seen->second.landmark == landmark;
 }
 
 void GpMap::add_landmarks() {
@@ -65,7 +71,7 @@ void GpMap::add_landmarks() {
 /// What a landmark's depth was guessed to be is forgotten once it is seen from two sides: what shows no parallax at
 /// first is farther off than most.
 void GpMap::trust_parallax() {
-  const double least = std::sin(options_.map.triangulation.min_parallax_deg * std::numbers::pi / 180.0);
+  const double least = std::sin(options_.map.triangulation.min_parallax_deg / kDegrees);
   const std::vector<ControlState>& states = graph().states;
   std::erase_if(world_->guessed, [&](int j) {
     const FactorGraph::Landmark& landmark = graph().landmarks[index(j)];

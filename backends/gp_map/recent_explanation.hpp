@@ -60,8 +60,7 @@ class ExplanationSearch {
   static std::optional<ExplanationSearch> begin(const FactorGraph& graph, const StateRange& states, int enough,
                                                 Supposed supposed, bool young = false);
 
-  /// Does a share: the linearisation of some 30,000 observations, or of what fewer take as long where states are many.
-  /// False when it has come to its end.
+  /// Does a bounded share of the work. False when it has come to its end.
   bool go_on();
 
   /// At its end: nothing unless the other explanation's cost is clearly lower.

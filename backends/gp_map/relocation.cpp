@@ -11,6 +11,7 @@
 #include "backends/gp_map/factors.hpp"
 #include "backends/gp_map/observation_follower.hpp"
 #include "core/geometry/seen_point.hpp"
+#include "core/structure/point_image.hpp"
 #include "core/support/median.hpp"
 
 namespace evbench::gp_map {
@@ -41,38 +42,40 @@ struct Displacement {
   std::vector<Reappearance> explained;
 };
 
-/// By robust least squares, as if no time passed between the landmarks' first observations.
+/// By robust least squares, in the frame of the newest pose. Each landmark was seen from a pose of its own, as a camera
+/// may turn by 100 degrees within the time over which they came back: the resection of a rig, as it were.
 std::optional<Displacement> find_displacement(const FactorGraph& graph, std::span<const Reappearance> seen) {
   constexpr int kIterations = 12, kWideIterations = 4;
   constexpr double kWide = 8.0;   // [px], the loss's width in the first ones
   constexpr double kHold = 1e-6;  // damping, for what they don't determine
-  std::vector<SE3> poses;
-  for (const Reappearance& z : seen) poses.push_back(interval_at(graph, z.t).pose(z.t));
-  const SE3& frame = poses.back();  // all are nearly the same
-  Displacement result;
+  const SE3& frame = graph.states.back().T;
+  std::vector<SE3> from_frame;  // to the camera that saw it
+  for (const Reappearance& z : seen) from_frame.push_back(interval_at(graph, z.t).pose(z.t).inverse() * frame);
+  SE3 motion;  // of the frame
   const auto point = [&](std::size_t i) -> Vector3 {
-    return (result.motion * poses[i]).inverse() * graph.landmarks[index(seen[i].landmark)].position;
+    return motion.inverse() * (frame.inverse() * graph.landmarks[index(seen[i].landmark)].position);
   };
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const double width = iteration < kWideIterations ? kWide : kExplained;
     Matrix6 H = kHold * Matrix6::Identity();
     Vector6 b = Vector6::Zero();
     for (std::size_t i = 0; i < seen.size(); ++i) {
-      const Vector3 q = point(i);
+      const Vector3 p = point(i), q = from_frame[i] * p;
       if (!(q.z() > 0.0)) continue;
       const Vector2 e = graph.camera.project(q) - seen[i].pixel;
-      const Matrix26 J = graph.camera.project_jacobian(q) * seen_point_jacobian(q);
-      const double share = width * width / (e.squaredNorm() + width * width);
-      H += share * share * J.transpose() * J;
-      b -= share * share * J.transpose() * e;
+      const Matrix26 J = graph.camera.project_jacobian(q) * from_frame[i].R() * seen_point_jacobian(p);
+      const double weight = BoundedLoss{width}.weight(e.squaredNorm());
+      H += weight * J.transpose() * J;
+      b -= weight * J.transpose() * e;
     }
     const Vector6 step = H.ldlt().solve(b);
     if (!step.allFinite()) return std::nullopt;
-    result.motion = result.motion * frame * se3::exp(step) * frame.inverse();
+    motion = motion * se3::exp(step);
   }
+  Displacement result{frame * motion * frame.inverse(), 0.0, {}};
   std::vector<double> errors;
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    const Vector3 q = point(i);
+    const Vector3 q = from_frame[i] * point(i);
     constexpr double kBehind = std::numeric_limits<double>::infinity();
     errors.push_back(q.z() > 0.0 ? (graph.camera.project(q) - seen[i].pixel).norm() : kBehind);
     if (errors.back() < kExplained) result.explained.push_back(seen[i]);

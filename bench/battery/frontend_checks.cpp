@@ -63,7 +63,7 @@ void check_batch(const TrackBatch& batch, const Progress& progress, const FrontE
 
 TrackBatch Candidate::all(double interval, std::size_t most) const {
   const auto frontend = make();
-  const Source::TimeRange range = source_.time_range();
+  const TimeRange range = source_.time_range();
   TrackBatch everything, batch;
   Progress progress{range.from, range.from};
   bool more = true;
@@ -118,7 +118,7 @@ void is_the_same_however_it_is_asked(const Candidate& candidate) {
 
 void bears_any_feedback(const Candidate& candidate) {
   const auto frontend = candidate.make();
-  const Source::TimeRange range = candidate.source().time_range();
+  const TimeRange range = candidate.source().time_range();
   TrackBatch batch;
   Progress progress{range.from, range.from};
   for (int k = 1; k <= 100 && progress.until < range.to; ++k) {

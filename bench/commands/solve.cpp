@@ -11,6 +11,7 @@
 #include "bench/commands/number_check.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
+#include "eval/quantile.hpp"
 
 namespace evbench {
 namespace {
@@ -27,14 +28,6 @@ struct SolveArguments {
   gp_map::SolveOptions options;
 };
 
-/// The nearest-rank quantile.
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  std::ranges::sort(values);
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  return values[std::max<std::size_t>(rank, 1) - 1];
-}
-
 Json report(const SolveArguments& arguments, const gp_map::SolveResult& result) {
   const gp_map::Cost cost = evaluate(result.graph);
   if (!std::isfinite(cost.total())) throw InputError(arguments.problem + ": the solution's cost is not finite");
@@ -45,10 +38,10 @@ Json report(const SolveArguments& arguments, const gp_map::SolveResult& result) 
                {"cost_priors", cost.priors},
                {"steps", result.step_ms.size()},
                {"step_ms",
-                {{"median", quantile(result.step_ms, 0.5)},
-                 {"p95", quantile(result.step_ms, 0.95)},
-                 {"p99", quantile(result.step_ms, 0.99)},
-                 {"max", quantile(result.step_ms, 1.0)}}},
+                {{"median", quantile_of(result.step_ms, 0.5)},
+                 {"p95", quantile_of(result.step_ms, 0.95)},
+                 {"p99", quantile_of(result.step_ms, 0.99)},
+                 {"max", quantile_of(result.step_ms, 1.0)}}},
                {"total_s", result.total_s},
                {"peak_rss_mib", result.peak_mib}};
   if (!result.reason.empty()) json["reason"] = result.reason;

@@ -16,6 +16,7 @@
 
 #include "backends/gp_map/problem_solver.hpp"
 #include "bench/micro/track_problem.hpp"
+#include "eval/quantile.hpp"
 
 namespace {
 
@@ -24,11 +25,6 @@ using gp_map::FactorGraph;
 
 constexpr double kRowsOfStates = 24.0;
 
-double quantile(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
 double median_seconds(int repetitions, const std::function<void()>& call) {
   std::vector<double> seconds;
   for (int i = 0; i < repetitions; ++i) {
@@ -36,7 +32,7 @@ double median_seconds(int repetitions, const std::function<void()>& call) {
     call();
     seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
-  return quantile(seconds, 0.5);
+  return quantile_of(seconds, 0.5);
 }
 
 /// Additions and multiplications, counted from the sizes of what updates did.
@@ -52,7 +48,7 @@ class Operations {
     }
   }
 
-  double root_rows() const { return 12.0 + 3.0 * quantile(live_, 0.5); }
+  double root_rows() const { return 12.0 + 3.0 * quantile_of(live_, 0.5); }
 
   /// Of the update with state k: stages by their rank updates, the root's factor, back-substitution, linearisation.
   double of(std::size_t k, const gp_map::UpdateSummary& update) const {
@@ -112,7 +108,7 @@ void measure(const std::string& name, const TrackProblemOptions& options) {
     flops += operations.of(k, result.updates[k]);
   }
   const auto tenth = static_cast<std::ptrdiff_t>(result.step_ms.size() / 10);
-  const auto median_of = [&](auto begin) { return quantile(std::vector<double>(begin, begin + tenth), 0.5); };
+  const auto median_of = [&](auto begin) { return quantile_of(std::vector<double>(begin, begin + tenth), 0.5); };
   // The first tenth is still filling up.
   const double growth = median_of(result.step_ms.end() - tenth) / median_of(result.step_ms.begin() + tenth);
   const auto [eigen, own] = cholesky_gflops(operations.root_rows());
@@ -121,9 +117,9 @@ void measure(const std::string& name, const TrackProblemOptions& options) {
       "| {:<24} | {:6} | {:8} | {:8.2f} | {:7.2f} | {:7.2f} | {:7.2f} | {:4.2f} | {:5.0f} | {:5.0f} | {:5.1f} | "
       "{:5.1f} | "
       "{:5.1f} | {:5.1f} | {:3.0f} % |\n",
-      name, result.step_ms.size(), problem.observations.size(), result.total_s, quantile(result.step_ms, 0.5),
-      quantile(result.step_ms, 0.99), quantile(result.step_ms, 1.0), growth, quantile(stages, 0.5),
-      quantile(solved_back, 0.5), million_observations_linearised_a_second(result.graph), gflops, eigen, own,
+      name, result.step_ms.size(), problem.observations.size(), result.total_s, quantile_of(result.step_ms, 0.5),
+      quantile_of(result.step_ms, 0.99), quantile_of(result.step_ms, 1.0), growth, quantile_of(stages, 0.5),
+      quantile_of(solved_back, 0.5), million_observations_linearised_a_second(result.graph), gflops, eigen, own,
       100.0 * gflops / eigen);
   std::fflush(stdout);
 }

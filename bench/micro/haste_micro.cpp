@@ -24,7 +24,7 @@
 #include "core/simulation/events/event_simulator.hpp"
 #include "core/simulation/events/scene_brightness.hpp"
 #include "core/simulation/events/scene_truth.hpp"
-#include "core/support/median.hpp"
+#include "eval/quantile.hpp"
 #include "frontends/haste/tracking/testing/plain_tracker.hpp"
 #include "frontends/haste/tracking/tracker_set.hpp"
 
@@ -181,10 +181,6 @@ Errors errors(const Recording& recording, const Tracking& tracking) {
   return result;
 }
 
-double quantile(const std::vector<double>& values, double share) {
-  return values.empty() ? 0.0 : order_statistic(values, share);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -227,8 +223,9 @@ int main(int argc, char** argv) try {
     fmt::print(
         "| {} | {:.1f} | {:.0f} | {:.1f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n",
         name, 1e9 * time / in_range, plain, plain * in_range / (1e9 * time), in_range / count,
-        100.0 * static_cast<double>(tracking.changes.size()) / in_range, 1e-6 * count / time, quantile(e.raw, 0.5),
-        quantile(e.middle, 0.5), quantile(e.refined, 0.5), quantile(e.middle, 0.9), quantile(e.refined, 0.9));
+        100.0 * static_cast<double>(tracking.changes.size()) / in_range, 1e-6 * count / time, quantile_of(e.raw, 0.5),
+        quantile_of(e.middle, 0.5), quantile_of(e.refined, 0.5), quantile_of(e.middle, 0.9),
+        quantile_of(e.refined, 0.9));
     std::fflush(stdout);
   }
   return 0;

@@ -24,6 +24,7 @@
 #include "core/simulation/track_simulator.hpp"
 #include "core/support/index.hpp"
 #include "core/support/median.hpp"
+#include "eval/quantile.hpp"
 
 namespace {
 
@@ -183,11 +184,6 @@ Start start(const Beginning& beginning, std::uint64_t seed) {
   return result;
 }
 
-double quantile(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
 void report(std::string_view name, const std::vector<Start>& starts) {
   const auto share = [&](auto member) {
     return 100.0 * static_cast<double>(std::ranges::count(starts, true, member)) / static_cast<double>(starts.size());
@@ -203,9 +199,10 @@ void report(std::string_view name, const std::vector<Start>& starts) {
       "| {:<16} | {:5.1f} | {:5.1f} | {:5.1f} | {:5.1f} | {:5.2f} | {:5.2f} | {:5.2f} | {:5.2f} | {:5.1f} | {:6.2f} | "
       "{:6.1f} | {:6.1f} | {:6.1f} |\n",
       name, share(&Start::right), share(&Start::right_told), share(&Start::right_later), share(&Start::right_final),
-      quantile(all(&Start::seconds), 0.5), quantile(all(&Start::seconds), 0.9), quantile(all(&Start::told), 0.5),
-      quantile(all(&Start::told), 0.9), 100.0 * quantile(all(&Start::reach), 0.5), quantile(attempts, 0.5),
-      quantile(attempts, 1.0), quantile(all(&Start::first), 0.5), quantile(all(&Start::first), 1.0));
+      quantile_of(all(&Start::seconds), 0.5), quantile_of(all(&Start::seconds), 0.9),
+      quantile_of(all(&Start::told), 0.5), quantile_of(all(&Start::told), 0.9),
+      100.0 * quantile_of(all(&Start::reach), 0.5), quantile_of(attempts, 0.5), quantile_of(attempts, 1.0),
+      quantile_of(all(&Start::first), 0.5), quantile_of(all(&Start::first), 1.0));
   std::fflush(stdout);
 }
 

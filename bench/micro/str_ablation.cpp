@@ -14,6 +14,7 @@
 #include <functional>
 
 #include "core/support/error.hpp"
+#include "core/support/median.hpp"
 #include "frontends/str/registration/registration.hpp"
 #include "frontends/str/registration/testing/rotation_recording.hpp"
 
@@ -116,11 +117,6 @@ void measure(const RotationRecording& recording, double pixels, const Variant& v
     errors.from_rest += align(Matrix3::Zero()).norm() < 0.05 ? 1 : 0;
     ++errors.batches;
   }
-}
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include <ctime>
 
 #include "core/support/error.hpp"
+#include "core/support/median.hpp"
 #include "frontends/str/registration/registration.hpp"
 #include "frontends/str/registration/testing/contrast.hpp"
 #include "frontends/str/registration/testing/rotation_recording.hpp"
@@ -59,11 +60,6 @@ std::size_t mean_size(const std::vector<Batch>& batches) {
 
 double error(const Matrix3& A, const Vector3& omega) {
   return 100.0 * (Vector3(project_onto(MotionModel::rotation, A)) - omega).norm() / omega.norm();
-}
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
 }
 
 void print_row(const RotationRecording& recording, double pixels, std::size_t size, const std::string& method,

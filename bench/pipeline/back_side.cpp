@@ -43,8 +43,8 @@ void carry(Feedback& feedback, const Similarity& transform) {
 
 }  // namespace
 
-BackSide::BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera,
-                   const Source::TimeRange& range, const PipelineOptions& options)
+BackSide::BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera, const TimeRange& range,
+                   const PipelineOptions& options)
     : make_(make),
       context_(std::move(context)),
       camera_(camera),

@@ -20,7 +20,7 @@ namespace evbench {
 /// raw on the front-end's side of it, undistorted on the other.
 class BackSide {
  public:
-  BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera, const Source::TimeRange& range,
+  BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera, const TimeRange& range,
            const PipelineOptions& options);
 
   /// Brings the estimate up to the batch's end.
@@ -55,7 +55,7 @@ class BackSide {
   const MakeBackEnd& make_;
   BackEndContext context_;
   const Camera& camera_;
-  Source::TimeRange range_;
+  TimeRange range_;
   Standstill standstill_;
   bool relocalises_;
   std::vector<std::unique_ptr<Estimator>> estimators_;  ///< the last one is at work

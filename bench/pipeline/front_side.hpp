@@ -38,7 +38,7 @@ class FrontSide : public BatchStream {
 
   FrontEnd& frontend_;
   const Source& source_;
-  Source::TimeRange range_;
+  TimeRange range_;
   const PipelineOptions& options_;
   FeedbackLine& feedback_;
   TrackBatch* kept_;

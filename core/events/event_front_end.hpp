@@ -39,7 +39,7 @@ class EventFrontEnd : public FrontEnd {
   virtual std::vector<std::string> counts() const = 0;
 
   Camera camera_;
-  Source::TimeRange range_;
+  TimeRange range_;
   DelayedTracks told_;
   double clock_;  ///< [s] all events up to here have been taken; while some are, those before them
 

@@ -39,11 +39,10 @@ TEST_CASE("SO(3) log inverts exp from zero to pi") {
   CHECK(so3::log(so3::exp(half_turn)).norm() == Approx(M_PI));
 }
 
-TEST_CASE("SO(3) Jacobians and their derivatives equal central differences") {
+TEST_CASE("SO(3) Jacobians equal central differences") {
   RandomTangents random;
   for (int i = 0; i < kCases; ++i) {
     const Vector3 phi = random.angle(i) * random.direction();
-    const Vector3 v = 2.0 * random.direction();
     const auto right = central_differences<3, 3>(
         [&](const Vector3& d) -> Vector3 { return so3::log(so3::exp(phi).conjugate() * so3::exp(phi + d)); });
     const auto left = central_differences<3, 3>(
@@ -52,12 +51,6 @@ TEST_CASE("SO(3) Jacobians and their derivatives equal central differences") {
     CHECK(relative_error(so3::left_jacobian(phi), left) < kTolerance);
     CHECK((so3::right_jacobian_inverse(phi) * so3::right_jacobian(phi) - Matrix3::Identity()).norm() < 1e-11);
     CHECK((so3::left_jacobian_inverse(phi) * so3::left_jacobian(phi) - Matrix3::Identity()).norm() < 1e-11);
-    const auto d_right =
-        central_differences<3, 3>([&](const Vector3& d) -> Vector3 { return so3::right_jacobian(phi + d) * v; });
-    const auto d_inverse = central_differences<3, 3>(
-        [&](const Vector3& d) -> Vector3 { return so3::right_jacobian_inverse(phi + d) * v; });
-    CHECK(relative_error(so3::d_right_jacobian(phi, v), d_right) < kTolerance);
-    CHECK(relative_error(so3::d_right_jacobian_inverse(phi, v), d_inverse) < kTolerance);
   }
 }
 

@@ -5,18 +5,6 @@
 #include "core/geometry/lie_coefficients.hpp"
 
 namespace evbench::so3 {
-namespace {
-
-/// ∂(v + odd φ×v + even φ×(φ×v))/∂φ for coefficients that are functions of φ².
-Matrix3 d_polynomial(const Vector3& phi, const Vector3& v, double odd, double d_odd, double even, double d_even) {
-  const Vector3 u1 = phi.cross(v);
-  const Vector3 u2 = phi.cross(u1);
-  const Matrix3 d1 = -hat(v);
-  const Matrix3 d2 = -hat(u1) + hat(phi) * d1;
-  return odd * d1 + even * d2 + 2.0 * (d_odd * u1 + d_even * u2) * phi.transpose();
-}
-
-}  // namespace
 
 Matrix3 hat(const Vector3& phi) {
   Matrix3 m;
@@ -56,17 +44,5 @@ Matrix3 left_jacobian_inverse(const Vector3& phi) {
 }
 
 Matrix3 right_jacobian_inverse(const Vector3& phi) { return left_jacobian_inverse(-phi); }
-
-Matrix3 d_right_jacobian(const Vector3& phi, const Vector3& v) {
-  const double z = phi.squaredNorm();
-  const CoefficientJet b = coefficient_b(z);
-  const CoefficientJet c = coefficient_c(z);
-  return d_polynomial(phi, v, -b.f, -b.d, c.f, c.d);
-}
-
-Matrix3 d_right_jacobian_inverse(const Vector3& phi, const Vector3& v) {
-  const CoefficientJet h = inverse_jacobian_coefficient(phi.squaredNorm());
-  return d_polynomial(phi, v, 0.5, 0.0, h.f, h.d);
-}
 
 }  // namespace evbench::so3

@@ -23,8 +23,4 @@ Matrix3 right_jacobian(const Vector3& phi);
 Matrix3 left_jacobian_inverse(const Vector3& phi);
 Matrix3 right_jacobian_inverse(const Vector3& phi);
 
-/// ∂(J_r(φ) v)/∂φ and ∂(J_r(φ)⁻¹ v)/∂φ, analytic.
-Matrix3 d_right_jacobian(const Vector3& phi, const Vector3& v);
-Matrix3 d_right_jacobian_inverse(const Vector3& phi, const Vector3& v);
-
 }  // namespace evbench::so3

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/data/time_range.hpp"
 #include "core/data/track.hpp"
 #include "core/events/event_stream.hpp"
 #include "core/geometry/camera.hpp"
@@ -30,9 +31,6 @@ class Source {
   virtual const Camera& camera() const = 0;
 
   /// The time of the sequence that a run uses, [s]: its clock goes from the one to the other, whatever is seen.
-  struct TimeRange {
-    double from = 0.0, to = 0.0;
-  };
   virtual TimeRange time_range() const = 0;
 
   /// T_world_camera; empty when unknown.

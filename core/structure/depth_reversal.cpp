@@ -29,7 +29,7 @@ InitialGuess reverse_depth(const InitialGuess& guess) {
 
 bool same_motion(const SE3& a, const SE3& b) {
   const double angle = so3::log(a.q.conjugate() * b.q).norm();
-  return angle < 0.5 * M_PI / 180.0 && (a.p - b.p).norm() < 0.05 * std::max(a.p.norm(), b.p.norm());
+  return angle < 0.5 / kDegrees && (a.p - b.p).norm() < 0.05 * std::max(a.p.norm(), b.p.norm());
 }
 
 }  // namespace evbench

@@ -11,8 +11,7 @@
 namespace evbench::haste {
 
 /// Where a look, as it is expected now, is most like what is seen: within `reach` of a place along each axis, or a
-/// pixel more [px], by
-/// the newest of the events (in time order). None whose likeness is at least `similarity`.
+/// pixel more [px], by the newest of the events (in time order). None whose likeness is below `similarity`.
 std::optional<Vector2> most_like(const Template& look, std::span<const Event> events, const Vector2& about, int reach,
                                  double similarity);
 

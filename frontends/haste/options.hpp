@@ -71,8 +71,8 @@ struct GuidanceOptions {
         .range(0, 100);
     set.add("recognition", recognition,
             "after a loss, until the camera has been found in the world of before, new trackers go on with the tracks "
-            "of "
-            "landmarks that the events look at least this much like, wherever they are [cosine]; not without reacquire")
+            "of landmarks that the events look at least this much like, wherever they are [cosine]; not without "
+            "reacquire")
         .range(0.0, 1.0);
     set.add("probation", probation,
             "changes of state through which a found one must be where it is expected before its track goes on; else "

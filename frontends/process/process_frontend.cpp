@@ -17,7 +17,7 @@ double seconds(const Event& event) { return static_cast<double>(event.t) / 1e6; 
 
 Json greeting(const ProcessOptions& options, const FrontEndContext& context) {
   const Camera& camera = context.source.camera();
-  const Source::TimeRange range = context.source.time_range();
+  const TimeRange range = context.source.time_range();
   const PinholeCamera& pinhole = camera.pinhole;
   std::vector<double> coefficients;
   if (camera.distortion != DistortionModel::none) {

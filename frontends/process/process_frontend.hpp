@@ -41,7 +41,7 @@ class ProcessFrontEnd : public FrontEnd {
 
   Dialogue dialogue_;
   std::size_t chunk_;
-  Source::TimeRange range_;
+  TimeRange range_;
   FeedbackNeeds needs_;
   Line feedback_;  ///< to be told next: objects, separated by commas
 

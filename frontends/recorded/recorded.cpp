@@ -53,7 +53,7 @@ Recorded::Recorded(const Options& options, const FrontEndContext& context)
   remark(report.single_observation, "tracks with a single observation");
 
   observations_ = std::move(file.observations);
-  const Source::TimeRange range = context.source.time_range();
+  const TimeRange range = context.source.time_range();
   const double first = observations_.front().t, last = observations_.back().t;
   if (first > range.to || last < range.from) {
     throw InputError(fmt::format("{}: no observation is left between {} and {} s, the source's time range: times {}",

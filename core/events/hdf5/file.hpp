@@ -69,7 +69,6 @@ class Dataset {
   std::uint64_t rows() const { return shape_.empty() ? 1 : shape_[0]; }
   std::uint64_t columns() const;  ///< numbers a row
   const std::vector<std::uint64_t>& shape() const { return shape_; }
-  bool is_float() const { return type_ == Values::Type::f32 || type_ == Values::Type::f64; }
   std::string describe() const;  ///< e.g. "uint16", "float64 x 4"
 
   /// Rows first ... first + count - 1. Throws InputError when the file is broken there.

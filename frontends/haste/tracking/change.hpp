@@ -15,7 +15,6 @@ namespace evbench::haste {
 struct Scores {
   std::array<double, kHypotheses> of{};
 
-  double null() const { return of.front(); }
   double best() const { return *std::max_element(of.begin(), of.end()); }
   double worst() const { return *std::min_element(of.begin(), of.end()); }
   /// (best − worst) / the largest magnitude: small where all hypotheses are as good, so that nothing is tracked. 0 for

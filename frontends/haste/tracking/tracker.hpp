@@ -57,8 +57,7 @@ class Tracker {
   Scores scores() const;  ///< the newest; all zero until it runs
   /// The newest change of state, or start; its `tracker` is −1.
   const Change& change() const { return change_; }
-  std::int64_t event_count() const { return event_count_; }         ///< in range so far
-  std::int64_t t_last_event() const { return window_.newest().t; }  ///< [µs], in range; 0 before the first
+  std::int64_t event_count() const { return event_count_; }  ///< in range so far
   const EventWindow& window() const { return window_; }
   /// Empty until it runs, unless one was given.
   Template learnt_template() const;
