@@ -21,8 +21,7 @@ void GpMap::finish() {
                   reason.empty() ? "no observations" : "no first map: " + reason);
     return;
   }
-  world_->trusted = true;      // nothing more will tell whether the map is right,
-  world_->reappeared.clear();  // nor whether the camera is
+  world_->trusted = true;  // nothing more will tell whether the map is right
   if (options_.final_iterations == 0) {
     world_->engine.settle();
     record_final_prior();

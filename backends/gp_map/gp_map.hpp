@@ -103,7 +103,6 @@ class GpMap : public BackEnd {
   void split(TrackId id);
   void become_landmark(TrackId track, int landmark);
   bool is_outlier(int landmark);
-  bool came_back(int landmark) const;
   void become_outlier(int landmark);
   bool end_track_of(int landmark, Track::Role role);
   void hold_scale_without(int leaving);

@@ -35,17 +35,11 @@ void GpMap::remove_outliers() {
 
 bool GpMap::is_outlier(int landmark) {
   const FactorGraph::Landmark& l = graph().landmarks[index(landmark)];
-  if (l.intervals.empty() || came_back(landmark)) return false;
+  if (l.intervals.empty()) return false;
   const Observation& last = graph().intervals[index(l.intervals.back())].of(landmark).back();
   const double inverse_sigma = l.sigma_scale * last.inverse_sigma;  // as given
   const double far = options_.map.outlier_threshold * world_->noise.scale_of_means();
   return inverse_sigma * world_->engine.reprojection_mean(landmark) > far;
-}
-
-/// Of late: whether it is where it was is being looked at (check_reappeared()).
-bool GpMap::came_back(int landmark) const {
-  const auto seen = world_->reappeared.find(world_->known[index(landmark)].track);
-  return seen != world_->reappeared.end() && seen->second.landmark == landmark;
 }
 
 void GpMap::add_landmarks() {

@@ -87,7 +87,6 @@ void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span) {
   const double far = tail_of(errors) * options_.map.outlier_threshold;
   const double threshold = span.is_everything() ? far : kHasty * far;
   for (const int outlier : outliers(graph(), errors, threshold, span)) {
-    if (came_back(outlier)) continue;
     const int first_seen = graph().landmarks[index(outlier)].intervals.front();
     if (graph().states[index(first_seen)].t > span.from) {
       become_outlier(outlier);
@@ -97,7 +96,7 @@ void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span) {
   }
   for (const auto& [j, error] : errors) {
     const std::optional<double> from = error.slides_from(threshold);
-    if (from && graph().landmarks[index(j)].alive && !came_back(j)) slid_off(j, *from);
+    if (from && graph().landmarks[index(j)].alive) slid_off(j, *from);
   }
 }
 
