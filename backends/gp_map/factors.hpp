@@ -47,6 +47,8 @@ void to_held_scale(FactorGraph& graph);
 double measurement_cost(const FactorGraph& graph, int k, const GpInterval& interval);
 /// The harmonic mean distance of the landmarks seen in interval k from state k − 1; 1 where none is seen.
 double scene_distance(const FactorGraph& graph, int k);
+/// Of interval k's expansion (FactorGraph::expansions).
+double expansion_cost(const FactorGraph& graph, int k);
 /// ½ Σ ρ of an interval's observations and motion prior, and of the priors on a state.
 double interval_cost(const FactorGraph& graph, int k);
 double state_prior_cost(const FactorGraph& graph, int state);

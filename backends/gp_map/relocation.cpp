@@ -42,40 +42,39 @@ struct Displacement {
   std::vector<Reappearance> explained;
 };
 
-/// By robust least squares, in the frame of the newest pose. Each landmark was seen from a pose of its own, as a camera
-/// may turn by 100 degrees within the time over which they came back: the resection of a rig, as it were.
+/// By robust least squares. No resection, as each was seen from a pose of its own, which turns while they come back;
+/// but steps are taken as if it did not: with exact derivatives more motions are found, and estimates end worse.
 std::optional<Displacement> find_displacement(const FactorGraph& graph, std::span<const Reappearance> seen) {
   constexpr int kIterations = 12, kWideIterations = 4;
   constexpr double kWide = 8.0;   // [px], the loss's width in the first ones
   constexpr double kHold = 1e-6;  // damping, for what they don't determine
-  const SE3& frame = graph.states.back().T;
-  std::vector<SE3> from_frame;  // to the camera that saw it
-  for (const Reappearance& z : seen) from_frame.push_back(interval_at(graph, z.t).pose(z.t).inverse() * frame);
-  SE3 motion;  // of the frame
+  std::vector<SE3> poses;
+  for (const Reappearance& z : seen) poses.push_back(interval_at(graph, z.t).pose(z.t));
+  const SE3& frame = poses.back();  // all are nearly the same
+  Displacement result;
   const auto point = [&](std::size_t i) -> Vector3 {
-    return motion.inverse() * (frame.inverse() * graph.landmarks[index(seen[i].landmark)].position);
+    return (result.motion * poses[i]).inverse() * graph.landmarks[index(seen[i].landmark)].position;
   };
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const double width = iteration < kWideIterations ? kWide : kExplained;
     Matrix6 H = kHold * Matrix6::Identity();
     Vector6 b = Vector6::Zero();
     for (std::size_t i = 0; i < seen.size(); ++i) {
-      const Vector3 p = point(i), q = from_frame[i] * p;
+      const Vector3 q = point(i);
       if (!(q.z() > 0.0)) continue;
       const Vector2 e = graph.camera.project(q) - seen[i].pixel;
-      const Matrix26 J = graph.camera.project_jacobian(q) * from_frame[i].R() * seen_point_jacobian(p);
+      const Matrix26 J = graph.camera.project_jacobian(q) * seen_point_jacobian(q);
       const double weight = BoundedLoss{width}.weight(e.squaredNorm());
       H += weight * J.transpose() * J;
       b -= weight * J.transpose() * e;
     }
     const Vector6 step = H.ldlt().solve(b);
     if (!step.allFinite()) return std::nullopt;
-    motion = motion * se3::exp(step);
+    result.motion = result.motion * frame * se3::exp(step) * frame.inverse();
   }
-  Displacement result{frame * motion * frame.inverse(), 0.0, {}};
   std::vector<double> errors;
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    const Vector3 q = from_frame[i] * point(i);
+    const Vector3 q = point(i);
     constexpr double kBehind = std::numeric_limits<double>::infinity();
     errors.push_back(q.z() > 0.0 ? (graph.camera.project(q) - seen[i].pixel).norm() : kBehind);
     if (errors.back() < kExplained) result.explained.push_back(seen[i]);
