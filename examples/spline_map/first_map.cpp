@@ -45,7 +45,7 @@ double parallax_deg(const FirstMap& map, double t1) {
   std::vector<double> angles;
   for (const auto& [id, landmark] : map.landmarks) {
     const Vector3 a = landmark.position - first, b = landmark.position - last;
-    angles.push_back(std::atan2(a.cross(b).norm(), a.dot(b)) * kDegrees);
+    angles.push_back(std::atan2(a.cross(b).norm(), a.dot(b)) * evbench::kDegrees);
   }
   return evbench::median(std::move(angles));
 }
