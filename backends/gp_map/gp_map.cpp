@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 26);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 27);
 
 constexpr double kEvery = 0.3;     ///< [s] from one learning with hindsight to the next while running
 constexpr double kOneSided = 0.1;  ///< [s] what was seen so shortly ago is known from one side

@@ -22,7 +22,7 @@ constexpr double kLeft = 0.5;        ///< share of that which one motion leaves,
 constexpr std::size_t kEnough = 5;   ///< landmarks that one motion explains,
 constexpr double kMost = 2.0 / 3.0;  ///< as a share of all,
 constexpr double kExplained = 2.0;   ///< to so many pixels,
-constexpr double kStillThere = 3.0;  ///< and so many once nothing holds the pose any more
+constexpr double kStillThere = 3.0;  ///< and so many once nothing holds the pose any more, or as it was in its place
 constexpr double kHeld = 1e-3;       ///< [rad, units] of the newest pose,
 constexpr double kAhead = 1e-3;      ///< at a state so much later [s]
 constexpr int kHoldingSteps = 8, kSettlingSteps = 4;
@@ -42,12 +42,13 @@ struct Displacement {
   std::vector<Reappearance> explained;
 };
 
-/// By robust least squares. No resection, as each was seen from a pose of its own, which turns while they come back;
-/// but steps are taken as if it did not: with exact derivatives more motions are found, and estimates end worse.
+/// By robust least squares, the smallest of those that explain it. No resection, as each was seen from a pose of its
+/// own, which turns while they come back; but steps are taken as if it did not: with exact derivatives more motions are
+/// found, and estimates end worse.
 std::optional<Displacement> find_displacement(const FactorGraph& graph, std::span<const Reappearance> seen) {
   constexpr int kIterations = 12, kWideIterations = 4;
   constexpr double kWide = 8.0;   // [px], the loss's width in the first ones
-  constexpr double kHold = 1e-6;  // damping, for what they don't determine
+  constexpr double kUsual = 0.1;  // [rad, median depths]
   std::vector<SE3> poses;
   for (const Reappearance& z : seen) poses.push_back(interval_at(graph, z.t).pose(z.t));
   const SE3& frame = poses.back();  // all are nearly the same
@@ -55,10 +56,15 @@ std::optional<Displacement> find_displacement(const FactorGraph& graph, std::spa
   const auto point = [&](std::size_t i) -> Vector3 {
     return (result.motion * poses[i]).inverse() * graph.landmarks[index(seen[i].landmark)].position;
   };
+  std::vector<double> depths;
+  for (std::size_t i = 0; i < seen.size(); ++i) depths.push_back(point(i).z());
+  const double depth = median(std::move(depths));
+  Vector6 smallness = Vector6::Constant(1.0 / (kUsual * kUsual));
+  smallness.tail<3>() /= depth * depth;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const double width = iteration < kWideIterations ? kWide : kExplained;
-    Matrix6 H = kHold * Matrix6::Identity();
-    Vector6 b = Vector6::Zero();
+    Matrix6 H = smallness.asDiagonal();
+    Vector6 b = -smallness.cwiseProduct(se3::log(frame.inverse() * result.motion * frame));
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const Vector3 q = point(i);
       if (!(q.z() > 0.0)) continue;
@@ -178,6 +184,18 @@ bool are_most(std::ptrdiff_t some, std::size_t all) {
   return static_cast<double>(some) >= kMost * static_cast<double>(all);
 }
 
+/// The newest interval in which it was seen where the estimate has it, before it came back: what came back beside it a
+/// moment ago, and went again, was not. None before the oldest one.
+int last_in_place(const FactorGraph& graph, const Reappearance& seen, int oldest) {
+  const FactorGraph::Landmark& landmark = graph.landmarks[index(seen.landmark)];
+  for (auto k = landmark.intervals.rbegin(); k != landmark.intervals.rend() && *k > oldest; ++k) {
+    if (*k > seen.last) continue;
+    const Observation& z = graph.intervals[index(*k)].of(seen.landmark).back();
+    if (reprojection_error(interval_at(graph, z.t), landmark.position, z, graph.camera) < kStillThere) return *k;
+  }
+  return oldest;
+}
+
 }  // namespace
 
 double reappearance_error(const FactorGraph& graph, const Reappearance& seen) {
@@ -195,9 +213,10 @@ bool relocate(Engine& engine, std::span<const Reappearance> seen) {
   const auto found = find_displacement(graph, seen);
   if (!found || !(found->median_error < kLeft * aside)) return false;
   if (found->explained.size() < kEnough || !are_most(std::ssize(found->explained), seen.size())) return false;
-  const int last = std::ranges::max(found->explained, {}, &Reappearance::last).last;
   constexpr int kSettling = 8;  // states that may be marginalised while it is tried
-  const int first = std::max(last, engine.first_state() > 0 ? engine.first_state() + kSettling : 1) + 1;
+  int last = engine.first_state() > 0 ? engine.first_state() + kSettling : 1;
+  for (const Reappearance& z : found->explained) last = std::max(last, last_in_place(graph, z, last));
+  const int first = last + 1;
   if (first + 1 >= std::ssize(graph.states)) return false;
 
   const Estimate before(graph, first);

@@ -6,6 +6,7 @@
 
 #include "core/data/track.hpp"
 #include "core/events/event.hpp"
+#include "core/geometry/camera.hpp"
 #include "frontends/haste/tracking/template.hpp"
 
 namespace evbench::haste {
@@ -20,10 +21,11 @@ struct Displaced {
   TrackId track = 0;
   Vector2 pixel = Vector2::Zero();         ///< where it is [px]
   Vector2 displacement = Vector2::Zero();  ///< from where it is expected [px]
+  Vector3 point = Vector3::Zero();         ///< the landmark in the camera's frame, as expected
 };
 
-/// The most that are displaced by nearly the same way, as by a motion of the camera that nobody knows of, about one
-/// that is more than `beyond` [px] aside. None where these are few, or few of all: chance.
-std::vector<Displaced> agreeing_displacement(std::span<const Displaced> seen, double beyond);
+/// The most that are where one small motion of the camera that nobody knows of would have displaced them, some by more
+/// than `beyond` [px]. None where these are few, or few of all: chance.
+std::vector<Displaced> displaced_together(std::span<const Displaced> seen, const PinholeCamera& camera, double beyond);
 
 }  // namespace evbench::haste

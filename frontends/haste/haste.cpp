@@ -14,7 +14,7 @@ namespace {
 
 const Registration<FrontEnd, Haste> registration(
     "haste",
-    "tracks features in events asynchronously by hypotheses (Alzugaray and Chli 2020), finds lost landmarks again", 7);
+    "tracks features in events asynchronously by hypotheses (Alzugaray and Chli 2020), finds lost landmarks again", 8);
 
 constexpr double kApart = 1e-6;  ///< [s] between two observations of a track, at least
 

@@ -99,8 +99,8 @@ std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const
   const double sigma = std::sqrt(expected->covariance.diagonal().maxCoeff());
   const int radius = std::min(options_.search, static_cast<int>(std::ceil(kNearest + options_.gate * sigma)));
   Found found = as_expected(track, lost, guidance, t);
-  const GridState place{static_cast<int>(std::lround(expected->pixel.x())),
-                        static_cast<int>(std::lround(expected->pixel.y())), 0};
+  const Pixel place{static_cast<int>(std::lround(expected->pixel.x())),
+                    static_cast<int>(std::lround(expected->pixel.y()))};
   const std::vector<Alignment> places = align_around(found.look, recent.events(), place, radius);
   const auto best = std::ranges::max_element(places, {}, &Alignment::score);
   if (best == places.end() || best->event_count < kWindowSize || best->score < options_.similarity) return std::nullopt;
@@ -117,7 +117,8 @@ std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const
 std::vector<LostLandmarks::Found> LostLandmarks::find_displaced(const Guidance& guidance, double t,
                                                                 const RecentEvents& recent, const Tracked& tracked,
                                                                 const Camera& camera) {
-  constexpr double kPause = 0.05, kQuietPause = 0.2;  // [s] to the next look; where enough are where they should be
+  constexpr double kPause = 0.05, kQuietPause = 0.2;  // [s] to the next look; where most are where they should be,
+  constexpr std::ptrdiff_t kEnough = 5;               // and so many
   constexpr std::size_t kMost = 40;                   // looked for at a time
   constexpr double kApart = 5.0;                      // [px]: nearer, two landmarks are one corner's
   if (t < next_displaced_ || !guidance.available() || recent.events().empty() || options_.displacement == 0) return {};
@@ -140,10 +141,13 @@ std::vector<LostLandmarks::Found> LostLandmarks::find_displaced(const Guidance& 
     if (!place || std::ranges::any_of(seen, is_near)) continue;
     found.pixel = *place;
     looks.push_back(std::move(found));
-    seen.push_back({track, *place, *place - expected->pixel});
+    seen.push_back(
+        {track, *place, *place - expected->pixel, guidance.pose(middle).inverse() * *guidance.position(track)});
   }
-  const std::vector<Displaced> displaced = agreeing_displacement(seen, options_.search);
-  if (displaced.empty() && !agreeing_displacement(seen, 0.0).empty()) next_displaced_ = t + kQuietPause;
+  const auto in_place =
+      std::ranges::count_if(seen, [&](const Displaced& one) { return one.displacement.norm() <= options_.search; });
+  if (in_place >= kEnough && 2 * in_place >= std::ssize(seen)) next_displaced_ = t + kQuietPause;
+  const std::vector<Displaced> displaced = displaced_together(seen, camera.pinhole, options_.search);
   std::vector<Found> result;
   std::ranges::copy_if(looks, std::back_inserter(result), [&](const Found& found) {
     return std::ranges::find(displaced, found.track, &Displaced::track) != displaced.end();

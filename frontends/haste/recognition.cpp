@@ -74,9 +74,13 @@ std::optional<Recognised> recognise(std::span<const KnownLook> looks, std::span<
                     more_like);
   candidates.resize(count);
   for (Candidate& candidate : candidates) {
-    for (const Alignment& seen : align_around(*candidate.known->look, window, candidate.place, kStep - 1)) {
-      if (seen.score <= candidate.likeness) continue;
-      candidate = {candidate.known, {seen.x, seen.y, candidate.place.angle}, seen.score};
+    const GridState middle = candidate.place;
+    for (int y = 1 - kStep; y < kStep; ++y) {
+      for (int x = 1 - kStep; x < kStep; ++x) {
+        const GridState place = middle + Step{x, y, 0};
+        const double like = align(*candidate.known->look, window, place).score;
+        if (like > candidate.likeness) candidate = {candidate.known, place, like};
+      }
     }
   }
   std::ranges::sort(candidates, more_like);

@@ -31,8 +31,13 @@ struct Alignment {
 /// order) in range.
 Alignment align(const Template& wanted, std::span<const Event> events, const GridState& place);
 
-/// The same at all whole pixels no further than `radius` from a place along each axis, row by row.
-std::vector<Alignment> align_around(const Template& wanted, std::span<const Event> events, const GridState& place,
-                                    int radius);
+/// A whole one.
+struct Pixel {
+  int x = 0, y = 0;
+};
+/// The same, not turned, at every `step`th pixel from `radius` before one to no more than that beyond it along each
+/// axis, row by row: many times faster than one by one.
+std::vector<Alignment> align_around(const Template& wanted, std::span<const Event> events, const Pixel& about,
+                                    int radius, int step = 1);
 
 }  // namespace evbench::haste
