@@ -25,6 +25,10 @@ constexpr double kExplained = 2.0;   ///< to so many pixels,
 constexpr double kStillThere = 3.0;  ///< and so many once nothing holds the pose any more, or as it was in its place
 constexpr double kHeld = 1e-3;       ///< [rad, units] of the newest pose,
 constexpr double kAhead = 1e-3;      ///< at a state so much later [s]
+constexpr double kInPlace = 0.75;  ///< share of which this was the last time: where a turn and a way hide one another,
+                                   ///< some are in their places, though the camera is not
+constexpr double kSpread = 2.0, kAtOnce = 6.0;  ///< how the motion came about
+constexpr int kDragged = 50;                    ///< states before it that may be moved a little, too
 constexpr int kHoldingSteps = 8, kSettlingSteps = 4;
 /// What contradicted the present estimate has been taken out of the problem, so its cost is lower than it should be.
 constexpr double kDearer = 0.01, kDearerAnyway = 10.0;
@@ -94,22 +98,23 @@ bool has(std::span<const Reappearance> seen, int landmark) {
 }
 
 /// For each state from `first` on, what share of a displacement has come about by then: where time passed, and few
-/// landmarks held the states together, but for those that are seen again. All of it at the newest state but one.
-std::vector<double> shares(const FactorGraph& graph, int first, std::span<const Reappearance> seen) {
-  std::vector<int> holding(graph.states.size() - index(first), 0);  // landmarks seen before a state and after it
+/// landmarks held the states together, but for those that are seen again; all the more, the larger the `power`. All of
+/// it at the newest state but one.
+std::vector<double> shares(const FactorGraph& graph, int first, std::span<const Reappearance> seen, double power) {
+  std::vector<int> holding(graph.states.size() - index(first) + 1, 0);  // landmarks seen before a state and after it
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
     const FactorGraph::Landmark& landmark = graph.landmarks[index(j)];
     if (!landmark.alive || landmark.intervals.empty() || has(seen, j)) continue;
-    for (int k = std::max(first, landmark.intervals.front()); k < landmark.intervals.back(); ++k) {
-      ++holding[index(k - first)];
+    for (int k = std::max(first - 1, landmark.intervals.front()); k < landmark.intervals.back(); ++k) {
+      ++holding[index(k - first + 1)];
     }
   }
   std::vector<double> result;
   double sum = 0.0;
-  for (std::size_t i = 0; i + 1 < holding.size(); ++i) {
-    const std::size_t k = index(first) + i;
-    const double few = 1.0 / std::max(1, holding[i]);
-    sum += few * few * (graph.states[k].t - graph.states[k - 1].t);
+  for (std::size_t k = index(first); k + 1 < graph.states.size(); ++k) {
+    const std::size_t i = k - index(first);
+    const double few = 1.0 / std::max(1, std::min(holding[i], holding[i + 1]));
+    sum += std::pow(few, power) * (graph.states[k].t - graph.states[k - 1].t);
     result.push_back(sum);
   }
   result.push_back(sum);
@@ -140,8 +145,15 @@ class Estimate {
   const std::vector<std::pair<int, Vector3>>& landmarks() const { return landmarks_; }
 
   void place_in(Engine& engine) const {
-    for (std::size_t i = 0; i < states_.size(); ++i) engine.place_state(first_ + static_cast<int>(i), states_[i]);
-    for (const auto& [j, position] : landmarks_) engine.place_landmark(j, position);
+    const FactorGraph& graph = engine.graph();
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+      const int k = first_ + static_cast<int>(i);
+      const ControlState& now = graph.states[index(k)];
+      if (now.T.p != states_[i].T.p || now.velocity != states_[i].velocity) engine.place_state(k, states_[i]);
+    }
+    for (const auto& [j, position] : landmarks_) {
+      if (graph.landmarks[index(j)].position != position) engine.place_landmark(j, position);
+    }
   }
 
  private:
@@ -152,9 +164,9 @@ class Estimate {
 
 /// Each state, and what was mostly seen since, by its share of a motion; what is seen again stays where it is.
 void displace(Engine& engine, const Estimate& estimate, int first, const SE3& motion,
-              std::span<const Reappearance> seen) {
+              std::span<const Reappearance> seen, double power) {
   const FactorGraph& graph = engine.graph();
-  const std::vector<double> share = shares(graph, first, seen);
+  const std::vector<double> share = shares(graph, first, seen, power);
   const Vector6 increment = se3::log(motion);
   const auto motion_at = [&](int k) { return se3::exp(share[index(k - first)] * increment); };
   for (const auto& [j, position] : estimate.landmarks()) {
@@ -214,23 +226,30 @@ bool relocate(Engine& engine, std::span<const Reappearance> seen) {
   if (!found || !(found->median_error < kLeft * aside)) return false;
   if (found->explained.size() < kEnough || !are_most(std::ssize(found->explained), seen.size())) return false;
   constexpr int kSettling = 8;  // states that may be marginalised while it is tried
-  int last = engine.first_state() > 0 ? engine.first_state() + kSettling : 1;
-  for (const Reappearance& z : found->explained) last = std::max(last, last_in_place(graph, z, last));
-  const int first = last + 1;
+  const int oldest = engine.first_state() > 0 ? engine.first_state() + kSettling : 1;
+  std::vector<double> last;
+  for (const Reappearance& z : found->explained) last.push_back(last_in_place(graph, z, oldest));
+  const int first = 1 + static_cast<int>(order_statistic(std::move(last), kInPlace));
   if (first + 1 >= std::ssize(graph.states)) return false;
 
-  const Estimate before(graph, first);
+  const Estimate before(graph, std::max(oldest, first - kDragged));
   const double cost = cost_since(graph, first);
-  displace(engine, before, first, found->motion, seen);
-  settle_held(engine);
-  for (int step = 0; step < kSettlingSteps; ++step) engine.update();
-  const auto there = std::ranges::count_if(
-      found->explained, [&](const Reappearance& z) { return reappearance_error(graph, z) < kStillThere; });
-  const double most = (1.0 + kDearer) * cost + kDearerAnyway;
-  if (are_most(there, found->explained.size()) && cost_since(graph, first) < most) return true;
-  before.place_in(engine);
+  double most = (1.0 + kDearer) * cost + kDearerAnyway;
+  std::optional<Estimate> other;
+  for (const double power : {kSpread, kAtOnce}) {
+    before.place_in(engine);
+    displace(engine, before, first, found->motion, seen, power);
+    settle_held(engine);
+    for (int step = 0; step < kSettlingSteps; ++step) engine.update();
+    const auto there = std::ranges::count_if(
+        found->explained, [&](const Reappearance& z) { return reappearance_error(graph, z) < kStillThere; });
+    if (!are_most(there, found->explained.size()) || !(cost_since(graph, first) < most)) continue;
+    most = cost_since(graph, first);
+    other.emplace(graph, std::max(oldest, first - kDragged));
+  }
+  (other ? *other : before).place_in(engine);
   engine.update();
-  return false;
+  return other.has_value();
 }
 
 }  // namespace evbench::gp_map

@@ -12,18 +12,19 @@ namespace evbench::gp_map {
 namespace {
 
 constexpr int kStates = 80, kTurn = 40;  // it turns violently in the interval that ends in this state
+constexpr int kGlimpse = kTurn + 15;
 constexpr double kStep = 0.01, kSigma = 0.3;
 constexpr int kOld = 12, kNew = 30;
 const Vector6 kUnnoticed = (Vector6() << 0.0, 0.2, 0.0, -0.3, 0.0, 0.0).finished();  // of the camera, there
 
 /// Past landmarks that are seen until the turn and, for the last 0.05 s, again, and others that come into view after
 /// it. `spanning` ones are seen all the time, and tell of the turn; the tracks of `slid` ones go on for a moment as if
-/// it had not been.
+/// it had not been. If `glimpsed`, those of the past were seen for a moment some time after the turn, too.
 struct Scene {
   FactorGraph truth;
   std::vector<Reappearance> seen;
 
-  Scene(int spanning, int slid, const std::function<Vector2(const Vector2&, Random&)>& seen_at) {
+  Scene(int spanning, int slid, const std::function<Vector2(const Vector2&, Random&)>& seen_at, bool glimpsed = false) {
     Random random(3);
     truth.camera = {200.0, 200.0, 120.0, 90.0};
     truth.qc = Vector6::Constant(1e3);
@@ -47,9 +48,10 @@ struct Scene {
     for (int i = 0; i < kOld; ++i) {
       const int j = add(1, kTurn - 1), from = kStates - 5;
       truth.landmarks[index(j)].prior = {truth.landmarks[index(j)].position, 1e-3};
+      if (glimpsed) observe(j, kGlimpse, kGlimpse + 2, random);
       for (int k = from; k < kStates; ++k) {
         const Vector2 pixel = seen_at(image(j, k), random);
-        if (k == from) seen.push_back({j, kStep * k, pixel, kTurn - 1});
+        if (k == from) seen.push_back({j, kStep * k, pixel, glimpsed ? kGlimpse + 2 : kTurn - 1});
         truth.add_observation(j, {kStep * k, pixel, 1.0 / kSigma});
       }
     }
@@ -75,8 +77,8 @@ struct Scene {
     return Engine(std::move(wrong), {});
   }
 
-  double error(const Engine& engine) const {
-    return se3::log(truth.states.back().T.inverse() * engine.graph().states.back().T).norm();
+  double error(const Engine& engine, int state = kStates - 1) const {
+    return se3::log(truth.states[index(state)].T.inverse() * engine.graph().states[index(state)].T).norm();
   }
 
  private:
@@ -127,6 +129,17 @@ TEST_CASE("A camera that turned unnoticed is found where most landmarks of befor
   const SE3 T = engine.graph().states.back().T.inverse() * knowing.graph().states.back().T;
   CHECK(se3::log(T).norm() < 0.05 * kUnnoticed.norm());  // nearly as if it had been noticed
   CHECK_FALSE(relocate(engine, scene.seen));             // nothing is wrong any more
+}
+
+TEST_CASE("Landmarks that came back beside their places before tell of the motion since they were in them") {
+  const Scene scene(0, 10, where_it_is, true);
+  Engine engine = scene.misled();
+  for (int i = 0; i < 5; ++i) engine.update();
+  REQUIRE(scene.error(engine, kTurn + 5) > 0.05);
+  CHECK(relocate(engine, scene.seen));
+  for (int i = 0; i < 5; ++i) engine.update();
+  CHECK(scene.error(engine) < 0.02);
+  CHECK(scene.error(engine, kTurn + 5) < 0.05);
 }
 
 TEST_CASE("What few landmarks say, or each says otherwise, moves nothing") {

@@ -1,9 +1,11 @@
 #include "frontends/haste/displacement.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
-#include <initializer_list>
 #include <utility>
 
+#include "core/geometry/se3.hpp"
+#include "core/simulation/random.hpp"
 #include "frontends/haste/tracking/testing/event_patterns.hpp"
 #include "frontends/haste/tracking/tracker.hpp"
 
@@ -12,13 +14,33 @@ using namespace evbench::haste;
 
 namespace {
 
-std::vector<Displaced> displaced(std::initializer_list<Vector2> displacements) {
+const PinholeCamera kCamera{200.0, 200.0, 120.0, 90.0};
+
+/// Landmarks near and far all over the image, so many, as a camera sees them that is moved from where it is supposed.
+std::vector<Displaced> displaced(std::size_t count, const SE3& motion) {
+  Random random(1);
   std::vector<Displaced> result;
-  for (const Vector2& displacement : displacements) {
-    result.push_back({static_cast<TrackId>(result.size()), displacement, displacement});
+  while (result.size() < count) {
+    const Vector2 expected(random.uniform(20.0, 220.0), random.uniform(20.0, 160.0));
+    const Vector3 point = random.uniform(1.0, 4.0) * kCamera.ray(expected);
+    const Vector2 pixel = kCamera.project(Vector3(motion.inverse() * point));
+    result.push_back({static_cast<TrackId>(result.size()), pixel, pixel - expected, point});
   }
   return result;
 }
+
+/// Others, whose looks are anywhere within 20 px.
+void add_chance(std::vector<Displaced>& seen, std::size_t count, std::uint64_t seed) {
+  Random random(seed);
+  for (Displaced one : displaced(count, {})) {
+    one.track = 100 + static_cast<TrackId>(seen.size());
+    one.displacement = {random.uniform(-20.0, 20.0), random.uniform(-20.0, 20.0)};
+    one.pixel += one.displacement;
+    seen.push_back(one);
+  }
+}
+
+SE3 turned_and_moved() { return se3::exp((Vector6() << 0.02, 0.06, 0.03, -0.12, 0.05, 0.1).finished()); }
 
 using Lines = std::vector<std::pair<Vector2, Vector2>>;
 
@@ -50,19 +72,36 @@ TEST_CASE("A look is found far from where it is expected, as far as it is looked
   CHECK_FALSE(most_like(corner, std::span(seen).first(100), place, 20, 0.45));
 }
 
-TEST_CASE("Most that are displaced by nearly the same way are told, without those that are elsewhere") {
-  const auto seen = displaced({{9, 2}, {-12, 5}, {10, 1}, {8, 3}, {9, 4}, {0, -18}, {11, 2}});
-  std::vector<TrackId> agreeing;
-  for (const Displaced& one : agreeing_displacement(seen, 4.0)) agreeing.push_back(one.track);
-  CHECK(agreeing == std::vector<TrackId>{0, 2, 3, 4, 6});
+TEST_CASE("Most that one motion of the camera displaced are told, each by its distance, without those elsewhere") {
+  const std::vector<Displaced> moved = displaced(12, turned_and_moved());
+  const auto length = [](const Displaced& one) { return one.displacement.norm(); };
+  REQUIRE(length(std::ranges::max(moved, {}, length)) > length(std::ranges::min(moved, {}, length)) + 8.0);
+  std::vector<Displaced> seen = moved;
+  add_chance(seen, 4, 2);
+  std::size_t agreeing = 0;
+  for (const Displaced& one : displaced_together(seen, kCamera, 4.0)) {
+    if (one.track < 100) ++agreeing;
+  }
+  CHECK(agreeing >= 11);
 }
 
-TEST_CASE("Few displacements that agree are chance, and so are few of many") {
-  CHECK(agreeing_displacement(displaced({{9, 2}, {10, 1}, {8, 3}, {9, 4}}), 4.0).empty());
-  std::vector<Displaced> seen = displaced({{9, 2}, {10, 1}, {8, 3}, {9, 4}, {11, 2}});
-  CHECK(agreeing_displacement(seen, 4.0).size() == 5);
-  for (int i = 0; i < 12; ++i) seen.push_back({100 + i, {}, Vector2(-20.0 + 10.0 * (i % 4), -20.0 - 10.0 * i)});
-  CHECK(agreeing_displacement(seen, 4.0).empty());
-  CHECK(agreeing_displacement({}, 4.0).empty());
-  CHECK(agreeing_displacement(displaced({{1, 2}, {2, 1}, {0, 3}, {1, 1}, {2, 2}}), 4.0).empty());  // as expected
+TEST_CASE("Few that one motion displaced are chance, and so are few of many") {
+  CHECK(displaced_together(displaced(5, turned_and_moved()), kCamera, 4.0).empty());
+  std::vector<Displaced> seen = displaced(6, turned_and_moved());
+  CHECK(displaced_together(seen, kCamera, 4.0).size() == 6);
+  add_chance(seen, 14, 3);
+  CHECK(displaced_together(seen, kCamera, 4.0).empty());
+  CHECK(displaced_together({}, kCamera, 4.0).empty());
+  CHECK(displaced_together(displaced(12, {}), kCamera, 4.0).empty());  // as expected
+}
+
+TEST_CASE("By chance hardly any are displaced as by one motion") {
+  int found = 0;
+  constexpr int kTimes = 200;
+  for (int i = 0; i < kTimes; ++i) {
+    std::vector<Displaced> seen;
+    add_chance(seen, 6 + static_cast<std::size_t>(i) % 15, static_cast<std::uint64_t>(i));
+    if (!displaced_together(seen, kCamera, 4.0).empty()) ++found;
+  }
+  CHECK(found <= kTimes / 50);
 }
