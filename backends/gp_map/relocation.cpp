@@ -5,11 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "backends/gp_map/factors.hpp"
 #include "backends/gp_map/observation_follower.hpp"
+#include "backends/gp_map/onset.hpp"
 #include "core/geometry/seen_point.hpp"
 #include "core/structure/point_image.hpp"
 #include "core/support/median.hpp"
@@ -27,11 +29,11 @@ constexpr double kHeld = 1e-3;       ///< [rad, units] of the newest pose,
 constexpr double kAhead = 1e-3;      ///< at a state so much later [s]
 constexpr double kInPlace = 0.75;  ///< share of which this was the last time: where a turn and a way hide one another,
                                    ///< some are in their places, though the camera is not
-constexpr double kSpread = 2.0, kAtOnce = 6.0;  ///< how the motion came about
-constexpr int kDragged = 50;                    ///< states before it that may be moved a little, too
+constexpr int kDragged = 50;       ///< states before it that may be moved a little, too
 constexpr int kHoldingSteps = 8, kSettlingSteps = 4;
-/// What contradicted the present estimate has been taken out of the problem, so its cost is lower than it should be.
-constexpr double kDearer = 0.01, kDearerAnyway = 10.0;
+/// What contradicted the present estimate has been taken out of the problem, so its cost is lower than it should be: by
+/// so much for each of the landmarks that one motion explains.
+constexpr double kDearer = 60.0;
 
 /// Between the states around a time.
 GpInterval interval_at(const FactorGraph& graph, double t) {
@@ -93,33 +95,21 @@ std::optional<Displacement> find_displacement(const FactorGraph& graph, std::spa
   return result;
 }
 
-bool has(std::span<const Reappearance> seen, int landmark) {
-  return std::ranges::find(seen, landmark, &Reappearance::landmark) != seen.end();
+bool are_most(std::ptrdiff_t some, std::size_t all) {
+  return static_cast<double>(some) >= kMost * static_cast<double>(all);
 }
 
-/// For each state from `first` on, what share of a displacement has come about by then: where time passed, and few
-/// landmarks held the states together, but for those that are seen again; all the more, the larger the `power`. All of
-/// it at the newest state but one.
-std::vector<double> shares(const FactorGraph& graph, int first, std::span<const Reappearance> seen, double power) {
-  std::vector<int> holding(graph.states.size() - index(first) + 1, 0);  // landmarks seen before a state and after it
-  for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
-    const FactorGraph::Landmark& landmark = graph.landmarks[index(j)];
-    if (!landmark.alive || landmark.intervals.empty() || has(seen, j)) continue;
-    for (int k = std::max(first - 1, landmark.intervals.front()); k < landmark.intervals.back(); ++k) {
-      ++holding[index(k - first + 1)];
-    }
-  }
-  std::vector<double> result;
-  double sum = 0.0;
-  for (std::size_t k = index(first); k + 1 < graph.states.size(); ++k) {
-    const std::size_t i = k - index(first);
-    const double few = 1.0 / std::max(1, std::min(holding[i], holding[i + 1]));
-    sum += std::pow(few, power) * (graph.states[k].t - graph.states[k - 1].t);
-    result.push_back(sum);
-  }
-  result.push_back(sum);
-  for (double& share : result) share /= sum;
-  return result;
+/// One that explains most of what is beside where it is expected, and enough.
+std::optional<Displacement> unnoticed_motion(const FactorGraph& graph, std::span<const Reappearance> seen) {
+  if (seen.size() < kEnough) return std::nullopt;
+  std::vector<double> errors;
+  for (const Reappearance& z : seen) errors.push_back(reappearance_error(graph, z));
+  const double aside = median(std::move(errors));
+  if (aside < kAside) return std::nullopt;
+  auto found = find_displacement(graph, seen);
+  if (!found || !(found->median_error < kLeft * aside)) return std::nullopt;
+  if (found->explained.size() < kEnough || !are_most(std::ssize(found->explained), seen.size())) return std::nullopt;
+  return found;
 }
 
 /// Of the intervals from `first` on.
@@ -163,14 +153,13 @@ class Estimate {
 };
 
 /// Each state, and what was mostly seen since, by its share of a motion; what is seen again stays where it is.
-void displace(Engine& engine, const Estimate& estimate, int first, const SE3& motion,
-              std::span<const Reappearance> seen, double power) {
+void displace(Engine& engine, const Estimate& estimate, int first, const SE3& motion, const std::set<int>& seen_again,
+              const Onset& share) {
   const FactorGraph& graph = engine.graph();
-  const std::vector<double> share = shares(graph, first, seen, power);
   const Vector6 increment = se3::log(motion);
   const auto motion_at = [&](int k) { return se3::exp(share[index(k - first)] * increment); };
   for (const auto& [j, position] : estimate.landmarks()) {
-    if (has(seen, j)) continue;
+    if (seen_again.contains(j)) continue;
     const std::vector<int>& intervals = graph.landmarks[index(j)].intervals;
     const int middle = intervals[intervals.size() / 2];
     if (middle >= first) engine.place_landmark(j, motion_at(middle) * position);
@@ -190,10 +179,6 @@ void settle_held(Engine& engine) {
   for (int step = 0; step < kHoldingSteps; ++step) engine.update();
   engine.remove_newest_state();
   engine.place_state(ahead - 1, engine.graph().states.back());  // its stage is redone: the one ahead took its landmarks
-}
-
-bool are_most(std::ptrdiff_t some, std::size_t all) {
-  return static_cast<double>(some) >= kMost * static_cast<double>(all);
 }
 
 /// The newest interval in which it was seen where the estimate has it, before it came back: what came back beside it a
@@ -216,15 +201,9 @@ double reappearance_error(const FactorGraph& graph, const Reappearance& seen) {
 }
 
 bool relocate(Engine& engine, std::span<const Reappearance> seen) {
-  if (seen.size() < kEnough) return false;
   const FactorGraph& graph = engine.graph();
-  std::vector<double> errors;
-  for (const Reappearance& z : seen) errors.push_back(reappearance_error(graph, z));
-  const double aside = median(std::move(errors));
-  if (aside < kAside) return false;
-  const auto found = find_displacement(graph, seen);
-  if (!found || !(found->median_error < kLeft * aside)) return false;
-  if (found->explained.size() < kEnough || !are_most(std::ssize(found->explained), seen.size())) return false;
+  const auto found = unnoticed_motion(graph, seen);
+  if (!found) return false;
   constexpr int kSettling = 8;  // states that may be marginalised while it is tried
   const int oldest = engine.first_state() > 0 ? engine.first_state() + kSettling : 1;
   std::vector<double> last;
@@ -232,20 +211,23 @@ bool relocate(Engine& engine, std::span<const Reappearance> seen) {
   const int first = 1 + static_cast<int>(order_statistic(std::move(last), kInPlace));
   if (first + 1 >= std::ssize(graph.states)) return false;
 
-  const Estimate before(graph, std::max(oldest, first - kDragged));
-  const double cost = cost_since(graph, first);
-  double most = (1.0 + kDearer) * cost + kDearerAnyway;
+  std::set<int> seen_again;
+  for (const Reappearance& z : seen) seen_again.insert(z.landmark);
+  const int dragged = std::max(oldest, first - kDragged);
+  const Estimate before(graph, dragged);
+  double most = cost_since(graph, first) + kDearer * static_cast<double>(found->explained.size());
   std::optional<Estimate> other;
-  for (const double power : {kSpread, kAtOnce}) {
+  for (const Onset& onset : onsets(graph, first, seen_again)) {
     before.place_in(engine);
-    displace(engine, before, first, found->motion, seen, power);
+    displace(engine, before, first, found->motion, seen_again, onset);
     settle_held(engine);
     for (int step = 0; step < kSettlingSteps; ++step) engine.update();
     const auto there = std::ranges::count_if(
         found->explained, [&](const Reappearance& z) { return reappearance_error(graph, z) < kStillThere; });
-    if (!are_most(there, found->explained.size()) || !(cost_since(graph, first) < most)) continue;
-    most = cost_since(graph, first);
-    other.emplace(graph, std::max(oldest, first - kDragged));
+    const double cost = cost_since(graph, first);
+    if (!are_most(there, found->explained.size()) || !(cost < most)) continue;
+    most = cost;
+    other.emplace(graph, dragged);
   }
   (other ? *other : before).place_in(engine);
   engine.update();

@@ -22,10 +22,11 @@ double reappearance_error(const FactorGraph& graph, const Reappearance& seen);
 /// which are seen again beside where they are expected, are outliers to the robust loss. But by chance hardly any two
 /// of those would be displaced by the same motion.
 ///
-/// If one motion of the camera explains most of them, and enough, it is spread over the states since they were seen
-/// last, most of it where few landmarks hold the states together, and the problem is solved from there, at first with
-/// the newest pose held. That stays, unless the landmarks do not, or its cost is clearly higher: then the estimate goes
-/// back to what it was, but for some Gauss-Newton steps. Returns whether it stays.
+/// If one motion of the camera explains most of them, and enough, it is supposed to have come about since most of them
+/// were seen in their places, in each of some ways (onset.hpp), and the problem is solved from there, at first with the
+/// newest pose held. The cheapest stays, if the landmarks do and its cost is not higher by more than these are worth:
+/// tracks that were followed wrongly fit the wrong motion. Else the estimate goes back to what it was, but for a
+/// Gauss-Newton step. Returns whether it stays.
 bool relocate(Engine& engine, std::span<const Reappearance> seen);
 
 }  // namespace evbench::gp_map

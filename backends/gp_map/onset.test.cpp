@@ -1,0 +1,77 @@
+#include "backends/gp_map/onset.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+namespace evbench::gp_map {
+namespace {
+
+/// Landmarks that are seen in all intervals from one to another.
+struct Seen {
+  static constexpr int kStates = 61;
+  static constexpr double kStep = 0.01;  // [s]
+  FactorGraph graph;
+
+  Seen() {
+    graph.qc = Vector6::Ones();
+    for (int k = 0; k < kStates; ++k) graph.add_state({kStep * k, {}, Vector6::Zero()});
+  }
+  void add(int count, int from, int until) {
+    for (int i = 0; i < count; ++i) {
+      const int j = graph.add_landmark({0.0, 0.0, 1.0});
+      for (int k = from; k <= until; ++k) graph.add_observation(j, {kStep * k, {0.0, 0.0}, 1.0});
+    }
+  }
+};
+
+/// The state by which half of it has come about.
+int half(const Onset& onset, int first) {
+  return first +
+         static_cast<int>(std::ranges::find_if(onset, [](double share) { return share >= 0.5; }) - onset.begin());
+}
+
+}  // namespace
+
+TEST_CASE("An unnoticed motion may have come about at once where few landmarks are seen before and after, or spread") {
+  Seen seen;
+  seen.add(20, 1, 29);
+  seen.add(20, 30, 60);  // nothing holds interval 30
+  seen.add(4, 1, 44);
+  seen.add(30, 46, 60);
+  const int first = 10;
+  const std::vector<Onset> all = onsets(seen.graph, first, {});
+  REQUIRE(all.size() == 4);
+  CHECK(half(all[0], first) == 30);
+  for (const Onset& onset : all) {
+    REQUIRE(onset.size() == Seen::kStates - first);
+    CHECK(std::ranges::is_sorted(onset));
+    CHECK(onset.front() >= 0.0);
+    CHECK(onset[onset.size() - 2] == Approx(1.0));
+    CHECK(onset.back() == Approx(1.0));
+  }
+  const Onset& spread = all.back();
+  CHECK(half(spread, first) == 30);  // most of it where least holds
+  CHECK(spread[5] > 0.0);
+  CHECK(spread[index(40 - first)] < 1.0);
+}
+
+TEST_CASE("Landmarks that are left out do not hide where the motion came about") {
+  Seen seen;
+  seen.add(20, 1, 29);
+  seen.add(20, 30, 60);
+  seen.add(50, 20, 35);
+  const auto moment = [&](const std::set<int>& left_out) { return half(onsets(seen.graph, 10, left_out)[0], 10); };
+  CHECK(moment({}) != 30);
+  std::set<int> hiding;
+  for (int j = 40; j < 90; ++j) hiding.insert(j);
+  CHECK(moment(hiding) == 30);
+}
+
+TEST_CASE("A motion since a moment ago came about at once, whichever interval it was") {
+  Seen seen;
+  seen.add(10, 1, 60);
+  const int first = Seen::kStates - 2;
+  for (const Onset& onset : onsets(seen.graph, first, {})) CHECK(onset == Onset{1.0, 1.0});
+}
+
+}  // namespace evbench::gp_map
