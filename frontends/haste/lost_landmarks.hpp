@@ -50,7 +50,7 @@ class LostLandmarks {
   std::vector<Found> find(const Guidance& guidance, double t, const RecentEvents& recent, const Tracked& tracked,
                           double distance, const Camera& camera);
 
-  /// Where the camera is not where the back-end has it, many are displaced by nearly the same way: those that agree on
+  /// Where the camera is not where the back-end has it, one motion of it displaces most of them: those that agree on
   /// one, if they are enough of those that are seen at all. Looks now and then.
   std::vector<Found> find_displaced(const Guidance& guidance, double t, const RecentEvents& recent,
                                     const Tracked& tracked, const Camera& camera);
