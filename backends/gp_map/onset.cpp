@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMoments = 3;  ///< at which it may have come about at once,
 constexpr double kApart = 0.1;       ///< [s]
 
-/// How many landmarks are seen on both sides of each interval from `first` on, or on one side and in it.
+/// How many landmarks are seen before each interval from `first` on, and in it or after it.
 std::vector<int> ties(const FactorGraph& graph, int first, const std::set<int>& left_out) {
   std::vector<int> result(graph.states.size() - index(first), 0);
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
@@ -39,7 +39,7 @@ Onset spread(const FactorGraph& graph, int first, std::span<const int> ties) {
   return result;
 }
 
-/// Intervals from `first` on.
+/// The loosest intervals, as many after `first`.
 std::vector<int> loosest(const FactorGraph& graph, int first, std::span<const int> ties) {
   std::vector<int> order(ties.size() - 1), result;
   std::iota(order.begin(), order.end(), 0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdlib>
 
 namespace evbench::gp_map {
 namespace {
@@ -48,6 +49,9 @@ TEST_CASE("An unnoticed motion may have come about at once where few landmarks a
     CHECK(onset.front() >= 0.0);
     CHECK(onset[onset.size() - 2] == Approx(1.0));
     CHECK(onset.back() == Approx(1.0));
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < i; ++j) CHECK(std::abs(half(all[i], first) - half(all[j], first)) >= 10);  // 0.1 s
   }
   const Onset& spread = all.back();
   CHECK(half(spread, first) == 30);  // most of it where least holds

@@ -139,7 +139,8 @@ class Estimate {
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const int k = first_ + static_cast<int>(i);
       const ControlState& now = graph.states[index(k)];
-      if (now.T.p != states_[i].T.p || now.velocity != states_[i].velocity) engine.place_state(k, states_[i]);
+      const bool moved = now.T.p != states_[i].T.p || now.T.q.coeffs() != states_[i].T.q.coeffs();
+      if (moved || now.velocity != states_[i].velocity) engine.place_state(k, states_[i]);
     }
     for (const auto& [j, position] : landmarks_) {
       if (graph.landmarks[index(j)].position != position) engine.place_landmark(j, position);
@@ -161,6 +162,7 @@ void displace(Engine& engine, const Estimate& estimate, int first, const SE3& mo
   for (const auto& [j, position] : estimate.landmarks()) {
     if (seen_again.contains(j)) continue;
     const std::vector<int>& intervals = graph.landmarks[index(j)].intervals;
+    if (intervals.empty()) continue;  // marginalised meanwhile
     const int middle = intervals[intervals.size() / 2];
     if (middle >= first) engine.place_landmark(j, motion_at(middle) * position);
   }
@@ -204,7 +206,7 @@ bool relocate(Engine& engine, std::span<const Reappearance> seen) {
   const FactorGraph& graph = engine.graph();
   const auto found = unnoticed_motion(graph, seen);
   if (!found) return false;
-  constexpr int kSettling = 8;  // states that may be marginalised while it is tried
+  constexpr int kSettling = 64;  // states that may be marginalised while it is tried
   const int oldest = engine.first_state() > 0 ? engine.first_state() + kSettling : 1;
   std::vector<double> last;
   for (const Reappearance& z : found->explained) last.push_back(last_in_place(graph, z, oldest));
@@ -215,16 +217,20 @@ bool relocate(Engine& engine, std::span<const Reappearance> seen) {
   for (const Reappearance& z : seen) seen_again.insert(z.landmark);
   const int dragged = std::max(oldest, first - kDragged);
   const Estimate before(graph, dragged);
-  double most = cost_since(graph, first) + kDearer * static_cast<double>(found->explained.size());
+  double most = cost_since(graph, dragged) + kDearer * static_cast<double>(found->explained.size());
   std::optional<Estimate> other;
   for (const Onset& onset : onsets(graph, first, seen_again)) {
     before.place_in(engine);
     displace(engine, before, first, found->motion, seen_again, onset);
     settle_held(engine);
     for (int step = 0; step < kSettlingSteps; ++step) engine.update();
+    if (engine.first_state() >= dragged) {  // what it began from is settled by now
+      other.reset();
+      break;
+    }
     const auto there = std::ranges::count_if(
         found->explained, [&](const Reappearance& z) { return reappearance_error(graph, z) < kStillThere; });
-    const double cost = cost_since(graph, first);
+    const double cost = cost_since(graph, dragged);
     if (!are_most(there, found->explained.size()) || !(cost < most)) continue;
     most = cost;
     other.emplace(graph, dragged);

@@ -26,7 +26,7 @@ double reappearance_error(const FactorGraph& graph, const Reappearance& seen);
 /// were seen in their places, in each of some ways (onset.hpp), and the problem is solved from there, at first with the
 /// newest pose held. The cheapest stays, if the landmarks do and its cost is not higher by more than these are worth:
 /// tracks that were followed wrongly fit the wrong motion. Else the estimate goes back to what it was, but for a
-/// Gauss-Newton step. Returns whether it stays.
+/// Gauss-Newton step, and for landmarks that the engine can't place. Returns whether it stays.
 bool relocate(Engine& engine, std::span<const Reappearance> seen);
 
 }  // namespace evbench::gp_map

@@ -67,14 +67,16 @@ struct Scene {
   }
 
   /// Solved from where the turn was not noticed.
-  Engine misled() const {
+  Engine misled(double lag = 0.0) const {
     FactorGraph wrong = truth;
     const SE3 motion = unnoticed();
     for (int k = kTurn; k < kStates; ++k) wrong.states[index(k)].T = motion * wrong.states[index(k)].T;
     for (FactorGraph::Landmark& landmark : wrong.landmarks) {
       if (landmark.intervals.front() >= kTurn) landmark.position = motion * landmark.position;
     }
-    return Engine(std::move(wrong), {});
+    EngineOptions options;
+    options.lag = lag;
+    return Engine(std::move(wrong), options);
   }
 
   double error(const Engine& engine, int state = kStates - 1) const {
@@ -173,8 +175,23 @@ TEST_CASE("Landmarks that most others contradict leave the estimate as it was") 
   for (int i = 0; i < 5; ++i) engine.update();
   REQUIRE(scene.error(engine) < 0.005);
   CHECK_FALSE(relocate(engine, scene.seen));
+  CHECK(scene.error(engine) < 0.005);
   for (int i = 0; i < 5; ++i) engine.update();
   CHECK(scene.error(engine) < 0.005);
+}
+
+TEST_CASE("With a lag, too, a camera is found or left where it is") {
+  for (const double lag : {0.05, 0.3, 0.5, 0.75, 10.0}) {
+    CAPTURE(lag);
+    const Scene scene(0, 10, where_it_is);
+    Engine engine = scene.misled(lag);
+    for (int i = 0; i < 5; ++i) engine.update();
+    const double before = scene.error(engine);
+    const bool found = relocate(engine, scene.seen);
+    for (int i = 0; i < 5; ++i) CHECK_FALSE(engine.update().unsolvable);
+    CHECK(scene.error(engine) < (found ? 0.2 : 1.05) * before);
+    if (lag == 10.0) CHECK(found);
+  }
 }
 
 }  // namespace evbench::gp_map

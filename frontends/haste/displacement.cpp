@@ -13,7 +13,7 @@ namespace evbench::haste {
 namespace {
 
 /// Those whose displacements one motion explains with that of a first one: at first the smallest that explains this
-/// alone, mostly a turn, then what fits all that are near.
+/// alone, then what fits all that are near. In ascending order.
 std::vector<std::size_t> agreeing_with(std::size_t first, std::span<const Displaced> seen,
                                        std::span<const Matrix26> by_motion) {
   constexpr double kUsual = 0.15;  // [rad, median depths]
@@ -52,7 +52,8 @@ std::optional<Vector2> most_like(const Template& look, std::span<const Event> ev
 
 std::vector<Displaced> displaced_together(std::span<const Displaced> seen, const PinholeCamera& camera, double beyond) {
   constexpr std::size_t kEnough = 6;
-  constexpr std::size_t kShare = 2;  // one in so many of all, at least
+  constexpr std::size_t kShare = 2;     // one in so many of all, at least,
+  constexpr std::ptrdiff_t kAside = 3;  // and so many of them aside
   if (seen.size() < kEnough) return {};
   std::vector<double> depths;
   for (const Displaced& one : seen) depths.push_back(one.point.z());
@@ -62,11 +63,13 @@ std::vector<Displaced> displaced_together(std::span<const Displaced> seen, const
     const Vector3 point = one.point / unit;
     by_motion.push_back(camera.project_jacobian(point) * seen_point_jacobian(point));
   }
+  const auto is_aside = [&](std::size_t i) { return seen[i].displacement.norm() > beyond; };
   std::vector<std::size_t> most;
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (seen[i].displacement.norm() <= beyond) continue;
+    if (!is_aside(i)) continue;
     std::vector<std::size_t> agreeing = agreeing_with(i, seen, by_motion);
-    if (agreeing.size() > most.size()) most = std::move(agreeing);
+    if (agreeing.size() > most.size() && std::ranges::count_if(agreeing, is_aside) >= kAside)
+      most = std::move(agreeing);
   }
   if (most.size() < kEnough || kShare * most.size() < seen.size()) return {};
   std::vector<Displaced> result;

@@ -19,13 +19,13 @@ std::optional<Vector2> most_like(const Template& look, std::span<const Event> ev
 /// A landmark that is seen beside where it is expected.
 struct Displaced {
   TrackId track = 0;
-  Vector2 pixel = Vector2::Zero();         ///< where it is [px]
+  Vector2 pixel = Vector2::Zero();         ///< where it is, undistorted [px]
   Vector2 displacement = Vector2::Zero();  ///< from where it is expected [px]
   Vector3 point = Vector3::Zero();         ///< the landmark in the camera's frame, as expected
 };
 
-/// The most that are where one small motion of the camera that nobody knows of would have displaced them, some by more
-/// than `beyond` [px]. None where these are few, or few of all: chance.
+/// The most that are where one small motion of the camera that nobody knows of would have displaced them, several by
+/// more than `beyond` [px]. None where these are few, or few of all: chance.
 std::vector<Displaced> displaced_together(std::span<const Displaced> seen, const PinholeCamera& camera, double beyond);
 
 }  // namespace evbench::haste

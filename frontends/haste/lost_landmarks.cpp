@@ -137,12 +137,13 @@ std::vector<LostLandmarks::Found> LostLandmarks::find_displaced(const Guidance& 
     Found found = as_expected(track, lost_.at(track), guidance, middle);
     const auto place =
         most_like(found.look, recent.events(), expected->pixel, options_.displacement, options_.similarity);
-    const auto is_near = [&](const Displaced& other) { return (other.pixel - *place).norm() < kApart; };
-    if (!place || std::ranges::any_of(seen, is_near)) continue;
+    const auto pixel = place ? camera.undistort(*place) : std::nullopt;
+    const auto is_near = [&](const Displaced& other) { return (other.pixel - *pixel).norm() < kApart; };
+    if (!pixel || std::ranges::any_of(seen, is_near)) continue;
     found.pixel = *place;
     looks.push_back(std::move(found));
-    seen.push_back(
-        {track, *place, *place - expected->pixel, guidance.pose(middle).inverse() * *guidance.position(track)});
+    const Vector3 point = guidance.pose(middle).inverse() * *guidance.position(track);
+    seen.push_back({track, *pixel, *pixel - camera.pinhole.project(point), point});
   }
   const auto in_place =
       std::ranges::count_if(seen, [&](const Displaced& one) { return one.displacement.norm() <= options_.search; });

@@ -31,7 +31,7 @@ struct Alignment {
 /// order) in range.
 Alignment align(const Template& wanted, std::span<const Event> events, const GridState& place);
 
-/// A whole one.
+/// One of the image's pixels.
 struct Pixel {
   int x = 0, y = 0;
 };
