@@ -32,7 +32,8 @@ constexpr double kInPlace = 0.75;  ///< share of which this was the last time: w
 constexpr int kDragged = 50;       ///< states before it that may be moved a little, too
 constexpr int kHoldingSteps = 8, kSettlingSteps = 4;
 /// What contradicted the present estimate has been taken out of the problem, so its cost is lower than it should be: by
-/// so much for each of the landmarks that one motion explains.
+/// so much for each landmark that one motion explains beyond those that may do so by chance.
+constexpr double kDearerAnyway = 10.0;
 constexpr double kDearer = 60.0;
 
 /// Between the states around a time.
@@ -217,7 +218,8 @@ bool relocate(Engine& engine, std::span<const Reappearance> seen) {
   for (const Reappearance& z : seen) seen_again.insert(z.landmark);
   const int dragged = std::max(oldest, first - kDragged);
   const Estimate before(graph, dragged);
-  double most = cost_since(graph, dragged) + kDearer * static_cast<double>(found->explained.size());
+  const auto beyond_enough = static_cast<double>(found->explained.size() - kEnough);
+  double most = cost_since(graph, dragged) + kDearerAnyway + kDearer * beyond_enough;
   std::optional<Estimate> other;
   for (const Onset& onset : onsets(graph, first, seen_again)) {
     before.place_in(engine);

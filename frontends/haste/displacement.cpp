@@ -52,8 +52,7 @@ std::optional<Vector2> most_like(const Template& look, std::span<const Event> ev
 
 std::vector<Displaced> displaced_together(std::span<const Displaced> seen, const PinholeCamera& camera, double beyond) {
   constexpr std::size_t kEnough = 6;
-  constexpr std::size_t kShare = 2;     // one in so many of all, at least,
-  constexpr std::ptrdiff_t kAside = 3;  // and so many of them aside
+  constexpr std::size_t kShare = 2;  // one in so many of all, at least
   if (seen.size() < kEnough) return {};
   std::vector<double> depths;
   for (const Displaced& one : seen) depths.push_back(one.point.z());
@@ -68,8 +67,7 @@ std::vector<Displaced> displaced_together(std::span<const Displaced> seen, const
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (!is_aside(i)) continue;
     std::vector<std::size_t> agreeing = agreeing_with(i, seen, by_motion);
-    if (agreeing.size() > most.size() && std::ranges::count_if(agreeing, is_aside) >= kAside)
-      most = std::move(agreeing);
+    if (agreeing.size() > most.size() && std::ranges::any_of(agreeing, is_aside)) most = std::move(agreeing);
   }
   if (most.size() < kEnough || kShare * most.size() < seen.size()) return {};
   std::vector<Displaced> result;

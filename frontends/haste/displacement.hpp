@@ -24,7 +24,7 @@ struct Displaced {
   Vector3 point = Vector3::Zero();         ///< the landmark in the camera's frame, as expected
 };
 
-/// The most that are where one small motion of the camera that nobody knows of would have displaced them, several by
+/// The most that are where one small motion of the camera that nobody knows of would have displaced them, some by
 /// more than `beyond` [px]. None where these are few, or few of all: chance.
 std::vector<Displaced> displaced_together(std::span<const Displaced> seen, const PinholeCamera& camera, double beyond);
 
