@@ -24,17 +24,17 @@ constexpr double kLeft = 0.5;        ///< share of that which one motion leaves,
 constexpr std::size_t kEnough = 5;   ///< landmarks that one motion explains,
 constexpr double kMost = 2.0 / 3.0;  ///< as a share of all,
 constexpr double kExplained = 2.0;   ///< to so many pixels,
-constexpr double kStillThere = 3.0;  ///< and so many once nothing holds the pose any more, or as it was in its place
+constexpr double kStillThere = 3.0;  ///< and so many where nothing holds the pose; beyond that one isn't in its place
 constexpr double kHeld = 1e-3;       ///< [rad, units] of the newest pose,
 constexpr double kAhead = 1e-3;      ///< at a state so much later [s]
 constexpr double kInPlace = 0.75;  ///< share of which this was the last time: where a turn and a way hide one another,
                                    ///< some are in their places, though the camera is not
 constexpr int kDragged = 50;       ///< states before it that may be moved a little, too
 constexpr int kHoldingSteps = 8, kSettlingSteps = 4;
-/// What contradicted the present estimate has been taken out of the problem, so its cost is lower than it should be: by
-/// so much for each landmark that one motion explains beyond those that may do so by chance.
-constexpr double kDearerAnyway = 10.0;
-constexpr double kDearer = 60.0;
+/// By which the cost may be higher, and by which for each landmark that one motion explains beyond those that may be
+/// chance: what contradicted the present estimate has been taken out of the problem, so its cost is lower than it
+/// should be.
+constexpr double kDearerAnyway = 10.0, kDearer = 60.0;
 
 /// Between the states around a time.
 GpInterval interval_at(const FactorGraph& graph, double t) {
