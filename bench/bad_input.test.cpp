@@ -2,16 +2,17 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <iostream>
 
 #include "bench/commands/exit_code.hpp"
 #include "bench/testing/program.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 // Each kind of bad input once through the program: exit code 2, a sentence with the place on stderr, and nothing left
 // under a final name. The readers' own tests go through the kinds one by one.
@@ -23,7 +24,7 @@ void check_refused(const TemporaryFolder& folder, const std::string& arguments, 
   const Outcome outcome = testing::evbench(folder, arguments);
   INFO(arguments << "\n" << outcome.err);
   CHECK(outcome.exit_code == exit_code);
-  CHECK_THAT(outcome.err, Catch::Matchers::StartsWith("evbench: ") && Contains(message));
+  CHECK_THAT(outcome.err, Catch::Matchers::StartsWith("evbench: ") && ContainsSubstring(message));
   CHECK(std::ranges::count(outcome.err, '\n') == 1);
   CHECK(outcome.out.empty());
 }
@@ -94,9 +95,9 @@ TEST_CASE("Tracks that are unsorted, repeated, of one observation or outside the
                read_file(folder.file("tracks.txt")) + "3 0.001 5 5\n3 0.001 6 6\n77 0.5 9 9\n4 0.7 -3 9\n5 44 9 9\n");
   const Outcome outcome = testing::shell(folder, "\"$evbench\" run recording.json --quiet; cat results/*/*/log.txt");
   CHECK(outcome.err.empty());
-  CHECK_THAT(outcome.out, Contains("out of order") && Contains("track and time of another") &&
-                              Contains("single observation") && Contains("outside the image") &&
-                              Contains("1 observations outside 0 to 1 s (left out)"));
+  CHECK_THAT(outcome.out, ContainsSubstring("out of order") && ContainsSubstring("track and time of another") &&
+                              ContainsSubstring("single observation") && ContainsSubstring("outside the image") &&
+                              ContainsSubstring("1 observations outside 0 to 1 s (left out)"));
 }
 
 TEST_CASE("Observations outside the ground truth's time are refused when none is inside") {
@@ -113,7 +114,7 @@ TEST_CASE("Observations outside the ground truth's time are refused when none is
 
 TEST_CASE("An unknown key or plugin and a value out of range end the program with the place and the nearest name") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_config().dump());
+  folder.write("c.json", dump_json(short_config()));
   check_refused(folder, "run c.json --set backend.frame_duratoin=1",
                 "c.json: backend: unknown key \"frame_duratoin\"; did you mean \"frame_duration\"?");
   check_refused(folder, "run c.json --set backend.type=gp_mop", "did you mean \"gp_map\"?");
@@ -133,7 +134,7 @@ TEST_CASE("A front-end that does not suit the source is refused with its place")
 
 TEST_CASE("A folder for results that can't be made ends the program before any work") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_config().dump());
+  folder.write("c.json", dump_json(short_config()));
   folder.write("file", "");
   check_refused(folder, "run c.json --out file", "file/short: can't be made: Not a directory", kExitNotWritten);
   check_refused(folder, "run c.json --out /dev/full", "/dev/full/short: can't be made", kExitNotWritten);
@@ -148,7 +149,7 @@ TEST_CASE("A full disk is an error wherever the program writes") {
     INFO(command);
     const Outcome outcome = testing::evbench(folder, std::string(command) + " > /dev/full");
     CHECK(outcome.exit_code == kExitNotWritten);
-    CHECK_THAT(outcome.err, Contains("standard output"));
+    CHECK_THAT(outcome.err, ContainsSubstring("standard output"));
   }
 }
 
@@ -161,29 +162,29 @@ TEST_CASE("A file that can't be written whole leaves the one before as it was") 
       folder,
       "trap '' XFSZ; ulimit -f 1; \"$evbench\" eval groundtruth.txt groundtruth.txt --json scores.json --force");
   CHECK(outcome.exit_code == kExitNotWritten);
-  CHECK_THAT(outcome.err, Contains("scores.json: can't be written") && !Contains(".part"));
+  CHECK_THAT(outcome.err, ContainsSubstring("scores.json: can't be written") && !ContainsSubstring(".part"));
   CHECK(read_file(folder.file("scores.json")) == "before");
   CHECK(names_in(folder.path()).size() == 5);
   CHECK_THAT(testing::evbench(folder, "eval groundtruth.txt groundtruth.txt --json no/x.json").err,
-             Contains("no/x.json: can't be written: No such file") && !Contains(".part"));
+             ContainsSubstring("no/x.json: can't be written: No such file") && !ContainsSubstring(".part"));
 }
 
 TEST_CASE("A run that can't be written whole leaves the run before as it was") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_config().dump());
+  folder.write("c.json", dump_json(short_config()));
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
   const std::string before = testing::shell(folder, "cd results/short && sha256sum */*").out;
   const Outcome outcome = testing::shell(
       folder, "trap '' XFSZ; ulimit -f 8; \"$evbench\" run c.json --force; code=$?; ulimit -f unlimited; exit $code");
   CHECK(outcome.exit_code == kExitNotWritten);
-  CHECK_THAT(outcome.err, Contains("can't be written: File too large") && !Contains(".part"));
+  CHECK_THAT(outcome.err, ContainsSubstring("can't be written: File too large") && !ContainsSubstring(".part"));
   CHECK(testing::shell(folder, "cd results/short && sha256sum */*").out == before);
   CHECK(names_in(folder.file("results/short")).size() == 1);
 }
 
 TEST_CASE("A run on a disk that is full leaves nothing there") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_config().dump());
+  folder.write("c.json", dump_json(short_config()));
   std::filesystem::create_directory(folder.file("small"));
   const std::string unshare = ::geteuid() == 0 ? "unshare -m" : "unshare -rm";
   const std::string mount = unshare + " sh -c 'mount -t tmpfs -o size=32k tmpfs small";
@@ -195,6 +196,6 @@ TEST_CASE("A run on a disk that is full leaves nothing there") {
   const Outcome outcome = testing::shell(
       folder, mount + " && \"$evbench\" run c.json --out small; code=$?; find small -type f; exit $code'");
   CHECK(outcome.exit_code == kExitNotWritten);
-  CHECK_THAT(outcome.err, Contains("can't be written: No space left on device"));
+  CHECK_THAT(outcome.err, ContainsSubstring("can't be written: No space left on device"));
   CHECK(outcome.out.empty());
 }

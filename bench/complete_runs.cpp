@@ -9,6 +9,7 @@
 #include "core/io/sha256.hpp"
 #include "eval/json_file.hpp"
 #include "eval/score_run.hpp"
+#include "core/support/json.hpp"
 
 // Runs that lie there already: found, copied, renamed, scored again.
 
@@ -33,7 +34,7 @@ bool is_complete(const std::string& folder, const JobIdentity& identity) {
 Json parse(const std::string& path) {
   const std::optional<std::string> text = content_of(path);
   if (!text) throw InputError(fmt::format("{}: can't be read", path));
-  const Json json = Json::parse(*text, nullptr, false);
+  const Json json = try_parse_json(*text);
   if (!json.is_object()) throw InputError(fmt::format("{}: expected a JSON object", path));
   return json;
 }
@@ -56,7 +57,7 @@ std::string damage_of(const std::string& folder, const std::string& key) {
       const std::string path = folder + "/" + name;
       if (!fs::is_regular_file(path, error)) return path + ": is missing";
       if (size == fs::file_size(path, error)) continue;
-      return fmt::format("{}: has {} bytes; expected {}", path, fs::file_size(path, error), size.dump());
+      return fmt::format("{}: has {} bytes; expected {}", path, fs::file_size(path, error), dump_json(size));
     }
   } catch (const InputError& damage) {
     return damage.what();
@@ -140,7 +141,7 @@ RunRecord adopt_run(const std::string& from, const std::string& to, const RunCon
 
 ScoreOptions protocol_of_run(const std::string& folder, const std::vector<std::string>& overrides) {
   const std::string path = folder + "/config.json";
-  const Json config = Json::parse(content_of(path).value_or(""), nullptr, false);
+  const Json config = try_parse_json(content_of(path).value_or(""));
   if (!config.is_object() || !config.contains("evaluation")) {
     throw InputError(fmt::format("{}: can't be read, or has no \"evaluation\"; expected the config of a run", path));
   }

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <stdexcept>
 
@@ -8,11 +7,13 @@
 #include "bench/testing/program.hpp"
 #include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "eval/find_runs.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -22,13 +23,13 @@ struct Comparison {
   Json config = short_comparison();
 
   Comparison() { write(); }
-  void write() const { folder.write("c.json", config.dump()); }
+  void write() const { folder.write("c.json", dump_json(config)); }
   Outcome run(const std::string& arguments) const { return testing::evbench(folder, "run c.json " + arguments); }
 
   /// The run of this label below results/EXPERIMENT.
   std::string path(const std::string& label, const std::string& experiment = "short") const {
     for (const std::string& path : runs_of(folder.file("results/" + experiment))) {
-      if (Json::parse(read_file(path + "/metrics.json")).at("label") == label) return path;
+      if (parse_json(read_file(path + "/metrics.json")).at("label") == label) return path;
     }
     FAIL("no run is labelled " << label);
     return "";
@@ -38,7 +39,7 @@ struct Comparison {
     return read_file(path(label, experiment) + "/" + name);
   }
   Json metrics(const std::string& label, const std::string& experiment = "short") const {
-    return Json::parse(content(label, "metrics.json", experiment));
+    return parse_json(content(label, "metrics.json", experiment));
   }
   std::string sums() const {
     return testing::shell(folder, "cd results && find . -type f | sort | xargs sha256sum").out;
@@ -85,15 +86,16 @@ TEST_CASE("Runs that are complete are not done again, unless that is asked for, 
   const Comparison comparison;
   const Outcome first = comparison.run("");
   REQUIRE(first.exit_code == 0);
-  CHECK_THAT(first.out, !Contains("complete already"));
+  CHECK_THAT(first.out, !ContainsSubstring("complete already"));
   const std::string before = comparison.sums();
   const Outcome second = comparison.run("");
   CHECK(second.exit_code == 0);
-  CHECK_THAT(second.out, Contains("complete already: 2 of 2 (--force does them again)"));
-  CHECK_THAT(second.out, Contains("asynchronous") && Contains("frames of 50 ms") && Contains("ATE [m]"));
+  CHECK_THAT(second.out, ContainsSubstring("complete already: 2 of 2 (--force does them again)"));
+  CHECK_THAT(second.out,
+             ContainsSubstring("asynchronous") && ContainsSubstring("frames of 50 ms") && ContainsSubstring("ATE [m]"));
   CHECK(comparison.sums() == before);
   const Outcome forced = comparison.run("--force");
-  CHECK_THAT(forced.out, !Contains("complete already"));
+  CHECK_THAT(forced.out, !ContainsSubstring("complete already"));
   CHECK(comparison.sums() != before);  // measured times
 }
 
@@ -105,7 +107,7 @@ TEST_CASE("A back-end that is added to a comparison is the only one that is run"
       {{"type", "bundle_adjustment"}, {"frame_duration", 0.1}, {"label", "100 ms"}});
   comparison.write();
   const Outcome more = comparison.run("");
-  CHECK_THAT(more.out, Contains("complete already: 2 of 3") && Contains("100 ms"));
+  CHECK_THAT(more.out, ContainsSubstring("complete already: 2 of 3") && ContainsSubstring("100 ms"));
   CHECK(comparison.content("asynchronous", "timing.csv") == timing);
 }
 
@@ -118,19 +120,20 @@ TEST_CASE("Another label or protocol is a matter of names and scores: nothing is
   comparison.config["evaluation"]["alignment"] = "se3";
   comparison.write();
   const Outcome again = comparison.run("");
-  CHECK_THAT(again.out, Contains("complete already: 2 of 2") && Contains("mine") && Contains("SE(3) alignment"));
+  CHECK_THAT(again.out, ContainsSubstring("complete already: 2 of 2") && ContainsSubstring("mine") &&
+                            ContainsSubstring("SE(3) alignment"));
   CHECK(comparison.path("mine") == path);
   CHECK(read_file(path + "/timing.csv") == timing);
   CHECK(read_file(path + "/final.tum") == trajectory);
-  CHECK_THAT(read_file(path + "/log.txt"), Contains("called short: mine"));
-  const Json manifest = Json::parse(read_file(path + "/manifest.json"));
+  CHECK_THAT(read_file(path + "/log.txt"), ContainsSubstring("called short: mine"));
+  const Json manifest = parse_json(read_file(path + "/manifest.json"));
   CHECK(manifest.at("config_sha256") == sha256_file(path + "/config.json"));
   // As if it had been run that way at once.
   REQUIRE(comparison.run("--force --quiet").exit_code == 0);
   const Json fresh = comparison.metrics("mine");
   REQUIRE(comparison.run("--quiet --set evaluation.alignment=sim3").exit_code == 0);
   REQUIRE(comparison.run("--quiet").exit_code == 0);
-  CHECK(comparison.metrics("mine").dump() == fresh.dump());
+  CHECK(dump_json(comparison.metrics("mine")) == dump_json(fresh));
 }
 
 TEST_CASE("Tables have the rows in the order of the config that was run last, whatever was run before") {
@@ -147,7 +150,7 @@ TEST_CASE("Tables have the rows in the order of the config that was run last, wh
   std::swap(comparison.config["backends"][0], comparison.config["backends"][1]);
   comparison.write();
   const Outcome swapped = comparison.run("");
-  CHECK_THAT(swapped.out, Contains("complete already: 2 of 2"));
+  CHECK_THAT(swapped.out, ContainsSubstring("complete already: 2 of 2"));
   CHECK(swapped.out.find("frames of 50 ms") < swapped.out.find("asynchronous"));
   REQUIRE(comparison.run("--quiet --set seed=2").exit_code == 0);
   CHECK(rows() == std::vector<std::string>{"frames of 50 ms", "frames of 50 ms", "asynchronous", "asynchronous"});
@@ -158,7 +161,7 @@ TEST_CASE("Tables have the rows in the order of the config that was run last, wh
 
 TEST_CASE("Runs of several options and seeds are told apart in their table") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_config().dump());
+  folder.write("c.json", dump_json(short_config()));
   for (const std::string duration : {"0.1", "0.05"}) {
     for (const std::string seed : {"2", "1"}) {
       REQUIRE(testing::evbench(folder,
@@ -167,7 +170,8 @@ TEST_CASE("Runs of several options and seeds are told apart in their table") {
     }
   }
   const std::string text = testing::evbench(folder, "table results").out;
-  CHECK_THAT(text.substr(0, text.find('\n')), Contains("backend.frame_duration  seed") && !Contains("key"));
+  CHECK_THAT(text.substr(0, text.find('\n')),
+             ContainsSubstring("backend.frame_duration  seed") && !ContainsSubstring("key"));
   const Outcome csv = testing::evbench(folder, "table results --format csv --metrics scale");
   std::vector<std::string> rows;
   std::istringstream lines(csv.out);
@@ -183,7 +187,7 @@ TEST_CASE("A job that is complete in another experiment below the same folder is
   REQUIRE(comparison.run("--quiet").exit_code == 0);
   const std::string before = comparison.content("asynchronous", "metrics.json");
   const Outcome other = comparison.run("--set name=other --set evaluation.alignment=se3");
-  CHECK_THAT(other.out, Contains("complete already: 2 of 2") && Contains("Experiment: other."));
+  CHECK_THAT(other.out, ContainsSubstring("complete already: 2 of 2") && ContainsSubstring("Experiment: other."));
   CHECK(comparison.content("asynchronous", "timing.csv", "other") == comparison.content("asynchronous", "timing.csv"));
   const Json metrics = comparison.metrics("asynchronous", "other");
   CHECK(metrics.at("experiment") == "other");
@@ -198,7 +202,7 @@ TEST_CASE("A run whose folder is damaged or of other data is done again") {
   for (const char* name : {"job.json", "metrics.json", "final.tum"}) {
     INFO(name);
     std::filesystem::remove(path + "/" + name);
-    CHECK_THAT(comparison.run("").out, Contains("complete already: 1 of 2"));
+    CHECK_THAT(comparison.run("").out, ContainsSubstring("complete already: 1 of 2"));
     CHECK(std::filesystem::exists(path + "/" + name));
   }
 }
@@ -216,7 +220,8 @@ TEST_CASE("Two back-ends that are the same job are refused with both labels, bef
   comparison.write();
   const Outcome outcome = comparison.run("");
   CHECK(outcome.exit_code == 2);
-  CHECK_THAT(outcome.err, Contains("c.json: the back-ends \"asynchronous\" and \"the same again\" are the same"));
+  CHECK_THAT(outcome.err,
+             ContainsSubstring("c.json: the back-ends \"asynchronous\" and \"the same again\" are the same"));
   CHECK(names_in(comparison.folder.path()) == std::set<std::string>{"c.json"});
 }
 
@@ -224,7 +229,7 @@ TEST_CASE("A back-end that throws makes its run failed with the reason, the othe
   const TemporaryFolder folder;
   Json config = short_comparison();
   config["backends"][0] = {{"type", "breaking"}, {"label", "mine"}};
-  const std::string arguments = folder.write("c.json", config.dump()) + " --quiet --out " + folder.file("results");
+  const std::string arguments = folder.write("c.json", dump_json(config)) + " --quiet --out " + folder.file("results");
   bool breaks = true;
   Plugins plugins = plugins_with_breaking(breaks);
   CHECK(run_here(plugins, arguments) == 3);
@@ -237,8 +242,8 @@ TEST_CASE("A back-end that throws makes its run failed with the reason, the othe
   CHECK(mine.status->status.state == RunState::failed);
   CHECK(mine.status->status.reason == "error: the matrix is singular");
   CHECK_FALSE(mine.status->complete);
-  CHECK(Json::parse(read_file(mine.folder + "/status.json")).at("complete") == false);
-  CHECK_THAT(read_file(mine.folder + "/log.txt"), Contains("error: the matrix is singular"));
+  CHECK(parse_json(read_file(mine.folder + "/status.json")).at("complete") == false);
+  CHECK_THAT(read_file(mine.folder + "/log.txt"), ContainsSubstring("error: the matrix is singular"));
   CHECK(mine.final_unscored == "no trajectory: error: the matrix is singular");
   CHECK(testing::evbench(folder, "score results --quiet").exit_code == 0);
 
@@ -253,7 +258,7 @@ TEST_CASE("Ctrl-C leaves nothing of a run that is not complete") {
   const TemporaryFolder folder;
   Json config = short_config("gp_map");
   config["source"]["duration"] = 3000;
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   const Outcome outcome = testing::shell(folder, "timeout --preserve-status -s INT 2 \"$evbench\" run c.json");
   CHECK(outcome.exit_code == 130);
   CHECK(outcome.out.empty());
@@ -266,12 +271,13 @@ TEST_CASE("A run that is ended leaves what is complete, prints its table, and go
   config["source"]["duration"] = 60;
   config["backends"][0] = {{"type", "bundle_adjustment"}, {"label", "quick"}, {"frame_duration", 0.4}};
   config["backends"][1] = {{"type", "gp_map"}, {"label", "slow"}, {"placement", {{"rule", "rate"}, {"rate", 400}}}};
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   const Outcome outcome = testing::shell(folder, R"(
     "$evbench" run c.json & until ls results/short/*/metrics.json > /dev/null 2>&1; do sleep 0.05; done
     kill -TERM $!; wait $!)");
   CHECK(outcome.exit_code == 143);
-  CHECK_THAT(outcome.err, Contains("c.json: interrupted; 1 of 2 runs are complete"));
-  CHECK_THAT(outcome.out, Contains("quick") && !Contains("slow") && Contains("written: results/short"));
+  CHECK_THAT(outcome.err, ContainsSubstring("c.json: interrupted; 1 of 2 runs are complete"));
+  CHECK_THAT(outcome.out,
+             ContainsSubstring("quick") && !ContainsSubstring("slow") && ContainsSubstring("written: results/short"));
   CHECK(names_in(folder.file("results/short")).size() == 1);
 }

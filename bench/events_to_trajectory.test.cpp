@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -7,9 +6,11 @@
 #include "bench/runner.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/median.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
 #include "eval/alignment.hpp"
 #include "eval/latency.hpp"
+#include "core/support/json.hpp"
 
 // From events to a trajectory, by haste and gp_map, with what the world throws at a camera.
 using namespace evbench;
@@ -166,7 +167,7 @@ TEST_CASE("Landmarks that come back into view are found again, and their tracks 
     return T;
   };
   const EventScene scene(motion, 6.0, wall());
-  const Execution with = run(scene), without = run(scene, Json::parse(R"({"guidance": {"reacquire": false}})"));
+  const Execution with = run(scene), without = run(scene, parse_json(R"({"guidance": {"reacquire": false}})"));
   const auto tracks = [&](const Execution& execution) { return execution.result.pieces.at(0).map.size(); };
   CHECK(tracks(with) < tracks(without));
   CHECK(error(scene, with) < error(scene, without));
@@ -380,7 +381,7 @@ TEST_CASE("A texture that repeats itself does not fool re-acquisition") {
     return T;
   };
   const EventScene scene(motion, 5.0, tiles());
-  const Execution with = run(scene), without = run(scene, Json::parse(R"({"guidance": {"reacquire": false}})"));
+  const Execution with = run(scene), without = run(scene, parse_json(R"({"guidance": {"reacquire": false}})"));
   CHECK(with.result.status.state == RunState::ok);
   check_recovered(scene, with, 0.5);
   CHECK(went_on(with) > 0);

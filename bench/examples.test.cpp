@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -6,6 +5,8 @@
 
 #include "bench/testing/keys.hpp"
 #include "bench/testing/program.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -41,7 +42,7 @@ TEST_CASE("Each built-in front-end and back-end is in an example, and each pair 
   std::set<std::string> frontends, backends;
   std::set<std::pair<std::string, std::string>> pairs;
   for (const std::string& path : example_configs()) {
-    const Json config = Json::parse(read_file(path));
+    const Json config = parse_json(read_file(path));
     const std::string frontend = config.at("frontend").at("type");
     frontends.insert(frontend);
     const Json all = config.contains("backends") ? config.at("backends") : Json::array({config.at("backend")});
@@ -83,6 +84,6 @@ TEST_CASE("Examples that need no data of one's own are fine as they are, and one
   CAPTURE(run.err);
   CHECK(run.exit_code == 0);
   for (const std::string& key : names_in(folder.file("results/tracks_from_file"))) {
-    CHECK(Json::parse(read_file(folder.file("results/tracks_from_file/" + key + "/status.json"))).at("state") == "ok");
+    CHECK(parse_json(read_file(folder.file("results/tracks_from_file/" + key + "/status.json"))).at("state") == "ok");
   }
 }

@@ -14,6 +14,7 @@
 #include "core/io/spool.hpp"
 #include "core/support/interruption.hpp"
 #include "core/support/json_reason.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -97,7 +98,7 @@ void set_value(Json& config, const std::string& assignment, const Json& of_confi
   }
   const std::string text = assignment.substr(equals + 1);
   const bool is_text = schema != nullptr && schema->value("type", Json()) == "string";
-  const Json value = is_text ? Json() : Json::parse(text, nullptr, false);
+  const Json value = is_text ? Json() : try_parse_json(text);
   *target = is_text || value.is_discarded() ? Json(text) : value;
 }
 
@@ -151,7 +152,7 @@ std::string folder_of(const std::string& path) {
 std::vector<std::string> plugin_paths(const Json& list, const std::string& path) {
   const auto is_path = [](const Json& item) { return item.is_string() && !item.get<std::string>().empty(); };
   if (!list.is_array() || !std::ranges::all_of(list, is_path)) {
-    throw InputError(fmt::format("{}: plugins: expected a list of paths, found {}", path, list.dump()));
+    throw InputError(fmt::format("{}: plugins: expected a list of paths, found {}", path, dump_json(list)));
   }
   std::vector<std::string> paths;
   for (const Json& item : list) paths.push_back(anchored_path(item.get<std::string>(), folder_of(path)));
@@ -290,7 +291,7 @@ Json read_json(const std::string& path) {
     if (event == Json::parse_event_t::object_start) keys.emplace_back();
     if (event == Json::parse_event_t::object_end) keys.pop_back();
     if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second) {
-      throw InputError(fmt::format("{}: an object has the key {} twice; expected it once", path, parsed.dump()));
+      throw InputError(fmt::format("{}: an object has the key {} twice; expected it once", path, dump_json(parsed)));
     }
     return true;
   };

@@ -1,23 +1,24 @@
 #include "bench/experiment.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "bench/testing/configs.hpp"
 #include "bench/testing/keys.hpp"
 #include "bench/testing/program.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::EndsWith;
 
 namespace {
 
 Experiment read(const Json& config, const std::vector<std::string>& overrides = {}) {
   const TemporaryFolder folder;
-  return read_experiment(folder.write("c.json", config.dump()), overrides, known_plugins());
+  return read_experiment(folder.write("c.json", dump_json(config)), overrides, known_plugins());
 }
 
 Experiment read_text(const std::string& text) {
@@ -97,14 +98,17 @@ TEST_CASE("Overrides reach values, list items and whole objects") {
 }
 
 TEST_CASE("An override that can't be meant is refused") {
-  CHECK_THROWS_WITH(read(short_config(), {"seed"}), Contains("--set seed: expected KEY=VALUE"));
-  CHECK_THROWS_WITH(read(short_config(), {"=3"}), Contains("expected KEY=VALUE"));
-  CHECK_THROWS_WITH(read(short_comparison(), {"backends.2.label=x"}), Contains("not a position in a list of 2"));
-  CHECK_THROWS_WITH(read(short_comparison(), {"backends.first.label=x"}), Contains("\"first\" is not a position"));
-  CHECK_THROWS_WITH(read(short_config(), {"name.x=3"}), Contains("is a value, not an object"));
-  CHECK_THROWS_WITH(read(short_config(), {"sede=3"}), Contains("\"sede\"") && Contains("did you mean \"seed\""));
-  CHECK_THROWS_WITH(read(short_config(), {"seed=1e999"}), Contains("c.json: seed: expected integer"));
-  CHECK_THROWS_WITH(read(short_config(), {"trajectory_rate=NaN"}), Contains("expected number, found \"NaN\""));
+  CHECK_THROWS_WITH(read(short_config(), {"seed"}), ContainsSubstring("--set seed: expected KEY=VALUE"));
+  CHECK_THROWS_WITH(read(short_config(), {"=3"}), ContainsSubstring("expected KEY=VALUE"));
+  CHECK_THROWS_WITH(read(short_comparison(), {"backends.2.label=x"}),
+                    ContainsSubstring("not a position in a list of 2"));
+  CHECK_THROWS_WITH(read(short_comparison(), {"backends.first.label=x"}),
+                    ContainsSubstring("\"first\" is not a position"));
+  CHECK_THROWS_WITH(read(short_config(), {"name.x=3"}), ContainsSubstring("is a value, not an object"));
+  CHECK_THROWS_WITH(read(short_config(), {"sede=3"}),
+                    ContainsSubstring("\"sede\"") && ContainsSubstring("did you mean \"seed\""));
+  CHECK_THROWS_WITH(read(short_config(), {"seed=1e999"}), ContainsSubstring("c.json: seed: expected integer"));
+  CHECK_THROWS_WITH(read(short_config(), {"trajectory_rate=NaN"}), ContainsSubstring("expected number, found \"NaN\""));
 }
 
 TEST_CASE(
@@ -116,20 +120,20 @@ TEST_CASE(
   REQUIRE(twice.size() == before.size());
   for (std::size_t i = 0; i < before.size(); ++i) CHECK(twice[i] == (i == 3 ? Json(2.0) : before[i]));
   CHECK_THROWS_WITH(read(short_config("gp_map"), {"backend.qc.6=2"}),
-                    Contains("\"6\" is not a position in a list of 6"));
+                    ContainsSubstring("\"6\" is not a position in a list of 6"));
 }
 
 TEST_CASE("An error in what --set gave says so, an error in the file does not") {
   CHECK_THROWS_WITH(
       read(short_config(), {"trajectory_rate=fast"}),
-      Contains("c.json: trajectory_rate: expected number") && EndsWith("(from --set trajectory_rate=fast)"));
+      ContainsSubstring("c.json: trajectory_rate: expected number") && EndsWith("(from --set trajectory_rate=fast)"));
   CHECK_THROWS_WITH(read(short_config(), {"seed=2", "source.motion.knid=3"}),
-                    Contains("unknown key \"knid\"") && EndsWith("(from --set source.motion.knid=3)"));
+                    ContainsSubstring("unknown key \"knid\"") && EndsWith("(from --set source.motion.knid=3)"));
   CHECK_THROWS_WITH(read(short_config(), {"source={\"type\": \"simulation\", \"duration\": -1}"}),
-                    Contains("source.duration") && Contains("(from --set source="));
+                    ContainsSubstring("source.duration") && ContainsSubstring("(from --set source="));
   Json config = short_config();
   config["source"]["duration"] = -1;
-  CHECK_THROWS_WITH(read(config, {"seed=2"}), Contains("source.duration") && !Contains("--set"));
+  CHECK_THROWS_WITH(read(config, {"seed=2"}), ContainsSubstring("source.duration") && !ContainsSubstring("--set"));
 }
 
 TEST_CASE("A config may name its schema") {
@@ -140,34 +144,39 @@ TEST_CASE("A config may name its schema") {
 }
 
 TEST_CASE("A config that is not as expected is refused with the place and the nearest name") {
-  CHECK_THROWS_WITH(read_experiment("/no/such.json", {}, known_plugins()), Contains("/no/such.json: no such file"));
-  CHECK_THROWS_WITH(read_experiment("/", {}, known_plugins()), Contains("is a folder; expected a JSON config"));
-  CHECK_THROWS_WITH(read_text(""), Contains("c.json: is not JSON"));
-  CHECK_THROWS_WITH(read_text("{\"name\": "), Contains("c.json: is not JSON") && Contains("line 1"));
+  CHECK_THROWS_WITH(read_experiment("/no/such.json", {}, known_plugins()),
+                    ContainsSubstring("/no/such.json: no such file"));
+  CHECK_THROWS_WITH(read_experiment("/", {}, known_plugins()),
+                    ContainsSubstring("is a folder; expected a JSON config"));
+  CHECK_THROWS_WITH(read_text(""), ContainsSubstring("c.json: is not JSON"));
+  CHECK_THROWS_WITH(read_text("{\"name\": "), ContainsSubstring("c.json: is not JSON") && ContainsSubstring("line 1"));
   CHECK_THROWS_WITH(read_text(R"({"seed": 1, "source": {"seed": 3}, "seed": 2})"),
-                    Contains("c.json: an object has the key \"seed\" twice"));
-  CHECK_THROWS_WITH(read_text("[]"), Contains("expected an object"));
-  CHECK_THROWS_WITH(read_text("{}"), Contains("\"source\" is missing"));
+                    ContainsSubstring("c.json: an object has the key \"seed\" twice"));
+  CHECK_THROWS_WITH(read_text("[]"), ContainsSubstring("expected an object"));
+  CHECK_THROWS_WITH(read_text("{}"), ContainsSubstring("\"source\" is missing"));
   const auto with = [](const char* pointer, const Json& value) {
     Json config = short_config();
     config[Json::json_pointer(pointer)] = value;
     return config;
   };
-  CHECK_THROWS_WITH(read(with("/backend/type", "gp_mop")),
-                    Contains("c.json: backend.type: no backend is called \"gp_mop\"; did you mean \"gp_map\"?"));
-  CHECK_THROWS_WITH(read(with("/frontend/type", "orakle")), Contains("did you mean \"oracle\""));
-  CHECK_THROWS_WITH(read(with("/source/type", "simulator")), Contains("did you mean \"simulation\""));
-  CHECK_THROWS_WITH(read(with("/source/type", 3)), Contains("c.json: source: expected an object with \"type\""));
+  CHECK_THROWS_WITH(
+      read(with("/backend/type", "gp_mop")),
+      ContainsSubstring("c.json: backend.type: no backend is called \"gp_mop\"; did you mean \"gp_map\"?"));
+  CHECK_THROWS_WITH(read(with("/frontend/type", "orakle")), ContainsSubstring("did you mean \"oracle\""));
+  CHECK_THROWS_WITH(read(with("/source/type", "simulator")), ContainsSubstring("did you mean \"simulation\""));
+  CHECK_THROWS_WITH(read(with("/source/type", 3)),
+                    ContainsSubstring("c.json: source: expected an object with \"type\""));
   CHECK_THROWS_WITH(read(with("/source/motion/knid", 3)),
-                    Contains("c.json: source.motion: unknown key \"knid\"; did you mean \"kind\""));
-  CHECK_THROWS_WITH(read(with("/source/duration", -1)), Contains("c.json: source.duration: -1 is out of range"));
-  CHECK_THROWS_WITH(read(with("/source/duration", 1e12)), Contains("expected above 0 to 36000"));
-  CHECK_THROWS_WITH(read(with("/evaluation/alignment", "sim4")), Contains("c.json: evaluation.alignment"));
-  CHECK_THROWS_WITH(read(with("/backend/label", "")), Contains("c.json: backend.label: expected text"));
-  CHECK_THROWS_WITH(read(with("/backends", Json::array())), Contains("either \"backend\""));
-  CHECK_THROWS_WITH(read(with("/seed", -1)), Contains("c.json: seed"));
+                    ContainsSubstring("c.json: source.motion: unknown key \"knid\"; did you mean \"kind\""));
+  CHECK_THROWS_WITH(read(with("/source/duration", -1)),
+                    ContainsSubstring("c.json: source.duration: -1 is out of range"));
+  CHECK_THROWS_WITH(read(with("/source/duration", 1e12)), ContainsSubstring("expected above 0 to 36000"));
+  CHECK_THROWS_WITH(read(with("/evaluation/alignment", "sim4")), ContainsSubstring("c.json: evaluation.alignment"));
+  CHECK_THROWS_WITH(read(with("/backend/label", "")), ContainsSubstring("c.json: backend.label: expected text"));
+  CHECK_THROWS_WITH(read(with("/backends", Json::array())), ContainsSubstring("either \"backend\""));
+  CHECK_THROWS_WITH(read(with("/seed", -1)), ContainsSubstring("c.json: seed"));
   for (const char* name : {"a/b", "..", ".hidden", "a b"}) {
-    CHECK_THROWS_WITH(read(with("/name", name)), Contains("can't name a folder"));
+    CHECK_THROWS_WITH(read(with("/name", name)), ContainsSubstring("can't name a folder"));
   }
 }
 
@@ -175,14 +184,14 @@ TEST_CASE("The libraries that a config names are taken from its folder, and are 
   const TemporaryFolder folder;
   Json config = short_config();
   config["plugins"] = {"lib/libmine.so", "/opt/libother.so"};
-  const std::string path = folder.write("c.json", config.dump());
+  const std::string path = folder.write("c.json", dump_json(config));
   const std::vector<std::string> expected = {folder.file("lib/libmine.so"), "/opt/libother.so"};
   CHECK(read_plugin_paths(path, {}) == expected);
   CHECK(read_experiment(path, {}, known_plugins()).runs[0].resolved().at("plugins") == Json(expected));
   CHECK(read_plugin_paths(path, {"plugins=[]"}).empty());
   CHECK_THROWS_WITH(read_plugin_paths(path, {"plugins=libmine.so"}),
-                    Contains("c.json: plugins: expected a list of paths, found \"libmine.so\""));
-  CHECK_THROWS_WITH(read_plugin_paths(path, {"plugins.0=3"}), Contains("expected a list of paths"));
+                    ContainsSubstring("c.json: plugins: expected a list of paths, found \"libmine.so\""));
+  CHECK_THROWS_WITH(read_plugin_paths(path, {"plugins.0=3"}), ContainsSubstring("expected a list of paths"));
 }
 
 TEST_CASE("A library that the command line named is named in the config that a run writes") {
@@ -191,7 +200,7 @@ TEST_CASE("A library that the command line named is named in the config that a r
   entry.origin = "/opt/libmine.so";
   plugins.of<BackEnd>().add("mine", entry);
   const TemporaryFolder folder;
-  const std::string path = folder.write("c.json", short_config("mine").dump());
+  const std::string path = folder.write("c.json", dump_json(short_config("mine")));
   for (const std::vector<std::string>& overrides : {std::vector<std::string>{}, {"plugins=[\"/opt/libmine.so\"]"}}) {
     CHECK(read_experiment(path, overrides, plugins).runs[0].resolved().at("plugins") == Json{"/opt/libmine.so"});
   }
@@ -199,10 +208,10 @@ TEST_CASE("A library that the command line named is named in the config that a r
 
 TEST_CASE("Runs of a comparison that would write to the same folder are refused") {
   CHECK_THROWS_WITH(read(short_comparison(), {"backends.1.label=asynchronous"}),
-                    Contains("two back-ends are labelled \"asynchronous\""));
+                    ContainsSubstring("two back-ends are labelled \"asynchronous\""));
   Json config = short_comparison();
   config["backends"] = Json::array();
-  CHECK_THROWS_WITH(read(config), Contains("at least one back-end"));
+  CHECK_THROWS_WITH(read(config), ContainsSubstring("at least one back-end"));
 }
 
 TEST_CASE("Every config that comes with evbench can be read, and each of its runs run again") {
@@ -221,6 +230,6 @@ TEST_CASE("The schema of a config knows every plugin and its options") {
   const Json& backends = schema.at("properties").at("backend").at("anyOf");
   CHECK(backends.size() == known_plugins().of<BackEnd>().entries().size());
   for (const Json& backend : backends) CHECK(backend.at("properties").contains("type"));
-  CHECK_THAT(describe_experiment(),
-             Contains("evaluation.alignment") && Contains("trajectory_rate") && Contains("pipeline.latency"));
+  CHECK_THAT(describe_experiment(), ContainsSubstring("evaluation.alignment") && ContainsSubstring("trajectory_rate") &&
+                                        ContainsSubstring("pipeline.latency"));
 }

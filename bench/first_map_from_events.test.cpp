@@ -1,9 +1,10 @@
-#include <catch2/catch.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "bench/testing/program.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -27,7 +28,7 @@ TEST_CASE("A first map from a camera that hardly goes on is wrong at first, and 
                                   {"boxes", 53, {{"lag", 1}}}};
   std::set<std::string> redone;  // options with which a first map made way
   for (const auto& [scene, seed, options] : starts) {
-    CAPTURE(scene, seed, options.dump());
+    CAPTURE(scene, seed, dump_json(options));
     Json config{{"name", "start"},
                 {"seed", seed},
                 {"source",
@@ -41,16 +42,16 @@ TEST_CASE("A first map from a camera that hardly goes on is wrong at first, and 
                 {"evaluation", {{"alignment", "sim3"}, {"association", "interpolated"}}}};
     config["backend"].update(options);
     const TemporaryFolder folder;
-    folder.write("start.json", config.dump());
+    folder.write("start.json", dump_json(config));
     REQUIRE(testing::evbench(folder, "run start.json --quiet").exit_code == 0);
     const std::set<std::string> runs = runs_of(folder.file("results/start"));
     REQUIRE(runs.size() == 1);
     const std::string& run = *runs.begin();
-    const Json metrics = Json::parse(read_file(run + "/metrics.json"));
+    const Json metrics = parse_json(read_file(run + "/metrics.json"));
     CHECK(metrics.at("status").at("state") == "ok");
     CHECK(metrics.at("final").at("ate").at("trans_percent").get<double>() < 3.0);
     const bool made_way = read_file(run + "/log.txt").find("another one is looked for") != std::string::npos;
-    if (made_way) redone.insert(options.dump());
+    if (made_way) redone.insert(dump_json(options));
   }
   CHECK(redone.size() == 3);  // else this tests less than it says
 }

@@ -9,6 +9,7 @@
 #include "core/io/path.hpp"
 #include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace fs = std::filesystem;
@@ -113,7 +114,7 @@ JobIdentity identify(const Job& job, const SourceFiles& source, const Plugins& p
   json["frontend"] = identifier.part<FrontEnd>(job.frontend, identifier.named_files<FrontEnd>(job.frontend));
   json["backend"] = identifier.part<BackEnd>(job.backend, identifier.named_files<BackEnd>(job.backend));
   JobIdentity identity;
-  identity.text = json.dump(2) + "\n";
+  identity.text = dump_json(json, 2) + "\n";
   identity.key = fmt::format("{}-{}", job.backend.type, digits_of_key(identity.text));
   identity.files = identifier.take_files();
   return identity;

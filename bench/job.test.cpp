@@ -1,6 +1,5 @@
 #include "bench/job.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <set>
 
@@ -8,10 +7,12 @@
 #include "bench/testing/program.hpp"
 #include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -26,7 +27,7 @@ TEST_CASE("A job's key is the beginning of the digest of its identity, which has
   write_recording(folder);
   const JobIdentity identity = identity_of(read_first(folder.file("recording.json")));
   CHECK(identity.key == "bundle_adjustment-" + sha256(identity.text).substr(0, 10));
-  const Json json = Json::parse(identity.text);
+  const Json json = parse_json(identity.text);
   for (const char* key : {"pipeline_version", "seed", "trajectory_rate", "pipeline", "source", "frontend", "backend"}) {
     CHECK(json.contains(key));
   }
@@ -34,7 +35,8 @@ TEST_CASE("A job's key is the beginning of the digest of its identity, which has
   CHECK(json["source"]["files"].size() == 2);
   CHECK(json["backend"]["version"].is_number_integer());
   CHECK_FALSE(json["backend"].contains("library"));
-  CHECK_THAT(identity.text, !Contains(folder.path()) && !Contains("tracks.txt") && !Contains("label"));
+  CHECK_THAT(identity.text,
+             !ContainsSubstring(folder.path()) && !ContainsSubstring("tracks.txt") && !ContainsSubstring("label"));
 }
 
 TEST_CASE("Data that move keep their job's key, and data that change under their path do not") {

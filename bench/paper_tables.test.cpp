@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -7,6 +6,8 @@
 
 #include "bench/testing/program.hpp"
 #include "core/support/median.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -19,7 +20,7 @@ const std::string kConfigs = EVBENCH_CONFIGS;
 std::map<std::string, Json> metrics_of(const std::string& experiment) {
   std::map<std::string, Json> metrics;
   for (const std::string& run : runs_of(experiment)) {
-    const Json json = Json::parse(read_file(run + "/metrics.json"));
+    const Json json = parse_json(read_file(run + "/metrics.json"));
     metrics[json.at("label").get<std::string>()] = json;
   }
   return metrics;
@@ -74,7 +75,7 @@ TEST_CASE("Tracks of violent motion: the final estimate does not take a wrong mo
       {"backend", {{"type", "gp_map"}, {"label", "asynchronous"}}},
       {"evaluation",
        {{"alignment", "sim3"}, {"association", "interpolated"}, {"rpe_delta", 0.1}, {"rpe_unit", "seconds"}}}};
-  folder.write("violent.json", config.dump());
+  folder.write("violent.json", dump_json(config));
   REQUIRE(testing::evbench(folder, "run violent.json --quiet").exit_code == 0);
   const Json final_scores = metrics_of(folder.file("results/violent")).at("asynchronous").at("final");
   CHECK(final_scores.at("ate").at("trans_percent").get<double>() < 1.0);
@@ -102,7 +103,7 @@ TEST_CASE("gp_map stays below one percent of the path over 30 s with a tenth of 
                       {"motion", {{"kind", "smooth_random"}}},
                       {"scene", {{"kind", "frustum"}}},
                       {"tracks", {{"lifetime", {1, 4}}, {"noise", 0.7}, {"outlier_share", 0.1}}}};
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   for (const std::string seed : {"4", "8"}) {  // both once began with near and far exchanged
     INFO(seed);
     REQUIRE(testing::evbench(folder, "run c.json --quiet --set seed=" + seed + " --out s" + seed).exit_code == 0);
@@ -124,7 +125,7 @@ TEST_CASE("Landmarks whose depth a slow beginning does not tell do not let the w
       {"motion", {{"kind", "trajectory"}, {"trajectory", "${EVBENCH_DATA}/dynamic_6dof/motion.txt"}, {"start", 0}}},
       {"scene", {{"kind", "frustum"}}},
       {"tracks", {{"outlier_share", 0.05}, {"drift_share", 0.05}, {"dropout_rate", 0.1}}}};
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
   const Json metrics = metrics_of(folder.file("results/short")).at("gp_map");
   CHECK(metrics.at("status").at("state") == "ok");
@@ -145,7 +146,7 @@ std::vector<double> hand_held(double start, double duration, const std::vector<s
       {"scene", {{"kind", "plane"}, {"near", 1.2}, {"far", 2.5}}},
       {"tracks",
        {{"alive", 50}, {"lifetime", {0.3, 2}}, {"noise", 0.5}, {"outlier_share", 0.05}, {"drift_share", 0.05}}}};
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   std::vector<double> percent;
   for (const std::string& seed : seeds) {
     INFO(seed);

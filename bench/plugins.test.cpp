@@ -1,12 +1,12 @@
 #include "bench/plugins.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "bench/testing/program.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 // Libraries that are plugins: core/plugin/library.test.cpp, and the test of the installation, check_install.cmake.
 
@@ -15,29 +15,31 @@ TEST_CASE("Libraries are named by --plugin before or after a command, a variable
   folder.write("a.so", "no library");
   Json config = short_config();
   config["plugins"] = {"a.so"};
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   const auto refused = [&](const std::string& command, const std::string& place) {
     const Outcome outcome = shell(folder, command);
     INFO(command);
     CHECK(outcome.exit_code == 2);
     CHECK(outcome.out.empty());
-    CHECK_THAT(outcome.err, Contains(place + ": ") && Contains("a.so: can't be loaded as a shared library"));
+    CHECK_THAT(outcome.err,
+               ContainsSubstring(place + ": ") && ContainsSubstring("a.so: can't be loaded as a shared library"));
   };
   refused("\"$evbench\" --plugin a.so list", "--plugin");
   refused("\"$evbench\" list --plugin a.so", "--plugin");
   refused("\"$evbench\" dataset list --plugin a.so", "--plugin");
   refused("EVBENCH_PLUGINS=:./a.so: \"$evbench\" list", "EVBENCH_PLUGINS");
   refused("\"$evbench\" run c.json", "c.json: plugins");
-  CHECK_THAT(shell(folder, "\"$evbench\" list --plugin b.so").err, Contains("b.so: no such file"));
-  CHECK_THAT(shell(folder, "\"$evbench\" list --plugin").err, Contains("--plugin"));
+  CHECK_THAT(shell(folder, "\"$evbench\" list --plugin b.so").err, ContainsSubstring("b.so: no such file"));
+  CHECK_THAT(shell(folder, "\"$evbench\" list --plugin").err, ContainsSubstring("--plugin"));
 }
 
 TEST_CASE("Plugins are checked in words, a line a check") {
   const TemporaryFolder folder;
   const Outcome outcome = testing::evbench(folder, "check-plugin oracle --kind frontend");
   CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.out, Contains("frontend oracle (built in):\n  ok    ") && Contains("checks hold"));
-  CHECK_THAT(outcome.out, !Contains("FAILS"));
+  CHECK_THAT(outcome.out,
+             ContainsSubstring("frontend oracle (built in):\n  ok    ") && ContainsSubstring("checks hold"));
+  CHECK_THAT(outcome.out, !ContainsSubstring("FAILS"));
 }
 
 TEST_CASE("A plugin that fails a check ends check-plugin with exit code 3 and says why") {
@@ -45,7 +47,7 @@ TEST_CASE("A plugin that fails a check ends check-plugin with exit code 3 and sa
   const Outcome outcome =
       testing::evbench(folder, "check-plugin bundle_adjustment --options '{\"frame_duration\": 3}'");
   CHECK(outcome.exit_code == 3);
-  CHECK_THAT(outcome.out, Contains("  FAILS follows a good sequence in time order and shows a map: "));
+  CHECK_THAT(outcome.out, ContainsSubstring("  FAILS follows a good sequence in time order and shows a map: "));
 }
 
 TEST_CASE("A plugin that can't be checked is refused with a sentence") {
@@ -54,7 +56,7 @@ TEST_CASE("A plugin that can't be checked is refused with a sentence") {
     const Outcome outcome = testing::evbench(folder, "check-plugin " + arguments);
     INFO(arguments);
     CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, Contains(message));
+    CHECK_THAT(outcome.err, ContainsSubstring(message));
   };
   refused("gp_mop", "no plugin is called \"gp_mop\"; did you mean \"gp_map\"?");
   refused("oracle --kind backend", "no plugin is called \"oracle\"");

@@ -1,12 +1,13 @@
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <map>
 
 #include "bench/testing/program.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -21,7 +22,7 @@ std::map<std::string, Json> metrics(const TemporaryFolder& folder, const std::st
   std::map<std::string, Json> result;
   for (const std::string& run : names_in(folder.file("results/" + experiment))) {
     const std::string path = folder.file("results/" + experiment + "/" + run);
-    Json content = Json::parse(read_file(path + "/metrics.json"));
+    Json content = parse_json(read_file(path + "/metrics.json"));
     content["folder"] = path;
     result[content.at("label")] = content;
   }
@@ -67,7 +68,7 @@ TEST_CASE("The example front-end in Python makes tracks that a back-end can use"
   CHECK(run.at("status").at("state") == "ok");
   CHECK(ate_percent(run) < 0.6);
   CHECK_THAT(read_file(run.at("folder").get<std::string>() + "/log.txt"),
-             Contains("front-end process: centres of dots") && Contains(" tracks"));
+             ContainsSubstring("front-end process: centres of dots") && ContainsSubstring(" tracks"));
 }
 
 TEST_CASE("A back-end process that crashes is a failed run with its last words, and the others go on") {
@@ -78,14 +79,14 @@ TEST_CASE("A back-end process that crashes is a failed run with its last words, 
                "import sys\ninput(); print('{\"evbench\": 1}', flush=True); input()\nsys.exit('no idea what to do')\n");
   config["backends"] = {{{"type", "process"}, {"label", "crash"}, {"command", {"python3", "crash.py"}}},
                         {{"type", "bundle_adjustment"}, {"label", "frames"}}};
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   CHECK(testing::evbench(folder, "run c.json --quiet").exit_code == 3);
   std::map<std::string, Json> runs = metrics(folder, "short");
   REQUIRE(runs.size() == 2);
   CHECK(runs["frames"].at("status").at("state") == "ok");
   CHECK(runs["crash"].at("status").at("state") == "failed");
-  CHECK_THAT(
-      runs["crash"].at("status").at("reason").get<std::string>(),
-      Contains("the process \"python3 crash.py\" ended with exit code 1; it had been told the batch until 0.01 s") &&
-          Contains("no idea what to do"));
+  CHECK_THAT(runs["crash"].at("status").at("reason").get<std::string>(),
+             ContainsSubstring(
+                 "the process \"python3 crash.py\" ended with exit code 1; it had been told the batch until 0.01 s") &&
+                 ContainsSubstring("no idea what to do"));
 }

@@ -1,11 +1,13 @@
 #include "bench/testing/program.hpp"
 
-#include <catch2/catch.hpp>
 #include <sstream>
+
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -33,11 +35,12 @@ TEST_CASE("Every command has help, and the program a version") {
     const Outcome help = testing::evbench(folder, std::string(command) + " --help");
     INFO(command);
     CHECK(help.exit_code == 0);
-    CHECK_THAT(help.out, Contains("Usage:"));
+    CHECK_THAT(help.out, ContainsSubstring("Usage:"));
     CHECK(help.err.empty());
   }
-  CHECK_THAT(testing::evbench(folder, "--version").out, Contains("evbench 0."));
-  CHECK_THAT(testing::evbench(folder, "run --help").out, Contains("--set") && Contains("metrics.json"));
+  CHECK_THAT(testing::evbench(folder, "--version").out, ContainsSubstring("evbench 0."));
+  CHECK_THAT(testing::evbench(folder, "run --help").out,
+             ContainsSubstring("--set") && ContainsSubstring("metrics.json"));
 }
 
 TEST_CASE("All plugins are listed, and each is described for people and as a JSON Schema") {
@@ -50,25 +53,25 @@ TEST_CASE("All plugins are listed, and each is described for people and as a JSO
       INFO(kind << " " << name);
       const Outcome described = testing::evbench(folder, std::string("describe ") + kind + " " + name);
       CHECK(described.exit_code == 0);
-      CHECK_THAT(described.out, Contains(name) && Contains("option") && Contains("default"));
+      CHECK_THAT(described.out, ContainsSubstring(name) && ContainsSubstring("option") && ContainsSubstring("default"));
       const Outcome schema = testing::evbench(folder, std::string("describe ") + kind + " " + name + " --schema");
-      CHECK(Json::parse(schema.out).at("type") == "object");
+      CHECK(parse_json(schema.out).at("type") == "object");
     }
   }
-  CHECK_THAT(testing::evbench(folder, "describe config").out, Contains("trajectory_rate"));
+  CHECK_THAT(testing::evbench(folder, "describe config").out, ContainsSubstring("trajectory_rate"));
   CHECK(testing::evbench(folder, "describe gp_map").out == testing::evbench(folder, "describe backend gp_map").out);
-  CHECK(Json::parse(testing::evbench(folder, "describe config --schema").out).contains("$schema"));
+  CHECK(parse_json(testing::evbench(folder, "describe config --schema").out).contains("$schema"));
 }
 
 TEST_CASE("A command line that is not understood ends with exit code 2 and says what is wrong") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_config().dump());
+  folder.write("c.json", dump_json(short_config()));
   const auto refused = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = testing::evbench(folder, arguments);
     INFO(arguments);
     CHECK(outcome.exit_code == 2);
     CHECK(outcome.out.empty());
-    CHECK_THAT(outcome.err, Contains(message));
+    CHECK_THAT(outcome.err, ContainsSubstring(message));
   };
   refused("", "check-plugin");  // all commands
   refused("frobnicate", "\"frobnicate\" is no command; known: ");
@@ -89,38 +92,38 @@ TEST_CASE("A command line that is not understood ends with exit code 2 and says 
 
 TEST_CASE("Nothing is printed by --quiet, the table and the folder without") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_config().dump());
+  folder.write("c.json", dump_json(short_config()));
   const Outcome quiet = testing::evbench(folder, "run c.json --quiet");
   CHECK(quiet.out.empty());
   CHECK(quiet.err.empty());
   const Outcome told = testing::evbench(folder, "run c.json");
   CHECK(told.err.empty());  // progress is for terminals
-  CHECK_THAT(told.out, Contains("ATE [m]") && Contains("written: results/short"));
+  CHECK_THAT(told.out, ContainsSubstring("ATE [m]") && ContainsSubstring("written: results/short"));
   const std::string text = testing::evbench(folder, "table results").out;
-  CHECK_THAT(told.out, Contains(text));
+  CHECK_THAT(told.out, ContainsSubstring(text));
   for (const char* format : {"markdown", "csv", "latex"}) {
     const Outcome table = testing::evbench(folder, std::string("table results --format ") + format);
     CHECK(table.exit_code == 0);
-    CHECK_THAT(table.out, Contains("bundle"));
+    CHECK_THAT(table.out, ContainsSubstring("bundle"));
   }
 }
 
 TEST_CASE("A run that is watched says how far it is, where its errors go") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_config().dump());
+  folder.write("c.json", dump_json(short_config()));
   const Outcome watched = testing::evbench(folder, "run c.json --watch");
   CHECK(watched.exit_code == 0);
   for (const char* const part : {"of 3.00 s", " tracks, ", " landmarks, ", " states, delay ", "x real time\n"}) {
-    CHECK_THAT(watched.err, Contains(part));
+    CHECK_THAT(watched.err, ContainsSubstring(part));
   }
-  CHECK_THAT(watched.out, Contains("written: results/short") && !Contains("x real time"));
+  CHECK_THAT(watched.out, ContainsSubstring("written: results/short") && !ContainsSubstring("x real time"));
 }
 
 TEST_CASE("What a run's front-end told is told again by the front-end recorded") {
   const TemporaryFolder folder;
   Json config = short_config();
   config["source"]["tracks"]["dropout_rate"] = 2;
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   REQUIRE(testing::evbench(folder, "run c.json --tracks --quiet --out first").exit_code == 0);
   const auto run = [&](const std::string& out) {
     const std::string experiment = folder.file(out + "/short");
@@ -133,7 +136,7 @@ TEST_CASE("What a run's front-end told is told again by the front-end recorded")
                     begin = tracks.substr(id.size() + 1, tracks.find(' ', id.size() + 1) - id.size() - 1);
   const std::string early = id + " " + begin + "1\n";  // goes on later
   folder.write("ends.txt", early + read_file(run("first") + "/track_ends.txt"));
-  folder.write("again.json", config.dump());
+  folder.write("again.json", dump_json(config));
   REQUIRE(testing::evbench(folder, "run again.json --tracks --quiet --out second").exit_code == 0);
   CHECK(read_file(run("second") + "/tracks.txt") == tracks);
   CHECK(read_file(run("second") + "/track_ends.txt") == read_file(folder.file("ends.txt")));
@@ -141,7 +144,7 @@ TEST_CASE("What a run's front-end told is told again by the front-end recorded")
 
 TEST_CASE("An override is one value, so that the config may stand behind it") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_config().dump());
+  folder.write("c.json", dump_json(short_config()));
   CHECK(testing::evbench(folder, "run --check --set seed=2 c.json").exit_code == 0);
 }
 
@@ -165,16 +168,16 @@ TEST_CASE("Checking a config finds what would fail at once") {
         testing::shell(folder, "export EVBENCH_DATASETS=none; \"$evbench\" run --check recording.json --set '" +
                                    std::string(value) + "'");
     CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, Contains(message));
+    CHECK_THAT(outcome.err, ContainsSubstring(message));
   }
 }
 
 TEST_CASE("Checking a config runs and writes nothing") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_comparison().dump());
+  folder.write("c.json", dump_json(short_comparison()));
   const Outcome check = testing::evbench(folder, "run c.json --check");
   CHECK(check.exit_code == 0);
-  CHECK_THAT(check.out, Contains("c.json: fine, 2 runs"));
+  CHECK_THAT(check.out, ContainsSubstring("c.json: fine, 2 runs"));
   CHECK(names_in(folder.path()) == std::set<std::string>{"c.json"});
 }
 
@@ -184,21 +187,22 @@ TEST_CASE("A run that is interrupted leaves no half of it, and says what is comp
   config.erase("backend");
   config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "frames"}},
                         {{"type", "process"}, {"label", "sleeps"}, {"command", {"sleep", "100"}}, {"timeout", 100}}};
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   // Twice, as terminals, shells and `timeout` may do; not SIGINT, which a shell's background jobs ignore.
   const Outcome outcome = testing::shell(folder, R"("$evbench" run c.json & pid=$!
     until ls results/short/bundle_adjustment-*/metrics.json > /dev/null 2>&1; do sleep 0.1; done
     sleep 0.5; kill -TERM $pid; kill -TERM $pid; wait $pid)");
   CHECK(outcome.exit_code == 143);
   CHECK(outcome.err == "evbench: c.json: interrupted; 1 of 2 runs are complete, the same command goes on from there\n");
-  CHECK_THAT(outcome.out, Contains("frames") && Contains("ATE [m]") && Contains("written: results/short"));
+  CHECK_THAT(outcome.out, ContainsSubstring("frames") && ContainsSubstring("ATE [m]") &&
+                              ContainsSubstring("written: results/short"));
   CHECK(names_in(folder.file("results/short")).size() == 1);
 }
 
 TEST_CASE("No command replaces what it reads, or writes two outputs to one file, forced or not") {
   const TemporaryFolder folder;
   write_recording(folder);
-  folder.write("c.json", short_config().dump());
+  folder.write("c.json", dump_json(short_config()));
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
   REQUIRE(testing::shell(folder, "mv results/short/* run").exit_code == 0);
   const std::string before = testing::shell(folder, "sha256sum * run/* 2> /dev/null").out;
@@ -210,14 +214,14 @@ TEST_CASE("No command replaces what it reads, or writes two outputs to one file,
     INFO(command);
     const Outcome outcome = testing::evbench(folder, std::string(command) + " --force");
     CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, Contains("is what is read; expected another name"));
+    CHECK_THAT(outcome.err, ContainsSubstring("is what is read; expected another name"));
   }
   for (const char* const command : {"export c.json --groundtruth same.txt --tracks ./same.txt",
                                     "eval groundtruth.txt groundtruth.txt --errors same.txt --json same.txt"}) {
     INFO(command);
     const Outcome outcome = testing::evbench(folder, std::string(command) + " --force");
     CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, Contains("same.txt: is to be written twice"));
+    CHECK_THAT(outcome.err, ContainsSubstring("same.txt: is to be written twice"));
   }
   CHECK(testing::shell(folder, "sha256sum * run/* 2> /dev/null").out == before);
 }
@@ -232,7 +236,7 @@ TEST_CASE("A config may come from a pipe, with paths relative to the working fol
 
 TEST_CASE("Runs that can't be read are told behind the table of the others") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_comparison().dump());
+  folder.write("c.json", dump_json(short_comparison()));
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
   REQUIRE(testing::shell(folder,
                          "cp -r results/short/gp_map-* a; cp -r a b; cp -r a results/c; : > a/metrics.json;"
@@ -242,17 +246,18 @@ TEST_CASE("Runs that can't be read are told behind the table of the others") {
     const Outcome outcome = testing::evbench(folder, std::string(command) + " results");
     INFO(command);
     CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.out, Contains("asynchronous") && Contains("frames of 50 ms"));
-    CHECK_THAT(outcome.err, Contains("a/metrics.json: is not JSON") && Contains("b: is the folder of a run without"));
+    CHECK_THAT(outcome.out, ContainsSubstring("asynchronous") && ContainsSubstring("frames of 50 ms"));
+    CHECK_THAT(outcome.err, ContainsSubstring("a/metrics.json: is not JSON") &&
+                                ContainsSubstring("b: is the folder of a run without"));
   }
 }
 
 TEST_CASE("Checking a config finds a folder for results that can't be written") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_config().dump());
+  folder.write("c.json", dump_json(short_config()));
   CHECK(testing::evbench(folder, "run c.json --check --out new/folder").exit_code == 0);
   CHECK_FALSE(std::filesystem::exists(folder.file("new")));
   const Outcome outcome = testing::evbench(folder, "run c.json --check --out c.json/results");
   CHECK(outcome.exit_code == 4);
-  CHECK_THAT(outcome.err, Contains("c.json: is no folder; expected one for results"));
+  CHECK_THAT(outcome.err, ContainsSubstring("c.json: is no folder; expected one for results"));
 }

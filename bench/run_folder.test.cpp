@@ -1,6 +1,5 @@
 #include "bench/run_folder.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <map>
 
@@ -10,11 +9,13 @@
 #include "core/data/tum.hpp"
 #include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "eval/find_runs.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -27,14 +28,14 @@ std::map<std::string, std::string> run_folders(const TemporaryFolder& folder, co
   std::map<std::string, std::string> folders;
   for (const auto& experiment : std::filesystem::directory_iterator(folder.file(out))) {
     for (const std::string& run : runs_of(experiment.path().string())) {
-      folders[Json::parse(read_file(run + "/metrics.json")).at("label").get<std::string>()] = run;
+      folders[parse_json(read_file(run + "/metrics.json")).at("label").get<std::string>()] = run;
     }
   }
   return folders;
 }
 
 Json json_file(const std::string& folder, const std::string& name) {
-  return Json::parse(read_file(folder + "/" + name));
+  return parse_json(read_file(folder + "/" + name));
 }
 
 /// Every path to a value, "ate.trans_m.rmse".
@@ -58,7 +59,7 @@ struct TwoRuns {
   std::map<std::string, std::string> first, second;
 
   TwoRuns() {
-    folder.write("c.json", short_comparison().dump());
+    folder.write("c.json", dump_json(short_comparison()));
     REQUIRE(testing::evbench(folder, "run c.json --out first --quiet").exit_code == 0);
     REQUIRE(testing::evbench(folder, "run c.json --out second --quiet").exit_code == 0);
     first = run_folders(folder, "first");
@@ -85,8 +86,8 @@ TEST_CASE("A run's folder holds the documented files") {
     for (const char* key : {"program", "host", "seed", "key", "config_sha256", "inputs_sha256", "observations"}) {
       CHECK(manifest.contains(key));
     }
-    CHECK_THAT(read_file(path + "/timing.csv"), Contains("t_s,update_ms,"));
-    CHECK_THAT(read_file(path + "/log.txt"), Contains(label) && Contains("tracks simulated"));
+    CHECK_THAT(read_file(path + "/timing.csv"), ContainsSubstring("t_s,update_ms,"));
+    CHECK_THAT(read_file(path + "/log.txt"), ContainsSubstring(label) && ContainsSubstring("tracks simulated"));
   }
   CHECK(names_in(runs.folder.file("first/short")).size() == 2);
 }
@@ -103,8 +104,8 @@ TEST_CASE("The same config twice gives the same bytes, but for measured times") 
     }
     const Json a = json_file(path, "metrics.json"), b = json_file(other, "metrics.json");
     CHECK(a.at("final").at("ate").at("trans_m").at("rmse").is_number());
-    CHECK(a.at("final").dump() == b.at("final").dump());
-    CHECK(a.at("online").dump() == b.at("online").dump());
+    CHECK(dump_json(a.at("final")) == dump_json(b.at("final")));
+    CHECK(dump_json(a.at("online")) == dump_json(b.at("online")));
   }
 }
 
@@ -131,13 +132,13 @@ TEST_CASE("A run is scored for what was known at once and after the same wait, a
   }
   const std::string folder = "'" + runs.folder.file("first") + "'";
   const Outcome table = testing::evbench(runs.folder, "table --online " + folder);
-  CHECK_THAT(table.out, Contains("ATE at zero latency [m]") && Contains("ATE at equal latency [m]") &&
-                            Contains("equal latency 0.2 s"));
+  CHECK_THAT(table.out, ContainsSubstring("ATE at zero latency [m]") && ContainsSubstring("ATE at equal latency [m]") &&
+                            ContainsSubstring("equal latency 0.2 s"));
   CHECK_THAT(testing::evbench(runs.folder, "table --metrics covariance.over_1s.nees,covariance.newest.within_2_sigma," +
                                                std::string("online.zero_latency.ate.trans_m.rmse ") + folder)
                  .out,
-             Contains("NEES over 1 s") && Contains("covariance.newest.within_2_sigma") &&
-                 Contains("online ATE at zero latency [m]"));
+             ContainsSubstring("NEES over 1 s") && ContainsSubstring("covariance.newest.within_2_sigma") &&
+                 ContainsSubstring("online ATE at zero latency [m]"));
 }
 
 TEST_CASE("A table scores its runs over the time that all of them cover, too") {
@@ -147,8 +148,8 @@ TEST_CASE("A table scores its runs over the time that all of them cover, too") {
       runs.folder, "table --format csv --metrics common.span_s,common.coverage,common.ate.trans_m.rmse " + folder);
   CHECK(table.exit_code == 2);  // a span is no number
   const Outcome text = testing::evbench(runs.folder, "table " + folder);
-  CHECK_THAT(text.out, Contains("ATE, common time [m]") && Contains("Common time: ") &&
-                           Contains("which every run covers that was not lost"));
+  CHECK_THAT(text.out, ContainsSubstring("ATE, common time [m]") && ContainsSubstring("Common time: ") &&
+                           ContainsSubstring("which every run covers that was not lost"));
   std::vector<RunRecord> records = find_runs(std::vector{runs.folder.file("first")});
   score_common_time(records, false);
   const auto span = [](const Json& scores) {
@@ -220,14 +221,14 @@ TEST_CASE("Metrics of a run have the documented keys, the same as those of evben
   }
   const std::string files = "'" + path + "/final.tum' '" + path + "/online.tum'";
   REQUIRE(testing::evbench(runs.folder, "eval " + files + " --json eval.json -as").exit_code == 0);
-  const Json eval = Json::parse(read_file(runs.folder.file("eval.json")));
+  const Json eval = parse_json(read_file(runs.folder.file("eval.json")));
   CHECK(keys_of(eval.at("final")) == keys_of(metrics.at("final")));
   for (const auto& [key, value] : metrics.items()) CHECK(eval.contains(key));
 }
 
 TEST_CASE("A run writes the problem that it ended with, in the format that evbench solve reads") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_config("gp_map").dump());
+  folder.write("c.json", dump_json(short_config("gp_map")));
   REQUIRE(testing::evbench(folder, "run c.json --out out --problem --quiet").exit_code == 0);
   const std::string run = run_folders(folder, "out").at("gp_map");
   const Outcome solved = testing::evbench(folder, "solve '" + run + "/problem.txt' --mode batch --json s.json");
@@ -268,7 +269,7 @@ TEST_CASE("A run without an estimate fails with exit code 3, a status with the r
 
 TEST_CASE("Of an estimate in pieces the longest one is scored, and the others lie beside it") {
   const TemporaryFolder folder;
-  const std::string path = folder.write("c.json", short_config().dump());
+  const std::string path = folder.write("c.json", dump_json(short_config()));
   const RunConfig config = read_experiment(path, {}, known_plugins()).runs[0];
   const auto source = make_source(config.job, known_plugins());
   Execution execution;
@@ -314,15 +315,15 @@ TEST_CASE("Of an estimate in pieces the longest one is scored, and the others li
 
 TEST_CASE("Two runs do not write to the same folder at the same time") {
   const TemporaryFolder folder;
-  const std::string path = folder.write("c.json", short_config().dump());
+  const std::string path = folder.write("c.json", dump_json(short_config()));
   const std::string key = key_of(read_experiment(path, {}, known_plugins()).runs[0]);
   {
     const RunFolder taken(folder.file("results"), "short", key);
     CHECK_THROWS_WITH(RunFolder(folder.file("results"), "short", key),
-                      Contains("another run is writing to this folder"));
+                      ContainsSubstring("another run is writing to this folder"));
     const Outcome other = testing::evbench(folder, "run c.json");
     CHECK(other.exit_code == 2);
-    CHECK_THAT(other.err, Contains(key) && Contains("another run is writing to this folder"));
+    CHECK_THAT(other.err, ContainsSubstring(key) && ContainsSubstring("another run is writing to this folder"));
     CHECK(testing::evbench(folder, "run c.json --out elsewhere --quiet").exit_code == 0);
   }
   CHECK(names_in(folder.file("results/short")).empty());
@@ -332,7 +333,7 @@ TEST_CASE("Two runs do not write to the same folder at the same time") {
 
 TEST_CASE("Of many processes that run the same config at once, each is done or refused, and one result is whole") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_config().dump());
+  folder.write("c.json", dump_json(short_config()));
   const Outcome all = testing::shell(folder, R"(
     for i in 1 2 3 4; do ("$evbench" run c.json --quiet; echo $?) & done; wait)");
   int done = 0;

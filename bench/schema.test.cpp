@@ -1,9 +1,10 @@
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <iostream>
 
 #include "bench/testing/configs.hpp"
 #include "bench/testing/program.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -49,7 +50,7 @@ class Schema {
       std::string line;
       REQUIRE(std::getline(lines, line));
       const Outcome checked = testing::evbench(folder_, "run --check c" + std::to_string(i) + ".json");
-      CAPTURE(configs[i].dump(), line, checked.err);
+      CAPTURE(dump_json(configs[i]), line, checked.err);
       CHECK((line == "fine") == fine);
       CHECK((checked.exit_code == 0) == fine);
     }

@@ -40,16 +40,19 @@ function(evbench_precompile target header)
   endif()
 endfunction()
 
-# evbench_group(TARGET): with EVBENCH_GROUP, its sources are compiled several at a time, so that what they share is read and
-# instantiated once; what is local to one must then have a name that no other of the target has.
-function(evbench_group target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${EVBENCH_GROUP} UNITY_BUILD_BATCH_SIZE 8)
+# evbench_group(TARGET SIZE): with EVBENCH_GROUP, its sources are compiled SIZE at a time, so that what they share is read
+# and instantiated once; what is local to one must then have a name that no other of the target has.
+function(evbench_group target size)
+  if(NOT size)
+    set(size 8)
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${EVBENCH_GROUP} UNITY_BUILD_BATCH_SIZE ${size})
 endfunction()
 
-# evbench_library(NAME [STATIC|OBJECT] SOURCES ... LINKS ... [PRECOMPILED HEADER] [GROUPED]): a folder's target. Headers
-# are included by their path from the repository's root ("core/geometry/se3.hpp").
+# evbench_library(NAME [STATIC|OBJECT] SOURCES ... LINKS ... [PRECOMPILED HEADER] [GROUP SIZE] [FAST]): a folder's target.
+# FAST: compiled with -O3 in releases. Headers are included by their path from the repository's root ("core/geometry/se3.hpp").
 function(evbench_library name kind)
-  cmake_parse_arguments(ARG "GROUPED" "PRECOMPILED" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "FAST" "PRECOMPILED;GROUP" "SOURCES;LINKS" ${ARGN})
   add_library(${name} ${kind} ${ARG_SOURCES})
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>
                                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/evbench>)
@@ -59,19 +62,20 @@ function(evbench_library name kind)
     set(ARG_PRECOMPILED precompiled)
   endif()
   evbench_precompile(${name} ${ARG_PRECOMPILED})
-  if(ARG_GROUPED)
-    evbench_group(${name})
+  evbench_group(${name} "${ARG_GROUP}")
+  if(ARG_FAST)
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O3>)
   endif()
 endfunction()
 
-# evbench_tests(NAME [GROUPED] SOURCES ... LINKS ...): the *.test.cpp of a folder as one test program, each test case a ctest of its
+# evbench_tests(NAME SOURCES ... LINKS ...): the *.test.cpp of a folder as one test program, each test case a ctest of its
 # own, which fails when it hangs: when it takes longer than EVBENCH_TEST_SECONDS. Tests of real data read EVBENCH_DATA and
 # EVBENCH_PROBLEMS.
 function(evbench_tests name)
   if(NOT EVBENCH_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "GROUPED" "" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
   if(NOT TARGET evbench_test_support)
     evbench_library(evbench_test_main STATIC SOURCES ${CMAKE_SOURCE_DIR}/core/testing/main.cpp
                     LINKS Catch2::Catch2 evbench::core)
@@ -82,9 +86,7 @@ function(evbench_tests name)
   target_link_libraries(${name} PRIVATE ${ARG_LINKS} evbench_test_support evbench_flags)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # what is tested is optimised fully: its libraries
   evbench_precompile(${name} precompiled_test)
-  if(ARG_GROUPED)
-    evbench_group(${name})
-  endif()
+  evbench_group(${name} "")
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:"
                        TIMEOUT ${EVBENCH_TEST_SECONDS}
                        FAIL_REGULAR_EXPRESSION "No tests ran")  # of a name that ctest takes apart, at a semicolon
@@ -140,11 +142,9 @@ endfunction()
 function(evbench_install_package)
   include(CMakePackageConfigHelpers)
   set(libraries)
-  foreach(name core eval events event_simulation pipeline battery test_main)
-    if(TARGET evbench_${name})  # test_main is for builds with tests
-      set_target_properties(evbench_${name} PROPERTIES EXPORT_NAME ${name})
-      list(APPEND libraries evbench_${name})
-    endif()
+  foreach(name core eval events event_simulation pipeline battery)
+    set_target_properties(evbench_${name} PROPERTIES EXPORT_NAME ${name})
+    list(APPEND libraries evbench_${name})
   endforeach()
   install(TARGETS ${libraries} EXPORT evbench_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(TARGETS evbench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -1,4 +1,3 @@
 // The same for tests.
-#include <catch2/catch.hpp>
-
 #include "cmake/precompiled.hpp"
+#include "core/testing/catch2.hpp"

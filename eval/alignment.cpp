@@ -1,9 +1,9 @@
 #include "eval/alignment.hpp"
 
-#include <Eigen/SVD>
 #include <cmath>
 
 #include "core/support/index.hpp"
+#include "core/geometry/nearest_rotation.hpp"
 
 namespace evbench {
 namespace {
@@ -39,22 +39,6 @@ Moments moments(std::span<const PosePair> pairs) {
 bool stands_still(double variance, const Vector3& mean) {
   const double rounding = 1e-9 * (1.0 + mean.norm());
   return variance <= rounding * rounding;
-}
-
-/// The rotation R with the largest tr(Rᵀ M), and the singular value decomposition that it comes from.
-struct NearestRotation {
-  Matrix3 R;
-  double trace = 0.0;             ///< tr(Rᵀ M)
-  Vector3 values = {0, 0, 0};     ///< singular values of M, falling
-  Vector3 direction = {0, 0, 1};  ///< right singular vector of the largest
-};
-
-NearestRotation nearest_rotation(const Matrix3& M) {
-  const Eigen::JacobiSVD<Matrix3> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vector3 signs = Vector3::Ones();
-  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs.z() = -1.0;
-  return {svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose(), svd.singularValues().dot(signs),
-          svd.singularValues(), svd.matrixV().col(0)};
 }
 
 /// Angle θ with the largest tr(Rot(axis, θ)ᵀ M).

@@ -1,7 +1,6 @@
 #include "eval/alignment.hpp"
 
-#include <catch2/catch.hpp>
-
+#include "core/testing/catch2.hpp"
 #include "eval/pose_error.hpp"
 #include "eval/testing/trajectories.hpp"
 

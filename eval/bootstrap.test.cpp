@@ -1,10 +1,11 @@
 #include "eval/bootstrap.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "core/testing/catch2.hpp"
 
 namespace evbench {
 

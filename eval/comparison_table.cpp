@@ -15,6 +15,7 @@
 #include "eval/run_columns.hpp"
 #include "eval/table_notes.hpp"
 #include "eval/table_text.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -43,7 +44,7 @@ std::vector<Metric> compared_metrics(const ComparisonOptions& options, const std
 /// The SHA-256 of the observations that a run was given; empty where it is not known.
 std::string observations_of(const RunRecord& run) {
   std::ifstream file(run.folder + "/manifest.json");
-  const Json manifest = Json::parse(file, nullptr, false);
+  const Json manifest = try_parse_json(std::string(std::istreambuf_iterator<char>(file), {}));
   if (!manifest.is_object()) return "";
   const auto found = manifest.find("tracks_sha256");
   return found != manifest.end() && found->is_string() ? found->get<std::string>() : "";

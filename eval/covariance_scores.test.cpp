@@ -1,9 +1,9 @@
 #include "eval/covariance_scores.hpp"
 
 #include <Eigen/Cholesky>
-#include <catch2/catch.hpp>
 #include <random>
 
+#include "core/testing/catch2.hpp"
 #include "eval/testing/trajectories.hpp"
 
 namespace evbench {

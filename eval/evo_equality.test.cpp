@@ -1,9 +1,10 @@
-#include <catch2/catch.hpp>
 #include <fstream>
 
 #include "core/data/tum.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 #include "eval/scores.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -46,8 +47,7 @@ TEST_CASE("Scores equal every value that evo computes") {
   INFO(sequence);
   const PoseTrajectory ground_truth = read_tum(*truth_path);
   const PoseTrajectory estimate = read_tum(*estimate_path);
-  std::ifstream file(*expected_path);
-  const Json expected = Json::parse(file);
+  const Json expected = parse_json(testing::read_file(*expected_path));
 
   int compared = 0;
   for (const std::string alignment : {"none", "se3", "sim3", "scale_only"}) {

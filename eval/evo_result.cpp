@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/io/zip.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -89,8 +90,8 @@ std::string evo_result(const Scores& scores, EvoError error, const std::string& 
   Json stats = to_json(statistics(errors));
   stats.erase("n");
   const std::vector<std::pair<std::string, std::string>> files = {
-      {"info.json", info(scores, relative, rotation, estimate).dump()},
-      {"stats.json", stats.dump()},
+      {"info.json", dump_json(info(scores, relative, rotation, estimate))},
+      {"stats.json", dump_json(stats)},
       {"error_array.npy", npy(errors)},
       {"timestamps.npy", npy(times)},
       {"seconds_from_start.npy", npy(seconds)},

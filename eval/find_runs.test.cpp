@@ -1,14 +1,14 @@
 #include "eval/find_runs.hpp"
 
-#include <catch2/catch.hpp>
-
+#include "core/testing/catch2.hpp"
 #include "eval/testing/runs.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
 
 using namespace testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ TEST_CASE("Names compare with their numbers as numbers") {
 
 TEST_CASE("Folders without runs and damaged metrics are errors with the place") {
   Results results;
-  CHECK_THROWS_WITH(results.find(), Contains("no metrics.json in it or below"));
+  CHECK_THROWS_WITH(results.find(), ContainsSubstring("no metrics.json in it or below"));
   CHECK_THROWS_WITH(find_runs(std::vector<std::string>{"/nowhere"}), "/nowhere: is not a folder");
   const auto message = [](const std::string& content) -> std::string {
     Results damaged;
@@ -49,10 +49,10 @@ TEST_CASE("Folders without runs and damaged metrics are errors with the place") 
     }
     return "";
   };
-  CHECK_THAT(message("{\"final\": "), Contains("key/metrics.json: is not JSON"));
-  CHECK_THAT(message("[1, 2]"), Contains("expected a JSON object"));
-  CHECK_THAT(message("{\"label\": \"a\"}"), Contains("\"final\" is missing"));
-  CHECK_THAT(message("{\"final\": null, \"online\": null}"), Contains("\"experiment\" is missing"));
+  CHECK_THAT(message("{\"final\": "), ContainsSubstring("key/metrics.json: is not JSON"));
+  CHECK_THAT(message("[1, 2]"), ContainsSubstring("expected a JSON object"));
+  CHECK_THAT(message("{\"label\": \"a\"}"), ContainsSubstring("\"final\" is missing"));
+  CHECK_THAT(message("{\"final\": null, \"online\": null}"), ContainsSubstring("\"experiment\" is missing"));
 }
 
 TEST_CASE("Runs of a sweep stand in its order, with their places on its axes, those not run yet among them") {
@@ -70,7 +70,7 @@ TEST_CASE("Runs of a sweep stand in its order, with their places on its axes, th
                        planned("c", "bundle", {{"frame", "0.2"}, {"seed", "3"}}),
                        planned("a", "asynchronous", {{"frame", "0.1"}, {"seed", "3"}}),
                        planned("a", "asynchronous", {{"frame", "0.2"}, {"seed", "3"}})}}};
-  results.folder.write("batching/sweep.json", plan.dump());
+  results.folder.write("batching/sweep.json", dump_json(plan));
   for (const char* folder : {"batching", "batching/", "batching/."}) {
     INFO(folder);
     const std::vector<RunRecord> own = find_runs(std::vector{results.folder.file(folder)});
@@ -103,10 +103,10 @@ TEST_CASE("A damaged plan of a sweep is an error with the place") {
     }
     return "";
   };
-  CHECK_THAT(message("{"), Contains("batching/sweep.json: is not JSON"));
-  CHECK_THAT(message("{\"name\": \"x\"}"), Contains("sweep.json: \"runs\" is missing"));
+  CHECK_THAT(message("{"), ContainsSubstring("batching/sweep.json: is not JSON"));
+  CHECK_THAT(message("{\"name\": \"x\"}"), ContainsSubstring("sweep.json: \"runs\" is missing"));
   CHECK_THAT(message("{\"name\": \"x\", \"runs\": [{\"key\": \"a\", \"label\": \"b\", \"axes\": {\"seed\": 1}}]}"),
-             Contains("sweep.json: runs.0.axes: \"seed\" is 1; expected text"));
+             ContainsSubstring("sweep.json: runs.0.axes: \"seed\" is 1; expected text"));
 }
 
 }  // namespace evbench

@@ -7,6 +7,7 @@
 
 #include "core/support/error.hpp"
 #include "core/support/json_reason.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 
@@ -15,12 +16,12 @@ Json read_json_file(const std::string& path) {
   if (!file) throw InputError(fmt::format("{}: can't be opened", path));
   const std::string text{std::istreambuf_iterator<char>(file), {}};  // parsed faster than a stream
   try {
-    return Json::parse(text);
+    return parse_json(text);
   } catch (const Json::exception& error) {
     throw InputError(fmt::format("{}: is not JSON: {}", path, json_reason(error)));
   }
 }
 
-std::string json_file_text(const Json& json) { return json.dump(2) + "\n"; }
+std::string json_file_text(const Json& json) { return dump_json(json, 2) + "\n"; }
 
 }  // namespace evbench

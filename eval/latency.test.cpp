@@ -1,7 +1,6 @@
 #include "eval/latency.hpp"
 
-#include <catch2/catch.hpp>
-
+#include "core/testing/catch2.hpp"
 #include "eval/testing/trajectories.hpp"
 
 namespace evbench {

@@ -1,9 +1,9 @@
 #include "eval/paired_comparison.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "core/testing/catch2.hpp"
 #include "eval/table_notes.hpp"
 #include "eval/testing/runs.hpp"
 

@@ -1,7 +1,8 @@
 #include "eval/performance_profile.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
+
+#include "core/testing/catch2.hpp"
 
 namespace evbench {
 

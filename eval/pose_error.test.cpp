@@ -1,8 +1,8 @@
 #include "eval/pose_error.hpp"
 
-#include <catch2/catch.hpp>
 #include <numbers>
 
+#include "core/testing/catch2.hpp"
 #include "eval/testing/trajectories.hpp"
 
 namespace evbench {

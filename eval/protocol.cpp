@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/support/json_reason.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -27,7 +28,7 @@ std::string alignment_text(const Json& alignment) {
   if (method == "yaw") text = "yaw and translation alignment";
   if (method == "origin") return "first poses made equal";
   if (const Json& first = alignment.at("first"); !first.is_null())
-    return text + fmt::format(" on the first {} poses", first.dump());
+    return text + fmt::format(" on the first {} poses", dump_json(first));
   if (const Json& range = alignment.at("range_s"); !range.is_null()) {
     return text + " on the poses " + range_text(range);
   }

@@ -1,8 +1,9 @@
 #include "eval/quantile.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+
+#include "core/testing/catch2.hpp"
 
 namespace evbench {
 

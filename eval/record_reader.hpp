@@ -9,6 +9,7 @@
 
 #include "core/plugin/options.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 
@@ -72,7 +73,7 @@ class RecordReader {
 
   [[noreturn]] void fail(const char* key, const char* expected) const {
     throw InputError(fmt::format("{}: \"{}\" is {}; expected {}", place_, key,
-                                 at(key).is_null() ? "missing" : at(key).dump(), expected));
+                                 at(key).is_null() ? "missing" : dump_json(at(key)), expected));
   }
 
  private:

@@ -9,6 +9,7 @@
 
 #include "core/support/error.hpp"
 #include "core/support/nearest.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -68,7 +69,7 @@ std::string axis_text(const RunRecord& run, const std::string& name) {
 std::string settings_below(const std::string& part, const RunSettings& settings) {
   std::string text;
   for (const auto& [path, value] : settings) {
-    if (path.starts_with(part)) text += path + '=' + value.dump() + '\n';
+    if (path.starts_with(part)) text += path + '=' + dump_json(value) + '\n';
   }
   return text;
 }

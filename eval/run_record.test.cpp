@@ -1,6 +1,5 @@
 #include "eval/run_record.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "core/data/online_poses.hpp"
@@ -8,15 +7,17 @@
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 #include "eval/score_run.hpp"
 #include "eval/testing/trajectories.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
 
 using namespace testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 /// With everything that a record can have.
 RunRecord full_record() {
@@ -56,8 +57,8 @@ std::string message_of(const Json& metrics) {
 
 TEST_CASE("A record that was read is written again with the same bytes") {
   for (const RunRecord& record : {full_record(), RunRecord{}}) {
-    const std::string text = to_json(record).dump(2);
-    CHECK(to_json(read_record(Json::parse(text), "m.json")).dump(2) == text);
+    const std::string text = dump_json(to_json(record), 2);
+    CHECK(dump_json(to_json(read_record(parse_json(text), "m.json")), 2) == text);
   }
   const RunRecord read = read_record(to_json(full_record()), "m.json");
   CHECK(read.seed == 18446744073709551615U);
@@ -100,16 +101,21 @@ TEST_CASE("A damaged metrics.json is refused with the file and the key") {
     return json;
   };
   CHECK(message_of(to_json(full_record())).empty());
-  CHECK_THAT(message_of(with("/seed", -1)), Contains("m.json: \"seed\" is -1; expected a whole number from 0 on"));
-  CHECK_THAT(message_of(with("/key", 3)), Contains("m.json: \"key\""));
-  CHECK_THAT(message_of(with("/runtime_s", "long")), Contains("m.json: \"runtime_s\" is \"long\"; expected a number"));
-  CHECK_THAT(message_of(with("/times/backend_s", nullptr)), Contains("m.json: times: \"backend_s\" is missing"));
-  CHECK_THAT(message_of(with("/range_s", {1})), Contains("m.json: \"range_s\" is [1]; expected two times"));
-  CHECK_THAT(message_of(with("/status", 3)), Contains("m.json: status: expected a JSON object"));
-  CHECK_THAT(message_of(with("/status/state", "fine")), Contains("\"state\" is \"fine\"; expected ok, degraded"));
-  CHECK_THAT(message_of(with("/status/pieces/1/from", "x")), Contains("m.json: status: pieces.1: \"from\""));
-  CHECK_THAT(message_of(with("/status/complete", "yes")), Contains("\"complete\" is \"yes\"; expected true or false"));
-  CHECK_THAT(message_of(with("/final", 3)), Contains("\"final\" is missing; expected scores or null"));
+  CHECK_THAT(message_of(with("/seed", -1)),
+             ContainsSubstring("m.json: \"seed\" is -1; expected a whole number from 0 on"));
+  CHECK_THAT(message_of(with("/key", 3)), ContainsSubstring("m.json: \"key\""));
+  CHECK_THAT(message_of(with("/runtime_s", "long")),
+             ContainsSubstring("m.json: \"runtime_s\" is \"long\"; expected a number"));
+  CHECK_THAT(message_of(with("/times/backend_s", nullptr)),
+             ContainsSubstring("m.json: times: \"backend_s\" is missing"));
+  CHECK_THAT(message_of(with("/range_s", {1})), ContainsSubstring("m.json: \"range_s\" is [1]; expected two times"));
+  CHECK_THAT(message_of(with("/status", 3)), ContainsSubstring("m.json: status: expected a JSON object"));
+  CHECK_THAT(message_of(with("/status/state", "fine")),
+             ContainsSubstring("\"state\" is \"fine\"; expected ok, degraded"));
+  CHECK_THAT(message_of(with("/status/pieces/1/from", "x")), ContainsSubstring("m.json: status: pieces.1: \"from\""));
+  CHECK_THAT(message_of(with("/status/complete", "yes")),
+             ContainsSubstring("\"complete\" is \"yes\"; expected true or false"));
+  CHECK_THAT(message_of(with("/final", 3)), ContainsSubstring("\"final\" is missing; expected scores or null"));
 }
 
 TEST_CASE("A run's folder is scored from its files, within the run's range, and says why where it can't be") {
@@ -134,12 +140,12 @@ TEST_CASE("A run's folder is scored from its files, within the run's range, and 
   CHECK(record.final_scores.at("alignment").at("method") == "se3");
   CHECK(record.final_scores.at("association").at("time_range_s") == Json{2.0, 3.0});
   score_run(folder.path(), {.time_range = {5.0, 9.0}}, record);
-  CHECK_THAT(record.final_unscored, Contains("5 to 9 s, is outside of the run's, 1 to 3 s"));
+  CHECK_THAT(record.final_unscored, ContainsSubstring("5 to 9 s, is outside of the run's, 1 to 3 s"));
 
   folder.write("final.tum", "1 2 3\n");
-  CHECK_THROWS_WITH(score_run(folder.path(), {}, record), Contains("final.tum:1: has 3 columns"));
+  CHECK_THROWS_WITH(score_run(folder.path(), {}, record), ContainsSubstring("final.tum:1: has 3 columns"));
   std::filesystem::remove(folder.file("final.tum"));
-  CHECK_THROWS_WITH(score_run(folder.path(), {}, record), Contains("final.tum: no such file"));
+  CHECK_THROWS_WITH(score_run(folder.path(), {}, record), ContainsSubstring("final.tum: no such file"));
 }
 
 TEST_CASE("A run is scored at a latency by what it told, and by its covariances, where there are such files") {
@@ -171,10 +177,10 @@ TEST_CASE("A run is scored at a latency by what it told, and by its covariances,
   CHECK(record.online_scores.at("equal_latency").at("latency_s") == 0.3);
   CHECK(record.covariance.at("over_1s").at("n") == 1);
   CHECK(record.covariance.at("over_1s").at("within_1_sigma") == 1.0);
-  CHECK(to_json(read_record(to_json(record), "m")).dump() == to_json(record).dump());
+  CHECK(dump_json(to_json(read_record(to_json(record), "m"))) == dump_json(to_json(record)));
 
   folder.write("told.txt", "1 2 3\n");
-  CHECK_THROWS_WITH(score_run(folder.path(), {}, record), Contains("told.txt:1: has 3 columns"));
+  CHECK_THROWS_WITH(score_run(folder.path(), {}, record), ContainsSubstring("told.txt:1: has 3 columns"));
 }
 
 }  // namespace evbench

@@ -1,18 +1,18 @@
 #include "eval/segment_error.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/data/tum.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 #include "eval/protocol.hpp"
 #include "eval/scores.hpp"
 #include "eval/testing/trajectories.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
 
 using namespace testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 /// Each value must agree to 1e-6 of its size.
 void compare(const Statistics& ours, const Json& theirs) {
@@ -48,7 +48,7 @@ TEST_CASE("Errors over sub-trajectories equal the reference values of segment_re
   const auto estimate_path = data_file("trajectories/" + sequence + "/estimate.txt");
   if (!truth_path || !estimate_path) return;
   INFO(sequence << " " << rule);
-  const Json expected = Json::parse(read_file(EVBENCH_EVAL_TESTING "/expected_segments.json")).at(sequence).at(rule);
+  const Json expected = parse_json(read_file(EVBENCH_EVAL_TESTING "/expected_segments.json")).at(sequence).at(rule);
   ScoreOptions options;
   options.segments = rule;
   if (rule == "kitti") options.segment_lengths = {0.5, 1.0, 2.0};
@@ -84,7 +84,7 @@ TEST_CASE("Sub-trajectories that are longer than the path are none") {
   CHECK(segment_errors(too_long(11), {.rule = SegmentRule::rpg, .unit = LengthUnit::percent}, 0.001).empty());
   CHECK(segment_errors(too_long(11), {}, 0.1).empty());
   CHECK_THROWS_WITH(segment_errors(too_long(11), {.rule = SegmentRule::rpg, .lengths = {0.0}}, 0.1),
-                    Contains("a segment's length is 0; expected a number above 0"));
+                    ContainsSubstring("a segment's length is 0; expected a number above 0"));
 }
 
 TEST_CASE("Scores over sub-trajectories stand in the protocol, in JSON and in the text, where they are asked for") {
@@ -98,10 +98,10 @@ TEST_CASE("Scores over sub-trajectories stand in the protocol, in JSON and in th
   CHECK(json.at("by_length").size() == 5);
   CHECK(json.at("trans_percent").at("mean").get<double>() > 0.0);
   CHECK_THAT(protocol(to_json(scores), "here"),
-             Contains("; segments by rpg_trajectory_evaluation's rule, 10, 20, 30, 40, 50 % of the path"));
-  CHECK_THAT(describe(scores), Contains(" m [%]") && Contains(" m [deg/m]"));
+             ContainsSubstring("; segments by rpg_trajectory_evaluation's rule, 10, 20, 30, 40, 50 % of the path"));
+  CHECK_THAT(describe(scores), ContainsSubstring(" m [%]") && ContainsSubstring(" m [deg/m]"));
   options.segment_lengths = {0.5};
-  CHECK_THAT(protocol(to_json(score(truth, disturbed(truth), options)), "here"), Contains("rule, 0.5 m"));
+  CHECK_THAT(protocol(to_json(score(truth, disturbed(truth), options)), "here"), ContainsSubstring("rule, 0.5 m"));
 }
 
 }  // namespace evbench

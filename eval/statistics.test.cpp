@@ -1,8 +1,9 @@
 #include "eval/statistics.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
+
+#include "core/testing/catch2.hpp"
 
 namespace evbench {
 

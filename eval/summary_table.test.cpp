@@ -1,6 +1,5 @@
-#include <catch2/catch.hpp>
-
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "eval/table.hpp"
 #include "eval/testing/runs.hpp"
 
@@ -8,7 +7,7 @@ namespace evbench {
 namespace {
 
 using namespace testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 std::string table(const Results& results, TableOptions options = {}) {
   options.over = {"seed"};
@@ -30,10 +29,11 @@ TEST_CASE("Over seeds a row has median and quartiles, and how many runs succeede
   Results results;
   add_seeds(results, 5);
   const std::string text = table(results);
-  CHECK_THAT(line_with(text, "good "), Contains("5 of 5") && Contains("0.0120") && Contains("[0.0110, 0.0130]"));
-  CHECK_THAT(line_with(text, "bad "), Contains("0.0240") && Contains("[0.0220, 0.0260]"));
-  CHECK_THAT(line_with(text, "ATE [m]"), !Contains("seed") && !Contains("key"));
-  CHECK_THAT(text, Contains("over seed (5 values)") && Contains("Protocol: Sim(3)"));
+  CHECK_THAT(line_with(text, "good "),
+             ContainsSubstring("5 of 5") && ContainsSubstring("0.0120") && ContainsSubstring("[0.0110, 0.0130]"));
+  CHECK_THAT(line_with(text, "bad "), ContainsSubstring("0.0240") && ContainsSubstring("[0.0220, 0.0260]"));
+  CHECK_THAT(line_with(text, "ATE [m]"), !ContainsSubstring("seed") && !ContainsSubstring("key"));
+  CHECK_THAT(text, ContainsSubstring("over seed (5 values)") && ContainsSubstring("Protocol: Sim(3)"));
 }
 
 TEST_CASE("Runs that failed count as worse than all others, and are shown") {
@@ -44,35 +44,38 @@ TEST_CASE("Runs that failed count as worse than all others, and are shown") {
   results.add_seed("bad", 5, std::nullopt);
   results.add_seed("bad", 6, std::nullopt);
   const std::string text = table(results);
-  CHECK_THAT(line_with(text, "good "), Contains("3 of 4") && Contains("0.0115") && Contains(", fails]"));
-  CHECK_THAT(line_with(text, "bad "), Contains("3 of 6") && Contains("fails") && Contains("[0.0225, fails]"));
-  CHECK_THAT(text, Contains("Without scores: bad (seed 4)") && Contains("fails."));
+  CHECK_THAT(line_with(text, "good "),
+             ContainsSubstring("3 of 4") && ContainsSubstring("0.0115") && ContainsSubstring(", fails]"));
+  CHECK_THAT(line_with(text, "bad "),
+             ContainsSubstring("3 of 6") && ContainsSubstring("fails") && ContainsSubstring("[0.0225, fails]"));
+  CHECK_THAT(text, ContainsSubstring("Without scores: bad (seed 4)") && ContainsSubstring("fails."));
   const std::string csv = table(results, {.format = TableFormat::csv});
-  CHECK_THAT(csv, Contains("label,runs,succeeded,ate.trans_m.rmse.lower,ate.trans_m.rmse.median") &&
-                      Contains("arm,bad,6,3,0.0225,inf,inf"));
+  CHECK_THAT(csv, ContainsSubstring("label,runs,succeeded,ate.trans_m.rmse.lower,ate.trans_m.rmse.median") &&
+                      ContainsSubstring("arm,bad,6,3,0.0225,inf,inf"));
 }
 
 TEST_CASE("Bold is only what differs significantly from all other rows") {
   Results few, many;
   add_seeds(few, 5);
   add_seeds(many, 8);
-  CHECK_THAT(line_with(table(few), "good "), !Contains("*"));
-  CHECK_THAT(table(few), Contains("With 5 pairs and 1 comparison nothing can reach that: it takes 6 pairs."));
-  CHECK_THAT(line_with(table(many), "good "), Contains("0.0135*"));
-  CHECK_THAT(line_with(table(many), "bad "), !Contains("*"));
-  CHECK_THAT(table(many, {.format = TableFormat::markdown}), Contains("**0.0135** [0.0118, 0.0152]"));
+  CHECK_THAT(line_with(table(few), "good "), !ContainsSubstring("*"));
+  CHECK_THAT(table(few), ContainsSubstring("With 5 pairs and 1 comparison nothing can reach that: it takes 6 pairs."));
+  CHECK_THAT(line_with(table(many), "good "), ContainsSubstring("0.0135*"));
+  CHECK_THAT(line_with(table(many), "bad "), !ContainsSubstring("*"));
+  CHECK_THAT(table(many, {.format = TableFormat::markdown}), ContainsSubstring("**0.0135** [0.0118, 0.0152]"));
   CHECK_THAT(table(many, {.format = TableFormat::latex}),
-             Contains("\\textbf{0.0135} {\\scriptsize {[}0.0118, 0.0152]}"));
+             ContainsSubstring("\\textbf{0.0135} {\\scriptsize {[}0.0118, 0.0152]}"));
   // Another sequence has a best row of its own, and pairs of its own.
   for (int seed = 1; seed <= 6; ++seed) {
     many.add_seed("good on hard", seed, 0.09 + 0.01 * seed, 0.1, "hard");
     many.add_seed("bad on hard", seed, 0.18 + 0.02 * seed, 0.1, "hard");
   }
-  CHECK_THAT(line_with(table(many), "good  "), Contains("0.0135*"));
-  CHECK_THAT(line_with(table(many), "good on hard "), Contains("0.1250*"));
-  CHECK_THAT(table(many), Contains("better than every other row of the same data") && !Contains("nothing can reach"));
+  CHECK_THAT(line_with(table(many), "good  "), ContainsSubstring("0.0135*"));
+  CHECK_THAT(line_with(table(many), "good on hard "), ContainsSubstring("0.1250*"));
+  CHECK_THAT(table(many), ContainsSubstring("better than every other row of the same data") &&
+                              !ContainsSubstring("nothing can reach"));
   for (int seed = 1; seed <= 8; ++seed) many.add_seed("as good", seed, 0.009 + 0.001 * seed);
-  CHECK_THAT(line_with(table(many), "good "), !Contains("*"));  // better than one of two
+  CHECK_THAT(line_with(table(many), "good "), !ContainsSubstring("*"));  // better than one of two
 }
 
 TEST_CASE("Settings that vary, and those asked for, set rows apart or are summarised over") {
@@ -82,12 +85,13 @@ TEST_CASE("Settings that vary, and those asked for, set rows apart or are summar
   }
   const auto runs = results.find();
   const std::string text = table(results);
-  CHECK_THAT(line_with(text, "ATE [m]"), Contains("backend.frame_duration"));
-  CHECK_THAT(text, Contains("0.200 [0.150, 0.250]") && Contains("0.400 [0.300, 0.500]"));
+  CHECK_THAT(line_with(text, "ATE [m]"), ContainsSubstring("backend.frame_duration"));
+  CHECK_THAT(text, ContainsSubstring("0.200 [0.150, 0.250]") && ContainsSubstring("0.400 [0.300, 0.500]"));
   TableOptions options{.metrics = {"ate.trans_m.rmse"}, .over = {"seed", "backend.frame_duration"}};
-  CHECK_THAT(make_table(runs, options), Contains("6 of 6") && Contains("0.250 [0.200, 0.375]"));
+  CHECK_THAT(make_table(runs, options), ContainsSubstring("6 of 6") && ContainsSubstring("0.250 [0.200, 0.375]"));
   options.over = {"seeds"};
-  CHECK_THROWS_WITH(make_table(runs, options), Contains("runs do not differ in \"seeds\"; did you mean \"seed\"?"));
+  CHECK_THROWS_WITH(make_table(runs, options),
+                    ContainsSubstring("runs do not differ in \"seeds\"; did you mean \"seed\"?"));
 }
 
 TEST_CASE("The same job found twice counts once, two jobs that should be one are an error") {
@@ -101,10 +105,11 @@ TEST_CASE("The same job found twice counts once, two jobs that should be one are
                        {"frontend", {{"type", "oracle"}}},
                        {"backend", {{"type", "good"}, {"frame_duration", 0.1}}}};
   results.add("copy", copy, config);
-  CHECK_THAT(line_with(table(results), "good "), Contains("3 of 3"));
+  CHECK_THAT(line_with(table(results), "good "), ContainsSubstring("3 of 3"));
   copy["key"] = "another";
   results.add("copy", copy, config);
-  CHECK_THROWS_WITH(table(results), Contains("/copy") && Contains("are both \"good\", seed 1, and not the same job"));
+  CHECK_THROWS_WITH(table(results),
+                    ContainsSubstring("/copy") && ContainsSubstring("are both \"good\", seed 1, and not the same job"));
 }
 
 TEST_CASE("The long format has a line a run and metric, with the settings as columns") {
@@ -116,10 +121,10 @@ TEST_CASE("The long format has a line a run and metric, with the settings as col
   CHECK(csv.substr(0, csv.find('\n')) ==
         "experiment,label,backend.frame_duration,seed,key,folder,status,reason,trajectory,protocol,metric,value");
   CHECK(std::ranges::count(csv, '\n') == 5);
-  CHECK_THAT(csv, Contains("arm,bundle,0.1,1,") && Contains(",ate.trans_m.rmse,0.5\n"));
-  CHECK_THAT(csv, Contains(",failed,,final,,ate.trans_m.rmse,\n") && Contains(",runtime_s,2\n"));
+  CHECK_THAT(csv, ContainsSubstring("arm,bundle,0.1,1,") && ContainsSubstring(",ate.trans_m.rmse,0.5\n"));
+  CHECK_THAT(csv, ContainsSubstring(",failed,,final,,ate.trans_m.rmse,\n") && ContainsSubstring(",runtime_s,2\n"));
   CHECK_THAT(make_table(results.find(), {.format = TableFormat::long_csv}),
-             Contains(",peak_rss_mib,30\n") && Contains(",times.backend_s,1.75\n"));
+             ContainsSubstring(",peak_rss_mib,30\n") && ContainsSubstring(",times.backend_s,1.75\n"));
 }
 
 }  // namespace evbench

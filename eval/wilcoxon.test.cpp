@@ -1,8 +1,9 @@
 #include "eval/wilcoxon.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <vector>
+
+#include "core/testing/catch2.hpp"
 
 namespace evbench {
 

@@ -1,7 +1,6 @@
 #include "backends/bundle_adjustment/bundle_adjustment.hpp"
 
 #include <Eigen/Geometry>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +8,7 @@
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
 #include "core/support/index.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 #include "core/testing/point_scene.hpp"
 

@@ -1,8 +1,9 @@
 #include "backends/bundle_adjustment/frames.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
+
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::bundle_adjustment;

@@ -1,12 +1,13 @@
 #include "backends/bundle_adjustment/pose_refinement.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <opencv2/calib3d.hpp>
 #include <optional>
 
 #include "core/geometry/so3.hpp"
 #include "core/support/median.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench::bundle_adjustment {
 namespace {
@@ -46,7 +47,7 @@ SE3 refine(SE3 T, const std::vector<Sighting>& sightings, const PinholeCamera& c
   for (int iteration = 0; iteration < 30; ++iteration) {
     Matrix6 H = at.H;
     H.diagonal() *= 1.0 + damping;
-    const Vector6 step = H.ldlt().solve(-at.g);
+    const Vector6 step = solve_symmetric(H, -at.g);
     if (!step.allFinite()) break;
     const SE3 trial = T * se3::exp(step);
     const Linearisation next = linearise(trial, sightings, camera, loss);

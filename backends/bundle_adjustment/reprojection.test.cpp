@@ -1,7 +1,6 @@
 #include "backends/bundle_adjustment/reprojection.hpp"
 
-#include <catch2/catch.hpp>
-
+#include "core/testing/catch2.hpp"
 #include "core/testing/differences.hpp"
 #include "core/testing/point_scene.hpp"
 

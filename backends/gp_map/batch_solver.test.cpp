@@ -1,10 +1,10 @@
 #include "backends/gp_map/batch_solver.hpp"
 
 #include <Eigen/LU>
-#include <catch2/catch.hpp>
 
 #include "backends/gp_map/problem_graph.hpp"
 #include "core/support/index.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 #include "core/testing/differences.hpp"
 

@@ -16,8 +16,8 @@ constexpr double kPatience = 1.5;     ///< [s] the same once everything has been
 constexpr double kWorthwhile = 50.0;  ///< advantages together for which everything is solved
 constexpr int kAttempts = 3;          ///< to solve it from one passage
 constexpr int kWork = 10'000'000;     ///< linearised observations that solving everything may take, all in all
-constexpr int kIterations = 25;
-constexpr double kTolerance = 1e-4;
+constexpr int kEarlierIterations = 25;
+constexpr double kEarlierTolerance = 1e-4;
 constexpr double kClearly = 1e-3;  ///< share by which the cost must be lower: ten times what the tolerance leaves open
 
 /// The motion, and how it is observed, with time running backwards; landmarks keep their numbers. Without priors of
@@ -92,7 +92,7 @@ struct Passage {
 }  // namespace
 
 std::optional<Engine> explain_earlier(const Engine& engine, int enough) {
-  int solutions = kWork / kIterations / std::max(1, engine.graph().observation_count());
+  int solutions = kWork / kEarlierIterations / std::max(1, engine.graph().observation_count());
   if (solutions < 2) return std::nullopt;  // of the present explanation and of another one
   std::optional<Engine> best;
   std::optional<double> cost;  // to be undercut, as far down as the present explanation leads
@@ -105,7 +105,7 @@ std::optional<Engine> explain_earlier(const Engine& engine, int enough) {
     passage.take(*other, t);
     passage.go_on(enough, kQuiet);
     if (passage.advantage > kWorthwhile && !cost) {
-      cost = Engine(FactorGraph(engine.graph()), {}).optimise(kIterations, kTolerance).final_cost;
+      cost = Engine(FactorGraph(engine.graph()), {}).optimise(kEarlierIterations, kEarlierTolerance).final_cost;
       --solutions;
     }
     bool lower = false;
@@ -114,7 +114,7 @@ std::optional<Engine> explain_earlier(const Engine& engine, int enough) {
       if (solutions-- == 0) return best;
       until = passage.until;
       Engine all(forwards(passage.back.graph(), engine.graph()), {});
-      const double reached = all.optimise(kIterations, kTolerance).final_cost;
+      const double reached = all.optimise(kEarlierIterations, kEarlierTolerance).final_cost;
       FactorGraph solved = backwards(all.graph());
       lower = reached < (1.0 - kClearly) * *cost;
       if (lower) {

@@ -1,10 +1,10 @@
 #include "backends/gp_map/earlier_explanation.hpp"
 
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <utility>
 
 #include "backends/gp_map/testing/ambiguous_flight.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

@@ -1,11 +1,11 @@
 #include "backends/gp_map/factors.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 
 #include "core/motion/wnoa.hpp"
 #include "core/support/index.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/differences.hpp"
 
 namespace evbench::gp_map {

@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "backends/gp_map/gp_map.hpp"
 #include "backends/gp_map/testing/tracked_scene.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 

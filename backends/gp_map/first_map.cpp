@@ -17,8 +17,8 @@ constexpr int kViews = 6;
 constexpr std::size_t kTracks = 60;  ///< in the views, at most
 constexpr int kFirstIterations = 3;  ///< after which explanations that cost far more than the best one are given up
 constexpr double kFarMore = 1.5;
-constexpr double kWidth = 3.0;  ///< of the loss, in median errors
-constexpr int kIterations = 10;
+constexpr double kFirstMapLossWidth = 3.0;  ///< of the loss, in median errors
+constexpr int kFirstMapIterations = 10;
 constexpr double kMotionGrowth = 1.15;  ///< a new attempt has to see this many times the motion of the last one ...
 constexpr double kTimeGrowth = 1.5;     ///< ... or time
 constexpr double kFarOff = 2.0;         ///< times the allowed error: an outlier
@@ -109,9 +109,9 @@ std::optional<ViewsExplained> FirstMapFinder::explanation(const Look& look) cons
   }
   if (trials.empty()) return std::nullopt;
   std::ranges::sort(trials, {}, &ViewsExplained::cost);
-  const double width = kWidth * median(look.views.errors(trials.front())), enough = kFarMore * trials.front().cost;
+  const double width = kFirstMapLossWidth * median(look.views.errors(trials.front())), enough = kFarMore * trials.front().cost;
   std::erase_if(trials, [&](const ViewsExplained& trial) { return trial.cost > enough; });
-  for (ViewsExplained& trial : trials) look.views.refine(trial, width, kIterations);
+  for (ViewsExplained& trial : trials) look.views.refine(trial, width, kFirstMapIterations);
   return *std::ranges::min_element(trials, {}, &ViewsExplained::cost);
 }
 

@@ -3,12 +3,13 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "backends/gp_map/testing/tracked_scene.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/median.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -181,7 +182,7 @@ TEST_CASE("A camera at rest gives no map and says so") {
                            R"({"motion": {"kind": "smooth_random", "amplitude": 1e-9, "rotation_amplitude": 1e-9}})");
   const auto result = run(scene);
   CHECK(result.backend->status().state == RunState::failed);
-  CHECK_THAT(result.backend->status().reason, Catch::Contains("no first map"));
+  CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("no first map"));
   CHECK(result.backend->trajectory().empty());
 }
 
@@ -286,7 +287,7 @@ TEST_CASE("With a lag, memory grows by the results alone") {
   const auto bytes_per_state = [&](const char* options) {
     BackEndContext context;
     context.camera = scene.camera();
-    GpMap backend(read_options<Options>(Json::parse(options), "backend"), context);
+    GpMap backend(read_options<Options>(parse_json(options), "backend"), context);
     TrackPlayer player(scene.observations());
     TrackBatch batch;
     double t = 0.0;

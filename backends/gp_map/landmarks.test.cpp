@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -8,6 +7,7 @@
 #include "backends/gp_map/gp_map.hpp"
 #include "backends/gp_map/testing/tracked_scene.hpp"
 #include "core/support/index.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kNear = 1.5;       ///< times nearer than the scene's median depth: bounded from there on
 constexpr double kLargest = 100.0;  ///< bound: such a landmark says nothing
-constexpr double kChange = 1.2;     ///< by which a bound must change to be set anew
+constexpr double kBoundChange = 1.2;     ///< by which a bound must change to be set anew
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void GpMap::bound_leverage() {
     const double nearness = std::max(1.0, median / (kNear * depth));
     const double bound = std::min(kLargest, nearness * nearness);
     double& present = world_->known[index(group.landmark)].leverage;
-    if (bound < kChange * present && bound > present / kChange) continue;
+    if (bound < kBoundChange * present && bound > present / kBoundChange) continue;
     present = bound;
     changed.push_back(group.landmark);
   }

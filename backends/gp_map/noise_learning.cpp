@@ -1,6 +1,5 @@
 #include "backends/gp_map/noise_learning.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,15 +8,16 @@
 #include "backends/gp_map/factors.hpp"
 #include "core/geometry/seen_point.hpp"
 #include "core/support/median.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench::gp_map {
 namespace {
 
 constexpr double kMedianNorm = 1.17741;           ///< of a two-dimensional standard normal
-constexpr double kBlock = 0.2, kForgotten = 1.0;  ///< [s]
-constexpr int kFewest = 4;                        ///< observations in a block that tells of drift
+constexpr double kDriftBlock = 0.2, kForgotten = 1.0;  ///< [s]
+constexpr int kFewestInBlock = 4;                        ///< observations in a block that tells of drift
 constexpr std::size_t kFewestTracks = 8;
-constexpr double kWidth = 2.0;  ///< of the loss against outliers [medians]
+constexpr double kOutlierLossWidth = 2.0;  ///< of the loss against outliers [medians]
 constexpr double kBinsPerOctave = 16.0;
 constexpr double kLeastShare = 0.01;
 constexpr int kAge = 3;  ///< states after which an interval's residuals are looked at
@@ -32,7 +32,7 @@ class PoseError {
     H_.noalias() += weight * J.transpose() * J;
     g_.noalias() += weight * J.transpose() * residual;
   }
-  void solve() { error_ = H_.ldlt().solve(g_); }
+  void solve() { error_ = solve_symmetric(H_, g_); }
   Vector2 at(const Rows& J) const { return J * error_; }
 
  private:
@@ -115,7 +115,7 @@ void NoiseLearner::add(const FactorGraph& graph, int k) {
     }
   }
   if (residuals.empty()) return;
-  const RobustLoss loss(RobustLoss::Kind::cauchy, kWidth * median(std::move(norms)));
+  const RobustLoss loss(RobustLoss::Kind::cauchy, kOutlierLossWidth * median(std::move(norms)));
   PoseError common;
   for (const Residual& r : residuals) common.add(r.J, r.value, loss.weight(r.value.squaredNorm()));
   common.solve();
@@ -129,8 +129,8 @@ void NoiseLearner::add(int landmark, double t, const Vector2& residual) {
   if (!residual.allFinite()) return;
   norms_.add(residual.norm());
   Block& block = open_[landmark];
-  if (block.count > 0 && t - block.since > kBlock) {
-    if (block.count >= kFewest) means_.add(block.sum.squaredNorm() / block.count);
+  if (block.count > 0 && t - block.since > kDriftBlock) {
+    if (block.count >= kFewestInBlock) means_.add(block.sum.squaredNorm() / block.count);
     block = Block();
   }
   if (block.count == 0) block.since = t;

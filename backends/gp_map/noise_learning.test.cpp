@@ -1,10 +1,10 @@
 #include "backends/gp_map/noise_learning.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 
 #include "core/simulation/random.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

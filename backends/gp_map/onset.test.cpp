@@ -1,8 +1,9 @@
 #include "backends/gp_map/onset.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdlib>
+
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

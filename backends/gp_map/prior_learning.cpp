@@ -18,7 +18,7 @@ constexpr double kLookedBack = 0.4;     ///< [s]
 constexpr int kMostLookedBack = 16;     ///< intervals
 constexpr int kSetAnew = 8;             ///< of the newest intervals
 constexpr double kForce = 1.0;          ///< by which an expansion must change
-constexpr double kChange = 1.5;         ///< by which a density must change to be set anew
+constexpr double kDensityChange = 1.5;         ///< by which a density must change to be set anew
 
 /// Of the intervals from `first` on; none when the system is singular.
 std::vector<PriorEvidence> evidence_from(Engine& engine, int first) {
@@ -109,7 +109,7 @@ void PriorLearner::follow(Engine& engine) {
     if (k <= newest - kSetAnew) continue;
     const Vector6 qc = prior_->at(evidence.t), change = qc.cwiseQuotient(graph.qcs[index(k)]);
     const double expansion = evidence.expansion(qc);
-    if (change.maxCoeff() > kChange || change.minCoeff() < 1.0 / kChange ||
+    if (change.maxCoeff() > kDensityChange || change.minCoeff() < 1.0 / kDensityChange ||
         std::abs(expansion - graph.expansions[index(k)]) > kForce) {
       engine.set_qc(k, qc, expansion);
     }

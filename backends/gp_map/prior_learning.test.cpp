@@ -1,9 +1,9 @@
 #include "backends/gp_map/prior_learning.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "backends/gp_map/testing/drawn_problem.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

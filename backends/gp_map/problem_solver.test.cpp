@@ -1,10 +1,10 @@
 #include "backends/gp_map/problem_solver.hpp"
 
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "backends/gp_map/testing/oracle_distance.hpp"
 #include "core/simulation/random.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 namespace evbench::gp_map {

@@ -1,6 +1,5 @@
 #include "backends/gp_map/recent_explanation.hpp"
 
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <iterator>
 #include <tuple>
@@ -10,6 +9,7 @@
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/observation_follower.hpp"
 #include "backends/gp_map/testing/ambiguous_flight.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

@@ -8,7 +8,7 @@ namespace evbench::gp_map {
 namespace {
 
 constexpr double kWindow = 0.4;  ///< [s]
-constexpr int kMost = 24;        ///< states
+constexpr int kMostStates = 24;        ///< states
 
 /// H δ = −g with H block-tridiagonal and positive definite.
 class Chain {
@@ -65,7 +65,7 @@ class Chain {
 void RecentMotion::follow(const FactorGraph& graph, int first_state) {
   const int newest = static_cast<int>(graph.states.size()) - 1;
   int first = newest;
-  while (first > first_state && newest - first + 1 < kMost &&
+  while (first > first_state && newest - first + 1 < kMostStates &&
          graph.states[index(first - 1)].t > graph.states[index(newest)].t - kWindow) {
     --first;
   }

@@ -1,11 +1,11 @@
 #include "backends/gp_map/recent_motion.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "backends/gp_map/testing/drawn_problem.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

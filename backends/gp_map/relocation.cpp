@@ -1,6 +1,5 @@
 #include "backends/gp_map/relocation.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,6 +14,7 @@
 #include "core/geometry/seen_point.hpp"
 #include "core/structure/point_image.hpp"
 #include "core/support/median.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -22,10 +22,10 @@ namespace {
 constexpr double kAside = 0.8;       ///< [px] by which most are beside where they are expected, else nothing is wrong
 constexpr double kLeft = 0.5;        ///< share of that which one motion leaves, or it explains nothing
 constexpr std::size_t kEnough = 5;   ///< landmarks that one motion explains,
-constexpr double kMost = 2.0 / 3.0;  ///< as a share of all,
+constexpr double kMajority = 2.0 / 3.0;  ///< as a share of all,
 constexpr double kExplained = 2.0;   ///< to so many pixels,
 constexpr double kStillThere = 3.0;  ///< and so many where nothing holds the pose; beyond that one isn't in its place
-constexpr double kHeld = 1e-3;       ///< [rad, units] of the newest pose,
+constexpr double kNewestPoseHeld = 1e-3;       ///< [rad, units] of the newest pose,
 constexpr double kAhead = 1e-3;      ///< at a state so much later [s]
 constexpr double kInPlace = 0.75;  ///< share of which this was the last time: where a turn and a way hide one another,
                                    ///< some are in their places, though the camera is not
@@ -81,7 +81,7 @@ std::optional<Displacement> find_displacement(const FactorGraph& graph, std::spa
       H += weight * J.transpose() * J;
       b -= weight * J.transpose() * e;
     }
-    const Vector6 step = H.ldlt().solve(b);
+    const Vector6 step = solve_symmetric(H, b);
     if (!step.allFinite()) return std::nullopt;
     result.motion = result.motion * frame * se3::exp(step) * frame.inverse();
   }
@@ -97,7 +97,7 @@ std::optional<Displacement> find_displacement(const FactorGraph& graph, std::spa
 }
 
 bool are_most(std::ptrdiff_t some, std::size_t all) {
-  return static_cast<double>(some) >= kMost * static_cast<double>(all);
+  return static_cast<double>(some) >= kMajority * static_cast<double>(all);
 }
 
 /// One that explains most of what is beside where it is expected, and enough.
@@ -178,7 +178,7 @@ void displace(Engine& engine, const Estimate& estimate, int first, const SE3& mo
 void settle_held(Engine& engine) {
   add_extrapolated_state(engine, engine.graph().states.back().t + kAhead);
   const int ahead = static_cast<int>(engine.graph().states.size()) - 1;
-  engine.add_pose_prior({ahead, engine.graph().states.back().T, Vector6::Constant(kHeld)});
+  engine.add_pose_prior({ahead, engine.graph().states.back().T, Vector6::Constant(kNewestPoseHeld)});
   for (int step = 0; step < kHoldingSteps; ++step) engine.update();
   engine.remove_newest_state();
   engine.place_state(ahead - 1, engine.graph().states.back());  // its stage is redone: the one ahead took its landmarks

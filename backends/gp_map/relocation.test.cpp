@@ -1,12 +1,12 @@
 #include "backends/gp_map/relocation.hpp"
 
-#include <catch2/catch.hpp>
 #include <functional>
 #include <utility>
 #include <vector>
 
 #include "core/simulation/random.hpp"
 #include "core/support/median.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

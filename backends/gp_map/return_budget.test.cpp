@@ -1,6 +1,6 @@
 #include "backends/gp_map/return_budget.hpp"
 
-#include <catch2/catch.hpp>
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 

@@ -1,10 +1,10 @@
 #include "backends/gp_map/robust_loss.hpp"
 
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "core/geometry/types.hpp"
 #include "core/simulation/random.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::gp_map;

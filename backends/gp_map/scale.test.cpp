@@ -1,7 +1,6 @@
 // The scale that a first map gives is held as long as the map lasts.
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "backends/gp_map/gp_map.hpp"
 #include "backends/gp_map/testing/tracked_scene.hpp"
 #include "core/support/index.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

@@ -1,8 +1,9 @@
 #include "backends/gp_map/state_placement.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <optional>
+
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

@@ -9,8 +9,8 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kBlock = 0.15;            ///< [s]
-constexpr int kFewest = 4;                 ///< observations in the last block, which may not be over
+constexpr double kErrorBlock = 0.15;            ///< [s]
+constexpr int kFewestInLastBlock = 4;                 ///< observations in the last block, which may not be over
 constexpr double kMedianSquare = 1.38629;  ///< of a two-dimensional standard normal
 constexpr double kOthers = 3.0;            ///< blocks that the noise of all tracks counts for
 
@@ -23,11 +23,11 @@ TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, double usual, c
     if (!span.has(z.t)) return;
     if (before == z.pixel) return;  // a camera that stands still: told again, the same error says nothing new
     before = z.pixel;
-    if (blocks_.empty() || z.t > blocks_.back().since + kBlock) blocks_.push_back({.since = z.t});
+    if (blocks_.empty() || z.t > blocks_.back().since + kErrorBlock) blocks_.push_back({.since = z.t});
     ++blocks_.back().count;
     blocks_.back().sum += l.sigma_scale * reprojection_residual(interval, l.position, z, graph.camera);
   });
-  if (!blocks_.empty() && blocks_.back().count < kFewest) blocks_.pop_back();
+  if (!blocks_.empty() && blocks_.back().count < kFewestInLastBlock) blocks_.pop_back();
   for (Block& block : blocks_) block.square = block.sum.squaredNorm() / (block.count * usual * usual);
 }
 

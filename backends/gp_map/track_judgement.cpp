@@ -16,7 +16,7 @@ namespace {
 
 // While running, when less is known than in the end:
 constexpr double kHasty = 2.0;   ///< times farther off than in the end is what goes
-constexpr double kChange = 1.5;  ///< by which a track's noise must change to be set anew
+constexpr double kTrackNoiseChange = 1.5;  ///< by which a track's noise must change to be set anew
 
 using Judged = std::vector<std::pair<int, TrackErrors>>;  ///< by landmark
 
@@ -118,8 +118,8 @@ void GpMap::weigh_tracks(const NoiseLearner& noise, const TimeSpan& span) {
     own.emplace_back(j, error.sigma_scale());
     scales.push_back(own.back().second);
   }
-  if (own.empty() || (running && median(std::move(scales)) > kChange)) return;
-  const double change = running ? kChange : 1.0;
+  if (own.empty() || (running && median(std::move(scales)) > kTrackNoiseChange)) return;
+  const double change = running ? kTrackNoiseChange : 1.0;
   for (const auto& [j, scale] : own) {
     World::Known& known = world_->known[index(j)];
     if (scale < change * known.noise && scale > known.noise / change) continue;

@@ -1,12 +1,12 @@
 #include "backends/gp_map/violent_motion.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "backends/gp_map/observation_follower.hpp"
 #include "backends/gp_map/testing/drawn_problem.hpp"
 #include "core/support/index.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

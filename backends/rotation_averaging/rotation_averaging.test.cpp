@@ -1,9 +1,8 @@
 #include "backends/rotation_averaging/rotation_averaging.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/geometry/so3.hpp"
 #include "core/simulation/random.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

@@ -1,10 +1,10 @@
 #include "backends/rotation_averaging/rotation_graph.hpp"
 
-#include <Eigen/SVD>
 #include <Eigen/SparseCholesky>
 #include <cmath>
 
 #include "core/geometry/so3.hpp"
+#include "core/geometry/nearest_rotation.hpp"
 
 namespace evbench {
 
@@ -19,10 +19,7 @@ std::optional<AlignedDirections> align_directions(std::span<const std::pair<Vect
     for (std::size_t i = 0; i < weights.size(); ++i) {
       M += weights[i] * left_and_right[i].first * left_and_right[i].second.transpose();
     }
-    const Eigen::JacobiSVD<Matrix3> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Vector3 signs = Vector3::Ones();
-    if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs.z() = -1.0;
-    result.R = Eigen::Quaterniond(Matrix3(svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose()));
+    result.R = Eigen::Quaterniond(nearest_rotation(M).R);
     double squares = 0.0;
     result.weight = 0.0;
     for (std::size_t i = 0; i < weights.size(); ++i) {

@@ -9,9 +9,9 @@ namespace evbench::battery {
 namespace {
 
 /// A back-end as a config would make it, and runs of it.
-class Candidate {
+class CandidateBackEnd {
  public:
-  Candidate(const Plugins& plugins, const std::string& name, const Json& options)
+  CandidateBackEnd(const Plugins& plugins, const std::string& name, const Json& options)
       : entry_(plugins.of<BackEnd>().find(name, "battery")), options_(entry_.resolve(options, name, ".")) {}
 
   RunResult run(const SequenceOptions& sequence, const PipelineOptions& options = {}) const {
@@ -43,7 +43,7 @@ void check_poses(const PoseTrajectory& trajectory, const char* which, double end
 }
 
 /// What holds of any run: finite, within the data's time, and a state that fits.
-void Candidate::check_sound(const RunResult& result, double end) {
+void CandidateBackEnd::check_sound(const RunResult& result, double end) {
   for (const Piece& piece : result.pieces) {
     check_poses(piece.final_trajectory, "final", end);
     check_poses(piece.online_trajectory, "online", end);
@@ -69,7 +69,7 @@ const Piece& longest(const RunResult& result) {
   return result.pieces[result.longest];
 }
 
-void follows_a_good_sequence(const Candidate& candidate) {
+void follows_a_good_sequence(const CandidateBackEnd& candidate) {
   const RunResult result = candidate.run({});
   const Piece& piece = longest(result);
   require(result.status.state <= RunState::degraded, "it is {}: {}", to_string(result.status.state),
@@ -79,7 +79,7 @@ void follows_a_good_sequence(const Candidate& candidate) {
   require(!piece.online_trajectory.empty(), "it told no online pose");
 }
 
-void fails_with_too_little(const Candidate& candidate) {
+void fails_with_too_little(const CandidateBackEnd& candidate) {
   const auto nothing = candidate.run({.keep = [](TrackObservation&) { return false; }});
   require(nothing.status.state == RunState::failed, "without observations it is {}", to_string(nothing.status.state));
   const auto one = candidate.run({.keep = [](TrackObservation& z) { return z.track == 0; }});
@@ -100,14 +100,14 @@ SequenceOptions interrupted(double duration, double from, double to) {
   return sequence;
 }
 
-void survives_a_gap(const Candidate& candidate) {
+void survives_a_gap(const CandidateBackEnd& candidate) {
   const RunResult result = candidate.run(interrupted(3.0, 1.8, 2.1));
   longest(result);
   require(result.status.state != RunState::ok, "it is ok, though nothing was seen from 1.8 to 2.1 s");
   require(result.status.state == RunState::lost || !result.status.degraded.empty(), "no span is told as degraded");
 }
 
-void keeps_what_it_had(const Candidate& candidate) {
+void keeps_what_it_had(const CandidateBackEnd& candidate) {
   SequenceOptions sequence;
   sequence.range = 6.0;
   sequence.keep = [](TrackObservation& z) { return z.t < 2.0; };
@@ -120,7 +120,7 @@ void keeps_what_it_had(const Candidate& candidate) {
   require(std::abs(result.data_s - 2.0) < 0.1, "{} s of data were counted instead of 2", result.data_s);
 }
 
-void starts_anew_after_a_loss(const Candidate& candidate) {
+void starts_anew_after_a_loss(const CandidateBackEnd& candidate) {
   const RunResult result = candidate.run(interrupted(8.0, 2.5, 5.0));
   require(result.status.state == RunState::lost, "it is {}, though nothing was seen for 2.5 s",
           to_string(result.status.state));
@@ -131,14 +131,14 @@ void starts_anew_after_a_loss(const Candidate& candidate) {
   require(second > 4.9 && second < 7.0, "the second piece begins at {} s, though tracks came back at 5 s", second);
 }
 
-void makes_no_map_at_rest(const Candidate& candidate) {
+void makes_no_map_at_rest(const CandidateBackEnd& candidate) {
   const RunResult result = candidate.run({.motion = R"({"kind": "robot_arm", "period": 3, "hold": [0, 3]})"});
   require(result.status.state == RunState::failed, "it is {} before a camera that never moves",
           to_string(result.status.state));
 }
 
 /// Between 4 and 14 s nothing moves and nothing is seen; no track ends then.
-void stands_still(const Candidate& candidate) {
+void stands_still(const CandidateBackEnd& candidate) {
   SequenceOptions sequence;
   sequence.duration = 16.0;
   sequence.motion = R"({"kind": "robot_arm", "period": 4, "hold": [4, 14]})";
@@ -160,7 +160,7 @@ void stands_still(const Candidate& candidate) {
           100.0 * (late->p - early->p).norm() / extent);
 }
 
-void stays_finite_with_wild_tracks(const Candidate& candidate) {
+void stays_finite_with_wild_tracks(const CandidateBackEnd& candidate) {
   std::int64_t i = 0;
   candidate.run({.keep = [&](TrackObservation& z) {
     const auto n = static_cast<double>(i++);
@@ -172,7 +172,7 @@ void stays_finite_with_wild_tracks(const Candidate& candidate) {
 /// Within a frame's length: a pose is told when the frame is complete.
 constexpr double kLatency = 0.1;
 
-void tells_online_poses_in_time(const Candidate& candidate) {
+void tells_online_poses_in_time(const CandidateBackEnd& candidate) {
   constexpr double kCut = 2.0;
   const auto until = [&](double end) {
     SequenceOptions sequence;
@@ -211,11 +211,11 @@ void check_same(const RunResult& a, const RunResult& b, const char* what) {
   require(a.status.state == b.status.state && a.status.reason == b.status.reason, "{}: states differ", what);
 }
 
-void repeats_itself(const Candidate& candidate) {
+void repeats_itself(const CandidateBackEnd& candidate) {
   check_same(candidate.run({}), candidate.run({}), "the same observations twice");
 }
 
-void is_the_same_in_two_threads(const Candidate& candidate) {
+void is_the_same_in_two_threads(const CandidateBackEnd& candidate) {
   const TrackSource source({});
   PipelineOptions options;
   TrackFrontEnd one(source, true), two(source, true);
@@ -259,7 +259,7 @@ std::vector<double> expectation_errors(const std::vector<Feedback>& heard, std::
   return errors;
 }
 
-void feeds_back_what_it_knows(const Candidate& candidate) {
+void feeds_back_what_it_knows(const CandidateBackEnd& candidate) {
   const TrackSource source({});
   TrackFrontEnd frontend(source, true);
   candidate.run(source, frontend);
@@ -286,8 +286,8 @@ void feeds_back_what_it_knows(const Candidate& candidate) {
 }  // namespace
 
 std::vector<Check> backend_checks(const Plugins& plugins, const std::string& name, const Json& options) {
-  const Candidate candidate(plugins, name, options);
-  const auto check = [&](const char* text, void (*run)(const Candidate&)) {
+  const CandidateBackEnd candidate(plugins, name, options);
+  const auto check = [&](const char* text, void (*run)(const CandidateBackEnd&)) {
     return Check{text, [=] { run(candidate); }};
   };
   return {

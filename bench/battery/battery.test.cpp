@@ -1,10 +1,10 @@
 #include "bench/battery/battery.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/plugin/registration.hpp"
 #include "core/plugin/tracking_monitor.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::battery;
@@ -79,7 +79,7 @@ TEST_CASE("gp_map passes the battery with a lag, and per observation") {
   for (const char* options :
        {R"({"lag": 2})", R"({"per_observation": true})", R"({"placement": {"rule": "motion"}})"}) {
     INFO(options);
-    CHECK(joined(failures(backend_checks(plugins, "gp_map", Json::parse(options)))) == "");
+    CHECK(joined(failures(backend_checks(plugins, "gp_map", parse_json(options)))) == "");
   }
 }
 
@@ -94,17 +94,18 @@ TEST_CASE("The battery finds what is wrong with a careless back-end, in words") 
   const std::vector<std::string> found = failures(backend_checks(plugins, "careless"));
   INFO(joined(found));
   CHECK(found.size() >= 8);
-  CHECK_THAT(joined(found), Catch::Contains("without observations it is ok") &&
-                                Catch::Contains("its map has 0 landmarks, where 50 tracks are seen") &&
-                                Catch::Contains("is ok, though nothing was seen from 1.8 to 2.1 s") &&
-                                Catch::Contains("final trajectories differ"));
+  CHECK_THAT(joined(found),
+             Catch::Matchers::ContainsSubstring("without observations it is ok") &&
+                 Catch::Matchers::ContainsSubstring("its map has 0 landmarks, where 50 tracks are seen") &&
+                 Catch::Matchers::ContainsSubstring("is ok, though nothing was seen from 1.8 to 2.1 s") &&
+                 Catch::Matchers::ContainsSubstring("final trajectories differ"));
 }
 
 TEST_CASE("The oracle and simulated sources pass the battery") {
   const Plugins plugins = registered_plugins();
   CHECK(joined(failures(frontend_checks(plugins, "oracle", Json::object(), usual_source()))) == "");
-  CHECK(joined(failures(source_checks(plugins, "simulation", Json::parse(R"({"duration": 2})")))) == "");
-  const Json events = Json::parse(
+  CHECK(joined(failures(source_checks(plugins, "simulation", parse_json(R"({"duration": 2})")))) == "");
+  const Json events = parse_json(
       R"({"duration": 0.2, "camera": {"width": 96, "height": 72, "focal_length": 80}, "tracks": {"alive": 10}})");
   CHECK(joined(failures(source_checks(plugins, "event_simulation", events))) == "");
 }
@@ -117,11 +118,11 @@ TEST_CASE("haste passes the battery on events, with what guides it and without, 
        {"{}", R"({"guidance": {"outliers": false, "veto": false, "reacquire": false}})",
         R"({"place": "new_state", "delay": 0})", R"({"detection": {"method": "histogram"}, "tracks": 10})"}) {
     INFO(options);
-    CHECK(joined(failures(frontend_checks(plugins, "haste", Json::parse(options), scene))) == "");
+    CHECK(joined(failures(frontend_checks(plugins, "haste", parse_json(options), scene))) == "");
   }
 }
 
 TEST_CASE("An unknown plugin is refused before any check") {
   const Plugins plugins = registered_plugins();
-  CHECK_THROWS_WITH(backend_checks(plugins, "gp_mop"), Catch::Contains("gp_map"));
+  CHECK_THROWS_WITH(backend_checks(plugins, "gp_mop"), Catch::Matchers::ContainsSubstring("gp_map"));
 }

@@ -9,9 +9,9 @@ namespace evbench::battery {
 namespace {
 
 /// A front-end as a config would make it, on one source.
-class Candidate {
+class CandidateFrontEnd {
  public:
-  Candidate(const Plugins& plugins, const std::string& name, const Json& options, const Source& source,
+  CandidateFrontEnd(const Plugins& plugins, const std::string& name, const Json& options, const Source& source,
             const std::string& folder)
       : entry_(plugins.of<FrontEnd>().find(name, "battery")),
         options_(entry_.resolve(options, name, folder)),
@@ -61,7 +61,7 @@ void check_batch(const TrackBatch& batch, const Progress& progress, const FrontE
   }
 }
 
-TrackBatch Candidate::all(double interval, std::size_t most) const {
+TrackBatch CandidateFrontEnd::all(double interval, std::size_t most) const {
   const auto frontend = make();
   const TimeRange range = source_.time_range();
   TrackBatch everything, batch;
@@ -88,12 +88,12 @@ bool same(const TrackBatch& a, const TrackBatch& b) {
   return std::ranges::equal(a.observations, b.observations, equal) && std::ranges::equal(a.ended, b.ended, ends);
 }
 
-void tells_tracks_in_order(const Candidate& candidate) {
+void tells_tracks_in_order(const CandidateFrontEnd& candidate) {
   const TrackBatch all = candidate.all(0.01);
   require(!all.observations.empty(), "it tells no observation of the whole source");
 }
 
-void ends_each_track_once(const Candidate& candidate) {
+void ends_each_track_once(const CandidateFrontEnd& candidate) {
   const TrackBatch all = candidate.all(0.01);
   std::map<TrackId, double> last, ended;
   for (const TrackObservation& z : all.observations) last[z.track] = z.t;
@@ -105,18 +105,18 @@ void ends_each_track_once(const Candidate& candidate) {
   }
 }
 
-void repeats_itself(const Candidate& candidate) {
+void repeats_itself(const CandidateFrontEnd& candidate) {
   require(same(candidate.all(0.01), candidate.all(0.01)), "made twice, it tells other tracks");
 }
 
 /// Whoever uses feedback may tell other tracks when it comes at other times; here there is none.
-void is_the_same_however_it_is_asked(const Candidate& candidate) {
+void is_the_same_however_it_is_asked(const CandidateFrontEnd& candidate) {
   const TrackBatch usual = candidate.all(0.01);
   require(same(usual, candidate.all(0.1)), "asked every 0.1 s instead of 0.01 s, it tells other tracks");
   require(same(usual, candidate.all(0.01, 3)), "asked for three observations at a time, it tells other tracks");
 }
 
-void bears_any_feedback(const Candidate& candidate) {
+void bears_any_feedback(const CandidateFrontEnd& candidate) {
   const auto frontend = candidate.make();
   const TimeRange range = candidate.source().time_range();
   TrackBatch batch;
@@ -146,8 +146,8 @@ void bears_any_feedback(const Candidate& candidate) {
 
 std::vector<Check> frontend_checks(const Plugins& plugins, const std::string& name, const Json& options,
                                    const Source& source, const std::string& folder) {
-  const Candidate candidate(plugins, name, options, source, folder);
-  const auto check = [&](const char* text, void (*run)(const Candidate&)) {
+  const CandidateFrontEnd candidate(plugins, name, options, source, folder);
+  const auto check = [&](const char* text, void (*run)(const CandidateFrontEnd&)) {
     return Check{text, [=] { run(candidate); }};
   };
   return {

@@ -4,13 +4,14 @@
 
 #include "core/simulation/motion.hpp"
 #include "core/simulation/scene.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench::battery {
 namespace {
 
 template <class Options>
 Options parsed(const std::string& json, const std::string& place) {
-  return read_options<Options>(Json::parse(json), place);
+  return read_options<Options>(parse_json(json), place);
 }
 
 }  // namespace

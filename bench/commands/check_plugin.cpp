@@ -16,6 +16,7 @@
 #include "core/support/error.hpp"
 #include "core/support/json_reason.hpp"
 #include "core/support/nearest.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -55,7 +56,7 @@ struct Arguments {
 
 Json parse(const std::string& text, const std::string& place) {
   try {
-    return Json::parse(text);
+    return parse_json(text);
   } catch (const Json::parse_error& error) {
     throw InputError(fmt::format("{}: {} is not JSON: {}", place, text, json_reason(error)));
   }

@@ -16,6 +16,7 @@
 #include "eval/protocol.hpp"
 #include "eval/score_run.hpp"
 #include "eval/table.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {

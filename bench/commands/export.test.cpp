@@ -1,14 +1,15 @@
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <set>
 
 #include "bench/testing/program.hpp"
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -16,13 +17,13 @@ namespace {
 struct Sequence {
   TemporaryFolder folder;
 
-  Sequence() { folder.write("c.json", short_config().dump()); }
+  Sequence() { folder.write("c.json", dump_json(short_config())); }
   Outcome run(const std::string& arguments) const { return testing::evbench(folder, arguments); }
   void refused(const std::string& arguments, const std::string& message) const {
     INFO(arguments);
     const Outcome outcome = run("export " + arguments);
     CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, Contains(message));
+    CHECK_THAT(outcome.err, ContainsSubstring(message));
   }
 };
 
@@ -41,10 +42,10 @@ TEST_CASE("A simulated sequence is exported whole, and can be run from its files
   config["name"] = "files";
   config["source"] = {{"type", "recording"}, {"folder", "."}, {"width", 240}, {"height", 180}};
   config["frontend"] = {{"type", "recorded"}, {"tracks", "tracks.txt"}};
-  sequence.folder.write("files.json", config.dump());
+  sequence.folder.write("files.json", dump_json(config));
   REQUIRE(sequence.run("run files.json --quiet").exit_code == 0);
   const std::string run = *names_in(sequence.folder.file("results/files")).begin();
-  const Json metrics = Json::parse(read_file(sequence.folder.file("results/files/" + run + "/metrics.json")));
+  const Json metrics = parse_json(read_file(sequence.folder.file("results/files/" + run + "/metrics.json")));
   CHECK(metrics.at("final").at("ate").at("trans_percent").get<double>() < 2.0);
   const std::string first = read_file(sequence.folder.file("tracks.txt"));
   REQUIRE(sequence.run("export c.json --tracks tracks.txt --set seed=2 --force").exit_code == 0);
@@ -58,12 +59,12 @@ TEST_CASE("A run's aligned estimate and errors are those that it was scored by")
       sequence.folder.file("results/short/" + *names_in(sequence.folder.file("results/short")).begin());
   REQUIRE(sequence.run("export '" + run + "' --aligned a.txt --errors e.csv --groundtruth g.txt --tracks t.txt")
               .exit_code == 0);
-  const Json scores = Json::parse(read_file(run + "/metrics.json")).at("final");
+  const Json scores = parse_json(read_file(run + "/metrics.json")).at("final");
   const std::string csv = read_file(sequence.folder.file("e.csv"));
   CHECK(std::ranges::count(csv, '\n') == 1 + scores.at("pairs").get<std::ptrdiff_t>());
   CHECK(read_tum(sequence.folder.file("a.txt")).size() == read_tum(run + "/final.tum").size());
   REQUIRE(sequence.run("eval g.txt a.txt --interpolate --json s.json --t_start 0 --t_end 3").exit_code == 0);
-  const Json aligned = Json::parse(read_file(sequence.folder.file("s.json"))).at("final");
+  const Json aligned = parse_json(read_file(sequence.folder.file("s.json"))).at("final");
   CHECK(aligned.at("ate").at("trans_m").at("rmse").get<double>() ==
         Approx(scores.at("ate").at("trans_m").at("rmse").get<double>()).epsilon(1e-6));
   REQUIRE(sequence.run("export '" + run + "' --online --aligned online.txt").exit_code == 0);
@@ -75,7 +76,7 @@ TEST_CASE("A run is exported as evo's result archive, which reads back as evo re
   REQUIRE(sequence.run("run c.json --quiet").exit_code == 0);
   const std::string run =
       sequence.folder.file("results/short/" + *names_in(sequence.folder.file("results/short")).begin());
-  const Json scores = Json::parse(read_file(run + "/metrics.json")).at("final");
+  const Json scores = parse_json(read_file(run + "/metrics.json")).at("final");
   const std::pair<std::string, Json> expected[] = {{"ape_trans", scores.at("ate").at("trans_m")},
                                                    {"ape_rot", scores.at("ate").at("rot_deg")},
                                                    {"rpe_trans", scores.at("rpe").at("trans_m")},
@@ -87,7 +88,7 @@ TEST_CASE("A run is exported as evo's result archive, which reads back as evo re
         shell(sequence.folder, "/usr/bin/python3 '" EVBENCH_READERS "/evo_result.py' " + name + ".zip");
     INFO(read.err);
     REQUIRE(read.exit_code == 0);
-    const Json result = Json::parse(read.out);
+    const Json result = parse_json(read.out);
     CHECK(result.at("stats").at("rmse") == statistics.at("rmse"));
     CHECK(result.at("rmse").get<double>() == Approx(statistics.at("rmse").get<double>()));
     CHECK(result.at("errors") == statistics.at("n"));
@@ -111,19 +112,19 @@ TEST_CASE("A run is exported in rpg_trajectory_evaluation's layout, which gives 
   const Outcome read = shell(sequence.folder, "/usr/bin/python3 '" EVBENCH_READERS "/rpg_layout.py' rpg");
   INFO(read.err);
   REQUIRE(read.exit_code == 0);
-  const Json result = Json::parse(read.out);
+  const Json result = parse_json(read.out);
   CHECK(result.at("align_type") == "sim3");
   CHECK(result.at("align_num_frames") == -1);
   REQUIRE(sequence.run("eval '" + run + "/groundtruth.tum' '" + run + "/final.tum' -as --t_max_diff 0.02 --json s.json")
               .exit_code == 0);
-  const Json scores = Json::parse(read_file(sequence.folder.file("s.json"))).at("final");
+  const Json scores = parse_json(read_file(sequence.folder.file("s.json"))).at("final");
   CHECK(result.at("pairs") == scores.at("pairs"));
   CHECK(result.at("rmse").get<double>() ==
         Approx(scores.at("ate").at("trans_m").at("rmse").get<double>()).epsilon(1e-6));
   REQUIRE(sequence.run("score results --set evaluation.alignment=origin --quiet").exit_code == 0);
   const Outcome refused = sequence.run("export '" + run + "' --rpg other");
   CHECK(refused.exit_code == 2);
-  CHECK_THAT(refused.err, Contains("rpg_trajectory_evaluation does not align by \"origin\""));
+  CHECK_THAT(refused.err, ContainsSubstring("rpg_trajectory_evaluation does not align by \"origin\""));
 }
 
 TEST_CASE("What can't be exported is refused with what was expected, and no file is replaced") {

@@ -2,13 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/recordings/config_events.hpp"
 #include "bench/recordings/summary.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -30,7 +30,7 @@ void execute(const InfoArguments& arguments) {
                               static_cast<double>(t) * 1e-6));
     });
   }
-  fmt::print("{}", arguments.json ? summary_json(arguments.file, summary).dump(2) + "\n"
+  fmt::print("{}", arguments.json ? dump_json(summary_json(arguments.file, summary), 2) + "\n"
                                   : format_summary(arguments.file, summary));
   if (summary.large_loss && !arguments.options.read.lenient) throw InputError(*summary.large_loss);
 }

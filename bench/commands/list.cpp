@@ -9,6 +9,7 @@
 #include "core/events/formats.hpp"
 #include "core/plugin/registry.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -29,7 +30,7 @@ bool describe(const Plugins& plugins, const std::string& kind, const std::string
   if (kind.empty() ? !plugins.of<Interface>().entries().contains(name) : kind != own) return false;
   const auto& entry = plugins.of<Interface>().find(name, "describe " + own);
   if (schema) {
-    fmt::print("{}\n", entry.schema().dump(2));
+    fmt::print("{}\n", dump_json(entry.schema(), 2));
   } else {
     fmt::print("{} {}: {}\n\n{}", own, name, entry.text, entry.describe());
   }
@@ -66,7 +67,7 @@ void add_describe(CLI::App& app, const Plugins& plugins) {
     std::string kind = arguments->kind, name = arguments->name;
     if (kind == "config") {
       if (!name.empty()) throw InputError(fmt::format("describe config: expected no name beside it, but got {}", name));
-      fmt::print("{}\n", schema ? experiment_schema(plugins).dump(2) : describe_experiment());
+      fmt::print("{}\n", schema ? dump_json(experiment_schema(plugins), 2) : describe_experiment());
       return;
     }
     if (name.empty()) std::swap(kind, name);

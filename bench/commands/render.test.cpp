@@ -1,12 +1,13 @@
-#include <catch2/catch.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "bench/render/testing/recording.hpp"
 #include "bench/testing/program.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -31,7 +32,8 @@ TEST_CASE("render writes a picture, a folder of pictures, or a video, and says s
   outcome = testing::evbench(folder, "render a.evb pictures/ --speed 0.15 --fps 15 --duration 10 --mode time_surface");
   CHECK(outcome.out == "written: pictures/, 5 pictures of 640x320 pixels\n");
   CHECK(names_in(folder.file("pictures")).size() == 5);
-  CHECK_THAT(testing::evbench(folder, "render a.evb pictures/").err, Contains("pictures/: exists already; --force"));
+  CHECK_THAT(testing::evbench(folder, "render a.evb pictures/").err,
+             ContainsSubstring("pictures/: exists already; --force"));
   CHECK(testing::evbench(folder, "render a.evb a.png --scale 4 --force").exit_code == 0);
 
   outcome = testing::evbench(folder, "render a.evb a.mp4 --beside a.evb --quiet");
@@ -44,7 +46,7 @@ TEST_CASE("render draws a run's tracks over its events") {
   const TemporaryFolder folder;
   write_recording_of_events(folder);
   folder.write("calib.txt", "20 20 10 5 0 0 0 0 0\n");
-  folder.write("c.json", short_config().dump());
+  folder.write("c.json", dump_json(short_config()));
   REQUIRE(testing::evbench(folder, "run c.json --tracks --quiet").exit_code == 0);
   const std::string run = "results/short/" + *names_in(folder.file("results/short")).begin();
   CHECK(testing::evbench(folder, "render a.evb plain.png --to 0.05").exit_code == 0);
@@ -55,7 +57,7 @@ TEST_CASE("render draws a run's tracks over its events") {
   std::filesystem::remove(folder.file(run + "/tracks.txt"));
   const Outcome without = testing::evbench(folder, "render a.evb none.png --calib calib.txt --run " + run);
   CHECK(without.exit_code == 2);
-  CHECK_THAT(without.err, Contains("--tracks"));
+  CHECK_THAT(without.err, ContainsSubstring("--tracks"));
 }
 
 TEST_CASE("render refuses with exit code 2 and a sentence what it can't draw") {
@@ -66,7 +68,7 @@ TEST_CASE("render refuses with exit code 2 and a sentence what it can't draw") {
     INFO(arguments);
     CHECK(outcome.exit_code == 2);
     CHECK(outcome.out.empty());
-    CHECK_THAT(outcome.err, Contains(message));
+    CHECK_THAT(outcome.err, ContainsSubstring(message));
   };
   refused("a.evb a.bmp", "expected .png");
   refused("b.evb a.png", "b.evb");

@@ -1,11 +1,11 @@
-#include <catch2/catch.hpp>
-
 #include "bench/published.hpp"
 #include "bench/testing/program.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -17,10 +17,10 @@ struct Paper {
     Json config = short_comparison();
     config["name"] = "arm";
     std::filesystem::create_directories(folder.file("paper"));
-    folder.write("paper/arm.json", config.dump());
+    folder.write("paper/arm.json", dump_json(config));
     config["name"] = "elsewhere";
     config["source"] = {{"type", "recording"}, {"folder", "nowhere"}};
-    folder.write("paper/elsewhere.json", config.dump());
+    folder.write("paper/elsewhere.json", dump_json(config));
     write({{"config", "arm"},
            {"what", "Table I"},
            {"protocol", "not said"},
@@ -28,7 +28,7 @@ struct Paper {
            {"rows", {{{"label", "asynchronous"}, {"values", {{"ate.trans_m.rmse", 0.5}, {"times.backend_s", 60}}}}}}});
   }
   void write(const Json& result) const {
-    folder.write("paper/published.json", Json{{"paper", "Somebody, 2022"}, {"results", {result}}}.dump());
+    folder.write("paper/published.json", dump_json({{"paper", "Somebody, 2022"}, {"results", {result}}}));
   }
   Outcome reproduce(const std::string& arguments) const {
     return testing::evbench(folder, "reproduce --configs paper --quiet " + arguments);
@@ -42,29 +42,32 @@ TEST_CASE("Our numbers and the paper's stand side by side, with both protocols a
   const Outcome outcome = paper.reproduce("arm");
   INFO(outcome.err);
   REQUIRE(outcome.exit_code == 0);
-  CHECK_THAT(outcome.out, Contains("asynchronous") && Contains("ATE [m]") && Contains("0.5") && Contains("60"));
-  CHECK_THAT(outcome.out, Contains("Paper: Somebody, 2022.") && Contains("arm (Table I). Here: Sim(3) alignment") &&
-                              Contains("Paper: not said. The recording is not public."));
-  CHECK_THAT(paper.reproduce("arm --format csv").out,
-             Contains("arm,asynchronous,ate.trans_m.rmse,0.") && Contains(",0.5,") && Contains(",60,"));
+  CHECK_THAT(outcome.out, ContainsSubstring("asynchronous") && ContainsSubstring("ATE [m]") &&
+                              ContainsSubstring("0.5") && ContainsSubstring("60"));
+  CHECK_THAT(outcome.out, ContainsSubstring("Paper: Somebody, 2022.") &&
+                              ContainsSubstring("arm (Table I). Here: Sim(3) alignment") &&
+                              ContainsSubstring("Paper: not said. The recording is not public."));
+  CHECK_THAT(paper.reproduce("arm --format csv").out, ContainsSubstring("arm,asynchronous,ate.trans_m.rmse,0.") &&
+                                                          ContainsSubstring(",0.5,") && ContainsSubstring(",60,"));
 }
 
 TEST_CASE("Configs whose data is not here are left out and named, the others are done") {
   const Paper paper;
   const Outcome outcome = paper.reproduce("");
   CHECK(outcome.exit_code == 2);
-  CHECK_THAT(outcome.err, Contains("elsewhere is left out: ") && Contains("nowhere"));
-  CHECK_THAT(outcome.out, Contains("asynchronous"));
+  CHECK_THAT(outcome.err, ContainsSubstring("elsewhere is left out: ") && ContainsSubstring("nowhere"));
+  CHECK_THAT(outcome.out, ContainsSubstring("asynchronous"));
   CHECK(names_in(paper.folder.file("results")) == std::set<std::string>{"arm"});
 }
 
 TEST_CASE("Names that are no configs and damaged numbers are refused with the place") {
   const Paper paper;
-  CHECK_THAT(paper.reproduce("arn").err, Contains("paper has no config \"arn\"; did you mean \"arm\"?"));
+  CHECK_THAT(paper.reproduce("arn").err, ContainsSubstring("paper has no config \"arn\"; did you mean \"arm\"?"));
   paper.write({{"config", "arm"}, {"what", "Table I"}});
-  CHECK_THAT(paper.reproduce("arm").err, Contains("published.json: results.0: \"protocol\" is missing"));
+  CHECK_THAT(paper.reproduce("arm").err, ContainsSubstring("published.json: results.0: \"protocol\" is missing"));
   CHECK_THAT(testing::evbench(paper.folder, "reproduce").err,
-             Contains("configs/paper: there is no such folder here") && Contains("--configs REPOSITORY/configs/paper"));
+             ContainsSubstring("configs/paper: there is no such folder here") &&
+                 ContainsSubstring("--configs REPOSITORY/configs/paper"));
 }
 
 TEST_CASE("The paper's numbers are of configs and back-ends that there are") {
@@ -72,7 +75,7 @@ TEST_CASE("The paper's numbers are of configs and back-ends that there are") {
   CHECK(published.results.size() >= 2);
   for (const PublishedResult& result : published.results) {
     INFO(result.config);
-    const Json config = Json::parse(read_file(EVBENCH_CONFIGS "/paper/" + result.config + ".json"));
+    const Json config = parse_json(read_file(EVBENCH_CONFIGS "/paper/" + result.config + ".json"));
     CHECK(config.at("name") == result.config);
     CHECK_FALSE(result.not_equal.empty());
     for (const PublishedRow& row : result.rows) {

@@ -1,11 +1,12 @@
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "bench/testing/program.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -15,7 +16,7 @@ struct ScoredRuns {
   std::vector<std::string> runs;
 
   ScoredRuns() {
-    folder.write("c.json", short_comparison().dump());
+    folder.write("c.json", dump_json(short_comparison()));
     REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
     for (const std::string& name : names_in(folder.file("results/short"))) {
       runs.push_back(folder.file("results/short/" + name));
@@ -27,7 +28,7 @@ struct ScoredRuns {
   Outcome score(const std::string& arguments) const { return testing::evbench(folder, "score " + arguments); }
 };
 
-Json json_file(const std::string& path) { return Json::parse(read_file(path)); }
+Json json_file(const std::string& path) { return parse_json(read_file(path)); }
 
 }  // namespace
 
@@ -48,7 +49,8 @@ TEST_CASE("Runs are scored by another protocol, and by the one before again") {
   const Outcome outcome = runs.score(
       "--set evaluation.alignment=se3 --set evaluation.rpe_delta=0.5 --set 'evaluation.time_range=[1,2]' results");
   REQUIRE(outcome.exit_code == 0);
-  CHECK_THAT(outcome.out, Contains("SE(3) alignment") && Contains("only 1 to 2 s") && Contains("RPE over 0.5 s"));
+  CHECK_THAT(outcome.out, ContainsSubstring("SE(3) alignment") && ContainsSubstring("only 1 to 2 s") &&
+                              ContainsSubstring("RPE over 0.5 s"));
   for (const std::string& run : runs.runs) {
     CHECK(json_file(run + "/metrics.json").at("final").at("alignment").at("method") == "se3");
     CHECK(json_file(run + "/config.json").at("evaluation").at("alignment") == "se3");
@@ -75,7 +77,7 @@ TEST_CASE("What can't be scored is refused, and all runs are as before") {
     const Outcome outcome = runs.score(arguments);
     INFO(arguments);
     CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, Contains(message));
+    CHECK_THAT(outcome.err, ContainsSubstring(message));
     CHECK(runs.sums() == before);
   };
   refused("nowhere", "nowhere: is not a folder");
@@ -87,7 +89,8 @@ TEST_CASE("What can't be scored is refused, and all runs are as before") {
   std::filesystem::remove(runs.runs[1] + "/config.json");
   const Outcome outcome = runs.score("results");
   CHECK(outcome.exit_code == 2);
-  CHECK_THAT(outcome.err, Contains(runs.runs[1].substr(runs.folder.path().size() + 1) + "/config.json: can't be read"));
+  CHECK_THAT(outcome.err,
+             ContainsSubstring(runs.runs[1].substr(runs.folder.path().size() + 1) + "/config.json: can't be read"));
 }
 
 TEST_CASE("A run without ground truth says so, also when it is scored again") {
@@ -95,6 +98,6 @@ TEST_CASE("A run without ground truth says so, also when it is scored again") {
   std::filesystem::remove(runs.runs[0] + "/groundtruth.tum");
   const Outcome outcome = runs.score("results");
   CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.out, Contains("no ground truth"));
+  CHECK_THAT(outcome.out, ContainsSubstring("no ground truth"));
   CHECK(json_file(runs.runs[0] + "/metrics.json").at("final_unscored") == "no ground truth");
 }

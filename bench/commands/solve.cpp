@@ -3,7 +3,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "backends/gp_map/problem_solver.hpp"
 #include "bench/commands/commands.hpp"
@@ -11,11 +10,11 @@
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "eval/quantile.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
 
-using Json = nlohmann::ordered_json;
 
 const std::map<std::string, gp_map::SolveMode> kModes = {{"incremental", gp_map::SolveMode::incremental},
                                                          {"batch", gp_map::SolveMode::batch},
@@ -70,8 +69,8 @@ std::string format_steps(const gp_map::SolveResult& result) {
 void execute(const SolveArguments& arguments) {
   const gp_map::SolveResult result = gp_map::solve_problem(read_problem(arguments.problem), arguments.options);
   const Json json = report(arguments, result);
-  fmt::print("{}\n", json.dump(2));
-  if (!arguments.json.empty()) write_file(arguments.json, json.dump(2) + "\n");
+  fmt::print("{}\n", dump_json(json, 2));
+  if (!arguments.json.empty()) write_file(arguments.json, dump_json(json, 2) + "\n");
   if (!arguments.states.empty()) write_file(arguments.states, format_states(result.graph));
   if (!arguments.steps.empty()) write_file(arguments.steps, format_steps(result));
 }

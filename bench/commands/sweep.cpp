@@ -22,6 +22,7 @@
 #include "bench/sweep/sweep_status.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/interruption.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -166,7 +167,7 @@ int execute(SweepArguments& arguments, Plugins& plugins) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw OutputError(fmt::format("{}: can't be made: {}", folder, error.message()));
-  write_file(folder + "/sweep.json", plan.to_json().dump(1) + "\n");
+  write_file(folder + "/sweep.json", dump_json(plan.to_json(), 1) + "\n");
   if (arguments.executor == "local") return do_locally(runs, arguments, folder, plugins);
   const std::vector<PlannedRun> left = runs_to_do(runs, plugins, options);
   return arguments.executor == "slurm" ? hand_to_slurm(left, arguments, folder)

@@ -2,7 +2,6 @@
 #include <archive_entry.h>
 #include <httplib.h>
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <fstream>
 #include <map>
@@ -15,10 +14,11 @@
 #include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -184,7 +184,7 @@ TEST_CASE("A download whose connection is cut goes on where it stopped, or from 
   download(server.url(), folder.file("a.zip"), quick());
   CHECK(read_file(folder.file("a.zip")) == noise(300000));
   CHECK(server.requests() == 4);
-  CHECK_THAT(server.last_range(), Catch::StartsWith("bytes="));
+  CHECK_THAT(server.last_range(), Catch::Matchers::StartsWith("bytes="));
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.zip"});
 }
 
@@ -195,7 +195,7 @@ TEST_CASE("A download that broke off too often says so, the next call goes on") 
   DownloadOptions options = quick();
   options.attempts = 2;
   CHECK_THROWS_WITH(download(server.url(), folder.file("a.zip"), options),
-                    Contains("broke off after 225000 bytes") && Contains("goes on from there"));
+                    ContainsSubstring("broke off after 225000 bytes") && ContainsSubstring("goes on from there"));
   CHECK(read_file(folder.file("a.zip.part")) == noise(225000));
   download(server.url(), folder.file("a.zip"), options);
   CHECK(server.last_range() == "bytes=225000-");
@@ -226,7 +226,7 @@ TEST_CASE(
   DownloadOptions options = quick();
   options.attempts = 1;
   CHECK_THROWS_WITH(download(server.url(), folder.file("a.zip"), options),
-                    Contains(dated ? "goes on from there" : "begins anew"));
+                    ContainsSubstring(dated ? "goes on from there" : "begins anew"));
   const std::string now = changed ? std::string(310000, 'x') : noise(300000);
   if (changed && dated) server.last_modified = "Wed, 02 Jul 2025 00:00:00 GMT";
   server.change(now);
@@ -252,7 +252,8 @@ TEST_CASE("A web page in the place of a file is an error, a file that begins lik
   Server server("");
   server.more = {{"a.zip", "\n<!DOCTYPE HTML><p>Not found"}, {"b.html", "<?xml?><html>"}, {"c.xml", "<?xml?><a/>"}};
   for (const char* name : {"more/a.zip", "more/b.html"}) {
-    CHECK_THROWS_WITH(download(server.url(name), folder.file("a"), quick()), Contains("answers with a web page"));
+    CHECK_THROWS_WITH(download(server.url(name), folder.file("a"), quick()),
+                      ContainsSubstring("answers with a web page"));
   }
   CHECK(std::filesystem::is_empty(folder.path()));
   CHECK_NOTHROW(download(server.url("more/c.xml"), folder.file("c.xml"), quick()));
@@ -271,14 +272,15 @@ TEST_CASE("A download that is interrupted says so and keeps what is there") {
   }
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.zip.part", "a.zip.part.version"});
   download(server.url(), folder.file("a.zip"), quick());
-  CHECK_THAT(server.last_range(), Catch::StartsWith("bytes="));
+  CHECK_THAT(server.last_range(), Catch::Matchers::StartsWith("bytes="));
   CHECK(read_file(folder.file("a.zip")) == noise(30000000));
 }
 
 TEST_CASE("An error while a download is written passes through") {
   const TemporaryFolder folder;
   const Server server(noise(1000));
-  CHECK_THROWS_WITH(download(server.url(), folder.file("no/a.zip"), quick()), Contains("a.zip.part: can't be written"));
+  CHECK_THROWS_WITH(download(server.url(), folder.file("no/a.zip"), quick()),
+                    ContainsSubstring("a.zip.part: can't be written"));
 }
 
 TEST_CASE("A part file that is longer than what the server has is thrown away") {
@@ -293,16 +295,16 @@ TEST_CASE("What a server refuses, another checksum and too big a file are errors
   const TemporaryFolder folder;
   const Server server(noise(1000));
   CHECK_THROWS_WITH(download(server.url("no.zip"), folder.file("a.zip"), quick()),
-                    Contains("no.zip") && Contains("answers 404"));
-  CHECK_THROWS_WITH(download(server.url("broken.zip"), folder.file("a.zip"), quick()), Contains("503"));
+                    ContainsSubstring("no.zip") && ContainsSubstring("answers 404"));
+  CHECK_THROWS_WITH(download(server.url("broken.zip"), folder.file("a.zip"), quick()), ContainsSubstring("503"));
   CHECK(server.requests() == 5);
   DownloadOptions options = quick();
   options.sha256 = std::string(64, '0');
   CHECK_THROWS_WITH(download(server.url(), folder.file("a.zip"), options),
-                    Contains("has the SHA-256 " + sha256(noise(1000))) && Contains("removed"));
+                    ContainsSubstring("has the SHA-256 " + sha256(noise(1000))) && ContainsSubstring("removed"));
   options = quick();
   options.limit = 999;
-  CHECK_THROWS_WITH(download(server.url(), folder.file("a.zip"), options), Contains("bigger"));
+  CHECK_THROWS_WITH(download(server.url(), folder.file("a.zip"), options), ContainsSubstring("bigger"));
   CHECK_THROWS_AS(download("http://127.0.0.1:1/file.zip", folder.file("a.zip"), quick()), InputError);
   CHECK_THROWS_AS(download("file:///etc/hostname", folder.file("a.zip"), quick()), InputError);
   CHECK(std::filesystem::is_empty(folder.path()));
@@ -328,7 +330,7 @@ TEST_CASE("An archive that leads out of the folder, has links, repeats itself or
       const std::string target = folder.file("target");
       std::filesystem::remove_all(target);
       std::filesystem::create_directory(target);
-      CHECK_THROWS_WITH(unpack(make_archive(folder.file(name), entries), target, 1000), Contains(message));
+      CHECK_THROWS_WITH(unpack(make_archive(folder.file(name), entries), target, 1000), ContainsSubstring(message));
     }
   };
   refused({{"../out.txt", "x"}}, "leads out");
@@ -340,7 +342,8 @@ TEST_CASE("An archive that leads out of the folder, has links, repeats itself or
   refused({{"a.txt", std::string(600, 'x')}, {"b.txt", std::string(600, 'x')}}, "more than the catalogue allows");
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.zip", "a.tar.gz", "target"});
   folder.write("b.zip", "no zip at all");
-  CHECK_THROWS_WITH(unpack(folder.file("b.zip"), folder.file("target"), 1000), Contains("b.zip: is a damaged archive"));
+  CHECK_THROWS_WITH(unpack(folder.file("b.zip"), folder.file("target"), 1000),
+                    ContainsSubstring("b.zip: is a damaged archive"));
 }
 
 TEST_CASE("A zip that is truncated or has a flipped bit is refused") {
@@ -380,11 +383,12 @@ TEST_CASE("What was fetched of a dataset stays until all of it is there, a damag
   dataset.files = {{server.url("more/a.h5"), "a.h5", "", false}, {server.url("more/b.zip"), "b.zip", "", true}};
   const std::string target = folder.file("set");
   const auto fetch = [&] { fetch_dataset(dataset, target, quick(), [](const std::string&) {}); };
-  CHECK_THROWS_WITH(fetch(), Contains("b.zip") && Contains("404"));
+  CHECK_THROWS_WITH(fetch(), ContainsSubstring("b.zip") && ContainsSubstring("404"));
   CHECK(names_in(folder.path()) == std::set<std::string>{"b.zip", "set.download"});
   CHECK(names_in(target + ".download") == std::set<std::string>{"a.h5"});
   server.more["b.zip"] = zip.substr(0, zip.size() / 2);
-  CHECK_THROWS_WITH(fetch(), Contains("damaged archive") && Contains("removed, the same command fetches"));
+  CHECK_THROWS_WITH(fetch(),
+                    ContainsSubstring("damaged archive") && ContainsSubstring("removed, the same command fetches"));
   CHECK(names_in(target + ".download") == std::set<std::string>{"a.h5"});
   server.more["b.zip"] = zip;
   fetch();
@@ -432,16 +436,19 @@ TEST_CASE("dataset get fetches and unpacks by name, once, dataset list marks wha
   const Outcome get = testing::shell(folder, environment + "get local/file");
   CHECK(get.exit_code == 0);
   CHECK(get.err.empty());
-  CHECK_THAT(get.out, Contains("CC0") && Contains("SHA-256 " + sha256_file(folder.file("sequence.zip"))) &&
-                          Contains("written: sets/local/file"));
+  CHECK_THAT(get.out, ContainsSubstring("CC0") &&
+                          ContainsSubstring("SHA-256 " + sha256_file(folder.file("sequence.zip"))) &&
+                          ContainsSubstring("written: sets/local/file"));
   CHECK(read_file(folder.file("sets/local/file/events.txt")) == "0.1 1 1 1\n");
   CHECK(names_in(folder.file("sets/local")) == std::set<std::string>{"file"});
-  CHECK_THAT(testing::shell(folder, environment + "get local/file").out, Contains("is there already"));
+  CHECK_THAT(testing::shell(folder, environment + "get local/file").out, ContainsSubstring("is there already"));
   CHECK(server.requests() == 2);
-  CHECK_THAT(testing::shell(folder, environment + "list").out, Contains("* local/file ") && Contains("    local/no "));
+  CHECK_THAT(testing::shell(folder, environment + "list").out,
+             ContainsSubstring("* local/file ") && ContainsSubstring("    local/no "));
   const Outcome missing = testing::shell(folder, environment + "get local/no");
   CHECK(missing.exit_code == 2);
-  CHECK_THAT(missing.err, Contains("answers 404"));
-  CHECK_THAT(testing::shell(folder, environment + "get local/fil").err, Contains("did you mean \"local/file\"?"));
+  CHECK_THAT(missing.err, ContainsSubstring("answers 404"));
+  CHECK_THAT(testing::shell(folder, environment + "get local/fil").err,
+             ContainsSubstring("did you mean \"local/file\"?"));
   CHECK(names_in(folder.file("sets/local")) == std::set<std::string>{"file"});
 }

@@ -1,17 +1,18 @@
 #include "bench/figures/run_figures.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "bench/run_folder.hpp"
 #include "bench/testing/program.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "eval/testing/runs.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -59,8 +60,8 @@ TEST_CASE("A sweep is a curve of medians with bands, and a level for what does n
   const Mark& level = mark_of(panel, Mark::Kind::level, 0);
   CHECK(level.y == std::vector{0.02});
   CHECK(level.low.at(0) == Approx(0.015));
-  CHECK_THAT(figure.caption,
-             Contains("arm. Medians, and bands between quartiles, of 3 runs each (seed).") && Contains("Sim(3)"));
+  CHECK_THAT(figure.caption, ContainsSubstring("arm. Medians, and bands between quartiles, of 3 runs each (seed).") &&
+                                 ContainsSubstring("Sim(3)"));
 }
 
 TEST_CASE("A map has the median ratio to the base on the same data, by two axes") {
@@ -72,13 +73,13 @@ TEST_CASE("A map has the median ratio to the base on the same data, by two axes"
   REQUIRE(cells.low.size() == 9);  // three frames, three seeds
   for (std::size_t i = 0; i < cells.low.size(); ++i) CHECK(cells.low[i] == Approx(100.0 * cells.x[i]));
   CHECK(figure.panels.at(0).title == "ATE [m]");
-  CHECK_THAT(figure.caption, Contains("ATE [m] of bundle over that of asynchronous, on the same data"));
+  CHECK_THAT(figure.caption, ContainsSubstring("ATE [m] of bundle over that of asynchronous, on the same data"));
   FigureOptions other = options;
   other.base = "asynchron";
-  CHECK_THROWS_WITH(map_figure(results.find(), other), Contains("did you mean \"asynchronous\"?"));
+  CHECK_THROWS_WITH(map_figure(results.find(), other), ContainsSubstring("did you mean \"asynchronous\"?"));
   other = options;
   other.across = "";
-  CHECK_THROWS_WITH(map_figure(results.find(), other), Contains("expected --axis and --across"));
+  CHECK_THROWS_WITH(map_figure(results.find(), other), ContainsSubstring("expected --axis and --across"));
 }
 
 TEST_CASE("What failed is told above a sweep, behind a box's name, and by a profile") {
@@ -90,12 +91,12 @@ TEST_CASE("What failed is told above a sweep, behind a box's name, and by a prof
   CHECK(failures.x == std::vector{0.1});
   CHECK(failures.low == std::vector{1.0});
   CHECK(failures.high == std::vector{4.0});
-  CHECK_THAT(sweep.caption, Contains("of 3 to 4 runs each (seed). Above: how many of the runs failed"));
+  CHECK_THAT(sweep.caption, ContainsSubstring("of 3 to 4 runs each (seed). Above: how many of the runs failed"));
   const Figure boxes = box_figure(runs, {});
   CHECK(boxes.panels.at(0).names.at(2) ==
         "bundle, backend.frame_duration 0.1 (1\u00a0of\u00a04\u00a0fail)");  // not to be broken
   CHECK(boxes.panels.at(1).names.at(2).empty());                             // the first panel has said it
-  CHECK_THAT(boxes.caption, Contains("Those that failed are in no box."));
+  CHECK_THAT(boxes.caption, ContainsSubstring("Those that failed are in no box."));
   CHECK(mark_of(boxes.panels.at(0), Mark::Kind::box, 2).y.size() == 3);
 }
 
@@ -118,8 +119,9 @@ TEST_CASE("A value of the axis at which the median fails is in the figure") {
   const Outcome outcome = testing::evbench(results.folder, "figure sweep . --out f.svg --keep-script");
   INFO(outcome.err);
   REQUIRE(outcome.exit_code == 0);
-  CHECK_THAT(outcome.err, !Contains("warns"));
-  CHECK_THAT(read_file(results.folder.file("f.svg")), Contains("<!-- 0.4 -->") && Contains("<!-- 3/3 -->"));
+  CHECK_THAT(outcome.err, !ContainsSubstring("warns"));
+  CHECK_THAT(read_file(results.folder.file("f.svg")),
+             ContainsSubstring("<!-- 0.4 -->") && ContainsSubstring("<!-- 3/3 -->"));
 }
 
 TEST_CASE("What runs that are drawn together differ in is said") {
@@ -131,10 +133,11 @@ TEST_CASE("What runs that are drawn together differ in is said") {
     slow.key += "-slow";
   }
   CHECK_THAT(sweep_figure(runs, {.axis = "backend.frame_duration"}).caption,
-             Contains("Medians, and bands between quartiles, of 6 runs each (source.speed, seed)."));
-  CHECK_THAT(sweep_figure(runs, {.axis = "seed"}).caption, Contains("quartiles, of 2 runs each (source.speed)."));
-  CHECK_THAT(box_figure(runs, {}).caption, Contains("as a point, of 6 runs each (source.speed, seed)."));
-  CHECK_THAT(sweep_figure(results.find(), {.axis = "seed"}).caption, Contains("arm. Each point is one run."));
+             ContainsSubstring("Medians, and bands between quartiles, of 6 runs each (source.speed, seed)."));
+  CHECK_THAT(sweep_figure(runs, {.axis = "seed"}).caption,
+             ContainsSubstring("quartiles, of 2 runs each (source.speed)."));
+  CHECK_THAT(box_figure(runs, {}).caption, ContainsSubstring("as a point, of 6 runs each (source.speed, seed)."));
+  CHECK_THAT(sweep_figure(results.find(), {.axis = "seed"}).caption, ContainsSubstring("arm. Each point is one run."));
 }
 
 TEST_CASE("A profile is of the data that all methods have runs of") {
@@ -148,7 +151,7 @@ TEST_CASE("A profile is of the data that all methods have runs of") {
   CHECK(a.y.front() == Approx(1.0));  // b is as good once, and worse otherwise
   CHECK(b.y.front() == Approx(1.0 / 3.0));
   CHECK(b.y.back() == Approx(2.0 / 3.0));
-  CHECK_THAT(figure.caption, Contains("over 3 sequences and seeds"));
+  CHECK_THAT(figure.caption, ContainsSubstring("over 3 sequences and seeds"));
 }
 
 TEST_CASE("Times are drawn of runs without scores, and what needs scores says so") {
@@ -159,25 +162,27 @@ TEST_CASE("Times are drawn of runs without scores, and what needs scores says so
   const Figure figure = times_figure(runs, {});
   CHECK(mark_of(figure.panels.at(0), Mark::Kind::line, 0).x.back() == 3.5);
   CHECK(figure.caption == "arm. Distribution of the times of all updates of all runs that succeeded.");
-  CHECK_THROWS_WITH(position_figure(runs, {}), Contains("none of these runs has an estimate and ground truth"));
-  CHECK_THROWS_WITH(error_figure(runs, {}), Contains("none of these runs has an estimate and ground truth"));
+  CHECK_THROWS_WITH(position_figure(runs, {}),
+                    ContainsSubstring("none of these runs has an estimate and ground truth"));
+  CHECK_THROWS_WITH(error_figure(runs, {}), ContainsSubstring("none of these runs has an estimate and ground truth"));
 }
 
 TEST_CASE("What can't be drawn is refused with what was expected") {
   const Swept results;
   const std::vector<RunRecord> runs = results.find();
   CHECK_THROWS_WITH(sweep_figure(runs, {.axis = "label"}),
-                    Contains("has the value \"asynchronous\"; expected numbers"));
-  CHECK_THROWS_WITH(sweep_figure(runs, {.axis = "backend.frame"}), Contains("backend.frame_duration"));
-  CHECK_THROWS_WITH(profile_figure(runs, {.metrics = {"coverage"}}), Contains("neither lower nor higher is better"));
+                    ContainsSubstring("has the value \"asynchronous\"; expected numbers"));
+  CHECK_THROWS_WITH(sweep_figure(runs, {.axis = "backend.frame"}), ContainsSubstring("backend.frame_duration"));
+  CHECK_THROWS_WITH(profile_figure(runs, {.metrics = {"coverage"}}),
+                    ContainsSubstring("neither lower nor higher is better"));
   Results one;
   one.add_seed("a", 1, 0.1);
-  CHECK_THROWS_WITH(sweep_figure(one.find(), {}), Contains("differ in no number; expected runs of a sweep"));
+  CHECK_THROWS_WITH(sweep_figure(one.find(), {}), ContainsSubstring("differ in no number; expected runs of a sweep"));
 }
 
 TEST_CASE("Figures of runs are drawn by the program, the same bytes each time") {
   const TemporaryFolder folder;
-  folder.write("c.json", short_comparison().dump());
+  folder.write("c.json", dump_json(short_comparison()));
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
   for (const std::string kind : {"trajectory", "position", "error", "box", "times"}) {
     INFO(kind);
@@ -185,7 +190,7 @@ TEST_CASE("Figures of runs are drawn by the program, the same bytes each time") 
         testing::evbench(folder, "figure " + kind + " results --out " + kind + ".svg --keep-script");
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
-    CHECK_THAT(read_file(folder.file(kind + ".svg")), Contains("<svg") && Contains("</svg>"));
+    CHECK_THAT(read_file(folder.file(kind + ".svg")), ContainsSubstring("<svg") && ContainsSubstring("</svg>"));
   }
   const std::string svg = read_file(folder.file("trajectory.svg"));
   REQUIRE(shell(folder, "/usr/bin/python3 trajectory.py again.svg again.pdf").exit_code == 0);
@@ -199,7 +204,7 @@ TEST_CASE("A figure of one sequence names it, and it and what is exported tell w
   config["source"]["duration"] = 1;
   config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "a"}},
                         {{"type", "bundle_adjustment"}, {"label", "b"}, {"frame_duration", 0.1}}};
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   for (const std::string alive : {"40", "50"}) {
     REQUIRE(testing::evbench(folder, "run c.json --quiet --set source.tracks.alive=" + alive).exit_code == 0);
   }
@@ -207,23 +212,24 @@ TEST_CASE("A figure of one sequence names it, and it and what is exported tell w
   for (const RunRecord& run : find_runs(std::vector{folder.path()})) {
     if (run.label != "b") continue;
     failed = run.folder;  // as a run that was stopped leaves it
-    Json metrics = Json::parse(read_file(run.folder + "/metrics.json"));
+    Json metrics = parse_json(read_file(run.folder + "/metrics.json"));
     metrics["status"]["state"] = "failed";
     metrics["status"]["reason"] = "timeout after 20 s";
-    write_file(run.folder + "/metrics.json", metrics.dump());
+    write_file(run.folder + "/metrics.json", dump_json(metrics));
     for (const char* estimate : {"/final.tum", "/online.tum"}) write_file(run.folder + estimate, "");
     std::filesystem::remove(run.folder + "/groundtruth.tum");
     score_again(run.folder, protocol_of_run(run.folder));
   }
   std::vector<RunRecord> runs = find_runs(std::vector{folder.path()});
   CHECK_THAT(error_figure(runs, {}).caption,
-             Contains("after alignment, source.tracks.alive 40, seed 1 (the first of 2 sequences and seeds). b is not "
-                      "drawn: no trajectory: timeout after 20 s. Final"));
+             ContainsSubstring(
+                 "after alignment, source.tracks.alive 40, seed 1 (the first of 2 sequences and seeds). b is not "
+                 "drawn: no trajectory: timeout after 20 s. Final"));
   const Outcome outcome = testing::evbench(folder, "export '" + failed + "' --evo x.zip");
   CHECK(outcome.exit_code == 2);
-  CHECK_THAT(outcome.err, Contains("no trajectory: timeout after 20 s"));
+  CHECK_THAT(outcome.err, ContainsSubstring("no trajectory: timeout after 20 s"));
   std::erase_if(runs, [](const RunRecord& run) { return run.label == "a"; });
-  CHECK_THROWS_WITH(error_figure(runs, {}), Contains("b is not drawn: no trajectory: timeout after 20 s."));
+  CHECK_THROWS_WITH(error_figure(runs, {}), ContainsSubstring("b is not drawn: no trajectory: timeout after 20 s."));
 }
 
 TEST_CASE("Runs that are asked for by several values of one name have any of them") {
@@ -235,15 +241,15 @@ TEST_CASE("Runs that are asked for by several values of one name have any of the
     REQUIRE(outcome.exit_code == 0);
     return read_file(results.folder.file("f.py"));
   };
-  CHECK_THAT(script_of("--only seed=1 --only seed=3 --only label=asynchronous"), Contains("\"x\":[1.0,3.0]"));
-  CHECK_THAT(script_of("--only label=asynchronous"), Contains("\"x\":[1.0,2.0,3.0]"));
+  CHECK_THAT(script_of("--only seed=1 --only seed=3 --only label=asynchronous"), ContainsSubstring("\"x\":[1.0,3.0]"));
+  CHECK_THAT(script_of("--only label=asynchronous"), ContainsSubstring("\"x\":[1.0,2.0,3.0]"));
 }
 
 TEST_CASE("What Python warns of is passed on") {
   const Swept results;
   const Outcome outcome = testing::evbench(results.folder, "figure box . --out f.svg --width 20");
   CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.err, Contains("f.svg: is drawn, but Python warns:\n  constrained_layout not applied"));
+  CHECK_THAT(outcome.err, ContainsSubstring("f.svg: is drawn, but Python warns:\n  constrained_layout not applied"));
 }
 
 TEST_CASE("Figures that can't be written or drawn are errors, and nothing is replaced") {
@@ -251,7 +257,7 @@ TEST_CASE("Figures that can't be written or drawn are errors, and nothing is rep
   const auto refused = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = testing::evbench(results.folder, "figure sweep . " + arguments);
     CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, Contains(message));
+    CHECK_THAT(outcome.err, ContainsSubstring(message));
   };
   refused("--out f.jpg", "f.jpg: is no .svg, .pdf or .png");
   refused("--out f.svg --python /nowhere/python", "f.svg: could not be drawn: \"/nowhere/python\" can't be started");
@@ -259,7 +265,7 @@ TEST_CASE("Figures that can't be written or drawn are errors, and nothing is rep
   refused("--out f.svg --only seed=17", "none of 12 runs is left by --only");
   const Outcome nowhere = testing::evbench(results.folder, "figure sweep . --out nowhere/f.svg");
   CHECK(nowhere.exit_code == 4);
-  CHECK_THAT(nowhere.err, Contains("evbench: nowhere/f.svg: can't be written: "));
+  CHECK_THAT(nowhere.err, ContainsSubstring("evbench: nowhere/f.svg: can't be written: "));
   results.folder.write("f.svg", "mine");
   refused("--out f.svg", "f.svg: exists already");
   CHECK(read_file(results.folder.file("f.svg")) == "mine");
@@ -272,7 +278,7 @@ TEST_CASE("An option that says nothing of a kind of figure is refused") {
     const Outcome outcome = testing::evbench(results.folder, "figure " + arguments + " --out f.svg");
     INFO(arguments);
     CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, Contains(message));
+    CHECK_THAT(outcome.err, ContainsSubstring(message));
   };
   refused("box . --axis backend.frame_duration", "--axis says nothing of a figure of the kind box");
   refused("sweep . --across seed", "it takes --metrics, --axis, --axis-label, --online");

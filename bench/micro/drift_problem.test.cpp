@@ -1,7 +1,6 @@
 #include "bench/micro/drift_problem.hpp"
 
 #include <Eigen/Cholesky>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +9,7 @@
 #include "core/simulation/random.hpp"
 #include "core/simulation/track_wander.hpp"
 #include "core/support/index.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench {
 namespace {

@@ -14,6 +14,7 @@
 #include "eval/find_runs.hpp"
 #include "eval/json_file.hpp"
 #include "eval/table.hpp"
+#include "core/support/json.hpp"
 
 namespace {
 
@@ -35,8 +36,8 @@ void write_runs(const std::string& run, const std::string& folder, int count) {
     metrics["final"]["ate"]["trans_m"]["rmse"] = error * (1.0 + 0.1 * (i % kLabels) + 1e-3 * (i * 7919 % 101));
     const std::string path = folder + "/" + key;
     std::filesystem::create_directories(path);
-    write_file(path + "/metrics.json", metrics.dump(2));
-    write_file(path + "/config.json", config.dump(2));
+    write_file(path + "/metrics.json", dump_json(metrics, 2));
+    write_file(path + "/config.json", dump_json(config, 2));
   }
 }
 

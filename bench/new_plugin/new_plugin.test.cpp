@@ -1,15 +1,16 @@
 #include "bench/new_plugin/new_plugin.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "bench/commands/exit_code.hpp"
 #include "bench/testing/program.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 // That what is written builds, passes its tests and gives a table is a test of the installation: check_install.cmake.
 
@@ -24,12 +25,13 @@ TEST_CASE("A new plugin has a source, a test, a config and a README with its nam
   for (const std::string& name : names_in(path)) {
     const std::string text = read_file(path + "/" + name);
     INFO(name);
-    CHECK_THAT(text, !Contains("NAME") && !Contains("ClassName"));
+    CHECK_THAT(text, !ContainsSubstring("NAME") && !ContainsSubstring("ClassName"));
   }
   CHECK_THAT(read_file(path + "/my_2nd_try.cpp"),
-             Contains("class My2ndTry : ") && Contains("registration(\"my_2nd_try\""));
-  CHECK_THAT(read_file(path + "/README.md"), Contains("evbench --plugin build/libmy_2nd_try.so run config.json"));
-  CHECK(Json::parse(read_file(path + "/config.json")).at("name") == "my_2nd_try");
+             ContainsSubstring("class My2ndTry : ") && ContainsSubstring("registration(\"my_2nd_try\""));
+  CHECK_THAT(read_file(path + "/README.md"),
+             ContainsSubstring("evbench --plugin build/libmy_2nd_try.so run config.json"));
+  CHECK(parse_json(read_file(path + "/config.json")).at("name") == "my_2nd_try");
 }
 
 TEST_CASE("The program says what to do with a new plugin, which may go into an empty folder") {
@@ -37,7 +39,8 @@ TEST_CASE("The program says what to do with a new plugin, which may go into an e
   std::filesystem::create_directory(folder.file("empty"));
   const Outcome outcome = testing::evbench(folder, "new-plugin backend mine --out empty/");
   CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.out, Contains("cd empty/\n") && Contains("evbench --plugin build/libmine.so run config.json"));
+  CHECK_THAT(outcome.out, ContainsSubstring("cd empty/\n") &&
+                              ContainsSubstring("evbench --plugin build/libmine.so run config.json"));
   CHECK(names_in(folder.file("empty")).contains("mine.cpp"));
   CHECK(testing::evbench(folder, "new-plugin source mine").exit_code == 0);
   CHECK(names_in(folder.path()) == std::set<std::string>{"empty", "mine"});
@@ -52,7 +55,7 @@ TEST_CASE("A new plugin that can't be is refused with a sentence, and nothing is
     const Outcome outcome = testing::evbench(folder, "new-plugin " + arguments);
     INFO(arguments);
     CHECK(outcome.exit_code == exit_code);
-    CHECK_THAT(outcome.err, Contains(message));
+    CHECK_THAT(outcome.err, ContainsSubstring(message));
     CHECK(names_in(folder.path()) == std::set<std::string>{"file", "full"});
   };
   refused("backend Mine", "\"Mine\" can't name a plugin; expected a small letter");

@@ -15,7 +15,7 @@ namespace evbench {
 namespace {
 
 template <class Value>
-void append(std::string& bytes, const Value& value) {
+void append_value(std::string& bytes, const Value& value) {
   static_assert(std::is_trivially_copyable_v<Value> && sizeof(TrackId) == sizeof(double));  // no padding
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
@@ -200,9 +200,9 @@ void BackSide::digest(const TrackBatch& batch) {
     double t;
   };
   for (const TrackObservation& z : batch.observations) {
-    append(digested_, Seen{z.track, z.t, z.pixel.x(), z.pixel.y(), z.sigma});
+    append_value(digested_, Seen{z.track, z.t, z.pixel.x(), z.pixel.y(), z.sigma});
   }
-  for (const TrackEnd& end : batch.ended) append(digested_, Ended{end.track, end.t});
+  for (const TrackEnd& end : batch.ended) append_value(digested_, Ended{end.track, end.t});
   hash_.add(digested_);
   digested_.clear();
 }

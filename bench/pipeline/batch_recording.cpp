@@ -9,6 +9,7 @@
 
 #include "core/io/sha256.hpp"
 #include "core/plugin/options.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -17,26 +18,26 @@ constexpr std::string_view kBegin = "evbench batches 2\n";
 constexpr std::size_t kDigestLength = 64;
 
 template <class Value>
-void append(std::string& bytes, const Value& value) {
+void append_number(std::string& bytes, const Value& value) {
   static_assert(std::is_arithmetic_v<Value>);
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-void append(std::string& bytes, const TrackBatch& batch) {
-  append(bytes, batch.until);
-  append(bytes, batch.known_at());
-  append(bytes, std::uint64_t{batch.observations.size()});
+void append_batch(std::string& bytes, const TrackBatch& batch) {
+  append_number(bytes, batch.until);
+  append_number(bytes, batch.known_at());
+  append_number(bytes, std::uint64_t{batch.observations.size()});
   for (const TrackObservation& z : batch.observations) {
-    append(bytes, z.track);
-    append(bytes, z.t);
-    append(bytes, z.pixel.x());
-    append(bytes, z.pixel.y());
-    append(bytes, z.sigma);
+    append_number(bytes, z.track);
+    append_number(bytes, z.t);
+    append_number(bytes, z.pixel.x());
+    append_number(bytes, z.pixel.y());
+    append_number(bytes, z.sigma);
   }
-  append(bytes, std::uint64_t{batch.ended.size()});
+  append_number(bytes, std::uint64_t{batch.ended.size()});
   for (const TrackEnd& end : batch.ended) {
-    append(bytes, end.track);
-    append(bytes, end.t);
+    append_number(bytes, end.track);
+    append_number(bytes, end.t);
   }
 }
 
@@ -49,17 +50,17 @@ std::string format_facts(const FrontFacts& facts) {
                      {"work", work},
                      {"data_s", facts.data_s},
                      {"log", facts.log}};
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return printable_json(json);
 }
 
 }  // namespace
 
 std::string record_batches(BatchStream& batches) {
   std::string bytes(kBegin);
-  while (const std::optional<TrackBatch> batch = batches.next()) append(bytes, *batch);
+  while (const std::optional<TrackBatch> batch = batches.next()) append_batch(bytes, *batch);
   const std::string facts = format_facts(batches.facts());
   bytes += facts;
-  append(bytes, std::uint64_t{facts.size()});
+  append_number(bytes, std::uint64_t{facts.size()});
   return bytes + sha256(bytes);
 }
 
@@ -81,7 +82,7 @@ RecordedBatches::RecordedBatches(std::string bytes) : bytes_(std::move(bytes)) {
   const auto length = static_cast<std::size_t>(take<std::uint64_t>());
   end_ = bytes_.size() - sizeof(std::uint64_t) - length;
   at_ = kBegin.size();
-  const Json json = Json::parse(bytes_.substr(end_, length));
+  const Json json = parse_json(bytes_.substr(end_, length));
   std::vector<Work> work;
   for (const Json& of_batch : json.at("work")) work.push_back({of_batch[0].get<double>(), of_batch[1].get<double>()});
   facts_ = {json.at("source_s").get<double>(), json.at("frontend_s").get<double>(), std::move(work),

@@ -1,7 +1,6 @@
 #include "bench/pipeline/batch_recording.hpp"
 
-#include <catch2/catch.hpp>
-
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;

@@ -7,7 +7,7 @@
 namespace evbench {
 namespace {
 
-constexpr double kInterval = 0.1;           // [s] between two newest poses
+constexpr double kSampleInterval = 0.1;           // [s] between two newest poses
 constexpr std::size_t kRelativePoses = 50;  // over each span, at most: each costs time that grows with the run
 
 struct Span {
@@ -27,7 +27,7 @@ const StampedPose* later(const std::vector<StampedPose>& poses, std::size_t i, d
 }  // namespace
 
 void CovarianceSamples::take(const StampedPose& newest, BackEnd& backend) {
-  if (newest.t < asked_ + kInterval) return;
+  if (newest.t < asked_ + kSampleInterval) return;
   asked_ = newest.t;
   const std::optional<Matrix12> covariance = backend.covariance(newest.t);
   if (covariance) newest_.push_back({newest, covariance->topLeftCorner<6, 6>()});

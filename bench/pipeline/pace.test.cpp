@@ -1,6 +1,6 @@
 #include "bench/pipeline/pace.hpp"
 
-#include <catch2/catch.hpp>
+#include "core/testing/catch2.hpp"
 
 namespace evbench {
 

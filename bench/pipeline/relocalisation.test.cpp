@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 
@@ -6,6 +5,7 @@
 #include "core/geometry/so3.hpp"
 #include "core/plugin/track_player.hpp"
 #include "core/plugin/tracking_monitor.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

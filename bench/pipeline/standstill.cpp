@@ -8,7 +8,7 @@ namespace evbench {
 namespace {
 
 constexpr std::size_t kEnough = 6;  ///< tracks: fewer say little of the camera
-constexpr double kInterval =
+constexpr double kStandstillInterval =
     0.02;                        ///< [s] between two times at which the tracks are held: as often as slow trackers tell
 constexpr double kSigma = 0.5;   ///< [px] at least: a tracker's next step may be about to come
 constexpr double kStep = 1.5;    ///< [px] that a tracker may have moved when it tells that there is motion again
@@ -85,7 +85,7 @@ void Standstill::hold(double until, std::vector<TrackObservation>& observations)
     return;
   }
   const double first = last_ + std::max(after_, kLong * usual_);
-  for (double t = 0.0; (t = first + kInterval * static_cast<double>(held_)) <= until; ++held_) {
+  for (double t = 0.0; (t = first + kStandstillInterval * static_cast<double>(held_)) <= until; ++held_) {
     if (!still_) begin_stand(t);
     spans_.back().to = t;
     for (const auto& [track, z] : live_) {

@@ -1,10 +1,9 @@
-#include <catch2/catch.hpp>
-
 #include "bench/testing/program.hpp"
 #include "core/events/testing/data_sets.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 TEST_CASE("Folders of public data sets are described, converted and drawn, and can be named in a config") {
   const testing::TemporaryFolder folder;
@@ -14,17 +13,17 @@ TEST_CASE("Folders of public data sets are described, converted and drawn, and c
   CAPTURE(set);
   const testing::Outcome info = testing::evbench(folder, "info --quiet " + set);
   CHECK(info.exit_code == 0);
-  CHECK_THAT(info.out, Contains("events        100: 50 on, 50 off"));
-  CHECK_THAT(info.out, Contains("calibration   fx "));
+  CHECK_THAT(info.out, ContainsSubstring("events        100: 50 on, 50 off"));
+  CHECK_THAT(info.out, ContainsSubstring("calibration   fx "));
   CHECK((info.out.find("ground truth  none") != std::string::npos) == set.starts_with("dsec"));
   CHECK(testing::evbench(folder, "render " + set + " a.png").exit_code == 0);
   CHECK(testing::evbench(folder, "convert " + set + " " + set + "/events.evb").exit_code == 0);
-  CHECK_THAT(testing::evbench(folder, "info --quiet " + set).out, Contains("evbench native"));
+  CHECK_THAT(testing::evbench(folder, "info --quiet " + set).out, ContainsSubstring("evbench native"));
   folder.write("a.json", R"({"source": {"type": "recording", "dataset": ")" + set + "\"}}");
   const testing::Outcome named =
       testing::shell(folder, "EVBENCH_DATASETS='" + folder.path() + "' \"$evbench\" info --quiet a.json");
   CHECK(named.exit_code == 0);
-  CHECK_THAT(named.out, Contains("calibration   fx "));
+  CHECK_THAT(named.out, ContainsSubstring("calibration   fx "));
 }
 
 TEST_CASE("What was assumed of the ground truth beside a recording is a remark on it, which a native copy keeps") {
@@ -33,9 +32,9 @@ TEST_CASE("What was assumed of the ground truth beside a recording is a remark o
   folder.write("groundtruth.txt", "#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z\n100000000,1,2,3,1,0,0,0\n");
   const std::string remark = "remark: ./groundtruth.txt: read with columns t px py pz qw qx qy qz (as they are named)";
   const testing::Outcome info = testing::evbench(folder, "info --quiet .");
-  CHECK_THAT(info.out, Contains("1 poses, 0.100 to 0.100 s") && Contains(remark));
+  CHECK_THAT(info.out, ContainsSubstring("1 poses, 0.100 to 0.100 s") && ContainsSubstring(remark));
   REQUIRE(testing::evbench(folder, "convert . copy.evb --width 10 --height 10").exit_code == 0);
-  CHECK_THAT(testing::evbench(folder, "info --quiet copy.evb").out, Contains(remark));
+  CHECK_THAT(testing::evbench(folder, "info --quiet copy.evb").out, ContainsSubstring(remark));
 }
 
 TEST_CASE("A recording whose calibration or ground truth cannot be used is described all the same, but not strictly") {
@@ -45,11 +44,11 @@ TEST_CASE("A recording whose calibration or ground truth cannot be used is descr
   folder.write("groundtruth.txt", "no poses\n");
   const testing::Outcome info = testing::evbench(folder, "info --quiet .");
   CHECK(info.exit_code == 0);
-  CHECK_THAT(info.out, Contains("events        2: 1 on, 1 off"));
-  CHECK_THAT(info.out, Contains("calibration that cannot be used: ./calib.txt:1: has 2 columns"));
-  CHECK_THAT(info.out,
-             Contains("ground truth that cannot be used: ./groundtruth.txt:1: names the columns \"no poses\""));
+  CHECK_THAT(info.out, ContainsSubstring("events        2: 1 on, 1 off"));
+  CHECK_THAT(info.out, ContainsSubstring("calibration that cannot be used: ./calib.txt:1: has 2 columns"));
+  CHECK_THAT(info.out, ContainsSubstring(
+                           "ground truth that cannot be used: ./groundtruth.txt:1: names the columns \"no poses\""));
   const testing::Outcome strict = testing::evbench(folder, "info --quiet --strict .");
   CHECK(strict.exit_code == 2);
-  CHECK_THAT(strict.err, Contains("./calib.txt:1: has 2 columns"));
+  CHECK_THAT(strict.err, ContainsSubstring("./calib.txt:1: has 2 columns"));
 }

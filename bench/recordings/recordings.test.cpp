@@ -1,6 +1,5 @@
 #include <sys/stat.h>
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -13,10 +12,12 @@
 #include "core/events/native/native.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -69,12 +70,13 @@ TEST_CASE("info says a recording's format, sensor, counts, times, rates, calibra
   const Outcome text = testing::evbench(folder, "info a.evb");
   CHECK(text.exit_code == 0);
   CHECK(text.err.empty());
-  CHECK_THAT(text.out, Contains("evbench native 1") && Contains("240x180 pixels") &&
-                           Contains("1000: 666 on, 334 off (66.6 % on)") &&
-                           Contains("2.000000 to 2.999000 s: 0.999000 s") && Contains("1001/s on average") &&
-                           Contains("radial_tangential") && Contains("2 poses, 2.000 to 3.000 s, path 0.50 m") &&
-                           Contains("oddities      none") && Contains("█"));
-  const Json json = Json::parse(testing::evbench(folder, "info a.evb --json").out);
+  CHECK_THAT(text.out, ContainsSubstring("evbench native 1") && ContainsSubstring("240x180 pixels") &&
+                           ContainsSubstring("1000: 666 on, 334 off (66.6 % on)") &&
+                           ContainsSubstring("2.000000 to 2.999000 s: 0.999000 s") &&
+                           ContainsSubstring("1001/s on average") && ContainsSubstring("radial_tangential") &&
+                           ContainsSubstring("2 poses, 2.000 to 3.000 s, path 0.50 m") &&
+                           ContainsSubstring("oddities      none") && ContainsSubstring("█"));
+  const Json json = parse_json(testing::evbench(folder, "info a.evb --json").out);
   CHECK(json.at("events") == 1000);
   CHECK(json.at("on") == 666);
   CHECK(json.at("start_us") == 2000000);
@@ -88,20 +90,21 @@ TEST_CASE("info says a recording's format, sensor, counts, times, rates, calibra
 TEST_CASE("info of a recording without events, and of one with damage, says so") {
   const TemporaryFolder folder;
   write_native(folder.file("none.evb"), {}, {});
-  CHECK_THAT(testing::evbench(folder, "info none.evb").out, Contains("events        none") && Contains("unknown"));
-  CHECK(Json::parse(testing::evbench(folder, "info none.evb --json").out).at("start_us").is_null());
+  CHECK_THAT(testing::evbench(folder, "info none.evb").out,
+             ContainsSubstring("events        none") && ContainsSubstring("unknown"));
+  CHECK(parse_json(testing::evbench(folder, "info none.evb --json").out).at("start_us").is_null());
   write_native(folder.file("a.evb"), walking_events(20000), davis_header());
   damage(folder.file("a.evb"));
   const Outcome damaged = testing::evbench(folder, "info a.evb");
-  CHECK_THAT(damaged.out, Contains("16384 events in damaged chunks (checksum), left out"));
+  CHECK_THAT(damaged.out, ContainsSubstring("16384 events in damaged chunks (checksum), left out"));
   CHECK(damaged.exit_code == 2);
-  CHECK_THAT(damaged.err, Contains("a.evb: 81.9 % of the events, 16384 of 20000, have to be left out") &&
-                              Contains("(the first: chunk 0 at byte 64)") && Contains("--lenient"));
+  CHECK_THAT(damaged.err, ContainsSubstring("a.evb: 81.9 % of the events, 16384 of 20000, have to be left out") &&
+                              ContainsSubstring("(the first: chunk 0 at byte 64)") && ContainsSubstring("--lenient"));
   CHECK(testing::evbench(folder, "info a.evb --lenient").exit_code == 0);
   const Outcome strict = testing::evbench(folder, "info a.evb --strict");
   CHECK(strict.exit_code == 2);
-  CHECK_THAT(strict.err, Contains("chunk 0 at byte 64"));
-  CHECK_THAT(testing::evbench(folder, "info nowhere").err, Contains("nowhere"));
+  CHECK_THAT(strict.err, ContainsSubstring("chunk 0 at byte 64"));
+  CHECK_THAT(testing::evbench(folder, "info nowhere").err, ContainsSubstring("nowhere"));
 }
 
 TEST_CASE("A recording of 100 days still has a histogram, of bounded size, with all its events") {
@@ -117,8 +120,10 @@ TEST_CASE("A recording of 100 days still has a histogram, of bounded size, with 
 
 TEST_CASE("Rates are plotted as high as they are") {
   const std::string plot = plot_rates({0.0, 1e6, 2e6}, 0.0, 3.0, 1);
-  CHECK_THAT(plot, Contains("million events/s\n") && Contains("2.000 | ▄█\n") && Contains("0.000 s"));
-  CHECK_THAT(plot_rates({0.0, 4.0, 8.0}, 0.0, 3.0, 1), Catch::StartsWith("events/s\n") && Contains("8 | ▄█\n"));
+  CHECK_THAT(plot, ContainsSubstring("million events/s\n") && ContainsSubstring("2.000 | ▄█\n") &&
+                       ContainsSubstring("0.000 s"));
+  CHECK_THAT(plot_rates({0.0, 4.0, 8.0}, 0.0, 3.0, 1),
+             Catch::Matchers::StartsWith("events/s\n") && ContainsSubstring("8 | ▄█\n"));
   CHECK_FALSE(plot_rates({}, 0.0, 0.0).empty());
 }
 
@@ -130,12 +135,12 @@ TEST_CASE("convert writes native, text and HDF5 files that read back as the same
     const Outcome outcome = testing::evbench(folder, std::string("convert a.evb ") + out);
     INFO(out << outcome.err);
     CHECK(outcome.exit_code == 0);
-    CHECK_THAT(outcome.out, Contains(std::string("written: ") + out) && Contains("5000 events"));
+    CHECK_THAT(outcome.out, ContainsSubstring(std::string("written: ") + out) && ContainsSubstring("5000 events"));
     CHECK(read_all(folder.file(out)) == events);
   }
   CHECK(testing::evbench(folder, "convert a.evb b --format text --quiet").out.empty());
   CHECK_THAT(read_file(folder.file("b")),
-             Catch::StartsWith("# t[s] x y p\n# geometry: 240x180\n2.000000 0 0 0\n2.001000 1 1 1\n"));
+             Catch::Matchers::StartsWith("# t[s] x y p\n# geometry: 240x180\n2.000000 0 0 0\n2.001000 1 1 1\n"));
   const auto reader = open_events(folder.file("b.evb"));
   REQUIRE(reader->calibration());
   CHECK(reader->ground_truth()->size() == 2);
@@ -158,7 +163,7 @@ TEST_CASE("convert takes a time range, with times from the first event on or as 
   CHECK(cut.size() == 1500);
   CHECK(cut.front().t == 3000000);
   CHECK(cut.back().t == 4499000);
-  CHECK_THAT(testing::evbench(folder, "info b.evb").out, Contains("a part of it: 3.000000 to 4.500000 s"));
+  CHECK_THAT(testing::evbench(folder, "info b.evb").out, ContainsSubstring("a part of it: 3.000000 to 4.500000 s"));
   REQUIRE(testing::evbench(folder, "convert a.evb b.evb --force --from 1 --to 2 --rebase").exit_code == 0);
   cut = read_all(folder.file("b.evb"));
   CHECK(cut.size() == 1000);
@@ -176,7 +181,7 @@ TEST_CASE("What evbench writes as text it reads as the same events, however they
   REQUIRE(testing::evbench(folder, "convert a.txt b.txt --quiet").exit_code == 0);
   CHECK(read_file(folder.file("a.txt")) == read_file(folder.file("b.txt")));
   CHECK(read_all(folder.file("b.txt")) == events);
-  CHECK_THAT(testing::evbench(folder, "info b.txt").out, Contains("240x180 pixels"));
+  CHECK_THAT(testing::evbench(folder, "info b.txt").out, ContainsSubstring("240x180 pixels"));
   REQUIRE(testing::shell(folder, "grep -v '^#' a.txt > bare.txt").exit_code == 0);
   CHECK(read_all(folder.file("bare.txt")) == events);
 }
@@ -194,8 +199,8 @@ TEST_CASE("A part of a recording keeps the ground truth of its time, and a folde
   REQUIRE(truth);
   CHECK(truth->start() == Approx(2.0));
   CHECK(truth->end() == Approx(5.0));
-  CHECK_THAT(testing::evbench(folder, "info seq").out,
-             Contains("events in     seq/events.evb") && Contains("a part of it: 3.000000 to 4.000000 s"));
+  CHECK_THAT(testing::evbench(folder, "info seq").out, ContainsSubstring("events in     seq/events.evb") &&
+                                                           ContainsSubstring("a part of it: 3.000000 to 4.000000 s"));
 }
 
 TEST_CASE("A recording may come from a pipe or the standard input, of any format") {
@@ -211,10 +216,11 @@ TEST_CASE("A recording may come from a pipe or the standard input, of any format
   }
   const Outcome piped = testing::shell(folder, "mkfifo pipe; cat a.evb > pipe & \"$evbench\" info pipe");
   CHECK(piped.exit_code == 0);
-  CHECK_THAT(piped.out, Contains("file          pipe") && Contains("5000: "));
+  CHECK_THAT(piped.out, ContainsSubstring("file          pipe") && ContainsSubstring("5000: "));
   const Outcome broken = testing::shell(folder, "head -c 100 a.evb | \"$evbench\" info -");
   CHECK(broken.exit_code == 2);
-  CHECK_THAT(broken.err, Contains("evbench: -: ") && Contains("truncated") && !Contains("/proc"));
+  CHECK_THAT(broken.err,
+             ContainsSubstring("evbench: -: ") && ContainsSubstring("truncated") && !ContainsSubstring("/proc"));
 }
 
 TEST_CASE("convert undoes the lens: events go to where a pinhole sees them, or are left out and counted") {
@@ -245,7 +251,8 @@ TEST_CASE("convert undoes the lens: events go to where a pinhole sees them, or a
            "distortion_coeffs: [" + coefficients + "], resolution: [240, 180]}\n";
   };
   folder.write("two.yaml", kalibr("cam0", "0, 0, 0, 0") + kalibr("cam1", "-0.35, 0.12, 0, 0"));
-  CHECK_THAT(testing::evbench(folder, "convert a.evb d.evb --undistort two.yaml").err, Contains("holds cam0, cam1"));
+  CHECK_THAT(testing::evbench(folder, "convert a.evb d.evb --undistort two.yaml").err,
+             ContainsSubstring("holds cam0, cam1"));
   REQUIRE(testing::evbench(folder, "convert a.evb d.evb --undistort two.yaml --camera cam1").exit_code == 0);
   CHECK(read_all(folder.file("d.evb")) == expected);
 }
@@ -264,7 +271,7 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
     const Outcome outcome = testing::evbench(folder, "convert " + arguments);
     INFO(arguments);
     CHECK(outcome.exit_code == exit_code);
-    CHECK_THAT(outcome.err, Contains(message));
+    CHECK_THAT(outcome.err, ContainsSubstring(message));
   };
   refused("a.evb b.xyz", "expected one of .evb (native)");
   refused("a.evb b --format nativ", "did you mean \"native\"?");
@@ -286,7 +293,7 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
   refused("a.evb b.h5 --strict", "checksum");
   refused("a.evb b.evb", "81.9 % of the events, 16384 of 20000, have to be left out");
   CHECK_THAT(testing::evbench(folder, "convert a.evb ok.evb --lenient").out,
-             Contains("left out: 16384 events in damaged chunks"));
+             ContainsSubstring("left out: 16384 events in damaged chunks"));
   REQUIRE(testing::evbench(folder, "convert mistaken.json ok.evb --lenient --force").exit_code == 0);
   CHECK_FALSE(open_events(folder.file("ok.evb"))->calibration());  // it fits another sensor
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", "unknown.evb", "none.evb", "corner.evb",
@@ -315,7 +322,7 @@ TEST_CASE("A signal ends a conversion with an error that says so") {
                                          "mkfifo b.txt; \"$evbench\" convert a.evb b.txt & exec 3<> b.txt; "
                                          "timeout 60 head -c 1 <&3 > /dev/null; kill -TERM $!; wait $!");
   CHECK(outcome.exit_code == 143);  // as shells say SIGTERM
-  CHECK_THAT(outcome.err, Contains("b.txt: interrupted; nothing was written"));
+  CHECK_THAT(outcome.err, ContainsSubstring("b.txt: interrupted; nothing was written"));
 }
 
 TEST_CASE("A conversion can be interrupted while no event lies in the range") {
@@ -336,7 +343,7 @@ TEST_CASE("Text is converted into a pipe, other formats are not") {
   CHECK(text.out == "# t[s] x y p\n# geometry: 240x180\n2.000000 0 0 0\n2.001000 1 1 1\n2.002000 2 2 1\n");
   const Outcome hdf5 = testing::evbench(folder, "convert a.evb /dev/null --format hdf5");
   CHECK(hdf5.exit_code == 2);
-  CHECK_THAT(hdf5.err, Contains("/dev/null: is a pipe or a device"));
+  CHECK_THAT(hdf5.err, ContainsSubstring("/dev/null: is a pipe or a device"));
 }
 
 TEST_CASE("A disk that is full while a file is written is an error that names the file") {
@@ -355,7 +362,8 @@ TEST_CASE("A disk that is full while a file is written is an error that names th
   const Outcome outcome = testing::shell(folder, "trap '' XFSZ; ulimit -f 64; \"$evbench\" convert --force a.evb " +
                                                      out + "; code=$?; ulimit -f unlimited; exit $code");
   CHECK(outcome.exit_code == 4);
-  CHECK_THAT(outcome.err, Contains(out + ": can't be written") && !Contains(".part") && !Contains("/proc"));
+  CHECK_THAT(outcome.err, ContainsSubstring(out + ": can't be written") && !ContainsSubstring(".part") &&
+                              !ContainsSubstring("/proc"));
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", out});
   CHECK(read_file(folder.file(out)) == "old");
 }
@@ -374,23 +382,24 @@ TEST_CASE("A config is a recording of its source's events, with camera and groun
   REQUIRE(recording->ground_truth());
   CHECK(recording->ground_truth()->end() == Approx(0.2).margin(0.01));
   CHECK(recording->calibration()->height == 40);
-  CHECK_THAT(testing::evbench(folder, "info a.json --topic /events").err, Contains("has neither topics nor columns"));
+  CHECK_THAT(testing::evbench(folder, "info a.json --topic /events").err,
+             ContainsSubstring("has neither topics nor columns"));
 
   write_native(folder.file("b.evb"), walking_events(20000), davis_header());
   damage(folder.file("b.evb"));
   folder.write("calib.txt", "200 200 120 90 0 0 0 0 0\n");
   write_config(R"({"source": {"type": "recording", "events": "b.evb", "calibration": "calib.txt",
                    "width": 240, "height": 180, "time_range": [2, 3]}})");
-  CHECK_THAT(testing::evbench(folder, "convert a.json b.txt --force").err, Contains("have to be left out"));
+  CHECK_THAT(testing::evbench(folder, "convert a.json b.txt --force").err, ContainsSubstring("have to be left out"));
   CHECK(testing::evbench(folder, "convert a.json b.txt --force --lenient").exit_code == 0);
   const Outcome strict = testing::evbench(folder, "convert a.json b.txt --force --strict");
   CHECK(strict.exit_code == 2);
-  CHECK_THAT(strict.err, Contains("a.json") && Contains("damaged chunks"));
+  CHECK_THAT(strict.err, ContainsSubstring("a.json") && ContainsSubstring("damaged chunks"));
 
   write_config(R"({"source": {"type": "simulation"}})");
   const Outcome refused = testing::evbench(folder, "info a.json");
   CHECK(refused.exit_code == 2);
-  CHECK_THAT(refused.err, Contains("its source has no events"));
+  CHECK_THAT(refused.err, ContainsSubstring("its source has no events"));
 }
 
 TEST_CASE("A config that names itself, or one that names it, as its recording is refused with a sentence") {
@@ -410,6 +419,6 @@ TEST_CASE("A config that names itself, or one that names it, as its recording is
     CAPTURE(command, named, more);
     const Outcome refused = testing::evbench(folder, command);
     CHECK(refused.exit_code == 2);
-    CHECK_THAT(refused.err, Contains(named + ": is of no known event format; known: native, "));
+    CHECK_THAT(refused.err, ContainsSubstring(named + ": is of no known event format; known: native, "));
   }
 }

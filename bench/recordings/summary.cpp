@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "core/events/formats.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
 
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kPlotWidth = 64;
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,6 +8,7 @@
 
 #include "bench/recordings/rate_plot.hpp"
 #include "core/events/event_stream.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 
@@ -33,6 +33,6 @@ RecordingSummary summarise(const std::string& path, const StreamOptions& options
                            const std::function<void(std::int64_t, std::int64_t)>& progress = {});
 
 std::string format_summary(const std::string& path, const RecordingSummary& summary);
-nlohmann::ordered_json summary_json(const std::string& path, const RecordingSummary& summary);
+Json summary_json(const std::string& path, const RecordingSummary& summary);
 
 }  // namespace evbench

@@ -1,8 +1,7 @@
 #include "bench/render/event_image.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "bench/render/time_surface.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

@@ -1,8 +1,7 @@
 #include "bench/render/event_window.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "bench/render/testing/recording.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;

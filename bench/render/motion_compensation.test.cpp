@@ -1,10 +1,10 @@
 #include "bench/render/motion_compensation.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/so3.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 
@@ -113,8 +113,8 @@ TEST_CASE("A trajectory that does not reach an event is refused with both times"
   const PoseTrajectory trajectory = moving(Vector3::Zero());
   const MotionCompensation compensation(trajectory, lens_camera(), {}, "motion.txt");
   const std::vector<Event> events{{100001, 17, 31, true}};
-  CHECK_THROWS_WITH(compensation.accumulate(events, 50000),
-                    Catch::Contains("motion.txt") && Catch::Contains("0.100001 s"));
+  CHECK_THROWS_WITH(compensation.accumulate(events, 50000), Catch::Matchers::ContainsSubstring("motion.txt") &&
+                                                                Catch::Matchers::ContainsSubstring("0.100001 s"));
 }
 
 TEST_CASE("Counts are drawn the stronger the more, in the mixed colour of their polarities") {

@@ -1,6 +1,5 @@
 #include "bench/render/render.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -11,10 +10,11 @@
 #include "bench/render/testing/recording.hpp"
 #include "bench/render/track_overlay.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -124,7 +124,7 @@ TEST_CASE("Pictures follow at fractions of a microsecond without drifting, and n
   options.speed = 1e-4;  // a picture each 3.33 us, of 30 us
   CHECK(render(in, folder.file("out/"), options).pictures == 22);
   options.speed = 1e-5;
-  CHECK_THROWS_WITH(render(in, folder.file("out/"), options), Contains("0.333 us; expected 1 us or more"));
+  CHECK_THROWS_WITH(render(in, folder.file("out/"), options), ContainsSubstring("0.333 us; expected 1 us or more"));
 }
 
 TEST_CASE("Nothing is drawn where there are no events, in the recording or in that beside") {
@@ -136,10 +136,10 @@ TEST_CASE("Nothing is drawn where there are no events, in the recording or in th
   options.stream.from = 1500000;
   options.duration = 0.01;
   options.stream.to = 1510000;
-  CHECK_THROWS_WITH(render(in, out, options), Contains("no events"));
+  CHECK_THROWS_WITH(render(in, out, options), ContainsSubstring("no events"));
   options = {};
   options.beside = late;
-  CHECK_THROWS_WITH(render(in, out, options), Contains("late.evb: has no events at the times that are drawn"));
+  CHECK_THROWS_WITH(render(in, out, options), ContainsSubstring("late.evb: has no events at the times that are drawn"));
   CHECK_FALSE(std::filesystem::exists(out));
   options.stream.rebase = true;
   CHECK_NOTHROW(render(in, out, options));
@@ -161,7 +161,7 @@ TEST_CASE("What only compensation can use is refused elsewhere") {
   const std::string in = write_native(folder, "a.evb", hundred_events());
   RenderOptions options;
   options.depth = 1.0;
-  CHECK_THROWS_WITH(render(in, folder.file("a.png"), options), Contains("for motion-compensated pictures"));
+  CHECK_THROWS_WITH(render(in, folder.file("a.png"), options), ContainsSubstring("for motion-compensated pictures"));
 }
 
 TEST_CASE("A folder gets a picture each speed / fps seconds, until the last event is shown") {
@@ -204,7 +204,7 @@ TEST_CASE("A folder that holds anything but rendered pictures is left alone") {
   for (const char* name : {"mine.txt", "a.png", "1.png", "0000001png"}) {
     const TemporaryFolder other;
     other.write(name, "x");
-    CHECK_THROWS_WITH(render(in, other.path(), {}), Contains(name));
+    CHECK_THROWS_WITH(render(in, other.path(), {}), ContainsSubstring(name));
     CHECK(names(other.path()) == std::set<std::string>{name});
   }
 }
@@ -295,7 +295,7 @@ TEST_CASE("Tracks of which none is in view at the times that are drawn are told"
   options.tail = 0.01;
   const RenderReport report = render(in, folder.file("a.png"), options);
   REQUIRE(report.remarks.size() == 1);
-  CHECK_THAT(report.remarks[0], Contains("tracks.txt: none of its tracks is in view"));
+  CHECK_THAT(report.remarks[0], ContainsSubstring("tracks.txt: none of its tracks is in view"));
 }
 
 TEST_CASE("The time in a picture is not later than the recording's end") {
@@ -342,9 +342,9 @@ TEST_CASE("A recording with ground truth and calibration is compensated by them"
   CHECK(drawn_pixels(out) == 20);
 
   const std::string bare = write_native(folder, "bare.evb", hundred_events());
-  CHECK_THROWS_WITH(render(bare, out, options), Contains("bare.evb") && Contains("--trajectory"));
+  CHECK_THROWS_WITH(render(bare, out, options), ContainsSubstring("bare.evb") && ContainsSubstring("--trajectory"));
   options.trajectory = folder.write("truth.txt", "0.5 0 0 0 0 0 0 1\n1.5 0 0 0 0 0 0 1\n");
-  CHECK_THROWS_WITH(render(bare, out, options), Contains("bare.evb") && Contains("--calib"));
+  CHECK_THROWS_WITH(render(bare, out, options), ContainsSubstring("bare.evb") && ContainsSubstring("--calib"));
   options.calibration = folder.write("calib.txt", "20 20 10 5 0 0 0 0 0\n");
   render(bare, out, options);
   CHECK(drawn_pixels(out) == 20);
@@ -352,9 +352,9 @@ TEST_CASE("A recording with ground truth and calibration is compensated by them"
   const RenderReport late = render(bare, out, options);
   CHECK(drawn_pixels(out) == 20);
   REQUIRE(late.remarks.size() == 1);
-  CHECK_THAT(late.remarks[0], Contains("the trajectory begins at 1.015000 s, after the events"));
+  CHECK_THAT(late.remarks[0], ContainsSubstring("the trajectory begins at 1.015000 s, after the events"));
   options.stream.from = 1000000;
-  CHECK_THROWS_WITH(render(bare, out, options), Contains("late.txt") && Contains("--from"));
+  CHECK_THROWS_WITH(render(bare, out, options), ContainsSubstring("late.txt") && ContainsSubstring("--from"));
 }
 
 TEST_CASE("A film is compensated up to the last event, where a trajectory may end, and over times without events") {
@@ -374,7 +374,7 @@ TEST_CASE("What can't be drawn or written is refused with a sentence, and nothin
   const TemporaryFolder folder;
   const std::string in = write_native(folder, "a.evb", hundred_events());
   const auto refused = [&](const std::string& out, const RenderOptions& options, const std::string& message) {
-    CHECK_THROWS_WITH(render(in, folder.file(out), options), Contains(message));
+    CHECK_THROWS_WITH(render(in, folder.file(out), options), ContainsSubstring(message));
     CHECK_THROWS_AS(render(in, folder.file(out), options), InputError);
   };
   RenderOptions nothing;
@@ -393,7 +393,7 @@ TEST_CASE("A clock that jumps by days is refused, not filmed") {
   const TemporaryFolder folder;
   const std::vector<Event> events{{0, 1, 1, true}, {1'000'000'000'000, 2, 2, true}};
   CHECK_THROWS_WITH(render(write_native(folder, "a.evb", events), folder.file("a.mp4"), {}),
-                    Contains("1000000.000000 s"));
+                    ContainsSubstring("1000000.000000 s"));
   CHECK(names(folder.path()) == std::set<std::string>{"a.evb"});
 }
 
@@ -405,7 +405,8 @@ TEST_CASE("Times that end before a trajectory begins are refused, and a range th
   options.trajectory = folder.write("late.txt", "1.05 0 0 0 0 0 0 1\n1.5 0 0 0 0 0 0 1\n");
   options.calibration = folder.write("calib.txt", "20 20 10 5 0 0 0 0 0\n");
   options.stream.to = 1020000;
-  CHECK_THROWS_WITH(render(in, folder.file("a.png"), options), Contains("the trajectory begins at 1.050000 s"));
+  CHECK_THROWS_WITH(render(in, folder.file("a.png"), options),
+                    ContainsSubstring("the trajectory begins at 1.050000 s"));
   EventStream stream(in, {.from = 1050000, .to = 1020000});
   std::vector<Event> events;
   CHECK_FALSE(stream.read(events));

@@ -1,6 +1,5 @@
 #include "bench/render/run_overlay.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "core/data/map_file.hpp"
@@ -8,6 +7,7 @@
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
@@ -92,5 +92,5 @@ TEST_CASE("A folder without tracks is refused with what makes them") {
   const TemporaryFolder folder;
   write_run(folder);
   std::filesystem::remove(folder.file("tracks.txt"));
-  CHECK_THROWS_WITH(RunOverlay(folder.path(), camera()), Catch::Matchers::Contains("--tracks"));
+  CHECK_THROWS_WITH(RunOverlay(folder.path(), camera()), Catch::Matchers::ContainsSubstring("--tracks"));
 }

@@ -1,7 +1,8 @@
 #include "bench/render/track_overlay.hpp"
 
-#include <catch2/catch.hpp>
 #include <set>
+
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -46,7 +47,7 @@ struct AxisOptions {
 };
 
 /// As a command line says it: text as it is, all else as JSON.
-std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : dump_json(value); }
 
 AxisValue value_of(const std::string& key, const std::string& text) { return {text, {key + "=" + text}}; }
 

@@ -1,11 +1,11 @@
 #include "bench/sweep/axis.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -15,7 +15,7 @@ std::vector<std::string> texts(const Axis& axis) {
   return result;
 }
 
-std::vector<std::string> texts(const std::string& json) { return texts(read_axis(Json::parse(json), "s").at(0)); }
+std::vector<std::string> texts(const std::string& json) { return texts(read_axis(parse_json(json), "s").at(0)); }
 
 using Texts = std::vector<std::string>;
 
@@ -46,13 +46,13 @@ TEST_CASE("An axis is said on a command line in the same ways") {
 
 TEST_CASE("Overlays set several keys under one name, and zipped axes keep their names") {
   const ZippedAxes overlay =
-      read_axis(Json::parse(R"({"name": "motion", "overlays": {"slow": {"a": 1, "b.c": "x"}, "fast": {}}})"), "s");
+      read_axis(parse_json(R"({"name": "motion", "overlays": {"slow": {"a": 1, "b.c": "x"}, "fast": {}}})"), "s");
   REQUIRE(overlay.size() == 1);
   CHECK(overlay[0].name == "motion");
   CHECK(overlay[0].values.at(0).text == "slow");
   CHECK(overlay[0].values.at(0).overrides == std::vector<std::string>{"a=1", "b.c=x"});
   CHECK(overlay[0].values.at(1).overrides.empty());
-  const ZippedAxes zipped = read_axis(Json::parse(R"({"zip": [{"key": "a", "values": [1, 2]},
+  const ZippedAxes zipped = read_axis(parse_json(R"({"zip": [{"key": "a", "values": [1, 2]},
                                                               {"key": "b", "name": "c", "values": [3, 4]}]})"),
                                       "s");
   REQUIRE(zipped.size() == 2);
@@ -64,7 +64,8 @@ TEST_CASE("Overlays set several keys under one name, and zipped axes keep their 
 TEST_CASE("An axis that can't be is refused with its place and what was expected") {
   const auto refused = [](const std::string& json, const std::string& message) {
     INFO(json);
-    CHECK_THROWS_WITH(read_axis(Json::parse(json), "s.json: axes.0"), Contains("s.json: axes.0") && Contains(message));
+    CHECK_THROWS_WITH(read_axis(parse_json(json), "s.json: axes.0"),
+                      ContainsSubstring("s.json: axes.0") && ContainsSubstring(message));
   };
   refused(R"({"key": "a", "value": [1]})", "unknown key \"value\"; did you mean \"values\"?");
   refused(R"({"key": "a"})", "expected one of \"values\", \"range\", \"overlays\", \"zip\"");
@@ -87,11 +88,12 @@ TEST_CASE("An axis that can't be is refused with its place and what was expected
   refused(R"({"zip": [{"key": "a", "values": [1]}]})", "two axes or more");
   for (const char* const text : {"a", "=1", "a=", "a=1,,2", "a=1,1", "a=3..1"}) {
     INFO(text);
-    CHECK_THROWS_WITH(parse_axis(text), Contains("--over " + std::string(text)));
+    CHECK_THROWS_WITH(parse_axis(text), ContainsSubstring("--over " + std::string(text)));
   }
   for (const char* const range : {"1...3", "1..", "1..b", "1..2:1", "0.1..1:0", "0..1:2.5", "0..1:x", "0..1:1000000"}) {
     INFO(range);
-    CHECK_THROWS_WITH(parse_axis(std::string("a=") + range), Contains("\"" + std::string(range) + "\" is no range"));
+    CHECK_THROWS_WITH(parse_axis(std::string("a=") + range),
+                      ContainsSubstring("\"" + std::string(range) + "\" is no range"));
   }
   CHECK(parse_axis("a=../b..c").values.at(0).text == "../b..c");
 }

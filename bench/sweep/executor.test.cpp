@@ -2,7 +2,6 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <stdexcept>
 #include <thread>
@@ -13,12 +12,14 @@
 #include "bench/testing/keys.hpp"
 #include "bench/testing/sweeps.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/testing/catch2.hpp"
 #include "eval/find_runs.hpp"
 #include "eval/table.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -95,7 +96,7 @@ const Registration<Source, TroubledSource> source_registration("troubled", "a so
 
 std::vector<PlannedRun> plan(const TemporaryFolder& folder, const Json& config) {
   Plugins plugins = known_plugins();
-  return plan_sweep(read_sweep(folder.write("c.json", config.dump()), {}, {}, plugins), known_plugins()).runs;
+  return plan_sweep(read_sweep(folder.write("c.json", dump_json(config)), {}, {}, plugins), known_plugins()).runs;
 }
 
 SweepProgress run(const std::vector<PlannedRun>& runs, const ExecutorOptions& options) {
@@ -114,14 +115,15 @@ TEST_CASE("A source that crashes or hangs when it is made leaves the sweep a sen
   const TemporaryFolder folder;
   Json config = tiny_config();
   config["source"] = {{"type", "troubled"}};
-  CHECK_THROWS_WITH(plan(folder, config), Contains("source: its process ended when the source was made: killed by "
-                                                   "SIGSEGV; it said: reading a strange file"));
+  CHECK_THROWS_WITH(plan(folder, config),
+                    ContainsSubstring("source: its process ended when the source was made: killed by "
+                                      "SIGSEGV; it said: reading a strange file"));
   config["source"]["what"] = "hang";
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   folder.write("s.json", R"({"config": "c.json", "timeout": 0.3})");
   Plugins plugins = known_plugins();
   CHECK_THROWS_WITH(plan_sweep(read_sweep(folder.file("s.json"), {}, {}, plugins), plugins),
-                    Contains("timeout after 0.3 s"));
+                    ContainsSubstring("timeout after 0.3 s"));
 }
 
 TEST_CASE("A plugin that crashes, hangs or eats memory takes its own run down, which says so in the table") {
@@ -143,7 +145,7 @@ TEST_CASE("A plugin that crashes, hangs or eats memory takes its own run down, w
   auto reason = reasons(progress);
   CHECK(reason.at("crash") == "killed by SIGSEGV");
   CHECK(reason.at("hang") == "timeout after 0.3 s");
-  CHECK_THAT(reason.at("eat"), Contains("killed: ") && Contains("GiB, limit 1.5 GiB"));
+  CHECK_THAT(reason.at("eat"), ContainsSubstring("killed: ") && ContainsSubstring("GiB, limit 1.5 GiB"));
   CHECK(reason.at("exit") == "ended with exit code 0 before it was done");
   CHECK(reason.at("throw") == "error: no more");
   CHECK(reason.at("die") == "killed by SIGKILL");
@@ -151,16 +153,16 @@ TEST_CASE("A plugin that crashes, hangs or eats memory takes its own run down, w
   std::vector<RunRecord> records = find_runs(std::vector{folder.file("out")});
   REQUIRE(records.size() == 7);
   const std::string table = make_table(records, {});
-  for (const auto& [label, text] : reason) CHECK_THAT(table, Contains(text));
+  for (const auto& [label, text] : reason) CHECK_THAT(table, ContainsSubstring(text));
   for (const RunRecord& record : records) {
     CHECK(record.status->complete == (record.label == "fine"));
     const std::set<std::string> names = names_in(record.folder);
     for (const char* const name : {"config.json", "job.json", "metrics.json", "status.json", "log.txt"}) {
       CHECK(names.contains(name));
     }
-    if (record.label == "crash") CHECK_THAT(read_file(record.folder + "/log.txt"), Contains("about to crash"));
+    if (record.label == "crash") CHECK_THAT(read_file(record.folder + "/log.txt"), ContainsSubstring("about to crash"));
   }
-  for (const std::string& name : names_in(folder.file("out/tiny"))) CHECK_THAT(name, !Contains(".evbench."));
+  for (const std::string& name : names_in(folder.file("out/tiny"))) CHECK_THAT(name, !ContainsSubstring(".evbench."));
 
   // Not tried again, unless that is asked for.
   const auto before = results_of(folder.file("out/tiny"));

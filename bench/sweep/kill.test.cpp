@@ -4,16 +4,17 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <random>
 
 #include "bench/sweep/process_tree.hpp"
 #include "bench/testing/sweeps.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -49,7 +50,7 @@ int kills() {
 
 TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the same bytes once it is done again") {
   const TemporaryFolder folder;
-  folder.write("c.json", tiny_config().dump());
+  folder.write("c.json", dump_json(tiny_config()));
   REQUIRE(testing::evbench(folder, kSweep + "undisturbed").exit_code == 0);
   const auto expected = results_of(folder.file("undisturbed/tiny"));
   REQUIRE(expected.size() > 60);
@@ -81,7 +82,7 @@ TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the 
 
 TEST_CASE("A run that is complete while its writer is still ending is taken when that is gone, and no lock stays") {
   const TemporaryFolder folder;
-  folder.write("c.json", tiny_config().dump());
+  folder.write("c.json", dump_json(tiny_config()));
   REQUIRE(testing::evbench(folder, kSweep + "out").exit_code == 0);
   const auto expected = results_of(folder.file("out/tiny"));
   const Outcome outcome = testing::shell(
@@ -93,7 +94,7 @@ TEST_CASE("A run that is complete while its writer is still ending is taken when
 
 TEST_CASE("A sweep onto a full disk says so and loses nothing: with more room it ends with the same bytes") {
   const TemporaryFolder folder;
-  folder.write("c.json", tiny_config().dump());
+  folder.write("c.json", dump_json(tiny_config()));
   const std::string disk = folder.file("disk");
   std::filesystem::create_directory(disk);
   if (testing::shell(folder, "mount -t tmpfs -o size=64k none disk").exit_code != 0) {
@@ -108,7 +109,7 @@ TEST_CASE("A sweep onto a full disk says so and loses nothing: with more room it
     if (outcome.exit_code == 0) break;
     ++full;
     CHECK(outcome.exit_code == 4);
-    CHECK_THAT(outcome.err, Contains("No space left on device"));
+    CHECK_THAT(outcome.err, ContainsSubstring("No space left on device"));
   }
   const auto made = results_of(disk + "/tiny");
   CHECK(testing::shell(folder, "umount disk").exit_code == 0);

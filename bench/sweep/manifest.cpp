@@ -11,12 +11,13 @@
 #include "core/io/path.hpp"
 #include "core/plugin/library.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
 
 ManifestLine read_line(const std::string& text, const std::string& place, Plugins& plugins, Digests& digests) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = try_parse_json(text);
   ManifestLine line;
   try {
     line.options.out = json.at("out").get<std::string>();
@@ -52,7 +53,7 @@ void share_events(std::vector<ManifestLine>& lines, const std::vector<std::strin
   if (std::ranges::all_of(lines, [](const ManifestLine& line) { return line.run.events.empty(); })) return;
   std::map<std::string, std::vector<std::string>> keys;  // by the name of the events
   for (const std::string& text : texts) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = try_parse_json(text);
     if (json.is_object()) keys[json.value("events", "")].push_back(json.value("key", ""));
   }
   for (auto& [run, options] : lines) {
@@ -79,7 +80,7 @@ std::string format_manifest(const std::vector<PlannedRun>& runs, const ExecutorO
                        {"timeout", options.limits.seconds},
                        {"memory", options.limits.memory_mib},
                        {"retry_failed", options.retry_failed}};
-    text += line.dump() + "\n";
+    text += dump_json(line) + "\n";
   }
   return text;
 }

@@ -12,6 +12,7 @@
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 #include "core/support/nearest.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -111,13 +112,13 @@ class Planner {
     for (PlannedRun& run : plan_.runs) {
       const PluginConfig& frontend = run.config.job.frontend;
       if (!plugins_.of<FrontEnd>().find(frontend.type, frontend.place + ".type").reads_events) continue;
-      Json job = Json::parse(run.identity.text);
+      Json job = parse_json(run.identity.text);
       job.erase("backend");
       job.erase("trajectory_rate");
-      run.tracks = sha256(job.dump()).substr(0, 10);
+      run.tracks = sha256(dump_json(job)).substr(0, 10);
       jobs[run.tracks].insert(run.identity.key);
       if (!sources_.at(source_of(run.config.job)).events.empty()) continue;
-      run.events = sha256(Json({{"seed", job["seed"]}, {"source", job["source"]}}).dump()).substr(0, 10);
+      run.events = sha256(dump_json(Json({{"seed", job["seed"]}, {"source", job["source"]}}))).substr(0, 10);
       jobs[run.events].insert(run.identity.key);
     }
     for (PlannedRun& run : plan_.runs) {
@@ -127,7 +128,7 @@ class Planner {
     }
   }
 
-  static std::string source_of(const Job& job) { return fmt::format("{} {}", job.seed, job.source.with_type().dump()); }
+  static std::string source_of(const Job& job) { return fmt::format("{} {}", job.seed, dump_json(job.source.with_type())); }
 
   /// Makes each source once, for the files that it reads; in a process of their own: one that crashes or hangs when it
   /// is made must not take the sweep along without a word. Where that happens, each has its own, so that it is known
@@ -159,7 +160,7 @@ class Planner {
       } catch (const InputError& error) {
         return kCantBeMade + error.what();
       }
-      return list.dump();
+      return dump_json(list);
     };
     RunLimits limits = sweep_.limits;
     limits.seconds *= static_cast<double>(jobs.size());
@@ -174,7 +175,7 @@ class Planner {
     if (ending.report.empty()) {
       return ending.log.empty() ? ending.reason : fmt::format("{}; it said: {}", ending.reason, ending.log.back());
     }
-    const Json list = Json::parse(ending.report);
+    const Json list = parse_json(ending.report);
     for (std::size_t i = 0; i < jobs.size(); ++i) {
       SourceFiles& files = sources_[source_of(*jobs[i])];
       files.files = list.at(i).at("files").get<std::vector<std::string>>();

@@ -4,16 +4,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 
 #include "bench/sweep/process_tree.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -100,13 +100,13 @@ TEST_CASE("A pool's process is held to its limits of time and of memory, its chi
     return std::string("never");
   };
   const double limit = resident_mib(::getpid()) + 300.0;
-  CHECK_THAT(run(pool, eat, {0.0, limit}).reason, Contains("killed: ") && Contains(", limit "));
+  CHECK_THAT(run(pool, eat, {0.0, limit}).reason, ContainsSubstring("killed: ") && ContainsSubstring(", limit "));
   const auto let_eat = [&] {
     if (::fork() == 0) eat();
     ::sleep(100);
     return std::string("never");
   };
-  CHECK_THAT(run(pool, let_eat, {0.0, 2.0 * limit}).reason, Contains("killed: "));
+  CHECK_THAT(run(pool, let_eat, {0.0, 2.0 * limit}).reason, ContainsSubstring("killed: "));
 }
 
 TEST_CASE("What a pool's process leaves behind ends with it, wherever it went, and however the process ended") {

@@ -1,11 +1,12 @@
-#include <catch2/catch.hpp>
 #include <cstdio>
 
 #include "bench/testing/sweeps.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -42,7 +43,7 @@ TEST_CASE("Slurm does a sweep with the same bytes, though a task is killed and a
   const TemporaryFolder folder;
   Json config = short_config();
   config["backend"]["frame_duration"] = 0.05;
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   const std::string sweep = "\"$evbench\" sweep c.json --over seed=1..8 ";
   REQUIRE(testing::shell(folder, sweep + "--quiet --out here").exit_code == 0);
 
@@ -50,12 +51,12 @@ TEST_CASE("Slurm does a sweep with the same bytes, though a task is killed and a
   REQUIRE(cluster.started());
   const Outcome refused = cluster.shell(sweep + "--out there --executor slurm --partition none");
   CHECK(refused.exit_code == 2);
-  CHECK_THAT(refused.err, Contains("Slurm refuses") && Contains("invalid partition specified: none"));
+  CHECK_THAT(refused.err, ContainsSubstring("Slurm refuses") && ContainsSubstring("invalid partition specified: none"));
 
   const Outcome submitted =
       cluster.shell(sweep + "--out there --executor slurm -j 3 --timeout 100 --setup 'export X=1'");
   REQUIRE(submitted.exit_code == 0);
-  CHECK_THAT(submitted.out, Contains("8 runs in 8 tasks"));
+  CHECK_THAT(submitted.out, ContainsSubstring("8 runs in 8 tasks"));
   const std::string wait_for_run =
       "for i in $(seq 200); do squeue -h -t R | grep -q . && ls there/short/*.evbench.lock > /dev/null 2>&1 && break;"
       "sleep 0.05; done; ";
@@ -69,8 +70,9 @@ TEST_CASE("Slurm does a sweep with the same bytes, though a task is killed and a
       "sleep 1; for job in $(squeue -h -t PD -r -o %i); do scontrol update jobid=$job starttime=now 2> /dev/null; done;"
       "for i in $(seq 600); do squeue -h | grep -q . || break; sleep 0.1; done; squeue -h | wc -l");
   CHECK(down.out == "0\n");
-  CHECK_THAT(read_file(folder.file("there/short/status.txt")), Contains(" of 8 done, 0 failed, 0 running, "));
-  CHECK_THAT(read_file(folder.file("there/short/table.md")), Contains("| ATE [m] |") || Contains("ATE [m]"));
+  CHECK_THAT(read_file(folder.file("there/short/status.txt")), ContainsSubstring(" of 8 done, 0 failed, 0 running, "));
+  CHECK_THAT(read_file(folder.file("there/short/table.md")),
+             ContainsSubstring("| ATE [m] |") || ContainsSubstring("ATE [m]"));
 
   const Outcome again = cluster.shell("scontrol update nodename=node1,node2 state=resume; " + sweep +
                                       "--out there --executor slurm --wait");

@@ -1,14 +1,15 @@
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "bench/sweep/plan.hpp"
 #include "bench/testing/keys.hpp"
 #include "bench/testing/sweeps.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -37,7 +38,7 @@ const char* const kSweep = R"({
 
 TEST_CASE("A sweep is the product of its axes, grid by grid, and its plan names each run's values") {
   const TemporaryFolder folder;
-  folder.write("c.json", tiny_config().dump());
+  folder.write("c.json", dump_json(tiny_config()));
   folder.write("sweep.json", kSweep);
   const SweepPlan made = plan(folder, "sweep.json");
   CHECK(made.name == "both");
@@ -62,14 +63,14 @@ TEST_CASE("A sweep is the product of its axes, grid by grid, and its plan names 
 
   CHECK(select_runs(made, {"frame=0.1", "motion=fast"}).size() == 1);
   CHECK(select_runs(made, {"frame=0.1", "frame=0.2"}).size() == 4);
-  CHECK_THROWS_WITH(select_runs(made, {"motoin=fast"}), Contains("did you mean \"motion\"?"));
-  CHECK_THROWS_WITH(select_runs(made, {"motion=fats"}), Contains("has no such value, but slow, fast"));
-  CHECK_THROWS_WITH(select_runs(made, {"motion"}), Contains("expected AXIS=VALUE, with one of slow, fast"));
+  CHECK_THROWS_WITH(select_runs(made, {"motoin=fast"}), ContainsSubstring("did you mean \"motion\"?"));
+  CHECK_THROWS_WITH(select_runs(made, {"motion=fats"}), ContainsSubstring("has no such value, but slow, fast"));
+  CHECK_THROWS_WITH(select_runs(made, {"motion"}), ContainsSubstring("expected AXIS=VALUE, with one of slow, fast"));
 }
 
 TEST_CASE("The same config has the same key in a sweep as alone, and points of one job are one run, or refused") {
   const TemporaryFolder folder;
-  const std::string path = folder.write("c.json", tiny_config().dump());
+  const std::string path = folder.write("c.json", dump_json(tiny_config()));
   const SweepPlan made = plan(folder, "c.json", {"seed=1,2"});
   CHECK(made.name == "tiny");
   CHECK(made.runs.at(0).identity.key == key_of(read_experiment(path, {}, known_plugins()).runs[0]));
@@ -77,16 +78,16 @@ TEST_CASE("The same config has the same key in a sweep as alone, and points of o
   const SweepPlan same = plan(folder, "c.json", {"backend.frame_duration=0.1,0.10"});
   CHECK(same.runs.at(0).identity.key == same.runs.at(1).identity.key);
   CHECK_THROWS_WITH(plan(folder, "c.json", {"evaluation.alignment=se3,sim3"}),
-                    Contains("evaluation.alignment=se3") && Contains("differ in their protocol"));
+                    ContainsSubstring("evaluation.alignment=se3") && ContainsSubstring("differ in their protocol"));
 }
 
 TEST_CASE("A sweep that can't be is refused before anything is written, with place and nearest name") {
   const TemporaryFolder folder;
-  folder.write("c.json", tiny_config().dump());
+  folder.write("c.json", dump_json(tiny_config()));
   const auto refused = [&](const std::string& sweep, const std::string& message) {
     folder.write("s.json", sweep);
     INFO(sweep);
-    CHECK_THROWS_WITH(plan(folder, "s.json"), Contains("s.json: ") && Contains(message));
+    CHECK_THROWS_WITH(plan(folder, "s.json"), ContainsSubstring("s.json: ") && ContainsSubstring(message));
   };
   refused(R"({"config": "c.json", "axis": []})", "unknown key \"axis\"; did you mean \"axes\"?");
   refused(R"({"config": "d.json"})", "d.json: no such file");
@@ -117,37 +118,39 @@ TEST_CASE("A sweep that can't be is refused before anything is written, with pla
     const Outcome outcome = testing::evbench(folder, arguments);
     INFO(arguments);
     CHECK(outcome.exit_code == (arguments.find("--out") == std::string::npos ? 2 : 4));
-    CHECK_THAT(outcome.err, Contains(message));
+    CHECK_THAT(outcome.err, ContainsSubstring(message));
   }
   const Outcome slurm = testing::shell(folder, "PATH=/nowhere:/bin \"$evbench\" sweep c.json --executor slurm");
   if (!std::filesystem::exists("/bin/sbatch")) {
     CHECK(slurm.exit_code == 2);
-    CHECK_THAT(slurm.err, Contains("there is no sbatch"));
+    CHECK_THAT(slurm.err, ContainsSubstring("there is no sbatch"));
   }
 }
 
 TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on request, and renaming runs nothing") {
   const TemporaryFolder folder;
-  folder.write("c.json", tiny_config().dump());
+  folder.write("c.json", dump_json(tiny_config()));
   const auto sweep = [&](const std::string& arguments) {
     return testing::evbench(folder, "sweep c.json " + arguments);
   };
   const Outcome planned = sweep("--over seed=1..2 --dry-run");
   CHECK(planned.exit_code == 0);
-  CHECK_THAT(planned.out, Contains("seed=1\n") && Contains("2 runs, 2 to do"));
+  CHECK_THAT(planned.out, ContainsSubstring("seed=1\n") && ContainsSubstring("2 runs, 2 to do"));
   CHECK_FALSE(std::filesystem::exists(folder.file("results")));
 
   const Outcome first = sweep("--over seed=1..2");
   CHECK(first.exit_code == 0);
-  CHECK_THAT(first.out, Contains("results/tiny: 2 runs, 0 of them done before, 0 failed"));
+  CHECK_THAT(first.out, ContainsSubstring("results/tiny: 2 runs, 0 of them done before, 0 failed"));
   const auto before = results_of(folder.file("results/tiny"));
-  CHECK_THAT(sweep("--over seed=1..3").out, Contains("3 runs, 2 of them done before"));
-  CHECK_THAT(sweep("--over seed=1..3 --set name=other").out, Contains("results/other: 3 runs, 3 of them done before"));
-  CHECK_THAT(sweep("--over seed=1..3 --set evaluation.rpe_delta=0.2").out, Contains("3 of them done before"));
-  CHECK_THAT(sweep("--over seed=1..2").out, Contains("2 of them done before"));
+  CHECK_THAT(sweep("--over seed=1..3").out, ContainsSubstring("3 runs, 2 of them done before"));
+  CHECK_THAT(sweep("--over seed=1..3 --set name=other").out,
+             ContainsSubstring("results/other: 3 runs, 3 of them done before"));
+  CHECK_THAT(sweep("--over seed=1..3 --set evaluation.rpe_delta=0.2").out, ContainsSubstring("3 of them done before"));
+  CHECK_THAT(sweep("--over seed=1..2").out, ContainsSubstring("2 of them done before"));
   CHECK_THAT(testing::evbench(folder, "status results").out,
-             Contains("results/other: 3 of 3 done") && Contains("results/tiny: 2 of 2 done, 0 failed") &&
-                 Contains("that the sweep does not plan, and tables pass over: 1\n"));
+             ContainsSubstring("results/other: 3 of 3 done") &&
+                 ContainsSubstring("results/tiny: 2 of 2 done, 0 failed") &&
+                 ContainsSubstring("that the sweep does not plan, and tables pass over: 1\n"));
 
   // The file of a config and evbench run give the same.
   REQUIRE(testing::evbench(folder, "run c.json --quiet --out alone").exit_code == 0);
@@ -157,16 +160,16 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
   REQUIRE(testing::shell(folder, "rm -r results/other; rm results/tiny/*/final.tum").exit_code == 0);
   const Outcome damaged = sweep("--over seed=1..2");
   CHECK(damaged.exit_code == 3);
-  CHECK_THAT(damaged.err, Contains("damaged: ") && Contains("final.tum: is missing"));
-  CHECK_THAT(damaged.out, Contains("2 failed"));
-  CHECK_THAT(sweep("--over seed=1..2 --dry-run").out, Contains("2 runs, 0 to do, 2 broken off or damaged"));
-  CHECK_THAT(testing::evbench(folder, "status results").out, Contains("0 of 2 done, 2 failed"));
+  CHECK_THAT(damaged.err, ContainsSubstring("damaged: ") && ContainsSubstring("final.tum: is missing"));
+  CHECK_THAT(damaged.out, ContainsSubstring("2 failed"));
+  CHECK_THAT(sweep("--over seed=1..2 --dry-run").out, ContainsSubstring("2 runs, 0 to do, 2 broken off or damaged"));
+  CHECK_THAT(testing::evbench(folder, "status results").out, ContainsSubstring("0 of 2 done, 2 failed"));
   REQUIRE(sweep("--over seed=1..2 --retry-failed").exit_code == 0);
   for (const std::string damage : {"truncate -s 100 $f/final.tum", "rm $f/status.json", "echo > $f/job.json"}) {
     INFO(damage);
     REQUIRE(testing::shell(folder, "for f in results/tiny/*-*; do " + damage + "; done").exit_code == 0);
-    CHECK_THAT(testing::evbench(folder, "status results").out, Contains("0 of 2 done, 2 failed"));
-    CHECK_THAT(sweep("--over seed=1..2").out, Contains("2 failed"));
+    CHECK_THAT(testing::evbench(folder, "status results").out, ContainsSubstring("0 of 2 done, 2 failed"));
+    CHECK_THAT(sweep("--over seed=1..2").out, ContainsSubstring("2 failed"));
     REQUIRE(sweep("--over seed=1..2 --retry-failed").exit_code == 0);
     CHECK(testing::evbench(folder, "status results").exit_code == 0);
   }
@@ -180,21 +183,21 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
 
 TEST_CASE("Two processes share a sweep, and lines of its manifest, done one by one, give the same bytes") {
   const TemporaryFolder folder;
-  folder.write("c.json", tiny_config().dump());
+  folder.write("c.json", dump_json(tiny_config()));
   REQUIRE(testing::evbench(folder, "sweep c.json --over seed=1..6 --out one").exit_code == 0);
   const Outcome both = testing::shell(folder,
                                       "\"$evbench\" sweep c.json --over seed=1..6 --out two > a & first=$!;"
                                       "\"$evbench\" sweep c.json --over seed=1..6 --out two > b && wait $first");
   CHECK(both.exit_code == 0);
-  CHECK_THAT(read_file(folder.file("a")), Contains("6 runs"));
-  CHECK_THAT(read_file(folder.file("b")), Contains("6 runs"));
+  CHECK_THAT(read_file(folder.file("a")), ContainsSubstring("6 runs"));
+  CHECK_THAT(read_file(folder.file("b")), ContainsSubstring("6 runs"));
   const auto expected = results_of(folder.file("one/tiny"));
   CHECK(difference(expected, results_of(folder.file("two/tiny"))).empty());
 
   REQUIRE(testing::evbench(folder, "sweep c.json --over seed=1..6 --out three --executor none").exit_code == 0);
   CHECK(testing::evbench(folder, "status three").exit_code == 3);
   const std::string task = "\"$evbench\" task three/tiny/manifest.jsonl ";
-  CHECK_THAT(testing::evbench(folder, "score three").err, Contains("none of these runs was done yet"));
+  CHECK_THAT(testing::evbench(folder, "score three").err, ContainsSubstring("none of these runs was done yet"));
   CHECK(testing::shell(folder, task + "1 --stride 2 && \"$evbench\" score three").exit_code == 0);  // of three runs
   CHECK(testing::shell(folder, task + "2 && " + task + "4 && " + task + "6").exit_code == 0);
   CHECK(testing::evbench(folder, "status three").exit_code == 0);
@@ -213,7 +216,7 @@ TEST_CASE(
   config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "a"}, {"frame_duration", 0.1}},
                         {{"type", "bundle_adjustment"}, {"label", "b"}, {"frame_duration", 0.05}},
                         {{"type", "gp_map"}, {"label", "c"}}};
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   testing::evbench(folder, "run c.json --quiet --out alone");  // whether or not so short a run has an estimate
   testing::evbench(folder, "sweep c.json --quiet --out shared");
   const auto expected = results_of(folder.file("alone/tiny"));
@@ -240,7 +243,7 @@ TEST_CASE("Simulated events are made once for runs that share them, change nothi
   Json config = tiny_config();
   config["source"] = {{"type", "event_simulation"}, {"duration", 0.3}};
   config["frontend"] = {{"type", "haste"}};  // guided
-  folder.write("c.json", config.dump());
+  folder.write("c.json", dump_json(config));
   const std::string sweep = "sweep c.json --quiet --over backend.frame_duration=0.1,0.05 --over frontend.tracks=40,60 ";
   const std::vector<PlannedRun> runs =
       plan(folder, "c.json", {"backend.frame_duration=0.1,0.05", "frontend.tracks=40,60"}).runs;
@@ -287,11 +290,12 @@ TEST_CASE("Simulated events are made once for runs that share them, change nothi
 
 TEST_CASE("A job that has two labels in a sweep is run once, and stands in its table under both") {
   const TemporaryFolder folder;
-  folder.write("c.json", tiny_config().dump());
+  folder.write("c.json", dump_json(tiny_config()));
   folder.write("s.json", R"({"config": "c.json", "axes": [{"name": "which", "overlays": {
                            "one": {"backend.label": "first"}, "two": {"backend.label": "second"}}}]})");
-  CHECK_THAT(testing::evbench(folder, "sweep s.json").out, Contains("results/s: 1 runs"));
-  CHECK_THAT(testing::evbench(folder, "table results/s").out, Contains("first") && Contains("second"));
+  CHECK_THAT(testing::evbench(folder, "sweep s.json").out, ContainsSubstring("results/s: 1 runs"));
+  CHECK_THAT(testing::evbench(folder, "table results/s").out,
+             ContainsSubstring("first") && ContainsSubstring("second"));
 }
 
 TEST_CASE("The sweeps that come with evbench can be planned") {
@@ -300,7 +304,7 @@ TEST_CASE("The sweeps that come with evbench can be planned") {
   sweep.erase("plugins");  // built by whoever wants it
   sweep["grids"][0]["axes"][0]["overlays"].erase("B-spline");
   sweep["config"] = EVBENCH_SOURCE "/configs/paper/table1_simulated.json";
-  folder.write("batching.json", sweep.dump());
+  folder.write("batching.json", dump_json(sweep));
   const SweepPlan made = plan(folder, "batching.json");
   CHECK(made.runs.size() == 3 * 10 * (1 + 8 + 8 + 1));  // gp_map, both kinds of frames by duration, adaptive ones
   CHECK(made.axes.size() == 5);

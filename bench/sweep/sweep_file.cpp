@@ -13,6 +13,7 @@
 #include "core/io/path.hpp"
 #include "core/plugin/library.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace fs = std::filesystem;
@@ -73,7 +74,7 @@ void check_axes(const Sweep& sweep, const Grid& grid) {
 void load_libraries(const Json& list, const std::string& place, const std::string& folder, Plugins& plugins) {
   if (!list.is_array()) throw InputError(fmt::format("{}: plugins: expected a list of paths", place));
   for (const Json& item : list) {
-    if (!item.is_string()) throw InputError(fmt::format("{}: plugins: expected paths, found {}", place, item.dump()));
+    if (!item.is_string()) throw InputError(fmt::format("{}: plugins: expected paths, found {}", place, dump_json(item)));
     try {
       load_plugin_libraries(plugins, resolve_path(item.get<std::string>(), folder));
     } catch (const InputError& error) {
@@ -93,7 +94,7 @@ Sweep read_file(const Json& json, const std::string& path, Plugins& plugins) {
   load_libraries(options.plugins, path, folder, plugins);
   if (!options.set.is_object()) throw InputError(fmt::format("{}: set: expected an object {{KEY: VALUE}}", path));
   for (const auto& [key, value] : options.set.items()) {
-    sweep.overrides.push_back(key + "=" + (value.is_string() ? value.get<std::string>() : value.dump()));
+    sweep.overrides.push_back(key + "=" + (value.is_string() ? value.get<std::string>() : dump_json(value)));
   }
   Grid common;
   add_axes(options.axes, path + ": axes", common);

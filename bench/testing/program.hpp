@@ -9,6 +9,7 @@
 
 #include "core/plugin/options.hpp"
 #include "core/testing/data.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench::testing {
 
@@ -88,7 +89,7 @@ inline void write_recording(const TemporaryFolder& folder) {
   config["name"] = "recording";
   config["source"] = {{"type", "recording"}, {"folder", "."}};
   config["frontend"] = {{"type", "recorded"}, {"tracks", "tracks.txt"}};
-  folder.write("recording.json", config.dump());
+  folder.write("recording.json", dump_json(config));
 }
 
 }  // namespace evbench::testing

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "bench/testing/program.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench::testing {
 
@@ -27,10 +28,10 @@ inline std::map<std::string, std::string> results_of(const std::string& experime
     if (!entry.is_regular_file() || name == "timing.csv" || path.starts_with("slurm/")) continue;
     std::string content = read_file(entry.path().string());
     if (name == "metrics.json") {
-      Json metrics = Json::parse(content);
+      Json metrics = parse_json(content);
       for (const char* const measured : {"runtime_s", "realtime_factor", "times", "peak_rss_mib"})
         metrics.erase(measured);
-      content = metrics.dump();
+      content = dump_json(metrics);
     }
     results[path] = content;
   }

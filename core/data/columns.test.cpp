@@ -1,7 +1,8 @@
 #include "core/data/columns.hpp"
 
 #include <array>
-#include <catch2/catch.hpp>
+
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

@@ -1,8 +1,7 @@
 #include "core/data/map_file.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/io/atomic_file.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
@@ -22,9 +21,9 @@ TEST_CASE("A map that was written is read back as it was") {
 TEST_CASE("What is no map is refused with the place") {
   const TemporaryFolder folder;
   write_file(folder.file("a.ply"), "solid\n1 2 3\n");
-  CHECK_THROWS_WITH(read_map(folder.file("a.ply")), Catch::Matchers::Contains("a.ply:1"));
+  CHECK_THROWS_WITH(read_map(folder.file("a.ply")), Catch::Matchers::ContainsSubstring("a.ply:1"));
   write_file(folder.file("b.ply"), "ply\nformat ascii 1.0\n");
-  CHECK_THROWS_WITH(read_map(folder.file("b.ply")), Catch::Matchers::Contains("end_header"));
+  CHECK_THROWS_WITH(read_map(folder.file("b.ply")), Catch::Matchers::ContainsSubstring("end_header"));
   write_file(folder.file("c.ply"), "ply\nend_header\n1 2 x 4\n");
-  CHECK_THROWS_WITH(read_map(folder.file("c.ply")), Catch::Matchers::Contains("c.ply:3"));
+  CHECK_THROWS_WITH(read_map(folder.file("c.ply")), Catch::Matchers::ContainsSubstring("c.ply:3"));
 }

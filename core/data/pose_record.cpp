@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <cmath>
 
 #include "core/geometry/types.hpp"
+#include "core/geometry/nearest_rotation.hpp"
 
 namespace evbench {
 namespace {
@@ -41,8 +41,7 @@ Eigen::Quaterniond read_rotation_matrix(const TextReader& reader, std::span<cons
                     error, kTolerance));
   }
   if (m.determinant() < 0.0) reader.fail("the matrix r11 ... r33 is a reflection; expected a rotation (det R = 1)");
-  const Eigen::JacobiSVD<Matrix3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return Eigen::Quaterniond(svd.matrixU() * svd.matrixV().transpose()).normalized();
+  return Eigen::Quaterniond(nearest_rotation(m).R).normalized();
 }
 
 Vector3 read_vector3(const TextReader& reader, std::span<const std::size_t> columns, const char* what) {

@@ -1,13 +1,12 @@
 #include "core/data/tracks.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -54,12 +53,12 @@ TEST_CASE("A track file reads back exactly as written") {
 
 TEST_CASE("A damaged track file is refused with the line and what is wrong") {
   CHECK_THROWS_AS(tracks(""), InputError);
-  CHECK_THROWS_WITH(tracks(""), Contains("holds no observation"));
-  CHECK_THROWS_WITH(tracks("1 0.1 1 1\n1 0.2 1\n"), Contains("tracks.txt:2: has 3 columns; expected 4"));
-  CHECK_THROWS_WITH(tracks("1.5 0.1 1 1\n"), Contains("tracks.txt:1: the id is \"1.5\""));
-  CHECK_THROWS_WITH(tracks("1 nan 1 1\n"), Contains("the time is \"nan\""));
-  CHECK_THROWS_WITH(tracks("1 0.1 inf 1\n"), Contains("x is \"inf\""));
-  CHECK_THROWS_WITH(read_tracks("/no/such/file", 240, 180), Contains("no such file"));
+  CHECK_THROWS_WITH(tracks(""), ContainsSubstring("holds no observation"));
+  CHECK_THROWS_WITH(tracks("1 0.1 1 1\n1 0.2 1\n"), ContainsSubstring("tracks.txt:2: has 3 columns; expected 4"));
+  CHECK_THROWS_WITH(tracks("1.5 0.1 1 1\n"), ContainsSubstring("tracks.txt:1: the id is \"1.5\""));
+  CHECK_THROWS_WITH(tracks("1 nan 1 1\n"), ContainsSubstring("the time is \"nan\""));
+  CHECK_THROWS_WITH(tracks("1 0.1 inf 1\n"), ContainsSubstring("x is \"inf\""));
+  CHECK_THROWS_WITH(read_tracks("/no/such/file", 240, 180), ContainsSubstring("no such file"));
 }
 
 TEST_CASE("Tracks are in the columns that are asked for, that names say, or that EKLT and HASTE write") {
@@ -77,12 +76,13 @@ TEST_CASE("Tracks are in the columns that are asked for, that names say, or that
   same(tracks("7,0.5,10,20,0.1\n7,0.6,12,21,0.2\n"));
   const TrackFile haste = tracks("0.500000,10.000000,20.000000,0.000000,7\n0.600000,12.000000,21.000000,0.1,7\n");
   same(haste);
-  CHECK_THAT(haste.assumption, Contains("tracks.txt: read with columns t x y - id, times in seconds"));
+  CHECK_THAT(haste.assumption, ContainsSubstring("tracks.txt: read with columns t x y - id, times in seconds"));
   const testing::TemporaryFolder folder;
   const std::string path = folder.write("tracks.txt", "frame,feature,when,where\n1,0.5,10,20,7\n2,0.6,12,21,7\n");
   same(read_tracks(path, 240, 180, {.columns = "- t x y id"}));
-  CHECK_THROWS_WITH(read_tracks(path, 240, 180), Contains("tracks.txt:1: names the columns") && Contains("id t x y"));
-  CHECK_THROWS_WITH(read_tracks(path, 240, 180, {.columns = "t x y"}), Contains("expected id, t, x and y"));
+  CHECK_THROWS_WITH(read_tracks(path, 240, 180),
+                    ContainsSubstring("tracks.txt:1: names the columns") && ContainsSubstring("id t x y"));
+  CHECK_THROWS_WITH(read_tracks(path, 240, 180, {.columns = "t x y"}), ContainsSubstring("expected id, t, x and y"));
   CHECK(tracks("7 0.5 10 20\n").assumption.empty());
 }
 

@@ -6,18 +6,17 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
 #include "core/support/error.hpp"
 #include "core/support/nearest.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 const char* variable(const char* name) {
   const char* const value = std::getenv(name);
@@ -94,7 +93,7 @@ std::vector<Dataset> read_catalogue(const std::string& path) {
   std::vector<Dataset> datasets;
   std::string place = path;
   try {
-    const Json json = Json::parse(file);
+    const Json json = parse_json(std::string(std::istreambuf_iterator<char>(file), {}));
     std::set<std::string> names;
     for (const Json& collection : json.at("collections")) {
       for (const Json& sequence : collection.at("sequences")) {

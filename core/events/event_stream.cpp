@@ -15,7 +15,7 @@ namespace evbench {
 namespace {
 
 // So that differences and sums of times can't overflow.
-constexpr std::int64_t kLatest = std::int64_t{1} << 61;  // [us]
+constexpr std::int64_t kLatestStreamTime = std::int64_t{1} << 61;  // [us]
 
 /// All in time order, none before `from` or beyond any time, all within the sensor? Without branches and in the
 /// narrowest types, so that it is vectorised: this is asked of every event.
@@ -27,7 +27,7 @@ bool are_fine(std::span<const Event> events, std::int64_t from, int width, int h
     back |= static_cast<std::uint64_t>(events[i].t < events[i - 1].t);
     outside |= (last_x - events[i].x) | (last_y - events[i].y);
   }
-  return back == 0 && outside >> 31 == 0 && events.front().t >= -kLatest && events.back().t <= kLatest;
+  return back == 0 && outside >> 31 == 0 && events.front().t >= -kLatestStreamTime && events.back().t <= kLatestStreamTime;
 }
 
 }  // namespace
@@ -142,7 +142,7 @@ void EventStream::leave_out_outside(std::vector<Event>& events, int width, int h
   for (const Event& event : events) {
     if (event.x >= width || event.y >= height) {
       if (outside++ == 0) first_outside = event;
-    } else if (event.t > kLatest || event.t < -kLatest) {
+    } else if (event.t > kLatestStreamTime || event.t < -kLatestStreamTime) {
       if (beyond++ == 0) first_beyond = event;
     } else {
       events[kept++] = event;

@@ -1,11 +1,11 @@
 #include "core/events/event_stream.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;

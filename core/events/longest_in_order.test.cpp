@@ -1,9 +1,9 @@
 #include "core/events/longest_in_order.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "core/simulation/random.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

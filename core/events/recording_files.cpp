@@ -16,18 +16,17 @@
 namespace evbench {
 namespace {
 
-namespace fs = std::filesystem;
 
 /// What events are called in a recording's folder, in the order in which they are taken: evbench's native copy, the
 /// Event-Camera Dataset, EDS, DSEC as it is unpacked in one way or the other, TUM-VIE, M3ED, MVSEC.
-constexpr const char* kEvents[] = {"events.evb",     "events.txt",      "events.h5", "events/left/events.h5",
+constexpr const char* kEventFiles[] = {"events.evb",     "events.txt",      "events.h5", "events/left/events.h5",
                                    "left/events.h5", "*events_left.h5", "*_data.h5", "*_data.hdf5"};
 
 bool is_zip(std::span<const std::byte> head) {
   return std::string_view(reinterpret_cast<const char*>(head.data()), head.size()).starts_with("PK\3\4");
 }
 
-std::array<std::byte, 8> read_head(const std::string& path) {
+std::array<std::byte, 8> read_first_bytes(const std::string& path) {
   std::array<std::byte, 8> head{};
   FileBytes(path).read(0, head);
   return head;
@@ -89,9 +88,9 @@ class MemoryFile {
 }  // namespace
 
 RecordingFiles::RecordingFiles(const std::string& path) {
-  if (fs::is_directory(path)) {
+  if (std::filesystem::is_directory(path)) {
     folder_ = path + "/";
-  } else if (is_zip(read_head(path))) {
+  } else if (is_zip(read_first_bytes(path))) {
     archive_.emplace(path);
     const std::vector<std::string> found = archive_->find("events.txt");
     if (found.empty()) throw InputError(fmt::format("{}: has no events.txt among its files", path));
@@ -107,7 +106,7 @@ RecordingFiles::RecordingFiles(const std::string& path) {
 std::string RecordingFiles::events() const {
   if (archive_) return archive_->path();
   if (!events_.empty()) return events_;
-  for (const char* pattern : kEvents) {
+  for (const char* pattern : kEventFiles) {
     const auto names = matching(pattern);
     if (names.size() > 1) fail_for_several(folder_, names);
     if (!names.empty()) return path(names.front());
@@ -116,7 +115,7 @@ std::string RecordingFiles::events() const {
 }
 
 bool RecordingFiles::has(const std::string& name) const {
-  if (!archive_) return fs::is_regular_file(folder_ + name);
+  if (!archive_) return std::filesystem::is_regular_file(folder_ + name);
   return std::find(archive_->files().begin(), archive_->files().end(), folder_ + name) != archive_->files().end();
 }
 
@@ -135,7 +134,7 @@ std::vector<std::string> RecordingFiles::matching(const std::string& pattern) co
     if (has(pattern)) names.push_back(pattern);
   } else {
     const std::string folder = folder_ + within;
-    for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error)) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, error)) {
       if (entry.is_regular_file(error)) consider(within + entry.path().filename().string());
     }
   }
@@ -155,7 +154,7 @@ std::unique_ptr<ByteSource> RecordingFiles::open(const std::string& name) const 
 std::unique_ptr<ByteSource> RecordingFiles::open_events() const {
   if (archive_) return archive_->open(events_);
   const std::string path = events();
-  if (is_compressed_file(read_head(path))) return open_compressed_file(path);
+  if (is_compressed_file(read_first_bytes(path))) return open_compressed_file(path);
   return std::make_unique<FileBytes>(path);
 }
 

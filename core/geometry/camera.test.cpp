@@ -1,10 +1,10 @@
 #include "core/geometry/camera.hpp"
 
 #include <Eigen/Geometry>
-#include <catch2/catch.hpp>
 
 #include "core/simulation/random.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

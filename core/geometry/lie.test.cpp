@@ -1,8 +1,7 @@
-#include <catch2/catch.hpp>
-
 #include "core/geometry/lie_coefficients.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/geometry/so3.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/differences.hpp"
 
 namespace evbench {

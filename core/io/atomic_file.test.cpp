@@ -1,13 +1,13 @@
 #include "core/io/atomic_file.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using testing::read_file;
 
 namespace {
@@ -28,9 +28,10 @@ TEST_CASE("A file is written whole, replaces an older one, and leaves nothing el
 
 TEST_CASE("A file that can't be written is an error that names it, and leaves nothing behind") {
   const testing::TemporaryFolder folder;
-  CHECK_THROWS_WITH(write_file(folder.file("no/a"), "x"), Contains("no/a: can't be written") && !Contains(".part"));
-  CHECK_THROWS_WITH(write_file(folder.path(), "x"), Contains("is a folder"));
-  CHECK_THROWS_WITH(write_file("/dev/full", "x"), Contains("/dev/full: can't be written: No space"));
+  CHECK_THROWS_WITH(write_file(folder.file("no/a"), "x"),
+                    ContainsSubstring("no/a: can't be written") && !ContainsSubstring(".part"));
+  CHECK_THROWS_WITH(write_file(folder.path(), "x"), ContainsSubstring("is a folder"));
+  CHECK_THROWS_WITH(write_file("/dev/full", "x"), ContainsSubstring("/dev/full: can't be written: No space"));
   CHECK(count_entries(folder.path()) == 0);
 }
 
@@ -38,16 +39,16 @@ TEST_CASE("A file that is there is not replaced unless that is asked for, one th
   const testing::TemporaryFolder folder;
   const std::string path = folder.write("a", "mine");
   std::filesystem::create_symlink("a", folder.file("link"));
-  CHECK_THROWS_WITH(check_outputs({path}, {}, false), Contains("a: exists already; --force replaces it"));
+  CHECK_THROWS_WITH(check_outputs({path}, {}, false), ContainsSubstring("a: exists already; --force replaces it"));
   CHECK_THROWS_AS(check_outputs({folder.file("link")}, {}, false), InputError);
   CHECK_THROWS_AS(check_outputs({folder.path()}, {}, false), InputError);
   CHECK_NOTHROW(check_outputs({path, ""}, {}, true));
   CHECK_NOTHROW(check_outputs({folder.file("b")}, {path}, false));
   CHECK_NOTHROW(check_outputs({"/dev/stdout", "/dev/stdout"}, {}, false));
-  CHECK_THROWS_WITH(check_outputs({folder.file("link")}, {path}, true), Contains("link: is what is read"));
+  CHECK_THROWS_WITH(check_outputs({folder.file("link")}, {path}, true), ContainsSubstring("link: is what is read"));
   CHECK_THROWS_WITH(check_outputs({folder.file("b"), folder.file("./b")}, {}, true),
-                    Contains("is to be written twice"));
-  CHECK_THROWS_WITH(check_outputs({"-"}, {}, true), Contains("/dev/stdout"));
+                    ContainsSubstring("is to be written twice"));
+  CHECK_THROWS_WITH(check_outputs({"-"}, {}, true), ContainsSubstring("/dev/stdout"));
   CHECK(read_file(path) == "mine");
 }
 
@@ -75,7 +76,8 @@ TEST_CASE("A folder that is not committed leaves what was there before") {
   {
     const AtomicFolder run(path);
     run.write("a", "new");
-    CHECK_THROWS_WITH(run.write("no/b", "x"), Contains("run/no/b: can't be written") && !Contains(".part"));
+    CHECK_THROWS_WITH(run.write("no/b", "x"),
+                      ContainsSubstring("run/no/b: can't be written") && !ContainsSubstring(".part"));
   }
   CHECK(read_file(path + "/a") == "old");
   CHECK(count_entries(folder.path()) == 1);

@@ -4,15 +4,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 TEST_CASE("A part file has its name, in place of an older file, once it is committed") {
   const PartFile::Needs needs = GENERATE(PartFile::Needs::nothing, PartFile::Needs::seeking, PartFile::Needs::name);
@@ -37,8 +37,8 @@ TEST_CASE("A part file that is not committed leaves nothing behind") {
 
 TEST_CASE("A part file in a folder that is missing, or in the place of a folder, is refused") {
   const testing::TemporaryFolder folder;
-  CHECK_THROWS_WITH(PartFile(folder.file("no/out")), Contains("can't be written"));
-  CHECK_THROWS_WITH(PartFile(folder.path()), Contains("is a folder"));
+  CHECK_THROWS_WITH(PartFile(folder.file("no/out")), ContainsSubstring("can't be written"));
+  CHECK_THROWS_WITH(PartFile(folder.path()), ContainsSubstring("is a folder"));
 }
 
 TEST_CASE("Part files take nobody else's name, nor each other's") {
@@ -94,7 +94,8 @@ TEST_CASE("A pipe is written to where that will do, and refused otherwise, it st
   CHECK(::read(reader, text, sizeof text) == 4);
   CHECK(std::string(text) == "text");
   ::close(reader);
-  CHECK_THROWS_WITH(PartFile(pipe, PartFile::Needs::seeking), Contains("is a pipe or a device; expected a file"));
+  CHECK_THROWS_WITH(PartFile(pipe, PartFile::Needs::seeking),
+                    ContainsSubstring("is a pipe or a device; expected a file"));
   CHECK_THROWS_AS(PartFile("/dev/null", PartFile::Needs::name), InputError);
   CHECK(std::filesystem::is_fifo(pipe));
 }

@@ -1,8 +1,7 @@
 #include "core/io/sha256.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;

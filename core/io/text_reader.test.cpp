@@ -1,12 +1,11 @@
 #include "core/io/text_reader.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -71,16 +70,16 @@ TEST_CASE("Errors name the file, the line, what was found and what is expected")
   TextReader reader(folder.write("a.txt", "# head\n1 2.5x 9223372036854775808\n"));
   REQUIRE(reader.next());
   CHECK(reader.place() == folder.file("a.txt") + ":2");
-  CHECK_THROWS_WITH(reader.expect_columns(2, "a b"), Contains("a.txt:2: has 3 columns; expected 2 (a b)"));
-  CHECK_THROWS_WITH(reader.number(1, "the time"), Contains("the time is \"2.5x\"; expected a finite number"));
-  CHECK_THROWS_WITH(reader.integer(2, "the id"), Contains("expected an integer"));
+  CHECK_THROWS_WITH(reader.expect_columns(2, "a b"), ContainsSubstring("a.txt:2: has 3 columns; expected 2 (a b)"));
+  CHECK_THROWS_WITH(reader.number(1, "the time"), ContainsSubstring("the time is \"2.5x\"; expected a finite number"));
+  CHECK_THROWS_WITH(reader.integer(2, "the id"), ContainsSubstring("expected an integer"));
   CHECK(reader.integer(0, "the id") == 1);
 }
 
 TEST_CASE("What is no text file is refused") {
   const testing::TemporaryFolder folder;
-  CHECK_THROWS_WITH(TextReader(folder.file("none")), Contains("none: no such file"));
-  CHECK_THROWS_WITH(TextReader(folder.path()), Contains("is a folder"));
-  CHECK_THROWS_WITH(records(std::string("1 2\n3 \0 4\n", 10)), Contains("a.txt:2: has a NUL byte"));
-  CHECK_THROWS_WITH(records(std::string(70000, '1')), Contains("longer than 64 KiB"));
+  CHECK_THROWS_WITH(TextReader(folder.file("none")), ContainsSubstring("none: no such file"));
+  CHECK_THROWS_WITH(TextReader(folder.path()), ContainsSubstring("is a folder"));
+  CHECK_THROWS_WITH(records(std::string("1 2\n3 \0 4\n", 10)), ContainsSubstring("a.txt:2: has a NUL byte"));
+  CHECK_THROWS_WITH(records(std::string(70000, '1')), ContainsSubstring("longer than 64 KiB"));
 }

@@ -1,9 +1,9 @@
 #include "core/motion/gp_interval.hpp"
 
 #include <Eigen/Cholesky>
-#include <catch2/catch.hpp>
 
 #include "core/motion/wnoa.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/differences.hpp"
 
 namespace evbench {

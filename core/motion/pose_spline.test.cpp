@@ -1,10 +1,10 @@
 #include "core/motion/pose_spline.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/geometry/so3.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

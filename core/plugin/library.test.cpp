@@ -1,15 +1,15 @@
 #include "core/plugin/library.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "core/plugin/abi.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::StartsWith;
 
 namespace {
@@ -90,7 +90,7 @@ TEST_CASE("Of a folder all libraries are loaded, in the order of their names") {
   folder.write("notes.txt", "no library");
   std::filesystem::copy_file(library("tiny"), folder.file("libb.so"));
   std::filesystem::copy_file(library("no_plugin"), folder.file("liba.so"));
-  CHECK_THAT(refusal(folder.path()), Contains("liba.so: is no plugin"));
+  CHECK_THAT(refusal(folder.path()), ContainsSubstring("liba.so: is no plugin"));
   std::filesystem::rename(folder.file("liba.so"), folder.file("liba.so.old"));
   Plugins plugins;
   load_plugin_libraries(plugins, folder.path());
@@ -100,30 +100,33 @@ TEST_CASE("Of a folder all libraries are loaded, in the order of their names") {
 TEST_CASE("What is no library, or not there, is refused with a sentence") {
   const testing::TemporaryFolder folder;
   CHECK_THAT(refusal(folder.file("none.so")), StartsWith(folder.file("none.so") + ": no such file"));
-  CHECK_THAT(refusal(folder.path()), Contains("has no shared library"));
+  CHECK_THAT(refusal(folder.path()), ContainsSubstring("has no shared library"));
   folder.write("text.so", "not a library");
-  CHECK_THAT(refusal(folder.file("text.so")), Contains("can't be loaded as a shared library: "));
-  CHECK_THAT(refusal(folder.path()), Contains("text.so"));
+  CHECK_THAT(refusal(folder.file("text.so")), ContainsSubstring("can't be loaded as a shared library: "));
+  CHECK_THAT(refusal(folder.path()), ContainsSubstring("text.so"));
   folder.write("empty.so", "");
-  CHECK_THAT(refusal(folder.file("empty.so")), Contains("can't be loaded as a shared library: "));
+  CHECK_THAT(refusal(folder.file("empty.so")), ContainsSubstring("can't be loaded as a shared library: "));
 }
 
 TEST_CASE("A library that is no plugin, or one with something missing, is refused with a sentence") {
-  CHECK_THAT(refusal(library("no_plugin")), Contains("is no plugin of evbench") && Contains("evbench_plugin_abi"));
-  CHECK_THAT(refusal(library("missing_symbol")), Contains("undefined symbol") && Contains("nobody_has_this"));
-  CHECK_THAT(refusal(library("registers_nothing")), Contains("registers no plugin"));
-  CHECK_THAT(refusal(library("throws")), Contains("registration failed: the licence server is down"));
+  CHECK_THAT(refusal(library("no_plugin")),
+             ContainsSubstring("is no plugin of evbench") && ContainsSubstring("evbench_plugin_abi"));
+  CHECK_THAT(refusal(library("missing_symbol")),
+             ContainsSubstring("undefined symbol") && ContainsSubstring("nobody_has_this"));
+  CHECK_THAT(refusal(library("registers_nothing")), ContainsSubstring("registers no plugin"));
+  CHECK_THAT(refusal(library("throws")), ContainsSubstring("registration failed: the licence server is down"));
 }
 
 TEST_CASE("A library of another ABI is refused before any of it runs, with both texts and what differs") {
   const std::string message = refusal(library("other_abi"));
-  CHECK_THAT(message, Contains("api 99 instead of api " EVBENCH_ABI_TEXT(EVBENCH_PLUGIN_API)));
-  CHECK_THAT(message, Contains("api 99; gcc 3; no sanitizer") && Contains(plugin_abi()));
+  CHECK_THAT(message, ContainsSubstring("api 99 instead of api " EVBENCH_ABI_TEXT(EVBENCH_PLUGIN_API)));
+  CHECK_THAT(message, ContainsSubstring("api 99; gcc 3; no sanitizer") && ContainsSubstring(plugin_abi()));
 }
 
 TEST_CASE("A name that is taken is refused with both origins, and nothing of the library stays") {
   Plugins plugins;
   load_plugin_libraries(plugins, library("tiny"));
   const std::string message = refusal(library("twin"), plugins);
-  CHECK_THAT(message, Contains("two backends are called \"tiny\"") && Contains("libtiny.so") && Contains("libtwin.so"));
+  CHECK_THAT(message, ContainsSubstring("two backends are called \"tiny\"") && ContainsSubstring("libtiny.so") &&
+                          ContainsSubstring("libtwin.so"));
 }

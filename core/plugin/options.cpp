@@ -13,6 +13,7 @@
 #include "core/support/error.hpp"
 #include "core/support/index.hpp"
 #include "core/support/nearest.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -42,7 +43,7 @@ std::string wrapped(const std::string& text, std::size_t indent) {
 }
 
 std::string shown(const Json& value) {
-  std::string text = value.dump();
+  std::string text = dump_json(value);
   if (text.size() > 60) text = text.substr(0, 57) + "...";
   return text;
 }

@@ -3,17 +3,16 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <type_traits>
 #include <variant>
 #include <vector>
 
+#include "core/support/json.hpp"
+
 namespace evbench {
 
-/// Keys keep the order in which they were declared.
-using Json = nlohmann::ordered_json;
 
 /// The options of a plain struct, declared once:
 ///

@@ -1,6 +1,6 @@
 #include "core/plugin/track_player.hpp"
 
-#include <catch2/catch.hpp>
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

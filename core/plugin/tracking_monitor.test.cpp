@@ -1,6 +1,6 @@
 #include "core/plugin/tracking_monitor.hpp"
 
-#include <catch2/catch.hpp>
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using Support = TrackingMonitor::Support;
@@ -31,7 +31,7 @@ TEST_CASE(
   CHECK(monitor.state() == TrackingState::lost);
   CHECK(monitor.status().state == RunState::lost);
   CHECK(monitor.status().time == Approx(3.1));
-  CHECK_THAT(monitor.status().reason, Catch::Contains("nothing for more than 1 s"));
+  CHECK_THAT(monitor.status().reason, Catch::Matchers::ContainsSubstring("nothing for more than 1 s"));
   monitor.observe(4.2, 4.3, Support::full);
   CHECK(monitor.lost());  // for good
 }

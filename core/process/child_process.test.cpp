@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -13,10 +12,11 @@
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 #include "core/support/seconds_since.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -58,50 +58,54 @@ TEST_CASE("Lines larger than any pipe go both ways while the standard error is f
   const std::string line = std::string(5'000'000, 'x') + "\n";
   ChildProcess process(shell("yes complaint | head -c 3000000 >&2; read line; echo \"$line\""), "");
   CHECK(process.exchange(line, 60.0) + "\n" == line);
-  CHECK_THAT(process.errors().text(""), Contains("lines before these)\ncomplaint\n"));
+  CHECK_THAT(process.errors().text(""), ContainsSubstring("lines before these)\ncomplaint\n"));
 }
 
 TEST_CASE("A child process that ends instead of answering says how") {
-  CHECK_THAT(failure("exit 3"), Contains("ended with exit code 3"));
-  CHECK_THAT(failure("read line; exit 0"), Contains("ended with exit code 0"));
-  CHECK_THAT(failure("kill -SEGV $$"), Contains("was ended by signal 11 (Segmentation fault)"));
-  CHECK_THAT(failure("sh -c 'kill -ABRT $$'; exit $?"), Contains("exit code 134") && Contains("Aborted"));
-  CHECK_THAT(failure("no_such_program_here"), Contains("there is no such command"));
-  CHECK_THAT(failure("read line; printf 'half an answer'"), Contains("ended with exit code 0"));
+  CHECK_THAT(failure("exit 3"), ContainsSubstring("ended with exit code 3"));
+  CHECK_THAT(failure("read line; exit 0"), ContainsSubstring("ended with exit code 0"));
+  CHECK_THAT(failure("kill -SEGV $$"), ContainsSubstring("was ended by signal 11 (Segmentation fault)"));
+  CHECK_THAT(failure("sh -c 'kill -ABRT $$'; exit $?"),
+             ContainsSubstring("exit code 134") && ContainsSubstring("Aborted"));
+  CHECK_THAT(failure("no_such_program_here"), ContainsSubstring("there is no such command"));
+  CHECK_THAT(failure("read line; printf 'half an answer'"), ContainsSubstring("ended with exit code 0"));
   // It has started another one that holds its streams.
-  CHECK_THAT(failure("sleep 30 & exit 4"), Contains("ended with exit code 4"));
+  CHECK_THAT(failure("sleep 30 & exit 4"), ContainsSubstring("ended with exit code 4"));
 }
 
 TEST_CASE("A child process that closes its streams but lives is given up") {
-  CHECK_THAT(failure("exec >&-; sleep 30"), Contains("closed its standard output"));
+  CHECK_THAT(failure("exec >&-; sleep 30"), ContainsSubstring("closed its standard output"));
   CHECK_THAT(failure("exec <&-; sleep 30", 10.0, std::string(1'000'000, 'x') + "\n"),
-             Contains("closed its standard input"));
+             ContainsSubstring("closed its standard input"));
 }
 
 TEST_CASE("A child process is waited for no longer than its time limit") {
   const auto start = std::chrono::steady_clock::now();
-  CHECK_THAT(failure("sleep 30", 0.2), Contains("did not answer within 0.2 s"));
-  CHECK_THAT(failure("read line; sleep 30", 0.2), Contains("did not answer within 0.2 s"));
+  CHECK_THAT(failure("sleep 30", 0.2), ContainsSubstring("did not answer within 0.2 s"));
+  CHECK_THAT(failure("read line; sleep 30", 0.2), ContainsSubstring("did not answer within 0.2 s"));
   // It doesn't even read.
-  CHECK_THAT(failure("sleep 30", 0.2, std::string(1'000'000, 'x') + "\n"), Contains("did not answer"));
+  CHECK_THAT(failure("sleep 30", 0.2, std::string(1'000'000, 'x') + "\n"), ContainsSubstring("did not answer"));
   CHECK(seconds_since(start) < 5.0);
 }
 
 TEST_CASE("A child process that writes without end, or out of turn, is refused") {
-  CHECK_THAT(failure("yes | tr -d '\\n'"), Contains("wrote a line of more than 1048576 bytes, which begins with: yyy"));
+  CHECK_THAT(failure("yes | tr -d '\\n'"),
+             ContainsSubstring("wrote a line of more than 1048576 bytes, which begins with: yyy"));
   ChildProcess talker(shell("while read line; do echo one; echo two; done"), "");
   CHECK(talker.exchange("a\n", 10.0) == "one");
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  CHECK_THROWS_WITH(talker.exchange("b\n", 10.0), Contains("wrote to its standard output before it was asked: two"));
-  CHECK_THAT(failure("echo early; cat", 0.5, std::string(1'000'000, 'x') + "\n"), Contains("early"));
+  CHECK_THROWS_WITH(talker.exchange("b\n", 10.0),
+                    ContainsSubstring("wrote to its standard output before it was asked: two"));
+  CHECK_THAT(failure("echo early; cat", 0.5, std::string(1'000'000, 'x') + "\n"), ContainsSubstring("early"));
 }
 
 TEST_CASE("A command that does not exist, and a folder that does not, are said at the start") {
-  CHECK_THROWS_WITH(ChildProcess({"no_such_program_here"}, ""), Contains("can't be started: there is no such command"));
-  CHECK_THROWS_WITH(ChildProcess({"./none"}, ""), Contains("there is no such command"));
+  CHECK_THROWS_WITH(ChildProcess({"no_such_program_here"}, ""),
+                    ContainsSubstring("can't be started: there is no such command"));
+  CHECK_THROWS_WITH(ChildProcess({"./none"}, ""), ContainsSubstring("there is no such command"));
   CHECK_THROWS_WITH(ChildProcess({"cat"}, "/no/such/folder"),
-                    Contains("can't be started in the folder /no/such/folder: No such file"));
-  CHECK_THROWS_WITH(ChildProcess({"/"}, ""), Contains("can't be started: Permission denied"));
+                    ContainsSubstring("can't be started in the folder /no/such/folder: No such file"));
+  CHECK_THROWS_WITH(ChildProcess({"/"}, ""), ContainsSubstring("can't be started: Permission denied"));
 }
 
 TEST_CASE("A program beside its folder's own files is found relative to the folder") {
@@ -172,7 +176,8 @@ TEST_CASE("Of a flood of lines the last ones are kept, each as far as it can be 
   for (int i = 0; i < 30; ++i) tail.add("line " + std::to_string(i) + "\n");
   tail.add("the last\x1b[1m ");
   tail.add("one");
-  CHECK_THAT(tail.text("  "), Contains("  (11 lines before these)\n  line 11\n") && Contains("  the last?[1m one"));
+  CHECK_THAT(tail.text("  "),
+             ContainsSubstring("  (11 lines before these)\n  line 11\n") && ContainsSubstring("  the last?[1m one"));
   tail.add(std::string(10'000'000, 'x') + "\n");
   const std::string text = tail.text("");
   CHECK(text.size() < LineTail::kLines * (LineTail::kLength + 10));

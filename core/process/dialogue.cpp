@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/io/path.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench::process {
 
@@ -47,13 +48,13 @@ Json Dialogue::open(Json greeting, std::initializer_list<std::string> keys) {
   Json complete = {{"evbench", kVersion}};
   complete.update(greeting);
   Line line;
-  const std::string text_of_it = complete.dump();
+  const std::string text_of_it = dump_json(complete);
   line.append(text_of_it);
   return ask(line, "what it takes part in", [&](const Json& answer) {
     const Json& version = require(answer, "evbench");
     if (version != kVersion) {
       throw MessageError(fmt::format("evbench: it speaks version {} of the protocol; expected {}",
-                                     printable(version.dump(), 40), kVersion));
+                                     printable(dump_json(version), 40), kVersion));
     }
     std::vector<std::string> known = {"evbench", "name"};
     known.insert(known.end(), keys);

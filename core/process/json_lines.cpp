@@ -9,12 +9,13 @@
 #include "core/support/index.hpp"
 #include "core/support/json_reason.hpp"
 #include "core/support/nearest.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench::process {
 namespace {
 
 std::string shown(const Json& value) {
-  return printable(value.dump(-1, ' ', false, Json::error_handler_t::replace), 100);
+  return printable(printable_json(value), 100);
 }
 
 [[noreturn]] void unexpected(const Json& found, const std::string& expected, const Place& place) {
@@ -73,7 +74,7 @@ std::string Place::text() const { return index ? fmt::format("{}[{}]", key, *ind
 Json parse_object(const std::string& line) {
   Json value;
   try {
-    value = Json::parse(line);
+    value = parse_json(line);
   } catch (const nlohmann::json::exception& error) {
     const bool not_a_number = line.find("NaN") != std::string::npos || line.find("Infinity") != std::string::npos;
     throw MessageError(fmt::format("expected one JSON object a line, found {} ({})", printable(line, 200),

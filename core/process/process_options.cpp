@@ -9,6 +9,7 @@
 #include "core/io/path.hpp"
 #include "core/process/line_tail.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench::process {
 namespace {
@@ -60,7 +61,7 @@ std::vector<std::string> ProcessOptions::files() const {
     if (exists(path)) add(path);
   }
   if (!more_files.is_array() || !std::ranges::all_of(more_files, is_text)) {
-    throw InputError(fmt::format("files: expected a list of texts, found {}", printable(more_files.dump(), 60)));
+    throw InputError(fmt::format("files: expected a list of texts, found {}", printable(dump_json(more_files), 60)));
   }
   for (const Json& name : more_files) {
     const std::string path = resolve_path(name.get<std::string>(), from);
@@ -80,7 +81,7 @@ std::vector<std::string> command_words(const Json& command, const std::string& p
     throw InputError(
         fmt::format("{}.command: expected a list of texts (a program and its arguments) or one text for "
                     "the shell, found {}",
-                    place, printable(command.dump(), 60)));
+                    place, printable(dump_json(command), 60)));
   }
   return command.get<std::vector<std::string>>();
 }
@@ -90,7 +91,7 @@ std::string command_text(const Json& command) {
   if (command.is_string()) result = command.get<std::string>();
   for (const Json& word : command.is_array() ? command : Json::array()) {
     if (!result.empty()) result += ' ';
-    result += word.is_string() ? word.get<std::string>() : word.dump();
+    result += word.is_string() ? word.get<std::string>() : dump_json(word);
   }
   return printable(result, 200);
 }

@@ -1,12 +1,11 @@
 #include "core/simulation/motion.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/simulation/random.hpp"
 #include "core/simulation/time_spans.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;

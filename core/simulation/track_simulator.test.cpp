@@ -1,7 +1,8 @@
 #include "core/simulation/track_simulator.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
+
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

@@ -10,7 +10,7 @@
 namespace evbench {
 namespace {
 
-const Registration<Source, EventSimulation> registration("event_simulation",
+const Registration<Source, EventSimulation> event_simulation_registration("event_simulation",
                                                          "simulated events of a rendered scene, with ground truth", 2);
 
 /// A pixel takes some 300 bytes.

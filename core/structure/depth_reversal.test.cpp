@@ -1,6 +1,6 @@
 #include "core/structure/depth_reversal.hpp"
 
-#include <catch2/catch.hpp>
+#include "core/testing/catch2.hpp"
 
 namespace evbench {
 

@@ -1,10 +1,11 @@
 #include "core/structure/epipolar_refinement.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <cmath>
 
 #include "core/geometry/so3.hpp"
 #include "core/geometry/tangent_plane.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench {
 namespace {
@@ -60,7 +61,7 @@ SE3 refine_relative_pose(const SE3& T_first_second, std::span<const Vector2> fir
   for (int iteration = 0; iteration < 15; ++iteration) {
     Matrix5 H = at.H;
     H.diagonal() *= 1.0 + damping;
-    const Vector5 step = H.ldlt().solve(-at.g);
+    const Vector5 step = solve_symmetric(H, -at.g);
     if (!step.allFinite()) break;
     const SE3 trial{(T.q * so3::exp(step.head<3>())).normalized(),
                     (T.p + tangent_plane(T.p) * step.tail<2>()).normalized()};

@@ -1,11 +1,11 @@
 #include "core/structure/initialiser.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/data/calib.hpp"
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 #include "core/testing/point_scene.hpp"
 

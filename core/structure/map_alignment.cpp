@@ -1,6 +1,6 @@
 #include "core/structure/map_alignment.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +11,7 @@
 #include "core/geometry/in_view.hpp"
 #include "core/geometry/so3.hpp"
 #include "core/support/index.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench {
 namespace {
@@ -157,7 +158,7 @@ std::optional<MapAlignment> align_maps(std::span<const Landmark> map, std::span<
   NormalEquations equations;
   for (int i = 0; i < kIterations; ++i) {
     equations = linearise(agree, X, camera);
-    const Vector7 step = equations.H.ldlt().solve(-equations.g);
+    const Vector7 step = solve_symmetric(equations.H, -equations.g);
     if (!step.allFinite()) return std::nullopt;
     const double scale = std::exp(step[6]);
     X = Similarity{scale, {so3::exp(step.head<3>()), step.segment<3>(3)}} * X;
@@ -166,7 +167,7 @@ std::optional<MapAlignment> align_maps(std::span<const Landmark> map, std::span<
   }
   equations = linearise(agree, X, camera);
   const double variance = std::max(kLeastError * kLeastError, equations.sum / static_cast<double>(agree.size()));
-  const Vector7 scale = equations.H.ldlt().solve(Vector7::Unit(6));
+  const Vector7 scale = solve_symmetric(equations.H, Vector7::Unit(6));
   if (!(scale[6] > 0.0 && std::sqrt(variance * scale[6]) < kScaleSigma)) return std::nullopt;
   return MapAlignment{X, static_cast<int>(agree.size())};
 }

@@ -1,9 +1,9 @@
 #include "core/structure/map_alignment.hpp"
 
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "core/geometry/so3.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/point_scene.hpp"
 
 namespace evbench {

@@ -1,11 +1,11 @@
 #include "core/structure/multi_view.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/structure/depth_reversal.hpp"
 #include "core/structure/resection.hpp"
 #include "core/support/median.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/point_scene.hpp"
 
 namespace evbench {

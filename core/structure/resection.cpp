@@ -1,11 +1,12 @@
 #include "core/structure/resection.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 #include <vector>
 
 #include "core/support/median.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench {
 
@@ -43,7 +44,7 @@ std::optional<Resection> resect(const SE3& guess, std::span<const InversePoint> 
       g += weight * image->pose.transpose() * image->error;
     }
     H.diagonal() *= 1.0 + kDamping;
-    const Vector6 step = H.ldlt().solve(-g);
+    const Vector6 step = solve_symmetric(H, -g);
     if (!step.allFinite()) return std::nullopt;
     result.T = result.T * se3::exp(step);
     result.median_px = median_error(result.T, points, pixels, camera);

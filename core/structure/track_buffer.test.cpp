@@ -1,9 +1,9 @@
 #include "core/structure/track_buffer.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "core/testing/catch2.hpp"
 #include "core/testing/point_scene.hpp"
 
 using namespace evbench;

@@ -1,6 +1,8 @@
 #include "core/structure/triangulation.hpp"
 
-#include <Eigen/Dense>
+#include "core/geometry/solve_symmetric.hpp"
+
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -47,7 +49,7 @@ Vector3 refine(const Views& views, Vector3 point, int iterations) {
       g += J.transpose() * (views.camera.project(local) - views.pixels[i]);
     }
     H.diagonal() *= 1.0 + damping;
-    const Vector3 step = H.ldlt().solve(-g);
+    const Vector3 step = solve_symmetric(H, -g);
     if (!step.allFinite()) break;
     const double next = views.cost(point + step);
     if (!(next <= cost)) {
@@ -130,7 +132,7 @@ Triangulation triangulate(std::span<const SE3> T_world_camera, std::span<const V
     result.state = State::low_parallax;
     return result;
   }
-  const Vector3 nearest = A.ldlt().solve(b);
+  const Vector3 nearest = solve_symmetric(A, b);
   if (!nearest.allFinite()) return result;
 
   const bool in_front = views.min_depth(nearest) > 0.0;

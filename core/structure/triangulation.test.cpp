@@ -1,9 +1,9 @@
 #include "core/structure/triangulation.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <vector>
 
+#include "core/testing/catch2.hpp"
 #include "core/testing/point_scene.hpp"
 
 using namespace evbench;

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +13,7 @@
 #include "core/structure/epipolar_refinement.hpp"
 #include "core/structure/triangulation.hpp"
 #include "core/support/median.hpp"
+#include "core/geometry/nearest_rotation.hpp"
 
 namespace evbench {
 namespace {
@@ -142,9 +143,7 @@ int explained_by_rotation(const Matches& matches) {
       const Vector3 ray1 = matches.camera.ray(matches.first[i]), ray2 = matches.camera.ray(matches.second[i]);
       B += weights[i] * ray1.normalized() * ray2.normalized().transpose();
     }
-    const Eigen::JacobiSVD<Matrix3> svd(B, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-    const Matrix3 R = svd.matrixU() * Vector3(1.0, 1.0, sign).asDiagonal() * svd.matrixV().transpose();
+    const Matrix3 R = nearest_rotation(B).R;
     count = 0;
     for (std::size_t i = 0; i < matches.size(); ++i) {
       const Vector3 ray = R * matches.camera.ray(matches.second[i]);

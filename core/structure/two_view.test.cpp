@@ -1,9 +1,9 @@
 #include "core/structure/two_view.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <limits>
 
+#include "core/testing/catch2.hpp"
 #include "core/testing/point_scene.hpp"
 
 using namespace evbench;

@@ -3,9 +3,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
-
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

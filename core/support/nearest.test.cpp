@@ -1,7 +1,8 @@
 #include "core/support/nearest.hpp"
 
-#include <catch2/catch.hpp>
 #include <vector>
+
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

@@ -1,12 +1,12 @@
 #include "core/support/parallel.hpp"
 
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <thread>
 #include <vector>
 
 #include "core/support/index.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

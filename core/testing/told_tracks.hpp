@@ -1,10 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "core/plugin/frontend.hpp"
 #include "core/plugin/source.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::testing {
 

@@ -8,6 +8,7 @@
 #include "eval/find_runs.hpp"
 #include "eval/scores.hpp"
 #include "eval/testing/trajectories.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench::testing {
 
@@ -47,10 +48,10 @@ struct Results {
     std::filesystem::create_directories(folder.file(name));
     folder.write(name + "/metrics.json", content);
   }
-  void add(const std::string& name, const Json& metrics) const { add(name, metrics.dump()); }
+  void add(const std::string& name, const Json& metrics) const { add(name, dump_json(metrics)); }
   void add(const std::string& name, const Json& metrics, const Json& config) const {
     add(name, metrics);
-    folder.write(name + "/config.json", config.dump());
+    folder.write(name + "/config.json", dump_json(config));
   }
   /// A run of this label and seed on the data of that seed, of an ATE; none: it failed.
   void add_seed(const std::string& label, int seed, std::optional<double> ate, double frame = 0.1,

@@ -1,8 +1,7 @@
 #include "bench/battery/battery.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/plugin/registration.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

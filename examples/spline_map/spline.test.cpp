@@ -1,7 +1,6 @@
 #include "spline.hpp"
 
-#include <catch2/catch.hpp>
-
+#include "core/testing/catch2.hpp"
 #include "testing.hpp"
 
 using namespace spline_map;

@@ -1,9 +1,9 @@
 #include "spline_map.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/plugin/registration.hpp"
+#include "core/testing/catch2.hpp"
 #include "testing.hpp"
 
 using namespace spline_map;

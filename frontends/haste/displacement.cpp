@@ -1,6 +1,5 @@
 #include "frontends/haste/displacement.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,6 +7,7 @@
 #include "core/geometry/seen_point.hpp"
 #include "core/support/median.hpp"
 #include "frontends/haste/tracking/alignment.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench::haste {
 namespace {
@@ -26,7 +26,7 @@ std::vector<std::size_t> agreeing_with(std::size_t first, std::span<const Displa
       H += by_motion[i].transpose() * by_motion[i];
       b += by_motion[i].transpose() * seen[i].displacement;
     }
-    const Vector6 motion = H.ldlt().solve(b);
+    const Vector6 motion = solve_symmetric(H, b);
     agreeing.clear();
     for (std::size_t i = 0; i < seen.size(); ++i) {
       if ((seen[i].displacement - by_motion[i] * motion).norm() < near) agreeing.push_back(i);

@@ -1,11 +1,11 @@
 #include "frontends/haste/displacement.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <utility>
 
 #include "core/geometry/se3.hpp"
 #include "core/simulation/random.hpp"
+#include "core/testing/catch2.hpp"
 #include "frontends/haste/tracking/testing/event_patterns.hpp"
 #include "frontends/haste/tracking/tracker.hpp"
 

@@ -1,10 +1,10 @@
 #include "frontends/haste/guidance.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <vector>
 
 #include "core/geometry/seen_point.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench::haste {
 
@@ -56,7 +56,7 @@ void Guidance::correct(std::span<const Sighting> sightings) {
       H += weight * J.transpose() * J;
       b -= weight * J.transpose() * e;
     }
-    const Vector6 step = H.ldlt().solve(b);
+    const Vector6 step = solve_symmetric(H, b);
     if (!step.allFinite()) {
       correction_ = {};
       return;

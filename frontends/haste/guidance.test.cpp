@@ -1,8 +1,9 @@
 #include "frontends/haste/guidance.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
+
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::haste;

@@ -1,10 +1,10 @@
 #include "frontends/haste/haste.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
 #include "core/testing/told_tracks.hpp"
 
@@ -125,7 +125,7 @@ TEST_CASE("A tracker in a place where nothing happens any more is starved by the
   }
   const std::vector<std::string> remarks = haste.remarks();
   CHECK(ended > 0);
-  CHECK_THAT(remarks.at(1), !Catch::Matchers::Contains(" 0 starved"));
+  CHECK_THAT(remarks.at(1), !Catch::Matchers::ContainsSubstring(" 0 starved"));
 }
 
 TEST_CASE("A recording without events in the time range is refused with the time of its first one") {
@@ -135,8 +135,8 @@ TEST_CASE("A recording without events in the time range is refused with the time
   Haste haste({}, {source, 0, "", "c.json: frontend"});
   TrackBatch batch;
   CHECK_THROWS_WITH(haste.advance({1.0}, batch),
-                    Catch::Matchers::Contains("c.json: frontend: the recording has no events from 0 to 1 s") &&
-                        Catch::Matchers::Contains("its first one is at 10."));
+                    Catch::Matchers::ContainsSubstring("c.json: frontend: the recording has no events from 0 to 1 s") &&
+                        Catch::Matchers::ContainsSubstring("its first one is at 10."));
 }
 
 TEST_CASE("Events that had to be left out are counted in the remarks") {
@@ -161,9 +161,9 @@ TEST_CASE("Borders that leave nothing of the image are refused") {
   living.life.border = 90.0;
   CHECK_THROWS_WITH(
       Haste(detecting, {source, 0, "", "frontend"}),
-      Catch::Matchers::Contains("frontend.detection.border: 90 px leave nothing of an image of 240 x 180"));
+      Catch::Matchers::ContainsSubstring("frontend.detection.border: 90 px leave nothing of an image of 240 x 180"));
   CHECK_THROWS_WITH(Haste(living, {source, 0, "", "frontend"}),
-                    Catch::Matchers::Contains("frontend.life.border: 90 px"));
+                    Catch::Matchers::ContainsSubstring("frontend.life.border: 90 px"));
 }
 
 TEST_CASE("What is no source of events is refused with a sentence") {
@@ -172,5 +172,5 @@ TEST_CASE("What is no source of events is refused with a sentence") {
     Nothing() : EventScene(swing, 0.01, {}) {}
     std::unique_ptr<EventReader> all_events() const override { return nullptr; }
   };
-  CHECK_THROWS_WITH(Haste({}, {Nothing(), 0, ""}), Catch::Matchers::Contains("event_simulation"));
+  CHECK_THROWS_WITH(Haste({}, {Nothing(), 0, ""}), Catch::Matchers::ContainsSubstring("event_simulation"));
 }

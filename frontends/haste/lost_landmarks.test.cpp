@@ -1,11 +1,11 @@
 #include "frontends/haste/lost_landmarks.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "core/support/index.hpp"
+#include "core/testing/catch2.hpp"
 #include "frontends/haste/tracking/testing/event_patterns.hpp"
 #include "frontends/haste/tracking/tracker.hpp"
 

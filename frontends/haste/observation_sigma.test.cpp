@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "core/support/median.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
 #include "core/testing/told_tracks.hpp"
 #include "frontends/haste/haste.hpp"

@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 #include <optional>
 
 #include "core/support/median.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
 #include "frontends/haste/haste.hpp"
 
@@ -131,7 +131,7 @@ TEST_CASE("A corner that is not where its landmark is expected after all becomes
   options.guidance.tolerance = 2.0;
   const Told told = track(options, known(3.0), TrackingState::tracking, 3.0);
   CHECK(told.of_known() == 0);
-  CHECK_THAT(told.finds, !Catch::Matchers::Contains(" 0 at corners"));
+  CHECK_THAT(told.finds, !Catch::Matchers::ContainsSubstring(" 0 at corners"));
   CHECK_FALSE(told.observations.empty());
 }
 
@@ -177,9 +177,9 @@ TEST_CASE("Trackers far from where landmarks are expected end, but not while a m
   Options options;
   options.guidance.degraded = true;
   CHECK_THAT(track(options, landmarks, TrackingState::tracking, 0.5, 0.6).trackers,
-             !Catch::Matchers::Contains(" 0 far from where they were expected"));
+             !Catch::Matchers::ContainsSubstring(" 0 far from where they were expected"));
   CHECK_THAT(track(options, landmarks, TrackingState::degraded, 0.5, 0.6).trackers,
-             Catch::Matchers::Contains(" 0 far from where they were expected"));
+             Catch::Matchers::ContainsSubstring(" 0 far from where they were expected"));
 }
 
 TEST_CASE("Lost landmarks that are displaced together are told as what they seem to be, unless that is switched off") {
@@ -191,7 +191,7 @@ TEST_CASE("Lost landmarks that are displaced together are told as what they seem
   on.life.border = 40.0;  // trackers end where what they were on is still in view
   Options off = on;
   off.guidance.displacement = 0;
-  CHECK_THAT(track(on, landmarks).finds, !Catch::Matchers::Contains(" 0 displaced together"));
-  CHECK_THAT(track(off, landmarks).finds, Catch::Matchers::Contains(" 0 displaced together"));
-  CHECK_THAT(track(on, beginnings()).finds, Catch::Matchers::Contains(" 0 displaced together"));
+  CHECK_THAT(track(on, landmarks).finds, !Catch::Matchers::ContainsSubstring(" 0 displaced together"));
+  CHECK_THAT(track(off, landmarks).finds, Catch::Matchers::ContainsSubstring(" 0 displaced together"));
+  CHECK_THAT(track(on, beginnings()).finds, Catch::Matchers::ContainsSubstring(" 0 displaced together"));
 }

@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <functional>
 #include <map>
 #include <string>
 
+#include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
 #include "frontends/haste/haste.hpp"
 #include "frontends/haste/tracking/testing/event_patterns.hpp"

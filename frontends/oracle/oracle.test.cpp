@@ -1,8 +1,7 @@
 #include "frontends/oracle/oracle.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/plugin/registration.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 
@@ -53,5 +52,5 @@ TEST_CASE("The oracle of a source without tracks has nothing to give") {
 
 TEST_CASE("The oracle refuses a source that knows no true tracks and names one that does") {
   const FakeSource source;
-  CHECK_THROWS_WITH(Oracle({}, {source, 0, ""}), Catch::Matchers::Contains("simulation"));
+  CHECK_THROWS_WITH(Oracle({}, {source, 0, ""}), Catch::Matchers::ContainsSubstring("simulation"));
 }

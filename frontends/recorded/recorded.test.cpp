@@ -1,11 +1,11 @@
 #include "frontends/recorded/recorded.hpp"
 
-#include <catch2/catch.hpp>
-
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
+#include "core/support/json.hpp"
 
 using namespace evbench;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -37,7 +37,7 @@ const char* const kTracks =
     "1 0.3 10 10\n1 0.1 10 10\n1 0.3 99 99\n2 0.2 20 20\n3 0.4 30 30\n3 0.5 -1 30\n3 0.6 31 30\n3 1.5 32 30\n";
 
 Recorded open(const std::string& options, const testing::TemporaryFolder& folder, const Source& source) {
-  return Recorded(read_options<Recorded::Options>(Json::parse(options), "config"), {source, 0, folder.path()});
+  return Recorded(read_options<Recorded::Options>(parse_json(options), "config"), {source, 0, folder.path()});
 }
 
 }  // namespace
@@ -55,11 +55,12 @@ TEST_CASE("Recorded tracks come in time order within the source's time range, an
   CHECK(observations[0].sigma == 0.7);
   std::string remarks;
   for (const std::string& remark : frontend.remarks()) remarks += remark + "\n";
-  CHECK_THAT(remarks, Contains("8 observations of 3 tracks") && Contains("1 observations out of order") &&
-                          Contains("1 observations with the track and time of another") &&
-                          Contains("1 observations outside the image (dropped)") &&
-                          Contains("1 tracks with a single observation") &&
-                          Contains("1 observations outside 0 to 1 s"));
+  CHECK_THAT(remarks, ContainsSubstring("8 observations of 3 tracks") &&
+                          ContainsSubstring("1 observations out of order") &&
+                          ContainsSubstring("1 observations with the track and time of another") &&
+                          ContainsSubstring("1 observations outside the image (dropped)") &&
+                          ContainsSubstring("1 tracks with a single observation") &&
+                          ContainsSubstring("1 observations outside 0 to 1 s"));
 }
 
 TEST_CASE("Recorded tracks are given up to the time asked for, each once") {
@@ -106,17 +107,18 @@ TEST_CASE("Recorded tracks end where a file says so, and may go on") {
   CHECK(batch.ended[0].track == 2);  // with its last observation
   folder.write("ends.txt", "2 0.7\n1\n");
   CHECK_THROWS_WITH(open(R"({"tracks": "tracks.txt", "ends": "ends.txt"})", folder, source),
-                    Contains("ends.txt:2") && Contains("id t"));
-  CHECK_THROWS_WITH(open(R"({"tracks": "tracks.txt", "ends": "no.txt"})", folder, source), Contains("no such file"));
+                    ContainsSubstring("ends.txt:2") && ContainsSubstring("id t"));
+  CHECK_THROWS_WITH(open(R"({"tracks": "tracks.txt", "ends": "no.txt"})", folder, source),
+                    ContainsSubstring("no such file"));
 }
 
 TEST_CASE("Recorded tracks that are missing, or of another time, are refused") {
   const testing::TemporaryFolder folder;
   folder.write("tracks.txt", kTracks);
   const FakeSource source({5.0, 6.0});
-  CHECK_THROWS_WITH(open(R"({"tracks": "no.txt"})", folder, source), Contains("no such file"));
-  CHECK_THROWS_WITH(open(R"({"tracks": "tracks.txt"})", folder, source), Contains("no observation is left"));
-  CHECK_THROWS_WITH(open("{}", folder, source), Contains("\"tracks\" is missing"));
+  CHECK_THROWS_WITH(open(R"({"tracks": "no.txt"})", folder, source), ContainsSubstring("no such file"));
+  CHECK_THROWS_WITH(open(R"({"tracks": "tracks.txt"})", folder, source), ContainsSubstring("no observation is left"));
+  CHECK_THROWS_WITH(open("{}", folder, source), ContainsSubstring("\"tracks\" is missing"));
 }
 
 TEST_CASE("Tracks in another unit of time are diagnosed, and read when it is said") {
@@ -125,11 +127,11 @@ TEST_CASE("Tracks in another unit of time are diagnosed, and read when it is sai
   const FakeSource source({0.0, 1.0});
   CHECK_THROWS_WITH(
       open(R"({"tracks": "tracks.txt"})", folder, source),
-      Contains("between 0 and 1 s, the source's time range: times go from 100000 to 900000 s; in microseconds "
-               "(time_unit: us) they would go from 0.1 to 0.9 s"));
+      ContainsSubstring("between 0 and 1 s, the source's time range: times go from 100000 to 900000 s; in microseconds "
+                        "(time_unit: us) they would go from 0.1 to 0.9 s"));
   Recorded frontend = open(R"({"tracks": "tracks.txt", "time_unit": "us"})", folder, source);
   CHECK(all(frontend).at(0).t == 0.1);
-  CHECK_THAT(frontend.remarks().at(1), Contains("times in microseconds"));
+  CHECK_THAT(frontend.remarks().at(1), ContainsSubstring("times in microseconds"));
 }
 
 TEST_CASE("Tracks in other columns are read as they are named") {

@@ -13,7 +13,7 @@
 namespace evbench::str {
 namespace {
 
-const evbench::Registration<FrontEnd, Str> registration(
+const evbench::Registration<FrontEnd, Str> str_registration(
     "str", "registers batches of events as point clouds (after Liu, Parra and Chin 2021); tracks are chains of events",
     3);
 

@@ -1,10 +1,10 @@
 #include "frontends/str/str.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 #include <set>
 
 #include "core/geometry/so3.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
 #include "core/testing/told_tracks.hpp"
 #include "frontends/str/expected_motion.hpp"
@@ -231,5 +231,5 @@ TEST_CASE("A source without events is refused by str, with a sentence") {
     Nothing() : EventScene(swing, 0.01, {}) {}
     std::unique_ptr<EventReader> all_events() const override { return nullptr; }
   };
-  CHECK_THROWS_WITH(Str({}, {Nothing(), 0, ""}), Catch::Matchers::Contains("str works on events"));
+  CHECK_THROWS_WITH(Str({}, {Nothing(), 0, ""}), Catch::Matchers::ContainsSubstring("str works on events"));
 }

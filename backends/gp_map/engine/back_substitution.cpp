@@ -1,10 +1,10 @@
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/engine/landmark_views.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 
 // The part of the engine that turns a factorisation into increments and decides whether to accept them.
 namespace evbench::gp_map {
@@ -30,7 +30,7 @@ Vector3 refine_landmark(const LandmarkViews& views, Vector3 position, const Vect
   position += descend(views, position, step, std::min(1.0, kLargestStep / size), cost) * step;
   for (int i = 0; i < kIterations; ++i) {
     const LandmarkViews::System system = views.linearise(position);
-    const Vector3 next = -system.H.ldlt().solve(system.g);
+    const Vector3 next = -solve_symmetric(system.H, system.g);
     if (!next.allFinite() || next.norm() > kLargestStep / size * step.norm()) break;
     position += descend(views, position, next, 1.0, cost) * next;
   }

@@ -1,10 +1,10 @@
 #include <Eigen/Cholesky>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 
 #include "backends/gp_map/testing/drawn_problem.hpp"
 #include "backends/gp_map/testing/oracle_distance.hpp"
+#include "core/testing/catch2.hpp"
 
 // Whether the engine's covariances say how large its errors are, and whether it ends at the optimum.
 namespace evbench::gp_map {

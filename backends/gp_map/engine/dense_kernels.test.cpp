@@ -1,7 +1,8 @@
 #include "backends/gp_map/engine/dense_kernels.hpp"
 
 #include <Eigen/Cholesky>
-#include <catch2/catch.hpp>
+
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

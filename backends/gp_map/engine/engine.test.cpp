@@ -1,13 +1,13 @@
 #include "backends/gp_map/engine/engine.hpp"
 
 #include <Eigen/Cholesky>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "backends/gp_map/batch_solver.hpp"
 #include "backends/gp_map/problem_graph.hpp"
 #include "backends/gp_map/testing/drawn_problem.hpp"
 #include "core/support/index.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 namespace evbench::gp_map {

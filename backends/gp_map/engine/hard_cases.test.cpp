@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "backends/gp_map/testing/drawn_problem.hpp"
 #include "backends/gp_map/testing/random_session.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

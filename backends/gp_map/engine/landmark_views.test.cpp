@@ -1,9 +1,9 @@
 #include "backends/gp_map/engine/landmark_views.hpp"
 
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "backends/gp_map/testing/drawn_problem.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/differences.hpp"
 
 namespace evbench::gp_map {

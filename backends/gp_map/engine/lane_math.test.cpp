@@ -1,11 +1,11 @@
 #include "backends/gp_map/engine/lane_math.hpp"
 
-#include <catch2/catch.hpp>
 #include <random>
 #include <vector>
 
 #include "backends/gp_map/engine/lane_loss.hpp"
 #include "core/support/index.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

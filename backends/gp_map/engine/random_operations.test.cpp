@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -7,6 +6,7 @@
 #include "backends/gp_map/batch_solver.hpp"
 #include "backends/gp_map/testing/random_session.hpp"
 #include "backends/gp_map/testing/rounding.hpp"
+#include "core/testing/catch2.hpp"
 
 // 100,000 random sequences of everything that can be done to the engine, sensible or not, compared with the batch
 // solver, with redoing everything, or with full history. With AddressSanitizer 4,000 by default, as they take ten times

@@ -1,11 +1,11 @@
 #include "backends/gp_map/engine/returns.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/testing/random_session.hpp"
 #include "core/support/index.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {

@@ -1,9 +1,10 @@
 #include "backends/gp_map/testing/random_session.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+
+#include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map::testing {
 namespace {

@@ -1,5 +1,7 @@
 #include "backends/gp_map/testing/tracked_scene.hpp"
 
+#include "core/support/json.hpp"
+
 namespace evbench::gp_map::testing {
 namespace {
 
@@ -21,7 +23,7 @@ Options group(const Json& json, const char* name, Json defaults) {
 
 TrackedScene::TrackedScene(double duration, const char* options, std::uint64_t seed)
     : duration_(duration), camera_(make_camera()) {
-  const Json json = Json::parse(options);
+  const Json json = parse_json(options);
   const auto motion_options = group<MotionOptions>(json, "motion", {{"kind", "smooth_random"}});
   const auto scene_options = group<SceneOptions>(json, "scene", {{"kind", "frustum"}});
   const auto track_options = group<TrackOptions>(json, "tracks", Json::object());
@@ -39,7 +41,7 @@ Run run(const TrackedScene& scene, const RunOptions& options) {
     if (online.empty() || pose.t > online.back().t) online.push_back(pose);
   };
   Run result;
-  result.backend = std::make_unique<GpMap>(read_options<Options>(Json::parse(options.backend), "backend"), context);
+  result.backend = std::make_unique<GpMap>(read_options<Options>(parse_json(options.backend), "backend"), context);
   TrackPlayer player(scene.observations());
   TrackBatch batch;
   bool more = true;

@@ -13,8 +13,8 @@
 namespace evbench {
 namespace {
 
-constexpr std::string_view kMagic = "#!AER-DAT4.0\r\n", kAnyVersion = "#!AER-DAT";
-constexpr std::uint64_t kMostHeader = 16u << 20, kMostPacket = 256u << 20;
+constexpr std::string_view kAedat4Magic = "#!AER-DAT4.0\r\n", kAnyVersion = "#!AER-DAT";
+constexpr std::uint64_t kMostAedat4Header = 16u << 20, kMostAedat4Packet = 256u << 20;
 constexpr std::size_t kPacketHeader = 8, kEvent = 16;
 
 /// A number in text; 0 for anything else.
@@ -45,22 +45,22 @@ Aedat4Reader::Aedat4Reader(std::unique_ptr<ByteSource> file, const ReadOptions& 
 }
 
 void Aedat4Reader::read_header() {
-  std::vector<std::byte> head(kMagic.size() + 4);
+  std::vector<std::byte> head(kAedat4Magic.size() + 4);
   const auto fail = [&](const std::string& what) {
-    throw InputError(fmt::format("{}: byte {}: {}", file_->name(), kMagic.size(), what));
+    throw InputError(fmt::format("{}: byte {}: {}", file_->name(), kAedat4Magic.size(), what));
   };
   if (file_->read(0, head) != head.size()) fail("ends within the header");
-  if (std::string_view(reinterpret_cast<const char*>(head.data()), kMagic.size()) != kMagic) {
+  if (std::string_view(reinterpret_cast<const char*>(head.data()), kAedat4Magic.size()) != kAedat4Magic) {
     throw InputError(fmt::format("{}: is AEDAT of another version; expected 4.0", file_->name()));
   }
-  const std::uint64_t size = load<std::uint32_t>(head.data() + kMagic.size());
+  const std::uint64_t size = load<std::uint32_t>(head.data() + kAedat4Magic.size());
   begin_ = head.size() + size;
-  if (size > kMostHeader || begin_ > file_->size()) {
+  if (size > kMostAedat4Header || begin_ > file_->size()) {
     fail(fmt::format("has a header of {} bytes; expected up to the {} of the file, and {}", size, file_->size(),
-                     kMostHeader));
+                     kMostAedat4Header));
   }
   std::vector<std::byte> bytes(4 + static_cast<std::size_t>(size));
-  file_->read(kMagic.size(), bytes);
+  file_->read(kAedat4Magic.size(), bytes);
   const auto header = FlatTable::root(bytes, "IOHE");
   if (!header) fail("has a broken header; expected a FlatBuffer IOHE");
   const auto compression = header->get<std::int32_t>(0);
@@ -118,7 +118,7 @@ std::string Aedat4Reader::Stream::name() const {
 /// The table at the end: a FlatBuffer FTAB, compressed like the packets.
 bool Aedat4Reader::read_table(std::int64_t offset) {
   const std::uint64_t size = file_->size() - static_cast<std::uint64_t>(offset);
-  if (size > kMostPacket) return false;
+  if (size > kMostAedat4Packet) return false;
   packed_.resize(static_cast<std::size_t>(size));
   if (file_->read(static_cast<std::uint64_t>(offset), packed_) != size || !unpack(packed_)) return false;
   const auto root = FlatTable::root(data_, "FTAB");
@@ -186,8 +186,8 @@ void Aedat4Reader::describe(const ReadOptions& options) {
 bool Aedat4Reader::unpack(std::span<const std::byte> packed) {
   switch (compression_) {
     case Compression::none: data_.assign(packed.begin(), packed.end()); return true;
-    case Compression::lz4: return decompress_lz4(packed, kMostPacket, data_);
-    case Compression::zstd: return decompress_zstd(packed, kMostPacket, data_);
+    case Compression::lz4: return decompress_lz4(packed, kMostAedat4Packet, data_);
+    case Compression::zstd: return decompress_zstd(packed, kMostAedat4Packet, data_);
   }
   return false;
 }
@@ -199,7 +199,7 @@ bool Aedat4Reader::read(std::vector<Event>& events) {
     std::byte header[kPacketHeader];
     const bool whole = file_->read(at_, header) == kPacketHeader;
     const std::uint64_t size = whole ? load<std::uint32_t>(header + 4) : 0;
-    if (!whole || size > kMostPacket || size > end_ - at_ - kPacketHeader) {
+    if (!whole || size > kMostAedat4Packet || size > end_ - at_ - kPacketHeader) {
       faults_.add("broken or cut packets, where reading ends", place);
       at_ = end_;
       break;

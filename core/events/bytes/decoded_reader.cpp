@@ -10,7 +10,7 @@ namespace {
 
 // Both fit into a processor's second cache.
 constexpr std::size_t kBuffer = 1 << 18;
-constexpr std::size_t kEvents = 1 << 14;
+constexpr std::size_t kDecodedEvents = 1 << 14;
 
 }  // namespace
 
@@ -38,9 +38,9 @@ bool DecodedReader::fill() {
 }
 
 bool DecodedReader::read(std::vector<Event>& events) {
-  events.resize(kEvents);
+  events.resize(kDecodedEvents);
   std::size_t count = 0;
-  while (count < kEvents / 2 && !ended_) {
+  while (count < kDecodedEvents / 2 && !ended_) {
     const std::span<Event> room = std::span(events).subspan(count);
     const auto progress = decoder_->decode(rest(), offset_ - (filled_ - used_), room, faults_);
     used_ += progress.bytes;

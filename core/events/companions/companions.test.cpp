@@ -1,6 +1,5 @@
 #include "core/events/companions/companions.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 
@@ -9,9 +8,10 @@
 #include "core/events/testing/data_sets.hpp"
 #include "core/events/testing/reading.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using testing::read_all;
 using testing::TemporaryFolder;
 
@@ -56,7 +56,7 @@ void check_refused(const std::string& path, const std::string& name, const std::
   CAPTURE(name, message);
   const auto reader = open_events(path);
   CHECK_THROWS_AS(((*reader).*ask)(), InputError);
-  CHECK_THROWS_WITH(((*reader).*ask)(), Contains("changed/" + name) && Contains(message));
+  CHECK_THROWS_WITH(((*reader).*ask)(), ContainsSubstring("changed/" + name) && ContainsSubstring(message));
   CHECK(read_all(*reader).size() == 100);
 }
 
@@ -78,7 +78,7 @@ TEST_CASE("DSEC's folder gives the left camera's events and calibration, however
     CHECK(reader->calibration()->distortion == DistortionModel::radial_tangential);
     CHECK(reader->info().width == 640);
     CHECK(metadata(*reader, "sensor size") == "the calibration's");
-    CHECK_THAT(metadata(*reader, "calibration"), Contains("cam_to_cam.yaml (cam0, DSEC's left event camera)"));
+    CHECK_THAT(metadata(*reader, "calibration"), ContainsSubstring("cam_to_cam.yaml (cam0, DSEC's left event camera)"));
     CHECK_FALSE(reader->ground_truth());
   }
   const auto right = open_events(folder.file("dsec/nested/events/right/events.h5"));
@@ -117,7 +117,7 @@ TEST_CASE("TUM-VIE's motion capture without its calibrations stays that of the m
   const auto reader = open_events(folder.file("tumvie/mocap-desk/mocap-desk-events_left.h5"));
   REQUIRE(reader->ground_truth());
   CHECK(reader->ground_truth()->poses()[1].T.p == Vector3(1, 2, 3));
-  CHECK_THAT(metadata(*reader, "remark"), Contains("T_world_marker"));
+  CHECK_THAT(metadata(*reader, "remark"), ContainsSubstring("T_world_marker"));
 }
 
 TEST_CASE("M3ED's poses are turned round, and led to the right camera where its events are read") {
@@ -145,9 +145,9 @@ TEST_CASE("M3ED's poses are turned round, and led to the right camera where its 
   fs::rename(folder.file("m3ed/falcon/falcon_data.h5"), folder.file("m3ed/other.h5"));
   const auto alone = open_events(copy);
   CHECK(alone->ground_truth()->poses()[1].T.p.isApprox(Vector3(1, 2, 3)));
-  CHECK_THAT(metadata(*alone, "remark"), Contains("left event camera: no falcon_data.h5 leads"));
+  CHECK_THAT(metadata(*alone, "remark"), ContainsSubstring("left event camera: no falcon_data.h5 leads"));
   folder.write("m3ed/falcon/falcon_data.h5", "no HDF5");
-  CHECK_THROWS_WITH(open_events(copy)->ground_truth(), Contains("falcon_data.h5"));
+  CHECK_THROWS_WITH(open_events(copy)->ground_truth(), ContainsSubstring("falcon_data.h5"));
 }
 
 TEST_CASE("MVSEC's poses and Kalibr's calibration are found beside its events") {
@@ -165,8 +165,8 @@ TEST_CASE("MVSEC's poses and Kalibr's calibration are found beside its events") 
   fs::remove(folder.file("mvsec/flying1/camchain-imucam-flying.yaml"));
   const auto alone = open_events(folder.file("mvsec/flying1"), {.topic = "davis/right"});
   CHECK(alone->info().width == 346);
-  CHECK_THAT(metadata(*alone, "sensor size"), Contains("MVSEC's"));
-  CHECK_THAT(metadata(*alone, "remark"), Contains("left camera"));
+  CHECK_THAT(metadata(*alone, "sensor size"), ContainsSubstring("MVSEC's"));
+  CHECK_THAT(metadata(*alone, "remark"), ContainsSubstring("left camera"));
 }
 
 TEST_CASE("Of several of Kalibr's calibrations the scenario's own is taken, and none where that is not to be told") {
@@ -179,15 +179,16 @@ TEST_CASE("Of several of Kalibr's calibrations the scenario's own is taken, and 
   CHECK(open_events(folder.file("mvsec/flying1"))->calibration()->pinhole.fx == 220.0);
   fs::rename(flying, folder.file("mvsec/flying1/camchain-imucam-walking.yaml"));
   const auto reader = open_events(folder.file("mvsec/flying1"), {.topic = "davis/right"});
-  CHECK_THROWS_WITH(reader->calibration(), Contains("walking.yaml: lies beside camchain-imucam-driving.yaml"));
-  CHECK_THROWS_WITH(reader->ground_truth(), Contains("walking.yaml: lies beside camchain-imucam-driving.yaml"));
+  CHECK_THROWS_WITH(reader->calibration(), ContainsSubstring("walking.yaml: lies beside camchain-imucam-driving.yaml"));
+  CHECK_THROWS_WITH(reader->ground_truth(),
+                    ContainsSubstring("walking.yaml: lies beside camchain-imucam-driving.yaml"));
   CHECK(reader->info().width == 346);
   CHECK(read_all(*reader).size() == 100);
 
   write_file(folder.file("eds/peanuts/camchain-other.yaml"),
              testing::read_file(folder.file("eds/peanuts/camchain-calib.yaml")));
   const auto eds = open_events(folder.file("eds/peanuts"));
-  CHECK_THROWS_WITH(eds->calibration(), Contains("camchain-other.yaml: lies beside camchain-calib.yaml"));
+  CHECK_THROWS_WITH(eds->calibration(), ContainsSubstring("camchain-other.yaml: lies beside camchain-calib.yaml"));
   CHECK(eds->info().width == 640);
 }
 
@@ -212,9 +213,9 @@ TEST_CASE("The topic says which camera it is, otherwise a whole word of the file
   const auto whose = [](const std::string& path, const std::string& topic) {
     return find_companions(std::make_shared<const RecordingFiles>(path), topic).calibration->whose;
   };
-  CHECK_THAT(whose(folder.file("dsec/seq/events_right.h5"), "/davis/left/events"), Contains("cam0"));
-  CHECK_THAT(whose(folder.file("dsec/seq/left_events.h5"), "/davis/right/events"), Contains("cam3"));
-  CHECK_THAT(whose(folder.file("dsec/seq/events_right.h5"), "/bright/events"), Contains("cam3"));
+  CHECK_THAT(whose(folder.file("dsec/seq/events_right.h5"), "/davis/left/events"), ContainsSubstring("cam0"));
+  CHECK_THAT(whose(folder.file("dsec/seq/left_events.h5"), "/davis/right/events"), ContainsSubstring("cam3"));
+  CHECK_THAT(whose(folder.file("dsec/seq/events_right.h5"), "/bright/events"), ContainsSubstring("cam3"));
 }
 
 TEST_CASE("A file in left/ belongs to the folder above, one in a folder of another name to its own") {
@@ -259,7 +260,7 @@ TEST_CASE("EDS has its event camera second in Kalibr's calibration, and its sens
   fs::remove(folder.file("eds/peanuts/camchain-calib.yaml"));
   const auto without = open_events(folder.file("eds/peanuts"));
   CHECK(without->info().width == 640);
-  CHECK_THAT(metadata(*without, "sensor size"), Contains("EDS's"));
+  CHECK_THAT(metadata(*without, "sensor size"), ContainsSubstring("EDS's"));
   CHECK_FALSE(without->calibration());
 }
 
@@ -289,7 +290,7 @@ TEST_CASE("A native copy is taken first, with what it holds itself, and without 
   CHECK(holds_events(folder.file("alone")));
   fs::create_directories(folder.file("none"));
   CHECK_FALSE(holds_events(folder.file("none")));
-  CHECK_THROWS_WITH(open_events(folder.file("none")), Contains("is a folder that is no recording"));
+  CHECK_THROWS_WITH(open_events(folder.file("none")), ContainsSubstring("is a folder that is no recording"));
 }
 
 TEST_CASE("A folder with several recordings is refused, each file of it is read with its own ground truth") {
@@ -297,7 +298,7 @@ TEST_CASE("A folder with several recordings is refused, each file of it is read 
   if (!testing::write_data_sets(folder)) return;
   fs::copy(folder.file("mvsec/flying1/flying1_data.hdf5"), folder.file("mvsec/flying1/flying2_data.hdf5"));
   CHECK_THROWS_WITH(open_events(folder.file("mvsec/flying1")),
-                    Contains("several recordings (flying1_data.hdf5, flying2_data.hdf5)"));
+                    ContainsSubstring("several recordings (flying1_data.hdf5, flying2_data.hdf5)"));
   CHECK(open_events(folder.file("mvsec/flying1/flying1_data.hdf5"))->ground_truth());
   CHECK_FALSE(open_events(folder.file("mvsec/flying1/flying2_data.hdf5"))->ground_truth());
 }

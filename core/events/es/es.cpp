@@ -13,12 +13,12 @@
 namespace evbench {
 namespace {
 
-constexpr std::string_view kMagic = "Event Stream";
+constexpr std::string_view kEsMagic = "Event Stream";
 constexpr std::size_t kHeader = 20;
 constexpr const char* kKinds[] = {"generic events", "DVS events", "ATIS events", "display events", "color events"};
 
 bool has_magic(std::span<const std::byte> head) {
-  return std::string_view(reinterpret_cast<const char*>(head.data()), head.size()).starts_with(kMagic);
+  return std::string_view(reinterpret_cast<const char*>(head.data()), head.size()).starts_with(kEsMagic);
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 #include "core/events/es/es.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/events/formats.hpp"
 #include "core/events/testing/reading.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;

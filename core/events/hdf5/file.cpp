@@ -106,14 +106,14 @@ void check_filters(hid_t properties, const std::string& name) {
 /// A chunk is decompressed as a whole: two fit in the cache, so that reading in parts decompresses it once. Without
 /// compression there is no cache: what passes through it is only copied once more.
 void set_cache(hid_t creation, hid_t access, std::size_t number_size, const std::string& name) {
-  constexpr std::uint64_t kMostBytes = 256u << 20;
+  constexpr std::uint64_t kMostCachedBytes = 256u << 20;
   if (H5Pget_layout(creation) != H5D_CHUNKED) return;
   hsize_t sides[H5S_MAX_RANK];
   const int rank = H5Pget_chunk(creation, H5S_MAX_RANK, sides);
   std::uint64_t bytes = number_size;
   for (int i = 0; i < rank; ++i) {
-    if (sides[i] > kMostBytes || bytes * sides[i] > kMostBytes) {
-      throw InputError(fmt::format("{}: has chunks above {} MiB; expected smaller ones", name, kMostBytes >> 20));
+    if (sides[i] > kMostCachedBytes || bytes * sides[i] > kMostCachedBytes) {
+      throw InputError(fmt::format("{}: has chunks above {} MiB; expected smaller ones", name, kMostCachedBytes >> 20));
     }
     bytes *= sides[i];
   }

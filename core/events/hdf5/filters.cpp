@@ -9,7 +9,7 @@ namespace evbench::hdf5 {
 namespace {
 
 constexpr H5Z_filter_t kLzf = 32000, kZstd = 32015;
-constexpr std::size_t kMostBytes = 256u << 20;  ///< of a chunk
+constexpr std::size_t kMostChunkBytes = 256u << 20;  ///< of a chunk
 
 /// Puts what a filter has made in the place of what it was given.
 std::size_t replace(std::span<const std::byte> out, std::size_t* buffer_size, void** buffer) {
@@ -33,8 +33,8 @@ std::size_t lzf_filter(unsigned flags, std::size_t count, const unsigned values[
                        std::size_t* buffer_size, void** buffer) {
   if ((flags & H5Z_FLAG_REVERSE) == 0) return 0;
   try {
-    const std::size_t size = count >= 3 && values[2] > 0 ? values[2] : kMostBytes;
-    const auto out = decompress_lzf(input(bytes, buffer), std::min(size, kMostBytes));
+    const std::size_t size = count >= 3 && values[2] > 0 ? values[2] : kMostChunkBytes;
+    const auto out = decompress_lzf(input(bytes, buffer), std::min(size, kMostChunkBytes));
     return out ? replace(*out, buffer_size, buffer) : 0;
   } catch (const std::exception&) {
     return 0;
@@ -47,7 +47,7 @@ std::size_t zstd_filter(unsigned flags, std::size_t, const unsigned[], std::size
   try {
     const auto in = input(bytes, buffer);
     const unsigned long long size = ZSTD_getFrameContentSize(in.data(), in.size());
-    if (size > kMostBytes) return 0;  // the codes of "unknown" and "error", too
+    if (size > kMostChunkBytes) return 0;  // the codes of "unknown" and "error", too
     std::vector<std::byte> out(size);
     const std::size_t made = ZSTD_decompress(out.data(), out.size(), in.data(), in.size());
     return ZSTD_isError(made) || made != out.size() ? 0 : replace(out, buffer_size, buffer);

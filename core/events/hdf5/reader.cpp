@@ -151,10 +151,10 @@ std::int64_t Hdf5Reader::time(std::uint64_t row) const {
 }
 
 bool Hdf5Reader::read(std::vector<Event>& events) {
-  constexpr std::uint64_t kEvents = 1 << 14;  // they stay in the second-level cache
+  constexpr std::uint64_t kEventsAtOnce = 1 << 14;  // they stay in the second-level cache
   while (next_ < length_) {
     if (next_ < loaded_.begin || next_ >= loaded_.end) load();
-    events.resize(std::min(kEvents, loaded_.end - next_));
+    events.resize(std::min(kEventsAtOnce, loaded_.end - next_));
     const std::uint64_t row = next_;
     next_ += events.size();
     if (!convert(row, events)) drop_broken(row, events);

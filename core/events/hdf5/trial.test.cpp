@@ -1,8 +1,7 @@
 #include <hdf5.h>
 
-#include <catch2/catch.hpp>
-
 #include "core/events/formats.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
@@ -38,12 +37,12 @@ TEST_CASE("An HDF5 file on which some versions of the library crash is refused w
   REQUIRE(heap != std::string::npos);
   content.replace(address, 8, 8, '\xFF');
   const std::string broken = folder.write("broken.h5", content);
-  CHECK_THROWS_WITH(open_events(broken), Catch::StartsWith(broken + ": HDF5 cannot read this"));
+  CHECK_THROWS_WITH(open_events(broken), Catch::Matchers::StartsWith(broken + ": HDF5 cannot read this"));
 }
 
 TEST_CASE("What the HDF5 library itself refuses, its trial leaves to it") {
   const testing::TemporaryFolder folder;
   const std::string content = testing::read_file(write_events(folder));
   const std::string cut = folder.write("cut.h5", content.substr(0, content.size() / 2));
-  CHECK_THROWS_WITH(open_events(cut), Catch::StartsWith(cut + ": HDF5 cannot read this"));
+  CHECK_THROWS_WITH(open_events(cut), Catch::Matchers::StartsWith(cut + ": HDF5 cannot read this"));
 }

@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 
 #include "core/support/error.hpp"
 #include "core/support/index.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench::native {
 namespace {
 
-using Json = nlohmann::ordered_json;
 
 Json to_json(const Camera& camera) {
   const PinholeCamera& p = camera.pinhole;
@@ -55,7 +54,7 @@ std::string format_metadata(const RecordingHeader& recording) {
   Json json = {{"fields", recording.metadata}};
   if (recording.calibration) json["calibration"] = to_json(*recording.calibration);
   if (!recording.ground_truth.empty()) json["ground_truth"] = to_json(recording.ground_truth);
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return printable_json(json);
 }
 
 RecordingHeader parse_metadata(std::span<const std::byte> text, int width, int height, const std::string& name) {
@@ -64,7 +63,7 @@ RecordingHeader parse_metadata(std::span<const std::byte> text, int width, int h
   recording.height = height;
   try {
     const auto* const first = reinterpret_cast<const char*>(text.data());
-    const Json json = Json::parse(first, first + text.size());
+    const Json json = parse_json({first, text.size()});
     json.at("fields").get_to(recording.metadata);
     if (json.contains("calibration")) recording.calibration = to_camera(json.at("calibration"), width, height);
     if (json.contains("ground_truth")) recording.ground_truth = to_trajectory(json.at("ground_truth"));

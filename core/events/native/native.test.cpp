@@ -1,16 +1,16 @@
 #include "core/events/native/native.hpp"
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <filesystem>
 
 #include "core/events/formats.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 #include "core/testing/point_scene.hpp"
 
 using namespace evbench;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -132,7 +132,7 @@ TEST_CASE("A native file that is truncated anywhere is refused") {
   const std::string bytes = testing::read_file(write_native(folder.file("events.evb"), events, davis_header()));
   for (std::size_t size = 0; size < bytes.size(); ++size)
     CHECK_THROWS_AS(read_bytes(bytes.substr(0, size)), InputError);
-  CHECK_THROWS_WITH(read_bytes(bytes.substr(0, bytes.size() - 1)), Contains("truncated?"));
+  CHECK_THROWS_WITH(read_bytes(bytes.substr(0, bytes.size() - 1)), ContainsSubstring("truncated?"));
   CHECK_THROWS_AS(read_bytes(bytes + "x"), InputError);
 }
 
@@ -150,7 +150,7 @@ TEST_CASE("A native file that is shortened while it is read is an error, one tha
   NativeReader reader(write_native(path, events, davis_header()));
   REQUIRE(reader.read(chunk));
   std::filesystem::resize_file(path, 100000);
-  CHECK_THROWS_WITH(reader.read(chunk), Contains("events.evb: was shortened"));
+  CHECK_THROWS_WITH(reader.read(chunk), ContainsSubstring("events.evb: was shortened"));
 }
 
 TEST_CASE("A flipped bit anywhere in a native file is noticed") {
@@ -179,8 +179,8 @@ TEST_CASE("A damaged chunk of a native file is left out and counted, the others 
   CHECK(read.back() == events.back());
   REQUIRE(reader.faults().all().size() == 1);
   const auto& [kind, fault] = *reader.faults().all().begin();
-  CHECK_THAT(kind, Contains("checksum"));
-  CHECK_THAT(fault.first, Contains("chunk 1 at byte "));
+  CHECK_THAT(kind, ContainsSubstring("checksum"));
+  CHECK_THAT(fault.first, ContainsSubstring("chunk 1 at byte "));
   CHECK(fault.count == native::kChunkEvents);
   reader.seek(0);
   CHECK(reader.faults().empty());
@@ -201,20 +201,20 @@ TEST_CASE("A native file whose header lies, with checksums that agree, is refuse
     std::memcpy(changed.data(), &header, sizeof header);
     return changed;
   };
-  CHECK_THROWS_WITH(read_bytes(with_header([](auto& h) { h.version = 9; })), Contains("version 9"));
+  CHECK_THROWS_WITH(read_bytes(with_header([](auto& h) { h.version = 9; })), ContainsSubstring("version 9"));
   CHECK_THROWS_AS(read_bytes(with_header([](auto& h) { h.chunks = 0xffffffff; })), InputError);
   CHECK_THROWS_AS(read_bytes(with_header([](auto& h) { h.index_offset = ~0ull; })), InputError);
   CHECK_THROWS_AS(read_bytes(with_header([](auto& h) { h.metadata_size = ~0ull; })), InputError);
   CHECK_THROWS_AS(read_bytes(with_header([](auto& h) { ++h.events; })), InputError);
-  CHECK_THROWS_WITH(read_bytes(with_header([](auto& h) { h.width = 1 << 20; })), Contains("sensor"));
+  CHECK_THROWS_WITH(read_bytes(with_header([](auto& h) { h.width = 1 << 20; })), ContainsSubstring("sensor"));
 }
 
 TEST_CASE("What is no event of the header's sensor, in order, is not written") {
   const testing::TemporaryFolder folder;
   NativeWriter writer(folder.file("events.evb"), davis_header());
   writer.write(std::vector<Event>{{10, 1, 1, true}});
-  CHECK_THROWS_WITH(writer.write(std::vector<Event>{{9, 1, 1, true}}), Contains("time order"));
-  CHECK_THROWS_WITH(writer.write(std::vector<Event>{{11, 240, 1, true}}), Contains("outside the sensor"));
+  CHECK_THROWS_WITH(writer.write(std::vector<Event>{{9, 1, 1, true}}), ContainsSubstring("time order"));
+  CHECK_THROWS_WITH(writer.write(std::vector<Event>{{11, 240, 1, true}}), ContainsSubstring("outside the sensor"));
   CHECK_THROWS_AS(writer.write(std::vector<Event>{{std::int64_t{1} << 62, 1, 1, true}}), InputError);
   CHECK_THROWS_AS(NativeWriter(folder.file("no/events.evb"), {}), InputError);
 }

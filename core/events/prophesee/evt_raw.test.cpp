@@ -1,11 +1,10 @@
 #include "core/events/prophesee/evt_raw.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/events/bytes/bytes.hpp"
 #include "core/events/formats.hpp"
 #include "core/events/testing/reading.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;

@@ -15,7 +15,7 @@ namespace evbench {
 namespace {
 
 constexpr std::size_t kMagicSize = 8, kRecordHeader = 9, kFooter = kRecordHeader + 20 + kMagicSize;
-constexpr std::uint64_t kMostBytes = 256u << 20;  ///< of a record, and of a decompressed chunk
+constexpr std::uint64_t kMostMcapBytes = 256u << 20;  ///< of a record, and of a decompressed chunk
 
 std::string field_text(ByteCursor& cursor) { return cursor.text(cursor.get<std::uint32_t>()); }
 
@@ -52,7 +52,7 @@ bool McapBag::read_record(std::uint64_t offset, Record& record) {
   if (size > file_->size() - offset - kRecordHeader) return false;
   record.end = offset + kRecordHeader + size;
   record.data = {};
-  if (size > kMostBytes) return true;
+  if (size > kMostMcapBytes) return true;
   data_.resize(static_cast<std::size_t>(size));
   record.data = data_;
   return file_->read(offset + kRecordHeader, data_) == size;
@@ -189,7 +189,7 @@ bool McapBag::load_chunk(std::span<const std::byte> data) {
   const auto packed = cursor.bytes(cursor.get<std::uint64_t>());
   used_ = 0;
   chunk_ = {};
-  if (!cursor.ok() || size > kMostBytes) return false;
+  if (!cursor.ok() || size > kMostMcapBytes) return false;
   std::span<const std::byte> records = packed;
   if (!compression.empty()) {
     const bool unpacked = compression == "lz4"    ? decompress_lz4(packed, size, unpacked_)

@@ -14,8 +14,8 @@ namespace {
 
 using namespace ros;
 
-constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-constexpr std::size_t kMostHeader = 1 << 20, kMostChunk = 256u << 20;
+constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
+constexpr std::size_t kMostBagHeader = 1 << 20, kMostBagChunk = 256u << 20;
 
 enum Op : unsigned { kMessage = 2, kBag = 3, kChunk = 5, kChunkInfo = 6, kConnection = 7 };
 
@@ -38,7 +38,7 @@ RosBag::RosBag(std::unique_ptr<ByteSource> file, Faults& faults) : file_(std::mo
   BagRecord bag;
   end_ = file_->size();
   std::byte magic[kBegin];
-  if (file_->read(0, magic) != kBegin || std::string_view(reinterpret_cast<const char*>(magic), kBegin) != kMagic) {
+  if (file_->read(0, magic) != kBegin || std::string_view(reinterpret_cast<const char*>(magic), kBegin) != kBagMagic) {
     throw InputError(
         fmt::format("{}: is a bag of another version; expected version 2.0 (`rosbag fix`)", file_->name()));
   }
@@ -65,7 +65,7 @@ bool RosBag::read_record(std::uint64_t offset, BagRecord& record) {
   std::byte length[4];
   if (file_->read(offset, length) != 4) return false;
   const std::uint64_t size = load<std::uint32_t>(length);
-  if (size > kMostHeader || offset + 8 + size > file_->size()) return false;
+  if (size > kMostBagHeader || offset + 8 + size > file_->size()) return false;
   header_.resize(size + 4);
   if (file_->read(offset + 4, header_) != header_.size()) return false;
   record.size = load<std::uint32_t>(header_.data() + size);
@@ -75,7 +75,7 @@ bool RosBag::read_record(std::uint64_t offset, BagRecord& record) {
 }
 
 bool RosBag::read_data(const BagRecord& record, std::vector<std::byte>& data) {
-  if (record.size > kMostChunk) return false;
+  if (record.size > kMostBagChunk) return false;
   data.resize(record.size);
   return file_->read(record.data, data) == data.size();
 }
@@ -163,7 +163,7 @@ bool RosBag::load_chunk(const BagRecord& record) {
   bool whole = false;
   if (compression == "none") {
     whole = read_data(record, chunk_);
-  } else if (size <= kMostChunk && read_data(record, packed_)) {
+  } else if (size <= kMostBagChunk && read_data(record, packed_)) {
     if (compression == "lz4") whole = decompress_lz4(packed_, size, chunk_) && chunk_.size() == size;
     if (compression == "bz2") whole = decompress_bzip2(packed_, size, chunk_) && chunk_.size() == size;
   }
@@ -210,8 +210,8 @@ void RosBag::seek(std::int64_t t) {
 EventFormat ros1_bag_format() {
   return {"ros1-bag", "ROS 1 bag with event_camera_msgs, dvs_msgs or prophesee_event_msgs",
           [](const std::string&, std::span<const std::byte> head) {
-            return head.size() >= kMagic.size() &&
-                   std::equal(kMagic.begin(), kMagic.begin() + 9, head.begin(),
+            return head.size() >= kBagMagic.size() &&
+                   std::equal(kBagMagic.begin(), kBagMagic.begin() + 9, head.begin(),
                               [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
           },
           [](const std::string& path, const ReadOptions& options) {

@@ -19,7 +19,6 @@ namespace evbench {
 namespace {
 
 using namespace ros;
-namespace fs = std::filesystem;
 
 constexpr const char* kMetadata = "metadata.yaml";
 
@@ -88,7 +87,7 @@ Ros2Folder::Ros2Folder(const std::string& folder, Faults& faults)
     : faults_(faults), metadata_(read_ros2_metadata(folder)) {
   const std::string first = metadata_.files.front().path;
   std::erase_if(metadata_.files, [&](const Ros2Metadata::File& file) {
-    const bool missing = !fs::is_regular_file(file.path);
+    const bool missing = !std::filesystem::is_regular_file(file.path);
     if (missing) faults.add("files of the recording that are missing", file.path);
     return missing;
   });
@@ -164,9 +163,9 @@ std::optional<Message> Ros2Folder::next() {
 
 /// False when it can't be.
 bool Ros2Folder::unpack(Message& message) {
-  constexpr std::size_t kMostBytes = 256 << 20;
+  constexpr std::size_t kMostFileBytes = 256 << 20;
   if (!metadata_.messages_compressed) return true;
-  if (!decompress_zstd(message.data, kMostBytes, unpacked_)) {
+  if (!decompress_zstd(message.data, kMostFileBytes, unpacked_)) {
     faults_.add("messages that can't be decompressed", metadata_.files[file_ - 1].path);
     return false;
   }
@@ -187,9 +186,9 @@ void Ros2Folder::seek(std::int64_t t) {
 EventFormat ros2_folder_format() {
   return {"ros2", "ROS 2 recording, a folder with metadata.yaml and SQLite or MCAP files, also compressed by zstd",
           [](const std::string& path, std::span<const std::byte> head) {
-            if (!head.empty() || !fs::is_regular_file(fs::path(path) / kMetadata)) return false;
+            if (!head.empty() || !std::filesystem::is_regular_file(std::filesystem::path(path) / kMetadata)) return false;
             std::string text(1 << 10, '\0');
-            std::ifstream file(fs::path(path) / kMetadata, std::ios::binary);
+            std::ifstream file(std::filesystem::path(path) / kMetadata, std::ios::binary);
             file.read(text.data(), static_cast<std::streamsize>(text.size()));
             return text.find("rosbag2_bagfile_information") != std::string::npos;
           },

@@ -185,7 +185,7 @@ TEST_CASE("Faults found when a file of a ROS 2 recording is opened are told each
     check_events(*reader);
     REQUIRE(reader->faults().all().size() == 1);
     CHECK(reader->faults().all().begin()->second.count == 1);
-    CHECK_THAT(reader->faults().all().begin()->first, Catch::StartsWith("no summary"));
+    CHECK_THAT(reader->faults().all().begin()->first, Catch::Matchers::StartsWith("no summary"));
   }
 }
 
@@ -213,9 +213,9 @@ TEST_CASE("A ROS 2 recording lacking one of its files is read without it and say
   const auto& faults = reader->faults().all();
   REQUIRE(faults.contains("files of the recording that are missing"));
   CHECK(faults.at("files of the recording that are missing").first == folder.file("a_0.mcap"));
-  CHECK_THROWS_WITH(open_events(folder.path(), {.strict = true}), Catch::Contains("a_0.mcap"));
+  CHECK_THROWS_WITH(open_events(folder.path(), {.strict = true}), Catch::Matchers::ContainsSubstring("a_0.mcap"));
   std::filesystem::remove(folder.file("a_1.mcap"));
-  CHECK_THROWS_WITH(open_events(folder.path()), Catch::Contains("has none of the files"));
+  CHECK_THROWS_WITH(open_events(folder.path()), Catch::Matchers::ContainsSubstring("has none of the files"));
 }
 
 TEST_CASE("Broken files of a ROS 2 recording are passed over and counted: other content, cut short, bombs") {
@@ -250,7 +250,7 @@ TEST_CASE("A ROS 2 recording's broken metadata is refused with a sentence") {
        }) {
     folder.write("metadata.yaml", broken);
     CAPTURE(broken.substr(0, 100));
-    CHECK_THROWS_WITH(open_events(folder.path()), Catch::StartsWith(folder.path()));
+    CHECK_THROWS_WITH(open_events(folder.path()), Catch::Matchers::StartsWith(folder.path()));
   }
 }
 

@@ -11,7 +11,7 @@
 namespace evbench {
 namespace {
 
-constexpr std::uint64_t kMostBytes = 2 << 20;  ///< in memory it is some hundred times as large at worst
+constexpr std::uint64_t kMostMetadataBytes = 2 << 20;  ///< in memory it is some hundred times as large at worst
 
 std::optional<std::int64_t> end_of(const YAML::Node& file) {
   const YAML::Node start = file["starting_time"], duration = file["duration"], count = file["message_count"];
@@ -55,7 +55,7 @@ Ros2Metadata read_ros2_metadata(const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / "metadata.yaml").string();
   try {
     const YAML::Node recording =
-        YAML::Load(read_small_file(path, kMostBytes, "a description"))["rosbag2_bagfile_information"];
+        YAML::Load(read_small_file(path, kMostMetadataBytes, "a description"))["rosbag2_bagfile_information"];
     if (!recording || !recording["relative_file_paths"] || recording["relative_file_paths"].size() == 0) {
       throw InputError(fmt::format("{}: names no files; expected rosbag2_bagfile_information with some", path));
     }

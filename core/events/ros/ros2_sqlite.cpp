@@ -17,7 +17,7 @@ namespace {
 
 using namespace ros;
 
-constexpr std::string_view kMagic = "SQLite format 3";
+constexpr std::string_view kSqliteMagic = "SQLite format 3";
 
 struct CloseDatabase {
   void operator()(sqlite3* database) const { sqlite3_close(database); }
@@ -91,7 +91,7 @@ std::uint64_t missing_pages(const std::string& path) {
 }
 
 SqliteBag::SqliteBag(const std::string& path, Faults& faults, bool count) : path_(path), faults_(faults) {
-  constexpr int kMostBytes = 256 << 20;  // of a message
+  constexpr int kMostMessageBytes = 256 << 20;  // of a message
   constexpr int kSteps = 10'000;         // of SQLite's machine between two looks for an interruption
   sqlite3* database = nullptr;
   const int result = sqlite3_open_v2(uri(path).c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
@@ -100,7 +100,7 @@ SqliteBag::SqliteBag(const std::string& path, Faults& faults, bool count) : path
   if (const std::uint64_t missing = missing_pages(path); missing > 0) {
     faults_.add("pages missing at the end: the file is cut short", fmt::format("{} of them", missing));
   }
-  sqlite3_limit(database, SQLITE_LIMIT_LENGTH, kMostBytes);
+  sqlite3_limit(database, SQLITE_LIMIT_LENGTH, kMostMessageBytes);
   sqlite3_progress_handler(
       database, kSteps, [](void*) { return Interruption::is_requested() ? 1 : 0; }, nullptr);
   sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
@@ -198,7 +198,7 @@ std::unique_ptr<MessageSource> open_sqlite_bag(const std::string& path, Faults& 
 }
 
 bool is_sqlite(std::span<const std::byte> head) {
-  return head.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), head.begin(),
+  return head.size() >= kSqliteMagic.size() && std::equal(kSqliteMagic.begin(), kSqliteMagic.end(), head.begin(),
                                                     [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
 }
 

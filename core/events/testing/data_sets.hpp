@@ -1,9 +1,9 @@
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <string>
 
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 namespace evbench::testing {

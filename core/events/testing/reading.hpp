@@ -1,6 +1,5 @@
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -9,6 +8,7 @@
 #include "core/events/reader.hpp"
 #include "core/io/byte_source.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench::testing {
 

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
 #include "core/events/formats.hpp"
 #include "core/events/testing/reading.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 namespace evbench::testing {

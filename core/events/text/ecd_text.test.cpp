@@ -4,12 +4,12 @@
 #include <archive_entry.h>
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "core/events/formats.hpp"
 #include "core/events/testing/reading.hpp"
 #include "core/support/error.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 
 using namespace evbench;
@@ -128,7 +128,7 @@ TEST_CASE("Both orders, all separators, and names of columns are found out and s
     const auto reader = text(content);
     CHECK((read_all(*reader) == kTwo));
     CHECK(metadata(*reader, "columns") == columns);
-    CHECK_THAT(metadata(*reader, "unit of time"), Catch::StartsWith(unit));
+    CHECK_THAT(metadata(*reader, "unit of time"), Catch::Matchers::StartsWith(unit));
     CHECK(reader->faults().empty());
   }
 }
@@ -154,7 +154,7 @@ TEST_CASE("Where whole numbers were taken for microseconds, a time with a fracti
   const auto reader = text(content + "2000.5 5 7 1\n");
   CHECK(read_all(*reader).size() == 2000);
   const auto& [kind, fault] = *reader->faults().all().begin();
-  CHECK_THAT(kind, Catch::StartsWith("lines whose time has a fraction, unlike the first ones"));
+  CHECK_THAT(kind, Catch::Matchers::StartsWith("lines whose time has a fraction, unlike the first ones"));
   CHECK(fault.first == "line 2001");
   const auto named = text(content + "2000.5 5 7 1\n", {.columns = "t_us,x,y,p"});
   CHECK(read_all(*named).size() == 2001);
@@ -201,23 +201,25 @@ TEST_CASE("Text that is compressed is read as it is, and anything else that is c
   CHECK_THROWS_AS(open_events(folder.write("cut.gz", whole.substr(0, whole.size() / 2))), InputError);
   folder.write("bytes", std::string("\0\1\2\3", 4));
   REQUIRE(std::system(fmt::format("gzip '{}'", folder.file("bytes")).c_str()) == 0);  // NOLINT
-  CHECK_THROWS_WITH(open_events(folder.file("bytes.gz")), Catch::Contains("no known event format"));
+  CHECK_THROWS_WITH(open_events(folder.file("bytes.gz")), Catch::Matchers::ContainsSubstring("no known event format"));
 }
 
 TEST_CASE("Text that may be of either order, or of another one, asks for the columns") {
   CHECK_THROWS_WITH(text("1 2 1 1\n0 3 0 0\n"),
-                    Catch::Contains("test:1: has lines like \"1 2 1 1\"") &&
-                        Catch::Contains("may be \"t x y p\" and \"x y p t\"; give --columns"));
+                    Catch::Matchers::ContainsSubstring("test:1: has lines like \"1 2 1 1\"") &&
+                        Catch::Matchers::ContainsSubstring("may be \"t x y p\" and \"x y p t\"; give --columns"));
   for (const char* content :
        {"127;171;3811;0\n96;133;3820;1", "0\t96\t133\t0.003811\n1\t127\t171\t0.00382\n", "2 3 4 5\n"}) {
-    CHECK_THROWS_WITH(text(content), Catch::Contains("are neither \"t x y p\" nor \"x y p t\"; give --columns"));
+    CHECK_THROWS_WITH(text(content),
+                      Catch::Matchers::ContainsSubstring("are neither \"t x y p\" nor \"x y p t\"; give --columns"));
   }
-  CHECK_THROWS_WITH(text("0.1 1 2 1 5\n"), Catch::Contains("has 5 columns") && Catch::Contains("give --columns"));
+  CHECK_THROWS_WITH(text("0.1 1 2 1 5\n"), Catch::Matchers::ContainsSubstring("has 5 columns") &&
+                                               Catch::Matchers::ContainsSubstring("give --columns"));
 }
 
 TEST_CASE("Columns that are asked for stand in place of those that are found, or named in the file") {
   const std::string content = "96 133 3.811 1 9\n127 171 3.82 0 9\n";  // y x t[ms] p
-  CHECK_THROWS_WITH(text(content), Catch::Contains("has 5 columns"));
+  CHECK_THROWS_WITH(text(content), Catch::Matchers::ContainsSubstring("has 5 columns"));
   for (const std::string header : {"", "a b c d e\n"}) {
     const auto reader = text(header + content, {.columns = "y,x,t_ms,p,other"});
     CHECK((read_all(*reader) == std::vector<Event>{{3811, 133, 96, true}, {3820, 171, 127, false}}));
@@ -225,8 +227,10 @@ TEST_CASE("Columns that are asked for stand in place of those that are found, or
     CHECK(metadata(*reader, "unit of time") == "milliseconds");
     CHECK(reader->faults().empty());
   }
-  CHECK_THROWS_WITH(text(content, {.columns = "t,x,y"}), Catch::Contains("what is asked for: names the columns"));
-  CHECK_THROWS_WITH(text(content, {.columns = "t,x,y,p"}), Catch::Contains("5 columns; expected 4, as they are named"));
+  CHECK_THROWS_WITH(text(content, {.columns = "t,x,y"}),
+                    Catch::Matchers::ContainsSubstring("what is asked for: names the columns"));
+  CHECK_THROWS_WITH(text(content, {.columns = "t,x,y,p"}),
+                    Catch::Matchers::ContainsSubstring("5 columns; expected 4, as they are named"));
 }
 
 TEST_CASE("Without pictures a calibration that fits the Event-Camera Dataset's sensor tells its size") {
@@ -259,14 +263,15 @@ TEST_CASE("The pictures' times beside the events are told") {
   folder.write("images.txt", "0.5 images/a.png\n0.75 images/b.png\n");
   CHECK(metadata(*open_events(folder.file("events.txt")), "pictures") == "2 in images.txt, 0.500 to 0.750 s");
   folder.write("images.txt", "0.5\n");
-  CHECK_THAT(metadata(*open_events(folder.file("events.txt")), "pictures"), Catch::Contains("expected"));
+  CHECK_THAT(metadata(*open_events(folder.file("events.txt")), "pictures"),
+             Catch::Matchers::ContainsSubstring("expected"));
 }
 
 TEST_CASE("Times too late for microseconds ask for their unit, times of day are read to the microsecond") {
   const std::string nanoseconds = "1700000000123456789 1 2 1\n";
-  CHECK_THROWS_WITH(
-      text(nanoseconds),
-      Catch::Contains("too late for microseconds; give --columns (source.columns in a run's config) with t_ns"));
+  CHECK_THROWS_WITH(text(nanoseconds),
+                    Catch::Matchers::ContainsSubstring(
+                        "too late for microseconds; give --columns (source.columns in a run's config) with t_ns"));
   CHECK(read_all(*text(nanoseconds, {.columns = "t_ns,x,y,p"})).front().t == 1'700'000'000'123'457);
   CHECK(events_of("1700000000.123456789 1 2 1\n").front().t == 1'700'000'000'123'457);
 }
@@ -338,7 +343,8 @@ TEST_CASE("A recording is read alike from a folder, a zip, and a zip of a folder
     CHECK(reader->info().width == 240);
     CHECK(reader->info().height == 180);
     CHECK(metadata(*reader, "beside the events") == "calib.txt, groundtruth.txt");
-    CHECK_THROWS_WITH(open_events(folder.file(name), {.topic = "/left"}), Catch::Contains("no topics or groups"));
+    CHECK_THROWS_WITH(open_events(folder.file(name), {.topic = "/left"}),
+                      Catch::Matchers::ContainsSubstring("no topics or groups"));
     REQUIRE(reader->calibration());
     CHECK(reader->calibration()->pinhole.fx == 199.1);
     REQUIRE(reader->ground_truth());
@@ -349,13 +355,15 @@ TEST_CASE("A recording is read alike from a folder, a zip, and a zip of a folder
 TEST_CASE("A zip that is broken, or without events, is refused, and a broken file in it is named") {
   const TemporaryFolder folder;
   write_zip(folder.file("none.zip"), {{"readme.txt", "no events"}});
-  CHECK_THROWS_WITH(open_events(folder.file("none.zip")), Catch::Contains("none.zip: has no events.txt"));
+  CHECK_THROWS_WITH(open_events(folder.file("none.zip")),
+                    Catch::Matchers::ContainsSubstring("none.zip: has no events.txt"));
   write_zip(folder.file("poses.zip"), {kRecording[0], {"groundtruth.txt", "0.1 0 0\n"}});
   CHECK_THROWS_WITH(open_events(folder.file("poses.zip"))->ground_truth(),
-                    Catch::Contains("poses.zip/groundtruth.txt:1"));
+                    Catch::Matchers::ContainsSubstring("poses.zip/groundtruth.txt:1"));
   write_zip(folder.file("two.zip"), {{"a/events.txt", "0.1 1 2 1\n"}, {"b/events.txt", "0.1 1 2 1\n"}});
   CHECK_THROWS_WITH(open_events(folder.file("two.zip")),
-                    Catch::Contains("two.zip: holds several recordings (a/events.txt, b/events.txt); expected one"));
+                    Catch::Matchers::ContainsSubstring(
+                        "two.zip: holds several recordings (a/events.txt, b/events.txt); expected one"));
   write_zip(folder.file("whole.zip"), kRecording);
   const std::string whole = read_file(folder.file("whole.zip"));
   for (std::size_t size = 4; size < whole.size(); size += 7) {
@@ -376,7 +384,7 @@ TEST_CASE("What a zip blows up to is not kept in memory") {
   const auto reader = open_events(folder.file("bomb.zip"));
   CHECK((read_all(*reader) == kTwo));
   CHECK(fault_counts(*reader) == std::vector<std::int64_t>{1});
-  CHECK_THROWS_WITH(reader->ground_truth(), Catch::Contains("groundtruth.txt: has more than"));
+  CHECK_THROWS_WITH(reader->ground_truth(), Catch::Matchers::ContainsSubstring("groundtruth.txt: has more than"));
 }
 
 TEST_CASE("Texts truncated anywhere, or with any bytes, are read as far as they go") {

@@ -19,7 +19,7 @@ constexpr std::size_t kLongestLine = 1 << 16;
 // How far behind a line's beginning parse_common may look: half of it for where a column begins, half for the column.
 constexpr std::ptrdiff_t kReach = 160;
 constexpr std::uint64_t kPowers[] = {1, 10, 100, 1000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
-constexpr double kLatest = 9e18;  // [us], about what 64 bits hold
+constexpr double kLatestTime = 9e18;  // [us], about what 64 bits hold
 
 struct Digits {
   std::uint64_t value = 0;
@@ -106,7 +106,7 @@ bool parse_time(std::string_view text, TimeUnit unit, std::int64_t& t) {
   double number = 0.0;
   if (!parse_number(text, number)) return false;
   number *= 1e6 / per_second(unit);
-  if (std::abs(number) > kLatest) return false;
+  if (std::abs(number) > kLatestTime) return false;
   t = std::llround(number);
   return true;
 }

@@ -135,9 +135,9 @@ std::vector<Column> find_order(const Rows& rows, const std::string& place) {
 
 /// Without a name that says it.
 TimeUnit find_unit(const Rows& rows, std::size_t time, const std::string& place) {
-  constexpr double kLatest = 1e17;  // [µs], the year 5000: in nanoseconds that is 1973
+  constexpr double kLatestMicroseconds = 1e17;  // [µs], the year 5000: in nanoseconds that is 1973
   if (std::ranges::any_of(rows, [&](const Row& row) { return row.have_points[time]; })) return TimeUnit::seconds;
-  if (rows.front().values[time] < kLatest) return TimeUnit::microseconds;
+  if (rows.front().values[time] < kLatestMicroseconds) return TimeUnit::microseconds;
   throw InputError(
       fmt::format("{}: has the time {}, too late for microseconds; give --columns (source.columns in a run's config) "
                   "with t_ns, if it is that",

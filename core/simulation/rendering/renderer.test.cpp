@@ -2,11 +2,11 @@
 
 #include <tbb/global_control.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "core/simulation/random.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

@@ -1,8 +1,8 @@
 #include "frontends/haste/tracking/alignment.hpp"
 
-#include <catch2/catch.hpp>
 #include <utility>
 
+#include "core/testing/catch2.hpp"
 #include "frontends/haste/tracking/testing/event_patterns.hpp"
 #include "frontends/haste/tracking/tracker.hpp"
 

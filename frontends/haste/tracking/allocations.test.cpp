@@ -1,5 +1,4 @@
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -7,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/testing/catch2.hpp"
 #include "frontends/haste/tracking/testing/event_patterns.hpp"
 #include "frontends/haste/tracking/tracker_set.hpp"
 

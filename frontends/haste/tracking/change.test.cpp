@@ -1,7 +1,8 @@
 #include "frontends/haste/tracking/change.hpp"
 
-#include <catch2/catch.hpp>
 #include <functional>
+
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::haste;

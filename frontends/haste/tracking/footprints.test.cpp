@@ -1,7 +1,8 @@
 #include "frontends/haste/tracking/footprints.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
+
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::haste;

@@ -1,6 +1,6 @@
 #include "frontends/haste/tracking/score_sigma.hpp"
 
-#include <catch2/catch.hpp>
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::haste;

@@ -1,7 +1,8 @@
 #include "frontends/haste/tracking/template.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
+
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::haste;

@@ -1,8 +1,8 @@
 #include "frontends/haste/tracking/tracker.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 
+#include "core/testing/catch2.hpp"
 #include "frontends/haste/tracking/testing/event_patterns.hpp"
 #include "frontends/haste/tracking/testing/plain_tracker.hpp"
 

@@ -2,10 +2,10 @@
 
 #include <tbb/global_control.h>
 
-#include <catch2/catch.hpp>
 #include <map>
 #include <utility>
 
+#include "core/testing/catch2.hpp"
 #include "frontends/haste/tracking/testing/event_patterns.hpp"
 
 using namespace evbench;

@@ -1,6 +1,7 @@
 #include "frontends/str/dots/circle.hpp"
 
-#include <Eigen/Cholesky>
+#include "core/geometry/solve_symmetric.hpp"
+
 #include <Eigen/QR>
 #include <array>
 #include <cmath>
@@ -38,7 +39,7 @@ std::optional<CircleFit> fit_circle(std::span<const Vector2> points) {
       g += (distance - radius) * J;
     }
     H.diagonal().array() += 1e-9;
-    const Vector3 change = H.ldlt().solve(-g);
+    const Vector3 change = solve_symmetric(H, -g);
     centre += change.head<2>();
     radius += change.z();
   }

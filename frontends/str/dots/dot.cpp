@@ -1,6 +1,7 @@
 #include "frontends/str/dots/dot.hpp"
 
-#include <Eigen/Cholesky>
+#include "core/geometry/solve_symmetric.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -79,7 +80,7 @@ std::optional<Dot::Sighting> Dot::locate() {
     H(4, 4) += of_radius;
     g[4] += of_radius * (r - circle_.radius);
     H.diagonal().head<2>().array() += 1e-6;
-    const Vector5 change = H.ldlt().solve(-g);
+    const Vector5 change = solve_symmetric(H, -g);
     if (!change.allFinite()) return std::nullopt;
     c += change.head<2>();
     v += change.segment<2>(2);

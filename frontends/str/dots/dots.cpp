@@ -11,7 +11,7 @@
 namespace evbench::str {
 namespace {
 
-const evbench::Registration<FrontEnd, Dots> registration(
+const evbench::Registration<FrontEnd, Dots> dots_registration(
     "dots", "follows round dots by the events of their rims, found by registering batches of events", 3);
 
 constexpr int kCell = 32;               // [px]

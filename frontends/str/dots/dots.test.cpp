@@ -1,9 +1,9 @@
 #include "frontends/str/dots/dots.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "core/geometry/so3.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
 #include "core/testing/told_tracks.hpp"
 

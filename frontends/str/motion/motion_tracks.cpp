@@ -12,7 +12,7 @@
 namespace evbench::str {
 namespace {
 
-const evbench::Registration<FrontEnd, MotionTracks> registration(
+const evbench::Registration<FrontEnd, MotionTracks> motion_registration(
     "str_motion", "registers batches of events as point clouds; tracks are points that the motion of the image carries",
     3);
 

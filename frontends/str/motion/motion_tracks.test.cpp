@@ -1,9 +1,9 @@
 #include "frontends/str/motion/motion_tracks.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "core/geometry/so3.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
 #include "core/testing/told_tracks.hpp"
 
@@ -150,5 +150,6 @@ TEST_CASE("Without events str_motion tells nothing, and a source that has none i
     Nothing() : EventScene(to_and_fro, 0.01, {}) {}
     std::unique_ptr<EventReader> all_events() const override { return nullptr; }
   };
-  CHECK_THROWS_WITH(MotionTracks({}, {Nothing(), 0, ""}), Catch::Matchers::Contains("str_motion works on events"));
+  CHECK_THROWS_WITH(MotionTracks({}, {Nothing(), 0, ""}),
+                    Catch::Matchers::ContainsSubstring("str_motion works on events"));
 }

@@ -1,6 +1,7 @@
 #include "frontends/str/registration/alignment.hpp"
 
-#include <Eigen/Cholesky>
+#include "core/geometry/solve_symmetric.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -161,7 +162,7 @@ Alignment Aligner::align_with(const EventCloud& queries, MotionModel model, cons
     result.fit = fit / static_cast<double>(asked->size());
     result.residual = std::sqrt(squares / static_cast<double>(counted));
     const double damping = 1e-6 * H.trace() + 1e-12;
-    const Vector step = (H + damping * Hessian::Identity()).ldlt().solve(-g);
+    const Vector step = solve_symmetric(H + damping * Hessian::Identity(), -g);
     if (!step.allFinite()) return result;
     Matrix3 change = Matrix3::Zero();
     for (int k = 0; k < P; ++k) change += step[k] * generators(model)[static_cast<std::size_t>(k)];

@@ -1,8 +1,7 @@
 #include "frontends/str/registration/motion_model.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/geometry/so3.hpp"
+#include "core/testing/catch2.hpp"
 #include "frontends/str/registration/event_cloud.hpp"
 
 using namespace evbench;

@@ -1,9 +1,9 @@
 #include "frontends/str/registration/neighbour_grid.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "core/simulation/random.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::str;

@@ -1,10 +1,9 @@
 // Against contrast maximisation, on real events.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
-
 #include "core/data/calib.hpp"
 #include "core/events/event_stream.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 #include "frontends/str/registration/registration.hpp"
 #include "frontends/str/registration/testing/contrast.hpp"

@@ -1,9 +1,8 @@
 #include "frontends/str/registration/registration.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/geometry/so3.hpp"
 #include "core/simulation/random.hpp"
+#include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
 #include "frontends/str/registration/testing/rotation_recording.hpp"
 

@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "bench/battery/battery.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 
@@ -16,5 +15,6 @@ TEST_CASE("NAME does what every back-end must do") {
 TEST_CASE("NAME tells what is wrong with its options") {
   const Plugins plugins = registered_plugins();
   const auto& entry = plugins.of<BackEnd>().find("NAME", "test");
-  CHECK_THROWS_WITH(entry.resolve({{"period", 0}}, "test", ""), Catch::Matchers::Contains("period: 0 is out of range"));
+  CHECK_THROWS_WITH(entry.resolve({{"period", 0}}, "test", ""),
+                    Catch::Matchers::ContainsSubstring("period: 0 is out of range"));
 }

@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "bench/battery/battery.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 

@@ -1,4 +1,0 @@
-// The same for the program's commands.
-#include <CLI/CLI.hpp>
-
-#include "cmake/precompiled.hpp"

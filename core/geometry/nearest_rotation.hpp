@@ -1,0 +1,18 @@
+#pragma once
+
+#include "core/geometry/types.hpp"
+
+namespace evbench {
+
+/// The rotation R with the largest tr(Rᵀ M), which is also the nearest to M (Frobenius norm), and the singular value
+/// decomposition that it comes from. Umeyama 1991.
+struct NearestRotation {
+  Matrix3 R;
+  double trace = 0.0;             ///< tr(Rᵀ M)
+  Vector3 values = {0, 0, 0};     ///< singular values of M, falling
+  Vector3 direction = {0, 0, 1};  ///< right singular vector of the largest
+};
+
+NearestRotation nearest_rotation(const Matrix3& M);
+
+}  // namespace evbench

@@ -1,0 +1,21 @@
+#pragma once
+
+// Catch2, of either version that distributions have: tests are written in the words of version 3.
+#if __has_include(<catch2/catch_all.hpp>)
+#include <catch2/catch_all.hpp>
+
+using Catch::Approx;
+#else
+#include <catch2/catch.hpp>
+
+#include <string>
+
+namespace Catch::Matchers {
+
+inline StdString::ContainsMatcher ContainsSubstring(const std::string& text,
+                                                    CaseSensitive::Choice sensitivity = CaseSensitive::Yes) {
+  return Contains(text, sensitivity);
+}
+
+}  // namespace Catch::Matchers
+#endif
