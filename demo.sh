@@ -3,7 +3,8 @@
 # sequence and, where the recordings are at hand (EVBENCH_DATA), on real tracks. Writes results/.
 set -euo pipefail
 cd "$(dirname "$0")"
-./setup.sh release evbench
+echo "== On two cores this takes some five minutes the first time, most of them compiling; one minute from then on."
+./setup.sh --for figures release evbench
 evbench=build/release/bin/evbench
 
 echo "== From events to a trajectory: 10 s before a textured wall, simulated"
@@ -16,3 +17,11 @@ if [ -n "${EVBENCH_DATA:-}" ]; then
 else
   echo "== EVBENCH_DATA is not set: the comparison on real tracks (configs/paper/table1_poster_translation.json) is left out"
 fi
+
+cat <<'END'
+== What next:
+export PATH=$PWD/build/release/bin:$PATH
+evbench table results/table1_simulated --format markdown                           # a table for a paper, again
+evbench figure trajectory results/table1_simulated --out trajectories.svg          # and a figure of its runs
+evbench sweep configs/examples/simulated_tracks.json --over seed=1..5 -j 2         # over seeds
+END

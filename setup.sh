@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs the packages that evbench needs (packages.txt; Debian and its relatives) and builds it, in build/PRESET.
-#   ./setup.sh [--for figures|tests]... [PRESET [TARGET...]]     PRESET: release (default), or one of CMakePresets.json
-# Without --for: what building and running need. With --for tests the tests are built, too.
+#   ./setup.sh [--for figures|tests]... [--set OPTION=VALUE]... [PRESET [TARGET...]]
+# PRESET: release (default), or another one of CMakePresets.json. --for: packages for more than building and running; with
+# "tests" the tests are built, too. --set: an option of CMakeLists.txt, e.g. EVBENCH_MICRO=ON; it stays until it is set anew.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -9,11 +10,15 @@ purposes=(build run)
 options=()
 while [ $# -gt 0 ]; do
   case $1 in
-    -h | --help) sed -n '2,4s/^# //p' setup.sh && exit ;;
+    -h | --help) sed -n '2,5s/^# //p' setup.sh && exit ;;
     --for)
       [ $# -gt 1 ] && grep -qx "\[$2\]" packages.txt || { echo "setup.sh: --for needs a section of packages.txt" >&2; exit 2; }
       purposes+=("$2")
       [ "$2" = tests ] && options+=(-DEVBENCH_TESTS=ON)
+      shift 2 ;;
+    --set)
+      [[ ${2:-} == *=* ]] || { echo "setup.sh: --set needs OPTION=VALUE, an option of CMakeLists.txt" >&2; exit 2; }
+      options+=("-D$2")
       shift 2 ;;
     -*) echo "setup.sh: there is no option $1; ./setup.sh --help lists them" >&2 && exit 2 ;;
     *) break ;;

@@ -1,14 +1,28 @@
 #!/usr/bin/env bash
-# Sets everything up and passes the tests: ./test.sh [release|debug|sanitize|fuzz]...; without a name, fuzz and release.
+# Sets everything up and passes the tests:
+#   ./test.sh                 the fuzz targets for some seconds each, and all tests: what every commit must pass
+#   ./test.sh STAGE...        fast       the tests that take less than a second
+#                             long       random sequences and kills by the hundred thousand
+#                             sanitize   all tests with AddressSanitizer and UndefinedBehaviorSanitizer
+#                             thread     what runs in several threads, with ThreadSanitizer
+#                             release, debug, clang, fuzz      all tests of that preset
 # Tests of real data need EVBENCH_DATA and EVBENCH_PROBLEMS (README.md); without them they say that they are skipped.
 set -euo pipefail
 cd "$(dirname "$0")"
+case ${1:-} in
+  -h | --help) sed -n '2,9s/^# //p' test.sh && exit ;;
+esac
 [ $# -gt 0 ] || set -- fuzz release
 failed=()
-for preset in "$@"; do
-  ./setup.sh "$preset"
-  echo "== testing (preset $preset)"
-  ctest --preset "$preset" -j "$(nproc)" || failed+=("$preset")
+for stage in "$@"; do
+  case $stage in
+    fast) preset=release test=(release -L '^fast$') ;;
+    long) preset=release test=(long) ;;
+    *) preset=$stage test=("$stage") ;;
+  esac
+  ./setup.sh --for tests --for figures "$preset"
+  echo "== testing ($stage)"
+  ctest --preset "${test[@]}" -j "$(nproc)" || failed+=("$stage")
 done
 if [ ${#failed[@]} -gt 0 ]; then
   echo "test.sh: tests fail: ${failed[*]}" >&2

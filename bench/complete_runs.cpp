@@ -7,9 +7,10 @@
 
 #include "bench/run_folder.hpp"
 #include "core/io/sha256.hpp"
+#include "core/plugin/write_options.hpp"
+#include "core/support/json.hpp"
 #include "eval/json_file.hpp"
 #include "eval/score_run.hpp"
-#include "core/support/json.hpp"
 
 // Runs that lie there already: found, copied, renamed, scored again.
 

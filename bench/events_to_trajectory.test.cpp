@@ -5,12 +5,12 @@
 
 #include "bench/runner.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/support/json.hpp"
 #include "core/support/median.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
 #include "eval/alignment.hpp"
 #include "eval/latency.hpp"
-#include "core/support/json.hpp"
 
 // From events to a trajectory, by haste and gp_map, with what the world throws at a camera.
 using namespace evbench;
@@ -82,7 +82,7 @@ void check_recovered(const Source& source, const Execution& execution, double fr
   CHECK(piece->final_trajectory.start() < from + kMissing);
   CHECK(piece->final_trajectory.end() > source.time_range().to - kMissing);
   CHECK(error(source, execution, from) < kMostError);
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(EVBENCH_SANITIZED)
   CHECK(result.peak_rss_mib < kMostMemory);
 #endif
 }

@@ -12,9 +12,10 @@
 
 #include "core/io/path.hpp"
 #include "core/io/spool.hpp"
+#include "core/plugin/write_options.hpp"
 #include "core/support/interruption.hpp"
-#include "core/support/json_reason.hpp"
 #include "core/support/json.hpp"
+#include "core/support/json_reason.hpp"
 
 namespace evbench {
 namespace {

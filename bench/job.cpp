@@ -8,6 +8,7 @@
 
 #include "core/io/path.hpp"
 #include "core/io/sha256.hpp"
+#include "core/plugin/write_options.hpp"
 #include "core/support/error.hpp"
 #include "core/support/json.hpp"
 

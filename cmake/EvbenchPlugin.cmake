@@ -5,7 +5,7 @@
 # and evbench::events.
 #
 # TESTS: sources for Catch2, built with the plugin's into the program NAME_tests, a test of ctest's; they may use the
-# conformance battery (bench/battery/). Left out, with a line that says so, where Catch2 or evbench's part for it is not.
+# conformance battery (bench/battery/). Left out, with a line that says so, where Catch2 is not there.
 #
 # The plugin has a copy of its own of all of evbench that it uses, and shows nothing of it, so that it and the program
 # don't mix: state that the program keeps (further formats of events, a request to end) is not the copy's. It is built
@@ -60,19 +60,19 @@ function(evbench_plugin_flags target)
     target_compile_options(${target} PRIVATE -march=native)
   endif()
   if(EVBENCH_SANITIZE)
-    target_compile_options(${target} PRIVATE -fsanitize=address,undefined)
-    target_link_options(${target} PRIVATE -fsanitize=address,undefined)
+    target_compile_options(${target} PRIVATE -fsanitize=${EVBENCH_SANITIZE})
+    target_link_options(${target} PRIVATE -fsanitize=${EVBENCH_SANITIZE})
   endif()
 endfunction()
 
 function(evbench_plugin_tests name)
-  find_package(Catch2 2 QUIET)
-  if(NOT TARGET Catch2::Catch2 OR NOT TARGET evbench::test_main)
-    message(STATUS "${name}: built without its tests, which need Catch2 and an evbench that was built with tests")
+  find_package(Catch2 QUIET)
+  if(NOT TARGET Catch2::Catch2)
+    message(STATUS "${name}: built without its tests, which need Catch2")
     return()
   endif()
-  add_executable(${name}_tests ${ARGN})
-  target_link_libraries(${name}_tests PRIVATE ${name}_objects evbench::battery evbench::test_main)
+  add_executable(${name}_tests ${ARGN} ${EVBENCH_PLUGIN_TEST_MAIN})
+  target_link_libraries(${name}_tests PRIVATE ${name}_objects evbench::battery Catch2::Catch2)
   evbench_plugin_flags(${name}_tests)
   add_test(NAME ${name} COMMAND ${name}_tests)
 endfunction()

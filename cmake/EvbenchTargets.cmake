@@ -21,10 +21,12 @@ if(EVBENCH_FUZZ)
   target_compile_options(evbench_flags INTERFACE ${fuzz_flags} -D_GLIBCXX_ASSERTIONS)
   target_link_options(evbench_flags INTERFACE ${fuzz_flags})
 endif()
+set(EVBENCH_SANITIZE_FLAGS "")
 if(EVBENCH_SANITIZE)
-  target_compile_options(evbench_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
-                                                 -fno-omit-frame-pointer)
-  target_link_options(evbench_flags INTERFACE -fsanitize=address,undefined)
+  set(EVBENCH_SANITIZE_FLAGS -fsanitize=${EVBENCH_SANITIZE})
+  target_compile_options(evbench_flags INTERFACE ${EVBENCH_SANITIZE_FLAGS} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_compile_definitions(evbench_flags INTERFACE EVBENCH_SANITIZED _GLIBCXX_ASSERTIONS)
+  target_link_options(evbench_flags INTERFACE ${EVBENCH_SANITIZE_FLAGS})
 endif()
 
 # evbench_precompile(TARGET HEADER): with EVBENCH_PRECOMPILE, all targets of one header read it precompiled by the first.
@@ -77,19 +79,39 @@ function(evbench_tests name)
   endif()
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
   if(NOT TARGET evbench_test_support)
-    evbench_library(evbench_test_main STATIC SOURCES ${CMAKE_SOURCE_DIR}/core/testing/main.cpp
-                    LINKS Catch2::Catch2 evbench::core)
-    evbench_library(evbench_test_support STATIC SOURCES ${CMAKE_SOURCE_DIR}/core/testing/data.cpp
-                    LINKS evbench_test_main evbench::core PRECOMPILED precompiled_test)
+    set(testing ${CMAKE_SOURCE_DIR}/core/testing)
+    set_source_files_properties(${EVBENCH_PLUGIN_TEST_MAIN} PROPERTIES SKIP_PRECOMPILE_HEADERS ON
+                                                                       SKIP_UNITY_BUILD_INCLUSION ON)
+    evbench_library(evbench_test_support STATIC SOURCES ${testing}/data.cpp ${EVBENCH_PLUGIN_TEST_MAIN}
+                    LINKS Catch2::Catch2 evbench::core PRECOMPILED precompiled_test)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINKS} evbench_test_support evbench_flags)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # what is tested is optimised fully: its libraries
   evbench_precompile(${name} precompiled_test)
   evbench_group(${name} "")
-  catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:"
-                       TIMEOUT ${EVBENCH_TEST_SECONDS}
-                       FAIL_REGULAR_EXPRESSION "No tests ran")  # of a name that ctest takes apart, at a semicolon
+  # Each label's tests, from the one that starts first. COST: ctest starts what costs most first.
+  set(tags "")
+  foreach(source IN LISTS ARG_SOURCES)
+    file(STRINGS ${source} tagged REGEX "\\[(long|cluster|slow)\\]")
+    string(APPEND tags "${tagged}")
+  endforeach()
+  set(others "")
+  foreach(label long cluster slow fast)
+    if(label STREQUAL "fast")
+      set(spec "${others}~[.]")
+      set(cost 1)
+    elseif(tags MATCHES "\\[${label}\\]")
+      set(spec "${others}[${label}]")
+      set(cost 100)
+    else()
+      continue()
+    endif()
+    catch_discover_tests(${name} TEST_SPEC "${spec}" TEST_PREFIX "${name}: " PROPERTIES LABELS ${label} COST ${cost}
+                         SKIP_REGULAR_EXPRESSION "SKIPPED:" TIMEOUT ${EVBENCH_TEST_SECONDS}
+                         FAIL_REGULAR_EXPRESSION "No tests ran")  # of a name that ctest takes apart, at a semicolon
+    string(APPEND others "~[${label}]")
+  endforeach()
 endfunction()
 
 # evbench_fuzz_targets(CORPUS archive LINKS ... [CORPUS_ONLY ...]): each NAME.fuzz.cpp in and below a folder as a
@@ -133,7 +155,7 @@ function(evbench_fuzz_targets)
                      -malloc_limit_mb=700 -print_final_stats=1
                      -artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/findings/${name}-
                      ${found} ${kept}/${name})
-    set_tests_properties("fuzz: ${name}" PROPERTIES TIMEOUT ${most_seconds})
+    set_tests_properties("fuzz: ${name}" PROPERTIES TIMEOUT ${most_seconds} LABELS fuzz)
   endforeach()
 endfunction()
 
@@ -159,6 +181,8 @@ function(evbench_install_package)
                                 ${CMAKE_BINARY_DIR}/package/evbenchConfig.cmake INSTALL_DESTINATION ${package})
   write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/evbenchConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${CMAKE_BINARY_DIR}/package/evbenchConfig.cmake ${CMAKE_BINARY_DIR}/package/evbenchConfigVersion.cmake
-                ${CMAKE_SOURCE_DIR}/cmake/EvbenchPlugin.cmake ${CMAKE_SOURCE_DIR}/cmake/plugin_entry.cpp
+                ${CMAKE_SOURCE_DIR}/cmake/EvbenchPlugin.cmake ${EVBENCH_PLUGIN_ENTRY} ${EVBENCH_PLUGIN_TEST_MAIN}
           DESTINATION ${package})
+  install(FILES ${CMAKE_SOURCE_DIR}/core/testing/catch2.hpp
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/evbench/core/testing)
 endfunction()

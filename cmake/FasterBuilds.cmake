@@ -1,4 +1,8 @@
-# ccache and a fast linker, where they are there.
+# What makes building faster and changes nothing of what is built: ccache and a fast linker where they are there.
+
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(--param=ggc-min-heapsize=524288)  # [kB] it looks for garbage later: a tenth of its time
+endif()
 
 if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
   find_program(EVBENCH_CCACHE ccache)

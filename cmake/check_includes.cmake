@@ -1,6 +1,6 @@
 # cmake -DROOT=... -P check_includes.cmake: each folder includes only what it may use. core: core; eval: core; a
 # front-end or back-end: core and its own folder; bench: everything. Tests may use eval and all of testing/ besides.
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.22)
 
 function(check_folder folder)
   set(allowed core ${ARGN} ${folder})

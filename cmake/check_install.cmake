@@ -1,7 +1,7 @@
 # cmake -DBUILD=... -DWORK=... -DGENERATOR=... [-DFLAGS=...] -P check_install.cmake: installs to a temporary prefix. As a
 # stranger would, outside the build tree, builds and runs a program that finds evbench there, and takes a new plugin of
 # each kind from `evbench new-plugin` to a table; then gives the program libraries that are no plugins of this evbench.
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.22)
 
 include(${CMAKE_CURRENT_LIST_DIR}/as_stranger.cmake)
 set(kinds backend frontend source)
@@ -13,7 +13,7 @@ endforeach()
 
 # All in one project, which is configured once.
 file(WRITE ${WORK}/project/CMakeLists.txt [[
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.22)
 project(stranger LANGUAGES CXX)
 enable_testing()
 foreach(kind backend frontend source)

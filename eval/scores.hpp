@@ -32,39 +32,7 @@ struct ScoreOptions {
   OptionSet::List segment_lengths = {};
   std::string segment_unit = "metres";
 
-  void declare(OptionSet& set) {
-    set.add("alignment", alignment, "how the estimate is carried to the ground truth")
-        .choices(to_strings(kAlignmentNames));
-    set.add("align_first", align_first, "align on this many first poses only; 0: on all").range(0);
-    set.add("align_range", align_range, "align on the poses in this time range only [s]; empty: on all")
-        .size(2)
-        .rising();
-    set.add("association", association, "which ground truth a pose is compared with")
-        .choices(to_strings(kAssociationNames));
-    set.add("tolerance", tolerance, "no ground truth this near in time to a pose: it is not compared [s]").range(0.0);
-    set.add("time_offset", time_offset, "added to the estimate's times [s]");
-    set.add("time_range", time_range, "evaluate in this time range of the ground truth only [s]; empty: all")
-        .size(2)
-        .rising();
-    set.add("min_pairs", min_pairs, "fewer compared poses are an error").range(3);
-    set.add("latency", latency,
-            "how long one waits for each online pose, the same for all back-ends of a table: scores at equal latency "
-            "[s]")
-        .range(0.0, 10.0);
-    set.add("rpe_delta", rpe_delta, "distance of the two poses of a relative error [rpe_unit]").above(0.0);
-    set.add("rpe_unit", rpe_unit, "what that distance is measured in").choices(to_strings(kDeltaUnitNames));
-    set.add("rpe_pairing", rpe_pairing, "from every pose, or in one chain").choices(to_strings(kPairingNames));
-    set.add("rpe_tolerance", rpe_tolerance, "how far a pair may be from rpe_delta, relative to it").range(0.0);
-    set.add("rpe_pairs_from", rpe_pairs_from, "whose path and angles the distance is measured on, metres and degrees")
-        .choices(to_strings(kPairSourceNames));
-    set.add("segments", segments, "whose definition of errors over sub-trajectories is added, in % and deg/m")
-        .choices(to_strings(kSegmentRuleNames));
-    set.add("segment_lengths", segment_lengths,
-            "lengths of sub-trajectories [segment_unit]; empty: 10 to 50 % (rpg), 100 to 800 m (kitti)")
-        .above(0.0);
-    set.add("segment_unit", segment_unit, "what these lengths are in: metres, or percent of the ground truth's path")
-        .choices(to_strings(kLengthUnitNames));
-  }
+  void declare(OptionSet& set);
 };
 
 struct AbsoluteScores {

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 #include "backends/gp_map/gp_map.hpp"
@@ -31,8 +30,8 @@ void GpMap::tell_recent(double t) {
     context_.online({{t, states.back().T}, t, states.back().velocity});
     online_ = t;
   }
-  for (const ControlState& state : std::views::reverse(states.first(states.size() - 1))) {
-    context_.online({{state.t, state.T}, t, state.velocity});
+  for (std::size_t i = states.size() - 1; i-- > 0;) {
+    context_.online({{states[i].t, states[i].T}, t, states[i].velocity});
   }
 }
 

@@ -7,9 +7,9 @@
 
 #include "backends/gp_map/testing/tracked_scene.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/support/json.hpp"
 #include "core/support/median.hpp"
 #include "core/testing/catch2.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -281,7 +281,7 @@ TEST_CASE("With a lag there is no problem to give, and the trajectory has its be
   CHECK_FALSE(result.backend->problem());
 }
 
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(EVBENCH_SANITIZED)
 TEST_CASE("With a lag, memory grows by the results alone") {
   const TrackedScene scene(45.0, R"({"tracks": {"lifetime": [1.0, 4.0], "outlier_share": 0.1}})");
   const auto bytes_per_state = [&](const char* options) {

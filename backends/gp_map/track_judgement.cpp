@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
-#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -15,7 +15,7 @@ namespace evbench::gp_map {
 namespace {
 
 // While running, when less is known than in the end:
-constexpr double kHasty = 2.0;   ///< times farther off than in the end is what goes
+constexpr double kHasty = 2.0;             ///< times farther off than in the end is what goes
 constexpr double kTrackNoiseChange = 1.5;  ///< by which a track's noise must change to be set anew
 
 using Judged = std::vector<std::pair<int, TrackErrors>>;  ///< by landmark
@@ -54,9 +54,10 @@ double tail_of(const Judged& errors) {
 /// that are seen together are far off, it is the motion that is wrong, and none of them.
 std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double threshold, const TimeSpan& span) {
   const auto seen = [&](int j) {
-    return std::views::filter(graph.landmarks[index(j)].intervals, [&](int k) {
-      return span.meets(graph.states[index(k - 1)].t, graph.states[index(k)].t);
-    });
+    std::vector<int> intervals;
+    std::ranges::copy_if(graph.landmarks[index(j)].intervals, std::back_inserter(intervals),
+                         [&](int k) { return span.meets(graph.states[index(k - 1)].t, graph.states[index(k)].t); });
+    return intervals;
   };
   std::vector<int> far;
   std::map<int, std::pair<int, int>> far_of;  // by interval: of so many that are seen in it so many are far off

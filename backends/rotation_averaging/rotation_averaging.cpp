@@ -17,6 +17,17 @@ const Registration<BackEnd, RotationAveraging> registration(
 
 }  // namespace
 
+void RotationAveraging::Options::declare(OptionSet& set) {
+  set.add("interval", interval, "time between two frames [s]").range(1e-3, 1.0);
+  set.add("reach", reach, "pairs are 1, 2, 4, ... frames apart, at most so many").range(1, 10'000);
+  set.add("least_tracks", least_tracks, "tracks that a pair of frames has in common, at least").range(3);
+  set.add("robust_scale", robust_scale, "distance from where a rotation takes it at which a track counts half [px]")
+      .above(0.0);
+  set.add("longest_gap", longest_gap,
+          "between two observations further apart a track is not interpolated; frames are this late [s]")
+      .above(0.0);
+}
+
 RotationAveraging::RotationAveraging(const Options& options, const BackEndContext& context)
     : options_(options), context_(context), monitor_(context.patience) {}
 

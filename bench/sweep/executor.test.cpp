@@ -12,10 +12,10 @@
 #include "bench/testing/keys.hpp"
 #include "bench/testing/sweeps.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "eval/find_runs.hpp"
 #include "eval/table.hpp"
-#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -94,7 +94,7 @@ class TroubledSource : public Source {
 
 const Registration<Source, TroubledSource> source_registration("troubled", "a source that can't be made");
 
-std::vector<PlannedRun> plan(const TemporaryFolder& folder, const Json& config) {
+std::vector<PlannedRun> runs_of(const TemporaryFolder& folder, const Json& config) {
   Plugins plugins = known_plugins();
   return plan_sweep(read_sweep(folder.write("c.json", dump_json(config)), {}, {}, plugins), known_plugins()).runs;
 }
@@ -115,7 +115,7 @@ TEST_CASE("A source that crashes or hangs when it is made leaves the sweep a sen
   const TemporaryFolder folder;
   Json config = tiny_config();
   config["source"] = {{"type", "troubled"}};
-  CHECK_THROWS_WITH(plan(folder, config),
+  CHECK_THROWS_WITH(runs_of(folder, config),
                     ContainsSubstring("source: its process ended when the source was made: killed by "
                                       "SIGSEGV; it said: reading a strange file"));
   config["source"]["what"] = "hang";
@@ -134,7 +134,7 @@ TEST_CASE("A plugin that crashes, hangs or eats memory takes its own run down, w
   for (const char* const what : {"crash", "hang", "eat", "exit", "throw", "die"}) {
     config["backends"].push_back({{"type", "troublemaker"}, {"label", what}, {"what", what}});
   }
-  const std::vector<PlannedRun> runs = plan(folder, config);
+  const std::vector<PlannedRun> runs = runs_of(folder, config);
   // Apart from the others, which may take any time: a slow machine is no reason to fail.
   const std::vector<PlannedRun> hangs = {runs[2]};
   CHECK(run(hangs, {folder.file("out"), 1, {0.3, 0.0}, false}).failed == 1);
@@ -180,14 +180,14 @@ TEST_CASE("A run that is killed from outside is tried once more") {
   const TemporaryFolder folder;
   Json config = tiny_config();
   config["backend"] = {{"type", "troublemaker"}, {"what", "die once"}, {"file", folder.file("here")}};
-  const SweepProgress progress = run(plan(folder, config), {folder.file("out"), 1, {}, false});
+  const SweepProgress progress = run(runs_of(folder, config), {folder.file("out"), 1, {}, false});
   REQUIRE(progress.troubled.size() == 1);
   CHECK(progress.troubled[0].reason == "no estimate is made");  // it came to its end
 }
 
 TEST_CASE("Runs that another process does are waited for, and taken over when it ends without a result") {
   const TemporaryFolder folder;
-  const std::vector<PlannedRun> runs = plan(folder, tiny_config());
+  const std::vector<PlannedRun> runs = runs_of(folder, tiny_config());
   const ExecutorOptions options{folder.file("out"), 1, {}, false};
   auto other = std::make_unique<RunFolder>(options.out, "tiny", runs[0].identity.key);
   bool waited = false;

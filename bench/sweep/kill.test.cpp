@@ -9,8 +9,8 @@
 
 #include "bench/sweep/process_tree.hpp"
 #include "bench/testing/sweeps.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -19,7 +19,7 @@ using Catch::Matchers::ContainsSubstring;
 namespace {
 
 /// A sweep of six runs in `folder`, below `out`.
-const std::string kSweep = "sweep c.json --over seed=1..6 --quiet --out ";
+const std::string kKilledSweep = "sweep c.json --over seed=1..6 --quiet --out ";
 
 /// Starts the program; its process.
 pid_t start(const TemporaryFolder& folder, const std::string& out) {
@@ -51,7 +51,7 @@ int kills() {
 TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the same bytes once it is done again") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
-  REQUIRE(testing::evbench(folder, kSweep + "undisturbed").exit_code == 0);
+  REQUIRE(testing::evbench(folder, kKilledSweep + "undisturbed").exit_code == 0);
   const auto expected = results_of(folder.file("undisturbed/tiny"));
   REQUIRE(expected.size() > 60);
   std::mt19937 random(1);
@@ -71,11 +71,12 @@ TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the 
     }
     if (random() % 3 != 0) continue;  // the next one goes on here
     // A run that was killed twice is told as failed: it is asked for again.
-    REQUIRE(testing::evbench(folder, kSweep + out + " --retry-failed").exit_code == 0);
+    REQUIRE(testing::evbench(folder, kKilledSweep + out + " --retry-failed").exit_code == 0);
     CHECK(difference(expected, results_of(folder.file(out + "/tiny"))) == "");
     ++sweeps;
   }
-  REQUIRE(testing::evbench(folder, kSweep + "killed" + std::to_string(sweeps) + " --retry-failed").exit_code == 0);
+  REQUIRE(testing::evbench(folder, kKilledSweep + "killed" + std::to_string(sweeps) + " --retry-failed").exit_code ==
+          0);
   CHECK(difference(expected, results_of(folder.file("killed" + std::to_string(sweeps) + "/tiny"))) == "");
   CHECK(of_sweeps > 0);
 }
@@ -83,11 +84,11 @@ TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the 
 TEST_CASE("A run that is complete while its writer is still ending is taken when that is gone, and no lock stays") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
-  REQUIRE(testing::evbench(folder, kSweep + "out").exit_code == 0);
+  REQUIRE(testing::evbench(folder, kKilledSweep + "out").exit_code == 0);
   const auto expected = results_of(folder.file("out/tiny"));
   const Outcome outcome = testing::shell(
       folder, "lock=$(ls -d out/tiny/*-* | head -1).evbench.lock; flock $lock sleep 1 & sleep 0.2; \"$evbench\" " +
-                  kSweep + "out; wait");
+                  kKilledSweep + "out; wait");
   CHECK(outcome.exit_code == 0);
   CHECK(difference(expected, results_of(folder.file("out/tiny"))) == "");
 }
@@ -101,11 +102,11 @@ TEST_CASE("A sweep onto a full disk says so and loses nothing: with more room it
     std::printf("SKIPPED: no tmpfs can be mounted here\n");
     return;
   }
-  REQUIRE(testing::evbench(folder, kSweep + "undisturbed").exit_code == 0);
+  REQUIRE(testing::evbench(folder, kKilledSweep + "undisturbed").exit_code == 0);
   int full = 0;
   for (int size = 64; full < 20; size += 96) {
     const Outcome outcome = testing::shell(
-        folder, "mount -o remount,size=" + std::to_string(size) + "k disk && \"$evbench\" " + kSweep + "disk");
+        folder, "mount -o remount,size=" + std::to_string(size) + "k disk && \"$evbench\" " + kKilledSweep + "disk");
     if (outcome.exit_code == 0) break;
     ++full;
     CHECK(outcome.exit_code == 4);

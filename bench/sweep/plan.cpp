@@ -9,10 +9,11 @@
 
 #include "bench/sweep/process_pool.hpp"
 #include "core/io/sha256.hpp"
+#include "core/plugin/write_options.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
-#include "core/support/nearest.hpp"
 #include "core/support/json.hpp"
+#include "core/support/nearest.hpp"
 
 namespace evbench {
 namespace {
@@ -128,7 +129,9 @@ class Planner {
     }
   }
 
-  static std::string source_of(const Job& job) { return fmt::format("{} {}", job.seed, dump_json(job.source.with_type())); }
+  static std::string source_of(const Job& job) {
+    return fmt::format("{} {}", job.seed, dump_json(job.source.with_type()));
+  }
 
   /// Makes each source once, for the files that it reads; in a process of their own: one that crashes or hangs when it
   /// is made must not take the sweep along without a word. Where that happens, each has its own, so that it is known

@@ -4,8 +4,8 @@
 #include "bench/testing/keys.hpp"
 #include "bench/testing/sweeps.hpp"
 #include "core/support/error.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -24,7 +24,7 @@ std::vector<std::string> places(const std::vector<PlannedRun>& runs) {
   return result;
 }
 
-const char* const kSweep = R"({
+const char* const kSweepFile = R"({
   "name": "both", "config": "c.json", "set": {"source.duration": 0.5},
   "axes": [{"name": "motion", "overlays": {"slow": {"source.motion.period": 6}, "fast": {"source.motion.period": 2}}}],
   "grids": [
@@ -39,7 +39,7 @@ const char* const kSweep = R"({
 TEST_CASE("A sweep is the product of its axes, grid by grid, and its plan names each run's values") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
-  folder.write("sweep.json", kSweep);
+  folder.write("sweep.json", kSweepFile);
   const SweepPlan made = plan(folder, "sweep.json");
   CHECK(made.name == "both");
   CHECK(places(made.runs) == std::vector<std::string>{

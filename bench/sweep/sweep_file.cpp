@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <map>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -50,7 +49,9 @@ void add_axes(const Json& axes, const std::string& place, Grid& grid) {
 void check_axes(const Sweep& sweep, const Grid& grid) {
   std::set<std::string> names;
   std::map<std::string, std::string> set_by;  // key, axis
-  for (const Axis& axis : grid | std::views::join) {
+  std::vector<Axis> axes;
+  for (const std::vector<Axis>& together : grid) axes.insert(axes.end(), together.begin(), together.end());
+  for (const Axis& axis : axes) {
     std::set<std::string> keys;
     for (const AxisValue& value : axis.values) {
       for (std::string& key : value.keys()) keys.insert(std::move(key));
@@ -74,7 +75,8 @@ void check_axes(const Sweep& sweep, const Grid& grid) {
 void load_libraries(const Json& list, const std::string& place, const std::string& folder, Plugins& plugins) {
   if (!list.is_array()) throw InputError(fmt::format("{}: plugins: expected a list of paths", place));
   for (const Json& item : list) {
-    if (!item.is_string()) throw InputError(fmt::format("{}: plugins: expected paths, found {}", place, dump_json(item)));
+    if (!item.is_string())
+      throw InputError(fmt::format("{}: plugins: expected paths, found {}", place, dump_json(item)));
     try {
       load_plugin_libraries(plugins, resolve_path(item.get<std::string>(), folder));
     } catch (const InputError& error) {

@@ -17,20 +17,7 @@ struct DetectionOptions {
   double quality = 0.02;
   double border = 16.0;
 
-  void declare(OptionSet& set) {
-    set.add(
-        "method", method, {"corners", "histogram"},
-        "corners: of the image of the newest events (Shi and Tomasi 1994); histogram: where most of them are (Liu et "
-        "al. 2022)");
-    set.add("events", events, "newest events that are looked at").range(100, 10'000'000);
-    set.add("interval", interval, "time between two detections, where features are missing [s]").above(0.0);
-    set.add("distance", distance, "new features keep this far from one another and from those that are tracked [px]")
-        .range(1.0, 1000.0);
-    set.add("quality", quality,
-            "a feature is at least this good, as a share of the best one's corner measure, or count")
-        .range(0.0, 1.0);
-    set.add("border", border, "and this far from the image's border [px]").range(0.0, 1000.0);
-  }
+  void declare(OptionSet& set);
 };
 
 /// At most `count` places worth tracking [px], the best ones first, in the image of these events: pixels count their

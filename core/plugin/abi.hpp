@@ -1,15 +1,19 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <version>
+
+#ifndef NLOHMANN_JSON_VERSION_MAJOR  // before 3.11 it is there alone
+#include <nlohmann/json.hpp>
+#endif
 
 // What a program and a plugin in a shared library must have in common to exchange C++ objects, as one text that the
 // preprocessor makes: it stands in the library's bytes, so that it can be compared before anything of the library runs.
 
 /// Raised with every change of what plugins include (core/plugin/, and what that includes) that a plugin built before
 /// would not survive: a virtual function, a member, a different meaning.
-#define EVBENCH_PLUGIN_API 5
+#define EVBENCH_PLUGIN_API 6
 
 #define EVBENCH_ABI_TEXT_OF(value) #value
 #define EVBENCH_ABI_TEXT(value) EVBENCH_ABI_TEXT_OF(value)

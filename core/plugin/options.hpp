@@ -9,10 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include "core/support/json.hpp"
+#include "core/support/json_fwd.hpp"
 
 namespace evbench {
-
 
 /// The options of a plain struct, declared once:
 ///
@@ -142,14 +141,6 @@ Struct read_options(const Json& object, const std::string& place) {
   result.declare(set);
   set.read(object, place);
   return result;
-}
-
-/// All options of a struct as JSON.
-template <class Struct>
-Json write_options(Struct options) {
-  OptionSet set;
-  options.declare(set);
-  return set.write();
 }
 
 }  // namespace evbench

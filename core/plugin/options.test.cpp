@@ -1,8 +1,9 @@
 #include "core/plugin/options.hpp"
 
+#include "core/plugin/write_options.hpp"
 #include "core/support/error.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 namespace evbench {
 namespace {

@@ -58,53 +58,21 @@ class Registration {
  private:
   using Options = typename Plugin::Options;
 
-  /// Calls use(options, set) with the options that a JSON object gives.
-  template <class Use>
-  static auto with(const Json& json, const std::string& place, Use use) {
-    Options options;
-    OptionSet set;
-    options.declare(set);
-    set.read(json, place);
-    return use(options, set);
-  }
-
   static typename Registry<Interface>::Entry entry() {
     using Context = typename PluginKind<Interface>::Context;
     typename Registry<Interface>::Entry entry;
     if constexpr (detail::SaysWhetherItReadsEvents<Plugin>) entry.reads_events = Plugin::reads_events;
-    entry.describe = [] {
+    entry.with_options = [](const std::function<void(const DeclaredOptions&)>& use) {
       Options options;
       OptionSet set;
       options.declare(set);
-      return set.describe();
-    };
-    entry.schema = [] {
-      Options options;
-      OptionSet set;
-      options.declare(set);
-      return set.schema();
-    };
-    entry.resolve = [](const Json& json, const std::string& place, const std::string& folder) {
-      return with(json, place, [&](Options&, OptionSet& set) {
-        set.anchor_paths(folder);
-        return set.write();
-      });
-    };
-    entry.files = [](const Json& json) {
-      return with(json, "options", [](const Options& options, OptionSet& set) {
-        std::vector<std::string> files = set.paths();
-        if constexpr (detail::NamesFiles<Options>) {
-          for (std::string& file : options.files()) files.push_back(std::move(file));
-        }
-        return files;
-      });
-    };
-    entry.identity = [](const Json& json) {
-      return with(json, "options", [](Options&, OptionSet& set) { return set.write_without_paths(); });
+      use({set, [&options]() -> std::vector<std::string> {
+             if constexpr (detail::NamesFiles<Options>) return options.files();
+             return {};
+           }});
     };
     entry.make = [](const Json& json, const Context& context) -> std::unique_ptr<Interface> {
-      return with(json, context.place,
-                  [&](const Options& options, OptionSet&) { return std::make_unique<Plugin>(options, context); });
+      return std::make_unique<Plugin>(read_options<Options>(json, context.place), context);
     };
     return entry;
   }

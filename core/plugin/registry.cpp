@@ -3,9 +3,51 @@
 #include <fmt/format.h>
 
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 #include "core/support/nearest.hpp"
 
 namespace evbench {
+
+std::string PluginEntry::describe() const {
+  std::string result;
+  with_options([&](const DeclaredOptions& options) { result = options.set.describe(); });
+  return result;
+}
+
+Json PluginEntry::schema() const {
+  Json result;
+  with_options([&](const DeclaredOptions& options) { result = options.set.schema(); });
+  return result;
+}
+
+Json PluginEntry::resolve(const Json& options, const std::string& place, const std::string& folder) const {
+  Json result;
+  with_options([&](const DeclaredOptions& declared) {
+    declared.set.read(options, place);
+    declared.set.anchor_paths(folder);
+    result = declared.set.write();
+  });
+  return result;
+}
+
+std::vector<std::string> PluginEntry::files(const Json& options) const {
+  std::vector<std::string> result;
+  with_options([&](const DeclaredOptions& declared) {
+    declared.set.read(options, "options");
+    result = declared.set.paths();
+    for (std::string& file : declared.files()) result.push_back(std::move(file));
+  });
+  return result;
+}
+
+Json PluginEntry::identity(const Json& options) const {
+  Json result;
+  with_options([&](const DeclaredOptions& declared) {
+    declared.set.read(options, "options");
+    result = declared.set.write_without_paths();
+  });
+  return result;
+}
 
 template <class Interface>
 void Registry<Interface>::add(const std::string& name, Entry entry) {

@@ -36,23 +36,37 @@ struct PluginKind<BackEnd> {
 /// The origin of what the program itself registers.
 inline constexpr const char* kBuiltIn = "built in";
 
+/// Options of a plugin, fresh ones: what is declared, and the files that they name besides those of path() options.
+struct DeclaredOptions {
+  OptionSet& set;
+  std::function<std::vector<std::string>()> files;
+};
+
+/// What is known of a plugin of any kind.
+struct PluginEntry {
+  std::string text;          ///< one line for `evbench list`
+  std::string origin;        ///< kBuiltIn, or the library's path
+  int version = 1;           ///< of what it computes: raised when the same options give other results
+  bool reads_events = true;  ///< front-ends: the content of the source's events counts for a run
+
+  /// Calls its argument with the plugin's options.
+  std::function<void(const std::function<void(const DeclaredOptions&)>&)> with_options;
+
+  std::string describe() const;  ///< table of its options
+  Json schema() const;           ///< JSON Schema of its options
+  /// Options checked, completed with defaults, relative paths taken from the folder.
+  Json resolve(const Json& options, const std::string& place, const std::string& folder) const;
+  std::vector<std::string> files(const Json& options) const;  ///< that resolved options name, in their order
+  Json identity(const Json& options) const;  ///< resolved options without the names of files: their content counts
+};
+
 /// The plugins of one kind by name.
 template <class Interface>
 class Registry {
  public:
   using Context = typename PluginKind<Interface>::Context;
 
-  struct Entry {
-    std::string text;                       ///< one line for `evbench list`
-    std::string origin;                     ///< kBuiltIn, or the library's path
-    int version = 1;                        ///< of what it computes: raised when the same options give other results
-    bool reads_events = true;               ///< front-ends: the content of the source's events counts for a run
-    std::function<std::string()> describe;  ///< table of its options
-    std::function<Json()> schema;           ///< JSON Schema of its options
-    /// (options, place, folder): checked, completed with defaults, relative paths taken from the folder.
-    std::function<Json(const Json&, const std::string&, const std::string&)> resolve;
-    std::function<std::vector<std::string>(const Json&)> files;  ///< that resolved options name, in their order
-    std::function<Json(const Json&)> identity;  ///< resolved options without the names of files: their content counts
+  struct Entry : PluginEntry {
     std::function<std::unique_ptr<Interface>(const Json&, const Context&)> make;  ///< from resolved options
   };
 

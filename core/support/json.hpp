@@ -4,10 +4,9 @@
 #include <string>
 #include <string_view>
 
-namespace evbench {
+#include "core/support/json_fwd.hpp"
 
-/// Keys keep the order in which they were added.
-using Json = nlohmann::ordered_json;
+namespace evbench {
 
 // Parsing and printing, compiled once: each costs a source that does it by itself seconds of compiling.
 

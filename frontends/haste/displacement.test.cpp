@@ -44,7 +44,7 @@ SE3 turned_and_moved() { return se3::exp((Vector6() << 0.02, 0.06, 0.03, -0.12, 
 
 using Lines = std::vector<std::pair<Vector2, Vector2>>;
 
-std::vector<Event> events(const Lines& lines, const Vector2& place, std::uint64_t seed = 5) {
+std::vector<Event> events_of(const Lines& lines, const Vector2& place, std::uint64_t seed = 5) {
   haste::testing::EventPattern pattern;
   pattern.lines = lines;
   pattern.pose = [=](double) { return haste::testing::PatternPose{place, 0.0}; };
@@ -52,9 +52,9 @@ std::vector<Event> events(const Lines& lines, const Vector2& place, std::uint64_
   return pattern.events(0.1, seed);
 }
 
-Template look(const Lines& lines) {
+Template look_of(const Lines& lines) {
   Tracker tracker({}, {0, {120.0, 90.0}, 0.0});
-  for (const Event& event : events(lines, {120.0, 90.0}, 6)) tracker.push(event);
+  for (const Event& event : events_of(lines, {120.0, 90.0}, 6)) tracker.push(event);
   REQUIRE(tracker.running());
   return tracker.learnt_template();
 }
@@ -63,8 +63,8 @@ Template look(const Lines& lines) {
 
 TEST_CASE("A look is found far from where it is expected, as far as it is looked for") {
   const Vector2 place(120.0, 90.0), there = place + Vector2(13.0, -9.0);
-  const std::vector<Event> seen = events(haste::testing::corner_lines(), there);
-  const Template corner = look(haste::testing::corner_lines());
+  const std::vector<Event> seen = events_of(haste::testing::corner_lines(), there);
+  const Template corner = look_of(haste::testing::corner_lines());
   const auto found = most_like(corner, seen, place, 20, 0.45);
   REQUIRE(found);
   CHECK((*found - there).norm() < 1.5);

@@ -15,14 +15,14 @@ using evbench::testing::swing;
 
 namespace {
 
-const EventScene& scene() {
+const EventScene& sigma_scene() {
   static const EventScene result(swing, 1.0, EventScene::quadrangles(150, 1));
   return result;
 }
 
 std::vector<TrackObservation> observations(const Options& options) {
-  Haste haste(options, {scene(), 0, ""});
-  return all_told(haste, scene()).observations;
+  Haste haste(options, {sigma_scene(), 0, ""});
+  return all_told(haste, sigma_scene()).observations;
 }
 
 }  // namespace
@@ -39,10 +39,10 @@ TEST_CASE("Observations that are said to be known less well are farther from whe
     sigmas.push_back(z.sigma);
     const SE3 T = swing(z.t);
     if (const auto point = points.find(z.track); point != points.end()) {
-      const double error = (scene().camera().project(T.inverse() * point->second) - z.pixel).norm();
+      const double error = (sigma_scene().camera().project(T.inverse() * point->second) - z.pixel).norm();
       (z.sigma < 0.8 * options.sigma ? sharp : z.sigma > 1.25 * options.sigma ? vague : usual).push_back(error);
     } else {
-      const Vector3 ray = T.R() * scene().camera().pinhole.ray(z.pixel);
+      const Vector3 ray = T.R() * sigma_scene().camera().pinhole.ray(z.pixel);
       points.emplace(z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray);
     }
   }

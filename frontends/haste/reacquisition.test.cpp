@@ -18,7 +18,7 @@ namespace {
 constexpr double kStep = 0.01;     // [s] between two exchanges
 constexpr TrackId kKnown = 1'000;  // the first landmark's track: none that haste begins has such an id
 
-const EventScene& scene() {
+const EventScene& lost_scene() {
   static const EventScene result(swing, 1.0, EventScene::quadrangles(150, 1));
   return result;
 }
@@ -29,13 +29,13 @@ using Landmarks = std::map<TrackId, Vector3>;
 const Landmarks& beginnings() {
   static const Landmarks result = [] {
     Landmarks points;
-    Haste haste({}, {scene(), 0, ""});
+    Haste haste({}, {lost_scene(), 0, ""});
     TrackBatch batch;
     for (double t = kStep; t < 0.5; t += kStep) {
       haste.advance({t}, batch);
       for (const TrackObservation& z : batch.observations) {
         const SE3 T = swing(z.t);
-        const Vector3 ray = T.R() * scene().camera().pinhole.ray(z.pixel);
+        const Vector3 ray = T.R() * lost_scene().camera().pinhole.ray(z.pixel);
         points.try_emplace(z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray);
       }
     }
@@ -46,7 +46,7 @@ const Landmarks& beginnings() {
 
 /// The same as landmarks that a back-end has had before, each `offset` [px] beside.
 Landmarks known(double offset = 0.0, TrackId first = kKnown) {
-  const double aside = offset * EventScene::kDistance / scene().camera().pinhole.fx;
+  const double aside = offset * EventScene::kDistance / lost_scene().camera().pinhole.fx;
   Landmarks result;
   for (const auto& [id, point] : beginnings()) result.emplace(first + id, point + Vector3(aside, 0.0, 0.0));
   return result;
@@ -60,7 +60,7 @@ Feedback feedback(double t, TrackingState state, const Landmarks& landmarks, dou
   const Vector6 velocity = se3::log(swing(t - kShort).inverse() * swing(t + kShort)) / (2.0 * kShort);
   result.newest = ControlState{t, swing(t), velocity};
   for (const auto& [track, position] : landmarks) {
-    const Vector2 pixel = scene().camera().project(swing(t).inverse() * position);
+    const Vector2 pixel = lost_scene().camera().project(swing(t).inverse() * position);
     result.expected.push_back({track, position, pixel, sigma * sigma * Matrix2::Identity()});
   }
   return result;
@@ -80,7 +80,7 @@ struct Told {
 /// one of this state, if there is one.
 Told track(const Options& options, const Landmarks& landmarks, TrackingState state = TrackingState::tracking,
            double sigma = 0.5, double from = kStep, std::optional<TrackingState> before = std::nullopt) {
-  Haste haste(options, {scene(), 0, ""});
+  Haste haste(options, {lost_scene(), 0, ""});
   Told told;
   TrackBatch batch;
   for (double t = kStep; t < 1.0; t += kStep) {
@@ -99,7 +99,7 @@ Told track(const Options& options, const Landmarks& landmarks, TrackingState sta
 
 /// Of an observation, from where its landmark is [px].
 double error(const Landmarks& landmarks, const TrackObservation& z) {
-  return (scene().camera().project(swing(z.t).inverse() * landmarks.at(z.track)) - z.pixel).norm();
+  return (lost_scene().camera().project(swing(z.t).inverse() * landmarks.at(z.track)) - z.pixel).norm();
 }
 
 Options without_corners() {

@@ -18,13 +18,13 @@ using evbench::testing::swing;
 
 namespace {
 
-const EventScene& scene() {
+const EventScene& life_scene() {
   static const EventScene result(swing, 1.0, EventScene::quadrangles(150, 1));
   return result;
 }
 
 /// A front-end, and what it has told so far.
-struct Told {
+struct Followed {
   Haste haste;
   TrackBatch batch = {};
   double t = 0.0;                                  ///< [s]
@@ -32,7 +32,7 @@ struct Told {
   std::map<TrackId, TrackObservation> ended = {};  ///< likewise
   std::map<TrackId, double> ended_at = {};         ///< [s]
 
-  Told(const Options& options, const Source& source) : haste(options, {source, 0, ""}) {}
+  Followed(const Options& options, const Source& source) : haste(options, {source, 0, ""}) {}
 
   void go_on_to(double to) {
     while (t < to - 1e-9) {
@@ -69,7 +69,7 @@ Feedback truth(double t, const std::vector<TrackObservation>& observed) {
   feedback.newest = ControlState{t, swing(t), velocity};
   for (const TrackObservation& z : observed) {
     const SE3 T = swing(z.t);
-    const Vector3 ray = T.R() * scene().camera().pinhole.ray(z.pixel);
+    const Vector3 ray = T.R() * life_scene().camera().pinhole.ray(z.pixel);
     feedback.expected.push_back(
         {z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray, z.pixel, 0.25 * Matrix2::Identity()});
   }
@@ -78,7 +78,7 @@ Feedback truth(double t, const std::vector<TrackObservation>& observed) {
 
 /// Eight tracks as they are at 0.5 s, which without any feedback would live for a while yet.
 std::vector<TrackObservation> eight() {
-  Told told({}, scene());
+  Followed told({}, life_scene());
   told.go_on_to(0.5);
   std::map<TrackId, TrackObservation> alive = told.alive;
   told.go_on_to(0.65);
@@ -110,7 +110,7 @@ std::vector<Event> square(const std::function<Vector2(double)>& place, std::uint
 }  // namespace
 
 TEST_CASE("A track that the back-end holds for an outlier ends, and is observed no more") {
-  Told told({}, scene());
+  Followed told({}, life_scene());
   told.go_on_to(0.5);
   const TrackId outlier = eight()[3].track;
   Feedback feedback = truth(0.5, {});
@@ -125,7 +125,7 @@ TEST_CASE("A track that the back-end holds for an outlier ends, and is observed 
 
   Options deaf;
   deaf.guidance.outliers = false;
-  Told other(deaf, scene());
+  Followed other(deaf, life_scene());
   other.go_on_to(0.5);
   other.haste.receive(feedback);
   other.go_on_to(0.6);
@@ -135,7 +135,7 @@ TEST_CASE("A track that the back-end holds for an outlier ends, and is observed 
 TEST_CASE(
     "A tracker far from where its landmark is expected is vetoed, but if most are, it is the expectation's fault") {
   for (const int far : {0, 1, 8}) {
-    Told told({}, scene());
+    Followed told({}, life_scene());
     told.go_on_to(0.5);
     const std::vector<TrackObservation> observed = eight();
     Feedback feedback = truth(0.5, observed);
@@ -154,7 +154,7 @@ TEST_CASE("Nothing is vetoed where that is switched off, nor by a back-end that 
   for (const bool lost : {false, true}) {
     Options options;
     options.guidance.veto = lost;
-    Told told(options, scene());
+    Followed told(options, life_scene());
     told.go_on_to(0.5);
     Feedback feedback = truth(0.5, eight());
     shift(feedback.expected.front(), {20.0, 20.0});
@@ -178,7 +178,7 @@ TEST_CASE(
                 i % 2 == 0};
   }
   source.add(noise);
-  Told told({}, source);
+  Followed told({}, source);
   told.go_on_to(0.6);
   CHECK(told.alive.size() > 40);
   CHECK(told.ended.size() > 100);
@@ -194,7 +194,7 @@ TEST_CASE("Trackers that a burst of noise takes along end, and are observed nowh
                 static_cast<std::uint16_t>(random.index(180)), i % 2 == 0};
   }
   source.add(burst);
-  Told told({}, source);
+  Followed told({}, source);
   told.go_on_to(0.5);
   const std::map<TrackId, TrackObservation> before = told.alive;
   REQUIRE(before.size() > 40);
@@ -224,7 +224,7 @@ TEST_CASE("After a silence trackers go on before what they saw, and end before s
     int ended;
   };
   const auto after = [](const Source& source, double resting, double later) {
-    Told told({}, source);
+    Followed told({}, source);
     told.go_on_to(resting);
     const std::map<TrackId, TrackObservation> before = told.alive;
     REQUIRE(before.size() > 40);
@@ -246,7 +246,7 @@ TEST_CASE("While nothing is told nothing new is found") {
   quiet.silence(1.0, 2.0);
   Options options;
   options.life.curvature = 0.9;  // trackers end as soon as they run: features are always wanted
-  Told told(options, quiet);
+  Followed told(options, quiet);
   const auto detected = [&] { return std::stoi(told.haste.remarks().at(0)); };
   told.go_on_to(1.05);
   const int before = detected();
@@ -262,7 +262,7 @@ TEST_CASE("A tracker on a hot pixel ends, as it does not go along with the image
   std::vector<Event> hot;
   for (std::int64_t t = 0; t < 1'000'000; t += 500) hot.push_back({t, 40, 90, true});
   source.add(hot);
-  Told told({}, source);
+  Followed told({}, source);
   told.go_on_to(1.0);
   CHECK(told.ended_as("starved") > 0);
 }
@@ -274,7 +274,7 @@ TEST_CASE("Of two trackers that come upon one another the younger ends") {
   source.add(square([&](double t) { return from(25.0, t); }, 2));
   Options options;
   options.tracks = 2;
-  Told told(options, source);
+  Followed told(options, source);
   told.go_on_to(0.4);
   REQUIRE(told.alive.size() == 2);
   const TrackId older = told.alive.begin()->first, younger = told.alive.rbegin()->first;
@@ -290,7 +290,7 @@ TEST_CASE("A tracker that comes near the image's border ends there") {
   source.add(square([](double t) { return Vector2(120.0 + 110.0 * t, 90.0); }, 1));
   Options options;
   options.tracks = 1;
-  Told told(options, source);
+  Followed told(options, source);
   told.go_on_to(0.5);
   REQUIRE(told.alive.size() == 1);
   const TrackId track = told.alive.begin()->first;

@@ -10,6 +10,14 @@ std::int64_t microseconds_of(double seconds) { return std::llround(1e6 * seconds
 
 }  // namespace
 
+void BatchOptions::declare(OptionSet& set) {
+  set.add("duration", duration, "a batch ends after this time [s]").range(1e-4, 10.0);
+  set.add("events", events, "and before that when it has so many events; 0: no matter how many").range(0, 100'000'000);
+  set.add("motion", motion,
+          "and before that when the image has moved by this, going by the last batch [px, mean]; 0: no matter how far")
+      .range(0.0, 1000.0);
+}
+
 Batches::Batches(const BatchOptions& options, double slice, std::int64_t from)
     : options_(options), slice_(slice), end_(from), longest_(options.duration) {}
 

@@ -17,15 +17,7 @@ struct BatchOptions {
   int events = 0;
   double motion = 0.0;
 
-  void declare(OptionSet& set) {
-    set.add("duration", duration, "a batch ends after this time [s]").range(1e-4, 10.0);
-    set.add("events", events, "and before that when it has so many events; 0: no matter how many")
-        .range(0, 100'000'000);
-    set.add(
-           "motion", motion,
-           "and before that when the image has moved by this, going by the last batch [px, mean]; 0: no matter how far")
-        .range(0.0, 1000.0);
-  }
+  void declare(OptionSet& set);
 };
 
 /// Events in batches, of which each begins with the last slice of the one before, or with the end of that where it is

@@ -14,7 +14,7 @@ using testing::DrawnOptions;
 using testing::DrawnProblem;
 using Gauge = DrawnOptions::Gauge;
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(EVBENCH_SANITIZED)
 constexpr int kSeeds = 10, kOracleSeeds = 2;
 #else
 constexpr int kSeeds = 200, kOracleSeeds = 10;
@@ -132,7 +132,7 @@ TEST_CASE("Errors between control states are as large as their covariances say")
   }
 }
 
-#if !defined(__SANITIZE_ADDRESS__)  // whose few seeds could not show it
+#if !defined(EVBENCH_SANITIZED)  // whose few seeds could not show it
 TEST_CASE("Errors are seen to be too large for their covariances when pixels are 10 % noisier than stated") {
   for (const Gauge gauge : {Gauge::landmark_priors, Gauge::scale_anchor}) {
     const Nees nees = mean_nees({.gauge = gauge, .noise_scale = 1.1}, {kNewest})[0];

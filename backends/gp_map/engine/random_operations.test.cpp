@@ -8,10 +8,10 @@
 #include "backends/gp_map/testing/rounding.hpp"
 #include "core/testing/catch2.hpp"
 
-// 100,000 random sequences of everything that can be done to the engine, sensible or not, compared with the batch
-// solver, with redoing everything, or with full history. With AddressSanitizer 4,000 by default, as they take ten times
-// as long. EVBENCH_RANDOM_SEQUENCES sets their number, EVBENCH_RANDOM_FIRST the number of the first one: so that many
-// can be spread over processes, and one that failed be repeated alone.
+// 5,000 random sequences of everything that can be done to the engine, sensible or not, compared with the batch solver,
+// with redoing everything, or with full history. EVBENCH_RANDOM_SEQUENCES sets their number (./test.sh long: 100,000),
+// EVBENCH_RANDOM_FIRST the number of the first one: so that many can be spread over processes, and one that failed be
+// repeated alone.
 namespace evbench::gp_map {
 namespace {
 
@@ -21,11 +21,7 @@ using testing::rounding_bounds;
 using testing::RoundingBound;
 using testing::SessionOptions;
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kSequences = 4000;
-#else
-constexpr int kSequences = 100000;
-#endif
+constexpr int kSequences = 5000;
 constexpr int kFew = 200;  ///< sequences, of which no share is asked for
 
 int from_environment(const char* name, int otherwise) {
@@ -80,7 +76,8 @@ class Agreement {
   void check_shares(int all) const {
     if (all < kFew) return;
     CHECK(compared_ > 0.3 * all);
-    CHECK(ill_conditioned_ < 2e-3 * compared_);
+    const double usual = 2e-3 * compared_;
+    CHECK(ill_conditioned_ < usual + 3.0 * std::sqrt(usual));  // as many as are drawn by chance: Poisson's deviation
   }
 
  private:

@@ -9,7 +9,7 @@
 
 #include "core/testing/catch2.hpp"
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(EVBENCH_SANITIZED)
 #include <sanitizer/lsan_interface.h>
 #endif
 
@@ -261,7 +261,7 @@ TEST_CASE("Events beside a calibration that cannot be used are read, it is refus
 }
 
 TEST_CASE("Columns at the root are read in chunks, as they are and through deflate, blosc and lz4") {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(EVBENCH_SANITIZED)
   const __lsan::ScopedDisabler unwatched;  // HDF5's blosc plugin never frees its buffers, and is unloaded with them
 #endif
   const H5Z_filter_t filter = GENERATE(-1, 1, 32001, 32004);

@@ -13,7 +13,7 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-const std::string kHeader2 = "% Data file containing CD events.\n% Version 2\n% Height 720\n% Width 1280\n";
+const std::string kDatHeader2 = "% Data file containing CD events.\n% Version 2\n% Height 720\n% Width 1280\n";
 const std::string kHeader1 = "% Data file containing TD events.\n";
 const std::string kChanges("\x0C\x08", 2), kChanges1("\x00\x08", 2);
 
@@ -24,7 +24,7 @@ std::unique_ptr<EventReader> dat(const std::string& content, const ReadOptions& 
 }  // namespace
 
 TEST_CASE("DAT files of both versions decode, with the sensor's size and the count") {
-  const auto two = dat(kHeader2 + kChanges + data_of(Words{5, 1279 | 719 << 14 | 1 << 28, 6, 3 | 4 << 14}));
+  const auto two = dat(kDatHeader2 + kChanges + data_of(Words{5, 1279 | 719 << 14 | 1 << 28, 6, 3 | 4 << 14}));
   CHECK((read_all(*two) == std::vector<Event>{{5, 1279, 719, true}, {6, 3, 4, false}}));
   CHECK(two->info().width == 1280);
   CHECK(two->info().height == 720);
@@ -35,7 +35,7 @@ TEST_CASE("DAT files of both versions decode, with the sensor's size and the cou
 }
 
 TEST_CASE("DAT times count on when their 32 bits are used up, and may step back a little") {
-  const auto reader = dat(kHeader2 + kChanges + data_of(Words{0xFFFFFFFE, 0, 0xFFFFFFFD, 0, 3, 0}));
+  const auto reader = dat(kDatHeader2 + kChanges + data_of(Words{0xFFFFFFFE, 0, 0xFFFFFFFD, 0, 3, 0}));
   const auto events = read_all(*reader);
   REQUIRE(events.size() == 3);
   CHECK(events[1].t == 0xFFFFFFFD);
@@ -44,10 +44,10 @@ TEST_CASE("DAT times count on when their 32 bits are used up, and may step back 
 
 TEST_CASE("DAT files of other versions and events, without pixels, or without a header are refused") {
   CHECK_THROWS_AS(dat(""), InputError);
-  CHECK_THROWS_AS(dat(kHeader2), InputError);
-  CHECK_THROWS_AS(dat(kHeader2 + "\x0C"), InputError);
-  CHECK_THROWS_AS(dat(kHeader2 + "\x0E\x08"), InputError);
-  CHECK_THROWS_AS(dat(kHeader2 + "\x0C\x10"), InputError);
+  CHECK_THROWS_AS(dat(kDatHeader2), InputError);
+  CHECK_THROWS_AS(dat(kDatHeader2 + "\x0C"), InputError);
+  CHECK_THROWS_AS(dat(kDatHeader2 + "\x0E\x08"), InputError);
+  CHECK_THROWS_AS(dat(kDatHeader2 + "\x0C\x10"), InputError);
   CHECK_THROWS_AS(dat("% Version 3\n" + kChanges), InputError);
   CHECK_THROWS_AS(dat("% Version 2\n% Width 0\n% Height 10\n" + kChanges), InputError);
   CHECK_THROWS_AS(dat("% Version 2\n% Width 10\n" + kChanges), InputError);
@@ -55,14 +55,14 @@ TEST_CASE("DAT files of other versions and events, without pixels, or without a 
 
 TEST_CASE("A DAT file is recognised by its content") {
   const TemporaryFolder folder;
-  const auto path = folder.write("events", kHeader2 + kChanges + data_of(Words{5, 1}));
+  const auto path = folder.write("events", kDatHeader2 + kChanges + data_of(Words{5, 1}));
   const auto reader = open_events(path);
   CHECK(reader->info().format == "Prophesee DAT 2");
   CHECK(read_all(*reader).size() == 1);
 }
 
 TEST_CASE("DAT files truncated anywhere, or with any bytes, are read as far as they go") {
-  std::string content = kHeader2 + kChanges;
+  std::string content = kDatHeader2 + kChanges;
   for (std::uint32_t i = 0; i < 500; ++i) content += data_of(Words{i, i | i << 14});
   check_survives(content, [](const std::string& bytes) { return dat(bytes); });
   const auto reader = dat(content + "xyz");

@@ -32,7 +32,7 @@ std::vector<Event> events_if_any(const std::string& content) {
 
 std::vector<Event> events_of(const std::string& content) { return read_all(*text(content)); }
 
-std::string metadata(const EventReader& reader, const std::string& key) {
+std::string ecd_metadata(const EventReader& reader, const std::string& key) {
   for (const auto& [name, value] : reader.info().metadata) {
     if (name == key) return value;
   }
@@ -88,8 +88,8 @@ TEST_CASE("Real excerpts of the Event-Camera Dataset are read to their last line
     CHECK(std::abs(events.back().t - last) < 1000);
     CHECK(reader->faults().empty());
     CHECK(reader->calibration().has_value());
-    CHECK(metadata(*reader, "columns") == "t x y p");
-    CHECK(metadata(*reader, "unit of time") == "seconds (as they have a decimal point)");
+    CHECK(ecd_metadata(*reader, "columns") == "t x y p");
+    CHECK(ecd_metadata(*reader, "unit of time") == "seconds (as they have a decimal point)");
   }
 }
 
@@ -127,8 +127,8 @@ TEST_CASE("Both orders, all separators, and names of columns are found out and s
     CAPTURE(content);
     const auto reader = text(content);
     CHECK((read_all(*reader) == kTwo));
-    CHECK(metadata(*reader, "columns") == columns);
-    CHECK_THAT(metadata(*reader, "unit of time"), Catch::Matchers::StartsWith(unit));
+    CHECK(ecd_metadata(*reader, "columns") == columns);
+    CHECK_THAT(ecd_metadata(*reader, "unit of time"), Catch::Matchers::StartsWith(unit));
     CHECK(reader->faults().empty());
   }
 }
@@ -143,7 +143,7 @@ TEST_CASE("Times with a decimal point are seconds, also where the first thousand
     const auto events = read_all(*reader);
     REQUIRE(events.size() == 2001);
     CHECK((events.back() == Event{999'000, 5, 1, false}));
-    CHECK(metadata(*reader, "unit of time") == "seconds (as they have a decimal point)");
+    CHECK(ecd_metadata(*reader, "unit of time") == "seconds (as they have a decimal point)");
     CHECK(reader->faults().empty());
   }
 }
@@ -172,14 +172,14 @@ TEST_CASE("Names of columns may have blanks, and a first line that is damaged is
 TEST_CASE("Lines whose times are in disorder are still of one order of columns") {
   const auto reader = text("0.004 96 133 0\n0.003 127 171 1\n0.002 96 133 0\n0.001 127 171 1\n");
   CHECK(read_all(*reader).size() == 4);
-  CHECK(metadata(*reader, "columns") == "t x y p");
+  CHECK(ecd_metadata(*reader, "columns") == "t x y p");
 }
 
 TEST_CASE("A comment that names the four columns is believed, any other is not") {
   const auto reader = text("# a recording\n# x y t[ms] p\n96 133 3.811 0\n127 171 3.82 1\n");
   CHECK((read_all(*reader) == kTwo));
-  CHECK(metadata(*reader, "columns") == "x y t p (named in a comment)");
-  CHECK(metadata(*reader, "unit of time") == "milliseconds");
+  CHECK(ecd_metadata(*reader, "columns") == "x y t p (named in a comment)");
+  CHECK(ecd_metadata(*reader, "unit of time") == "milliseconds");
   CHECK((events_of("# the x y position\n# x y t\n0.003811 96 133 0\n0.00382 127 171 1\n") == kTwo));
 }
 
@@ -223,8 +223,8 @@ TEST_CASE("Columns that are asked for stand in place of those that are found, or
   for (const std::string header : {"", "a b c d e\n"}) {
     const auto reader = text(header + content, {.columns = "y,x,t_ms,p,other"});
     CHECK((read_all(*reader) == std::vector<Event>{{3811, 133, 96, true}, {3820, 171, 127, false}}));
-    CHECK(metadata(*reader, "columns") == "y x t p - (as asked for)");
-    CHECK(metadata(*reader, "unit of time") == "milliseconds");
+    CHECK(ecd_metadata(*reader, "columns") == "y x t p - (as asked for)");
+    CHECK(ecd_metadata(*reader, "unit of time") == "milliseconds");
     CHECK(reader->faults().empty());
   }
   CHECK_THROWS_WITH(text(content, {.columns = "t,x,y"}),
@@ -254,7 +254,7 @@ TEST_CASE("A sensor's size that an option says goes before that of the pictures"
   const auto reader = open_events(folder.file("events.txt"), {.width = 346, .height = 260});
   CHECK(reader->info().width == 346);
   CHECK(reader->info().height == 260);
-  CHECK(metadata(*reader, "sensor size").empty());
+  CHECK(ecd_metadata(*reader, "sensor size").empty());
 }
 
 TEST_CASE("The pictures' times beside the events are told") {
@@ -342,7 +342,7 @@ TEST_CASE("A recording is read alike from a folder, a zip, and a zip of a folder
     CHECK((read_all(*reader) == kTwo));
     CHECK(reader->info().width == 240);
     CHECK(reader->info().height == 180);
-    CHECK(metadata(*reader, "beside the events") == "calib.txt, groundtruth.txt");
+    CHECK(ecd_metadata(*reader, "beside the events") == "calib.txt, groundtruth.txt");
     CHECK_THROWS_WITH(open_events(folder.file(name), {.topic = "/left"}),
                       Catch::Matchers::ContainsSubstring("no topics or groups"));
     REQUIRE(reader->calibration());

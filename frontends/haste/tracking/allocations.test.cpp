@@ -11,7 +11,7 @@
 #include "frontends/haste/tracking/tracker_set.hpp"
 
 // All that this program allocates is counted; not where a sanitizer does so.
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(EVBENCH_SANITIZED)
 
 namespace {
 

@@ -1,7 +1,6 @@
 #include "frontends/haste/tracking/tracker_set.hpp"
 
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 #include "core/support/index.hpp"
@@ -33,8 +32,9 @@ const Tracker& TrackerSet::tracker(std::int64_t id) const {
 }
 
 std::vector<std::int64_t> TrackerSet::ids() const {
-  const auto ids = std::views::keys(places_);
-  return {ids.begin(), ids.end()};
+  std::vector<std::int64_t> ids;
+  for (const auto& [id, place] : places_) ids.push_back(id);
+  return ids;
 }
 
 void TrackerSet::push(std::span<const Event> events, std::vector<Change>& changes) {

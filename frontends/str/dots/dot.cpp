@@ -1,11 +1,23 @@
 #include "frontends/str/dots/dot.hpp"
 
-#include "core/geometry/solve_symmetric.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/solve_symmetric.hpp"
+
 namespace evbench::str {
+
+void DotOptions::declare(OptionSet& set) {
+  set.add("window", window, "newest events of a dot that tell where it is").range(20, 100'000);
+  set.add("longest_window", longest_window, "which are not older than this [s]").above(0.0);
+  set.add("every", every, "events of a dot from one observation of it to the next; 1: each event is one")
+      .range(1, 100'000);
+  set.add("gate", gate, "an event is a dot's when it is this near to its rim [px]").above(0.0);
+  set.add("event_noise", event_noise, "by how much events lie off the rim, standard deviation [px]").above(0.0);
+  set.add("acceleration", acceleration, "of a dot in the image, standard deviation [px/s²]").above(0.0);
+  set.add("radius_change", radius_change, "of a dot's radius from one observation to the next, standard deviation [px]")
+      .above(0.0);
+}
 
 Dot::Dot(const DotOptions& options, const Circle& circle, const Vector2& velocity, double t)
     : options_(options), circle_(circle), velocity_(velocity), t_(t), newest_(t) {}

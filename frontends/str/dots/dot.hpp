@@ -18,18 +18,7 @@ struct DotOptions {
   double acceleration = 5000.0;
   double radius_change = 0.02;
 
-  void declare(OptionSet& set) {
-    set.add("window", window, "newest events of a dot that tell where it is").range(20, 100'000);
-    set.add("longest_window", longest_window, "which are not older than this [s]").above(0.0);
-    set.add("every", every, "events of a dot from one observation of it to the next; 1: each event is one")
-        .range(1, 100'000);
-    set.add("gate", gate, "an event is a dot's when it is this near to its rim [px]").above(0.0);
-    set.add("event_noise", event_noise, "by how much events lie off the rim, standard deviation [px]").above(0.0);
-    set.add("acceleration", acceleration, "of a dot in the image, standard deviation [px/s²]").above(0.0);
-    set.add("radius_change", radius_change,
-            "of a dot's radius from one observation to the next, standard deviation [px]")
-        .above(0.0);
-  }
+  void declare(OptionSet& set);
 };
 
 /// A round spot that is followed by the events of its rim. As an event lies on the rim and not in the centre, where the

@@ -47,17 +47,18 @@ SE3 sweep(double t) {
           {0.8 * std::sin(2.5 * t), 0.3 * std::sin(1.7 * t), 0.1 * std::sin(t)}};
 }
 
-const EventScene& scene() {
+const EventScene& dots_scene() {
   static const EventScene result(sweep, 2.0, discs());
   return result;
 }
 
-struct Told {
+struct ToldDots {
   TrackBatch all;
   std::vector<std::string> remarks;
 };
 
-Told follow(const Source& source, const DotsOptions& options = {}, double interval = 0.01, std::size_t most = 0) {
+ToldDots follow_dots(const Source& source, const DotsOptions& options = {}, double interval = 0.01,
+                     std::size_t most = 0) {
   Dots dots(options, {source, 0, ""});
   return {all_told(dots, source, interval, most), dots.remarks()};
 }
@@ -69,7 +70,7 @@ std::pair<std::size_t, double> nearest_disc(const TrackObservation& z, const std
   const std::vector<Vector2> all = places();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Vector2 pixel =
-        scene().camera().project(T_camera_world * Vector3(all[i].x(), all[i].y(), EventScene::kDistance));
+        dots_scene().camera().project(T_camera_world * Vector3(all[i].x(), all[i].y(), EventScene::kDistance));
     if (const double distance = (pixel - z.pixel).norm(); distance < best.second) best = {i, distance};
   }
   return best;
@@ -80,7 +81,7 @@ std::pair<std::size_t, double> nearest_disc(const TrackObservation& z, const std
 TEST_CASE("The centres of dots that are all alike are observed, and one that comes back is known again") {
   DotsOptions options;
   options.life.find_again = true;
-  const Told told = follow(scene(), options);
+  const ToldDots told = follow_dots(dots_scene(), options);
   INFO(told.remarks.at(0) << "; " << told.remarks.at(1) << "; " << told.remarks.at(2));
   REQUIRE(told.all.observations.size() > 1500);
   CHECK(std::ranges::is_sorted(told.all.observations, {}, &TrackObservation::t));
@@ -103,7 +104,7 @@ TEST_CASE("The centres of dots that are all alike are observed, and one that com
 }
 
 TEST_CASE("By default a dot that comes back is another one: a track that has ended is observed no more") {
-  const TrackBatch all = follow(scene()).all;
+  const TrackBatch all = follow_dots(dots_scene()).all;
   std::map<TrackId, double> ended;
   for (const TrackEnd& end : all.ended) CHECK(ended.emplace(end.track, end.t).second);
   for (const TrackObservation& z : all.observations) {
@@ -112,16 +113,16 @@ TEST_CASE("By default a dot that comes back is another one: a track that has end
 }
 
 TEST_CASE("Dots do not depend on how they are asked for") {
-  const TrackBatch usual = follow(scene()).all;
-  CHECK(same(usual, follow(scene(), {}, 0.037).all));
-  CHECK(same(usual, follow(scene(), {}, 0.01, 5).all));
+  const TrackBatch usual = follow_dots(dots_scene()).all;
+  CHECK(same(usual, follow_dots(dots_scene(), {}, 0.037).all));
+  CHECK(same(usual, follow_dots(dots_scene(), {}, 0.01, 5).all));
 }
 
 TEST_CASE("Dots of a camera that stands still go on when it moves") {
   const auto motion = [](double t) { return sweep(t < 0.4 ? t : std::max(0.4, t - 0.8)); };
   const EventScene source(motion, 1.8, discs());
   std::map<TrackId, std::pair<double, double>> lives;
-  for (const TrackObservation& z : follow(source).all.observations) {
+  for (const TrackObservation& z : follow_dots(source).all.observations) {
     lives.try_emplace(z.track, z.t, z.t).first->second.second = z.t;
     CHECK(nearest_disc(z, motion).second < 3.0);
   }
@@ -130,7 +131,7 @@ TEST_CASE("Dots of a camera that stands still go on when it moves") {
 }
 
 TEST_CASE("A dot that moves on its own is followed, and does not disturb the others") {
-  EventScene source = scene();
+  EventScene source = dots_scene();
   // A small one that is drawn across the image, over all others.
   const EventScene alone(
       [](double t) {
@@ -139,16 +140,17 @@ TEST_CASE("A dot that moves on its own is followed, and does not disturb the oth
       2.6, {disc({0.0, 0.0})});
   source.add(alone.list);
   std::vector<double> errors;
-  for (const TrackObservation& z : follow(source).all.observations) errors.push_back(nearest_disc(z, sweep).second);
+  for (const TrackObservation& z : follow_dots(source).all.observations)
+    errors.push_back(nearest_disc(z, sweep).second);
   std::ranges::sort(errors);
   CHECK(errors[errors.size() * 8 / 10] < 0.8);
 }
 
 TEST_CASE("Where nothing is round, nothing is told, and nothing breaks") {
   const EventScene square(sweep, 0.6, EventScene::quadrangles(40, 1, 0.4));
-  CHECK(follow(square).all.observations.size() < 200);
-  CHECK(follow(EventScene(sweep, 0.3, {})).all.observations.empty());
-  EventScene silent = scene();
+  CHECK(follow_dots(square).all.observations.size() < 200);
+  CHECK(follow_dots(EventScene(sweep, 0.3, {})).all.observations.empty());
+  EventScene silent = dots_scene();
   silent.silence(0.5, 1.5);
-  CHECK(follow(silent).all.until == 2.0);
+  CHECK(follow_dots(silent).all.until == 2.0);
 }

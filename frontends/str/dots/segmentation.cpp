@@ -5,6 +5,15 @@
 
 namespace evbench::str {
 
+void SegmentationOptions::declare(OptionSet& set) {
+  set.add("gap", gap, "events this far apart are of one cluster [px]").range(1.0, 50.0);
+  set.add("least_events", least_events, "a cluster with fewer events is no dot").range(8);
+  set.add("smallest", smallest, "radius of a dot, at least [px]").range(0.5);
+  set.add("largest", largest, "radius of a dot, at most [px]").range(0.5);
+  set.add("residual", residual, "its events lie off a circle by at most this, root mean square [px]").above(0.0);
+  set.add("covered", covered, "share of the rim's eight sectors on which they lie, at least").range(0.0, 1.0);
+}
+
 std::vector<Circle> find_circles(const SegmentationOptions& options, std::span<const Vector2> places, int width,
                                  int height) {
   cv::Mat seen = cv::Mat::zeros(height, width, CV_8U), spread, labels;

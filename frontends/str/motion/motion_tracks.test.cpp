@@ -18,18 +18,18 @@ namespace {
 /// To and fro, turning round every 0.26 s, first at 0.13 s.
 SE3 to_and_fro(double t) { return {so3::exp(Vector3(0.1, 0.25, 0.05) * std::sin(12.0 * t)), Vector3::Zero()}; }
 
-const EventScene& scene() {
+const EventScene& motion_scene() {
   static const EventScene result(to_and_fro, 1.0, EventScene::quadrangles(150, 1));
   return result;
 }
 
-struct Told {
+struct ToldMotion {
   TrackBatch all;
   std::vector<std::string> remarks;
 };
 
-Told follow(const Source& source, const MotionTracksOptions& options = {}, double interval = 0.01,
-            std::size_t most = 0) {
+ToldMotion follow_motion(const Source& source, const MotionTracksOptions& options = {}, double interval = 0.01,
+                         std::size_t most = 0) {
   MotionTracks motion(options, {source, 0, ""});
   return {all_told(motion, source, interval, most), motion.remarks()};
 }
@@ -50,9 +50,9 @@ std::vector<double> errors(const Source& source, const std::function<SE3(double)
 }  // namespace
 
 TEST_CASE("Points are carried by the rotation that the events say, also where it turns round") {
-  const Told told = follow(scene());
+  const ToldMotion told = follow_motion(motion_scene());
   INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
-  const std::vector<double> all = errors(scene(), to_and_fro, told.all);
+  const std::vector<double> all = errors(motion_scene(), to_and_fro, told.all);
   REQUIRE(all.size() > 500);
   CHECK(all[all.size() / 2] < 1.0);
   CHECK(all[all.size() * 95 / 100] < 4.0);  // of 400 px of motion, of which a track sees a part
@@ -62,20 +62,20 @@ TEST_CASE("Points are carried by the rotation that the events say, also where it
 TEST_CASE("A batch within which the motion turns round is divided, and tells as much as its parts") {
   MotionTracksOptions options;
   options.batch.duration = 0.06;
-  const Told told = follow(scene(), options);
+  const ToldMotion told = follow_motion(motion_scene(), options);
   INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
   CHECK(told.remarks.at(0).find(" 0 divided") == std::string::npos);
-  const std::vector<double> all = errors(scene(), to_and_fro, told.all);
+  const std::vector<double> all = errors(motion_scene(), to_and_fro, told.all);
   REQUIRE(all.size() > 500);
   CHECK(all[all.size() / 2] < 1.0);
   CHECK(told.remarks.at(1).find(" 0 times all ended") != std::string::npos);
 }
 
 TEST_CASE("Points do not depend on how they are asked for") {
-  const TrackBatch usual = follow(scene()).all;
+  const TrackBatch usual = follow_motion(motion_scene()).all;
   CHECK(usual.observations.size() > 500);
-  CHECK(same(usual, follow(scene(), {}, 0.037).all));
-  CHECK(same(usual, follow(scene(), {}, 0.01, 7).all));
+  CHECK(same(usual, follow_motion(motion_scene(), {}, 0.037).all));
+  CHECK(same(usual, follow_motion(motion_scene(), {}, 0.01, 7).all));
 }
 
 TEST_CASE("Points of a camera that stands still stay where they are, and go on when it moves") {
@@ -83,7 +83,7 @@ TEST_CASE("Points of a camera that stands still stay where they are, and go on w
     return to_and_fro(t < 0.3927 ? t : std::max(0.3927, t - 0.5));
   };  // stands where it turns
   const EventScene source(motion, 1.2, EventScene::quadrangles(150, 1));
-  const TrackBatch all = follow(source).all;
+  const TrackBatch all = follow_motion(source).all;
   std::map<TrackId, std::pair<double, double>> lives;
   for (const TrackObservation& z : all.observations) {
     lives.try_emplace(z.track, z.t, z.t).first->second.second = z.t;
@@ -101,7 +101,7 @@ TEST_CASE("Points of a camera that stands still stay where they are, and go on w
 }
 
 TEST_CASE("Where events say nothing of a motion for too long, all points end, and others begin after it") {
-  EventScene flickering = scene();
+  EventScene flickering = motion_scene();
   Random random(1);
   std::vector<Event> noise;
   for (int i = 0; i < 300'000; ++i) {
@@ -113,7 +113,7 @@ TEST_CASE("Where events say nothing of a motion for too long, all points end, an
   flickering.add(noise);
   MotionTracksOptions strict;
   strict.patience = 0.1;
-  const Told told = follow(flickering, strict);
+  const ToldMotion told = follow_motion(flickering, strict);
   INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
   CHECK(told.remarks.at(1).find("1 times all ended") != std::string::npos);
   std::map<TrackId, std::pair<double, double>> lives;
@@ -126,7 +126,7 @@ TEST_CASE("Where events say nothing of a motion for too long, all points end, an
 }
 
 TEST_CASE("A structure that moves on its own does not carry the points of str_motion away") {
-  EventScene source = scene();
+  EventScene source = motion_scene();
   const EventScene other(
       [](double t) {
         return SE3{Eigen::Quaterniond::Identity(), {1.0 - 2.0 * t, 0.3 * t, 0.0}};
@@ -134,7 +134,7 @@ TEST_CASE("A structure that moves on its own does not carry the points of str_mo
       1.0, EventScene::quadrangles(24, 2, 0.15));
   source.add(other.list);
   CHECK(other.list.size() > source.list.size() / 20);
-  const Told told = follow(source);
+  const ToldMotion told = follow_motion(source);
   INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
   const std::vector<double> all = errors(source, to_and_fro, told.all);
   REQUIRE(all.size() > 500);
@@ -143,7 +143,7 @@ TEST_CASE("A structure that moves on its own does not carry the points of str_mo
 }
 
 TEST_CASE("Without events str_motion tells nothing, and a source that has none is refused with a sentence") {
-  const Told none = follow(EventScene(to_and_fro, 0.3, {}));
+  const ToldMotion none = follow_motion(EventScene(to_and_fro, 0.3, {}));
   CHECK(none.all.until == 0.3);
   class Nothing : public EventScene {
    public:
