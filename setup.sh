@@ -75,7 +75,9 @@ fi
 progress() {
   local line done total seconds last=-10 left
   while IFS= read -r line; do
-    if [[ $line =~ ^@([0-9]+)/([0-9]+)/([0-9]+) ]]; then
+    if [[ $line =~ ^@0/ ]]; then
+      continue
+    elif [[ $line =~ ^@([0-9]+)/([0-9]+)/([0-9]+) ]]; then
       done=${BASH_REMATCH[1]} total=${BASH_REMATCH[2]} seconds=${BASH_REMATCH[3]}
       left="about $(((total - done) * seconds / done)) s left"
       [ "$seconds" -ge 5 ] || left='...'
@@ -94,4 +96,4 @@ progress() {
 
 echo "== building (preset $preset, in build/$preset)"
 cmake --preset "$preset" ${options[@]+"${options[@]}"} >/dev/null
-NINJA_STATUS='@%f/%t/%o ' cmake --build --preset "$preset" ${1:+--target "$@"} | progress
+NINJA_STATUS='@%f/%t/%e ' cmake --build --preset "$preset" ${1:+--target "$@"} | progress

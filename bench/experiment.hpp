@@ -7,6 +7,7 @@
 
 #include "bench/job.hpp"
 #include "core/plugin/options.hpp"
+#include "core/support/json.hpp"
 #include "core/plugin/source.hpp"
 #include "eval/scores.hpp"
 

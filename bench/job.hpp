@@ -9,6 +9,7 @@
 
 #include "bench/pipeline/options.hpp"
 #include "core/plugin/options.hpp"
+#include "core/support/json.hpp"
 #include "core/plugin/registry.hpp"
 
 namespace evbench {

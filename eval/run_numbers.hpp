@@ -9,6 +9,7 @@
 
 #include "eval/metric.hpp"
 #include "eval/run_record.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 

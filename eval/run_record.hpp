@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/plugin/options.hpp"
+#include "core/support/json.hpp"
 #include "core/plugin/status.hpp"
 #include "eval/association.hpp"
 #include "eval/run_settings.hpp"

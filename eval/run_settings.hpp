@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/plugin/options.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 

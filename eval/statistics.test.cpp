@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 
 namespace evbench {

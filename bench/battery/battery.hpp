@@ -5,6 +5,7 @@
 
 #include "bench/battery/check.hpp"
 #include "core/plugin/registry.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench::battery {
 

@@ -86,7 +86,10 @@ TEST_CASE("gp_map passes the battery with a lag, and per observation") {
 TEST_CASE("The battery finds what is wrong with a careless back-end, in words") {
   Plugins plugins;
   Registry<BackEnd>::Entry entry;
-  entry.resolve = [](const Json& json, const std::string&, const std::string&) { return json; };
+  entry.with_options = [](const auto& use) {
+    OptionSet none;
+    use({none, [] { return std::vector<std::string>(); }});
+  };
   entry.make = [](const Json&, const BackEndContext& context) {
     return std::make_unique<Careless>(Careless::Options{}, context);
   };

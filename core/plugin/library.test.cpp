@@ -5,6 +5,7 @@
 #include "core/plugin/abi.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 

@@ -8,6 +8,7 @@
 #include "core/process/child_process.hpp"
 #include "core/process/json_lines.hpp"
 #include "core/process/process_options.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench::process {
 

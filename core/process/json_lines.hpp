@@ -16,6 +16,7 @@
 #include "core/motion/pose_trajectory.hpp"
 #include "core/plugin/exchange.hpp"
 #include "core/plugin/options.hpp"
+#include "core/support/json.hpp"
 #include "core/plugin/status.hpp"
 
 // The messages of protocol.md, one JSON object a line. Numbers are written in the shortest form that reads as the same

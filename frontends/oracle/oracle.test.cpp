@@ -1,6 +1,7 @@
 #include "frontends/oracle/oracle.hpp"
 
 #include "core/plugin/registration.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 
 using namespace evbench;

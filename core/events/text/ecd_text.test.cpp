@@ -261,9 +261,9 @@ TEST_CASE("The pictures' times beside the events are told") {
   const TemporaryFolder folder;
   folder.write("events.txt", kRecording[0].second);
   folder.write("images.txt", "0.5 images/a.png\n0.75 images/b.png\n");
-  CHECK(metadata(*open_events(folder.file("events.txt")), "pictures") == "2 in images.txt, 0.500 to 0.750 s");
+  CHECK(ecd_metadata(*open_events(folder.file("events.txt")), "pictures") == "2 in images.txt, 0.500 to 0.750 s");
   folder.write("images.txt", "0.5\n");
-  CHECK_THAT(metadata(*open_events(folder.file("events.txt")), "pictures"),
+  CHECK_THAT(ecd_metadata(*open_events(folder.file("events.txt")), "pictures"),
              Catch::Matchers::ContainsSubstring("expected"));
 }
 
