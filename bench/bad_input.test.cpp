@@ -7,8 +7,8 @@
 
 #include "bench/commands/exit_code.hpp"
 #include "bench/testing/program.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -40,7 +40,7 @@ void check_file_refused(const std::string& name, const std::string& content, con
 
 }  // namespace
 
-TEST_CASE("A file that is missing ends the program with its name") {
+TEST_CASE("A file that is missing ends the program with its name", "[slow]") {
   const TemporaryFolder folder;
   write_recording(folder);
   check_refused(folder, "run nowhere.json", "nowhere.json: no such file");
@@ -53,7 +53,7 @@ TEST_CASE("A file that is missing ends the program with its name") {
   CHECK(names_in(folder.file("results/recording")).empty());
 }
 
-TEST_CASE("A file that is empty, truncated or damaged ends the program with the file and the line") {
+TEST_CASE("A file that is empty, truncated or damaged ends the program with the file and the line", "[slow]") {
   check_file_refused("tracks.txt", "", "tracks.txt: holds no observation");
   check_file_refused("groundtruth.txt", "# t x y z\n", "groundtruth.txt: holds no pose");
   check_file_refused("calib.txt", "", "calib.txt: is empty");
@@ -77,7 +77,7 @@ TEST_CASE("A gzip file that ends too early is told as truncated") {
   check_refused(folder, "run recording.json --set frontend.tracks=tracks.txt.gz", "truncated");
 }
 
-TEST_CASE("Numbers that are not finite end the program with the line") {
+TEST_CASE("Numbers that are not finite end the program with the line", "[slow]") {
   check_file_refused("tracks.txt", "1 0.1 nan 5\n", "tracks.txt:1: x is \"nan\"");
   check_file_refused("tracks.txt", "1 0.1 5 5\n1 inf 5 5\n", "tracks.txt:2: the time is \"inf\"");
   check_file_refused("groundtruth.txt", "0 0 nan 0 0 0 0 1\n", "groundtruth.txt:1");
@@ -100,7 +100,7 @@ TEST_CASE("Tracks that are unsorted, repeated, of one observation or outside the
                               ContainsSubstring("1 observations outside 0 to 1 s (left out)"));
 }
 
-TEST_CASE("Observations outside the ground truth's time are refused when none is inside") {
+TEST_CASE("Observations outside the ground truth's time are refused when none is inside", "[slow]") {
   check_file_refused("tracks.txt", "1 50 5 5\n1 51 5 5\n", "tracks.txt: no observation is left between 0 and 1 s");
   const TemporaryFolder folder;
   write_recording(folder);
@@ -112,7 +112,8 @@ TEST_CASE("Observations outside the ground truth's time are refused when none is
   CHECK_FALSE(std::filesystem::exists(folder.file("scores.json")));
 }
 
-TEST_CASE("An unknown key or plugin and a value out of range end the program with the place and the nearest name") {
+TEST_CASE("An unknown key or plugin and a value out of range end the program with the place and the nearest name",
+          "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   check_refused(folder, "run c.json --set backend.frame_duratoin=1",
@@ -140,7 +141,7 @@ TEST_CASE("A folder for results that can't be made ends the program before any w
   check_refused(folder, "run c.json --out /dev/full", "/dev/full/short: can't be made", kExitNotWritten);
 }
 
-TEST_CASE("A full disk is an error wherever the program writes") {
+TEST_CASE("A full disk is an error wherever the program writes", "[slow]") {
   const TemporaryFolder folder;
   write_recording(folder);
   check_refused(folder, "eval groundtruth.txt groundtruth.txt --json /dev/full",
@@ -169,7 +170,7 @@ TEST_CASE("A file that can't be written whole leaves the one before as it was") 
              ContainsSubstring("no/x.json: can't be written: No such file") && !ContainsSubstring(".part"));
 }
 
-TEST_CASE("A run that can't be written whole leaves the run before as it was") {
+TEST_CASE("A run that can't be written whole leaves the run before as it was", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
@@ -182,7 +183,7 @@ TEST_CASE("A run that can't be written whole leaves the run before as it was") {
   CHECK(names_in(folder.file("results/short")).size() == 1);
 }
 
-TEST_CASE("A run on a disk that is full leaves nothing there") {
+TEST_CASE("A run on a disk that is full leaves nothing there", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   std::filesystem::create_directory(folder.file("small"));

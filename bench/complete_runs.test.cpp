@@ -7,9 +7,9 @@
 #include "bench/testing/program.hpp"
 #include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "eval/find_runs.hpp"
-#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -82,7 +82,8 @@ int run_here(Plugins& plugins, const std::string& arguments) {
 
 }  // namespace
 
-TEST_CASE("Runs that are complete are not done again, unless that is asked for, and stand in the table all the same") {
+TEST_CASE("Runs that are complete are not done again, unless that is asked for, and stand in the table all the same",
+          "[slow]") {
   const Comparison comparison;
   const Outcome first = comparison.run("");
   REQUIRE(first.exit_code == 0);
@@ -99,7 +100,7 @@ TEST_CASE("Runs that are complete are not done again, unless that is asked for, 
   CHECK(comparison.sums() != before);  // measured times
 }
 
-TEST_CASE("A back-end that is added to a comparison is the only one that is run") {
+TEST_CASE("A back-end that is added to a comparison is the only one that is run", "[slow]") {
   Comparison comparison;
   REQUIRE(comparison.run("--quiet").exit_code == 0);
   const std::string timing = comparison.content("asynchronous", "timing.csv");
@@ -111,7 +112,7 @@ TEST_CASE("A back-end that is added to a comparison is the only one that is run"
   CHECK(comparison.content("asynchronous", "timing.csv") == timing);
 }
 
-TEST_CASE("Another label or protocol is a matter of names and scores: nothing is run") {
+TEST_CASE("Another label or protocol is a matter of names and scores: nothing is run", "[slow]") {
   Comparison comparison;
   REQUIRE(comparison.run("--quiet").exit_code == 0);
   const std::string path = comparison.path("asynchronous");
@@ -136,7 +137,7 @@ TEST_CASE("Another label or protocol is a matter of names and scores: nothing is
   CHECK(dump_json(comparison.metrics("mine")) == dump_json(fresh));
 }
 
-TEST_CASE("Tables have the rows in the order of the config that was run last, whatever was run before") {
+TEST_CASE("Tables have the rows in the order of the config that was run last, whatever was run before", "[slow]") {
   Comparison comparison;
   const auto rows = [&] {
     std::vector<std::string> labels;
@@ -159,7 +160,7 @@ TEST_CASE("Tables have the rows in the order of the config that was run last, wh
   CHECK(rows().back() == "asynchronous");
 }
 
-TEST_CASE("Runs of several options and seeds are told apart in their table") {
+TEST_CASE("Runs of several options and seeds are told apart in their table", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   for (const std::string duration : {"0.1", "0.05"}) {
@@ -182,7 +183,7 @@ TEST_CASE("Runs of several options and seeds are told apart in their table") {
   CHECK(rows[4] == "short,bundle_adjustment,0.1,2,");
 }
 
-TEST_CASE("A job that is complete in another experiment below the same folder is copied") {
+TEST_CASE("A job that is complete in another experiment below the same folder is copied", "[slow]") {
   const Comparison comparison;
   REQUIRE(comparison.run("--quiet").exit_code == 0);
   const std::string before = comparison.content("asynchronous", "metrics.json");
@@ -195,7 +196,7 @@ TEST_CASE("A job that is complete in another experiment below the same folder is
   CHECK(comparison.content("asynchronous", "metrics.json") == before);
 }
 
-TEST_CASE("A run whose folder is damaged or of other data is done again") {
+TEST_CASE("A run whose folder is damaged or of other data is done again", "[slow]") {
   const Comparison comparison;
   REQUIRE(comparison.run("--quiet").exit_code == 0);
   const std::string path = comparison.path("asynchronous");
@@ -207,7 +208,7 @@ TEST_CASE("A run whose folder is damaged or of other data is done again") {
   }
 }
 
-TEST_CASE("The problem that is asked for afterwards is written, by running again") {
+TEST_CASE("The problem that is asked for afterwards is written, by running again", "[slow]") {
   const Comparison comparison;
   REQUIRE(comparison.run("--quiet").exit_code == 0);
   REQUIRE(comparison.run("--quiet --problem").exit_code == 0);
@@ -225,7 +226,8 @@ TEST_CASE("Two back-ends that are the same job are refused with both labels, bef
   CHECK(names_in(comparison.folder.path()) == std::set<std::string>{"c.json"});
 }
 
-TEST_CASE("A back-end that throws makes its run failed with the reason, the others go on, and it is tried again") {
+TEST_CASE("A back-end that throws makes its run failed with the reason, the others go on, and it is tried again",
+          "[slow]") {
   const TemporaryFolder folder;
   Json config = short_comparison();
   config["backends"][0] = {{"type", "breaking"}, {"label", "mine"}};
@@ -254,7 +256,7 @@ TEST_CASE("A back-end that throws makes its run failed with the reason, the othe
   CHECK(read_file(records[1].folder + "/timing.csv") == other);
 }
 
-TEST_CASE("Ctrl-C leaves nothing of a run that is not complete") {
+TEST_CASE("Ctrl-C leaves nothing of a run that is not complete", "[slow]") {
   const TemporaryFolder folder;
   Json config = short_config("gp_map");
   config["source"]["duration"] = 3000;
@@ -265,7 +267,7 @@ TEST_CASE("Ctrl-C leaves nothing of a run that is not complete") {
   CHECK(names_in(folder.path()) == std::set<std::string>{"c.json"});
 }
 
-TEST_CASE("A run that is ended leaves what is complete, prints its table, and goes on from there") {
+TEST_CASE("A run that is ended leaves what is complete, prints its table, and goes on from there", "[slow]") {
   const TemporaryFolder folder;
   Json config = short_comparison();
   config["source"]["duration"] = 60;

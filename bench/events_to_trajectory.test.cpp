@@ -119,8 +119,8 @@ std::vector<EventScene::Outline> tiles() {
 
 }  // namespace
 
-TEST_CASE(
-    "From events to a trajectory: a swinging camera before a wall, in one thread and in two with the same bytes") {
+TEST_CASE("From events to a trajectory: a swinging camera before a wall, in one thread and in two with the same bytes",
+          "[slow]") {
   const EventScene scene(swing, 4.0, wall());
   const Execution sequential = run(scene);
   CHECK(sequential.result.status.state == RunState::ok);
@@ -134,7 +134,8 @@ TEST_CASE(
       [](const StampedPose& pose) { return std::pair(pose.t, pose.T.p); }));
 }
 
-TEST_CASE("The trajectory has seen an event within a tenth of a second, as long as there is something to track") {
+TEST_CASE("The trajectory has seen an event within a tenth of a second, as long as there is something to track",
+          "[slow]") {
   constexpr double kDelay = 0.03;  // [s], of haste's observations
   const EventScene scene(swing, 3.0, wall());
   for (const char* backend : {"gp_map", "bundle_adjustment"}) {
@@ -159,7 +160,7 @@ TEST_CASE("The trajectory has seen an event within a tenth of a second, as long 
   }
 }
 
-TEST_CASE("Landmarks that come back into view are found again, and their tracks go on") {
+TEST_CASE("Landmarks that come back into view are found again, and their tracks go on", "[slow]") {
   // Away to the right, and back: what was seen at first is out of view in between.
   const auto motion = [](double t) {
     SE3 T = swing(t);
@@ -173,7 +174,7 @@ TEST_CASE("Landmarks that come back into view are found again, and their tracks 
   CHECK(error(scene, with) < error(scene, without));
 }
 
-TEST_CASE("Five seconds without events: the camera stands still, and its trajectory goes on") {
+TEST_CASE("Five seconds without events: the camera stands still, and its trajectory goes on", "[slow]") {
   const auto motion = [](double t) { return swing(t < 2.0 ? t : std::max(2.0, t - 5.0)); };
   const EventScene scene(motion, 9.0, wall());
   const Execution execution = run(scene);
@@ -184,7 +185,7 @@ TEST_CASE("Five seconds without events: the camera stands still, and its traject
   check_recovered(scene, execution, 7.0);
 }
 
-TEST_CASE("After the last event a camera stands still, unless the recording may have been cut off") {
+TEST_CASE("After the last event a camera stands still, unless the recording may have been cut off", "[slow]") {
   const auto motion = [](double t) { return swing(std::min(t, 3.0)); };
   EventScene scene(motion, 7.0, wall());
   const Execution still = run(scene);
@@ -207,7 +208,8 @@ TEST_CASE("After the last event a camera stands still, unless the recording may 
   }
 }
 
-TEST_CASE("A sensor that tells nothing while the camera moves on: said, and then the run goes on in the same world") {
+TEST_CASE("A sensor that tells nothing while the camera moves on: said, and then the run goes on in the same world",
+          "[long]") {
   for (const double silence : {2.0, 3.0, 5.0}) {
     for (const std::uint64_t seed : {1, 2}) {
       EventScene scene(swing, silence + 6.0, EventScene::quadrangles(150, seed));
@@ -228,7 +230,7 @@ TEST_CASE("A sensor that tells nothing while the camera moves on: said, and then
   }
 }
 
-TEST_CASE("What looks the same everywhere, or is elsewhere, is not taken for the world of before") {
+TEST_CASE("What looks the same everywhere, or is elsewhere, is not taken for the world of before", "[long]") {
   std::vector<EventScene::Outline> far = wall();
   for (const EventScene::Outline& outline : EventScene::quadrangles(150, 2)) {
     far.push_back(outline);
@@ -249,7 +251,7 @@ TEST_CASE("What looks the same everywhere, or is elsewhere, is not taken for the
   }
 }
 
-TEST_CASE("A burst of a million events in 10 ms does no lasting harm") {
+TEST_CASE("A burst of a million events in 10 ms does no lasting harm", "[slow]") {
   EventScene scene(swing, 4.0, wall());
   Random random(3);
   std::vector<Event> burst(1'000'000);
@@ -265,7 +267,8 @@ TEST_CASE("A burst of a million events in 10 ms does no lasting harm") {
 }
 
 TEST_CASE(
-    "A camera that sees nothing but noise for a while, and loses all trackers, goes on in the same map by corners") {
+    "A camera that sees nothing but noise for a while, and loses all trackers, goes on in the same map by corners",
+    "[long]") {
   constexpr double kGap = 0.2;  // [s]
   int lost_without = 0;
   for (const std::uint64_t seed : {1, 2}) {
@@ -289,7 +292,7 @@ TEST_CASE(
   CHECK(lost_without > 0);
 }
 
-TEST_CASE("Hot pixels that fire five hundred times a second are borne") {
+TEST_CASE("Hot pixels that fire five hundred times a second are borne", "[slow]") {
   EventScene scene(swing, 4.0, wall());
   std::vector<Event> hot;
   for (int i = 0; i < 20; ++i) {
@@ -304,7 +307,7 @@ TEST_CASE("Hot pixels that fire five hundred times a second are borne") {
   check_recovered(scene, execution, 0.5);
 }
 
-TEST_CASE("A light that flickers for a second over half of all pixels does no lasting harm") {
+TEST_CASE("A light that flickers for a second over half of all pixels does no lasting harm", "[slow]") {
   EventScene scene(swing, 5.0, wall());
   std::vector<Event> flicker;
   for (std::int64_t t = 2'000'000; t < 3'000'000; t += 10'000) {  // at 100 Hz
@@ -321,7 +324,7 @@ TEST_CASE("A light that flickers for a second over half of all pixels does no la
   CHECK(error(scene, execution, 0.0, 2.0) < 0.02);
 }
 
-TEST_CASE("A camera that stands still for ten seconds first has its trajectory when it moves") {
+TEST_CASE("A camera that stands still for ten seconds first has its trajectory when it moves", "[slow]") {
   const auto motion = [](double t) { return swing(std::max(0.0, t - 10.0)); };
   const EventScene scene(motion, 13.0, wall());
   const Execution execution = run(scene);
@@ -329,7 +332,7 @@ TEST_CASE("A camera that stands still for ten seconds first has its trajectory w
   CHECK(error(scene, execution, 10.0) < 0.02);
 }
 
-TEST_CASE("Pure rotation gives no map, and says why, when the camera translates, there is one") {
+TEST_CASE("Pure rotation gives no map, and says why, when the camera translates, there is one", "[slow]") {
   const auto turn = [](double t) {
     Vector6 twist = Vector6::Zero();
     twist.head<3>() = Vector3(0.1 * std::sin(2.0 * t), 0.15 * std::sin(1.5 * t), 0.2 * std::sin(t));
@@ -348,7 +351,7 @@ TEST_CASE("Pure rotation gives no map, and says why, when the camera translates,
   CHECK(error(translating, execution, 2.5) < 0.02);
 }
 
-TEST_CASE("An empty scene ends with a reason, and when there is something to see, there is a trajectory") {
+TEST_CASE("An empty scene ends with a reason, and when there is something to see, there is a trajectory", "[slow]") {
   const EventScene empty(swing, 1.0, {});
   const Execution nothing = run(empty);
   REQUIRE(nothing.complete);
@@ -360,7 +363,7 @@ TEST_CASE("An empty scene ends with a reason, and when there is something to see
   check_recovered(later, run(later), 2.5);
 }
 
-TEST_CASE("A single straight edge ends with a reason, and when there is more to see, there is a trajectory") {
+TEST_CASE("A single straight edge ends with a reason, and when there is more to see, there is a trajectory", "[slow]") {
   const std::vector<EventScene::Outline> line{{{-4.0, -0.2}, {4.0, 0.3}}};
   const EventScene edge(swing, 3.0, line);
   const Execution nothing = run(edge);
@@ -374,7 +377,7 @@ TEST_CASE("A single straight edge ends with a reason, and when there is more to 
   check_recovered(later, run(later), 3.5);
 }
 
-TEST_CASE("A texture that repeats itself does not fool re-acquisition") {
+TEST_CASE("A texture that repeats itself does not fool re-acquisition", "[slow]") {
   const auto motion = [](double t) {
     SE3 T = swing(t);
     T.p.x() += 0.6 * (1.0 - std::cos(1.6 * t));
@@ -390,7 +393,7 @@ TEST_CASE("A texture that repeats itself does not fool re-acquisition") {
   CHECK(error(scene, with) <= error(scene, without));
 }
 
-TEST_CASE("A hand that moves before the camera is rarely taken for the world") {
+TEST_CASE("A hand that moves before the camera is rarely taken for the world", "[long]") {
   constexpr std::uint64_t kHands = 5;  // of seeds 1 to 20 none is taken for it: all end within 0.4 % of the path
   std::vector<double> errors;
   for (std::uint64_t seed = 9; seed < 9 + kHands; ++seed) {
@@ -414,7 +417,7 @@ TEST_CASE("A hand that moves before the camera is rarely taken for the world") {
   CHECK(std::ranges::count_if(errors, [](double e) { return e < 0.01; }) >= 4);  // rarely is not never
 }
 
-TEST_CASE("Events out of order, twice, at the border and outside the sensor are borne") {
+TEST_CASE("Events out of order, twice, at the border and outside the sensor are borne", "[slow]") {
   EventScene scene(swing, 3.0, wall());
   std::vector<Event> more;
   for (std::size_t i = 0; i < scene.list.size(); i += 50) {

@@ -5,8 +5,8 @@
 
 #include "bench/testing/keys.hpp"
 #include "bench/testing/program.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -66,7 +66,8 @@ TEST_CASE("Each built-in front-end and back-end is in an example, and each pair 
   }
 }
 
-TEST_CASE("Examples that need no data of one's own are fine as they are, and one runs with tracks from its file") {
+TEST_CASE("Examples that need no data of one's own are fine as they are, and one runs with tracks from its file",
+          "[slow]") {
   const TemporaryFolder folder;
   int without_data = 0;
   for (const std::string& path : example_configs()) {

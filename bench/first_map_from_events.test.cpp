@@ -3,13 +3,13 @@
 #include <vector>
 
 #include "bench/testing/program.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
 
-TEST_CASE("A first map from a camera that hardly goes on is wrong at first, and right in the end") {
+TEST_CASE("A first map from a camera that hardly goes on is wrong at first, and right in the end", "[long]") {
   const auto motion = data_file("dynamic_6dof/motion.txt");
   if (!motion) return;
   struct Start {

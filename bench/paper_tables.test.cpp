@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "bench/testing/program.hpp"
+#include "core/support/json.hpp"
 #include "core/support/median.hpp"
 #include "core/testing/catch2.hpp"
-#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -30,7 +30,7 @@ double ate(const Json& metrics) { return metrics.at("final").at("ate").at("trans
 
 }  // namespace
 
-TEST_CASE("Table I on real tracks: no back-end is more than a tenth less accurate than it was") {
+TEST_CASE("Table I on real tracks: no back-end is more than a tenth less accurate than it was", "[slow]") {
   if (!data_file("poster_translation/tracks_eklt.txt")) return;
   const TemporaryFolder folder;
   REQUIRE(testing::evbench(folder, "run '" + kConfigs + "/paper/table1_poster_translation.json' --quiet").exit_code ==
@@ -45,7 +45,7 @@ TEST_CASE("Table I on real tracks: no back-end is more than a tenth less accurat
   CHECK(ate(metrics.at("bundle adjustment, 100 ms")) < 0.0058);
 }
 
-TEST_CASE("HASTE's tracks of hand-held motion, with gp_map's defaults") {
+TEST_CASE("HASTE's tracks of hand-held motion, with gp_map's defaults", "[long]") {
   for (const auto& [sequence, most] : {std::pair{"dynamic_plane", 0.18}, {"dynamic_boxes", 0.18}}) {
     if (!data_file("haste_simulated/" + std::string(sequence) + "/tracks.txt")) return;
     const TemporaryFolder folder;
@@ -60,7 +60,7 @@ TEST_CASE("HASTE's tracks of hand-held motion, with gp_map's defaults") {
   }
 }
 
-TEST_CASE("Tracks of violent motion: the final estimate does not take a wrong motion for wrong tracks") {
+TEST_CASE("Tracks of violent motion: the final estimate does not take a wrong motion for wrong tracks", "[long]") {
   const auto tracks = data_file("haste_simulated/poster_violent/tracks.txt");
   if (!tracks) return;
   const TemporaryFolder folder;
@@ -82,7 +82,7 @@ TEST_CASE("Tracks of violent motion: the final estimate does not take a wrong mo
   CHECK(final_scores.at("rpe").at("trans_m").at("rmse").get<double>() < 0.03);
 }
 
-TEST_CASE("Real tracks that run out: a trajectory as long as there are some, and degraded or lost is said") {
+TEST_CASE("Real tracks that run out: a trajectory as long as there are some, and degraded or lost is said", "[slow]") {
   if (!data_file("poster_translation/tracks_eklt.txt")) return;
   const TemporaryFolder folder;
   const std::string run = "run '" + kConfigs + "/paper/table1_poster_translation.json' --quiet";
@@ -95,7 +95,7 @@ TEST_CASE("Real tracks that run out: a trajectory as long as there are some, and
   }
 }
 
-TEST_CASE("gp_map stays below one percent of the path over 30 s with a tenth of the tracks wrong") {
+TEST_CASE("gp_map stays below one percent of the path over 30 s with a tenth of the tracks wrong", "[long]") {
   const TemporaryFolder folder;
   Json config = short_config("gp_map");
   config["source"] = {{"type", "simulation"},
@@ -113,7 +113,7 @@ TEST_CASE("gp_map stays below one percent of the path over 30 s with a tenth of 
   }
 }
 
-TEST_CASE("Landmarks whose depth a slow beginning does not tell do not let the world shrink to a point") {
+TEST_CASE("Landmarks whose depth a slow beginning does not tell do not let the world shrink to a point", "[slow]") {
   if (!data_file("dynamic_6dof/motion.txt")) return;
   const TemporaryFolder folder;
   Json config = short_config("gp_map");
@@ -160,13 +160,13 @@ std::vector<double> hand_held(double start, double duration, const std::vector<s
 
 }  // namespace
 
-TEST_CASE("Outliers that are taken for landmarks close before the camera do not decide how it moved") {
+TEST_CASE("Outliers that are taken for landmarks close before the camera do not decide how it moved", "[long]") {
   if (!data_file("dynamic_6dof/motion.txt")) return;
   // Of several flights; with unbounded leverage 0.68.
   CHECK(median(hand_held(0.0, 20.0, {"8", "9", "10", "11", "12"})) < 0.4);
 }
 
-TEST_CASE("Where most of the view is replaced within a second, the scale is found again") {
+TEST_CASE("Where most of the view is replaced within a second, the scale is found again", "[long]") {
   if (!data_file("dynamic_6dof/motion.txt")) return;
   // Without another explanation of what came into view of late, 1.7 to 5.1 each.
   const std::vector<double> percent = hand_held(15.0, 15.0, {"502", "505", "506", "509", "510", "512"});

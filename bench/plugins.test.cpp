@@ -1,8 +1,8 @@
 #include "bench/plugins.hpp"
 
 #include "bench/testing/program.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -10,7 +10,8 @@ using Catch::Matchers::ContainsSubstring;
 
 // Libraries that are plugins: core/plugin/library.test.cpp, and the test of the installation, check_install.cmake.
 
-TEST_CASE("Libraries are named by --plugin before or after a command, a variable, or a config, messages say by which") {
+TEST_CASE("Libraries are named by --plugin before or after a command, a variable, or a config, messages say by which",
+          "[slow]") {
   const TemporaryFolder folder;
   folder.write("a.so", "no library");
   Json config = short_config();
@@ -42,7 +43,7 @@ TEST_CASE("Plugins are checked in words, a line a check") {
   CHECK_THAT(outcome.out, !ContainsSubstring("FAILS"));
 }
 
-TEST_CASE("A plugin that fails a check ends check-plugin with exit code 3 and says why") {
+TEST_CASE("A plugin that fails a check ends check-plugin with exit code 3 and says why", "[slow]") {
   const TemporaryFolder folder;
   const Outcome outcome =
       testing::evbench(folder, "check-plugin bundle_adjustment --options '{\"frame_duration\": 3}'");
@@ -50,7 +51,7 @@ TEST_CASE("A plugin that fails a check ends check-plugin with exit code 3 and sa
   CHECK_THAT(outcome.out, ContainsSubstring("  FAILS follows a good sequence in time order and shows a map: "));
 }
 
-TEST_CASE("A plugin that can't be checked is refused with a sentence") {
+TEST_CASE("A plugin that can't be checked is refused with a sentence", "[slow]") {
   const TemporaryFolder folder;
   const auto refused = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = testing::evbench(folder, "check-plugin " + arguments);

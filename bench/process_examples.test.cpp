@@ -2,8 +2,8 @@
 #include <map>
 
 #include "bench/testing/program.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -33,7 +33,7 @@ double ate_percent(const Json& run) { return run.at("final").at("ate").at("trans
 
 }  // namespace
 
-TEST_CASE("The example back-end in Python estimates the motion, and the same bytes with two threads") {
+TEST_CASE("The example back-end in Python estimates the motion, and the same bytes with two threads", "[slow]") {
   const TemporaryFolder folder, again;
   const std::string shorter =
       "--set source.duration=5 --set 'backends=[{\"type\": \"process\", \"label\": \"Python\", "
@@ -56,7 +56,7 @@ TEST_CASE("The example back-end in Python estimates the motion, and the same byt
   }
 }
 
-TEST_CASE("The example front-end in Python makes tracks that a back-end can use") {
+TEST_CASE("The example front-end in Python makes tracks that a back-end can use", "[slow]") {
   const TemporaryFolder folder;
   const Outcome outcome = run_example(folder, "python_frontend");
   CAPTURE(outcome.err);

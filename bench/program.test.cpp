@@ -2,8 +2,8 @@
 
 #include <sstream>
 
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -28,7 +28,7 @@ std::vector<std::string> listed(const std::string& text, const std::string& kind
 
 }  // namespace
 
-TEST_CASE("Every command has help, and the program a version") {
+TEST_CASE("Every command has help, and the program a version", "[slow]") {
   const TemporaryFolder folder;
   for (const char* command : {"", "run", "eval", "score", "table", "list", "describe", "solve", "info", "convert",
                               "dataset", "render", "new-plugin", "check-plugin"}) {
@@ -43,7 +43,7 @@ TEST_CASE("Every command has help, and the program a version") {
              ContainsSubstring("--set") && ContainsSubstring("metrics.json"));
 }
 
-TEST_CASE("All plugins are listed, and each is described for people and as a JSON Schema") {
+TEST_CASE("All plugins are listed, and each is described for people and as a JSON Schema", "[slow]") {
   const TemporaryFolder folder;
   const std::string list = testing::evbench(folder, "list").out;
   for (const char* kind : {"source", "frontend", "backend"}) {
@@ -63,7 +63,7 @@ TEST_CASE("All plugins are listed, and each is described for people and as a JSO
   CHECK(parse_json(testing::evbench(folder, "describe config --schema").out).contains("$schema"));
 }
 
-TEST_CASE("A command line that is not understood ends with exit code 2 and says what is wrong") {
+TEST_CASE("A command line that is not understood ends with exit code 2 and says what is wrong", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   const auto refused = [&](const std::string& arguments, const std::string& message) {
@@ -90,7 +90,7 @@ TEST_CASE("A command line that is not understood ends with exit code 2 and says 
   refused("run c.json --set seed=1 source.duration=2", "source.duration=2");
 }
 
-TEST_CASE("Nothing is printed by --quiet, the table and the folder without") {
+TEST_CASE("Nothing is printed by --quiet, the table and the folder without", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   const Outcome quiet = testing::evbench(folder, "run c.json --quiet");
@@ -119,7 +119,7 @@ TEST_CASE("A run that is watched says how far it is, where its errors go") {
   CHECK_THAT(watched.out, ContainsSubstring("written: results/short") && !ContainsSubstring("x real time"));
 }
 
-TEST_CASE("What a run's front-end told is told again by the front-end recorded") {
+TEST_CASE("What a run's front-end told is told again by the front-end recorded", "[slow]") {
   const TemporaryFolder folder;
   Json config = short_config();
   config["source"]["tracks"]["dropout_rate"] = 2;
@@ -148,7 +148,7 @@ TEST_CASE("An override is one value, so that the config may stand behind it") {
   CHECK(testing::evbench(folder, "run --check --set seed=2 c.json").exit_code == 0);
 }
 
-TEST_CASE("Checking a config finds what would fail at once") {
+TEST_CASE("Checking a config finds what would fail at once", "[slow]") {
   const TemporaryFolder folder;
   write_recording(folder);
   CHECK(testing::evbench(folder, "run --check recording.json").exit_code == 0);
@@ -181,7 +181,7 @@ TEST_CASE("Checking a config runs and writes nothing") {
   CHECK(names_in(folder.path()) == std::set<std::string>{"c.json"});
 }
 
-TEST_CASE("A run that is interrupted leaves no half of it, and says what is complete with its table") {
+TEST_CASE("A run that is interrupted leaves no half of it, and says what is complete with its table", "[slow]") {
   const TemporaryFolder folder;
   Json config = short_config();
   config.erase("backend");
@@ -199,7 +199,7 @@ TEST_CASE("A run that is interrupted leaves no half of it, and says what is comp
   CHECK(names_in(folder.file("results/short")).size() == 1);
 }
 
-TEST_CASE("No command replaces what it reads, or writes two outputs to one file, forced or not") {
+TEST_CASE("No command replaces what it reads, or writes two outputs to one file, forced or not", "[slow]") {
   const TemporaryFolder folder;
   write_recording(folder);
   folder.write("c.json", dump_json(short_config()));
@@ -234,7 +234,7 @@ TEST_CASE("A config may come from a pipe, with paths relative to the working fol
   CHECK(outcome.exit_code == 0);
 }
 
-TEST_CASE("Runs that can't be read are told behind the table of the others") {
+TEST_CASE("Runs that can't be read are told behind the table of the others", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_comparison()));
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);

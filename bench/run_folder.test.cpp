@@ -9,9 +9,9 @@
 #include "core/data/tum.hpp"
 #include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "eval/find_runs.hpp"
-#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -74,7 +74,7 @@ const TwoRuns& two_runs() {
 
 }  // namespace
 
-TEST_CASE("A run's folder holds the documented files") {
+TEST_CASE("A run's folder holds the documented files", "[slow]") {
   const TwoRuns& runs = two_runs();
   REQUIRE(runs.first.size() == 2);
   for (const auto& [label, path] : runs.first) {
@@ -92,7 +92,7 @@ TEST_CASE("A run's folder holds the documented files") {
   CHECK(names_in(runs.folder.file("first/short")).size() == 2);
 }
 
-TEST_CASE("The same config twice gives the same bytes, but for measured times") {
+TEST_CASE("The same config twice gives the same bytes, but for measured times", "[slow]") {
   const TwoRuns& runs = two_runs();
   for (const auto& [label, path] : runs.first) {
     INFO(label);
@@ -109,7 +109,7 @@ TEST_CASE("The same config twice gives the same bytes, but for measured times") 
   }
 }
 
-TEST_CASE("A run is scored for what was known at once and after the same wait, and by its covariances") {
+TEST_CASE("A run is scored for what was known at once and after the same wait, and by its covariances", "[slow]") {
   const TwoRuns& runs = two_runs();
   for (const auto& [label, path] : runs.first) {
     INFO(label);
@@ -141,7 +141,7 @@ TEST_CASE("A run is scored for what was known at once and after the same wait, a
                  ContainsSubstring("online ATE at zero latency [m]"));
 }
 
-TEST_CASE("A table scores its runs over the time that all of them cover, too") {
+TEST_CASE("A table scores its runs over the time that all of them cover, too", "[slow]") {
   const TwoRuns& runs = two_runs();
   const std::string folder = "'" + runs.folder.file("first") + "'";
   const Outcome table = testing::evbench(
@@ -177,13 +177,13 @@ TEST_CASE("A table scores its runs over the time that all of them cover, too") {
   CHECK(records[0].common_scores.is_null());
 }
 
-TEST_CASE("All back-ends of a comparison get the identical observations") {
+TEST_CASE("All back-ends of a comparison get the identical observations", "[slow]") {
   const TwoRuns& runs = two_runs();
   CHECK(json_file(runs.first.at("asynchronous"), "manifest.json").at("tracks_sha256") ==
         json_file(runs.first.at("frames of 50 ms"), "manifest.json").at("tracks_sha256"));
 }
 
-TEST_CASE("The config that a run wrote makes the same run again, from anywhere") {
+TEST_CASE("The config that a run wrote makes the same run again, from anywhere", "[slow]") {
   const std::string& path = two_runs().first.at("frames of 50 ms");
   const TemporaryFolder folder;
   REQUIRE(testing::evbench(folder, "run '" + path + "/config.json' --out again --quiet").exit_code == 0);
@@ -193,7 +193,7 @@ TEST_CASE("The config that a run wrote makes the same run again, from anywhere")
   CHECK(read_file(again + "/config.json") == read_file(path + "/config.json"));
 }
 
-TEST_CASE("Metrics of a run have the documented keys, the same as those of evbench eval") {
+TEST_CASE("Metrics of a run have the documented keys, the same as those of evbench eval", "[slow]") {
   const TwoRuns& runs = two_runs();
   const std::string& path = runs.first.at("asynchronous");
   const Json metrics = json_file(path, "metrics.json");
@@ -226,7 +226,7 @@ TEST_CASE("Metrics of a run have the documented keys, the same as those of evben
   for (const auto& [key, value] : metrics.items()) CHECK(eval.contains(key));
 }
 
-TEST_CASE("A run writes the problem that it ended with, in the format that evbench solve reads") {
+TEST_CASE("A run writes the problem that it ended with, in the format that evbench solve reads", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config("gp_map")));
   REQUIRE(testing::evbench(folder, "run c.json --out out --problem --quiet").exit_code == 0);
@@ -313,7 +313,7 @@ TEST_CASE("Of an estimate in pieces the longest one is scored, and the others li
   CHECK(names_in(made) == expected);
 }
 
-TEST_CASE("Two runs do not write to the same folder at the same time") {
+TEST_CASE("Two runs do not write to the same folder at the same time", "[slow]") {
   const TemporaryFolder folder;
   const std::string path = folder.write("c.json", dump_json(short_config()));
   const std::string key = key_of(read_experiment(path, {}, known_plugins()).runs[0]);

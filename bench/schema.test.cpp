@@ -3,8 +3,8 @@
 
 #include "bench/testing/configs.hpp"
 #include "bench/testing/program.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -90,7 +90,7 @@ TEST_CASE("Every config that comes with evbench, and every one that a run writes
   schema.expect_fine_by_schema(paths);
 }
 
-TEST_CASE("Configs that are fine are so for the schema and for the program") {
+TEST_CASE("Configs that are fine are so for the schema and for the program", "[slow]") {
   const Json config = short_config();
   Schema().expect(
       {config, short_comparison(), with(config, "/$schema", "x.json"), with(config, "/backend/label", "a"),
@@ -99,7 +99,7 @@ TEST_CASE("Configs that are fine are so for the schema and for the program") {
       true);
 }
 
-TEST_CASE("Configs that are broken are so for the schema and for the program") {
+TEST_CASE("Configs that are broken are so for the schema and for the program", "[slow]") {
   const Json config = short_config(), recording = with(config, "/source", {{"type", "recording"}});
   Json neither = config;
   neither.erase("backend");

@@ -162,7 +162,7 @@ TEST_CASE("frames by motion give about the same as frames by duration") {
   CHECK(ate(backend.trajectory(), simulation.motion) < 0.01);
 }
 
-TEST_CASE("noise that is learnt makes up for sigmas that are wrong by a factor") {
+TEST_CASE("noise that is learnt makes up for sigmas that are wrong by a factor", "[slow]") {
   Simulation simulation;
   simulation.noise = 0.5;
   Options options;

@@ -57,7 +57,7 @@ TEST_CASE("The batch solve reaches the small problem's documented optimum") {
     CHECK(solved_cost(*path) == Approx(13981.638).margin(0.01));
 }
 
-TEST_CASE("The batch solve reaches the medium problem's documented optimum, or a lower one") {
+TEST_CASE("The batch solve reaches the medium problem's documented optimum, or a lower one", "[slow]") {
   if (const auto path = evbench::testing::problem_file("medium.txt.gz")) {
     const double cost = solved_cost(*path);
     CHECK(cost <= 127925.660 + 0.01);

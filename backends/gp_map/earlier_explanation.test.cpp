@@ -36,7 +36,7 @@ FactorGraph misled_at_first(const FactorGraph& truth) {
 
 }  // namespace
 
-TEST_CASE("What was seen before gives way to the true explanation once what came after is explained by it") {
+TEST_CASE("What was seen before gives way to the true explanation once what came after is explained by it", "[slow]") {
   int found = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     const FactorGraph truth = solved(flight({0.0, 0.3}, seed, false, kLong)), wrong = misled_at_first(truth);

@@ -8,7 +8,8 @@
 
 namespace evbench::gp_map {
 
-TEST_CASE("Every landmark that was expected once is expected whenever it is in view, however fast the camera turns") {
+TEST_CASE("Every landmark that was expected once is expected whenever it is in view, however fast the camera turns",
+          "[slow]") {
   const char* turning = R"({"motion": {"kind": "smooth_random", "max_frequency": 2.0, "rotation_amplitude": 0.6},
                             "tracks": {"lifetime": [0.3, 1.0], "noise": 0.1}})";
   constexpr double kExchange = 0.005;  // [s]

@@ -34,7 +34,7 @@ double mean_error(const char* scene, const char* backend, double duration = 8.0)
 
 }  // namespace
 
-TEST_CASE("gp_map is registered and follows a simulated camera") {
+TEST_CASE("gp_map is registered and follows a simulated camera", "[slow]") {
   CHECK(registered_plugins().of<BackEnd>().entries().contains("gp_map"));
   const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
   const auto result = run(scene);
@@ -45,14 +45,14 @@ TEST_CASE("gp_map is registered and follows a simulated camera") {
   CHECK(result.online.size() > 80);
 }
 
-TEST_CASE("gp_map drops outlier tracks") {
+TEST_CASE("gp_map drops outlier tracks", "[slow]") {
   const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [1.0, 3.0], "outlier_share": 0.1, "drift_share": 0.05}})");
   const auto result = run(scene);
   CHECK(result.backend->status().state == RunState::ok);
   CHECK(result.scores.ate.trans_percent < 1.0);
 }
 
-TEST_CASE("A prior that is too strong for violent motion yields to it") {
+TEST_CASE("A prior that is too strong for violent motion yields to it", "[long]") {
   for (const char* scene : {R"({"motion": {"kind": "smooth_random", "max_frequency": 2.5, "rotation_amplitude": 0.5},
                                 "tracks": {"lifetime": [0.3, 1.0]}})",
                             R"({"motion": {"kind": "smooth_random", "max_frequency": 4.0, "rotation_amplitude": 0.2},
@@ -68,7 +68,7 @@ TEST_CASE("A prior that is too strong for violent motion yields to it") {
   }
 }
 
-TEST_CASE("Tracks that show no parallax tell rotation, and a guess of their depth helps") {
+TEST_CASE("Tracks that show no parallax tell rotation, and a guess of their depth helps", "[long]") {
   // After the first map the camera only turns: all that comes into view has no depth.
   const char* scene = R"({"motion": {"rotation_only": [2.0, 3.5]}, "tracks": {"lifetime": [0.3, 0.8]}})";
   std::vector<double> patient, guessing;
@@ -84,7 +84,7 @@ TEST_CASE("Tracks that show no parallax tell rotation, and a guess of their dept
   CHECK(median(guessing) < 0.7 * median(patient));
 }
 
-TEST_CASE("gp_map's estimate does not depend on how its observations are cut into pieces") {
+TEST_CASE("gp_map's estimate does not depend on how its observations are cut into pieces", "[slow]") {
   const TrackedScene scene(3.0);
   const auto fine = run(scene, {.chunk = 0.003});
   const auto coarse = run(scene, {.chunk = 0.25});
@@ -97,7 +97,7 @@ TEST_CASE("gp_map's estimate does not depend on how its observations are cut int
   }
 }
 
-TEST_CASE("Tracks of a slow tracker give a map, too") {
+TEST_CASE("Tracks of a slow tracker give a map, too", "[slow]") {
   for (const char* scene : {R"({"tracks": {"lifetime": [2, 4], "rate": [20, 20]}})",
                             R"({"tracks": {"lifetime": [2, 4], "rate": [10, 12]}})"}) {
     const auto result = run(TrackedScene(6.0, scene));
@@ -109,7 +109,8 @@ TEST_CASE("Tracks of a slow tracker give a map, too") {
   }
 }
 
-TEST_CASE("A stand before the first motion is in the trajectory, with few states, and nothing is told before a look") {
+TEST_CASE("A stand before the first motion is in the trajectory, with few states, and nothing is told before a look",
+          "[slow]") {
   constexpr double kStand = 20.0;  // [s]
   for (const std::uint64_t seed : {1, 2, 3}) {
     const TrackedScene scene(kStand + 4.0, R"({"motion": {"hold": [0, 20]}, "tracks": {"lifetime": [60, 60]}})", seed);
@@ -124,7 +125,7 @@ TEST_CASE("A stand before the first motion is in the trajectory, with few states
   }
 }
 
-TEST_CASE("A short blackout is carried by the prior and said") {
+TEST_CASE("A short blackout is carried by the prior and said", "[slow]") {
   const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [1.0, 3.0], "blackouts": [3.0, 3.3]}})");
   const auto result = run(scene);
   const Status status = result.backend->status();
@@ -136,7 +137,7 @@ TEST_CASE("A short blackout is carried by the prior and said") {
   CHECK(result.backend->trajectory().end() > 5.9);
 }
 
-TEST_CASE("A long blackout ends the run as lost, with what there was before") {
+TEST_CASE("A long blackout ends the run as lost, with what there was before", "[slow]") {
   const TrackedScene scene(7.0, R"({"tracks": {"lifetime": [1.0, 3.0], "blackouts": [3.0, 6.0]}})");
   const auto result = run(scene);
   const Status status = result.backend->status();
@@ -154,14 +155,14 @@ TEST_CASE("A run with a lag shorter than the patience ends as lost, too") {
   CHECK(result.backend->trajectory().end() > 2.3);  // what was marginalised is not taken back
 }
 
-TEST_CASE("A stretch of pure rotation does not destroy the trajectory") {
+TEST_CASE("A stretch of pure rotation does not destroy the trajectory", "[slow]") {
   const TrackedScene scene(7.0, R"({"motion": {"rotation_only": [3.0, 4.5]}, "tracks": {"lifetime": [1.0, 3.0]}})");
   const auto result = run(scene);
   CHECK(result.backend->status().state != RunState::lost);
   CHECK(result.scores.ate.trans_percent < 3.0);
 }
 
-TEST_CASE("Slow motion starts as soon as the noise allows, and the trajectory begins with the observations") {
+TEST_CASE("Slow motion starts as soon as the noise allows, and the trajectory begins with the observations", "[slow]") {
   const TrackedScene scene(8.0, R"({"tracks": {"outlier_share": 0.1}})", 5);
   const auto result = run(scene);
   CHECK(result.backend->status().state == RunState::ok);
@@ -169,7 +170,7 @@ TEST_CASE("Slow motion starts as soon as the noise allows, and the trajectory be
   CHECK(result.scores.ate.trans_percent < 2.0);
 }
 
-TEST_CASE("Tracks that end before the first map lengthen the trajectory all the same") {
+TEST_CASE("Tracks that end before the first map lengthen the trajectory all the same", "[slow]") {
   // The camera turns first: none of the tracks of its beginning is left when parallax shows.
   const TrackedScene scene(6.0, R"({"motion": {"amplitude": 0.3}, "tracks": {"lifetime": [0.3, 0.6]}})", 2);
   const auto result = run(scene);
@@ -213,7 +214,7 @@ TEST_CASE("Covariance is positive and smallest at the anchor") {
   CHECK(middle->topLeftCorner<6, 6>().trace() > start->topLeftCorner<6, 6>().trace());
 }
 
-TEST_CASE("However control states are placed, the error is at most a tenth larger than at 20 Hz") {
+TEST_CASE("However control states are placed, the error is at most a tenth larger than at 20 Hz", "[long]") {
   const char* robot_arm =
       R"({"motion": {"kind": "robot_arm"}, "tracks": {"lifetime": [0.3, 2.0], "outlier_share": 0.05}})";
   constexpr double kDuration = 5.0;  // [s]
@@ -226,7 +227,8 @@ TEST_CASE("However control states are placed, the error is at most a tenth large
   }
 }
 
-TEST_CASE("A prior that is learnt while running makes what is told smoother, and what was told a while ago better") {
+TEST_CASE("A prior that is learnt while running makes what is told smoother, and what was told a while ago better",
+          "[slow]") {
   double causal[2] = {}, last[2] = {};
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const TrackedScene scene(6.0, "{}", seed);
@@ -242,7 +244,7 @@ TEST_CASE("A prior that is learnt while running makes what is told smoother, and
   CHECK(last[1] < 0.9 * last[0]);
 }
 
-TEST_CASE("What has been learnt by each update is told, and what is learnt in the end beside it") {
+TEST_CASE("What has been learnt by each update is told, and what is learnt in the end beside it", "[long]") {
   // From four times a robot arm's pace to a quarter of it. A prior's density begins at 1.
   const TrackedScene scene(8.0, R"({"motion": {"kind": "robot_arm", "pace": [4, 0.25]}})");
   for (const std::string options :
@@ -269,20 +271,21 @@ TEST_CASE("What has been learnt by each update is told, and what is learnt in th
   }
 }
 
-TEST_CASE("With one prior, and no outliers to find afterwards, a lag of 2 s costs less than a tenth of the accuracy") {
+TEST_CASE("With one prior, and no outliers to find afterwards, a lag of 2 s costs less than a tenth of the accuracy",
+          "[long]") {
   const char* scene = R"({"tracks": {"lifetime": [1.0, 4.0]}})";
   CHECK(mean_error(scene, R"({"lag": 2, "learn": {"prior": "never"}})") <
         1.1 * mean_error(scene, R"({"learn": {"prior": "never"}})"));
 }
 
-TEST_CASE("With a lag there is no problem to give, and the trajectory has its beginning all the same") {
+TEST_CASE("With a lag there is no problem to give, and the trajectory has its beginning all the same", "[slow]") {
   const auto result = run(TrackedScene(5.0), {.backend = R"({"lag": 2})"});
   CHECK(result.backend->trajectory().start() < 1.0);
   CHECK_FALSE(result.backend->problem());
 }
 
 #if !defined(EVBENCH_SANITIZED)
-TEST_CASE("With a lag, memory grows by the results alone") {
+TEST_CASE("With a lag, memory grows by the results alone", "[long]") {
   const TrackedScene scene(45.0, R"({"tracks": {"lifetime": [1.0, 4.0], "outlier_share": 0.1}})");
   const auto bytes_per_state = [&](const char* options) {
     BackEndContext context;
@@ -310,7 +313,8 @@ TEST_CASE("With a lag, memory grows by the results alone") {
 }
 #endif
 
-TEST_CASE("Per observation, the causal trajectory has a pose for each, and the final one is as good as the usual one") {
+TEST_CASE("Per observation, the causal trajectory has a pose for each, and the final one is as good as the usual one",
+          "[long]") {
   const char* lifetime = R"({"tracks": {"lifetime": [1.0, 3.0]}})";
   const TrackedScene scene(5.0, lifetime);
   const auto usual = run(scene);

@@ -13,7 +13,7 @@ namespace evbench::gp_map {
 
 using testing::TrackedScene;
 
-TEST_CASE("A track that slides off its point keeps its beginning as a landmark, and one that does not all") {
+TEST_CASE("A track that slides off its point keeps its beginning as a landmark, and one that does not all", "[slow]") {
   const TrackedScene scene(10.0, R"({"tracks": {"lifetime": [4.0, 5.0]}})");
   constexpr double kAfter = 1.0, kSpeed = 3.0;  // [s], [px/s]: its mean error stays far below the outliers'
   const auto slides = [](TrackId track) { return track % 5 == 0; };
@@ -51,7 +51,7 @@ TEST_CASE("A track that slides off its point keeps its beginning as a landmark, 
   CHECK(whole == sound);
 }
 
-TEST_CASE("While running, a track that errs more than the others counts less") {
+TEST_CASE("While running, a track that errs more than the others counts less", "[slow]") {
   const TrackedScene scene(8.0, R"({"tracks": {"lifetime": [2.0, 3.0]}})");
   const auto errs = [](TrackId track) { return track % 4 == 0; };
   constexpr double kPeriod = 0.3, kAmplitude = 4.0;  // [s], [px]
@@ -88,7 +88,8 @@ TEST_CASE("While running, a track that errs more than the others counts less") {
   CHECK(trusted > 0.9 * sound);
 }
 
-TEST_CASE("Of landmarks that come back as many go on as the budget has, the others become new ones at the same place") {
+TEST_CASE("Of landmarks that come back as many go on as the budget has, the others become new ones at the same place",
+          "[slow]") {
   const TrackedScene scene(8.0, R"({"tracks": {"lifetime": [6.0, 8.0]}})");
   constexpr double kPeriod = 2.0, kGone = 0.7;  // [s]
   const auto phase = [](const TrackObservation& z) { return z.t + 0.37 * static_cast<double>(z.track); };
@@ -138,7 +139,8 @@ TEST_CASE("Of landmarks that come back as many go on as the budget has, the othe
   CHECK(some > all + 10);
 }
 
-TEST_CASE("A track that comes back beside its landmark is told as an outlier, and its landmark can come back later") {
+TEST_CASE("A track that comes back beside its landmark is told as an outlier, and its landmark can come back later",
+          "[slow]") {
   constexpr double kGone = 6.5, kAside = 7.0, kGoneAgain = 7.5, kBack = 8.0, kEnd = 10.0;  // [s]
   const TrackedScene scene(kEnd, R"({"tracks": {"lifetime": [9.5, 10.0]}})");
   const auto strays = [](TrackId track) { return track % 30 == 7; };
@@ -185,7 +187,7 @@ TEST_CASE("A track that comes back beside its landmark is told as an outlier, an
   CHECK(backend.status().state == RunState::ok);
 }
 
-TEST_CASE("A track that ends and is seen again before the next state has not ended") {
+TEST_CASE("A track that ends and is seen again before the next state has not ended", "[slow]") {
   const TrackedScene scene(4.0);
   const auto landmarks = [&](bool flickering) {
     BackEndContext context;

@@ -43,7 +43,7 @@ Problem multiplied(const Problem& problem, int times) {
 
 }  // namespace
 
-TEST_CASE("An incremental estimate is near the optimum, of 40 landmarks alive as of 200") {
+TEST_CASE("An incremental estimate is near the optimum, of 40 landmarks alive as of 200", "[slow]") {
   const auto path = evbench::testing::problem_file("small.txt.gz");
   if (!path) return;
   const Problem problem = read_problem(*path);
@@ -57,7 +57,7 @@ TEST_CASE("After the final iterations the small problem's states are the oracle'
   if (const auto path = evbench::testing::problem_file("small.txt.gz")) CHECK(largest_distance(*path, 1) < 0.01);
 }
 
-TEST_CASE("After the final iterations the medium problem's states are the oracle's within 1 % of a sigma") {
+TEST_CASE("After the final iterations the medium problem's states are the oracle's within 1 % of a sigma", "[slow]") {
   if (const auto path = evbench::testing::problem_file("medium.txt.gz")) CHECK(largest_distance(*path, 20) < 0.01);
 }
 

@@ -30,7 +30,8 @@ std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, int
 }  // namespace
 
 TEST_CASE(
-    "A local minimum, in which a plane and the way past it have changed places, gives way to the true explanation") {
+    "A local minimum, in which a plane and the way past it have changed places, gives way to the true explanation",
+    "[slow]") {
   for (const auto& [way, plane, young] : {std::tuple{Way{-0.4, 0.0}, Supposed::frontal_plane, false},
                                           {Way{0.0, 0.4}, Supposed::dual_plane, false},
                                           {Way{-0.4, 0.0}, Supposed::frontal_plane, true}}) {
@@ -56,7 +57,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A young map in which near and far have changed places can be turned over once more") {
+TEST_CASE("A young map in which near and far have changed places can be turned over once more", "[slow]") {
   int better = 0, right = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     const FactorGraph truth = solved(flight({}, seed, true)), reversed = turned_over(truth);

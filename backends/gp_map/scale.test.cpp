@@ -50,7 +50,7 @@ double anchored_scale(const TrackedScene& scene, const GpMap& backend) {
 
 }  // namespace
 
-TEST_CASE("A prior a hundred times stronger or weaker leaves the scale where the anchor holds it") {
+TEST_CASE("A prior a hundred times stronger or weaker leaves the scale where the anchor holds it", "[slow]") {
   const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
   for (const char* options : {"{}", R"({"qc_scale": 100})", R"({"qc_scale": 0.01})"}) {
     INFO(options);
@@ -59,13 +59,13 @@ TEST_CASE("A prior a hundred times stronger or weaker leaves the scale where the
   }
 }
 
-TEST_CASE("The first landmarks keep the mean nearness that they were given") {
+TEST_CASE("The first landmarks keep the mean nearness that they were given", "[slow]") {
   const TrackedScene scene(5.0);
   const auto result = run(scene);
   CHECK(std::abs(linearise_anchor(result.backend->graph()).e) < 5.0);  // in sigmas of 1e-4
 }
 
-TEST_CASE("Landmarks that are near, whose distances are known best, hold the scale") {
+TEST_CASE("Landmarks that are near, whose distances are known best, hold the scale", "[slow]") {
   const TrackedScene scene(2.0, R"({"scene": {"near": 1, "far": 10}, "tracks": {"lifetime": [3.0, 4.0]}})");
   const auto result = run(scene);
   const Vector3 origin = scene.ground_truth().pose(result.backend->trajectory().start())->p;
@@ -78,7 +78,7 @@ TEST_CASE("Landmarks that are near, whose distances are known best, hold the sca
   CHECK(sum / static_cast<double>(holding.size()) > 1.3 * of_all / map_size);
 }
 
-TEST_CASE("When most landmarks that hold the scale turn out to be outliers, others hold it too") {
+TEST_CASE("When most landmarks that hold the scale turn out to be outliers, others hold it too", "[slow]") {
   // Only 25 tracks make the first map; 40 others come at 0.6 s; from 0.9 s on the first ones jump away in turn.
   const TrackedScene scene(6.0,
                            R"({"motion": {"max_frequency": 0.3}, "tracks": {"lifetime": [7.0, 8.0], "alive": 65}})");

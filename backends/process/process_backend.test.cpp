@@ -4,9 +4,9 @@
 
 #include "core/plugin/registration.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
-#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::process;
@@ -248,7 +248,8 @@ TEST_CASE("A back-end process of another version, or of none, is refused") {
   CHECK_THAT(failure_of("print('Welcome!', flush=True)"), ContainsSubstring("found Welcome!"));
 }
 
-TEST_CASE("A back-end process that crashes, ends or keeps silent fails with the last lines of its standard error") {
+TEST_CASE("A back-end process that crashes, ends or keeps silent fails with the last lines of its standard error",
+          "[slow]") {
   CHECK_THAT(failure_of("say({'evbench': 1})\nhear()\nraise ValueError('an odd track')"),
              ContainsSubstring(
                  "ended with exit code 1; it had been told the batch until 0.1 s; the last lines of its standard "

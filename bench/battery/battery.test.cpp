@@ -2,9 +2,9 @@
 
 #include "core/plugin/registration.hpp"
 #include "core/plugin/tracking_monitor.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
-#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::battery;
@@ -64,7 +64,7 @@ class Careless : public BackEnd {
 
 }  // namespace
 
-TEST_CASE("Every built-in back-end passes the battery, check by check") {
+TEST_CASE("Every built-in back-end passes the battery, check by check", "[long]") {
   const Plugins plugins = registered_plugins();
   for (const char* name : {"gp_map", "bundle_adjustment"}) {
     for (const Check& check : backend_checks(plugins, name)) {
@@ -74,7 +74,7 @@ TEST_CASE("Every built-in back-end passes the battery, check by check") {
   }
 }
 
-TEST_CASE("gp_map passes the battery with a lag, and per observation") {
+TEST_CASE("gp_map passes the battery with a lag, and per observation", "[long]") {
   const Plugins plugins = registered_plugins();
   for (const char* options :
        {R"({"lag": 2})", R"({"per_observation": true})", R"({"placement": {"rule": "motion"}})"}) {
@@ -113,7 +113,8 @@ TEST_CASE("The oracle and simulated sources pass the battery") {
   CHECK(joined(failures(source_checks(plugins, "event_simulation", events))) == "");
 }
 
-TEST_CASE("haste passes the battery on events, with what guides it and without, whichever way it places observations") {
+TEST_CASE("haste passes the battery on events, with what guides it and without, whichever way it places observations",
+          "[slow]") {
   using testing::EventScene;
   const EventScene scene(testing::swing, 0.6, EventScene::quadrangles(150, 1));
   const Plugins plugins = registered_plugins();

@@ -8,11 +8,11 @@
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 #include "eval/scores.hpp"
 #include "eval/testing/trajectories.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -112,7 +112,7 @@ TEST_CASE("eval recognises RobotEvt ground truth by its columns") {
   CHECK_THROWS_AS(files.eval("--format tum"), InputError);
 }
 
-TEST_CASE("eval of several estimates prints a table and writes a list") {
+TEST_CASE("eval of several estimates prints a table and writes a list", "[slow]") {
   const Trajectories files;
   write_file(files.folder.file("perfect.txt"), read_file(files.ground_truth));
   const Outcome outcome = testing::evbench(files.folder, "eval truth.txt estimate.txt perfect.txt -as --json all.json");
@@ -150,7 +150,7 @@ TEST_CASE("eval takes errors over sub-trajectories as rpg_trajectory_evaluation 
   CHECK_THROWS_AS(files.eval("--segment_lengths 1"), CLI::ParseError);
 }
 
-TEST_CASE("eval writes the aligned estimate and the error of each pose, and replaces nothing unasked") {
+TEST_CASE("eval writes the aligned estimate and the error of each pose, and replaces nothing unasked", "[slow]") {
   const Trajectories files;
   const std::string command = "eval truth.txt estimate.txt -as --aligned aligned.txt --errors errors.csv";
   REQUIRE(testing::evbench(files.folder, command).exit_code == 0);
@@ -187,7 +187,7 @@ TEST_CASE("table replaces no file unless that is asked for") {
   CHECK_THAT(read_file(files.folder.file("table.txt")), ContainsSubstring("ATE [m]"));
 }
 
-TEST_CASE("eval reads pipes, and says what it waits for") {
+TEST_CASE("eval reads pipes, and says what it waits for", "[slow]") {
   const Trajectories files;
   const std::string expected = testing::evbench(files.folder, "eval truth.txt estimate.txt -as --table csv").out;
   const Outcome piped = testing::shell(files.folder, R"(

@@ -4,8 +4,8 @@
 #include "bench/testing/program.hpp"
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -29,7 +29,7 @@ struct Sequence {
 
 }  // namespace
 
-TEST_CASE("A simulated sequence is exported whole, and can be run from its files") {
+TEST_CASE("A simulated sequence is exported whole, and can be run from its files", "[slow]") {
   const Sequence sequence;
   REQUIRE(sequence.run("export c.json --groundtruth groundtruth.txt --tracks tracks.txt --calib calib.txt").exit_code ==
           0);
@@ -52,7 +52,7 @@ TEST_CASE("A simulated sequence is exported whole, and can be run from its files
   CHECK(read_file(sequence.folder.file("tracks.txt")) != first);
 }
 
-TEST_CASE("A run's aligned estimate and errors are those that it was scored by") {
+TEST_CASE("A run's aligned estimate and errors are those that it was scored by", "[slow]") {
   const Sequence sequence;
   REQUIRE(sequence.run("run c.json --quiet").exit_code == 0);
   const std::string run =
@@ -71,7 +71,7 @@ TEST_CASE("A run's aligned estimate and errors are those that it was scored by")
   CHECK(read_file(sequence.folder.file("online.txt")) != read_file(sequence.folder.file("a.txt")));
 }
 
-TEST_CASE("A run is exported as evo's result archive, which reads back as evo reads it") {
+TEST_CASE("A run is exported as evo's result archive, which reads back as evo reads it", "[slow]") {
   const Sequence sequence;
   REQUIRE(sequence.run("run c.json --quiet").exit_code == 0);
   const std::string run =
@@ -101,7 +101,8 @@ TEST_CASE("A run is exported as evo's result archive, which reads back as evo re
   CHECK(read_file(sequence.folder.file("again.zip")) == read_file(sequence.folder.file("ape_trans.zip")));
 }
 
-TEST_CASE("A run is exported in rpg_trajectory_evaluation's layout, which gives the same error when read as it does") {
+TEST_CASE("A run is exported in rpg_trajectory_evaluation's layout, which gives the same error when read as it does",
+          "[slow]") {
   const Sequence sequence;
   REQUIRE(sequence.run("run c.json --quiet").exit_code == 0);
   const std::string run =
@@ -127,7 +128,7 @@ TEST_CASE("A run is exported in rpg_trajectory_evaluation's layout, which gives 
   CHECK_THAT(refused.err, ContainsSubstring("rpg_trajectory_evaluation does not align by \"origin\""));
 }
 
-TEST_CASE("What can't be exported is refused with what was expected, and no file is replaced") {
+TEST_CASE("What can't be exported is refused with what was expected, and no file is replaced", "[slow]") {
   const Sequence sequence;
   sequence.refused("c.json", "nothing to export; expected at least one of --groundtruth");
   sequence.refused("c.json --errors e.csv",

@@ -2,8 +2,8 @@
 
 #include "bench/render/testing/recording.hpp"
 #include "bench/testing/program.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -20,7 +20,7 @@ void write_recording_of_events(const TemporaryFolder& folder) {
 
 }  // namespace
 
-TEST_CASE("render writes a picture, a folder of pictures, or a video, and says so") {
+TEST_CASE("render writes a picture, a folder of pictures, or a video, and says so", "[slow]") {
   const TemporaryFolder folder;
   write_recording_of_events(folder);
   Outcome outcome = testing::evbench(folder, "render a.evb a.png --from 0.01 --to 0.03 --scale 4 --dark");
@@ -42,7 +42,7 @@ TEST_CASE("render writes a picture, a folder of pictures, or a video, and says s
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", "a.mp4", "a.png", "pictures"});
 }
 
-TEST_CASE("render draws a run's tracks over its events") {
+TEST_CASE("render draws a run's tracks over its events", "[slow]") {
   const TemporaryFolder folder;
   write_recording_of_events(folder);
   folder.write("calib.txt", "20 20 10 5 0 0 0 0 0\n");
@@ -60,7 +60,7 @@ TEST_CASE("render draws a run's tracks over its events") {
   CHECK_THAT(without.err, ContainsSubstring("--tracks"));
 }
 
-TEST_CASE("render refuses with exit code 2 and a sentence what it can't draw") {
+TEST_CASE("render refuses with exit code 2 and a sentence what it can't draw", "[slow]") {
   const TemporaryFolder folder;
   write_recording_of_events(folder);
   const auto refused = [&](const std::string& arguments, const std::string& message) {

@@ -1,7 +1,7 @@
 #include "bench/published.hpp"
 #include "bench/testing/program.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -37,7 +37,7 @@ struct Paper {
 
 }  // namespace
 
-TEST_CASE("Our numbers and the paper's stand side by side, with both protocols and why they can't be equal") {
+TEST_CASE("Our numbers and the paper's stand side by side, with both protocols and why they can't be equal", "[slow]") {
   const Paper paper;
   const Outcome outcome = paper.reproduce("arm");
   INFO(outcome.err);
@@ -51,7 +51,7 @@ TEST_CASE("Our numbers and the paper's stand side by side, with both protocols a
                                                           ContainsSubstring(",0.5,") && ContainsSubstring(",60,"));
 }
 
-TEST_CASE("Configs whose data is not here are left out and named, the others are done") {
+TEST_CASE("Configs whose data is not here are left out and named, the others are done", "[slow]") {
   const Paper paper;
   const Outcome outcome = paper.reproduce("");
   CHECK(outcome.exit_code == 2);
@@ -60,7 +60,7 @@ TEST_CASE("Configs whose data is not here are left out and named, the others are
   CHECK(names_in(paper.folder.file("results")) == std::set<std::string>{"arm"});
 }
 
-TEST_CASE("Names that are no configs and damaged numbers are refused with the place") {
+TEST_CASE("Names that are no configs and damaged numbers are refused with the place", "[slow]") {
   const Paper paper;
   CHECK_THAT(paper.reproduce("arn").err, ContainsSubstring("paper has no config \"arn\"; did you mean \"arm\"?"));
   paper.write({{"config", "arm"}, {"what", "Table I"}});

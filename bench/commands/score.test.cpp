@@ -1,8 +1,8 @@
 #include <filesystem>
 
 #include "bench/testing/program.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -32,7 +32,7 @@ Json json_file(const std::string& path) { return parse_json(read_file(path)); }
 
 }  // namespace
 
-TEST_CASE("Scored again by the same protocol, a run's folder has the same bytes") {
+TEST_CASE("Scored again by the same protocol, a run's folder has the same bytes", "[slow]") {
   const ScoredRuns runs;
   const std::string before = runs.sums();
   const Outcome outcome = runs.score("results");
@@ -43,7 +43,7 @@ TEST_CASE("Scored again by the same protocol, a run's folder has the same bytes"
   CHECK(runs.sums() == before);
 }
 
-TEST_CASE("Runs are scored by another protocol, and by the one before again") {
+TEST_CASE("Runs are scored by another protocol, and by the one before again", "[slow]") {
   const ScoredRuns runs;
   const std::string before = runs.sums();
   const Outcome outcome = runs.score(
@@ -59,7 +59,7 @@ TEST_CASE("Runs are scored by another protocol, and by the one before again") {
   CHECK(runs.sums() == before);
 }
 
-TEST_CASE("Scores of a run are those that eval gives for its files") {
+TEST_CASE("Scores of a run are those that eval gives for its files", "[slow]") {
   const ScoredRuns runs;
   const std::string path = "'" + runs.runs[0] + "/";
   REQUIRE(
@@ -70,7 +70,7 @@ TEST_CASE("Scores of a run are those that eval gives for its files") {
   CHECK(json_file(runs.folder.file("e.json")).at("final") == json_file(runs.runs[0] + "/metrics.json").at("final"));
 }
 
-TEST_CASE("What can't be scored is refused, and all runs are as before") {
+TEST_CASE("What can't be scored is refused, and all runs are as before", "[slow]") {
   const ScoredRuns runs;
   const std::string before = runs.sums();
   const auto refused = [&](const std::string& arguments, const std::string& message) {
@@ -93,7 +93,7 @@ TEST_CASE("What can't be scored is refused, and all runs are as before") {
              ContainsSubstring(runs.runs[1].substr(runs.folder.path().size() + 1) + "/config.json: can't be read"));
 }
 
-TEST_CASE("A run without ground truth says so, also when it is scored again") {
+TEST_CASE("A run without ground truth says so, also when it is scored again", "[slow]") {
   const ScoredRuns runs;
   std::filesystem::remove(runs.runs[0] + "/groundtruth.tum");
   const Outcome outcome = runs.score("results");

@@ -412,7 +412,7 @@ TEST_CASE("What an earlier call left is fetched again when the checksum tells th
   CHECK(read_file(folder.file("set/a.h5")) == noise(1000));
 }
 
-TEST_CASE("dataset get fetches and unpacks by name, once, dataset list marks what is there") {
+TEST_CASE("dataset get fetches and unpacks by name, once, dataset list marks what is there", "[slow]") {
   const TemporaryFolder folder;
   make_archive(folder.file("sequence.zip"),
                {{"events.txt", "0.1 1 1 1\n"}, {"calib.txt", "200 200 120 90 0 0 0 0 0\n"}});

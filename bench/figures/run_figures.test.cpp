@@ -6,9 +6,9 @@
 #include "bench/testing/program.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "eval/testing/runs.hpp"
-#include "core/support/json.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -110,7 +110,7 @@ TEST_CASE("What of a level failed is told, too") {
   CHECK(failures.high == std::vector{4.0});
 }
 
-TEST_CASE("A value of the axis at which the median fails is in the figure") {
+TEST_CASE("A value of the axis at which the median fails is in the figure", "[slow]") {
   const Results results;
   for (int seed = 1; seed <= 3; ++seed) {
     for (const double frame : {0.1, 0.2}) results.add_seed("bundle", seed, frame, frame);
@@ -180,7 +180,7 @@ TEST_CASE("What can't be drawn is refused with what was expected") {
   CHECK_THROWS_WITH(sweep_figure(one.find(), {}), ContainsSubstring("differ in no number; expected runs of a sweep"));
 }
 
-TEST_CASE("Figures of runs are drawn by the program, the same bytes each time") {
+TEST_CASE("Figures of runs are drawn by the program, the same bytes each time", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_comparison()));
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
@@ -232,7 +232,7 @@ TEST_CASE("A figure of one sequence names it, and it and what is exported tell w
   CHECK_THROWS_WITH(error_figure(runs, {}), ContainsSubstring("b is not drawn: no trajectory: timeout after 20 s."));
 }
 
-TEST_CASE("Runs that are asked for by several values of one name have any of them") {
+TEST_CASE("Runs that are asked for by several values of one name have any of them", "[slow]") {
   const Swept results;
   const auto script_of = [&](const std::string& only) {
     const Outcome outcome =
@@ -245,14 +245,14 @@ TEST_CASE("Runs that are asked for by several values of one name have any of the
   CHECK_THAT(script_of("--only label=asynchronous"), ContainsSubstring("\"x\":[1.0,2.0,3.0]"));
 }
 
-TEST_CASE("What Python warns of is passed on") {
+TEST_CASE("What Python warns of is passed on", "[slow]") {
   const Swept results;
   const Outcome outcome = testing::evbench(results.folder, "figure box . --out f.svg --width 20");
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.err, ContainsSubstring("f.svg: is drawn, but Python warns:\n  constrained_layout not applied"));
 }
 
-TEST_CASE("Figures that can't be written or drawn are errors, and nothing is replaced") {
+TEST_CASE("Figures that can't be written or drawn are errors, and nothing is replaced", "[slow]") {
   const Swept results;
   const auto refused = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = testing::evbench(results.folder, "figure sweep . " + arguments);

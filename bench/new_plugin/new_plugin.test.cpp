@@ -5,8 +5,8 @@
 #include "bench/commands/exit_code.hpp"
 #include "bench/testing/program.hpp"
 #include "core/support/error.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -46,7 +46,7 @@ TEST_CASE("The program says what to do with a new plugin, which may go into an e
   CHECK(names_in(folder.path()) == std::set<std::string>{"empty", "mine"});
 }
 
-TEST_CASE("A new plugin that can't be is refused with a sentence, and nothing is left behind") {
+TEST_CASE("A new plugin that can't be is refused with a sentence, and nothing is left behind", "[slow]") {
   const TemporaryFolder folder;
   folder.write("file", "");
   std::filesystem::create_directory(folder.file("full"));

@@ -5,7 +5,7 @@
 using namespace evbench;
 using Catch::Matchers::ContainsSubstring;
 
-TEST_CASE("Folders of public data sets are described, converted and drawn, and can be named in a config") {
+TEST_CASE("Folders of public data sets are described, converted and drawn, and can be named in a config", "[slow]") {
   const testing::TemporaryFolder folder;
   if (!testing::write_data_sets(folder)) return;
   const std::string set =
@@ -26,7 +26,8 @@ TEST_CASE("Folders of public data sets are described, converted and drawn, and c
   CHECK_THAT(named.out, ContainsSubstring("calibration   fx "));
 }
 
-TEST_CASE("What was assumed of the ground truth beside a recording is a remark on it, which a native copy keeps") {
+TEST_CASE("What was assumed of the ground truth beside a recording is a remark on it, which a native copy keeps",
+          "[slow]") {
   const testing::TemporaryFolder folder;
   folder.write("events.txt", "0.1 5 6 1\n0.2 7 8 0\n");
   folder.write("groundtruth.txt", "#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z\n100000000,1,2,3,1,0,0,0\n");

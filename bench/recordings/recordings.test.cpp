@@ -12,8 +12,8 @@
 #include "core/events/native/native.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -87,7 +87,7 @@ TEST_CASE("info says a recording's format, sensor, counts, times, rates, calibra
   CHECK(json.at("oddities").empty());
 }
 
-TEST_CASE("info of a recording without events, and of one with damage, says so") {
+TEST_CASE("info of a recording without events, and of one with damage, says so", "[slow]") {
   const TemporaryFolder folder;
   write_native(folder.file("none.evb"), {}, {});
   CHECK_THAT(testing::evbench(folder, "info none.evb").out,
@@ -127,7 +127,7 @@ TEST_CASE("Rates are plotted as high as they are") {
   CHECK_FALSE(plot_rates({}, 0.0, 0.0).empty());
 }
 
-TEST_CASE("convert writes native, text and HDF5 files that read back as the same events") {
+TEST_CASE("convert writes native, text and HDF5 files that read back as the same events", "[slow]") {
   const TemporaryFolder folder;
   const auto events = walking_events(5000);
   write_native(folder.file("a.evb"), events, davis_header());
@@ -155,7 +155,7 @@ TEST_CASE("Text has times before zero with their sign") {
         "# t[s] x y p\n# geometry: 240x180\n-1.500000 1 2 1\n-0.000001 1 2 0\n0.000007 1 2 1\n");
 }
 
-TEST_CASE("convert takes a time range, with times from the first event on or as they are") {
+TEST_CASE("convert takes a time range, with times from the first event on or as they are", "[slow]") {
   const TemporaryFolder folder;
   write_native(folder.file("a.evb"), walking_events(5000), davis_header());
   REQUIRE(testing::evbench(folder, "convert a.evb b.evb --from 3 --to 4.5").exit_code == 0);
@@ -203,7 +203,7 @@ TEST_CASE("A part of a recording keeps the ground truth of its time, and a folde
                                                            ContainsSubstring("a part of it: 3.000000 to 4.000000 s"));
 }
 
-TEST_CASE("A recording may come from a pipe or the standard input, of any format") {
+TEST_CASE("A recording may come from a pipe or the standard input, of any format", "[slow]") {
   const TemporaryFolder folder;
   const auto events = walking_events(5000);
   write_native(folder.file("a.evb"), events, davis_header());
@@ -257,7 +257,7 @@ TEST_CASE("convert undoes the lens: events go to where a pinhole sees them, or a
   CHECK(read_all(folder.file("d.evb")) == expected);
 }
 
-TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing behind") {
+TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing behind", "[slow]") {
   const TemporaryFolder folder;
   write_native(folder.file("a.evb"), walking_events(20000), davis_header());
   write_native(folder.file("unknown.evb"), walking_events(10), {});
@@ -368,7 +368,7 @@ TEST_CASE("A disk that is full while a file is written is an error that names th
   CHECK(read_file(folder.file(out)) == "old");
 }
 
-TEST_CASE("A config is a recording of its source's events, with camera and ground truth") {
+TEST_CASE("A config is a recording of its source's events, with camera and ground truth", "[slow]") {
   const TemporaryFolder folder;
   const auto write_config = [&](const char* text) { std::ofstream(folder.file("a.json")) << text; };
   write_config(R"({"seed": 3, "source": {"type": "event_simulation", "duration": 0.2,
@@ -402,7 +402,7 @@ TEST_CASE("A config is a recording of its source's events, with camera and groun
   CHECK_THAT(refused.err, ContainsSubstring("its source has no events"));
 }
 
-TEST_CASE("A config that names itself, or one that names it, as its recording is refused with a sentence") {
+TEST_CASE("A config that names itself, or one that names it, as its recording is refused with a sentence", "[slow]") {
   const TemporaryFolder folder;
   folder.write("calib.txt", "200 200 120 90 0 0 0 0 0\n");
   const auto write_config = [&](const std::string& name, const std::string& named, const std::string& more) {

@@ -111,7 +111,7 @@ std::map<std::string, std::string> reasons(const SweepProgress& progress) {
 
 }  // namespace
 
-TEST_CASE("A source that crashes or hangs when it is made leaves the sweep a sentence to say") {
+TEST_CASE("A source that crashes or hangs when it is made leaves the sweep a sentence to say", "[slow]") {
   const TemporaryFolder folder;
   Json config = tiny_config();
   config["source"] = {{"type", "troubled"}};
@@ -126,7 +126,7 @@ TEST_CASE("A source that crashes or hangs when it is made leaves the sweep a sen
                     ContainsSubstring("timeout after 0.3 s"));
 }
 
-TEST_CASE("A plugin that crashes, hangs or eats memory takes its own run down, which says so in the table") {
+TEST_CASE("A plugin that crashes, hangs or eats memory takes its own run down, which says so in the table", "[slow]") {
   const TemporaryFolder folder;
   Json config = tiny_config();
   config.erase("backend");

@@ -48,7 +48,8 @@ int kills() {
 
 }  // namespace
 
-TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the same bytes once it is done again") {
+TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the same bytes once it is done again",
+          "[long]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   REQUIRE(testing::evbench(folder, kKilledSweep + "undisturbed").exit_code == 0);
@@ -81,7 +82,8 @@ TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the 
   CHECK(of_sweeps > 0);
 }
 
-TEST_CASE("A run that is complete while its writer is still ending is taken when that is gone, and no lock stays") {
+TEST_CASE("A run that is complete while its writer is still ending is taken when that is gone, and no lock stays",
+          "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   REQUIRE(testing::evbench(folder, kKilledSweep + "out").exit_code == 0);
@@ -93,7 +95,7 @@ TEST_CASE("A run that is complete while its writer is still ending is taken when
   CHECK(difference(expected, results_of(folder.file("out/tiny"))) == "");
 }
 
-TEST_CASE("A sweep onto a full disk says so and loses nothing: with more room it ends with the same bytes") {
+TEST_CASE("A sweep onto a full disk says so and loses nothing: with more room it ends with the same bytes", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   const std::string disk = folder.file("disk");

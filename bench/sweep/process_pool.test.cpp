@@ -82,7 +82,7 @@ TEST_CASE("A pool's process that crashes, leaves or throws is told with how it e
   CHECK(thrown.log == std::vector<std::string>{"what is wrong"});
 }
 
-TEST_CASE("A pool's process is held to its limits of time and of memory, its children's included") {
+TEST_CASE("A pool's process is held to its limits of time and of memory, its children's included", "[slow]") {
   ProcessPool pool;
   const Ending slow = run(pool,
                           []() -> std::string {
@@ -134,7 +134,7 @@ TEST_CASE("What a pool's process leaves behind ends with it, wherever it went, a
   CHECK_FALSE(is_alive(of_log(slow)));
 }
 
-TEST_CASE("A pool's processes end with the program, also with one that is killed") {
+TEST_CASE("A pool's processes end with the program, also with one that is killed", "[slow]") {
   int pipe[2];
   REQUIRE(::pipe(pipe) == 0);
   const pid_t program = ::fork();

@@ -1,8 +1,8 @@
 #include <cstdio>
 
 #include "bench/testing/sweeps.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -35,7 +35,7 @@ bool has_slurm() { return std::system("command -v slurmctld slurmd sbatch > /dev
 
 }  // namespace
 
-TEST_CASE("Slurm does a sweep with the same bytes, though a task is killed and a node goes down") {
+TEST_CASE("Slurm does a sweep with the same bytes, though a task is killed and a node goes down", "[slow]") {
   if (!has_slurm()) {
     std::printf("SKIPPED: Slurm is not installed (slurm-wlm), or this is not root\n");
     return;

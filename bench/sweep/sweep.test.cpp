@@ -81,7 +81,7 @@ TEST_CASE("The same config has the same key in a sweep as alone, and points of o
                     ContainsSubstring("evaluation.alignment=se3") && ContainsSubstring("differ in their protocol"));
 }
 
-TEST_CASE("A sweep that can't be is refused before anything is written, with place and nearest name") {
+TEST_CASE("A sweep that can't be is refused before anything is written, with place and nearest name", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   const auto refused = [&](const std::string& sweep, const std::string& message) {
@@ -127,7 +127,8 @@ TEST_CASE("A sweep that can't be is refused before anything is written, with pla
   }
 }
 
-TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on request, and renaming runs nothing") {
+TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on request, and renaming runs nothing",
+          "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   const auto sweep = [&](const std::string& arguments) {
@@ -181,7 +182,7 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
   }
 }
 
-TEST_CASE("Two processes share a sweep, and lines of its manifest, done one by one, give the same bytes") {
+TEST_CASE("Two processes share a sweep, and lines of its manifest, done one by one, give the same bytes", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   REQUIRE(testing::evbench(folder, "sweep c.json --over seed=1..6 --out one").exit_code == 0);
@@ -207,7 +208,8 @@ TEST_CASE("Two processes share a sweep, and lines of its manifest, done one by o
 }
 
 TEST_CASE(
-    "Tracks from events are made once for back-ends that share them, and change nothing, but not those with feedback") {
+    "Tracks from events are made once for back-ends that share them, and change nothing, but not those with feedback",
+    "[slow]") {
   const TemporaryFolder folder;
   Json config = tiny_config();
   config.erase("backend");
@@ -238,7 +240,8 @@ TEST_CASE(
   CHECK(names_in(folder.file("guided/.tracks")).empty());
 }
 
-TEST_CASE("Simulated events are made once for runs that share them, change nothing, and are gone at the end") {
+TEST_CASE("Simulated events are made once for runs that share them, change nothing, and are gone at the end",
+          "[slow]") {
   const TemporaryFolder folder;
   Json config = tiny_config();
   config["source"] = {{"type", "event_simulation"}, {"duration", 0.3}};

@@ -54,7 +54,7 @@ TEST_CASE("A child process answers line by line, in its folder") {
   CHECK(process.errors().empty());
 }
 
-TEST_CASE("Lines larger than any pipe go both ways while the standard error is flooded") {
+TEST_CASE("Lines larger than any pipe go both ways while the standard error is flooded", "[slow]") {
   const std::string line = std::string(5'000'000, 'x') + "\n";
   ChildProcess process(shell("yes complaint | head -c 3000000 >&2; read line; echo \"$line\""), "");
   CHECK(process.exchange(line, 60.0) + "\n" == line);
@@ -73,7 +73,7 @@ TEST_CASE("A child process that ends instead of answering says how") {
   CHECK_THAT(failure("sleep 30 & exit 4"), ContainsSubstring("ended with exit code 4"));
 }
 
-TEST_CASE("A child process that closes its streams but lives is given up") {
+TEST_CASE("A child process that closes its streams but lives is given up", "[slow]") {
   CHECK_THAT(failure("exec >&-; sleep 30"), ContainsSubstring("closed its standard output"));
   CHECK_THAT(failure("exec <&-; sleep 30", 10.0, std::string(1'000'000, 'x') + "\n"),
              ContainsSubstring("closed its standard input"));

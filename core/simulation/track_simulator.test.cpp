@@ -56,7 +56,7 @@ double rms(const Sequence& s, TrackKind kind) {
 
 }  // namespace
 
-TEST_CASE("Inliers reproject through the ground truth at the noise level in every scene and motion") {
+TEST_CASE("Inliers reproject through the ground truth at the noise level in every scene and motion", "[slow]") {
   Sequence s;
   s.scene_options.kind = GENERATE("volume", "plane", "boxes", "frustum");
   s.motion_options.kind = GENERATE("robot_arm", "smooth_random");

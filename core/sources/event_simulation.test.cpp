@@ -6,9 +6,9 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/plugin/registration.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
-#include "core/support/json.hpp"
 
 using namespace evbench;
 using Catch::Matchers::ContainsSubstring;
@@ -65,7 +65,7 @@ TEST_CASE("Every scene gives the same events with any number of threads, and oth
   CHECK(events(1, 2) != one);
 }
 
-TEST_CASE("The true track of a point, its depth and the point seen at a pixel agree, and boxes hide points") {
+TEST_CASE("The true track of a point, its depth and the point seen at a pixel agree, and boxes hide points", "[slow]") {
   const auto source = simulation(R"({"duration": 1, "scene": {"kind": "boxes"},
       "camera": {"distortion": "radial_tangential", "coefficients": [-0.35, 0.15, 0, 0, 0]}})");
   const SceneTruth truth = source.truth();

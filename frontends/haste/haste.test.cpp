@@ -99,7 +99,7 @@ TEST_CASE("Features are spread over the image and keep their distance") {
   CHECK(top < 3 * count / 4);
 }
 
-TEST_CASE("A standing camera starves nobody, and its tracks go on when it moves") {
+TEST_CASE("A standing camera starves nobody, and its tracks go on when it moves", "[slow]") {
   const auto motion = [](double t) { return swing(t < 0.5 ? t : std::max(0.5, t - 3.0)); };
   const EventScene source(motion, 4.5, EventScene::quadrangles(150, 1));
   const TrackBatch all = track(source);

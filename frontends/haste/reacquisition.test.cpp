@@ -155,7 +155,7 @@ TEST_CASE("Landmarks are found again while the back-end is degraded, unless that
   CHECK(track(on, known(), TrackingState::lost).of_known() == 0);
 }
 
-TEST_CASE("What was lost in a map that makes way is not looked for in the next one") {
+TEST_CASE("What was lost in a map that makes way is not looked for in the next one", "[slow]") {
   Options options;
   options.life.border = 40.0;  // trackers end where what they were on is still in view
   const auto finds = [&](TrackingState before) {
@@ -182,7 +182,8 @@ TEST_CASE("Trackers far from where landmarks are expected end, but not while a m
              Catch::Matchers::ContainsSubstring(" 0 far from where they were expected"));
 }
 
-TEST_CASE("Lost landmarks that are displaced together are told as what they seem to be, unless that is switched off") {
+TEST_CASE("Lost landmarks that are displaced together are told as what they seem to be, unless that is switched off",
+          "[slow]") {
   Landmarks landmarks = beginnings();
   for (auto& [id, position] : landmarks) {
     if (id % 2 != 0) position.x() += 0.1;  // 10 px; the others tell where the camera is

@@ -166,7 +166,8 @@ TEST_CASE("Nothing is vetoed where that is switched off, nor by a back-end that 
 }
 
 TEST_CASE(
-    "Few trackers are taken for wanderers that step to and fro where they follow, as noise and haste make them do") {
+    "Few trackers are taken for wanderers that step to and fro where they follow, as noise and haste make them do",
+    "[slow]") {
   constexpr double kNoise = 6e6;  // [events/s]
   const auto fast = [](double t) { return swing(6.0 * t); };
   EventScene source(fast, 0.6, EventScene::quadrangles(150, 1));
@@ -209,7 +210,7 @@ TEST_CASE("Trackers that a burst of noise takes along end, and are observed nowh
   CHECK(told.alive.size() > 40);
 }
 
-TEST_CASE("After a silence trackers go on before what they saw, and end before something else") {
+TEST_CASE("After a silence trackers go on before what they saw, and end before something else", "[slow]") {
   const auto standing = [](double t) { return swing(t < 0.5 ? t : std::max(0.5, t - 0.5)); };
   const EventScene still(standing, 1.3, EventScene::quadrangles(150, 1));
   const auto shifting = [](double t) {  // by 50 px during the silence

@@ -102,7 +102,7 @@ TEST_CASE("A chain of batches slides, anchored to what was around it once, a tra
   CHECK(median_error(scene(), brisk, track(scene(), chained).all.observations) > 1.5 * anchored);
 }
 
-TEST_CASE("What str tells does not depend on how it is asked, by duration and by count") {
+TEST_CASE("What str tells does not depend on how it is asked, by duration and by count", "[slow]") {
   Options by_count;
   by_count.batch.events = 15'000;
   for (const Options& options : {Options(), by_count}) {
@@ -131,7 +131,7 @@ TEST_CASE("Batches by count are shorter where there are more events") {
   CHECK(count > scene().list.size() / 2000);
 }
 
-TEST_CASE("Tracks of a camera that stands still go on when it moves") {
+TEST_CASE("Tracks of a camera that stands still go on when it moves", "[slow]") {
   const auto motion = [](double t) { return brisk(t < 0.4 ? t : std::max(0.4, t - 0.6)); };
   const EventScene source(motion, 1.4, EventScene::quadrangles(150, 1));
   const TrackBatch all = track(source).all;
@@ -144,7 +144,8 @@ TEST_CASE("Tracks of a camera that stands still go on when it moves") {
             lives, [](const auto& life) { return life.second.first < 0.4 && life.second.second > 1.2; }) > 10);
 }
 
-TEST_CASE("Where the motion is fast from the beginning and turns round, few and many edges tell the truth or nothing") {
+TEST_CASE("Where the motion is fast from the beginning and turns round, few and many edges tell the truth or nothing",
+          "[slow]") {
   const auto motion = [](double t) {
     return SE3{so3::exp({0.0, 0.5 * std::sin(6.0 * t), 0.1 * std::sin(6.0 * t)}), Vector3::Zero()};
   };
@@ -174,7 +175,7 @@ TEST_CASE("A structure that moves on its own leaves the tracks of all else where
   CHECK(share_off(source, brisk, all.observations, 2.0) < 0.05);
 }
 
-TEST_CASE("A source whose events stop, flicker or come all at once neither stops str nor keeps it") {
+TEST_CASE("A source whose events stop, flicker or come all at once neither stops str nor keeps it", "[slow]") {
   EventScene silent = scene();
   silent.silence(0.2, 0.4);
   CHECK(track(silent).remarks.at(0).find(" 0 with too few events") == std::string::npos);

@@ -118,22 +118,23 @@ std::vector<int> between_states() {
 
 }  // namespace
 
-TEST_CASE("Errors of control states are as large as their covariances say, with landmark priors") {
+TEST_CASE("Errors of control states are as large as their covariances say, with landmark priors", "[slow]") {
   check_consistency({.gauge = Gauge::landmark_priors}, control_states());
 }
 
-TEST_CASE("Errors of control states are as large as their covariances say, in the gauge of the scale anchor") {
+TEST_CASE("Errors of control states are as large as their covariances say, in the gauge of the scale anchor",
+          "[slow]") {
   check_consistency({.gauge = Gauge::scale_anchor}, control_states());
 }
 
-TEST_CASE("Errors between control states are as large as their covariances say") {
+TEST_CASE("Errors between control states are as large as their covariances say", "[slow]") {
   for (const Gauge gauge : {Gauge::landmark_priors, Gauge::scale_anchor}) {
     check_consistency({.gauge = gauge, .observed = DrawnOptions::Observed::at_states}, between_states());
   }
 }
 
 #if !defined(EVBENCH_SANITIZED)  // whose few seeds could not show it
-TEST_CASE("Errors are seen to be too large for their covariances when pixels are 10 % noisier than stated") {
+TEST_CASE("Errors are seen to be too large for their covariances when pixels are 10 % noisier than stated", "[slow]") {
   for (const Gauge gauge : {Gauge::landmark_priors, Gauge::scale_anchor}) {
     const Nees nees = mean_nees({.gauge = gauge, .noise_scale = 1.1}, {kNewest})[0];
     CHECK(nees.joint > Band(12, 1).high);
@@ -141,7 +142,8 @@ TEST_CASE("Errors are seen to be too large for their covariances when pixels are
 }
 #endif
 
-TEST_CASE("After its final iterations the engine's trajectory is the oracle's within 1 % of its standard deviation") {
+TEST_CASE("After its final iterations the engine's trajectory is the oracle's within 1 % of its standard deviation",
+          "[slow]") {
   for (const Gauge gauge : {Gauge::landmark_priors, Gauge::scale_anchor}) {
     for (int seed = kFirstSeed; seed < kFirstSeed + kOracleSeeds; ++seed) {
       Engine engine = DrawnProblem({.gauge = gauge}, static_cast<std::uint64_t>(seed)).solve_incrementally();

@@ -119,15 +119,18 @@ void compare_all_with_batch(int fifth) {
 
 }  // namespace
 
-TEST_CASE("Whatever is done to the engine, optimise() ends no higher than the batch solver that starts there, half 1") {
+TEST_CASE("Whatever is done to the engine, optimise() ends no higher than the batch solver that starts there, half 1",
+          "[slow]") {
   compare_all_with_batch(0);
 }
 
-TEST_CASE("Whatever is done to the engine, optimise() ends no higher than the batch solver that starts there, half 2") {
+TEST_CASE("Whatever is done to the engine, optimise() ends no higher than the batch solver that starts there, half 2",
+          "[slow]") {
   compare_all_with_batch(1);
 }
 
-TEST_CASE("Redoing only what changed gives the states of redoing everything, and of a new engine, in linear problems") {
+TEST_CASE("Redoing only what changed gives the states of redoing everything, and of a new engine, in linear problems",
+          "[slow]") {
   Agreement agreement;
   int all = 0;
   play_fifth(2, [&](std::uint64_t seed) {

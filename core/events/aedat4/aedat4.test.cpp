@@ -64,7 +64,7 @@ TEST_CASE("AEDAT 4: the real DAVIS346 recording has the events that its table sa
   testing::check_seeking(*path);
 }
 
-TEST_CASE("AEDAT 4: cut short or broken anywhere, it is refused or read as far as it goes") {
+TEST_CASE("AEDAT 4: cut short or broken anywhere, it is refused or read as far as it goes", "[slow]") {
   const auto path = testing::data_file(kSample);
   if (!path) return;
   const testing::TemporaryFolder folder;

@@ -361,7 +361,8 @@ with h5py.File(sys.argv[1] + '.2', 'w') as f:
   CHECK_FALSE(open_events(path + ".2")->info().size_assumed);
 }
 
-TEST_CASE("HDF5 files without events, of other shapes, or broken are refused with a sentence, never a crash") {
+TEST_CASE("HDF5 files without events, of other shapes, or broken are refused with a sentence, never a crash",
+          "[slow]") {
   const testing::TemporaryFolder folder;
   {
     Writer file(folder.file("none.h5"));

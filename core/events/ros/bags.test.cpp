@@ -87,7 +87,7 @@ TEST_CASE("Bags cut short anywhere are refused, or read as far as they go with a
   if (const auto path = testing::data_file(name)) testing::check_truncation(folder, *path, 25);
 }
 
-TEST_CASE("Bags with broken bytes anywhere are never a crash") {
+TEST_CASE("Bags with broken bytes anywhere are never a crash", "[slow]") {
   const std::string name = GENERATE(kBag, kTrigger, kMcap);
   CAPTURE(name);
   const testing::TemporaryFolder folder;
@@ -175,7 +175,8 @@ TEST_CASE("A bag without events is refused and its topics are named") {
                     Catch::Matchers::ContainsSubstring("/events"));
 }
 
-TEST_CASE("A ROS 1 bag that python's rosbag wrote, of each compression, gives events, ground truth and calibration") {
+TEST_CASE("A ROS 1 bag that python's rosbag wrote, of each compression, gives events, ground truth and calibration",
+          "[slow]") {
   const std::string python = "/usr/bin/python3 ", compression = GENERATE("none", "lz4", "bz2");
   if (std::system((python + "-c 'import rosbag' 2>/dev/null").c_str()) != 0) {
     WARN("SKIPPED: needs Debian's package python3-rosbag");

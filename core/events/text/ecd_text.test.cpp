@@ -377,7 +377,7 @@ TEST_CASE("A zip that is broken, or without events, is refused, and a broken fil
   }
 }
 
-TEST_CASE("What a zip blows up to is not kept in memory") {
+TEST_CASE("What a zip blows up to is not kept in memory", "[slow]") {
   const TemporaryFolder folder;
   const std::string blanks(std::size_t{65} << 20, ' ');
   write_zip(folder.file("bomb.zip"), {{"events.txt", kRecording[0].second + blanks}, {"groundtruth.txt", blanks}});

@@ -42,7 +42,7 @@ using evbench::haste::testing::corner_lines;
 using evbench::haste::testing::EventPattern;
 using evbench::haste::testing::PatternPose;
 
-TEST_CASE("Tracking allocates nothing for an event, nor for a change of state, by any of the variants") {
+TEST_CASE("Tracking allocates nothing for an event, nor for a change of state, by any of the variants", "[slow]") {
   EventPattern pattern;
   pattern.lines = corner_lines();
   pattern.pose = [](double t) { return PatternPose{{120.0 + 30.0 * std::sin(20.0 * t), 90.0}, 2.0 * t}; };

@@ -78,7 +78,7 @@ std::pair<std::size_t, double> nearest_disc(const TrackObservation& z, const std
 
 }  // namespace
 
-TEST_CASE("The centres of dots that are all alike are observed, and one that comes back is known again") {
+TEST_CASE("The centres of dots that are all alike are observed, and one that comes back is known again", "[slow]") {
   DotsOptions options;
   options.life.find_again = true;
   const ToldDots told = follow_dots(dots_scene(), options);
@@ -103,7 +103,7 @@ TEST_CASE("The centres of dots that are all alike are observed, and one that com
   CHECK(disc_of.size() < track_of.size() + track_of.size() / 5);  // few dots have a second track
 }
 
-TEST_CASE("By default a dot that comes back is another one: a track that has ended is observed no more") {
+TEST_CASE("By default a dot that comes back is another one: a track that has ended is observed no more", "[slow]") {
   const TrackBatch all = follow_dots(dots_scene()).all;
   std::map<TrackId, double> ended;
   for (const TrackEnd& end : all.ended) CHECK(ended.emplace(end.track, end.t).second);
@@ -112,13 +112,13 @@ TEST_CASE("By default a dot that comes back is another one: a track that has end
   }
 }
 
-TEST_CASE("Dots do not depend on how they are asked for") {
+TEST_CASE("Dots do not depend on how they are asked for", "[slow]") {
   const TrackBatch usual = follow_dots(dots_scene()).all;
   CHECK(same(usual, follow_dots(dots_scene(), {}, 0.037).all));
   CHECK(same(usual, follow_dots(dots_scene(), {}, 0.01, 5).all));
 }
 
-TEST_CASE("Dots of a camera that stands still go on when it moves") {
+TEST_CASE("Dots of a camera that stands still go on when it moves", "[slow]") {
   const auto motion = [](double t) { return sweep(t < 0.4 ? t : std::max(0.4, t - 0.8)); };
   const EventScene source(motion, 1.8, discs());
   std::map<TrackId, std::pair<double, double>> lives;
@@ -130,7 +130,7 @@ TEST_CASE("Dots of a camera that stands still go on when it moves") {
             lives, [](const auto& life) { return life.second.first < 0.4 && life.second.second > 1.3; }) > 10);
 }
 
-TEST_CASE("A dot that moves on its own is followed, and does not disturb the others") {
+TEST_CASE("A dot that moves on its own is followed, and does not disturb the others", "[slow]") {
   EventScene source = dots_scene();
   // A small one that is drawn across the image, over all others.
   const EventScene alone(
@@ -146,7 +146,7 @@ TEST_CASE("A dot that moves on its own is followed, and does not disturb the oth
   CHECK(errors[errors.size() * 8 / 10] < 0.8);
 }
 
-TEST_CASE("Where nothing is round, nothing is told, and nothing breaks") {
+TEST_CASE("Where nothing is round, nothing is told, and nothing breaks", "[slow]") {
   const EventScene square(sweep, 0.6, EventScene::quadrangles(40, 1, 0.4));
   CHECK(follow_dots(square).all.observations.size() < 200);
   CHECK(follow_dots(EventScene(sweep, 0.3, {})).all.observations.empty());

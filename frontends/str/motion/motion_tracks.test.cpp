@@ -49,7 +49,7 @@ std::vector<double> errors(const Source& source, const std::function<SE3(double)
 
 }  // namespace
 
-TEST_CASE("Points are carried by the rotation that the events say, also where it turns round") {
+TEST_CASE("Points are carried by the rotation that the events say, also where it turns round", "[slow]") {
   const ToldMotion told = follow_motion(motion_scene());
   INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
   const std::vector<double> all = errors(motion_scene(), to_and_fro, told.all);
@@ -59,7 +59,7 @@ TEST_CASE("Points are carried by the rotation that the events say, also where it
   CHECK(told.remarks.at(1).find(" 0 times all ended") != std::string::npos);
 }
 
-TEST_CASE("A batch within which the motion turns round is divided, and tells as much as its parts") {
+TEST_CASE("A batch within which the motion turns round is divided, and tells as much as its parts", "[slow]") {
   MotionTracksOptions options;
   options.batch.duration = 0.06;
   const ToldMotion told = follow_motion(motion_scene(), options);
@@ -71,14 +71,14 @@ TEST_CASE("A batch within which the motion turns round is divided, and tells as 
   CHECK(told.remarks.at(1).find(" 0 times all ended") != std::string::npos);
 }
 
-TEST_CASE("Points do not depend on how they are asked for") {
+TEST_CASE("Points do not depend on how they are asked for", "[slow]") {
   const TrackBatch usual = follow_motion(motion_scene()).all;
   CHECK(usual.observations.size() > 500);
   CHECK(same(usual, follow_motion(motion_scene(), {}, 0.037).all));
   CHECK(same(usual, follow_motion(motion_scene(), {}, 0.01, 7).all));
 }
 
-TEST_CASE("Points of a camera that stands still stay where they are, and go on when it moves") {
+TEST_CASE("Points of a camera that stands still stay where they are, and go on when it moves", "[slow]") {
   const auto motion = [](double t) {
     return to_and_fro(t < 0.3927 ? t : std::max(0.3927, t - 0.5));
   };  // stands where it turns
@@ -100,7 +100,7 @@ TEST_CASE("Points of a camera that stands still stay where they are, and go on w
   CHECK(off[off.size() / 2] < 2.0);
 }
 
-TEST_CASE("Where events say nothing of a motion for too long, all points end, and others begin after it") {
+TEST_CASE("Where events say nothing of a motion for too long, all points end, and others begin after it", "[slow]") {
   EventScene flickering = motion_scene();
   Random random(1);
   std::vector<Event> noise;
@@ -125,7 +125,7 @@ TEST_CASE("Where events say nothing of a motion for too long, all points end, an
   CHECK(std::ranges::any_of(lives, [](const auto& life) { return life.second.first > 0.7; }));
 }
 
-TEST_CASE("A structure that moves on its own does not carry the points of str_motion away") {
+TEST_CASE("A structure that moves on its own does not carry the points of str_motion away", "[slow]") {
   EventScene source = motion_scene();
   const EventScene other(
       [](double t) {
