@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Sets everything up and passes the tests:
-#   ./test.sh                 the fuzz targets for some seconds each, and all tests: what every commit must pass
-#   ./test.sh STAGE...        fast       the tests that take less than a second
-#                             long       random sequences and kills by the hundred thousand
-#                             sanitize   all tests with AddressSanitizer and UndefinedBehaviorSanitizer
-#                             thread     what runs in several threads, with ThreadSanitizer
-#                             release, debug, clang, fuzz      all tests of that preset
+#   ./test.sh                 what every commit must pass: the fuzz targets for some seconds each, all tests but the long ones
+#   ./test.sh STAGE...        fast       those that take less than half a second, in a minute
+#                             long       those that take longer than seven seconds, and 100,000 random sequences, 100 kills
+#                             sanitize   all but the long ones with AddressSanitizer and UndefinedBehaviorSanitizer
+#                             thread     what runs in several threads with ThreadSanitizer
+#                             release, debug, clang, fuzz      all but the long ones of that preset
 # Tests of real data need EVBENCH_DATA and EVBENCH_PROBLEMS (README.md); without them they say that they are skipped.
 set -euo pipefail
 cd "$(dirname "$0")"

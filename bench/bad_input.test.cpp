@@ -64,7 +64,7 @@ TEST_CASE("A file that is empty, truncated or damaged ends the program with the 
   check_file_refused("calib.txt", "200 200 120\n", "calib.txt:1: has 3 columns; expected 9");
 }
 
-TEST_CASE("A gzip file that ends too early is told as truncated") {
+TEST_CASE("A gzip file that ends too early is told as truncated", "[slow]") {
   const TemporaryFolder folder;
   write_recording(folder);
   const std::string text = read_file(folder.file("tracks.txt"));
@@ -84,7 +84,7 @@ TEST_CASE("Numbers that are not finite end the program with the line", "[slow]")
   check_file_refused("calib.txt", "200 inf 120 90 0 0 0 0 0\n", "calib.txt:1");
 }
 
-TEST_CASE("Ground truth whose stamps are unsorted ends the program with the line") {
+TEST_CASE("Ground truth whose stamps are unsorted ends the program with the line", "[slow]") {
   check_file_refused("groundtruth.txt", "1 0 0 0 0 0 0 1\n0.5 0 0 0 0 0 0 1\n", "groundtruth.txt:2: time 0.5");
 }
 
@@ -133,7 +133,7 @@ TEST_CASE("A front-end that does not suit the source is refused with its place")
                 "recording.json: frontend: oracle needs a source");
 }
 
-TEST_CASE("A folder for results that can't be made ends the program before any work") {
+TEST_CASE("A folder for results that can't be made ends the program before any work", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   folder.write("file", "");
@@ -154,7 +154,7 @@ TEST_CASE("A full disk is an error wherever the program writes", "[slow]") {
   }
 }
 
-TEST_CASE("A file that can't be written whole leaves the one before as it was") {
+TEST_CASE("A file that can't be written whole leaves the one before as it was", "[slow]") {
   const TemporaryFolder folder;
   write_recording(folder);
   folder.write("scores.json", "before");

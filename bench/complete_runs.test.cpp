@@ -196,7 +196,7 @@ TEST_CASE("A job that is complete in another experiment below the same folder is
   CHECK(comparison.content("asynchronous", "metrics.json") == before);
 }
 
-TEST_CASE("A run whose folder is damaged or of other data is done again", "[slow]") {
+TEST_CASE("A run whose folder is damaged or of other data is done again", "[long]") {
   const Comparison comparison;
   REQUIRE(comparison.run("--quiet").exit_code == 0);
   const std::string path = comparison.path("asynchronous");
@@ -256,7 +256,7 @@ TEST_CASE("A back-end that throws makes its run failed with the reason, the othe
   CHECK(read_file(records[1].folder + "/timing.csv") == other);
 }
 
-TEST_CASE("Ctrl-C leaves nothing of a run that is not complete", "[slow]") {
+TEST_CASE("Ctrl-C leaves nothing of a run that is not complete", "[long]") {
   const TemporaryFolder folder;
   Json config = short_config("gp_map");
   config["source"]["duration"] = 3000;

@@ -160,7 +160,7 @@ TEST_CASE("The trajectory has seen an event within a tenth of a second, as long 
   }
 }
 
-TEST_CASE("Landmarks that come back into view are found again, and their tracks go on", "[slow]") {
+TEST_CASE("Landmarks that come back into view are found again, and their tracks go on", "[long]") {
   // Away to the right, and back: what was seen at first is out of view in between.
   const auto motion = [](double t) {
     SE3 T = swing(t);
@@ -185,7 +185,7 @@ TEST_CASE("Five seconds without events: the camera stands still, and its traject
   check_recovered(scene, execution, 7.0);
 }
 
-TEST_CASE("After the last event a camera stands still, unless the recording may have been cut off", "[slow]") {
+TEST_CASE("After the last event a camera stands still, unless the recording may have been cut off", "[long]") {
   const auto motion = [](double t) { return swing(std::min(t, 3.0)); };
   EventScene scene(motion, 7.0, wall());
   const Execution still = run(scene);
@@ -377,7 +377,7 @@ TEST_CASE("A single straight edge ends with a reason, and when there is more to 
   check_recovered(later, run(later), 3.5);
 }
 
-TEST_CASE("A texture that repeats itself does not fool re-acquisition", "[slow]") {
+TEST_CASE("A texture that repeats itself does not fool re-acquisition", "[long]") {
   const auto motion = [](double t) {
     SE3 T = swing(t);
     T.p.x() += 0.6 * (1.0 - std::cos(1.6 * t));

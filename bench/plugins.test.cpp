@@ -34,7 +34,7 @@ TEST_CASE("Libraries are named by --plugin before or after a command, a variable
   CHECK_THAT(shell(folder, "\"$evbench\" list --plugin").err, ContainsSubstring("--plugin"));
 }
 
-TEST_CASE("Plugins are checked in words, a line a check") {
+TEST_CASE("Plugins are checked in words, a line a check", "[slow]") {
   const TemporaryFolder folder;
   const Outcome outcome = testing::evbench(folder, "check-plugin oracle --kind frontend");
   CHECK(outcome.exit_code == 0);

@@ -33,7 +33,7 @@ double ate_percent(const Json& run) { return run.at("final").at("ate").at("trans
 
 }  // namespace
 
-TEST_CASE("The example back-end in Python estimates the motion, and the same bytes with two threads", "[slow]") {
+TEST_CASE("The example back-end in Python estimates the motion, and the same bytes with two threads", "[long]") {
   const TemporaryFolder folder, again;
   const std::string shorter =
       "--set source.duration=5 --set 'backends=[{\"type\": \"process\", \"label\": \"Python\", "
@@ -56,7 +56,7 @@ TEST_CASE("The example back-end in Python estimates the motion, and the same byt
   }
 }
 
-TEST_CASE("The example front-end in Python makes tracks that a back-end can use", "[slow]") {
+TEST_CASE("The example front-end in Python makes tracks that a back-end can use", "[long]") {
   const TemporaryFolder folder;
   const Outcome outcome = run_example(folder, "python_frontend");
   CAPTURE(outcome.err);
@@ -71,7 +71,7 @@ TEST_CASE("The example front-end in Python makes tracks that a back-end can use"
              ContainsSubstring("front-end process: centres of dots") && ContainsSubstring(" tracks"));
 }
 
-TEST_CASE("A back-end process that crashes is a failed run with its last words, and the others go on") {
+TEST_CASE("A back-end process that crashes is a failed run with its last words, and the others go on", "[slow]") {
   const TemporaryFolder folder;
   Json config = short_config();
   config.erase("backend");

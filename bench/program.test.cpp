@@ -108,7 +108,7 @@ TEST_CASE("Nothing is printed by --quiet, the table and the folder without", "[s
   }
 }
 
-TEST_CASE("A run that is watched says how far it is, where its errors go") {
+TEST_CASE("A run that is watched says how far it is, where its errors go", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   const Outcome watched = testing::evbench(folder, "run c.json --watch");
@@ -252,7 +252,7 @@ TEST_CASE("Runs that can't be read are told behind the table of the others", "[s
   }
 }
 
-TEST_CASE("Checking a config finds a folder for results that can't be written") {
+TEST_CASE("Checking a config finds a folder for results that can't be written", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   CHECK(testing::evbench(folder, "run c.json --check --out new/folder").exit_code == 0);

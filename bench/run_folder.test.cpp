@@ -238,7 +238,7 @@ TEST_CASE("A run writes the problem that it ended with, in the format that evben
   CHECK(report.at("cost_motion_prior").get<double>() > 0.0);
 }
 
-TEST_CASE("Relative paths of a config refer to its folder, and inputs are hashed into the manifest") {
+TEST_CASE("Relative paths of a config refer to its folder, and inputs are hashed into the manifest", "[slow]") {
   const TemporaryFolder folder;
   const TemporaryFolder elsewhere;
   write_recording(folder);
@@ -331,7 +331,8 @@ TEST_CASE("Two runs do not write to the same folder at the same time", "[slow]")
   CHECK(names_in(folder.file("results/short")) == std::set<std::string>{key});
 }
 
-TEST_CASE("Of many processes that run the same config at once, each is done or refused, and one result is whole") {
+TEST_CASE("Of many processes that run the same config at once, each is done or refused, and one result is whole",
+          "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   const Outcome all = testing::shell(folder, R"(

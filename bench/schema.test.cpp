@@ -79,7 +79,7 @@ Json with(Json config, const char* pointer, const Json& value) {
 
 }  // namespace
 
-TEST_CASE("Every config that comes with evbench, and every one that a run writes, is valid by the schema") {
+TEST_CASE("Every config that comes with evbench, and every one that a run writes, is valid by the schema", "[slow]") {
   const Schema schema;
   std::vector<std::string> paths = shipped_configs();
   CHECK(paths.size() >= 2);

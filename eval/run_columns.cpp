@@ -105,12 +105,12 @@ std::vector<RunColumn> run_columns(std::span<const RunRecord> runs) {
   return columns;
 }
 
-const RunColumn& find_column(const std::vector<RunColumn>& columns, const std::string& name) {
+const RunColumn& find_column(const std::vector<RunColumn>& columns, std::string_view name) {
   const auto found = std::ranges::find(columns, name, &RunColumn::name);
   if (found != columns.end()) return *found;
   std::vector<std::string> names;
   for (const RunColumn& column : columns) names.push_back(column.name);
-  throw InputError(fmt::format("runs do not differ in \"{}\"{}", name, suggestion(name, names)));
+  throw InputError(fmt::format("runs do not differ in \"{}\"{}", name, suggestion(std::string(name), names)));
 }
 
 std::vector<std::vector<std::size_t>> equal_runs(const std::vector<const RunColumn*>& columns, std::size_t runs) {

@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "eval/run_record.hpp"
@@ -22,7 +23,7 @@ struct RunColumn {
 std::vector<RunColumn> run_columns(std::span<const RunRecord> runs);
 
 /// The column of that name; throws InputError, with the nearest name, where there is none.
-const RunColumn& find_column(const std::vector<RunColumn>& columns, const std::string& name);
+const RunColumn& find_column(const std::vector<RunColumn>& columns, std::string_view name);
 
 /// Runs that these columns do not tell apart, by their indices: in the order of their first, and each in its own.
 std::vector<std::vector<std::size_t>> equal_runs(const std::vector<const RunColumn*>& columns, std::size_t runs);

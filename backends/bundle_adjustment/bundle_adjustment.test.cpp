@@ -113,7 +113,7 @@ bool finite(const PoseTrajectory& trajectory) {
 
 }  // namespace
 
-TEST_CASE("a simulated motion is recovered, in a volume and before a plane") {
+TEST_CASE("a simulated motion is recovered, in a volume and before a plane", "[slow]") {
   for (const PointScene scene : {PointScene::volume, PointScene::plane}) {
     Simulation simulation;
     simulation.scene = scene;
@@ -205,7 +205,7 @@ TEST_CASE("a frame's pose is told when the frame ends, and the window's poses ar
   CHECK(anew > 3 * 30);
 }
 
-TEST_CASE("the same observations give the same trajectory to the last bit") {
+TEST_CASE("the same observations give the same trajectory to the last bit", "[slow]") {
   const auto observations = simulate({});
   BundleAdjustment a = make(), b = make();
   feed(a, observations);

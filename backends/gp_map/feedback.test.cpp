@@ -9,7 +9,7 @@
 namespace evbench::gp_map {
 
 TEST_CASE("Every landmark that was expected once is expected whenever it is in view, however fast the camera turns",
-          "[slow]") {
+          "[long]") {
   const char* turning = R"({"motion": {"kind": "smooth_random", "max_frequency": 2.0, "rotation_amplitude": 0.6},
                             "tracks": {"lifetime": [0.3, 1.0], "noise": 0.1}})";
   constexpr double kExchange = 0.005;  // [s]

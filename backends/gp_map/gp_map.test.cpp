@@ -45,7 +45,7 @@ TEST_CASE("gp_map is registered and follows a simulated camera", "[slow]") {
   CHECK(result.online.size() > 80);
 }
 
-TEST_CASE("gp_map drops outlier tracks", "[slow]") {
+TEST_CASE("gp_map drops outlier tracks", "[long]") {
   const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [1.0, 3.0], "outlier_share": 0.1, "drift_share": 0.05}})");
   const auto result = run(scene);
   CHECK(result.backend->status().state == RunState::ok);
@@ -97,7 +97,7 @@ TEST_CASE("gp_map's estimate does not depend on how its observations are cut int
   }
 }
 
-TEST_CASE("Tracks of a slow tracker give a map, too", "[slow]") {
+TEST_CASE("Tracks of a slow tracker give a map, too", "[long]") {
   for (const char* scene : {R"({"tracks": {"lifetime": [2, 4], "rate": [20, 20]}})",
                             R"({"tracks": {"lifetime": [2, 4], "rate": [10, 12]}})"}) {
     const auto result = run(TrackedScene(6.0, scene));
@@ -110,7 +110,7 @@ TEST_CASE("Tracks of a slow tracker give a map, too", "[slow]") {
 }
 
 TEST_CASE("A stand before the first motion is in the trajectory, with few states, and nothing is told before a look",
-          "[slow]") {
+          "[long]") {
   constexpr double kStand = 20.0;  // [s]
   for (const std::uint64_t seed : {1, 2, 3}) {
     const TrackedScene scene(kStand + 4.0, R"({"motion": {"hold": [0, 20]}, "tracks": {"lifetime": [60, 60]}})", seed);
@@ -162,7 +162,7 @@ TEST_CASE("A stretch of pure rotation does not destroy the trajectory", "[slow]"
   CHECK(result.scores.ate.trans_percent < 3.0);
 }
 
-TEST_CASE("Slow motion starts as soon as the noise allows, and the trajectory begins with the observations", "[slow]") {
+TEST_CASE("Slow motion starts as soon as the noise allows, and the trajectory begins with the observations", "[long]") {
   const TrackedScene scene(8.0, R"({"tracks": {"outlier_share": 0.1}})", 5);
   const auto result = run(scene);
   CHECK(result.backend->status().state == RunState::ok);
@@ -202,7 +202,7 @@ TEST_CASE("Nothing, one track, and two observations are no reason to crash") {
   CHECK(one.status().state == RunState::failed);
 }
 
-TEST_CASE("Covariance is positive and smallest at the anchor") {
+TEST_CASE("Covariance is positive and smallest at the anchor", "[slow]") {
   const TrackedScene scene(2.0);
   const auto result = run(scene);
   const auto start = result.backend->covariance(result.backend->trajectory().start());
@@ -228,7 +228,7 @@ TEST_CASE("However control states are placed, the error is at most a tenth large
 }
 
 TEST_CASE("A prior that is learnt while running makes what is told smoother, and what was told a while ago better",
-          "[slow]") {
+          "[long]") {
   double causal[2] = {}, last[2] = {};
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const TrackedScene scene(6.0, "{}", seed);

@@ -89,7 +89,7 @@ TEST_CASE("While running, a track that errs more than the others counts less", "
 }
 
 TEST_CASE("Of landmarks that come back as many go on as the budget has, the others become new ones at the same place",
-          "[slow]") {
+          "[long]") {
   const TrackedScene scene(8.0, R"({"tracks": {"lifetime": [6.0, 8.0]}})");
   constexpr double kPeriod = 2.0, kGone = 0.7;  // [s]
   const auto phase = [](const TrackObservation& z) { return z.t + 0.37 * static_cast<double>(z.track); };

@@ -53,11 +53,11 @@ TEST_CASE("An incremental estimate is near the optimum, of 40 landmarks alive as
   }
 }
 
-TEST_CASE("After the final iterations the small problem's states are the oracle's within 1 % of a sigma") {
+TEST_CASE("After the final iterations the small problem's states are the oracle's within 1 % of a sigma", "[slow]") {
   if (const auto path = evbench::testing::problem_file("small.txt.gz")) CHECK(largest_distance(*path, 1) < 0.01);
 }
 
-TEST_CASE("After the final iterations the medium problem's states are the oracle's within 1 % of a sigma", "[slow]") {
+TEST_CASE("After the final iterations the medium problem's states are the oracle's within 1 % of a sigma", "[long]") {
   if (const auto path = evbench::testing::problem_file("medium.txt.gz")) CHECK(largest_distance(*path, 20) < 0.01);
 }
 

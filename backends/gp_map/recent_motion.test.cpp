@@ -24,7 +24,8 @@ Engine solved_with(double qc, const DrawnProblem& problem) {
 
 }  // namespace
 
-TEST_CASE("The newest motion is smoothed by the prior that it shows, whatever the one it was estimated with") {
+TEST_CASE("The newest motion is smoothed by the prior that it shows, whatever the one it was estimated with",
+          "[slow]") {
   // With one that is too strong the map has been bent, and stays so.
   for (const auto& [wrong, remains] : {std::pair(100.0, 0.5), std::pair(0.01, 0.7)}) {
     double estimated = 0.0, smoothed = 0.0;  // squared errors of the newest velocity

@@ -50,7 +50,7 @@ double anchored_scale(const TrackedScene& scene, const GpMap& backend) {
 
 }  // namespace
 
-TEST_CASE("A prior a hundred times stronger or weaker leaves the scale where the anchor holds it", "[slow]") {
+TEST_CASE("A prior a hundred times stronger or weaker leaves the scale where the anchor holds it", "[long]") {
   const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
   for (const char* options : {"{}", R"({"qc_scale": 100})", R"({"qc_scale": 0.01})"}) {
     INFO(options);

@@ -132,7 +132,7 @@ TEST_CASE("eval of several estimates prints a table and writes a list", "[slow]"
   CHECK_THAT(missing.err, ContainsSubstring("none.txt: no such file"));
 }
 
-TEST_CASE("eval takes errors over sub-trajectories as rpg_trajectory_evaluation and KITTI do") {
+TEST_CASE("eval takes errors over sub-trajectories as rpg_trajectory_evaluation and KITTI do", "[slow]") {
   const Trajectories files;
   CHECK_FALSE(files.eval("-as").at("final").contains("segments"));
   CHECK(files.eval("-as --segments rpg").at("final").at("segments").at("by_length").size() == 5);
@@ -177,7 +177,7 @@ TEST_CASE("eval writes the aligned estimate and the error of each pose, and repl
   CHECK(testing::evbench(files.folder, "eval truth.txt estimate.txt truth.txt --aligned a.txt").exit_code == 2);
 }
 
-TEST_CASE("table replaces no file unless that is asked for") {
+TEST_CASE("table replaces no file unless that is asked for", "[slow]") {
   const Trajectories files;
   files.folder.write("metrics.json", dump_json(files.eval("-as")));
   files.folder.write("table.txt", "mine");

@@ -84,7 +84,7 @@ TEST_CASE("render refuses with exit code 2 and a sentence what it can't draw", "
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb"});
 }
 
-TEST_CASE("An interrupted video leaves nothing") {
+TEST_CASE("An interrupted video leaves nothing", "[slow]") {
   const TemporaryFolder folder;
   write_recording_of_events(folder);
   for (const char* signal : {"INT", "KILL"}) {

@@ -259,7 +259,7 @@ TEST_CASE("A web page in the place of a file is an error, a file that begins lik
   CHECK_NOTHROW(download(server.url("more/c.xml"), folder.file("c.xml"), quick()));
 }
 
-TEST_CASE("A download that is interrupted says so and keeps what is there") {
+TEST_CASE("A download that is interrupted says so and keeps what is there", "[slow]") {
   const TemporaryFolder folder;
   const Server server(noise(30000000));
   DownloadOptions options = quick();

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "core/io/atomic_file.hpp"
+#include "core/io/file_handle.hpp"
 #include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
@@ -90,7 +91,7 @@ class Transfer {
   std::optional<std::uint64_t> total_;
   std::unique_ptr<CURL, decltype(&curl_easy_cleanup)> curl_{curl_easy_init(), curl_easy_cleanup};
   std::unique_ptr<curl_slist, decltype(&curl_slist_free_all)> headers_{nullptr, curl_slist_free_all};
-  std::unique_ptr<std::FILE, decltype(&std::fclose)> file_{nullptr, std::fclose};
+  FileHandle file_;
   CURLcode code_ = CURLE_OK;
   char error_[CURL_ERROR_SIZE] = {};
   std::exception_ptr failure_;  ///< of a callback

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/io/archive.hpp"
+#include "core/io/file_handle.hpp"
 #include "core/support/interruption.hpp"
 
 namespace evbench {

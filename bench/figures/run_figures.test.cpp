@@ -198,7 +198,7 @@ TEST_CASE("Figures of runs are drawn by the program, the same bytes each time", 
   CHECK(read_file(folder.file("again.pdf")).starts_with("%PDF"));
 }
 
-TEST_CASE("A figure of one sequence names it, and it and what is exported tell why a run is not in them") {
+TEST_CASE("A figure of one sequence names it, and it and what is exported tell why a run is not in them", "[slow]") {
   const TemporaryFolder folder;
   Json config = short_comparison();
   config["source"]["duration"] = 1;

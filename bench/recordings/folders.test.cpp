@@ -5,7 +5,7 @@
 using namespace evbench;
 using Catch::Matchers::ContainsSubstring;
 
-TEST_CASE("Folders of public data sets are described, converted and drawn, and can be named in a config", "[slow]") {
+TEST_CASE("Folders of public data sets are described, converted and drawn, and can be named in a config", "[long]") {
   const testing::TemporaryFolder folder;
   if (!testing::write_data_sets(folder)) return;
   const std::string set =
@@ -38,7 +38,8 @@ TEST_CASE("What was assumed of the ground truth beside a recording is a remark o
   CHECK_THAT(testing::evbench(folder, "info --quiet copy.evb").out, ContainsSubstring(remark));
 }
 
-TEST_CASE("A recording whose calibration or ground truth cannot be used is described all the same, but not strictly") {
+TEST_CASE("A recording whose calibration or ground truth cannot be used is described all the same, but not strictly",
+          "[slow]") {
   const testing::TemporaryFolder folder;
   folder.write("events.txt", "0.1 5 6 1\n0.2 7 8 0\n");
   folder.write("calib.txt", "no numbers\n");

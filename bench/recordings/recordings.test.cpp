@@ -64,7 +64,7 @@ void damage(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("info says a recording's format, sensor, counts, times, rates, calibration and ground truth") {
+TEST_CASE("info says a recording's format, sensor, counts, times, rates, calibration and ground truth", "[slow]") {
   const TemporaryFolder folder;
   write_native(folder.file("a.evb"), walking_events(1000), davis_header());
   const Outcome text = testing::evbench(folder, "info a.evb");
@@ -171,7 +171,7 @@ TEST_CASE("convert takes a time range, with times from the first event on or as 
   CHECK(open_events(folder.file("b.evb"))->ground_truth()->start() == Approx(0.0).margin(1e-12));
 }
 
-TEST_CASE("What evbench writes as text it reads as the same events, however they begin") {
+TEST_CASE("What evbench writes as text it reads as the same events, however they begin", "[slow]") {
   const TemporaryFolder folder;
   std::vector<Event> events;  // times and pixels that could be of either order, or in microseconds
   for (int i = 0; i < 1500; ++i) events.push_back({0, 1, 1, true});
@@ -186,7 +186,7 @@ TEST_CASE("What evbench writes as text it reads as the same events, however they
   CHECK(read_all(folder.file("bare.txt")) == events);
 }
 
-TEST_CASE("A part of a recording keeps the ground truth of its time, and a folder says which file was read") {
+TEST_CASE("A part of a recording keeps the ground truth of its time, and a folder says which file was read", "[slow]") {
   const TemporaryFolder folder;
   RecordingHeader header = davis_header();
   std::vector<StampedPose> poses;
@@ -223,7 +223,7 @@ TEST_CASE("A recording may come from a pipe or the standard input, of any format
              ContainsSubstring("evbench: -: ") && ContainsSubstring("truncated") && !ContainsSubstring("/proc"));
 }
 
-TEST_CASE("convert undoes the lens: events go to where a pinhole sees them, or are left out and counted") {
+TEST_CASE("convert undoes the lens: events go to where a pinhole sees them, or are left out and counted", "[slow]") {
   const TemporaryFolder folder;
   const auto events = walking_events(720);
   write_native(folder.file("a.evb"), events, davis_header());
@@ -336,7 +336,7 @@ TEST_CASE("A conversion can be interrupted while no event lies in the range") {
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb"});
 }
 
-TEST_CASE("Text is converted into a pipe, other formats are not") {
+TEST_CASE("Text is converted into a pipe, other formats are not", "[slow]") {
   const TemporaryFolder folder;
   write_native(folder.file("a.evb"), walking_events(3), davis_header());
   const Outcome text = testing::shell(folder, "\"$evbench\" convert a.evb /dev/stdout --format text --quiet | cat");
@@ -346,7 +346,7 @@ TEST_CASE("Text is converted into a pipe, other formats are not") {
   CHECK_THAT(hdf5.err, ContainsSubstring("/dev/null: is a pipe or a device"));
 }
 
-TEST_CASE("A disk that is full while a file is written is an error that names the file") {
+TEST_CASE("A disk that is full while a file is written is an error that names the file", "[slow]") {
   const TemporaryFolder folder;
   std::vector<Event> events;
   std::uint32_t state = 1;

@@ -185,7 +185,7 @@ TEST_CASE("A run that is killed from outside is tried once more") {
   CHECK(progress.troubled[0].reason == "no estimate is made");  // it came to its end
 }
 
-TEST_CASE("Runs that another process does are waited for, and taken over when it ends without a result") {
+TEST_CASE("Runs that another process does are waited for, and taken over when it ends without a result", "[slow]") {
   const TemporaryFolder folder;
   const std::vector<PlannedRun> runs = runs_of(folder, tiny_config());
   const ExecutorOptions options{folder.file("out"), 1, {}, false};

@@ -40,16 +40,16 @@ int wait_for(pid_t process) {
   return status;
 }
 
-/// How many moments: EVBENCH_KILLS, else 20.
+/// How many moments: EVBENCH_KILLS, else 5.
 int kills() {
   const char* const variable = std::getenv("EVBENCH_KILLS");  // NOLINT(concurrency-mt-unsafe): no thread sets it
-  return variable == nullptr ? 20 : std::atoi(variable);      // NOLINT(cert-err34-c): 0 where it is no number
+  return variable == nullptr ? 5 : std::atoi(variable);      // NOLINT(cert-err34-c): 0 where it is no number
 }
 
 }  // namespace
 
 TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the same bytes once it is done again",
-          "[long]") {
+          "[random]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   REQUIRE(testing::evbench(folder, kKilledSweep + "undisturbed").exit_code == 0);

@@ -35,7 +35,7 @@ bool has_slurm() { return std::system("command -v slurmctld slurmd sbatch > /dev
 
 }  // namespace
 
-TEST_CASE("Slurm does a sweep with the same bytes, though a task is killed and a node goes down", "[slow]") {
+TEST_CASE("Slurm does a sweep with the same bytes, though a task is killed and a node goes down", "[cluster]") {
   if (!has_slurm()) {
     std::printf("SKIPPED: Slurm is not installed (slurm-wlm), or this is not root\n");
     return;

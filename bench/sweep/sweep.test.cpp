@@ -128,7 +128,7 @@ TEST_CASE("A sweep that can't be is refused before anything is written, with pla
 }
 
 TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on request, and renaming runs nothing",
-          "[slow]") {
+          "[long]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   const auto sweep = [&](const std::string& arguments) {
@@ -291,7 +291,7 @@ TEST_CASE("Simulated events are made once for runs that share them, change nothi
   is_expected("bad");
 }
 
-TEST_CASE("A job that has two labels in a sweep is run once, and stands in its table under both") {
+TEST_CASE("A job that has two labels in a sweep is run once, and stands in its table under both", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   folder.write("s.json", R"({"config": "c.json", "axes": [{"name": "which", "overlays": {
@@ -301,7 +301,7 @@ TEST_CASE("A job that has two labels in a sweep is run once, and stands in its t
              ContainsSubstring("first") && ContainsSubstring("second"));
 }
 
-TEST_CASE("The sweeps that come with evbench can be planned") {
+TEST_CASE("The sweeps that come with evbench can be planned", "[slow]") {
   const TemporaryFolder folder;
   Json sweep = read_json(EVBENCH_SOURCE "/configs/sweeps/batching.json");
   sweep.erase("plugins");  // built by whoever wants it

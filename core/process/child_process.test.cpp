@@ -79,7 +79,7 @@ TEST_CASE("A child process that closes its streams but lives is given up", "[slo
              ContainsSubstring("closed its standard input"));
 }
 
-TEST_CASE("A child process is waited for no longer than its time limit") {
+TEST_CASE("A child process is waited for no longer than its time limit", "[slow]") {
   const auto start = std::chrono::steady_clock::now();
   CHECK_THAT(failure("sleep 30", 0.2), ContainsSubstring("did not answer within 0.2 s"));
   CHECK_THAT(failure("read line; sleep 30", 0.2), ContainsSubstring("did not answer within 0.2 s"));

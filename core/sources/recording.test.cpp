@@ -6,9 +6,9 @@
 #include "core/events/native/native.hpp"
 #include "core/events/testing/data_sets.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
-#include "core/support/json.hpp"
 
 using namespace evbench;
 using Catch::Matchers::ContainsSubstring;
@@ -182,7 +182,8 @@ TEST_CASE("A recording is found by the name of a dataset, and gives its events")
   ::unsetenv("EVBENCH_DATASETS");
 }
 
-TEST_CASE("Public data sets are recordings by their names alone, with calibration, ground truth and time range") {
+TEST_CASE("Public data sets are recordings by their names alone, with calibration, ground truth and time range",
+          "[slow]") {
   const testing::TemporaryFolder folder;
   if (!testing::write_data_sets(folder)) return;
   ::setenv("EVBENCH_DATASETS", folder.path().c_str(), 1);

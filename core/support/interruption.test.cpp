@@ -50,7 +50,7 @@ TEST_CASE("A signal that comes twice at once is one signal") {
   CHECK_THROWS_WITH(check_interruption(), "a.txt: interrupted");
 }
 
-TEST_CASE("A signal that comes again later ends the program") {
+TEST_CASE("A signal that comes again later ends the program", "[slow]") {
   const pid_t child = ::fork();
   REQUIRE(child >= 0);
   if (child == 0) {

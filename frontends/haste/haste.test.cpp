@@ -60,13 +60,13 @@ TEST_CASE("Points of a wall are followed as the camera moves, between the states
   CHECK(median_error(scene(), track(scene(), leading).observations) > error);
 }
 
-TEST_CASE("Tracks do not depend on how they are asked for") {
+TEST_CASE("Tracks do not depend on how they are asked for", "[slow]") {
   const TrackBatch usual = track(scene());
   CHECK(same(usual, track(scene(), {}, 0.037)));
   CHECK(same(usual, track(scene(), {}, 0.01, 7)));
 }
 
-TEST_CASE("Observations come in time order, and not later than the delay but for those that are counted") {
+TEST_CASE("Observations come in time order, and not later than the delay but for those that are counted", "[slow]") {
   Options prompt;
   prompt.delay = 0.0;
   for (const Options& options : {Options(), prompt}) {

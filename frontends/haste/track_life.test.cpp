@@ -132,8 +132,8 @@ TEST_CASE("A track that the back-end holds for an outlier ends, and is observed 
   CHECK(other.ended_as("as outliers") == 0);
 }
 
-TEST_CASE(
-    "A tracker far from where its landmark is expected is vetoed, but if most are, it is the expectation's fault") {
+TEST_CASE("A tracker far from where its landmark is expected is vetoed, but if most are, it is the expectation's fault",
+          "[slow]") {
   for (const int far : {0, 1, 8}) {
     Followed told({}, life_scene());
     told.go_on_to(0.5);
@@ -242,7 +242,7 @@ TEST_CASE("After a silence trackers go on before what they saw, and end before s
   CHECK(different.ended > 15);
 }
 
-TEST_CASE("While nothing is told nothing new is found") {
+TEST_CASE("While nothing is told nothing new is found", "[slow]") {
   EventScene quiet(swing, 2.2, EventScene::quadrangles(150, 1));
   quiet.silence(1.0, 2.0);
   Options options;

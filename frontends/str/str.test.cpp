@@ -94,7 +94,7 @@ TEST_CASE("Points of a wall are followed from batch to batch, each observed at a
   CHECK(times.size() > all.observations.size() / 2);  // their own
 }
 
-TEST_CASE("A chain of batches slides, anchored to what was around it once, a track stays where it is") {
+TEST_CASE("A chain of batches slides, anchored to what was around it once, a track stays where it is", "[slow]") {
   Options chained;
   chained.patch.anchor_fit = 1.0;
   const double anchored = median_error(scene(), brisk, track(scene()).all.observations);
@@ -160,7 +160,7 @@ TEST_CASE("Where the motion is fast from the beginning and turns round, few and 
   CHECK(told.remarks.at(0).find(" 0 poor") == std::string::npos);  // the first batch: 60 px of motion that changes
 }
 
-TEST_CASE("A structure that moves on its own leaves the tracks of all else where they are") {
+TEST_CASE("A structure that moves on its own leaves the tracks of all else where they are", "[slow]") {
   EventScene source = scene();
   const EventScene other(
       [](double t) {

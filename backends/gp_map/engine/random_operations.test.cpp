@@ -120,17 +120,17 @@ void compare_all_with_batch(int fifth) {
 }  // namespace
 
 TEST_CASE("Whatever is done to the engine, optimise() ends no higher than the batch solver that starts there, half 1",
-          "[slow]") {
+          "[random]") {
   compare_all_with_batch(0);
 }
 
 TEST_CASE("Whatever is done to the engine, optimise() ends no higher than the batch solver that starts there, half 2",
-          "[slow]") {
+          "[random]") {
   compare_all_with_batch(1);
 }
 
 TEST_CASE("Redoing only what changed gives the states of redoing everything, and of a new engine, in linear problems",
-          "[slow]") {
+          "[random]") {
   Agreement agreement;
   int all = 0;
   play_fifth(2, [&](std::uint64_t seed) {
@@ -154,7 +154,8 @@ TEST_CASE("Redoing only what changed gives the states of redoing everything, and
   agreement.check_shares(2 * all);
 }
 
-TEST_CASE("One observation linearised close before the camera costs the digits that rounding explains, and no others") {
+TEST_CASE("One observation linearised close before the camera costs the digits that rounding explains, and no others",
+          "[random]") {
   constexpr std::uint64_t kSeed = 200'108'650;
   const EngineOptions options = draw_options(linear_options(), kSeed);
   RandomSession session(kSeed, {.engine = options, .anchor = false});
@@ -183,7 +184,7 @@ TEST_CASE("One observation linearised close before the camera costs the digits t
   CHECK(rounding_bounds(problem).back().position < 1e-3 * bound);
 }
 
-TEST_CASE("With a lag the states are those of full history as long as the problem is linear") {
+TEST_CASE("With a lag the states are those of full history as long as the problem is linear", "[random]") {
   Agreement agreement;
   int forgot = 0, all = 0;
   play_fifth(3, [&](std::uint64_t seed) {
@@ -201,7 +202,7 @@ TEST_CASE("With a lag the states are those of full history as long as the proble
   CHECK((all < kFew || forgot > 0.1 * all));
 }
 
-TEST_CASE("With a lag, whatever is done, no more is kept than the lag and the spacing of snapshots ask for") {
+TEST_CASE("With a lag, whatever is done, no more is kept than the lag and the spacing of snapshots ask for", "[random]") {
   play_fifth(4, [](std::uint64_t seed) {
     SessionOptions options{.engine = draw_options({}, seed)};
     options.engine.lag = 0.1 + 0.2 * static_cast<double>(seed % 5);

@@ -145,7 +145,7 @@ TEST_CASE("Stages before and after a return can be redone, and states taken back
   check_same_covariances(back.engine, redone.engine);
 }
 
-TEST_CASE("What came back changes old states little by little, and settle() tells them all") {
+TEST_CASE("What came back changes old states little by little, and settle() tells them all", "[slow]") {
   Patrol waiting({}), told({});
   int waited = 0;
   for (int k = 0; k < 260; ++k) {
@@ -186,7 +186,7 @@ TEST_CASE("With a lag what comes back within it ends as in full history") {
   check_same(lag.engine, full.engine);
 }
 
-TEST_CASE("Where the problem is far from linear, coming back costs accuracy, but not much") {
+TEST_CASE("Where the problem is far from linear, coming back costs accuracy, but not much", "[slow]") {
   EngineOptions always;
   always.redone_for_return = kAlways;
   Patrol back({}), redone(always);

@@ -303,7 +303,7 @@ TEST_CASE("A folder with several recordings is refused, each file of it is read 
   CHECK_FALSE(open_events(folder.file("mvsec/flying1/flying2_data.hdf5"))->ground_truth());
 }
 
-TEST_CASE("Calibrations that are broken are refused with the file, the key, and what was expected") {
+TEST_CASE("Calibrations that are broken are refused with the file, the key, and what was expected", "[slow]") {
   const TemporaryFolder folder;
   if (!testing::write_data_sets(folder)) return;
   const auto refused = [&](const std::string& set, const std::string& name, const std::string& content,
@@ -346,7 +346,7 @@ TEST_CASE("Calibrations that are broken are refused with the file, the key, and 
   refused("tumvie/mocap-desk", "camera-calibrationB.json", tumvie, "lies beside camera-calibrationA.json");
 }
 
-TEST_CASE("Ground truths that are broken are refused with the file, the place, and what was expected") {
+TEST_CASE("Ground truths that are broken are refused with the file, the place, and what was expected", "[slow]") {
   const TemporaryFolder folder;
   if (!testing::write_data_sets(folder)) return;
   const auto refused = [&](const std::string& set, const std::string& name, const std::string& content,

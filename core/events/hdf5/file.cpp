@@ -121,7 +121,15 @@ void set_cache(hid_t creation, hid_t access, std::size_t number_size, const std:
   H5Pset_chunk_cache(access, 521, compressed ? std::max<std::size_t>(1u << 20, 2 * bytes) : 0, 1.0);
 }
 
-herr_t add_object(hid_t, const char* name, const H5O_info_t* info, void* data) {
+#if H5_VERSION_GE(1, 12, 0)
+using ObjectInfo = H5O_info2_t;
+constexpr auto kVisitObjects = H5Ovisit3;
+#else
+using ObjectInfo = H5O_info_t;
+constexpr auto kVisitObjects = H5Ovisit2;
+#endif
+
+herr_t add_object(hid_t, const char* name, const ObjectInfo* info, void* data) {
   constexpr std::size_t kMost = 10'000;
   auto& objects = *static_cast<std::vector<File::Object>*>(data);
   if (std::strcmp(name, ".") == 0) return 0;
@@ -216,7 +224,7 @@ File::File(std::string path) : path_(std::move(path)) {
   register_filters();
   id_ = Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), close_file);
   checked(id_.get(), path_);
-  checked(H5Ovisit2(id_.get(), H5_INDEX_NAME, H5_ITER_INC, add_object, &objects_, H5O_INFO_BASIC), path_);
+  checked(kVisitObjects(id_.get(), H5_INDEX_NAME, H5_ITER_INC, add_object, &objects_, H5O_INFO_BASIC), path_);
   std::sort(objects_.begin(), objects_.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
 }
 

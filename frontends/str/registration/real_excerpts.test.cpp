@@ -57,7 +57,8 @@ double difference(const Excerpt& excerpt, std::int64_t from, std::int64_t to) {
 
 }  // namespace
 
-TEST_CASE("Real excerpts of a rotating camera: the whole as by contrast within 5 %, parts of 4 px within 10 %") {
+TEST_CASE("Real excerpts of a rotating camera: the whole as by contrast within 5 %, parts of 4 px within 10 %",
+          "[slow]") {
   // Parts in which the camera moves 4 px or more: 12 and 8 px in all.
   const auto [name, parts] = GENERATE(std::pair("shapes_rotation", 2), std::pair("dynamic_rotation", 2));
   const auto excerpt = read_excerpt(name);

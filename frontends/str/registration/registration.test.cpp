@@ -48,7 +48,7 @@ double median_error(const RotationRecording& recording, double pixels, bool from
 
 }  // namespace
 
-TEST_CASE("The rotation of a camera is found from slow to violent, from the last motion and from nothing", "[slow]") {
+TEST_CASE("The rotation of a camera is found from slow to violent, from the last motion and from nothing", "[long]") {
   const double speed = GENERATE(1.0, 5.0, 20.0);
   const std::string scene = GENERATE("shapes", "plane");
   const RotationRecording recording = simulate_rotation(scene, 240, 180, speed * kAxis, 0.33 / speed, 1);
