@@ -51,10 +51,10 @@ function(evbench_group target size)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${EVBENCH_GROUP} UNITY_BUILD_BATCH_SIZE ${size})
 endfunction()
 
-# evbench_library(NAME [STATIC|OBJECT] SOURCES ... LINKS ... [PRECOMPILED HEADER] [GROUP SIZE] [FAST]): a folder's target.
-# FAST: compiled with -O3 in releases. Headers are included by their path from the repository's root ("core/geometry/se3.hpp").
+# evbench_library(NAME [STATIC|OBJECT] SOURCES ... LINKS ... [PRECOMPILED HEADER] [GROUP SIZE]): a folder's target.
+# Headers are included by their path from the repository's root ("core/geometry/se3.hpp").
 function(evbench_library name kind)
-  cmake_parse_arguments(ARG "FAST" "PRECOMPILED;GROUP" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "PRECOMPILED;GROUP" "SOURCES;LINKS" ${ARGN})
   add_library(${name} ${kind} ${ARG_SOURCES})
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>
                                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/evbench>)
@@ -65,9 +65,6 @@ function(evbench_library name kind)
   endif()
   evbench_precompile(${name} ${ARG_PRECOMPILED})
   evbench_group(${name} "${ARG_GROUP}")
-  if(ARG_FAST)
-    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O3>)
-  endif()
 endfunction()
 
 # evbench_tests(NAME SOURCES ... LINKS ...): the *.test.cpp of a folder as one test program, each test case a ctest of its
