@@ -81,6 +81,8 @@ function(evbench_tests name)
                                                                        SKIP_UNITY_BUILD_INCLUSION ON)
     evbench_library(evbench_test_support STATIC SOURCES ${testing}/data.cpp ${EVBENCH_PLUGIN_TEST_MAIN}
                     LINKS Catch2::Catch2 evbench::core PRECOMPILED precompiled_test)
+    # As the tests, which read its precompiled headers.
+    target_compile_options(evbench_test_support PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINKS} evbench_test_support evbench_flags)

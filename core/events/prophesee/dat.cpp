@@ -14,7 +14,7 @@
 namespace evbench {
 namespace {
 
-constexpr std::size_t kRecord = 8;
+constexpr std::size_t kDatRecord = 8;
 
 /// Lines of a header, none that names an encoding of RAW files, then bytes that are no text.
 bool is_dat(std::span<const std::byte> head) {
@@ -44,7 +44,7 @@ std::unique_ptr<EventReader> open_dat(std::unique_ptr<ByteSource> source, const 
     throw InputError(fmt::format("{}: ends behind its header; expected type and size of the events", name));
   }
   const auto type = static_cast<int>(type_and_size[0]), size = static_cast<int>(type_and_size[1]);
-  if ((type != 0x00 && type != 0x0C) || size != kRecord) {
+  if ((type != 0x00 && type != 0x0C) || size != kDatRecord) {
     throw InputError(
         fmt::format("{}: has events of type 0x{:02X} and {} bytes; expected 0x00 or 0x0C and 8 bytes "
                     "(brightness changes)",
@@ -52,7 +52,7 @@ std::unique_ptr<EventReader> open_dat(std::unique_ptr<ByteSource> source, const 
   }
   StreamInfo info = prophesee_info(header, "Prophesee DAT " + (version.empty() ? "1" : version), options, name);
   const std::uint64_t begin = header.size + type_and_size.size();
-  info.count = static_cast<std::int64_t>((source->size() - begin) / kRecord);
+  info.count = static_cast<std::int64_t>((source->size() - begin) / kDatRecord);
   auto decoder = std::make_unique<DatDecoder>(version == "2" ? DatDecoder::Version::two : DatDecoder::Version::one);
   return std::make_unique<DecodedReader>(std::move(source), begin, std::move(decoder), std::move(info), options);
 }

@@ -111,7 +111,7 @@ std::optional<StampedPose> parse_pose_stamped(std::span<const std::byte> data, W
 }
 
 std::optional<Camera> parse_camera_info(std::span<const std::byte> data, Wire wire) {
-  constexpr std::uint32_t kMostSide = 1 << 16;
+  constexpr std::uint32_t kMostImageSide = 1 << 16;
   Fields fields(data, wire);
   fields.header();
   const auto height = fields.get<std::uint32_t>(), width = fields.get<std::uint32_t>();
@@ -128,7 +128,8 @@ std::optional<Camera> parse_camera_info(std::span<const std::byte> data, Wire wi
   }
   std::array<double, 9> K{};
   for (double& value : K) value = fields.get<double>();
-  if (!fields.ok() || width > kMostSide || height > kMostSide || !(K[0] > 0.0) || !(K[4] > 0.0)) return std::nullopt;
+  if (!fields.ok() || width > kMostImageSide || height > kMostImageSide || !(K[0] > 0.0) || !(K[4] > 0.0))
+    return std::nullopt;
   camera.pinhole = {K[0], K[4], K[2], K[5]};
   camera.width = static_cast<int>(width);
   camera.height = static_cast<int>(height);
