@@ -1,9 +1,9 @@
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <string>
 
 #include "backends/gp_map/testing/drawn_problem.hpp"
 #include "backends/gp_map/testing/oracle_distance.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 #include "core/testing/catch2.hpp"
 
 // Whether the engine's covariances say how large its errors are, and whether it ends at the optimum.
@@ -53,7 +53,7 @@ struct Nees {
 
 template <int N>
 double normalised(const Eigen::Matrix<double, N, 1>& error, const Eigen::Matrix<double, N, N>& covariance) {
-  return error.dot(covariance.llt().solve(error));
+  return error.dot(solve_symmetric(covariance, error));
 }
 
 /// At some steps of the drawn trajectory, after all updates and without a final optimisation.

@@ -202,7 +202,8 @@ TEST_CASE("With a lag the states are those of full history as long as the proble
   CHECK((all < kFew || forgot > 0.1 * all));
 }
 
-TEST_CASE("With a lag, whatever is done, no more is kept than the lag and the spacing of snapshots ask for", "[random]") {
+TEST_CASE("With a lag, whatever is done, no more is kept than the lag and the spacing of snapshots ask for",
+          "[random]") {
   play_fifth(4, [](std::uint64_t seed) {
     SessionOptions options{.engine = draw_options({}, seed)};
     options.engine.lag = 0.1 + 0.2 * static_cast<double>(seed % 5);

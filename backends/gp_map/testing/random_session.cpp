@@ -29,14 +29,14 @@ void require_finite(const FactorGraph& graph) {
 }
 
 /// Up to rounding, whatever the units of its rows.
-template <class Matrix>
-void require_positive_definite(const Matrix& covariance) {
+void require_positive_definite(const Eigen::MatrixXd& covariance) {
   REQUIRE(covariance.allFinite());
   REQUIRE(covariance.diagonal().minCoeff() > 0.0);
-  const auto scale = covariance.diagonal().cwiseSqrt().cwiseInverse().eval();
-  const Matrix correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
   constexpr double kRounding = 1e-6;
-  REQUIRE(Eigen::SelfAdjointEigenSolver<Matrix>(correlation, Eigen::EigenvaluesOnly).eigenvalues()(0) > -kRounding);
+  REQUIRE(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation, Eigen::EigenvaluesOnly).eigenvalues()(0) >
+          -kRounding);
 }
 
 }  // namespace
