@@ -169,6 +169,8 @@ TEST_CASE("Sequential and concurrent runs give the same bytes, whatever the feed
   }
 }
 
+namespace {
+
 /// Tells of a time only when it has looked at what comes 30 ms later.
 class LateListener : public Listener {
  public:
@@ -183,6 +185,8 @@ class LateListener : public Listener {
     return true;
   }
 };
+
+}  // namespace
 
 TEST_CASE("What a front-end tells late is known late, and feedback waits for it, in one thread and in two") {
   PipelineOptions options;

@@ -64,8 +64,8 @@ Feedback truth(double t, const std::vector<TrackObservation>& observed) {
   Feedback feedback;
   feedback.t = t;
   feedback.state = TrackingState::tracking;
-  constexpr double kStep = 1e-3;
-  const Vector6 velocity = se3::log(swing(t).inverse() * swing(t + kStep)) / kStep;
+  constexpr double kShortStep = 1e-3;
+  const Vector6 velocity = se3::log(swing(t).inverse() * swing(t + kShortStep)) / kShortStep;
   feedback.newest = ControlState{t, swing(t), velocity};
   for (const TrackObservation& z : observed) {
     const SE3 T = swing(z.t);
