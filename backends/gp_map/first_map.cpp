@@ -109,7 +109,8 @@ std::optional<ViewsExplained> FirstMapFinder::explanation(const Look& look) cons
   }
   if (trials.empty()) return std::nullopt;
   std::ranges::sort(trials, {}, &ViewsExplained::cost);
-  const double width = kFirstMapLossWidth * median(look.views.errors(trials.front())), enough = kFarMore * trials.front().cost;
+  const double width = kFirstMapLossWidth * median(look.views.errors(trials.front())),
+               enough = kFarMore * trials.front().cost;
   std::erase_if(trials, [&](const ViewsExplained& trial) { return trial.cost > enough; });
   for (ViewsExplained& trial : trials) look.views.refine(trial, width, kFirstMapIterations);
   return *std::ranges::min_element(trials, {}, &ViewsExplained::cost);

@@ -7,9 +7,9 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kNear = 1.5;       ///< times nearer than the scene's median depth: bounded from there on
-constexpr double kLargest = 100.0;  ///< bound: such a landmark says nothing
-constexpr double kBoundChange = 1.2;     ///< by which a bound must change to be set anew
+constexpr double kNear = 1.5;         ///< times nearer than the scene's median depth: bounded from there on
+constexpr double kLargest = 100.0;    ///< bound: such a landmark says nothing
+constexpr double kBoundChange = 1.2;  ///< by which a bound must change to be set anew
 
 }  // namespace
 

@@ -13,9 +13,9 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kMedianNorm = 1.17741;           ///< of a two-dimensional standard normal
+constexpr double kMedianNorm = 1.17741;                ///< of a two-dimensional standard normal
 constexpr double kDriftBlock = 0.2, kForgotten = 1.0;  ///< [s]
-constexpr int kFewestInBlock = 4;                        ///< observations in a block that tells of drift
+constexpr int kFewestInBlock = 4;                      ///< observations in a block that tells of drift
 constexpr std::size_t kFewestTracks = 8;
 constexpr double kOutlierLossWidth = 2.0;  ///< of the loss against outliers [medians]
 constexpr double kBinsPerOctave = 16.0;

@@ -18,7 +18,7 @@ constexpr double kLookedBack = 0.4;     ///< [s]
 constexpr int kMostLookedBack = 16;     ///< intervals
 constexpr int kSetAnew = 8;             ///< of the newest intervals
 constexpr double kForce = 1.0;          ///< by which an expansion must change
-constexpr double kDensityChange = 1.5;         ///< by which a density must change to be set anew
+constexpr double kDensityChange = 1.5;  ///< by which a density must change to be set anew
 
 /// Of the intervals from `first` on; none when the system is singular.
 std::vector<PriorEvidence> evidence_from(Engine& engine, int first) {

@@ -13,19 +13,19 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kShareInView = 0.75;    ///< of what is in view ...
-constexpr double kLongAgo = 2.3;  ///< times as long ago as they came into view: there the newest part begins
-constexpr double kLongest = 2.5;  ///< [s] of it
+constexpr double kShareInView = 0.75;  ///< of what is in view ...
+constexpr double kLongAgo = 2.3;       ///< times as long ago as they came into view: there the newest part begins
+constexpr double kLongest = 2.5;       ///< [s] of it
 constexpr int kFewestStates = 8, kMostStates = 256;  ///< of it
 constexpr int kEnoughObservations = 8000;            ///< of about so many at most, each track's are thinned evenly
-constexpr double kKnown = 0.03;          ///< to which landmarks of before are known, as a share of their distance
-constexpr double kFirstPoseHeld = 1e-4;           ///< [rad, units] of the pose from which it begins
-constexpr double kThere = 0.05;          ///< to which new ones are where they begin, as a share of the usual depth
-constexpr double kMostOblique = 4.0;     ///< times nearer or farther than usual: not where the plane is seen edge-on
-constexpr double kAdvantage = 10.0;      ///< by which the other explanation's cost must be lower
-constexpr int kRecentIterations = 6;           ///< of each explanation, at most ...
-constexpr int kReversedIterations = 15;  ///< and of a reversed one, which begins farther from where it leads
-constexpr double kRecentTolerance = 3e-3;      ///< relative change of cost with which they end: 10 of some thousands
+constexpr double kKnown = 0.03;            ///< to which landmarks of before are known, as a share of their distance
+constexpr double kFirstPoseHeld = 1e-4;    ///< [rad, units] of the pose from which it begins
+constexpr double kThere = 0.05;            ///< to which new ones are where they begin, as a share of the usual depth
+constexpr double kMostOblique = 4.0;       ///< times nearer or farther than usual: not where the plane is seen edge-on
+constexpr double kAdvantage = 10.0;        ///< by which the other explanation's cost must be lower
+constexpr int kRecentIterations = 6;       ///< of each explanation, at most ...
+constexpr int kReversedIterations = 15;    ///< and of a reversed one, which begins farther from where it leads
+constexpr double kRecentTolerance = 3e-3;  ///< relative change of cost with which they end: 10 of some thousands
 constexpr int kShare = 34000;  ///< of work at a time: an observation's linearisation is one, a state's elimination ...
 constexpr int kStateWork = 100;  ///< so much
 constexpr int kStatesAPass = 6;  ///< through the problem, which take as long as an iteration
@@ -43,7 +43,8 @@ int newest_parts_first(const FactorGraph& graph, int last) {
   for (const auto& group : graph.intervals[index(last)].groups()) {
     ages.push_back(now - graph.states[index(graph.landmarks[index(group.landmark)].intervals.front())].t);
   }
-  const double length = ages.empty() ? 0.0 : std::min(kLongest, kLongAgo * order_statistic(std::move(ages), kShareInView));
+  const double length =
+      ages.empty() ? 0.0 : std::min(kLongest, kLongAgo * order_statistic(std::move(ages), kShareInView));
   return std::clamp(graph.first_state_after(now - length), last + 1 - kMostStates, last + 1 - kFewestStates);
 }
 

@@ -8,7 +8,7 @@ namespace evbench::gp_map {
 namespace {
 
 constexpr double kWindow = 0.4;  ///< [s]
-constexpr int kMostStates = 24;        ///< states
+constexpr int kMostStates = 24;  ///< states
 
 /// H δ = −g with H block-tridiagonal and positive definite.
 class Chain {

@@ -19,14 +19,14 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kAside = 0.8;       ///< [px] by which most are beside where they are expected, else nothing is wrong
-constexpr double kLeft = 0.5;        ///< share of that which one motion leaves, or it explains nothing
-constexpr std::size_t kEnough = 5;   ///< landmarks that one motion explains,
+constexpr double kAside = 0.8;      ///< [px] by which most are beside where they are expected, else nothing is wrong
+constexpr double kLeft = 0.5;       ///< share of that which one motion leaves, or it explains nothing
+constexpr std::size_t kEnough = 5;  ///< landmarks that one motion explains,
 constexpr double kMajority = 2.0 / 3.0;  ///< as a share of all,
-constexpr double kExplained = 2.0;   ///< to so many pixels,
+constexpr double kExplained = 2.0;       ///< to so many pixels,
 constexpr double kStillThere = 3.0;  ///< and so many where nothing holds the pose; beyond that one isn't in its place
-constexpr double kNewestPoseHeld = 1e-3;       ///< [rad, units] of the newest pose,
-constexpr double kAhead = 1e-3;      ///< at a state so much later [s]
+constexpr double kNewestPoseHeld = 1e-3;  ///< [rad, units] of the newest pose,
+constexpr double kAhead = 1e-3;           ///< at a state so much later [s]
 constexpr double kInPlace = 0.75;  ///< share of which this was the last time: where a turn and a way hide one another,
                                    ///< some are in their places, though the camera is not
 constexpr int kDragged = 50;       ///< states before it that may be moved a little, too

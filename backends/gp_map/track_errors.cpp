@@ -9,8 +9,8 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kErrorBlock = 0.15;            ///< [s]
-constexpr int kFewestInLastBlock = 4;                 ///< observations in the last block, which may not be over
+constexpr double kErrorBlock = 0.15;       ///< [s]
+constexpr int kFewestInLastBlock = 4;      ///< observations in the last block, which may not be over
 constexpr double kMedianSquare = 1.38629;  ///< of a two-dimensional standard normal
 constexpr double kOthers = 3.0;            ///< blocks that the noise of all tracks counts for
 

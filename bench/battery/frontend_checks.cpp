@@ -12,7 +12,7 @@ namespace {
 class CandidateFrontEnd {
  public:
   CandidateFrontEnd(const Plugins& plugins, const std::string& name, const Json& options, const Source& source,
-            const std::string& folder)
+                    const std::string& folder)
       : entry_(plugins.of<FrontEnd>().find(name, "battery")),
         options_(entry_.resolve(options, name, folder)),
         source_(source),

@@ -15,7 +15,6 @@
 namespace evbench {
 namespace {
 
-
 const std::map<std::string, gp_map::SolveMode> kModes = {{"incremental", gp_map::SolveMode::incremental},
                                                          {"batch", gp_map::SolveMode::batch},
                                                          {"fixed-lag", gp_map::SolveMode::fixed_lag}};

@@ -7,7 +7,7 @@
 namespace evbench {
 namespace {
 
-constexpr double kSampleInterval = 0.1;           // [s] between two newest poses
+constexpr double kSampleInterval = 0.1;     // [s] between two newest poses
 constexpr std::size_t kRelativePoses = 50;  // over each span, at most: each costs time that grows with the run
 
 struct Span {

@@ -11,7 +11,6 @@
 namespace evbench {
 namespace {
 
-
 constexpr std::size_t kPlotWidth = 64;
 
 std::string row(const char* name, const std::string& text) { return fmt::format("{:<14}{}\n", name, text); }

@@ -43,7 +43,7 @@ int wait_for(pid_t process) {
 /// How many moments: EVBENCH_KILLS, else 5.
 int kills() {
   const char* const variable = std::getenv("EVBENCH_KILLS");  // NOLINT(concurrency-mt-unsafe): no thread sets it
-  return variable == nullptr ? 5 : std::atoi(variable);      // NOLINT(cert-err34-c): 0 where it is no number
+  return variable == nullptr ? 5 : std::atoi(variable);       // NOLINT(cert-err34-c): 0 where it is no number
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ bool are_fine(std::span<const Event> events, std::int64_t from, int width, int h
     back |= static_cast<std::uint64_t>(events[i].t < events[i - 1].t);
     outside |= (last_x - events[i].x) | (last_y - events[i].y);
   }
-  return back == 0 && outside >> 31 == 0 && events.front().t >= -kLatestStreamTime && events.back().t <= kLatestStreamTime;
+  return back == 0 && outside >> 31 == 0 && events.front().t >= -kLatestStreamTime &&
+         events.back().t <= kLatestStreamTime;
 }
 
 }  // namespace

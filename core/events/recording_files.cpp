@@ -16,11 +16,10 @@
 namespace evbench {
 namespace {
 
-
 /// What events are called in a recording's folder, in the order in which they are taken: evbench's native copy, the
 /// Event-Camera Dataset, EDS, DSEC as it is unpacked in one way or the other, TUM-VIE, M3ED, MVSEC.
 constexpr const char* kEventFiles[] = {"events.evb",     "events.txt",      "events.h5", "events/left/events.h5",
-                                   "left/events.h5", "*events_left.h5", "*_data.h5", "*_data.hdf5"};
+                                       "left/events.h5", "*events_left.h5", "*_data.h5", "*_data.hdf5"};
 
 bool is_zip(std::span<const std::byte> head) {
   return std::string_view(reinterpret_cast<const char*>(head.data()), head.size()).starts_with("PK\3\4");

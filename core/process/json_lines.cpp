@@ -14,9 +14,7 @@
 namespace evbench::process {
 namespace {
 
-std::string shown(const Json& value) {
-  return printable(printable_json(value), 100);
-}
+std::string shown(const Json& value) { return printable(printable_json(value), 100); }
 
 [[noreturn]] void unexpected(const Json& found, const std::string& expected, const Place& place) {
   throw MessageError(fmt::format("{}: expected {}, found {}", place.text(), expected, shown(found)));

@@ -10,8 +10,8 @@
 namespace evbench {
 namespace {
 
-const Registration<Source, EventSimulation> event_simulation_registration("event_simulation",
-                                                         "simulated events of a rendered scene, with ground truth", 2);
+const Registration<Source, EventSimulation> event_simulation_registration(
+    "event_simulation", "simulated events of a rendered scene, with ground truth", 2);
 
 /// A pixel takes some 300 bytes.
 constexpr std::int64_t kMostPixels = 4'000'000;

@@ -15,7 +15,8 @@
 namespace evbench {
 namespace {
 
-const Registration<Source, Recording> recording_registration("recording", "a recorded sequence: calibration and ground truth");
+const Registration<Source, Recording> recording_registration("recording",
+                                                             "a recorded sequence: calibration and ground truth");
 
 PoseTrajectory shifted(const PoseTrajectory& trajectory, double offset) {
   std::vector<StampedPose> poses = trajectory.poses();

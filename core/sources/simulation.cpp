@@ -9,7 +9,8 @@
 namespace evbench {
 namespace {
 
-const Registration<Source, Simulation> simulation_registration("simulation", "simulated feature tracks with ground truth", 2);
+const Registration<Source, Simulation> simulation_registration("simulation",
+                                                               "simulated feature tracks with ground truth", 2);
 
 }  // namespace
 

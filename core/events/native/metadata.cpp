@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-
 #include "core/support/error.hpp"
 #include "core/support/index.hpp"
 #include "core/support/json.hpp"
 
 namespace evbench::native {
 namespace {
-
 
 Json to_json(const Camera& camera) {
   const PinholeCamera& p = camera.pinhole;

@@ -186,7 +186,8 @@ void Ros2Folder::seek(std::int64_t t) {
 EventFormat ros2_folder_format() {
   return {"ros2", "ROS 2 recording, a folder with metadata.yaml and SQLite or MCAP files, also compressed by zstd",
           [](const std::string& path, std::span<const std::byte> head) {
-            if (!head.empty() || !std::filesystem::is_regular_file(std::filesystem::path(path) / kMetadata)) return false;
+            if (!head.empty() || !std::filesystem::is_regular_file(std::filesystem::path(path) / kMetadata))
+              return false;
             std::string text(1 << 10, '\0');
             std::ifstream file(std::filesystem::path(path) / kMetadata, std::ios::binary);
             file.read(text.data(), static_cast<std::streamsize>(text.size()));

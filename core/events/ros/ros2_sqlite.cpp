@@ -92,7 +92,7 @@ std::uint64_t missing_pages(const std::string& path) {
 
 SqliteBag::SqliteBag(const std::string& path, Faults& faults, bool count) : path_(path), faults_(faults) {
   constexpr int kMostMessageBytes = 256 << 20;  // of a message
-  constexpr int kSteps = 10'000;         // of SQLite's machine between two looks for an interruption
+  constexpr int kSteps = 10'000;                // of SQLite's machine between two looks for an interruption
   sqlite3* database = nullptr;
   const int result = sqlite3_open_v2(uri(path).c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
   database_.reset(database);
@@ -198,8 +198,9 @@ std::unique_ptr<MessageSource> open_sqlite_bag(const std::string& path, Faults& 
 }
 
 bool is_sqlite(std::span<const std::byte> head) {
-  return head.size() >= kSqliteMagic.size() && std::equal(kSqliteMagic.begin(), kSqliteMagic.end(), head.begin(),
-                                                    [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
+  return head.size() >= kSqliteMagic.size() &&
+         std::equal(kSqliteMagic.begin(), kSqliteMagic.end(), head.begin(),
+                    [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
 }
 
 EventFormat ros2_sqlite_format() {
