@@ -76,8 +76,9 @@ class Agreement {
   void check_shares(int all) const {
     if (all < kFew) return;
     CHECK(compared_ > 0.3 * all);
-    const double usual = 2e-3 * compared_;
-    CHECK(ill_conditioned_ < usual + 3.0 * std::sqrt(usual));  // as many as are drawn by chance: Poisson's deviation
+    // Of few that are compared, as many as chance draws of a thousandth: its mean and three of Poisson's deviations.
+    const double usual = 1e-3 * compared_;
+    CHECK(ill_conditioned_ < std::max(2e-3 * compared_, usual + 3.0 * std::sqrt(usual)));
   }
 
  private:
