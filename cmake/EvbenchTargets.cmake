@@ -7,6 +7,8 @@ target_compile_options(evbench_flags INTERFACE
   # GCC 12 sees ghosts in inlined Eigen code, in its own AVX-512 intrinsics and in std::string.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
                            -Wno-stringop-overread>
+  # GCC's -Wconversion does not ask for it in C++.
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>
   # Position-independent, for plugins (and for tests, which read the same precompiled headers); but the program's
   # functions are its own, and may be inlined.
   -fPIC -fno-semantic-interposition

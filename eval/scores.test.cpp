@@ -66,9 +66,9 @@ TEST_CASE("Of orientations beside a path that is nearly a line, what all have in
   const auto truth = [&](double t) { return wound(t, 0.0, 0.0); };
   const auto estimate = [&](double t) { return wound(t, 0.5, t < 1.0 ? 0.01 : -0.01); };
   const Scores scores = score(sample(truth, 200), sample(estimate, 200));
-  constexpr double kDegree = 3.14159265358979 / 180.0;
-  CHECK(scores.ate.rot_deg.rmse > 0.49 / kDegree);  // as the few positions aside ask for
-  CHECK(scores.ate.rot_centred_deg.rmse == Approx(0.01 / kDegree).epsilon(0.01));
+  constexpr double kOneDegree = 3.14159265358979 / 180.0;
+  CHECK(scores.ate.rot_deg.rmse > 0.49 / kOneDegree);  // as the few positions aside ask for
+  CHECK(scores.ate.rot_centred_deg.rmse == Approx(0.01 / kOneDegree).epsilon(0.01));
 }
 
 TEST_CASE("The error in percent is of the ground truth's path through the compared poses") {

@@ -141,8 +141,8 @@ TEST_CASE("Of landmarks that come back as many go on as the budget has, the othe
 
 TEST_CASE("A track that comes back beside its landmark is told as an outlier, and its landmark can come back later",
           "[slow]") {
-  constexpr double kGone = 6.5, kAside = 7.0, kGoneAgain = 7.5, kBack = 8.0, kEnd = 10.0;  // [s]
-  const TrackedScene scene(kEnd, R"({"tracks": {"lifetime": [9.5, 10.0]}})");
+  constexpr double kGone = 6.5, kAside = 7.0, kGoneAgain = 7.5, kBack = 8.0, kUntil = 10.0;  // [s]
+  const TrackedScene scene(kUntil, R"({"tracks": {"lifetime": [9.5, 10.0]}})");
   const auto strays = [](TrackId track) { return track % 30 == 7; };
   BackEndContext context;
   context.camera = scene.camera();

@@ -104,7 +104,7 @@ TEST_CASE("What has been added since another explanation was looked for goes alo
   };
   CHECK((newest_state(after) - newest_state(before)).norm() < 1e-9);
   for (const auto& [k, landmark] : {std::pair{kStates, 0}, {kStates - 3, 1}}) {
-    const auto seen = [&](const FactorGraph& graph) {
+    const auto seen = [&, k = k, landmark = landmark](const FactorGraph& graph) {
       const Vector3& position = graph.landmarks[index(kLandmarks + landmark)].position;
       return Vector3(graph.states[index(k)].T.inverse() * position);
     };

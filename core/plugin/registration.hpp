@@ -58,6 +58,11 @@ class Registration {
  private:
   using Options = typename Plugin::Options;
 
+  static std::vector<std::string> files_of([[maybe_unused]] const Options& options) {
+    if constexpr (detail::NamesFiles<Options>) return options.files();
+    return {};
+  }
+
   static typename Registry<Interface>::Entry entry() {
     using Context = typename PluginKind<Interface>::Context;
     typename Registry<Interface>::Entry entry;
@@ -66,10 +71,7 @@ class Registration {
       Options options;
       OptionSet set;
       options.declare(set);
-      use({set, [&options]() -> std::vector<std::string> {
-             if constexpr (detail::NamesFiles<Options>) return options.files();
-             return {};
-           }});
+      use({set, [&options] { return files_of(options); }});
     };
     entry.make = [](const Json& json, const Context& context) -> std::unique_ptr<Interface> {
       return std::make_unique<Plugin>(read_options<Options>(json, context.place), context);

@@ -16,7 +16,7 @@ const Registration<FrontEnd, Haste> registration(
     "haste",
     "tracks features in events asynchronously by hypotheses (Alzugaray and Chli 2020), finds lost landmarks again", 8);
 
-constexpr double kApart = 1e-6;  ///< [s] between two observations of a track, at least
+constexpr double kLeastStep = 1e-6;  ///< [s] between two observations of a track, at least
 
 Vector2 place_of(const Change& change, Options::Place place) {
   switch (place) {
@@ -67,7 +67,7 @@ void Haste::observe(const Change& change) {
   TrackObservation z{track.id, seconds(change.after.t), place_of(change, options_.place), sigma};
   const double told = std::max(seconds(change.t_event), clock_) - options_.delay;  // what stands for times up to then
   if (z.t <= told) ++late_;
-  z.t = std::max({z.t, told, track.told + kApart});
+  z.t = std::max({z.t, told, track.told + kLeastStep});
   if (track.probation > 0) {
     if (!is_as_expected(track.id, z.pixel, z.t)) {
       lost_.disappoint(track.id, clock_);
