@@ -327,6 +327,25 @@ std::vector<std::string> read_plugin_paths(const std::string& path, const std::v
   return paths;
 }
 
+std::vector<std::string> unknown_plugins(const std::string& path, const std::vector<std::string>& overrides,
+                                         const Plugins& plugins) {
+  const Json json = parse_config(path, overrides, Json());
+  std::vector<std::string> unknown;
+  const auto look = [&]<class Interface>(const Registry<Interface>& registry, const Json& part) {
+    const Json type = part.is_object() ? part.value("type", Json()) : Json();
+    const std::string name = type.is_string() ? type.get<std::string>() : "";
+    if (!name.empty() && !registry.entries().contains(name)) {
+      unknown.push_back(fmt::format("{} {}", PluginKind<Interface>::name, name));
+    }
+  };
+  const auto part = [&](const char* key) { return json.is_object() ? json.value(key, Json()) : Json(); };
+  look(plugins.of<Source>(), part("source"));
+  look(plugins.of<FrontEnd>(), part("frontend"));
+  look(plugins.of<BackEnd>(), part("backend"));
+  for (const Json& backend : part("backends")) look(plugins.of<BackEnd>(), backend);
+  return unknown;
+}
+
 ScoreOptions read_evaluation(const std::string& path, const Json& otherwise, const std::vector<std::string>& overrides,
                              const std::string& place) {
   Json json = {{"evaluation", otherwise}};

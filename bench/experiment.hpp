@@ -7,8 +7,8 @@
 
 #include "bench/job.hpp"
 #include "core/plugin/options.hpp"
-#include "core/support/json.hpp"
 #include "core/plugin/source.hpp"
+#include "core/support/json.hpp"
 #include "eval/scores.hpp"
 
 namespace evbench {
@@ -62,6 +62,10 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
 /// The libraries that a config's key "plugins" names, to be loaded before it is read: paths taken from its folder,
 /// environment variables replaced.
 std::vector<std::string> read_plugin_paths(const std::string& path, const std::vector<std::string>& overrides);
+
+/// The parts of a config whose plugins are not known, as "frontend mine"; overrides as in read_experiment().
+std::vector<std::string> unknown_plugins(const std::string& path, const std::vector<std::string>& overrides,
+                                         const Plugins& plugins);
 
 /// The protocol of a config file or, where `path` is empty, `otherwise`, with overrides "evaluation.KEY=VALUE". `place`
 /// stands for the config in messages when there is no file.

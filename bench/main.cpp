@@ -54,7 +54,14 @@ int run_program(int argc, char** argv) {
          "A library with plugins, or a folder of them; can be given often, and in EVBENCH_PLUGINS, between colons")
       ->type_name("PATH")
       ->allow_extra_args(false);
-  app.parse_complete_callback([&] { evbench::load_plugins(plugins, libraries); });  // before any command's
+  bool no_external = false;
+  app.add_flag("--no-external", no_external,
+               "Refuse commands that a config starts and libraries that a config alone names")
+      ->envname("EVBENCH_NO_EXTERNAL");
+  app.parse_complete_callback([&] {  // before any command's
+    if (no_external) plugins.refuse_external_code();
+    evbench::load_plugins(plugins, libraries);
+  });
   int exit_code = evbench::kExitDone;
   evbench::add_run(app, plugins, exit_code);
   evbench::add_sweep(app, plugins, exit_code);

@@ -1,6 +1,10 @@
 #include "bench/runner.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <exception>
+#include <iterator>
 
 #include "bench/pipeline/batch_recording.hpp"
 #include "bench/pipeline/feedback_line.hpp"
@@ -11,13 +15,24 @@
 namespace evbench {
 namespace {
 
+/// Of one plugin of a job. Throws InputError for any where external code is refused.
+std::vector<std::string> allowed_commands(const PluginEntry& entry, const PluginConfig& config,
+                                          const Plugins& plugins) {
+  std::vector<std::string> commands = entry.commands(config.options, config.place);
+  if (commands.empty() || plugins.external_code_allowed()) return commands;
+  throw InputError(fmt::format("{}: would run \"{}\", and external code is refused (--no-external)", config.place,
+                               commands.front()));
+}
+
 std::unique_ptr<FrontEnd> make_frontend(const Job& job, const Source& source, const Plugins& plugins) {
   const auto& entry = plugins.of<FrontEnd>().find(job.frontend.type, job.frontend.place + ".type");
+  allowed_commands(entry, job.frontend, plugins);
   return entry.make(job.frontend.options, {source, job.seed, job.folder, job.frontend.place});
 }
 
 std::unique_ptr<BackEnd> make_backend(const Job& job, const BackEndContext& context, const Plugins& plugins) {
   const auto& entry = plugins.of<BackEnd>().find(job.backend.type, job.backend.place + ".type");
+  allowed_commands(entry, job.backend, plugins);
   return entry.make(job.backend.options, context);
 }
 
@@ -99,12 +114,33 @@ std::optional<std::string> record_front_end(const Job& job, const Source& source
   return record_batches(front);
 }
 
-void check_job(const Job& job, const Source& source, const Plugins& plugins) {
-  make_frontend(job, source, plugins);
+std::vector<std::string> check_job(const Job& job, const Source& source, const Plugins& plugins) {
+  std::vector<std::string> unchecked;
+  const auto starts_none = [&](const PluginEntry& entry, const PluginConfig& config) {
+    const std::vector<std::string> commands = allowed_commands(entry, config, plugins);
+    for (const std::string& command : commands) {
+      unchecked.push_back(fmt::format("{}: \"{}\" was not started", config.place, command));
+    }
+    return commands.empty();
+  };
+  if (starts_none(plugins.of<FrontEnd>().find(job.frontend.type, job.frontend.place + ".type"), job.frontend)) {
+    make_frontend(job, source, plugins);
+  }
   BackEndContext context = context_of(job);
   context.camera = source.camera().pinhole;
   context.patience = job.pipeline.patience;
-  make_backend(job, context, plugins);
+  if (starts_none(plugins.of<BackEnd>().find(job.backend.type, job.backend.place + ".type"), job.backend)) {
+    make_backend(job, context, plugins);
+  }
+  return unchecked;
+}
+
+std::vector<std::string> commands_of(const Job& job, const Plugins& plugins) {
+  const auto& frontend = plugins.of<FrontEnd>().find(job.frontend.type, job.frontend.place + ".type");
+  const auto& backend = plugins.of<BackEnd>().find(job.backend.type, job.backend.place + ".type");
+  std::vector<std::string> commands = allowed_commands(frontend, job.frontend, plugins);
+  std::ranges::move(allowed_commands(backend, job.backend, plugins), std::back_inserter(commands));
+  return commands;
 }
 
 }  // namespace evbench

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bench/job.hpp"
 #include "bench/pipeline/pipeline.hpp"
@@ -31,7 +32,12 @@ Execution execute(const Job& job, const Source& source, const Plugins& plugins, 
 /// gives each back-end something else. Throws what the front-end throws.
 std::optional<std::string> record_front_end(const Job& job, const Source& source, const Plugins& plugins);
 
-/// Throws InputError where execute() would do so before any work.
-void check_job(const Job& job, const Source& source, const Plugins& plugins);
+/// Throws InputError where execute() would do so before any work. Starts no command: returns, as sentences, what could
+/// therefore not be checked.
+std::vector<std::string> check_job(const Job& job, const Source& source, const Plugins& plugins);
+
+/// The commands that the job's plugins start, as one would type them. Throws InputError for what is none, and for any
+/// where external code is refused.
+std::vector<std::string> commands_of(const Job& job, const Plugins& plugins);
 
 }  // namespace evbench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,10 @@ void add_dataset(CLI::App& app);
 void add_render(CLI::App& app, const Plugins& plugins);
 void add_new_plugin(CLI::App& app, const Plugins& plugins);
 
-/// A config may name libraries with more plugins: they are added.
-void add_export(CLI::App& app, Plugins& plugins);
+void add_export(CLI::App& app, const Plugins& plugins);
 
-/// `exit_code` is set to what the program returns: 0, or 3 when a run failed. Plugins are added likewise.
+/// `exit_code` is set to what the program returns: 0, or 3 when a run failed. A config may name libraries with more
+/// plugins: they are added.
 void add_run(CLI::App& app, Plugins& plugins, int& exit_code);
 
 /// Likewise.
@@ -43,6 +44,9 @@ void add_check_plugin(CLI::App& app, const Plugins& plugins, int& exit_code);
 
 /// The option --set of commands that read configs, a KEY=VALUE each time; `text`: its help.
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const std::string& text);
+
+/// Tells on the standard output, at once, what is about to be run that a file alone names; nothing where it is quiet.
+std::function<void(const std::string&)> announcement(bool quiet);
 
 /// The options of commands that read events.
 struct ReadOptions;

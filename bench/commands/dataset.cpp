@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/failures.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/datasets/download.hpp"
 #include "bench/datasets/fetch.hpp"
@@ -16,8 +17,10 @@ namespace {
 
 constexpr const char* kPlace =
     "Datasets are kept in the folder that EVBENCH_DATASETS names, or ~/.cache/evbench/datasets, each in one of its\n"
-    "name; NAME.download beside it has what was fetched of one that is not complete yet. A source of type recording\n"
-    "takes them by name: {\"dataset\": \"ecd/dynamic_6dof\"}. Their licences are their own.";
+    "name; beside it, NAME.download has what was fetched of one that is not complete yet, NAME.fetched.json address, "
+    "size\n"
+    "and SHA-256 of what was fetched and of every file. A source of type recording takes them by name:\n"
+    "{\"dataset\": \"ecd/dynamic_6dof\"}. Their licences are their own.";
 
 /// "1234.5 MiB" of all its files, as the servers say; "?" where one doesn't.
 std::string size_text(const Dataset& dataset) {
@@ -73,6 +76,14 @@ void get_dataset(const std::string& name, bool quiet) {
   tell("written: " + folder);
 }
 
+void verify(const std::string& name) {
+  const Interruption interruption(name + ": interrupted");
+  const std::string folder = existing_dataset_folder(name, "dataset verify");
+  const std::vector<std::string> differences = verify_dataset(folder);
+  if (!differences.empty()) throw_together(differences);
+  fmt::print("{}: as it was fetched\n", folder);
+}
+
 }  // namespace
 
 void add_dataset(CLI::App& app) {
@@ -91,6 +102,11 @@ void add_dataset(CLI::App& app) {
   get->add_option("name", arguments->name, "Name, e.g. ecd/dynamic_6dof")->required();
   get->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   get->callback([arguments] { get_dataset(arguments->name, arguments->quiet); });
+  CLI::App* verify_command =
+      command->add_subcommand("verify", "Compare a dataset's files with what was fetched, byte for byte");
+  verify_command->footer(kPlace);
+  verify_command->add_option("name", arguments->name, "Name, e.g. ecd/dynamic_6dof")->required();
+  verify_command->callback([arguments] { verify(arguments->name); });
   command->footer(kPlace);
 }
 

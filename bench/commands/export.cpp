@@ -66,9 +66,20 @@ void check(const ExportArguments& arguments) {
   }
 }
 
-void export_source(const std::string& config, const ExportArguments& arguments, Plugins& plugins) {
-  load_plugins_of(plugins, config, arguments.overrides);
-  const std::unique_ptr<Source> source = read_source(config, plugins, arguments.overrides);
+/// Loads no library that only the config names; where its source is of one, that is told.
+std::unique_ptr<Source> make_source_of(const std::string& config, const ExportArguments& arguments,
+                                       const Plugins& plugins) {
+  try {
+    return read_source(config, plugins, arguments.overrides);
+  } catch (const InputError& error) {
+    const std::string missing = missing_libraries(plugins, config, arguments.overrides);
+    if (missing.empty()) throw;
+    throw InputError(fmt::format("{}; {}", error.what(), missing));
+  }
+}
+
+void export_source(const std::string& config, const ExportArguments& arguments, const Plugins& plugins) {
+  const std::unique_ptr<Source> source = make_source_of(config, arguments, plugins);
   std::vector<std::string> read = source->files();
   std::ranges::move(source->event_files(), std::back_inserter(read));
   check_outputs(arguments.outputs(), read, true);  // what exists has been asked before, and may be written by now
@@ -102,7 +113,7 @@ void export_run(const ExportArguments& arguments) {
   folder.commit();
 }
 
-void execute(const ExportArguments& arguments, Plugins& plugins) {
+void execute(const ExportArguments& arguments, const Plugins& plugins) {
   check(arguments);
   const bool folder = std::filesystem::is_directory(arguments.from);
   if (arguments.of_run()) export_run(arguments);
@@ -116,7 +127,7 @@ void execute(const ExportArguments& arguments, Plugins& plugins) {
 
 }  // namespace
 
-void add_export(CLI::App& app, Plugins& plugins) {
+void add_export(CLI::App& app, const Plugins& plugins) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command =
       app.add_subcommand("export", "Write a sequence's ground truth and tracks, a run's aligned estimate and errors");

@@ -1,6 +1,7 @@
 #include "bench/commands/run.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -140,23 +141,45 @@ void check_writable(const std::string& folder) {
   }
 }
 
-void check(const RunArguments& arguments, const Experiment& experiment, const Plugins& plugins) {
+/// As far as it goes without code that only the config names.
+void check(const RunArguments& arguments, const Plugins& plugins) {
   check_writable(arguments.out);
+  std::vector<std::string> unchecked;
+  const std::string missing = missing_libraries(plugins, arguments.config, arguments.overrides);
+  const std::vector<std::string> unknown =
+      missing.empty() ? std::vector<std::string>() : unknown_plugins(arguments.config, arguments.overrides, plugins);
+  if (!unknown.empty()) {
+    const bool source_known = !unknown.front().starts_with("source");
+    if (source_known) read_source(arguments.config, plugins, arguments.overrides);
+    fmt::print("{}: {}; not checked: {} ({})\n", arguments.config, source_known ? "its source is fine" : "it is JSON",
+               fmt::join(unknown, ", "), missing);
+    return;
+  }
+  const Experiment experiment = read_experiment(arguments.config, arguments.overrides, plugins);
   const std::unique_ptr<Source> source = make_source(experiment.runs.front().job, plugins);
-  for (const RunConfig& config : experiment.runs) check_job(config.job, *source, plugins);
+  for (const RunConfig& config : experiment.runs) {
+    for (std::string& text : check_job(config.job, *source, plugins)) {
+      if (std::ranges::find(unchecked, text) == unchecked.end()) unchecked.push_back(std::move(text));
+    }
+  }
   fmt::print("{}: fine, {} run{}\n", arguments.config, experiment.runs.size(), experiment.runs.size() == 1 ? "" : "s");
+  for (const std::string& text : unchecked) fmt::print("not checked: {}\n", text);
 }
 
 }  // namespace
 
 int run_config(const RunArguments& arguments, Plugins& plugins) {
   const Interruption interruption(arguments.config + ": interrupted; no run was begun");
-  load_plugins_of(plugins, arguments.config, arguments.overrides);
-  const Experiment experiment = read_experiment(arguments.config, arguments.overrides, plugins);
   if (arguments.check) {
-    check(arguments, experiment, plugins);
+    check(arguments, plugins);
     return kExitDone;
   }
+  const Announce announce = announcement(arguments.quiet);
+  load_plugins_of(plugins, arguments.config, arguments.overrides, {.announce = announce});
+  const Experiment experiment = read_experiment(arguments.config, arguments.overrides, plugins);
+  std::vector<const Job*> jobs;
+  for (const RunConfig& run : experiment.runs) jobs.push_back(&run.job);
+  announce_commands(jobs, plugins, announce);
   const std::unique_ptr<Source> source = make_source(experiment.runs.front().job, plugins);
   Runs runs(arguments, plugins, experiment, *source);
   runs.tell_complete();
@@ -175,6 +198,14 @@ int run_config(const RunArguments& arguments, Plugins& plugins) {
   const bool failed = std::ranges::any_of(
       runs.records(), [](const RunRecord& run) { return run.status && run.status->status.state == RunState::failed; });
   return failed ? kExitFailed : kExitDone;
+}
+
+std::function<void(const std::string&)> announcement(bool quiet) {
+  return [quiet](const std::string& sentence) {
+    if (quiet) return;
+    fmt::print("{}\n", sentence);
+    std::fflush(stdout);
+  };
 }
 
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const std::string& text) {
@@ -202,7 +233,10 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
       "recorded");
   command->add_flag("--watch", arguments->watch,
                     "Print a line each second, on the standard error: how far, tracks, landmarks, states, delay, pace");
-  command->add_flag("--check", arguments->check, "Check the config, and that its files can be read, and stop");
+  command->add_flag(
+      "--check", arguments->check,
+      "Check the config, and that its files can be read, and stop; starts no command and loads no library "
+      "that only the config names, and says what is therefore not checked");
   command->footer(
       "Each run writes OUT/EXPERIMENT/KEY: config.json, job.json, manifest.json, final.tum, online.tum, told.txt,\n"
       "groundtruth.tum, map.ply, metrics.json, timing.csv, log.txt, status.json. KEY names what determines the\n"

@@ -14,6 +14,7 @@
 #include "bench/commands/exit_code.hpp"
 #include "bench/commands/number_check.hpp"
 #include "bench/commands/progress_line.hpp"
+#include "bench/plugins.hpp"
 #include "bench/run_folder.hpp"
 #include "bench/sweep/local_executor.hpp"
 #include "bench/sweep/manifest.hpp"
@@ -146,7 +147,9 @@ int write_manifest(const std::vector<PlannedRun>& runs, const SweepArguments& ar
 int execute(SweepArguments& arguments, Plugins& plugins) {
   const Interruption interruption(arguments.file + ": interrupted; no run was begun");
   stay_without_threads();
-  Sweep sweep = read_sweep(arguments.file, arguments.overrides, arguments.over, plugins);
+  const Announce announce = announcement(arguments.quiet);
+  const LibraryPolicy policy = {.refused_by = arguments.dry_run ? "--dry-run" : "", .announce = announce};
+  Sweep sweep = read_sweep(arguments.file, arguments.overrides, arguments.over, plugins, policy);
   sweep.limits.seconds = arguments.seconds.value_or(sweep.limits.seconds);
   sweep.limits.memory_mib = arguments.memory_mib.value_or(sweep.limits.memory_mib);
   ExecutorOptions& options = arguments.options;
@@ -163,6 +166,9 @@ int execute(SweepArguments& arguments, Plugins& plugins) {
     print_plan(runs, plan, options);
     return kExitDone;
   }
+  std::vector<const Job*> jobs;
+  for (const PlannedRun& run : runs) jobs.push_back(&run.config.job);
+  announce_commands(jobs, plugins, announce);
   const std::string folder = (std::filesystem::path(options.out) / plan.name).string();
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -202,7 +208,8 @@ void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code) {
       ->check(not_negative());
   command->add_flag("--retry-failed", arguments->options.retry_failed,
                     "Do runs again that crashed, hung or took too much, and damaged ones");
-  command->add_flag("--dry-run", arguments->dry_run, "Print the plan, and what of it is complete, and stop");
+  command->add_flag("--dry-run", arguments->dry_run,
+                    "Print the plan, and what of it is complete, and stop; loads no library that only the files name");
   command
       ->add_option("--executor", arguments->executor,
                    "local: here; slurm: a job array; none: only write OUT/NAME/manifest.jsonl, of which evbench task "

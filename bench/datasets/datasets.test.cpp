@@ -396,7 +396,11 @@ TEST_CASE("What was fetched of a dataset stays until all of it is there, a damag
   CHECK(server.asked_for["b.zip"] == 3);
   CHECK(read_file(target + "/a.h5") == noise(1000));
   CHECK(read_file(target + "/events.txt") == noise(5000));
-  CHECK(names_in(folder.path()) == std::set<std::string>{"b.zip", "set"});
+  CHECK(names_in(folder.path()) == std::set<std::string>{"b.zip", "set", "set.fetched.json"});
+  const Json record = parse_json(read_file(record_of_dataset(target)));
+  CHECK(record["downloads"][1]["url"] == server.url("more/b.zip"));
+  CHECK(record["downloads"][1]["bytes"] == zip.size());
+  CHECK(record["downloads"][1]["sha256"] == sha256(zip));
 }
 
 TEST_CASE("What an earlier call left is fetched again when the checksum tells that it is another file") {
@@ -440,7 +444,7 @@ TEST_CASE("dataset get fetches and unpacks by name, once, dataset list marks wha
                           ContainsSubstring("SHA-256 " + sha256_file(folder.file("sequence.zip"))) &&
                           ContainsSubstring("written: sets/local/file"));
   CHECK(read_file(folder.file("sets/local/file/events.txt")) == "0.1 1 1 1\n");
-  CHECK(names_in(folder.file("sets/local")) == std::set<std::string>{"file"});
+  CHECK(names_in(folder.file("sets/local")) == std::set<std::string>{"file", "file.fetched.json"});
   CHECK_THAT(testing::shell(folder, environment + "get local/file").out, ContainsSubstring("is there already"));
   CHECK(server.requests() == 2);
   CHECK_THAT(testing::shell(folder, environment + "list").out,
@@ -450,5 +454,31 @@ TEST_CASE("dataset get fetches and unpacks by name, once, dataset list marks wha
   CHECK_THAT(missing.err, ContainsSubstring("answers 404"));
   CHECK_THAT(testing::shell(folder, environment + "get local/fil").err,
              ContainsSubstring("did you mean \"local/file\"?"));
-  CHECK(names_in(folder.file("sets/local")) == std::set<std::string>{"file"});
+  CHECK(names_in(folder.file("sets/local")) == std::set<std::string>{"file", "file.fetched.json"});
+}
+
+TEST_CASE("dataset verify names every file that is missing, has changed or was added", "[slow]") {
+  const TemporaryFolder folder;
+  Server server("");
+  server.more = {{"a.h5", noise(1000)}, {"b.h5", noise(2000)}};
+  Dataset dataset;
+  dataset.limit_gib = 1.0;
+  dataset.files = {{server.url("more/a.h5"), "a.h5", "", false}, {server.url("more/b.h5"), "b.h5", "", false}};
+  const std::string target = folder.file("set");
+  fetch_dataset(dataset, target, quick(), [](const std::string&) {});
+  CHECK(verify_dataset(target).empty());
+  const std::string verify = "EVBENCH_DATASETS=. \"$evbench\" dataset verify set";
+  CHECK(testing::shell(folder, verify).exit_code == 0);
+  folder.write("set/a.h5", noise(999) + "x");  // of the same size
+  std::filesystem::rename(target + "/b.h5", target + "/c.h5");
+  const std::vector<std::string> differences = verify_dataset(target);
+  REQUIRE(differences.size() == 3);
+  CHECK_THAT(differences[0], ContainsSubstring("a.h5: has 1000 bytes, SHA-256 \"" + sha256(noise(999) + "x")));
+  CHECK_THAT(differences[1], ContainsSubstring("b.h5: is missing"));
+  CHECK_THAT(differences[2], ContainsSubstring("c.h5: is not in the record"));
+  CHECK(testing::shell(folder, verify).exit_code == 2);
+  folder.write("set.fetched.json", "[]");
+  CHECK_THROWS_WITH(verify_dataset(target), ContainsSubstring("is no record of a dataset"));
+  std::filesystem::remove(folder.file("set.fetched.json"));
+  CHECK_THROWS_WITH(verify_dataset(target), ContainsSubstring("evbench dataset get wrote"));
 }

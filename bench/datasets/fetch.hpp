@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "bench/datasets/download.hpp"
 #include "core/datasets/catalogue.hpp"
@@ -10,9 +11,17 @@ namespace evbench {
 
 /// Downloads a dataset's files and unpacks them into `folder`, which appears when all of it is there. Until then
 /// `folder`.download has the files, those that are complete and those that broke off, and the next call goes on from
-/// there; an archive that is damaged is removed. `told` gets a line for each file, `download` has the pause, attempts
-/// and progress of downloads. Throws InputError.
+/// there; an archive that is damaged is removed. What was fetched, and every file that came of it, is kept with size
+/// and SHA-256 in record_of_dataset(folder), for verify_dataset(). `told` gets a line for each file, `download` has the
+/// pause, attempts and progress of downloads. Throws InputError.
 void fetch_dataset(const Dataset& dataset, const std::string& folder, const DownloadOptions& download,
                    const std::function<void(const std::string&)>& told);
+
+/// `folder`.fetched.json: {"downloads": [{"url", "bytes", "sha256"}], "files": [{"name", "bytes", "sha256"}]}.
+std::string record_of_dataset(const std::string& folder);
+
+/// Compares a dataset's files with its record. Returns a sentence for each that is missing, has changed or is not in
+/// the record. Throws InputError for a folder or a record that is missing or broken.
+std::vector<std::string> verify_dataset(const std::string& folder);
 
 }  // namespace evbench

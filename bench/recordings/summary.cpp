@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/events/formats.hpp"
+#include "core/events/sensor_size.hpp"
 #include "core/support/error.hpp"
 #include "core/support/json.hpp"
 
@@ -72,6 +73,9 @@ RecordingSummary summarise(const std::string& path, const StreamOptions& options
   };
   ask("calibration", [&] { s.calibration = stream.reader().calibration(); });
   ask("ground truth", [&] { s.ground_truth = stream.reader().ground_truth().value_or(PoseTrajectory()); });
+  ask("calibration", [&] {
+    if (s.calibration) check_same_sensor(path + ": the calibration", *s.calibration, stream.info());
+  });
   s.info = stream.info();  // with remarks on what was read just now
   s.info.metadata.insert(s.info.metadata.end(), unusable.begin(), unusable.end());
   s.faults = stream.faults();

@@ -9,6 +9,7 @@
 #include "bench/render/time_surface.hpp"
 #include "core/data/calib.hpp"
 #include "core/data/pose_file.hpp"
+#include "core/events/sensor_size.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {

@@ -9,7 +9,6 @@
 
 #include "bench/experiment.hpp"
 #include "core/io/path.hpp"
-#include "core/plugin/library.hpp"
 #include "core/support/error.hpp"
 #include "core/support/json.hpp"
 
@@ -24,9 +23,11 @@ ManifestLine read_line(const std::string& text, const std::string& place, Plugin
     line.options.limits.seconds = json.at("timeout").get<double>();
     line.options.limits.memory_mib = json.at("memory").get<double>();
     line.options.retry_failed = json.at("retry_failed").get<bool>();
+    std::vector<std::string> libraries;
     for (const Json& library : json.at("config").at("plugins")) {
-      load_plugin_libraries(plugins, resolve_path(library.get<std::string>(), "."));
+      libraries.push_back(resolve_path(library.get<std::string>(), "."));
     }
+    load_named_plugins(plugins, libraries, place, {});
     for (const auto& [axis, value] : json.at("axes").items())
       line.run.axes.emplace_back(axis, value.get<std::string>());
     line.run.config = ConfigFile(place, json.at("config"), plugins).experiment({}).runs.at(0);

@@ -25,6 +25,8 @@ class RecordedEvents : public Source {
     if (!std::filesystem::exists(path_, error)) return source_->all_events();
     return std::make_unique<NativeReader>(path_);
   }
+  std::string size_assumption() const override { return source_->size_assumption(); }
+  bool is_lenient() const override { return source_->is_lenient(); }
   bool silence_is_known() const override { return source_->silence_is_known(); }
   std::optional<std::span<const TrackObservation>> true_tracks() const override { return source_->true_tracks(); }
   std::vector<std::string> files() const override { return source_->files(); }

@@ -72,20 +72,19 @@ void check_axes(const Sweep& sweep, const Grid& grid) {
   }
 }
 
-void load_libraries(const Json& list, const std::string& place, const std::string& folder, Plugins& plugins) {
+void load_libraries(const Json& list, const std::string& place, const std::string& folder, Plugins& plugins,
+                    const LibraryPolicy& policy) {
   if (!list.is_array()) throw InputError(fmt::format("{}: plugins: expected a list of paths", place));
+  std::vector<std::string> paths;
   for (const Json& item : list) {
     if (!item.is_string())
       throw InputError(fmt::format("{}: plugins: expected paths, found {}", place, dump_json(item)));
-    try {
-      load_plugin_libraries(plugins, resolve_path(item.get<std::string>(), folder));
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: plugins: {}", place, error.what()));
-    }
+    paths.push_back(resolve_path(item.get<std::string>(), folder));
   }
+  load_named_plugins(plugins, paths, place + ": plugins", policy);
 }
 
-Sweep read_file(const Json& json, const std::string& path, Plugins& plugins) {
+Sweep read_file(const Json& json, const std::string& path, Plugins& plugins, const LibraryPolicy& policy) {
   const auto options = read_options<SweepOptions>(json, path);
   const std::string folder = fs::absolute(path).parent_path().string();
   Sweep sweep;
@@ -93,7 +92,7 @@ Sweep read_file(const Json& json, const std::string& path, Plugins& plugins) {
   sweep.name = options.name.empty() ? fs::path(path).stem().string() : options.name;
   sweep.config = resolve_path(options.config, folder);
   sweep.limits = options.limits;
-  load_libraries(options.plugins, path, folder, plugins);
+  load_libraries(options.plugins, path, folder, plugins, policy);
   if (!options.set.is_object()) throw InputError(fmt::format("{}: set: expected an object {{KEY: VALUE}}", path));
   for (const auto& [key, value] : options.set.items()) {
     sweep.overrides.push_back(key + "=" + (value.is_string() ? value.get<std::string>() : dump_json(value)));
@@ -119,20 +118,20 @@ Sweep read_file(const Json& json, const std::string& path, Plugins& plugins) {
 }  // namespace
 
 Sweep read_sweep(const std::string& path, const std::vector<std::string>& overrides,
-                 const std::vector<std::string>& over, Plugins& plugins) {
+                 const std::vector<std::string>& over, Plugins& plugins, const LibraryPolicy& policy) {
   const Json json = read_json(path);
   Sweep sweep;
   const bool is_sweep =
       json.is_object() && (json.contains("config") || json.contains("axes") || json.contains("grids"));
   if (is_sweep) {
-    sweep = read_file(json, path, plugins);
+    sweep = read_file(json, path, plugins, policy);
   } else {
     sweep.place = sweep.config = path;
     sweep.grids.emplace_back();
   }
   sweep.overrides.insert(sweep.overrides.end(), overrides.begin(), overrides.end());
   try {
-    load_plugins_of(plugins, sweep.config, sweep.overrides);
+    load_plugins_of(plugins, sweep.config, sweep.overrides, policy);
   } catch (const InputError& error) {
     if (sweep.place == sweep.config) throw;
     throw InputError(fmt::format("{}: {}", sweep.place, error.what()));

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/plugins.hpp"
 #include "bench/sweep/axis.hpp"
 #include "bench/sweep/run_limits.hpp"
 #include "core/plugin/registry.hpp"
@@ -23,7 +24,7 @@ struct Sweep {
 };
 
 /// Reads the file of a sweep, or takes a config for one whose only point is the config itself, and loads the libraries
-/// that either names. A sweep's file is an object with
+/// that either names, by the policy. A sweep's file is an object with
 ///
 ///   "config"   path of the base config, from the sweep's folder
 ///   "name", "description", "timeout", "memory"
@@ -35,7 +36,7 @@ struct Sweep {
 /// `overrides` and `over` (axis.hpp: parse_axis()) come from the command line and are added to what the file says.
 /// Throws InputError for anything that is not as expected, with the place.
 Sweep read_sweep(const std::string& path, const std::vector<std::string>& overrides,
-                 const std::vector<std::string>& over, Plugins& plugins);
+                 const std::vector<std::string>& over, Plugins& plugins, const LibraryPolicy& policy = {});
 
 /// The keys of a sweep's file, for people.
 std::string describe_sweep();

@@ -20,10 +20,8 @@ class EventFeed {
   /// more. None: later ones alone are left, or no events at all.
   std::span<const Event> until(std::int64_t t);
 
+  const EventStream& stream() const { return *stream_; }
   double seconds() const { return seconds_; }  ///< [s] it took to read them
-
-  /// What had to be left out.
-  std::vector<std::pair<std::string, Faults::Fault>> faults() const { return stream_->faults(); }
 
   /// Nothing is left.
   bool ended() const { return ended_ && next_ == events_.size(); }

@@ -23,6 +23,12 @@ std::unique_ptr<EventStream> events_of(const FrontEndContext& context, const std
   return events;
 }
 
+/// Events with these largest coordinates, do they leave a fifth of the sensor free on both sides, and are they many
+/// enough to say so? The two sizes of DAVIS sensors are 0.69 of one another.
+bool leave_much_free(int max_x, int max_y, const Camera& camera, std::int64_t events) {
+  return events >= 10'000 && max_x + 1 < 0.8 * camera.width && max_y + 1 < 0.8 * camera.height;
+}
+
 }  // namespace
 
 EventFrontEnd::EventFrontEnd(const FrontEndContext& context, const std::string& name)
@@ -80,8 +86,15 @@ std::optional<double> EventFrontEnd::data_end() const {
 std::vector<std::string> EventFrontEnd::remarks() const {
   std::vector<std::string> result = counts();
   result.push_back(fmt::format("{} events", events_));
-  for (const auto& [kind, fault] : feed_.faults()) {
+  const EventStream& stream = feed_.stream();
+  for (const auto& [kind, fault] : stream.faults()) {
     result.push_back(fmt::format("left out: {} {} (the first: {})", fault.count, kind, fault.first));
+  }
+  if (const int x = stream.max_x(), y = stream.max_y(); leave_much_free(x, y, camera_, events_)) {
+    result.push_back(
+        fmt::format("the events reach no farther than pixel ({}, {}) of a sensor of {}x{} pixels: is the calibration "
+                    "another camera's?",
+                    x, y, camera_.width, camera_.height));
   }
   if (const auto end = data_end()) {
     result.push_back(fmt::format("the events end at {:.3f} s, before the time range does, {:.3f} s: so does the run",

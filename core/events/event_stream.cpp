@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/events/longest_in_order.hpp"
+#include "core/events/sensor_size.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
@@ -33,16 +34,12 @@ bool are_fine(std::span<const Event> events, std::int64_t from, int width, int h
 
 }  // namespace
 
-void check_sensor_size(const std::string& path, int width, int height) {
-  constexpr std::int64_t kMost = 64'000'000;
-  if (std::int64_t{width} * height <= kMost) return;
-  throw InputError(fmt::format("{}: a sensor of {}x{} pixels; expected {} million pixels at most", path, width, height,
-                               kMost / 1'000'000));
-}
-
 EventStream::EventStream(std::unique_ptr<EventReader> reader, std::string path, const StreamOptions& options)
     : path_(std::move(path)),
       lenient_(options.read.lenient),
+      width_(options.width > 0 ? options.width : 1 << 16),
+      height_(options.height > 0 ? options.height : 1 << 16),
+      size_assumption_(options.size_assumption),
       reader_(std::move(reader)),
       faults_(path_, options.read.strict) {
   check_sensor_size(path_, info().width, info().height);
@@ -111,7 +108,8 @@ std::optional<std::string> EventStream::large_loss() const {
 /// Keeps what is in order, in the sensor, and in the range, with times of the stream.
 void EventStream::check(std::vector<Event>& events) {
   if (events.empty()) return;
-  const int width = info().width > 0 ? info().width : 1 << 16, height = info().height > 0 ? info().height : 1 << 16;
+  const int width = info().width > 0 ? std::min(info().width, width_) : width_;
+  const int height = info().height > 0 ? std::min(info().height, height_) : height_;
   if (events.back().t >= end_ || overlaps_next(events) || !are_fine(events, std::max(newest_, from_), width, height)) {
     leave_out_outside(events, width, height);
     leave_out_disorder(events);
@@ -126,12 +124,20 @@ void EventStream::check(std::vector<Event>& events) {
     newest_ = events.back().t;
     good_ += std::ssize(events);
   }
+  note_extent(events);
   if (zero_ == 0) return;
   for (Event& event : events) event.t -= zero_;
 }
 
 bool EventStream::overlaps_next(std::span<const Event> events) const {
   return !ahead_.empty() && !events.empty() && ahead_.front().t < events.back().t;
+}
+
+void EventStream::note_extent(std::span<const Event> events) {
+  for (const Event& event : events) {
+    max_x_ = std::max<int>(max_x_, event.x);
+    max_y_ = std::max<int>(max_y_, event.y);
+  }
 }
 
 // Faults are told once a chunk: a recording may be nothing but faults.
@@ -150,6 +156,11 @@ void EventStream::leave_out_outside(std::vector<Event>& events, int width, int h
     }
   }
   events.resize(kept);
+  if (outside > 0 && !size_assumption_.empty() && !lenient_) {
+    throw InputError(fmt::format("{}: an event at {} us has the pixel ({}, {}), outside the sensor of {}x{} pixels: {}",
+                                 path_, first_outside.t, first_outside.x, first_outside.y, width, height,
+                                 size_assumption_));
+  }
   if (outside > 0) {
     faults_.add(fmt::format("events outside the sensor of {}x{} pixels", width, height),
                 fmt::format("{} us, pixel ({}, {})", first_outside.t, first_outside.x, first_outside.y), outside);

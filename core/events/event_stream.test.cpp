@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/events/sensor_size.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 #include "core/testing/catch2.hpp"

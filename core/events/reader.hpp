@@ -27,7 +27,7 @@ struct ReadOptions {
 struct StreamInfo {
   std::string format;                                         ///< e.g. "Prophesee EVT 3"
   int width = 0, height = 0;                                  ///< sensor [px]; 0: unknown
-  bool size_assumed = false;                                  ///< the file doesn't say it; the data set has it
+  bool size_assumed = false;                                  ///< nothing says it; what the data set has
   std::optional<std::int64_t> count;                          ///< of events, where known without reading them
   std::optional<std::int64_t> start, end;                     ///< [µs] of the first and last event, likewise
   std::vector<std::string> topics;                            ///< everything in a container: "name (type), n messages"

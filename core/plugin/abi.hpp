@@ -13,7 +13,7 @@
 
 /// Raised with every change of what plugins include (core/plugin/, and what that includes) that a plugin built before
 /// would not survive: a virtual function, a member, a different meaning.
-#define EVBENCH_PLUGIN_API 6
+#define EVBENCH_PLUGIN_API 7
 
 #define EVBENCH_ABI_TEXT_OF(value) #value
 #define EVBENCH_ABI_TEXT(value) EVBENCH_ABI_TEXT_OF(value)

@@ -135,17 +135,13 @@ std::string how_to_build(const fs::path& library) {
       shown(source), shown(build));
 }
 
-}  // namespace
-
-void load_plugin_libraries(Plugins& plugins, const std::string& path) {
+/// A library, or those of a folder in the order of their names, without links.
+std::vector<std::string> libraries_at(const std::string& path) {
   if (!fs::exists(path)) {
     throw InputError(fmt::format("{}: no such file; expected a plugin's shared library, or a folder of them{}", path,
                                  how_to_build(path)));
   }
-  if (!fs::is_directory(path)) {
-    load(plugins, fs::canonical(path).string());
-    return;
-  }
+  if (!fs::is_directory(path)) return {fs::canonical(path).string()};
   std::vector<std::string> libraries;
   for (const auto& entry : fs::directory_iterator(path)) {
     if (entry.path().extension() == ".so" && entry.is_regular_file()) {
@@ -156,7 +152,19 @@ void load_plugin_libraries(Plugins& plugins, const std::string& path) {
     throw InputError(fmt::format("{}: the folder has no shared library; expected plugins (*.so)", path));
   }
   std::ranges::sort(libraries);
-  for (const std::string& library : libraries) load(plugins, library);
+  return libraries;
+}
+
+}  // namespace
+
+void load_plugin_libraries(Plugins& plugins, const std::string& path) {
+  for (const std::string& library : libraries_at(path)) load(plugins, library);
+}
+
+std::vector<std::string> unloaded_libraries(const Plugins& plugins, const std::string& path) {
+  std::vector<std::string> libraries = libraries_at(path);
+  std::erase_if(libraries, [&](const std::string& library) { return has_plugins_of(plugins, library); });
+  return libraries;
 }
 
 }  // namespace evbench

@@ -16,4 +16,8 @@ namespace evbench {
 /// Nothing of the library at fault has been added then; those of a folder that come before it have.
 void load_plugin_libraries(Plugins& plugins, const std::string& path);
 
+/// The shared libraries that a path names, without links, and that `plugins` has nothing of. Throws InputError for
+/// a path that names none.
+std::vector<std::string> unloaded_libraries(const Plugins& plugins, const std::string& path);
+
 }  // namespace evbench

@@ -25,6 +25,11 @@ concept NamesFiles = requires(const Options& options) {
   { options.files() } -> std::same_as<std::vector<std::string>>;
 };
 
+template <class Options>
+concept NamesCommands = requires(const Options& options) {
+  { options.commands("") } -> std::same_as<std::vector<std::string>>;
+};
+
 template <class Plugin>
 concept SaysWhetherItReadsEvents = requires {
   Plugin::reads_events;
@@ -39,9 +44,10 @@ concept SaysWhetherItReadsEvents = requires {
 /// GpMap has `using Options = ...` (see OptionSet) and a constructor (Options, const Context&), Context being
 /// PluginKind<...>::Context. `version` is raised when the same options come to give other results: runs of the old
 /// version are then not taken for the new one's. Files that path() options name are part of a run's identity; Options
-/// may have `std::vector<std::string> files() const` for others. A front-end that leaves the source's events alone says
-/// `static constexpr bool reads_events = false;`.
-/// A program's plugins are CMake OBJECT libraries, so that the linker keeps their registration.
+/// may have `std::vector<std::string> files() const` for others, and must have `std::vector<std::string> commands(const
+/// std::string& place) const` where the plugin starts commands: they are told before, and can be refused. A front-end
+/// that leaves the source's events alone says `static constexpr bool reads_events = false;`. A program's plugins are
+/// CMake OBJECT libraries, so that the linker keeps their registration.
 template <class Interface, class Plugin>
 class Registration {
  public:
@@ -63,6 +69,12 @@ class Registration {
     return {};
   }
 
+  static std::vector<std::string> commands_of([[maybe_unused]] const Options& options,
+                                              [[maybe_unused]] const std::string& place) {
+    if constexpr (detail::NamesCommands<Options>) return options.commands(place);
+    return {};
+  }
+
   static typename Registry<Interface>::Entry entry() {
     using Context = typename PluginKind<Interface>::Context;
     typename Registry<Interface>::Entry entry;
@@ -71,7 +83,8 @@ class Registration {
       Options options;
       OptionSet set;
       options.declare(set);
-      use({set, [&options] { return files_of(options); }});
+      use({set, [&options] { return files_of(options); },
+           [&options](const std::string& place) { return commands_of(options, place); }});
     };
     entry.make = [](const Json& json, const Context& context) -> std::unique_ptr<Interface> {
       return std::make_unique<Plugin>(read_options<Options>(json, context.place), context);

@@ -40,6 +40,15 @@ std::vector<std::string> PluginEntry::files(const Json& options) const {
   return result;
 }
 
+std::vector<std::string> PluginEntry::commands(const Json& options, const std::string& place) const {
+  std::vector<std::string> result;
+  with_options([&](const DeclaredOptions& declared) {
+    declared.set.read(options, place);
+    result = declared.commands(place);
+  });
+  return result;
+}
+
 Json PluginEntry::identity(const Json& options) const {
   Json result;
   with_options([&](const DeclaredOptions& declared) {

@@ -36,10 +36,12 @@ struct PluginKind<BackEnd> {
 /// The origin of what the program itself registers.
 inline constexpr const char* kBuiltIn = "built in";
 
-/// Options of a plugin, fresh ones: what is declared, and the files that they name besides those of path() options.
+/// Options of a plugin, fresh ones: what is declared, the files that they name besides those of path() options, and the
+/// commands that they start.
 struct DeclaredOptions {
   OptionSet& set;
   std::function<std::vector<std::string>()> files;
+  std::function<std::vector<std::string>(const std::string& place)> commands;
 };
 
 /// What is known of a plugin of any kind.
@@ -57,6 +59,8 @@ struct PluginEntry {
   /// Options checked, completed with defaults, relative paths taken from the folder.
   Json resolve(const Json& options, const std::string& place, const std::string& folder) const;
   std::vector<std::string> files(const Json& options) const;  ///< that resolved options name, in their order
+  /// Commands that a plugin of resolved options starts, as one would type them. Throws InputError for what is none.
+  std::vector<std::string> commands(const Json& options, const std::string& place) const;
   Json identity(const Json& options) const;  ///< resolved options without the names of files: their content counts
 };
 
@@ -89,6 +93,10 @@ extern template class Registry<BackEnd>;
 /// All plugins that a program knows: main owns them.
 class Plugins {
  public:
+  /// Whether plugins may be made that start commands, and libraries be loaded that a config alone names.
+  bool external_code_allowed() const { return external_code_allowed_; }
+  void refuse_external_code() { external_code_allowed_ = false; }
+
   template <class Interface>
   Registry<Interface>& of() {
     return std::get<Registry<Interface>>(registries_);
@@ -100,6 +108,7 @@ class Plugins {
 
  private:
   std::tuple<Registry<Source>, Registry<FrontEnd>, Registry<BackEnd>> registries_;
+  bool external_code_allowed_ = true;
 };
 
 }  // namespace evbench

@@ -36,8 +36,9 @@ class Source {
   /// T_world_camera; empty when unknown.
   virtual const PoseTrajectory& ground_truth() const = 0;
 
-  /// The events that a front-end gets: in time order, within the sensor, from ≤ t ≤ to of the time range, from its
-  /// beginning. nullptr where there are none: a source of tracks. The source must outlive it.
+  /// The events that a front-end gets: in time order, within the camera's sensor, from ≤ t ≤ to of the time range, from
+  /// its beginning. nullptr where there are none: a source of tracks. The source must outlive it. Throws InputError
+  /// where camera and events say different sizes of the sensor, or the camera none.
   std::unique_ptr<EventStream> events() const;
 
   /// The sequence's events as they come, in sequence time [µs], from its own beginning to its end; events() is made of
@@ -47,6 +48,10 @@ class Source {
   /// Whether there are no events after the last one, up to the sequence's end, because nothing was to be seen, as in a
   /// simulation. A recording may just have been cut off.
   virtual bool silence_is_known() const { return false; }
+
+  /// A sentence, where nothing says how large the camera's sensor is and its size is assumed. An event outside it is
+  /// then an error of events().
+  virtual std::string size_assumption() const { return {}; }
 
   /// Whether events() may leave out however many have to be (EventStream::large_loss).
   virtual bool is_lenient() const { return false; }

@@ -31,7 +31,7 @@ class Careless : public EventReader {
 
 class FakeSource : public Source {
  public:
-  explicit FakeSource(bool has_events) : has_events_(has_events) {}
+  explicit FakeSource(bool has_events) : has_events_(has_events) { camera_.width = camera_.height = 10; }
   const Camera& camera() const override { return camera_; }
   TimeRange time_range() const override { return {0.0002, 0.0005}; }
   const PoseTrajectory& ground_truth() const override { return truth_; }

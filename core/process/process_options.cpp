@@ -71,6 +71,11 @@ std::vector<std::string> ProcessOptions::files() const {
   return result;
 }
 
+std::vector<std::string> ProcessOptions::commands(const std::string& place) const {
+  command_words(command, place);
+  return {command_text(command)};
+}
+
 std::vector<std::string> command_words(const Json& command, const std::string& place) {
   if (is_text(command) && !command.get_ref<const std::string&>().empty()) {
     return {"/bin/sh", "-c", command.get<std::string>()};

@@ -21,6 +21,9 @@ struct ProcessOptions {
   /// Those words of the command that name files, and `more_files`: their content is part of a run's identity.
   /// Throws InputError for one of `more_files` that does not exist.
   std::vector<std::string> files() const;
+
+  /// The command, as it is shown in messages. Throws InputError as command_words().
+  std::vector<std::string> commands(const std::string& place) const;
 };
 
 /// The command as words to be executed. Throws InputError when it is neither a text nor a list of texts, or empty.

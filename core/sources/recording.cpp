@@ -7,7 +7,9 @@
 #include "core/data/calib.hpp"
 #include "core/datasets/catalogue.hpp"
 #include "core/events/companions/companions.hpp"
+#include "core/events/event_stream.hpp"
 #include "core/events/formats.hpp"
+#include "core/events/sensor_size.hpp"
 #include "core/io/path.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/error.hpp"
@@ -64,13 +66,12 @@ void Recording::Options::declare(OptionSet& set) {
       .path();
   set.add("ground_truth_time_unit", ground_truth_time_unit, {kTimeUnitNames.begin(), kTimeUnitNames.end()},
           "unit of its times; auto: as the column's name says, or seconds, from 1e17 on nanoseconds");
-  set.add("width", width, "sensor's width, where the recording does not say it [px]; 0: 240").range(0, 1e5);
+  set.add("width", width, "sensor's width, where neither recording nor calibration say it [px]; 0: 240").range(0, 1e5);
   set.add("height", height, "sensor's height, likewise [px]; 0: 180").range(0, 1e5);
   set.add("distortion", distortion, "lens model of a calibration that does not say it")
       .choices({"none", "radial_tangential", "equidistant"});
   set.add("time_range", time_range,
-          "part of the sequence that is used, [from, to] [s]; empty: the ground truth's, or, without one, the events', "
-          "where the recording says when they begin and end")
+          "part of the sequence that is used, [from, to] [s]; empty: the ground truth's, or, without one, all events'")
       .size(2)
       .rising();
   set.require_one_of({"dataset", "folder", "events", "calibration"});
@@ -84,6 +85,11 @@ Recording::Recording(const Options& options, const SourceContext& context) : pla
   read_options_.topic = options.topic;
   read_options_.lenient = options.lenient;
   read_options_.columns = options.columns;
+  read_options_.width = options.width;
+  read_options_.height = options.height;
+  if ((options.width > 0) != (options.height > 0)) {
+    throw InputError(fmt::format("{}: one of width and height is given; expected both or none", place_));
+  }
   if (!options.dataset.empty() && !options.folder.empty()) {
     throw InputError(fmt::format("{}: dataset and folder are given; expected one of them", place_));
   }
@@ -127,61 +133,86 @@ std::vector<std::string> Recording::event_files() const {
   return files_of_events(events_);
 }
 
-/// Of the folder, or where there is none, of the file of events; nothing where all is named.
+/// Of the folder, or where there is none, of the file of events.
 Recording::Own Recording::find_own(const Options& options, const std::string& folder) {
   Own own;
   const bool find_camera = options.calibration.empty(), find_truth = options.ground_truth.empty();
   const std::string path = folder.empty() ? events_ : folder;
-  if (path.empty() || (!find_camera && !find_truth)) return own;
+  if (path != events_) find_info(own);
+  if (path.empty()) return own;
   if (path == folder && !std::filesystem::is_directory(folder)) return own;  // what is missing of it is told
-  ReadOptions read_options = read_options_;
-  read_options.width = options.width;
-  read_options.height = options.height;
-  const auto reader = holds_events(path) ? open_events(path, read_options)
-                                         : with_companions(std::make_unique<NoEvents>(read_options),
-                                                           std::make_shared<const RecordingFiles>(path), read_options);
+  const bool has_events = holds_events(path);
+  if (!has_events && !find_camera && !find_truth) return own;
+  const auto reader = has_events ? open_events(path, read_options_)
+                                 : with_companions(std::make_unique<NoEvents>(read_options_),
+                                                   std::make_shared<const RecordingFiles>(path), read_options_);
   if (find_camera) own.camera = reader->calibration();
   if (find_truth) own.ground_truth = reader->ground_truth();
-  const StreamInfo& info = reader->info();
-  if (info.start && info.end && *info.start < *info.end) {
-    own.events = {1e-6 * static_cast<double>(*info.start), 1e-6 * static_cast<double>(*info.end)};
-  }
-  for (const auto& [key, text] : info.metadata) {
+  if (path == events_) own.info = reader->info();
+  for (const auto& [key, text] : reader->info().metadata) {
     if (key == "remark" && find_truth) remarks_.push_back(text);
   }
   files_ = reader->files_beside();
   return own;
 }
 
+/// Of events that are not the folder's.
+void Recording::find_info(Own& own) const {
+  if (!events_.empty() && holds_events(events_)) own.info = open_events(events_, read_options_)->info();
+}
+
 void Recording::set_camera(const Options& options, const std::string& folder, const Own& own) {
   constexpr int kUsualWidth = 240, kUsualHeight = 180;  // DAVIS 240C, of the Event-Camera Dataset
-  const int width = options.width > 0 ? options.width : kUsualWidth,
-            height = options.height > 0 ? options.height : kUsualHeight;
+  const bool guess = own.info.size_assumed && options.width == 0;
+  const int width = guess || own.info.width <= 0 ? options.width : own.info.width;
+  const int height = guess || own.info.height <= 0 ? options.height : own.info.height;
   if (!options.calibration.empty()) {
     camera_ =
         read_calib(options.calibration, width, height, parse_distortion_model(options.distortion), options.camera);
     files_.push_back(options.calibration);
-    return;
-  }
-  if (!own.camera) {
+  } else if (own.camera) {
+    camera_ = *own.camera;
+  } else {
     throw InputError(
         fmt::format("{}: no calibration is known of {}, e.g. {}/calib.txt: no such file; name one as "
                     "calibration",
                     place_, folder.empty() ? events_ : folder,
                     folder.empty() ? std::filesystem::path(events_).parent_path().string() : folder));
   }
-  camera_ = *own.camera;
-  if (camera_.width <= 0 || camera_.height <= 0) {
-    camera_.width = width;
-    camera_.height = height;
+  const bool said = camera_.width > 0 && camera_.height > 0;
+  if (!said) {
+    const bool usual = own.info.width <= 0 || own.info.height <= 0;
+    camera_.width = usual ? kUsualWidth : own.info.width;
+    camera_.height = usual ? kUsualHeight : own.info.height;
+  }
+  check_sizes(options, own.info);
+  const bool assumed = !said || (guess && options.calibration.empty());
+  if (assumed && !own.info.format.empty()) {
+    size_assumption_ =
+        fmt::format("nothing says the sensor's size, {}x{} pixels is assumed; source.width and source.height say it",
+                    camera_.width, camera_.height);
+    remarks_.push_back(size_assumption_);
   }
   const Vector2 centre(camera_.pinhole.cx, camera_.pinhole.cy);
   if (!camera_.contains(centre)) {
-    throw InputError(
-        fmt::format("{}: the calibration has the principal point ({}, {}), outside the sensor of {}x{} "
-                    "pixels; expected width and height of this camera",
-                    place_, centre.x(), centre.y(), camera_.width, camera_.height));
+    throw InputError(fmt::format(
+        "{}: the calibration has the principal point ({}, {}), outside the sensor of {}x{} "
+        "pixels{}; expected width and height of this camera",
+        place_, centre.x(), centre.y(), camera_.width, camera_.height, assumed ? ", which is assumed" : ""));
   }
+}
+
+/// Recording, options and calibration are of one sensor.
+void Recording::check_sizes(const Options& options, const StreamInfo& recording) const {
+  const auto require = [&](const char* whose, int width, int height) {
+    if (options.width == 0 || (width == options.width && height == options.height)) return;
+    throw InputError(
+        fmt::format("{}: width and height say a sensor of {}x{} pixels, {} one of {}x{}; expected the same", place_,
+                    options.width, options.height, whose, width, height));
+  };
+  if (recording.width > 0 && recording.height > 0) require("the recording", recording.width, recording.height);
+  require("the calibration", camera_.width, camera_.height);
+  check_same_sensor(place_ + ": the calibration", camera_, recording);
 }
 
 void Recording::set_ground_truth(const Options& options, Own& own) {
@@ -203,11 +234,8 @@ void Recording::set_ground_truth(const Options& options, Own& own) {
 
 void Recording::set_time_range(const std::vector<double>& range, const Own& own) {
   if (range.empty() && ground_truth_.empty()) {
-    if (own.events) {
-      range_ = *own.events;
-      return;
-    }
-    throw InputError(fmt::format("{}: without ground truth, time_range must be given: [from, to] in seconds", place_));
+    range_ = time_of_events(own.info);
+    return;
   }
   range_ = range.empty() ? TimeRange{ground_truth_.start(), ground_truth_.end()} : TimeRange{range[0], range[1]};
   if (ground_truth_.empty()) return;
@@ -221,6 +249,26 @@ void Recording::set_time_range(const std::vector<double>& range, const Own& own)
     remarks_.push_back(fmt::format("the ground truth covers {:.3f} to {:.3f} s of {:.3f} to {:.3f} s", start, end,
                                    range_.from, range_.to));
   }
+}
+
+/// From the first event to the last, which are looked for where the file's header does not say when they are.
+TimeRange Recording::time_of_events(const StreamInfo& info) const {
+  std::optional<std::int64_t> first = info.start, last = info.end;
+  if (!first || !last) {
+    if (events_.empty() || !holds_events(events_)) {
+      throw InputError(
+          fmt::format("{}: without ground truth and events, time_range must be given: [from, to] in seconds", place_));
+    }
+    EventStream stream(all_events(), events_, {.read = {.lenient = true}});
+    for (std::vector<Event> events; stream.read(events);) {
+      if (!first) first = events.front().t;
+      last = events.back().t;
+    }
+  }
+  if (!first || !last || *first >= *last) {
+    throw InputError(fmt::format("{}: {} has no events over any time; expected a recording of some", place_, events_));
+  }
+  return {1e-6 * static_cast<double>(*first), 1e-6 * static_cast<double>(*last)};
 }
 
 }  // namespace evbench

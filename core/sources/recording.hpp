@@ -13,9 +13,10 @@ namespace evbench {
 /// A `folder` is a recording's (core/events/recording_files.hpp): events, and what lies beside them or is in them,
 /// calibration and ground truth (core/events/companions/), e.g. calib.txt and groundtruth.txt of the Event-Camera
 /// Dataset; each can be missing, and be named instead. A `dataset` is the folder of a public one that `evbench dataset
-/// get` fetched. Without a folder, `events` is asked for what isn't named. Throws InputError for files that are missing
-/// or damaged, for a time range that is empty or that the ground truth does not meet, and when nothing says how long
-/// the sequence is.
+/// get` fetched. Without a folder, `events` is asked for what isn't named. The sensor's size is the recording's own, or
+/// what the options, the calibration or what lies beside the events say, in this order; where nothing says it, it is
+/// assumed. Throws InputError for files that are missing or damaged, where two of them say different sizes, for a time
+/// range that is empty or that the ground truth does not meet, and when nothing says how long the sequence is.
 class Recording : public Source {
  public:
   struct Options {
@@ -41,6 +42,7 @@ class Recording : public Source {
   /// Times are the file's own, which are the sequence's. Throws InputError for a file that is missing or of no known
   /// format.
   std::unique_ptr<EventReader> all_events() const override;
+  std::string size_assumption() const override { return size_assumption_; }
   bool is_lenient() const override { return read_options_.lenient; }
   std::vector<std::string> files() const override { return files_; }
   std::vector<std::string> event_files() const override;
@@ -51,7 +53,7 @@ class Recording : public Source {
   struct Own {
     std::optional<Camera> camera;
     std::optional<PoseTrajectory> ground_truth;
-    std::optional<TimeRange> events;  ///< where that is known without reading them
+    StreamInfo info;  ///< of the events
   };
 
   std::string place_, events_;  ///< events: path; empty: none
@@ -59,12 +61,16 @@ class Recording : public Source {
   Camera camera_;
   PoseTrajectory ground_truth_;
   TimeRange range_;
+  std::string size_assumption_;
   std::vector<std::string> files_, remarks_;
 
   Own find_own(const Options& options, const std::string& folder);
+  void find_info(Own& own) const;
   void set_camera(const Options& options, const std::string& folder, const Own& own);
+  void check_sizes(const Options& options, const StreamInfo& recording) const;
   void set_ground_truth(const Options& options, Own& own);
   void set_time_range(const std::vector<double>& range, const Own& own);
+  TimeRange time_of_events(const StreamInfo& info) const;
 };
 
 }  // namespace evbench

@@ -53,10 +53,26 @@ TEST_CASE("A recording's time offset moves the ground truth, its time range does
 TEST_CASE("A recording without ground truth needs a time range and says that it can't be scored") {
   const testing::TemporaryFolder folder;
   folder.write("calib.txt", kCalibration);
-  CHECK_THROWS_WITH(open(R"({"folder": "."})", folder.path()), ContainsSubstring("time_range must be given"));
+  CHECK_THROWS_WITH(open(R"({"folder": "."})", folder.path()),
+                    ContainsSubstring("without ground truth and events, time_range must be given"));
   const Recording source = open(R"({"folder": ".", "time_range": [0, 1]})", folder.path());
   CHECK(source.ground_truth().empty());
   CHECK_THAT(source.remarks().at(0), ContainsSubstring("can't be scored"));
+}
+
+TEST_CASE("A recording without ground truth is used from its first event to its last") {
+  const testing::TemporaryFolder folder;
+  folder.write("calib.txt", kCalibration);
+  folder.write("events.txt", "1.5 7 1 1\n1.6 8 1 0\n1.75 8 2 0\n");
+  const Recording source = open(R"({"folder": "."})", folder.path());
+  CHECK(source.time_range().from == Approx(1.5).epsilon(1e-12));
+  CHECK(source.time_range().to == Approx(1.75).epsilon(1e-12));
+  std::vector<Event> events;
+  const auto stream = source.events();
+  REQUIRE(stream->read(events));
+  CHECK(events.size() == 3);
+  folder.write("events.txt", "1.5 7 1 1\n");
+  CHECK_THROWS_WITH(open(R"({"folder": "."})", folder.path()), ContainsSubstring("has no events over any time"));
 }
 
 TEST_CASE("A recording's text is read by named columns, and with however many faults where that is asked for") {
@@ -65,7 +81,7 @@ TEST_CASE("A recording's text is read by named columns, and with however many fa
   folder.write("groundtruth.txt", kGroundTruth);
   folder.write("events.txt", "5 1.5 7 1\n6 1.6 8 0\n999 1.7 8 0\n");  // the last one is outside the sensor
   const auto read_all = [&](const char* more) {
-    const Recording source = open(std::string(R"({"folder": ".", "columns": "x,t_s,y,p")") + more + "}", folder.path());
+    const Recording source = open(std::string(R"({"folder": ".", "width": 240, "height": 180, "columns": "x,t_s,y,p")") + more + "}", folder.path());
     const auto stream = source.events();
     std::vector<Event> all, events;
     while (stream->read(events)) all.insert(all.end(), events.begin(), events.end());

@@ -84,6 +84,7 @@ std::optional<PoseTrajectory> AccompaniedReader::ground_truth() {
 void AccompaniedReader::find_sensor(const ReadOptions& options) {
   int width = 0, height = 0;
   std::string whose = "the calibration's";
+  bool assumed = false;
   try {
     if (companions_.calibration) {
       const Camera camera = companions_.calibration->read(0, 0);
@@ -97,8 +98,10 @@ void AccompaniedReader::find_sensor(const ReadOptions& options) {
     width = companions_.sensor->width;
     height = companions_.sensor->height;
     whose = companions_.sensor->whose;
+    assumed = true;
   }
   if (width <= 0) return;
+  info_.size_assumed = assumed;
   info_.width = options.width > 0 ? options.width : width;
   info_.height = options.height > 0 ? options.height : height;
   std::erase_if(info_.metadata, [](const auto& entry) { return entry.first == "sensor size"; });

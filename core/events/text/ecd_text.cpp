@@ -91,6 +91,7 @@ void find_sensor(const RecordingFiles& files, StreamInfo& info) {
   } else if (may_be_davis240(files)) {
     info.width = 240;
     info.height = 180;
+    info.size_assumed = true;
     info.metadata.emplace_back("sensor size", "the Event-Camera Dataset's (DAVIS 240C), as calib.txt fits it");
   }
 }
