@@ -10,6 +10,7 @@
 #include <sstream>
 #include <vector>
 
+#include "core/events/formats.hpp"
 #include "core/io/path.hpp"
 #include "core/io/spool.hpp"
 #include "core/plugin/write_options.hpp"
@@ -261,6 +262,21 @@ Experiment read_config(const Json& json, const std::string& path, const Plugins&
   return experiment;
 }
 
+/// A file or folder that is read as events, and not as JSON.
+bool is_recording(const std::string& path) {
+  if (path == "-" || !std::filesystem::exists(path)) return false;
+  if (std::filesystem::is_regular_file(path)) {
+    const int first = (std::ifstream(path) >> std::ws).peek();
+    if (first == '{' || first == '/') return false;  // an object, or a comment before it
+  }
+  try {
+    const auto reader = open_events(path, {});
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 Json RunConfig::resolved() const {
@@ -279,6 +295,10 @@ Json RunConfig::resolved() const {
 
 Json read_json(const std::string& path) {
   std::error_code none;
+  if (is_recording(path)) {
+    throw InputError(
+        fmt::format("{0}: is a recording of events, no config; evbench new-config {0} writes one for it", path));
+  }
   if (std::filesystem::is_directory(path, none)) {
     throw InputError(fmt::format("{}: is a folder; expected a JSON config", path));
   }

@@ -81,6 +81,7 @@ int run_program(int argc, char** argv) {
   evbench::add_convert(app, plugins);
   evbench::add_dataset(app);
   evbench::add_render(app, plugins);
+  evbench::add_new_config(app, plugins);
   evbench::add_new_plugin(app, plugins);
   evbench::add_check_plugin(app, plugins, exit_code);
   try {
