@@ -18,6 +18,7 @@ function(run)
   endif()
 endfunction()
 
+set(ENV{CXX} ${CXX})  # a plugin is built by the program's compiler
 set(evbench ${WORK}/prefix/bin/evbench)
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})

@@ -1,4 +1,4 @@
-# cmake -DROOT=... -DBUILD=... -DWORK=... -DGENERATOR=... [-DFLAGS=...] -P check_example.cmake: installs to a temporary
+# cmake -DROOT=... -DBUILD=... -DWORK=... -DGENERATOR=... -DCXX=... [-DFLAGS=...] -P check_example.cmake: installs to a temporary
 # prefix and does with a copy of examples/spline_map what its README says, outside the source and the build tree: builds
 # it, passes its tests (the conformance battery among them), and compares it with the built-in back-ends, in one thread
 # and in two.

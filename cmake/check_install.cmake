@@ -1,4 +1,4 @@
-# cmake -DBUILD=... -DWORK=... -DGENERATOR=... [-DFLAGS=...] -P check_install.cmake: installs to a temporary prefix. As a
+# cmake -DBUILD=... -DWORK=... -DGENERATOR=... -DCXX=... [-DFLAGS=...] -P check_install.cmake: installs to a temporary prefix. As a
 # stranger would, outside the build tree, builds and runs a program that finds evbench there, and takes a new plugin of
 # each kind from `evbench new-plugin` to a table; then gives the program libraries that are no plugins of this evbench.
 cmake_minimum_required(VERSION 3.22)

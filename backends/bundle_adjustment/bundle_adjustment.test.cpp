@@ -47,7 +47,7 @@ std::vector<TrackObservation> simulate(const Simulation& simulation) {
   TrackId id = 0;
   for (const Vector3& point : testing::scene_points(simulation.scene, 50, random, 2.0)) {
     const bool outlier = random.uniform(0.0, 1.0) < simulation.outlier_share;
-    const Vector2 drift(random.uniform(-25, 25), random.uniform(-25, 25));
+    const Vector2 drift = random.uniform2({-25, -25}, {25, 25});
     for (double t = random.uniform(0.0, 0.01); t <= simulation.duration; t += random.uniform(0.008, 0.012)) {
       if (t > simulation.blackout_from && t < simulation.blackout_to) continue;
       Vector2 pixel =

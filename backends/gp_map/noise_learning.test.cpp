@@ -31,7 +31,7 @@ FactorGraph seen(
   return graph;
 }
 
-Vector2 white(Random& random, double sigma) { return sigma * Vector2(random.normal(), random.normal()); }
+Vector2 white(Random& random, double sigma) { return sigma * random.normal2(); }
 
 }  // namespace
 

@@ -96,19 +96,15 @@ struct Scene {
 
   void observe(int j, int from, int until, Random& random) {
     for (int k = from; k <= until; ++k) {
-      const Vector2 noise(random.normal(), random.normal());
+      const Vector2 noise = random.normal2();
       truth.add_observation(j, {kStep * k, image(j, k) + kSigma * noise, 1.0 / kSigma});
     }
   }
 };
 
-Vector2 where_it_is(const Vector2& pixel, Random& random) {
-  return pixel + kSigma * Vector2(random.normal(), random.normal());
-}
+Vector2 where_it_is(const Vector2& pixel, Random& random) { return pixel + kSigma * random.normal2(); }
 
-Vector2 anywhere(const Vector2& pixel, Random& random) {
-  return pixel + Vector2(random.uniform(-20.0, 20.0), random.uniform(-20.0, 20.0));
-}
+Vector2 anywhere(const Vector2& pixel, Random& random) { return pixel + random.uniform2({-20.0, -20.0}, {20.0, 20.0}); }
 
 Vector2 all_aside(const Vector2& pixel, Random& random) { return where_it_is(pixel, random) + Vector2(12.0, 3.0); }
 
@@ -157,7 +153,7 @@ TEST_CASE("What few landmarks say, or each says otherwise, moves nothing") {
 
 TEST_CASE("Landmarks that are a little aside, each another way, tell of no motion") {
   const Scene scene(40, 0, [](const Vector2& pixel, Random& random) -> Vector2 {
-    return pixel + Vector2(random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0));
+    return pixel + random.uniform2({-2.0, -2.0}, {2.0, 2.0});
   });
   Engine engine(scene.truth, {});
   for (int i = 0; i < 5; ++i) engine.update();

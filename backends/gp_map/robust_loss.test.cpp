@@ -19,7 +19,7 @@ TEST_CASE(
     double squared_error = 0.0, weights = 0.0;
     for (int trial = 0; trial < kTrials; ++trial) {  // a place in the plane, seen with normal errors, is at zero
       std::vector<Vector2> seen;
-      for (int i = 0; i < kObservations; ++i) seen.emplace_back(random.normal(), random.normal());
+      for (int i = 0; i < kObservations; ++i) seen.push_back(random.normal2());
       Vector2 estimate = Vector2::Zero();
       double sum = 0.0;
       for (int iteration = 0; iteration < kIterations; ++iteration) {

@@ -9,7 +9,7 @@ using namespace evbench;
 namespace {
 
 Vector3 random_vector(Random& random, double size) {
-  return size * Vector3(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+  return size * random.uniform3({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
 }
 
 Eigen::Quaterniond turning(double t) { return so3::exp({0.4 * std::sin(1.3 * t), 0.6 * std::sin(t), 0.5 * t}); }
@@ -22,13 +22,13 @@ std::vector<TrackObservation> observations(double duration, double noise, int wr
   std::vector<TrackObservation> result;
   for (TrackId track = 0; track < 400; ++track) {
     const Vector3 point = random_vector(random, 1.0).normalized();
-    const Vector2 off = track % 10 < wrong ? Vector2(random.uniform(-20, 20), random.uniform(-20, 20)) : Vector2(0, 0);
+    const Vector2 off = track % 10 < wrong ? random.uniform2({-20, -20}, {20, 20}) : Vector2(0, 0);
     for (double t = random.uniform(0.0, 0.02); t < duration; t += 0.02) {
       const Vector3 seen = turning(t).conjugate() * point;
       if (seen.z() < 0.5) continue;
       const Vector2 pixel = kCamera.project(seen);
       if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() > 239 || pixel.y() > 179) continue;
-      result.push_back({track, t, pixel + t * off + Vector2(random.normal(), random.normal()) * noise, 0.5});
+      result.push_back({track, t, pixel + t * off + random.normal2() * noise, 0.5});
     }
   }
   std::ranges::stable_sort(result, {}, &TrackObservation::t);

@@ -54,7 +54,7 @@ Drawn draw(const TrackNoise& noise, std::uint64_t seed) {
   }
   const double end = result.truth.back().t;
   for (int j = 0; j < 15; ++j) {
-    const Vector3 point(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(2, 4));
+    const Vector3 point = random.uniform3({-1, -1, 2}, {1, 1, 4});
     const int landmark = graph.add_landmark(point, {point + 0.02 * normal(Vector3()), 0.02});
     std::vector<TrackObservation> track;
     for (double t = 0.001; t < end; t += 0.0125) {

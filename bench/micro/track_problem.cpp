@@ -59,7 +59,7 @@ class Generator {
     for (; t <= end; t += random_.uniform(0.4, 1.6) / rate) {
       const Vector3 q = motion_(t).inverse() * truth_[index(landmark)];
       if (!sees(q, kBorder)) break;
-      const Vector2 noise(random_.normal(), random_.normal());
+      const Vector2 noise = random_.normal2();
       problem_.observations.push_back(
           {t, landmark, problem_.camera.project(q) + options_.noise * noise, options_.noise});
     }

@@ -27,8 +27,7 @@ void add_corner(std::vector<Event>& events, double x, double y, int count, std::
   for (int i = 0; i < count; ++i) {
     // As a camera sees it that moves on: near the corner there are the most.
     const double s = 20.0 * random.uniform() * random.uniform();
-    const Vector2 p = Vector2(x, y) + (i % 2 == 0 ? Vector2(s, 0.0) : Vector2(0.0, s)) +
-                      0.7 * Vector2(random.normal(), random.normal());
+    const Vector2 p = Vector2(x, y) + (i % 2 == 0 ? Vector2(s, 0.0) : Vector2(0.0, s)) + 0.7 * random.normal2();
     events.push_back({i, static_cast<std::uint16_t>(std::lround(p.x())), static_cast<std::uint16_t>(std::lround(p.y())),
                       i % 2 == 0});
   }

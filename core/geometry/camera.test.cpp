@@ -55,7 +55,7 @@ TEST_CASE("The Jacobian of the projection equals central differences") {
   const PinholeCamera camera = davis(DistortionModel::none).pinhole;
   Random random(1);
   for (int i = 0; i < 1000; ++i) {
-    const Vector3 point(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(0.3, 5));
+    const Vector3 point = random.uniform3({-2, -2, 0.3}, {2, 2, 5});
     Matrix23 differences;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       const double h = 1e-5 * point.z();

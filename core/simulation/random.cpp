@@ -41,6 +41,28 @@ std::size_t Random::index(std::size_t count) {
   return std::min(drawn, count - 1);
 }
 
+Vector2 Random::uniform2(const Vector2& from, const Vector2& to) {
+  const double y = uniform(from.y(), to.y());
+  return {uniform(from.x(), to.x()), y};
+}
+
+Vector3 Random::uniform3(const Vector3& from, const Vector3& to) {
+  const double z = uniform(from.z(), to.z());
+  const double y = uniform(from.y(), to.y());
+  return {uniform(from.x(), to.x()), y, z};
+}
+
+Vector2 Random::normal2() {
+  const double y = normal();
+  return {normal(), y};
+}
+
+Vector3 Random::normal3() {
+  const double z = normal();
+  const double y = normal();
+  return {normal(), y, z};
+}
+
 double Random::normal() {
   if (has_spare_) {
     has_spare_ = false;

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include "core/geometry/types.hpp"
+
 namespace evbench {
 
 /// Random numbers that are the same with every compiler and standard library: xoshiro256++ (Blackman and Vigna 2019),
@@ -22,6 +24,13 @@ class Random {
 
   /// Standard normal, by Marsaglia's polar method.
   double normal();
+
+  /// Of a vector's coordinates the last is drawn first: always in this order, which that of a function's arguments is
+  /// not.
+  Vector2 uniform2(const Vector2& from, const Vector2& to);
+  Vector3 uniform3(const Vector3& from, const Vector3& to);
+  Vector2 normal2();
+  Vector3 normal3();
 
  private:
   std::array<std::uint64_t, 4> state_;

@@ -64,8 +64,7 @@ std::optional<Vector2> Scene::pixel(const SE3& T_world_camera, const Vector3& po
 
 std::optional<Scene::Pick> Scene::pick(double t, const SE3& T_world_camera, double border, Random& random) const {
   if (options_.kind == "frustum") {
-    const Vector2 raw(random.uniform(border, camera_.width - 1 - border),
-                      random.uniform(border, camera_.height - 1 - border));
+    const Vector2 raw = random.uniform2({border, border}, {camera_.width - 1 - border, camera_.height - 1 - border});
     const double depth = random.uniform(options_.near, options_.far);
     const std::optional<Vector2> ideal = camera_.undistort(raw);
     if (!ideal) return std::nullopt;

@@ -93,7 +93,8 @@ class TrackSimulator {
   ImageMotion draw_image_motion(TrackKind kind) {
     ImageMotion motion;
     if (kind == TrackKind::outlier) {
-      motion.velocity = options_.outlier_speed * random_.uniform(0.5, 1.5) * random_direction(random_);
+      const Vector2 direction = random_direction(random_);
+      motion.velocity = options_.outlier_speed * random_.uniform(0.5, 1.5) * direction;
       motion.frequency = random_.uniform(0.3, 1.0);
       motion.phase = random_.uniform(0.0, 2.0 * M_PI);
       motion.amplitude = 0.2 * options_.outlier_speed * random_direction(random_);
@@ -142,7 +143,7 @@ class TrackSimulator {
   }
 
   void observe(double t, const Vector2& ideal) {
-    const Vector2 pixel = ideal + options_.noise * Vector2(random_.normal(), random_.normal());
+    const Vector2 pixel = ideal + options_.noise * random_.normal2();
     result_.observations.push_back({static_cast<TrackId>(result_.tracks.size()), t, pixel, sigma_});
   }
 };

@@ -11,7 +11,7 @@ void add_wander(std::span<TrackObservation> observations, double deviation, doub
     Vector2 value;
   };
   std::map<TrackId, Offset> offsets;
-  const auto normal = [&] { return Vector2(random.normal(), random.normal()); };
+  const auto normal = [&] { return random.normal2(); };
   for (TrackObservation& z : observations) {
     const auto [at, begins] = offsets.try_emplace(z.track, Offset{z.t, Vector2::Zero()});
     Offset& now = at->second;

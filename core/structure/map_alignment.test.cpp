@@ -65,8 +65,7 @@ TEST_CASE("Uncertain distances from a short baseline, and wrong landmarks, are b
     Maps maps(PointScene::volume, 0.3, 0.02, 60, seed);
     Random random(seed);
     for (int i = 0; i < 30; ++i) {  // half of them
-      maps.before[static_cast<std::size_t>(2 * i)].position +=
-          Vector3(random.normal(), random.normal(), random.normal());
+      maps.before[static_cast<std::size_t>(2 * i)].position += random.normal3();
     }
     const auto found = maps.align();
     REQUIRE(found);
@@ -79,7 +78,7 @@ TEST_CASE("Maps with nothing in common are not aligned, nor those with too littl
   Maps strangers(PointScene::volume, 0.5, 0.0, 60);
   Random random(7);
   for (Landmark& landmark : strangers.before) {
-    landmark.position = Vector3(random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0), random.uniform(1.0, 3.0));
+    landmark.position = random.uniform3({-2.0, -2.0, 1.0}, {2.0, 2.0, 3.0});
   }
   CHECK_FALSE(strangers.align());
 

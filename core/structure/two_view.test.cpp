@@ -24,7 +24,7 @@ Pair make_pair(PointScene scene, const Vector6& motion, double noise, double out
     const Vector2 first = davis().project(point) + testing::noise(noise, random);
     Vector2 second = davis().project(pair.T.inverse() * point) + testing::noise(noise, random);
     if (random.uniform(0.0, 1.0) < outlier_share) {
-      second += Vector2(random.uniform(-40, 40), random.uniform(-40, 40));
+      second += random.uniform2({-40, -40}, {40, 40});
     }
     if (!testing::in_davis_image(first) || !testing::in_davis_image(second)) continue;
     pair.first.push_back(first);

@@ -38,7 +38,7 @@ class EventScene : public Source {
     Random random(seed);
     std::vector<Outline> result;
     for (int i = 0; i < count; ++i) {
-      const Vector2 centre(random.uniform(-2.0, 2.0), random.uniform(-1.5, 1.5));
+      const Vector2 centre = random.uniform2({-2.0, -1.5}, {2.0, 1.5});
       Outline outline;
       for (int k = 0; k < 4; ++k) {
         const double angle = 1.5708 * k + random.uniform(-0.5, 0.5), radius = size * random.uniform(0.4, 1.0);

@@ -21,7 +21,7 @@ std::vector<Displaced> displaced(std::size_t count, const SE3& motion, std::uint
   Random random(seed);
   std::vector<Displaced> result;
   while (result.size() < count) {
-    const Vector2 expected(random.uniform(20.0, 220.0), random.uniform(20.0, 160.0));
+    const Vector2 expected = random.uniform2({20.0, 20.0}, {220.0, 160.0});
     const Vector3 point = random.uniform(1.0, 4.0) * kCamera.ray(expected);
     const Vector2 pixel = kCamera.project(Vector3(motion.inverse() * point));
     result.push_back({static_cast<TrackId>(result.size()), pixel, pixel - expected, point});

@@ -212,8 +212,8 @@ TEST_CASE("A motion that the back-end expects is that of its landmarks") {
   Random random(1);
   for (int i = 0; i < 40; ++i) {
     const double depth = 2.0;
-    feedback.expected.push_back(
-        {i, depth * Vector3(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 1.0), {}, {}});
+    const Vector2 ray = random.uniform2({-0.5, -0.5}, {0.5, 0.5});
+    feedback.expected.push_back({i, depth * Vector3(ray.x(), ray.y(), 1.0), {}, {}});
   }
   const auto eight = expected_motion(feedback, MotionModel::planar_8);
   REQUIRE(eight);

@@ -41,7 +41,7 @@ FactorGraph flight(const Way& way, std::uint64_t seed, bool young, int states) {
     const double until = std::min(from + (j < kOld ? 0.5 : 0.8), kStep * (states - 1));
     for (double t = from + 0.5 * kStep; t < until; t += 0.5 * kStep) {
       const Vector3 q = pose(t).inverse() * point;
-      const Vector2 pixel = graph.camera.project(q) + kSigma * Vector2(random.normal(), random.normal());
+      const Vector2 pixel = graph.camera.project(q) + kSigma * random.normal2();
       graph.add_observation(landmark, {t, pixel, 1.0 / kSigma});
     }
   }

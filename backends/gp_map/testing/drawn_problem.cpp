@@ -72,7 +72,7 @@ void DrawnProblem::draw_trajectory() {
 
 /// A point somewhere in the image of interval `first`, observed until it leaves the image or to interval `last`.
 void DrawnProblem::draw_landmark(int first, int last) {
-  const Vector2 pixel(random_.uniform(0.0, kWidth), random_.uniform(0.0, kHeight));
+  const Vector2 pixel = random_.uniform2({0.0, 0.0}, {kWidth, kHeight});
   const double depth = random_.uniform(2.0, 4.0);
   Landmark landmark;
   landmark.first = first;
@@ -91,7 +91,7 @@ void DrawnProblem::draw_landmark(int first, int last) {
     const Vector2 seen = camera().project(T.inverse() * landmark.position);
     if (seen.x() < 0.0 || seen.y() < 0.0 || seen.x() > kWidth || seen.y() > kHeight) break;
     const double sigma = options_.noise_scale * options_.pixel_sigma;
-    const Vector2 noise(sigma * random_.normal(), sigma * random_.normal());
+    const Vector2 noise = sigma * random_.normal2();
     landmark.observations.push_back({t, seen + noise, 1.0 / options_.pixel_sigma});
   }
   if (landmark.observations.size() >= kEnters) landmarks_.push_back(landmark);

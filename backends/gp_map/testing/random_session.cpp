@@ -163,7 +163,7 @@ int RandomSession::insert_landmark(const Vector3& truth, const Vector3& guess, c
 }
 
 void RandomSession::add_landmark() {
-  const Vector3 q(random_.uniform(-1.0, 1.0), random_.uniform(-0.8, 0.8), random_.uniform(2.0, 6.0));
+  const Vector3 q = random_.uniform3({-1.0, -0.8, 2.0}, {1.0, 0.8, 6.0});
   const SE3 T = true_pose(newest());
   const Vector3 guess = T * (random_.uniform(0.8, 1.25) * q);
   insert_landmark(T * q, guess, chance(0.9) ? LandmarkPrior{guess, 1.0} : LandmarkPrior{});
@@ -173,7 +173,7 @@ void RandomSession::add_landmark() {
 std::optional<Observation> RandomSession::measure(int landmark, double t) {
   const Vector3 q = true_pose(t).inverse() * truth_[index(landmark)];
   if (q.z() < 0.1) return std::nullopt;
-  const Vector2 noise(random_.uniform(-1.0, 1.0), random_.uniform(-1.0, 1.0));
+  const Vector2 noise = random_.uniform2({-1.0, -1.0}, {1.0, 1.0});
   return Observation{t, kCamera.project(q) + noise, 1.0};
 }
 
@@ -250,7 +250,7 @@ void RandomSession::scale_sigmas() {
 /// Moves the estimate of a state and of a landmark, and with it where they are linearised; not of what is marginalised.
 void RandomSession::place() {
   const auto away = [&](const Vector3& from) -> Vector3 {
-    return from + 0.1 * Vector3(random_.uniform(-1.0, 1.0), random_.uniform(-1.0, 1.0), random_.uniform(-1.0, 1.0));
+    return from + 0.1 * random_.uniform3({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
   };
   const auto i = random_.index(graph().states.size());
   ControlState state = graph().states[i];
@@ -294,7 +294,7 @@ void RandomSession::degenerate_landmark() {
   const Vector3 far = T * (std::pow(10.0, random_.uniform(3.0, 12.0)) * Vector3(0.1, -0.2, 1.0));
   const Vector3 place = chance(0.5) ? far : behind;
   const int j = insert_landmark(place, place, chance(0.5) ? LandmarkPrior{place, 1.0} : LandmarkPrior{});
-  const Vector2 pixel(random_.uniform(0.0, 240.0), random_.uniform(0.0, 180.0));
+  const Vector2 pixel = random_.uniform2({0.0, 0.0}, {240.0, 180.0});
   give(j, {time_in(graph().states[graph().states.size() - 2].t, newest()), pixel, 1.0});
 }
 

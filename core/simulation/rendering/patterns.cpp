@@ -106,7 +106,7 @@ Pattern draw_leaves(int side, double smallest, Random& random) {
   const int count = static_cast<int>(3.0 * side * side / area);
   for (int i = 0; i < count; ++i) {
     const double diameter = smallest / std::sqrt(1.0 - random.uniform() * (1.0 - 1.0 / (kLargest * kLargest)));
-    const Vector2 centre(random.uniform(0.0, side), random.uniform(0.0, side));
+    const Vector2 centre = random.uniform2({0.0, 0.0}, {side, side});
     const int vertices = 3 + static_cast<int>(random.index(3));
     const double radius = 0.5 * diameter, angle = random.uniform(0.0, 2.0 * M_PI);
     const std::vector<double> radii{radius, radius * random.uniform(0.6, 1.0), radius * random.uniform(0.8, 1.0)};

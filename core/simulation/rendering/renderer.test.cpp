@@ -147,7 +147,7 @@ TEST_CASE("The Jacobian of a place on the texture equals differences, on planes 
   for (const std::vector<Surface>& surfaces : {std::vector<Surface>{tilted}, std::vector<Surface>{box}}) {
     const View view(surfaces, {});
     for (int i = 0; i < 100; ++i) {
-      const Vector2 ray(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
+      const Vector2 ray = random.uniform2({-0.1, -0.1}, {0.1, 0.1});
       const Hit hit = view.hit(ray);
       REQUIRE(hit.surface >= 0);
       const View::Place place = view.place(hit, ray);

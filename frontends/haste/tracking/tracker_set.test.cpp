@@ -27,8 +27,8 @@ std::vector<Event> flying_lines(double speed, std::uint64_t seed) {
   Random random(seed);
   EventPattern pattern;
   for (int i = 0; i < 40; ++i) {
-    const Vector2 from(random.uniform(-80.0, 80.0), random.uniform(-60.0, 60.0));
-    pattern.lines.emplace_back(from, from + Vector2(random.uniform(-15.0, 15.0), random.uniform(-15.0, 15.0)));
+    const Vector2 from = random.uniform2({-80.0, -60.0}, {80.0, 60.0});
+    pattern.lines.emplace_back(from, from + random.uniform2({-15.0, -15.0}, {15.0, 15.0}));
   }
   pattern.pose = [=](double t) { return PatternPose{{50 + speed * t, 40 - 0.4 * speed * t}, 1.5 * t}; };
   pattern.rate = 400e3;

@@ -35,7 +35,7 @@ class ClassName : public evbench::FrontEnd {
     std::map<TrackId, int> seen;
     for (TrackObservation z : *tracks) {
       if (seen[z.track]++ % options.every != 0) continue;
-      z.pixel += options.noise * Vector2(random.normal(), random.normal());
+      z.pixel += options.noise * random.normal2();
       z.sigma = std::hypot(z.sigma, options.noise);
       observations_.push_back(z);
     }

@@ -63,11 +63,11 @@ class ClassName : public evbench::Source {
     Random random(seed);
     TrackId track = 0;  // a point that comes back into view is a new track
     for (int i = 0; i < options_.points; ++i, ++track) {
-      const Vector3 point(random.uniform(-1.0, 1.0), random.uniform(-0.8, 0.8), random.uniform(1.5, 2.5));
+      const Vector3 point = random.uniform3({-1.0, -0.8, 1.5}, {1.0, 0.8, 2.5});
       const double first = random.uniform() / options_.rate;  // each at times of its own
       bool seen = false;
       for (double t = first; t <= options_.duration; t += 1.0 / options_.rate) {
-        const Vector2 noise = options_.noise * Vector2(random.normal(), random.normal());
+        const Vector2 noise = options_.noise * random.normal2();
         const Vector2 pixel = camera_.project(pose(t).inverse() * point) + noise;
         if (camera_.contains(pixel)) {
           tracks_.push_back({track, t, pixel, std::max(options_.noise, 0.1)});

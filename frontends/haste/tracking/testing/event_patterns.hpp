@@ -36,7 +36,7 @@ struct EventPattern {
       const Vector2 point = from + random.uniform() * (to - from);
       const double c = std::cos(at.angle), s = std::sin(at.angle);
       Vector2 pixel = at.position + Vector2(c * point.x() - s * point.y(), s * point.x() + c * point.y()) +
-                      scatter * Vector2(random.normal(), random.normal());
+                      scatter * random.normal2();
       if (random.uniform() < noise) pixel = {random.uniform(0.0, width - 1.0), random.uniform(0.0, height - 1.0)};
       const long x = std::lround(pixel.x()), y = std::lround(pixel.y());
       if (x < 0 || y < 0 || x >= width || y >= height) continue;
