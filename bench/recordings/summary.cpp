@@ -26,8 +26,15 @@ std::string calibration_text(const Camera& camera) {
                      to_string(camera.distortion));
 }
 
-std::string ground_truth_text(const PoseTrajectory& truth) {
-  if (truth.empty()) return "none in the recording";
+/// Where there is nothing that is taken.
+std::string missing_text(const RecordingSummary& s, const std::string& what) {
+  const auto unusable = [&](const auto& entry) { return entry.first == what + " that cannot be used"; };
+  return std::ranges::any_of(s.info.metadata, unusable) ? "cannot be used, see below" : "none in the recording";
+}
+
+std::string ground_truth_text(const RecordingSummary& s) {
+  const PoseTrajectory& truth = s.ground_truth;
+  if (truth.empty()) return missing_text(s, "ground truth");
   return fmt::format("{} poses, {:.3f} to {:.3f} s, path {:.2f} m", truth.size(), truth.start(), truth.end(),
                      truth.path_length());
 }
@@ -93,8 +100,8 @@ std::string format_summary(const std::string& path, const RecordingSummary& s) {
                                     static_cast<double>(s.end) * 1e-6, s.duration()));
     text += row("rate", rates_text(s));
   }
-  text += row("calibration", s.calibration ? calibration_text(*s.calibration) : "none in the recording");
-  text += row("ground truth", ground_truth_text(s.ground_truth));
+  text += row("calibration", s.calibration ? calibration_text(*s.calibration) : missing_text(s, "calibration"));
+  text += row("ground truth", ground_truth_text(s));
   for (const std::string& topic : s.info.topics) text += row(&topic == s.info.topics.data() ? "topics" : "", topic);
   for (const auto& [key, value] : s.info.metadata) text += row("", fmt::format("{}: {}", key, value));
   if (s.faults.empty()) text += row("oddities", "none");

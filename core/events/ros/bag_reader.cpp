@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::uint32_t kMostSide = 1 << 16;
 
+constexpr const char *kPoseType = "geometry_msgs/PoseStamped", *kCameraInfoType = "sensor_msgs/CameraInfo";
 constexpr TopicKind kEvents{"events", "--topic (source.topic in a run's config)"},
     kPoses{"poses", "--ground-truth-topic (source.ground_truth_topic in a run's config)"},
     kCameraInfos{"camera infos", "--camera-info-topic (source.camera_info_topic in a run's config)"};
@@ -28,6 +29,12 @@ std::vector<Candidate> candidates_of(const std::vector<Topic>& topics, std::init
     if (topic.readable && std::ranges::count(types, topic.type) > 0) candidates.push_back({topic, topic.name});
   }
   std::ranges::stable_partition(candidates, [](const Candidate& candidate) { return candidate.topic.count != 0; });
+  return candidates;
+}
+
+std::vector<Candidate> with_messages(const std::vector<Topic>& topics, const char* type) {
+  auto candidates = candidates_of(topics, {type});
+  std::erase_if(candidates, [](const Candidate& candidate) { return candidate.topic.count == 0; });
   return candidates;
 }
 
@@ -102,6 +109,12 @@ BagReader::BagReader(const std::string& path, const std::string& format, const R
   info_.format = format;
   info_.topics = descriptions(topics_);
   choose_topic();
+  // A name that there is not is told at once.
+  const auto check = [&](const TopicKind& kind, const char* type, const std::string& name) {
+    if (!name.empty()) choose(path, kind, with_messages(topics_, type), name, topic_.name);
+  };
+  check(kPoses, kPoseType, options.ground_truth_topic);
+  check(kCameraInfos, kCameraInfoType, options.camera_info_topic);
   look_at_first();
 }
 
@@ -240,8 +253,7 @@ void BagReader::for_each(const std::set<std::uint32_t>& connections, Take take) 
 
 /// Sorted by their own times: several publishers' are recorded in another order.
 std::optional<PoseTrajectory> BagReader::ground_truth() {
-  auto candidates = candidates_of(topics_, {"geometry_msgs/PoseStamped"});
-  std::erase_if(candidates, [](const Candidate& candidate) { return candidate.topic.count == 0; });
+  const auto candidates = with_messages(topics_, kPoseType);
   const auto chosen = choose(path_, kPoses, candidates, options_.ground_truth_topic, topic_.name);
   if (!chosen) return std::nullopt;
   const Topic& topic = candidates[*chosen].topic;
@@ -304,8 +316,7 @@ std::string BagReader::mismatch(const std::optional<CameraInfo>& info) const {
 }
 
 std::optional<Camera> BagReader::calibration() {
-  auto candidates = candidates_of(topics_, {"sensor_msgs/CameraInfo"});
-  std::erase_if(candidates, [](const Candidate& candidate) { return candidate.topic.count == 0; });
+  auto candidates = with_messages(topics_, kCameraInfoType);
   const auto infos = first_infos(candidates);
   std::vector<std::string> faults;
   for (std::size_t i = 0; i < infos.size(); ++i) {
