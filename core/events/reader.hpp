@@ -26,10 +26,11 @@ struct ReadOptions {
 };
 
 /// Keys of the metadata, of what a run's log repeats: the topics of a bag that calibration and ground truth are from,
-/// which one of several was taken, and a calibration that was found and not taken, and why.
+/// which one of several was taken, and what was found and not taken, and why.
 inline constexpr const char *kCameraInfoIn = "camera info in", *kGroundTruthIn = "ground truth in",
                             *kTopicChoice = "choice of a topic",
-                            *kUnusableCalibration = "calibration that cannot be used";
+                            *kUnusableCalibration = "calibration that cannot be used",
+                            *kUnusableGroundTruth = "ground truth that cannot be used";
 
 /// What a recording's headers say.
 struct StreamInfo {
