@@ -37,6 +37,7 @@ void execute(const ConvertArguments& arguments) {
     });
   }
   if (arguments.quiet) return;
+  for (const std::string& text : report.unusable) fmt::print("left out: {}\n", text);
   for (const auto& [kind, fault] : report.faults) {
     fmt::print("left out: {} {}; the first: {}\n", fault.count, kind, fault.first);
   }

@@ -40,6 +40,10 @@ void execute(const InfoArguments& arguments) {
 void add_read_options(CLI::App& command, ReadOptions& options) {
   command.add_option("--topic", options.topic,
                      "Whose events: topic of a bag, group of an HDF5 file; default: the first");
+  command.add_option("--ground-truth-topic", options.ground_truth_topic,
+                     "Whose poses in a bag are the ground truth; default: the event camera's by its name");
+  command.add_option("--camera-info-topic", options.camera_info_topic,
+                     "Whose camera info in a bag is the calibration; default: the event camera's by its size and name");
   auto* strict =
       command.add_flag("--strict", options.strict, "The first oddity of the recording is an error, not a counted skip");
   command

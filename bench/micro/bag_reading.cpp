@@ -49,7 +49,7 @@ struct WayToRead {
 /// Messages through evbench's reader of a container, all topics.
 Delivered read_messages(ros::MessageSource& source) {
   std::set<std::uint32_t> all;
-  for (const ros::Topic& topic : source.topics()) all.insert(topic.id);
+  for (const ros::Connection& connection : source.connections()) all.insert(connection.id);
   source.select(all);
   Delivered delivered;
   while (const auto message = source.next()) delivered.add(message->data);

@@ -17,7 +17,8 @@ class ConfigEvents : public EventReader {
   ConfigEvents(const std::string& path, const ReadOptions& options, const Plugins& plugins)
       : path_(path), strict_(options.strict), source_(read_source(path, plugins)), reader_(source_->all_events()) {
     if (!reader_) throw InputError(fmt::format("{}: its source has no events", path));
-    if (!options.topic.empty() || !options.columns.empty()) {
+    if (!options.topic.empty() || !options.ground_truth_topic.empty() || !options.camera_info_topic.empty() ||
+        !options.columns.empty()) {
       throw InputError(fmt::format("{}: is a config, which has neither topics nor columns", path));
     }
   }

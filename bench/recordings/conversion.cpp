@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iterator>
 
+#include "bench/recordings/own_calibration.hpp"
 #include "core/data/calib.hpp"
 #include "core/events/formats.hpp"
 #include "core/events/writer.hpp"
@@ -87,15 +88,17 @@ RecordingHeader make_header(EventStream& stream, const std::string& in, const St
   RecordingHeader header;
   header.width = stream.info().width;
   header.height = stream.info().height;
-  header.calibration = stream.reader().calibration();
-  if (const auto truth = stream.reader().ground_truth()) {
+  OwnCalibration own = own_calibration(stream.reader(), options.read.strict);
+  header.calibration = own.calibration;
+  if (own.ground_truth) {
     constexpr double kMargin = 1.0;  // [s], so that poses can be interpolated at the ends
-    const PoseTrajectory own = shifted(*truth, -1e-6 * static_cast<double>(stream.zero()));
-    const double from = options.from ? 1e-6 * static_cast<double>(*options.from) - kMargin : own.start();
-    const double to = options.to ? 1e-6 * static_cast<double>(*options.to) + kMargin : own.end();
-    header.ground_truth = own.cut(from, to);
+    const PoseTrajectory truth = shifted(*own.ground_truth, -1e-6 * static_cast<double>(stream.zero()));
+    const double from = options.from ? 1e-6 * static_cast<double>(*options.from) - kMargin : truth.start();
+    const double to = options.to ? 1e-6 * static_cast<double>(*options.to) + kMargin : truth.end();
+    header.ground_truth = truth.cut(from, to);
   }
   header.metadata = stream.info().metadata;  // with remarks on what was read just now
+  header.metadata.insert(header.metadata.end(), own.unusable.begin(), own.unusable.end());
   header.metadata.emplace_back("converted from", fmt::format("{} ({})", in, stream.info().format));
   if (options.from || options.to) header.metadata.emplace_back("a part of it", range_text(options));
   return header;
@@ -161,6 +164,10 @@ ConversionReport convert(const std::string& in, const std::string& out, const Co
   PartFile file(out, format.needs);
   ConversionReport report;
   report.format = format.name;
+  for (const auto& [key, text] : header.metadata) {
+    if (key == kUnusableCalibration || key == kUnusableGroundTruth)
+      report.unusable.push_back(fmt::format("{}: {}", key, text));
+  }
   std::int64_t read = 0;
   {
     const auto writer = format.make(file.writable_path(), out, header);

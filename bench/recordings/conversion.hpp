@@ -22,6 +22,7 @@ struct ConversionOptions {
 struct ConversionReport {
   std::string format;
   std::int64_t written = 0;
+  std::vector<std::string> unusable;                          ///< of calibration and ground truth, and why; left out
   std::int64_t outside = 0;                                   ///< undistorted pixels beyond the sensor, left out
   std::vector<std::pair<std::string, Faults::Fault>> faults;  ///< of the recording, left out
 };

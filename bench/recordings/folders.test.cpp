@@ -50,6 +50,13 @@ TEST_CASE("A recording whose calibration or ground truth cannot be used is descr
   CHECK_THAT(info.out, ContainsSubstring("calibration that cannot be used: ./calib.txt:1: has 2 columns"));
   CHECK_THAT(info.out, ContainsSubstring(
                            "ground truth that cannot be used: ./groundtruth.txt:1: names the columns \"no poses\""));
+  CHECK_THAT(info.out, ContainsSubstring("calibration   cannot be used, see below"));
+  const testing::Outcome convert = testing::evbench(folder, "convert . copy.txt");
+  CHECK(convert.exit_code == 0);
+  CHECK_THAT(convert.out, ContainsSubstring("left out: calibration that cannot be used: ./calib.txt:1") &&
+                              ContainsSubstring("left out: ground truth that cannot be used") &&
+                              ContainsSubstring("2 events"));
+  CHECK(testing::evbench(folder, "convert --strict . strict.txt").exit_code == 2);
   const testing::Outcome strict = testing::evbench(folder, "info --quiet --strict .");
   CHECK(strict.exit_code == 2);
   CHECK_THAT(strict.err, ContainsSubstring("./calib.txt:1: has 2 columns"));

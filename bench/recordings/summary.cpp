@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "bench/recordings/own_calibration.hpp"
 #include "core/events/formats.hpp"
-#include "core/events/sensor_size.hpp"
 #include "core/support/error.hpp"
 #include "core/support/json.hpp"
 
@@ -27,8 +27,15 @@ std::string calibration_text(const Camera& camera) {
                      to_string(camera.distortion));
 }
 
-std::string ground_truth_text(const PoseTrajectory& truth) {
-  if (truth.empty()) return "none in the recording";
+/// Where there is nothing that is taken.
+std::string missing_text(const RecordingSummary& s, const char* unusable_key) {
+  const auto unusable = [&](const auto& entry) { return entry.first == unusable_key; };
+  return std::ranges::any_of(s.info.metadata, unusable) ? "cannot be used, see below" : "none in the recording";
+}
+
+std::string ground_truth_text(const RecordingSummary& s) {
+  const PoseTrajectory& truth = s.ground_truth;
+  if (truth.empty()) return missing_text(s, kUnusableGroundTruth);
   return fmt::format("{} poses, {:.3f} to {:.3f} s, path {:.2f} m", truth.size(), truth.start(), truth.end(),
                      truth.path_length());
 }
@@ -62,22 +69,11 @@ RecordingSummary summarise(const std::string& path, const StreamOptions& options
     s.rates.add(events);
     if (progress) progress(s.events, s.end);
   }
-  std::vector<std::pair<std::string, std::string>> unusable;
-  const auto ask = [&](const char* what, const auto& read) {
-    try {
-      read();
-    } catch (const InputError& error) {
-      if (options.read.strict) throw;
-      unusable.emplace_back(fmt::format("{} that cannot be used", what), error.what());
-    }
-  };
-  ask("calibration", [&] { s.calibration = stream.reader().calibration(); });
-  ask("ground truth", [&] { s.ground_truth = stream.reader().ground_truth().value_or(PoseTrajectory()); });
-  ask("calibration", [&] {
-    if (s.calibration) check_same_sensor(path + ": the calibration", *s.calibration, stream.info());
-  });
+  OwnCalibration own = own_calibration(stream.reader(), options.read.strict);
+  s.calibration = own.calibration;
+  if (own.ground_truth) s.ground_truth = std::move(*own.ground_truth);
   s.info = stream.info();  // with remarks on what was read just now
-  s.info.metadata.insert(s.info.metadata.end(), unusable.begin(), unusable.end());
+  s.info.metadata.insert(s.info.metadata.end(), own.unusable.begin(), own.unusable.end());
   s.faults = stream.faults();
   s.large_loss = stream.large_loss();
   return s;
@@ -97,8 +93,8 @@ std::string format_summary(const std::string& path, const RecordingSummary& s) {
                                     static_cast<double>(s.end) * 1e-6, s.duration()));
     text += row("rate", rates_text(s));
   }
-  text += row("calibration", s.calibration ? calibration_text(*s.calibration) : "none in the recording");
-  text += row("ground truth", ground_truth_text(s.ground_truth));
+  text += row("calibration", s.calibration ? calibration_text(*s.calibration) : missing_text(s, kUnusableCalibration));
+  text += row("ground truth", ground_truth_text(s));
   for (const std::string& topic : s.info.topics) text += row(&topic == s.info.topics.data() ? "topics" : "", topic);
   for (const auto& [key, value] : s.info.metadata) text += row("", fmt::format("{}: {}", key, value));
   if (s.faults.empty()) text += row("oddities", "none");

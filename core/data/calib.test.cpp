@@ -124,6 +124,9 @@ distortion_coefficients:
   CHECK(calib("height: 260\nwidth: 346\ndistortion_model: plumb_bob\nD: [-0.3, 0.1, 0.0, 0.0, 0.0]\n"
               "K: [250.5, 0.0, 170.25, 0.0, 251.5, 130.75, 0.0, 0.0, 1.0]\n")
             .coefficients[0] == -0.3);
+  const std::string four = "\nD: [-0.3, 0.1, 0.0, 0.0]\nK: [250.5, 0.0, 170.25, 0.0, 251.5, 130.75, 0.0, 0.0, 1.0]\n";
+  CHECK(calib("distortion_model: kannala_brandt" + four).distortion == DistortionModel::equidistant);
+  CHECK_THROWS_WITH(calib("distortion_model: fov" + four), ContainsSubstring("is \"fov\""));
 }
 
 TEST_CASE("OpenCV's calibration is read") {

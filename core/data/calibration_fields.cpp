@@ -52,8 +52,7 @@ std::vector<double> matrix_numbers(const Field& matrix) {
 
 /// As ROS and OpenCV write it: camera_info, also as a message.
 Camera matrix_camera(const Field& camera, const Field& matrix, const CalibrationDefaults& defaults) {
-  const std::vector<double> K = matrix_numbers(matrix);
-  if (K.size() != 9 || K[1] != 0.0) matrix.fail("is no camera matrix; expected fx 0 cx 0 fy cy 0 0 1");
+  const std::vector<double> intrinsics = matrix_intrinsics(matrix.place(), matrix_numbers(matrix));
   DistortionModel distortion = defaults.distortion;
   if (camera.has("distortion_model")) {
     const Field model = camera.at("distortion_model");
@@ -66,10 +65,9 @@ Camera matrix_camera(const Field& camera, const Field& matrix, const Calibration
     const auto size = first_of(camera, keys);
     return size ? checked_side(size->place(), size->number()) : usual;
   };
-  return checked_camera(camera.place(), {K[0], K[4], K[2], K[5]}, distortion,
-                        coefficients ? matrix_numbers(*coefficients) : std::vector<double>{},
-                        side({"image_width", "width"}, defaults.width),
-                        side({"image_height", "height"}, defaults.height));
+  return checked_camera(
+      camera.place(), intrinsics, distortion, coefficients ? matrix_numbers(*coefficients) : std::vector<double>{},
+      side({"image_width", "width"}, defaults.width), side({"image_height", "height"}, defaults.height));
 }
 
 Camera single_camera(const Field& camera, const CalibrationDefaults& defaults) {
@@ -118,12 +116,19 @@ Camera checked_camera(const std::string& place, const std::vector<double>& intri
   return camera;
 }
 
+std::vector<double> matrix_intrinsics(const std::string& place, std::span<const double> K) {
+  if (K.size() != 9 || K[1] != 0.0) {
+    throw InputError(fmt::format("{}: is no camera matrix; expected fx 0 cx 0 fy cy 0 0 1", place));
+  }
+  return {K[0], K[4], K[2], K[5]};
+}
+
 DistortionModel named_distortion(const std::string& place, const std::string& name) {
   const auto is = [&](std::initializer_list<const char*> names) {
     return std::ranges::any_of(names, [&](const char* known) { return name == known; });
   };
   if (is({"radtan", "plumb_bob", "rational_polynomial"})) return DistortionModel::radial_tangential;
-  if (is({"equidistant", "equi", "fisheye"})) return DistortionModel::equidistant;
+  if (is({"equidistant", "equi", "fisheye", "kannala_brandt", "kannala_brandt4"})) return DistortionModel::equidistant;
   if (is({"none", ""})) return DistortionModel::none;
   throw InputError(
       fmt::format("{}: is \"{}\"; expected radtan, equidistant or none (plumb_bob, "

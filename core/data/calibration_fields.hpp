@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,9 @@ Camera kalibr_camera(const Field& camera, const std::string& intrinsics = "intri
 /// [px], 0 where it is unknown: otherwise the principal point must be in the image.
 Camera checked_camera(const std::string& place, const std::vector<double>& intrinsics, DistortionModel distortion,
                       const std::vector<double>& coefficients, int width, int height);
+
+/// fx fy cx cy of a camera matrix, row by row: fx 0 cx 0 fy cy 0 0 1.
+std::vector<double> matrix_intrinsics(const std::string& place, std::span<const double> K);
 
 /// The names that Kalibr and ROS have for lens models.
 DistortionModel named_distortion(const std::string& place, const std::string& name);

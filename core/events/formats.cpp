@@ -33,6 +33,20 @@ const EventFormat* find_format(const std::string& path, std::span<const std::byt
   return nullptr;
 }
 
+/// A name that the recording does not have would be passed over in silence.
+void check_topics(const std::string& path, const StreamInfo& info, const ReadOptions& options) {
+  if (!options.topic.empty() && info.topics.empty()) {
+    throw InputError(fmt::format("{}: has no topics or groups, of which {} would be one", path, options.topic));
+  }
+  for (const std::string& name : {options.ground_truth_topic, options.camera_info_topic}) {
+    const auto is_it = [&](const std::string& topic) { return topic.starts_with(name + " ("); };
+    if (!name.empty() && std::ranges::none_of(info.topics, is_it)) {
+      throw InputError(fmt::format("{}: has no topic {}; it has {}", path, name,
+                                   info.topics.empty() ? "none" : fmt::format("{}", fmt::join(info.topics, ", "))));
+    }
+  }
+}
+
 /// Of a regular file or a folder.
 std::unique_ptr<EventReader> open_recording(const std::string& path, const ReadOptions& options) {
   const auto files = std::make_shared<const RecordingFiles>(path);
@@ -41,9 +55,7 @@ std::unique_ptr<EventReader> open_recording(const std::string& path, const ReadO
   const std::vector<std::byte> head = read_head(events);
   if (const EventFormat* format = find_format(events, head)) {
     auto reader = format->open(events, options);
-    if (!options.topic.empty() && reader->info().topics.empty()) {
-      throw InputError(fmt::format("{}: has no topics or groups, of which {} would be one", events, options.topic));
-    }
+    check_topics(events, reader->info(), options);
     return with_companions(std::move(reader), files, options);
   }
   if (std::filesystem::is_directory(path) && events == path) {

@@ -16,12 +16,21 @@ namespace evbench {
 
 /// How to read a recording.
 struct ReadOptions {
-  std::string topic = {};     ///< of a bag, group of an HDF5 file: whose events; empty: the only one, or the first
+  std::string topic = {};  ///< of a bag, group of an HDF5 file: whose events; empty: the only one, or the first
+  /// Of a bag, likewise: whose poses and whose calibration; empty: those that go with the events.
+  std::string ground_truth_topic = {}, camera_info_topic = {};
   bool strict = false;        ///< faults are errors, not counted skips
   bool lenient = false;       ///< however many they are (EventStream::large_loss)
   int width = 0, height = 0;  ///< sensor [px], where the file of events doesn't say; before what lies beside it
   std::string columns = {};   ///< of text, e.g. "t_us,x,y,p" (text_layout.hpp); empty: as the file looks
 };
+
+/// Keys of the metadata, of what a run's log repeats: the topics of a bag that calibration and ground truth are from,
+/// which one of several was taken, and what was found and not taken, and why.
+inline constexpr const char *kCameraInfoIn = "camera info in", *kGroundTruthIn = "ground truth in",
+                            *kTopicChoice = "choice of a topic",
+                            *kUnusableCalibration = "calibration that cannot be used",
+                            *kUnusableGroundTruth = "ground truth that cannot be used";
 
 /// What a recording's headers say.
 struct StreamInfo {

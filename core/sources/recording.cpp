@@ -77,12 +77,19 @@ void Recording::Options::declare(OptionSet& set) {
   set.require_one_of({"dataset", "folder", "events", "calibration"});
   set.add("columns", columns, "of a text of events, e.g. \"t_us,x,y,p\"; empty: as the file looks");
   set.add("topic", topic, "of a bag, group of an HDF5 file: whose events; empty: the only one, or the first");
+  set.add(
+      "ground_truth_topic", ground_truth_topic,
+      "of a bag: whose poses are the ground truth; empty: the only one's, or those of the event camera by its name");
+  set.add("camera_info_topic", camera_info_topic,
+          "of a bag: whose camera info is the calibration; empty: the event camera's, by its size and name");
   set.add("lenient", lenient, "go on however many of the events have to be left out");
   set.add("time_offset", time_offset, "added to the ground truth's times to get the sequence's [s]");
 }
 
 Recording::Recording(const Options& options, const SourceContext& context) : place_(context.place) {
   read_options_.topic = options.topic;
+  read_options_.ground_truth_topic = options.ground_truth_topic;
+  read_options_.camera_info_topic = options.camera_info_topic;
   read_options_.lenient = options.lenient;
   read_options_.columns = options.columns;
   read_options_.width = options.width;
@@ -151,6 +158,10 @@ Recording::Own Recording::find_own(const Options& options, const std::string& fo
   if (path == events_) own.info = reader->info();
   for (const auto& [key, text] : reader->info().metadata) {
     if (key == "remark" && find_truth) remarks_.push_back(text);
+    if (key == kUnusableCalibration) own.unusable += (own.unusable.empty() ? "" : "; ") + text;
+    const bool topic =
+        key == kTopicChoice || (key == kCameraInfoIn && find_camera) || (key == kGroundTruthIn && find_truth);
+    if (topic) remarks_.push_back(fmt::format("{}: {}", key, text));
   }
   files_ = reader->files_beside();
   return own;
@@ -174,9 +185,9 @@ void Recording::set_camera(const Options& options, const std::string& folder, co
     camera_ = *own.camera;
   } else {
     throw InputError(
-        fmt::format("{}: no calibration is known of {}, e.g. {}/calib.txt: no such file; name one as "
+        fmt::format("{}: no calibration is known of {}{}, e.g. {}/calib.txt: no such file; name one as "
                     "calibration",
-                    place_, folder.empty() ? events_ : folder,
+                    place_, folder.empty() ? events_ : folder, own.unusable.empty() ? "" : " (" + own.unusable + ")",
                     folder.empty() ? std::filesystem::path(events_).parent_path().string() : folder));
   }
   const bool said = camera_.width > 0 && camera_.height > 0;

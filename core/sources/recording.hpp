@@ -28,7 +28,7 @@ class Recording : public Source {
     std::string distortion = "radial_tangential";
     std::vector<double> time_range;
     double time_offset = 0.0;
-    std::string columns, topic;
+    std::string columns, topic, ground_truth_topic, camera_info_topic;
     bool lenient = false;
 
     void declare(OptionSet& set);
@@ -53,7 +53,8 @@ class Recording : public Source {
   struct Own {
     std::optional<Camera> camera;
     std::optional<PoseTrajectory> ground_truth;
-    StreamInfo info;  ///< of the events
+    std::string unusable;  ///< why there is no camera, where one was found
+    StreamInfo info;       ///< of the events
   };
 
   std::string place_, events_;  ///< events: path; empty: none

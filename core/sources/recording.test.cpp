@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/events/native/native.hpp"
+#include "core/events/testing/bag_writer.hpp"
 #include "core/events/testing/data_sets.hpp"
 #include "core/support/error.hpp"
 #include "core/support/json.hpp"
@@ -269,4 +270,43 @@ TEST_CASE("The real poster_translation opens with its ground truth") {
   const Recording source = open(R"({"folder": "${EVBENCH_DATA}/poster_translation", "time_range": [0, 3.05]})", "");
   CHECK(source.ground_truth().size() == 11768);
   CHECK(source.camera().pinhole.fx == Approx(199.092366542));
+}
+
+TEST_CASE("A run's log names the topics of a bag that calibration and ground truth are from, options choose others") {
+  using namespace testing::bag_writer;
+  const testing::TemporaryFolder folder;
+  const std::int64_t second = 1'000'000'000;
+  const auto write = [&](const std::string& info) {
+    return folder.write(
+        "a.bag", bag_of({{"/dvs/events", "dvs_msgs/EventArray"},
+                         {"/rgb/camera_info", "sensor_msgs/CameraInfo"},
+                         {info, "sensor_msgs/CameraInfo"},
+                         {"/box/pose", "geometry_msgs/PoseStamped"},
+                         {"/dvs/pose", "geometry_msgs/PoseStamped"}},
+                        {{{0, second, event_array(second, 10)},
+                          {1, second, camera_info(640, 480)},
+                          {2, second, info == "/dvs/camera_info" ? camera_info(240, 180) : camera_info(320, 240)},
+                          {3, second, pose_stamped(second, 1000.0)},
+                          {4, second, pose_stamped(second, 1.0)},
+                          {3, 2 * second, pose_stamped(2 * second, 1000.0)},
+                          {4, 2 * second, pose_stamped(2 * second, 2.0)}}}));
+  };
+  write("/dvs/camera_info");
+  const Recording source = open(R"({"events": "a.bag"})", folder.path());
+  CHECK(source.camera().width == 240);
+  CHECK(source.ground_truth().poses()[0].T.p.x() == 1.0);
+  std::string remarks;
+  for (const std::string& remark : source.remarks()) remarks += remark + "\n";
+  CHECK_THAT(remarks, ContainsSubstring("camera info in: /dvs/camera_info (240x180 pixels)\n") &&
+                          ContainsSubstring("ground truth in: /dvs/pose\n") &&
+                          ContainsSubstring("/box/pose, /dvs/pose") && ContainsSubstring("source.ground_truth_topic"));
+  const Recording box = open(R"({"events": "a.bag", "ground_truth_topic": "/box/pose"})", folder.path());
+  CHECK(box.ground_truth().poses()[0].T.p.x() == 1000.0);
+  CHECK_THROWS_WITH(open(R"({"events": "a.bag", "camera_info_topic": "/rgb/camera_info"})", folder.path()),
+                    ContainsSubstring("640x480") && ContainsSubstring("240x180"));
+
+  write("/other/camera_info");
+  CHECK_THROWS_WITH(open(R"({"events": "a.bag"})", folder.path()),
+                    ContainsSubstring("no calibration is known") && ContainsSubstring("640x480") &&
+                        ContainsSubstring("320x240") && ContainsSubstring("240x180"));
 }

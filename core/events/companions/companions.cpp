@@ -32,16 +32,22 @@ class AccompaniedReader : public EventReader {
 
  private:
   void find_sensor(const ReadOptions& options);
+  void take_metadata();
   std::unique_ptr<EventReader> reader_;
   Companions companions_;  ///< those that stand in for what the reader doesn't have
   std::shared_ptr<const RecordingFiles> files_;
   StreamInfo info_;
+  std::size_t taken_;  ///< of the reader's metadata
   std::set<std::string> files_beside_;
 };
 
 AccompaniedReader::AccompaniedReader(std::unique_ptr<EventReader> reader, Companions companions,
                                      std::shared_ptr<const RecordingFiles> files, const ReadOptions& options)
-    : reader_(std::move(reader)), companions_(std::move(companions)), files_(std::move(files)), info_(reader_->info()) {
+    : reader_(std::move(reader)),
+      companions_(std::move(companions)),
+      files_(std::move(files)),
+      info_(reader_->info()),
+      taken_(info_.metadata.size()) {
   const auto has_own = [](const auto& get) {
     try {
       return get().has_value();
@@ -51,6 +57,7 @@ AccompaniedReader::AccompaniedReader(std::unique_ptr<EventReader> reader, Compan
   };
   if (companions_.calibration && has_own([&] { return reader_->calibration(); })) companions_.calibration.reset();
   if (companions_.ground_truth && has_own([&] { return reader_->ground_truth(); })) companions_.ground_truth.reset();
+  take_metadata();
   const bool said = options.width > 0 && options.height > 0;
   if (!said && (info_.size_assumed || info_.width <= 0 || info_.height <= 0)) find_sensor(options);
   const auto tell = [&](const char* what, const auto& found) {
@@ -63,14 +70,29 @@ AccompaniedReader::AccompaniedReader(std::unique_ptr<EventReader> reader, Compan
   }
 }
 
+/// What the reader has said since: of its calibration and ground truth only when it is asked for them.
+void AccompaniedReader::take_metadata() {
+  const auto& metadata = reader_->info().metadata;
+  info_.metadata.insert(info_.metadata.end(), metadata.begin() + static_cast<std::ptrdiff_t>(taken_), metadata.end());
+  taken_ = metadata.size();
+}
+
 std::optional<Camera> AccompaniedReader::calibration() {
-  if (!companions_.calibration) return reader_->calibration();
+  if (!companions_.calibration) {
+    const auto own = reader_->calibration();
+    take_metadata();
+    return own;
+  }
   for (const std::string& name : companions_.calibration->names) files_beside_.insert(files_->path(name));
   return companions_.calibration->read(info_.width, info_.height);
 }
 
 std::optional<PoseTrajectory> AccompaniedReader::ground_truth() {
-  if (!companions_.ground_truth) return reader_->ground_truth();
+  if (!companions_.ground_truth) {
+    auto own = reader_->ground_truth();
+    take_metadata();
+    return own;
+  }
   for (const std::string& name : companions_.ground_truth->names) files_beside_.insert(files_->path(name));
   PoseFile file = companions_.ground_truth->read();
   for (std::string& text : file.remarks) {

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/events/ros/camera_info.hpp"
 #include "core/events/ros/event_packet.hpp"
 #include "core/events/ros/message_source.hpp"
+#include "core/events/ros/topic_choice.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
@@ -15,39 +17,43 @@ namespace {
 
 constexpr std::uint32_t kMostSide = 1 << 16;
 
-bool has_events(const Topic& topic) {
-  return topic.readable && (topic.type == "event_camera_msgs/EventPacket" || topic.type == "dvs_msgs/EventArray" ||
-                            topic.type == "prophesee_event_msgs/EventArray");
+constexpr const char *kPoseType = "geometry_msgs/PoseStamped", *kCameraInfoType = "sensor_msgs/CameraInfo";
+constexpr TopicKind kEvents{"events", "--topic (source.topic in a run's config)"},
+    kPoses{"poses", "--ground-truth-topic (source.ground_truth_topic in a run's config)"},
+    kCameraInfos{"camera infos", "--camera-info-topic (source.camera_info_topic in a run's config)"};
+
+/// Of one of the types, those without messages last.
+std::vector<Candidate> candidates_of(const std::vector<Topic>& topics, std::initializer_list<std::string_view> types) {
+  std::vector<Candidate> candidates;
+  for (const Topic& topic : topics) {
+    if (topic.readable && std::ranges::count(types, topic.type) > 0) candidates.push_back({topic, topic.name});
+  }
+  std::ranges::stable_partition(candidates, [](const Candidate& candidate) { return candidate.topic.count != 0; });
+  return candidates;
 }
 
-std::string describe(const Topic& topic) {
-  return fmt::format("{} ({}), {} messages", topic.name, topic.type,
-                     topic.count ? fmt::to_string(*topic.count) : "an unknown number of");
+std::vector<Candidate> with_messages(const std::vector<Topic>& topics, const char* type) {
+  auto candidates = candidates_of(topics, {type});
+  std::erase_if(candidates, [](const Candidate& candidate) { return candidate.topic.count == 0; });
+  return candidates;
 }
 
-std::vector<std::string> describe(const std::vector<Topic>& topics) {
+std::vector<std::string> descriptions(const std::vector<Topic>& topics) {
   std::vector<std::string> lines;
   for (const Topic& topic : topics) lines.push_back(describe(topic));
   return lines;
 }
 
-/// Those with events; a name picks one of them. Topics without messages come last.
-Topic choose(const std::string& path, const std::vector<Topic>& topics, const std::string& name) {
-  std::vector<Topic> candidates;
-  std::copy_if(topics.begin(), topics.end(), std::back_inserter(candidates), has_events);
-  std::stable_partition(candidates.begin(), candidates.end(), [](const Topic& topic) { return topic.count != 0; });
+/// Which events are read: those that the option names, or the first ones.
+std::size_t choose_events(const std::string& path, const std::vector<Topic>& topics,
+                          const std::vector<Candidate>& candidates, const std::string& name) {
   if (candidates.empty()) {
     throw InputError(
         fmt::format("{}: has no topic of events; expected event_camera_msgs/EventPacket or "
                     "dvs_msgs/EventArray, found: {}",
-                    path, topics.empty() ? "nothing" : fmt::format("{}", fmt::join(describe(topics), ", "))));
+                    path, topics.empty() ? "nothing" : fmt::format("{}", fmt::join(descriptions(topics), ", "))));
   }
-  if (name.empty()) return candidates.front();
-  for (const Topic& topic : candidates) {
-    if (topic.name == name) return topic;
-  }
-  throw InputError(fmt::format("{}: has no events in topic '{}'; it has some in: {}", path, name,
-                               fmt::join(describe(candidates), ", ")));
+  return name.empty() ? 0 : *choose(path, kEvents, candidates, name, "");
 }
 
 class BagReader : public EventReader {
@@ -63,22 +69,29 @@ class BagReader : public EventReader {
 
  private:
   std::optional<std::int64_t> next_message(std::vector<Event>& events);
-  void look_at_first(const ReadOptions& options);
+  void choose_topic();
+  void look_at_first();
   void rewind();
   void restart();
-  template <class Parse>
-  void for_each_of(const std::string& type, Parse parse);
+  void tell(const std::string& key, const std::string& text);
+  std::vector<std::optional<CameraInfo>> first_infos(const std::vector<Candidate>& candidates);
+  std::string mismatch(const std::optional<CameraInfo>& info) const;
+  template <class Take>
+  void for_each(const std::set<std::uint32_t>& connections, Take take);
 
   OpenSource open_;
   std::string path_;
+  ReadOptions options_;
   Faults faults_;  ///< since the beginning or the last seek
   std::unique_ptr<MessageSource> source_;
   Faults open_faults_;  ///< found when the container was opened
-  Topic topic_;
+  std::vector<Topic> topics_;
+  Topic topic_;  ///< whose events
   StreamInfo info_;
   EventPacketDecoder decoder_;
   EventArray array_;
   std::uint64_t messages_ = 0;
+  bool encoding_told_ = false;
   bool camera_time_ = false;        ///< times are the camera's, not ROS's
   std::int64_t stamp_ = 0;          ///< of the last packet [ns]
   std::int64_t ros_minus_own_ = 0;  ///< ROS time of the camera's zero [µs]
@@ -88,34 +101,58 @@ class BagReader : public EventReader {
 BagReader::BagReader(const std::string& path, const std::string& format, const ReadOptions& options, OpenSource open)
     : open_(std::move(open)),
       path_(path),
+      options_(options),
       faults_(path, options.strict),
       source_(open_(faults_)),
       open_faults_(faults_),
-      topic_(choose(path, source_->topics(), options.topic)) {
+      topics_(topics_of(source_->connections())) {
   info_.format = format;
-  info_.topics = describe(source_->topics());
-  info_.metadata.emplace_back("events in", topic_.name);
-  look_at_first(options);
+  info_.topics = descriptions(topics_);
+  choose_topic();
+  // A name that there is not is told at once.
+  const auto check = [&](const TopicKind& kind, const char* type, const std::string& name) {
+    if (!name.empty()) choose(path, kind, with_messages(topics_, type), name, topic_.name);
+  };
+  check(kPoses, kPoseType, options.ground_truth_topic);
+  check(kCameraInfos, kCameraInfoType, options.camera_info_topic);
+  look_at_first();
+}
+
+void BagReader::choose_topic() {
+  auto candidates = candidates_of(
+      topics_, {"event_camera_msgs/EventPacket", "dvs_msgs/EventArray", "prophesee_event_msgs/EventArray"});
+  for (Candidate& candidate : candidates) candidate.text = describe(candidate.topic);
+  const std::size_t chosen = choose_events(path_, topics_, candidates, options_.topic);
+  topic_ = candidates[chosen].topic;
+  tell("events in", topic_.name);
+  const bool several = candidates.size() > 1 && candidates[1].topic.count != 0;
+  if (several && options_.topic.empty()) tell(kTopicChoice, choice_text(kEvents, candidates, chosen));
+}
+
+/// A further line of the metadata, once.
+void BagReader::tell(const std::string& key, const std::string& text) {
+  std::pair line(key, text);
+  if (std::ranges::count(info_.metadata, line) == 0) info_.metadata.push_back(std::move(line));
 }
 
 /// What only messages say: sensor, encoding, time.
-void BagReader::look_at_first(const ReadOptions& options) {
-  source_->select({topic_.id});
+void BagReader::look_at_first() {
+  source_->select(topic_.connections);
   std::vector<Event> events;
   while (events.empty() && next_message(events)) {
   }
-  if (info_.width == 0) info_.width = options.width;
-  if (info_.height == 0) info_.height = options.height;
+  if (info_.width == 0) info_.width = options_.width;
+  if (info_.height == 0) info_.height = options_.height;
   if (!events.empty()) info_.start = events.front().t;
   if (camera_time_ && !events.empty()) {
     ros_minus_own_ = stamp_ / 1000 - events.front().t;
-    info_.metadata.emplace_back("ROS time of the camera's zero [us]", fmt::to_string(ros_minus_own_));
+    tell("ROS time of the camera's zero [us]", fmt::to_string(ros_minus_own_));
   }
   rewind();
 }
 
 void BagReader::rewind() {
-  source_->select({topic_.id});
+  source_->select(topic_.connections);
   turns_ = 0;
   restart();
 }
@@ -135,7 +172,7 @@ std::optional<std::int64_t> BagReader::next_message(std::vector<Event>& events) 
   std::uint32_t width = 0, height = 0;
   const std::string where = fmt::format("message {} of {}", messages_++, topic_.name);
   if (topic_.type == "event_camera_msgs/EventPacket") {
-    const auto packet = parse_event_packet(message->data, topic_.wire);
+    const auto packet = parse_event_packet(message->data, message->wire);
     if (!packet) {
       faults_.add("broken messages", where);
       return 0;
@@ -152,9 +189,10 @@ std::optional<std::int64_t> BagReader::next_message(std::vector<Event>& events) 
     if (turns_ != 0) {
       for (std::size_t i = before; i < events.size(); ++i) events[i].t += turns_;
     }
-    if (info_.metadata.size() == 1) info_.metadata.emplace_back("encoding", packet->encoding);
+    if (!encoding_told_) tell("encoding", packet->encoding);
+    encoding_told_ = true;
   } else {
-    if (!parse_event_array(message->data, topic_.wire, array_)) {
+    if (!parse_event_array(message->data, message->wire, array_)) {
       faults_.add("broken messages", where);
       return 0;
     }
@@ -203,51 +241,103 @@ void BagReader::seek(std::int64_t t) {
   }
 }
 
-/// Calls parse(message) for the messages of the first topic of a type, those whose name begins most like the events'
-/// first. It returns whether there should be more.
-template <class Parse>
-void BagReader::for_each_of(const std::string& type, Parse parse) {
-  const auto likeness = [&](const Topic& topic) {
-    const auto [a, b] = std::mismatch(topic.name.begin(), topic.name.end(), topic_.name.begin(), topic_.name.end());
-    return a - topic.name.begin();
-  };
-  const Topic* best = nullptr;
-  for (const Topic& topic : source_->topics()) {
-    if (!topic.readable || topic.type != type || topic.count == 0) continue;
-    if (best == nullptr || likeness(topic) > likeness(*best)) best = &topic;
-  }
-  if (best == nullptr) return;
+/// Calls take(message) for the messages of some connections, until it returns false.
+template <class Take>
+void BagReader::for_each(const std::set<std::uint32_t>& connections, Take take) {
   Faults ignored(path_, false);  // of the container: they are counted when its events are read
   const auto source = open_(ignored);
-  source->select({best->id});
-  for (auto message = source->next(); message && parse(message->data, *best); message = source->next()) {
+  source->select(connections);
+  for (auto message = source->next(); message && take(*message); message = source->next()) {
   }
 }
 
+/// Sorted by their own times: several publishers' are recorded in another order.
 std::optional<PoseTrajectory> BagReader::ground_truth() {
+  const auto candidates = with_messages(topics_, kPoseType);
+  const auto chosen = choose(path_, kPoses, candidates, options_.ground_truth_topic, topic_.name);
+  if (!chosen) return std::nullopt;
+  const Topic& topic = candidates[*chosen].topic;
   std::vector<StampedPose> poses;
-  const double zero = 1e-6 * static_cast<double>(ros_minus_own_);
-  for_each_of("geometry_msgs/PoseStamped", [&](std::span<const std::byte> data, const Topic& topic) {
-    auto pose = parse_pose_stamped(data, topic.wire);
-    if (pose) pose->t -= zero;
-    if (pose && (poses.empty() || pose->t > poses.back().t)) {
+  const auto leave_out = [&] {
+    faults_.add("poses that are broken, or have the time of another one", "topic " + topic.name);
+  };
+  for_each(topic.connections, [&](const Message& message) {
+    auto pose = parse_pose_stamped(message.data, message.wire);
+    if (pose) {
+      pose->t -= 1e-6 * static_cast<double>(ros_minus_own_);
       poses.push_back(*pose);
     } else {
-      faults_.add("poses that are broken, or not later than the one before", "topic " + topic.name);
+      leave_out();
     }
     return true;
   });
+  std::ranges::stable_sort(poses, {}, &StampedPose::t);
+  std::size_t kept = 0;
+  for (const StampedPose& pose : poses) {
+    if (kept > 0 && pose.t == poses[kept - 1].t) {
+      leave_out();
+    } else {
+      poses[kept++] = pose;
+    }
+  }
+  poses.resize(kept);
   if (poses.empty()) return std::nullopt;
+  tell(kGroundTruthIn, topic.name);
+  if (candidates.size() > 1 && options_.ground_truth_topic.empty()) {
+    tell(kTopicChoice, choice_text(kPoses, candidates, *chosen));
+  }
   return PoseTrajectory(std::move(poses), path_);
 }
 
-std::optional<Camera> BagReader::calibration() {
-  std::optional<Camera> camera;
-  for_each_of("sensor_msgs/CameraInfo", [&](std::span<const std::byte> data, const Topic& topic) {
-    camera = parse_camera_info(data, topic.wire);
-    return false;
+/// Of each candidate the first message that is whole.
+std::vector<std::optional<CameraInfo>> BagReader::first_infos(const std::vector<Candidate>& candidates) {
+  std::set<std::uint32_t> connections;
+  for (const Candidate& candidate : candidates) connections.merge(std::set(candidate.topic.connections));
+  std::vector<std::optional<CameraInfo>> infos(candidates.size());
+  for_each(connections, [&](const Message& message) {
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+      const bool its = candidates[i].topic.connections.contains(message.connection);
+      if (its && !infos[i]) infos[i] = parse_camera_info(message.data, message.wire);
+    }
+    return std::ranges::any_of(infos, [](const auto& info) { return !info.has_value(); });
   });
-  return camera;
+  return infos;
+}
+
+/// Why a message cannot be the calibration of the events' camera; "" when it can.
+std::string BagReader::mismatch(const std::optional<CameraInfo>& info) const {
+  if (!info) return "none of its messages is whole";
+  if (!is_calibrated(*info)) return "is of a camera that is not calibrated: its focal lengths are 0, as all of K";
+  const bool known = info->width > 0 && info->height > 0 && info_.width > 0 && info_.height > 0;
+  const auto is = [](std::uint32_t side, int expected) { return side == static_cast<std::uint32_t>(expected); };
+  if (!known || (is(info->width, info_.width) && is(info->height, info_.height))) return "";
+  return fmt::format("is of another camera than the events of {}, which have {}x{} pixels", topic_.name, info_.width,
+                     info_.height);
+}
+
+std::optional<Camera> BagReader::calibration() {
+  auto candidates = with_messages(topics_, kCameraInfoType);
+  const auto infos = first_infos(candidates);
+  std::vector<std::string> faults;
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    faults.push_back(mismatch(infos[i]));
+    candidates[i].fits = faults[i].empty();
+    if (infos[i]) candidates[i].text += fmt::format(" ({}x{} pixels)", infos[i]->width, infos[i]->height);
+  }
+  const auto chosen = choose(path_, kCameraInfos, candidates, options_.camera_info_topic, topic_.name);
+  if (!chosen) {
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      tell(kUnusableCalibration, fmt::format("{} {}", candidates[i].text, faults[i]));
+    }
+    return std::nullopt;
+  }
+  const Candidate& candidate = candidates[*chosen];
+  if (!candidate.fits) throw InputError(fmt::format("{}: {} {}", path_, candidate.text, faults[*chosen]));
+  tell(kCameraInfoIn, candidate.text);
+  if (candidates.size() > 1 && options_.camera_info_topic.empty()) {
+    tell(kTopicChoice, choice_text(kCameraInfos, candidates, *chosen));
+  }
+  return camera_of(*infos[*chosen], path_ + ": " + candidate.topic.name, info_.width, info_.height);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "core/events/ros/event_packet.hpp"
 
+#include "core/events/ros/camera_info.hpp"
 #include "core/events/ros/messages.hpp"
+#include "core/support/error.hpp"
 
 using namespace evbench;
 
@@ -12,7 +14,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ros::EventArray array;
   ros::parse_event_array(bytes, wire, array);
   ros::parse_pose_stamped(bytes, wire);
-  ros::parse_camera_info(bytes, wire);
+  try {
+    if (const auto info = ros::parse_camera_info(bytes, wire)) ros::camera_of(*info, "fuzz", 240, 180);
+  } catch (const InputError&) {
+  }
   Faults faults("fuzz", false);
   std::vector<Event> events;
   EventPacketDecoder decoder;

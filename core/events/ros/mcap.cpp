@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "core/events/bytes/byte_cursor.hpp"
@@ -15,47 +16,80 @@ namespace evbench {
 namespace {
 
 constexpr std::size_t kMagicSize = 8, kRecordHeader = 9, kFooter = kRecordHeader + 20 + kMagicSize;
-constexpr std::uint64_t kMostMcapBytes = 256u << 20;  ///< of a record, and of a decompressed chunk
+constexpr std::size_t kMessageHeader = 2 + 4 + 8 + 8;  // channel, sequence number, times of recording and publishing
+constexpr std::uint64_t kMostMcapBytes = 256u << 20;   // of a record, and of a decompressed chunk
 
 std::string field_text(ByteCursor& cursor) { return cursor.text(cursor.get<std::uint32_t>()); }
 
+std::int64_t mcap_time(std::uint64_t time) {  // [ns]
+  constexpr std::int64_t kLatest = std::numeric_limits<std::int64_t>::max();
+  return static_cast<std::int64_t>(std::min<std::uint64_t>(time, kLatest));
+}
+
+std::int64_t log_time(std::span<const std::byte> message) {
+  return mcap_time(load<std::uint64_t>(message.data() + 2 + 4));
+}
+
+/// Calls take(op, data) for records that follow one another. False where one is broken: that, or all from there on,
+/// is left out.
+template <class Op, class Take>
+bool for_records(std::span<const std::byte> records, Op message, Take take) {
+  bool whole = true;
+  for (ByteCursor cursor(records); cursor.left() > 0;) {
+    const auto op = static_cast<Op>(cursor.get<std::uint8_t>());
+    const auto data = cursor.bytes(cursor.get<std::uint64_t>());
+    if (!cursor.ok()) return false;
+    if (op == message && data.size() < kMessageHeader) {
+      whole = false;
+    } else {
+      take(op, data);
+    }
+  }
+  return whole;
+}
+
 }  // namespace
 
-McapBag::McapBag(std::unique_ptr<ByteSource> file, Faults& faults) : file_(std::move(file)), faults_(faults) {
+McapBag::McapBag(std::unique_ptr<ByteSource> file, Faults& faults)
+    : file_(std::move(file)),
+      faults_(faults),
+      order_([this](const ros::Chunk& chunk, ros::LoadedChunk& content) { load_chunk(chunk, content); }, faults) {
   std::byte head[kMagicSize];
   if (file_->read(0, head) != kMagicSize || !is_mcap(head)) {
     throw InputError(fmt::format("{}: is no MCAP file of version 0; expected its magic bytes", file_->name()));
   }
-  if (!read_summary()) {
+  summarised_ = read_summary();
+  if (!summarised_) {
     faults_.add("no summary: the recording was not closed, or is cut short", fmt::format("byte {}", file_->size()));
     channels_.clear();
     schemas_.clear();
-    chunks_.clear();
+    index_.clear();
     counts_.clear();
-    scan();
+    end_ = file_->size();
   }
+  find_chunks();
   for (const auto& [id, channel] : channels_) {
-    const auto count = counts_.find(id);
     const bool cdr = channel.encoding == "cdr", ros1 = channel.encoding == "ros1";
-    topics_.push_back({id, channel.topic, ros::plain_type(schemas_[channel.schema]),
-                       count == counts_.end() ? 0 : count->second, ros1 ? ros::Wire::ros1 : ros::Wire::cdr,
-                       cdr || ros1});
+    ros::Connection connection{id, channel.topic, ros::plain_type(schemas_[channel.schema]), {}, cdr || ros1};
+    if (counted_) connection.count = counts_[id];
+    connections_.push_back(connection);
   }
 }
 
-/// The record at an offset, with its data if it is not too large. False when it isn't whole.
-bool McapBag::read_record(std::uint64_t offset, Record& record) {
-  std::byte header[kRecordHeader];
-  if (file_->read(offset, header) != kRecordHeader) return false;
-  record.op = static_cast<Op>(header[0]);
-  const auto size = load<std::uint64_t>(header + 1);
+/// The record at an offset, with its data as far as `most` bytes. False when it isn't whole.
+bool McapBag::read_record(std::uint64_t offset, Record& record, std::uint64_t most) {
+  std::byte head[kRecordHeader + kMessageHeader];
+  const std::size_t there = file_->read(offset, head);
+  if (there < kRecordHeader) return false;
+  record.op = static_cast<Op>(head[0]);
+  const auto size = load<std::uint64_t>(head + 1);
   if (size > file_->size() - offset - kRecordHeader) return false;
   record.end = offset + kRecordHeader + size;
-  record.data = {};
-  if (size > kMostMcapBytes) return true;
-  data_.resize(static_cast<std::size_t>(size));
+  data_.resize(static_cast<std::size_t>(std::min(size, most)));
   record.data = data_;
-  return file_->read(offset + kRecordHeader, data_) == size;
+  if (data_.size() > there - kRecordHeader) return file_->read(offset + kRecordHeader, data_) == data_.size();
+  std::copy_n(head + kRecordHeader, data_.size(), data_.begin());
+  return true;
 }
 
 /// What the end of the file says of topics, counts and chunks.
@@ -72,22 +106,15 @@ bool McapBag::read_summary() {
   end_ = at;
   bool counted = false;
   for (Record record; at < end; at = record.end) {
-    if (!read_record(at, record)) return false;
+    if (!read_record(at, record, kMostMcapBytes)) return false;
     counted = counted || record.op == Op::statistics;
-    if (!note(record.op, record.data)) return false;
+    if (!parse(record.op, record.data)) return false;
   }
   return counted && at == end && !channels_.empty();
 }
 
-/// Reads all for what a summary would say.
-void McapBag::scan() {
-  end_ = file_->size();
-  go_to(kMagicSize);
-  while (const auto message = next_of_all()) ++counts_[static_cast<std::uint16_t>(message->topic)];
-}
-
 /// Takes what a record says of the file. False when it is broken.
-bool McapBag::note(Op op, std::span<const std::byte> data) {
+bool McapBag::parse(Op op, std::span<const std::byte> data) {
   ByteCursor cursor(data);
   switch (op) {
     case Op::schema: {
@@ -105,14 +132,16 @@ bool McapBag::note(Op op, std::span<const std::byte> data) {
       break;
     }
     case Op::chunk_index: {
-      cursor.get<std::uint64_t>();
-      const auto end = cursor.get<std::uint64_t>(), offset = cursor.get<std::uint64_t>();
-      chunks_.push_back({offset, end});
+      cursor.bytes(2 * 8);  // first and last time, which the chunk has, too
+      index_.insert(cursor.get<std::uint64_t>());
       break;
     }
     case Op::statistics: {
-      cursor.bytes(8 + 2 + 4 * 4 + 2 * 8);
-      for (auto left = cursor.get<std::uint32_t>() / 10; left > 0 && cursor.ok(); --left) {
+      const auto messages = cursor.get<std::uint64_t>();
+      cursor.bytes(2 + 4 * 4 + 2 * 8);
+      const auto channels = cursor.get<std::uint32_t>() / 10;
+      counted_ = channels > 0 || messages == 0;
+      for (auto left = channels; left > 0 && cursor.ok(); --left) {
         const auto id = cursor.get<std::uint16_t>();
         counts_[id] = cursor.get<std::uint64_t>();
       }
@@ -123,95 +152,127 @@ bool McapBag::note(Op op, std::span<const std::byte> data) {
   return cursor.ok();
 }
 
-void McapBag::go_to(std::uint64_t offset) {
-  at_ = offset;
-  chunk_ = {};
-  used_ = 0;
-}
-
-void McapBag::select(std::set<std::uint32_t> topics) {
-  selected_ = std::move(topics);
-  go_to(kMagicSize);
-}
-
-std::optional<ros::Message> McapBag::next() {
-  while (const auto message = next_of_all()) {
-    if (selected_.contains(message->topic)) return message;
-  }
-  return std::nullopt;
-}
-
-/// The next message of whatever topic, in a chunk or between them.
-std::optional<ros::Message> McapBag::next_of_all() {
-  while (true) {
+/// By the records' lengths. Where a record is broken, it goes on with the next chunk of the index.
+void McapBag::find_chunks() {
+  std::size_t named = 0;
+  Record record;
+  for (std::uint64_t at = kMagicSize; at < end_; at = record.end) {
     check_interruption();
-    while (used_ < chunk_.size()) {
-      ByteCursor cursor(chunk_.subspan(used_));
-      const auto op = static_cast<Op>(cursor.get<std::uint8_t>());
-      const auto data = cursor.bytes(cursor.get<std::uint64_t>());
-      if (!cursor.ok()) {
-        faults_.add("chunks with broken records", place());
-        used_ = chunk_.size();
-        break;
-      }
-      used_ += cursor.at();
-      if (const auto message = take(op, data)) return message;
+    const std::string place = fmt::format("byte {}", at);
+    if (!read_record(at, record, kMessageHeader)) {
+      const auto next = index_.upper_bound(at);
+      faults_.add(next == index_.end() ? "broken or cut records, where reading ends"
+                                       : "broken records, behind which reading goes on with the next chunk",
+                  place);
+      record.end = next == index_.end() ? end_ : *next;
+      continue;
     }
-    Record record;
-    if (at_ >= end_) return std::nullopt;
-    if (!read_record(at_, record)) {
-      faults_.add("broken or cut records, where reading ends", place());
-      at_ = end_;
-      return std::nullopt;
+    if (record.op == Op::data_end) break;
+    if (record.op == Op::message) add_message(at, record);
+    if (record.op == Op::chunk) {
+      const bool is_named = index_.contains(at);
+      named += is_named ? 1 : 0;
+      if (!is_named && !index_.empty()) faults_.add("chunks that the index does not name", place);
+      ros::Chunk chunk{at, record.end - at};
+      if (summarised_ ? read_times(record.data, chunk) : scan(chunk)) chunks_.push_back(chunk);
     }
-    if (record.op == Op::chunk && !load_chunk(record.data)) faults_.add("broken chunks", place());
-    at_ = record.op == Op::data_end ? end_ : record.end;
-    if (const auto message = take(record.op, record.data)) return message;
+    const bool describes = record.op == Op::schema || record.op == Op::channel;
+    if (describes && !summarised_ && !(read_record(at, record, kMostMcapBytes) && parse(record.op, record.data))) {
+      faults_.add("broken records", place);
+    }
+  }
+  if (named < index_.size()) {
+    faults_.add("chunks that are not where the index says", "the index",
+                static_cast<std::int64_t>(index_.size() - named));
   }
 }
 
-/// The message, if the record is one.
-std::optional<ros::Message> McapBag::take(Op op, std::span<const std::byte> data) {
-  constexpr std::size_t kHeader = 2 + 4 + 8 + 8;  // channel, sequence number, times of recording and publishing
-  if (op == Op::message && data.size() >= kHeader) {
-    return ros::Message{load<std::uint16_t>(data.data()), data.subspan(kHeader)};
+/// A message that is in no chunk: those that follow one another are loaded as if they were one.
+void McapBag::add_message(std::uint64_t offset, const Record& record) {
+  constexpr std::uint64_t kMostRun = 4 << 20;
+  if (record.data.size() < kMessageHeader) {
+    faults_.add("broken records", fmt::format("byte {}", offset));
+    return;
   }
-  if ((op == Op::schema || op == Op::channel) && !note(op, data)) faults_.add("broken records", place());
-  return std::nullopt;
+  if (!summarised_) ++counts_[load<std::uint16_t>(record.data.data())];
+  const std::uint64_t size = record.end - offset;
+  const bool follows = !chunks_.empty() && chunks_.back().offset == run_ && run_ + chunks_.back().size == offset;
+  if (!follows || chunks_.back().size + size > kMostRun) {
+    run_ = offset;
+    chunks_.push_back({offset, 0});
+  }
+  chunks_.back().size += size;
+  chunks_.back().add_time(log_time(record.data));
 }
 
-bool McapBag::load_chunk(std::span<const std::byte> data) {
+/// What the beginning of a chunk says.
+bool McapBag::read_times(std::span<const std::byte> data, ros::Chunk& chunk) {
   ByteCursor cursor(data);
-  cursor.bytes(2 * 8);  // first and last time
+  chunk.start = mcap_time(cursor.get<std::uint64_t>());
+  chunk.end = mcap_time(cursor.get<std::uint64_t>());
+  return cursor.ok();
+}
+
+/// Reads a chunk for what the summary would say. False for one without messages.
+bool McapBag::scan(ros::Chunk& chunk) {
+  std::vector<std::byte> bytes;
+  for_records(unpack(chunk, bytes), Op::message, [&](Op op, std::span<const std::byte> data) {
+    if (op == Op::message) {
+      ++counts_[load<std::uint16_t>(data.data())];
+      chunk.add_time(log_time(data));
+    } else if ((op == Op::schema || op == Op::channel) && !parse(op, data)) {
+      faults_.add("broken records", fmt::format("byte {}", chunk.offset));
+    }
+  });
+  return chunk.start <= chunk.end;
+}
+
+void McapBag::load_chunk(const ros::Chunk& chunk, ros::LoadedChunk& content) {
+  const bool whole =
+      for_records(unpack(chunk, content.bytes), Op::message, [&](Op op, std::span<const std::byte> data) {
+        if (op != Op::message) return;
+        const std::uint32_t channel = load<std::uint16_t>(data.data());
+        if (!selected_.contains(channel)) return;
+        const ros::Wire wire =
+            channels_[static_cast<std::uint16_t>(channel)].encoding == "ros1" ? ros::Wire::ros1 : ros::Wire::cdr;
+        content.messages.push_back({log_time(data), {channel, wire, data.subspan(kMessageHeader)}});
+      });
+  if (!whole) faults_.add("chunks with broken records", fmt::format("byte {}", chunk.offset));
+}
+
+/// A chunk's records, in `bytes`. None where it is broken: a fault.
+std::span<const std::byte> McapBag::unpack(const ros::Chunk& chunk, std::vector<std::byte>& bytes) {
+  bytes.resize(static_cast<std::size_t>(std::min(chunk.size, kMostMcapBytes)));
+  if (bytes.size() == chunk.size && file_->read(chunk.offset, bytes) == bytes.size()) {
+    if (static_cast<Op>(bytes.front()) != Op::chunk) return bytes;
+    if (const auto records = decompress(bytes)) return *records;
+  }
+  faults_.add("broken chunks", fmt::format("byte {}", chunk.offset));
+  return {};
+}
+
+/// `bytes`: the chunk's record, which is replaced where it is compressed.
+std::optional<std::span<const std::byte>> McapBag::decompress(std::vector<std::byte>& bytes) {
+  ByteCursor cursor(bytes);
+  cursor.bytes(kRecordHeader + 2 * 8);  // first and last time
   const auto size = cursor.get<std::uint64_t>();
   const auto checksum = cursor.get<std::uint32_t>();
   const std::string compression = field_text(cursor);
-  const auto packed = cursor.bytes(cursor.get<std::uint64_t>());
-  used_ = 0;
-  chunk_ = {};
-  if (!cursor.ok() || size > kMostMcapBytes) return false;
-  std::span<const std::byte> records = packed;
+  std::span<const std::byte> records = cursor.bytes(cursor.get<std::uint64_t>());
+  if (!cursor.ok() || size > kMostMcapBytes) return std::nullopt;
   if (!compression.empty()) {
-    const bool unpacked = compression == "lz4"    ? decompress_lz4(packed, size, unpacked_)
-                          : compression == "zstd" ? decompress_zstd(packed, size, unpacked_)
+    const bool unpacked = compression == "lz4"    ? decompress_lz4(records, size, data_)
+                          : compression == "zstd" ? decompress_zstd(records, size, data_)
                                                   : false;
-    if (!unpacked) return false;
-    records = unpacked_;
+    if (!unpacked) return std::nullopt;
+    bytes.swap(data_);
+    records = bytes;
   }
-  if (records.size() != size) return false;
+  if (records.size() != size) return std::nullopt;
   if (checksum != 0 && checksum != crc32_z(0, reinterpret_cast<const Bytef*>(records.data()), records.size())) {
-    return false;
+    return std::nullopt;
   }
-  chunk_ = records;
-  return true;
-}
-
-void McapBag::seek(std::int64_t t) {
-  std::uint64_t first = end_;
-  for (const ChunkInfo& chunk : chunks_) {
-    if (chunk.end >= static_cast<std::uint64_t>(std::max<std::int64_t>(t, 0))) first = std::min(first, chunk.offset);
-  }
-  go_to(chunks_.empty() ? kMagicSize : first);
+  return records;
 }
 
 bool McapBag::is_mcap(std::span<const std::byte> head) {

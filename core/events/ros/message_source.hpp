@@ -15,17 +15,18 @@
 
 namespace evbench::ros {
 
-struct Topic {
+/// One publisher's part of a topic: a connection of ROS 1, a channel of MCAP, a row of ROS 2's table.
+struct Connection {
   std::uint32_t id = 0;
-  std::string name;
+  std::string topic;
   std::string type;                    ///< ROS 1's way, "geometry_msgs/PoseStamped"
   std::optional<std::uint64_t> count;  ///< of messages
-  Wire wire = Wire::ros1;
-  bool readable = true;  ///< false: serialised in a way that evbench doesn't know
+  bool readable = true;                ///< false: serialised in a way that evbench doesn't know
 };
 
 struct Message {
-  std::uint32_t topic = 0;
+  std::uint32_t connection = 0;
+  Wire wire = Wire::ros1;
   std::span<const std::byte> data;  ///< valid until the next call
 };
 
@@ -34,12 +35,12 @@ struct Message {
 class MessageSource {
  public:
   virtual ~MessageSource() = default;
-  virtual const std::vector<Topic>& topics() const = 0;
+  virtual const std::vector<Connection>& connections() const = 0;
   /// Only these will be given, from the beginning on.
-  virtual void select(std::set<std::uint32_t> topics) = 0;
-  /// The next message, in the file's order; none at the end.
+  virtual void select(std::set<std::uint32_t> connections) = 0;
+  /// The next message, in the order of the times of recording (log time); none at the end.
   virtual std::optional<Message> next() = 0;
-  /// Goes on at or before the first message that was recorded at or after t [ns]: from the beginning without an index.
+  /// Goes on with the first message that was recorded at or after t [ns].
   virtual void seek(std::int64_t t) = 0;
 };
 

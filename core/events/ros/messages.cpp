@@ -1,6 +1,5 @@
 #include "core/events/ros/messages.hpp"
 
-#include <array>
 #include <cmath>
 
 #include "core/events/bytes/byte_cursor.hpp"
@@ -110,35 +109,20 @@ std::optional<StampedPose> parse_pose_stamped(std::span<const std::byte> data, W
   return pose;
 }
 
-std::optional<Camera> parse_camera_info(std::span<const std::byte> data, Wire wire) {
-  constexpr std::uint32_t kMostImageSide = 1 << 16;
+std::optional<CameraInfo> parse_camera_info(std::span<const std::byte> data, Wire wire) {
   Fields fields(data, wire);
+  CameraInfo info;
   fields.header();
-  const auto height = fields.get<std::uint32_t>(), width = fields.get<std::uint32_t>();
-  const std::string model = fields.text();
+  info.height = fields.get<std::uint32_t>();
+  info.width = fields.get<std::uint32_t>();
+  info.distortion_model = fields.text();
   const auto count = fields.get<std::uint32_t>();
-  Camera camera;
-  for (std::uint32_t i = 0; i < count && fields.ok(); ++i) {
-    const auto coefficient = fields.get<double>();
-    if (i < 5) {
-      camera.coefficients[i] = coefficient;
-    } else if (coefficient != 0.0) {
-      return std::nullopt;  // rational_polynomial
-    }
-  }
-  std::array<double, 9> K{};
-  for (double& value : K) value = fields.get<double>();
-  if (!fields.ok() || width > kMostImageSide || height > kMostImageSide || !(K[0] > 0.0) || !(K[4] > 0.0))
-    return std::nullopt;
-  camera.pinhole = {K[0], K[4], K[2], K[5]};
-  camera.width = static_cast<int>(width);
-  camera.height = static_cast<int>(height);
-  if (model == "equidistant" || model == "fisheye") {
-    camera.distortion = DistortionModel::equidistant;
-  } else if (!camera.coefficients.isZero(0.0)) {
-    camera.distortion = DistortionModel::radial_tangential;
-  }
-  return camera;
+  if (count > data.size() / sizeof(double)) return std::nullopt;
+  info.D.resize(count);
+  for (double& value : info.D) value = fields.get<double>();
+  for (double& value : info.K) value = fields.get<double>();
+  if (!fields.ok()) return std::nullopt;
+  return info;
 }
 
 }  // namespace evbench::ros

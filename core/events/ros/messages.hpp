@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -8,7 +9,6 @@
 #include <vector>
 
 #include "core/events/event.hpp"
-#include "core/geometry/camera.hpp"
 #include "core/motion/pose_trajectory.hpp"
 
 namespace evbench::ros {
@@ -32,6 +32,14 @@ struct EventArray {
   std::vector<Event> events;  ///< times as ROS has them
 };
 
+/// sensor_msgs/CameraInfo; camera_info.hpp makes a camera of it.
+struct CameraInfo {
+  std::uint32_t width = 0, height = 0;  ///< [px]; 0: unknown
+  std::string distortion_model;
+  std::vector<double> D;
+  std::array<double, 9> K{};
+};
+
 // Each returns nothing when the message is broken.
 std::optional<EventPacket> parse_event_packet(std::span<const std::byte> data, Wire wire);
 bool parse_event_array(std::span<const std::byte> data, Wire wire, EventArray& array);
@@ -39,7 +47,6 @@ bool parse_event_array(std::span<const std::byte> data, Wire wire, EventArray& a
 /// geometry_msgs/PoseStamped; none, too, for NaN and quaternions that are no rotation.
 std::optional<StampedPose> parse_pose_stamped(std::span<const std::byte> data, Wire wire);
 
-/// sensor_msgs/CameraInfo; none, too, for a camera that isn't calibrated or whose distortion evbench doesn't know.
-std::optional<Camera> parse_camera_info(std::span<const std::byte> data, Wire wire);
+std::optional<CameraInfo> parse_camera_info(std::span<const std::byte> data, Wire wire);
 
 }  // namespace evbench::ros

@@ -15,6 +15,7 @@ namespace {
 using namespace ros;
 
 constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
+constexpr std::uint64_t kRecords = 13;  // where they begin, behind the magic bytes
 constexpr std::size_t kMostBagHeader = 1 << 20, kMostBagChunk = 256u << 20;
 
 enum Op : unsigned { kMessage = 2, kBag = 3, kChunk = 5, kChunkInfo = 6, kConnection = 7 };
@@ -32,32 +33,54 @@ bool parse_fields(std::span<const std::byte> header, BagRecord& record) {
   return cursor.ok();
 }
 
+/// [ns], from seconds and nanoseconds.
+std::int64_t bag_time(std::uint64_t time) {
+  return static_cast<std::int64_t>((time & 0xFFFF'FFFF) * 1'000'000'000 + (time >> 32));
+}
+
+/// Calls take(record, data) for the records of a chunk. False where one is broken, which is the end.
+template <class Take>
+bool for_records(std::span<const std::byte> chunk, Take take) {
+  BagRecord record;
+  for (ByteCursor cursor(chunk); cursor.left() > 0;) {
+    const auto header = cursor.bytes(cursor.get<std::uint32_t>());
+    const auto data = cursor.bytes(cursor.get<std::uint32_t>());
+    if (!cursor.ok() || !parse_fields(header, record)) return false;
+    take(record, data);
+  }
+  return true;
+}
+
 }  // namespace
 
-RosBag::RosBag(std::unique_ptr<ByteSource> file, Faults& faults) : file_(std::move(file)), faults_(faults) {
+RosBag::RosBag(std::unique_ptr<ByteSource> file, Faults& faults)
+    : file_(std::move(file)),
+      faults_(faults),
+      order_([this](const Chunk& chunk, LoadedChunk& content) { load_chunk(chunk, content); }, faults) {
   BagRecord bag;
-  end_ = file_->size();
-  std::byte magic[kBegin];
-  if (file_->read(0, magic) != kBegin || std::string_view(reinterpret_cast<const char*>(magic), kBegin) != kBagMagic) {
+  std::byte magic[kRecords];
+  if (file_->read(0, magic) != kRecords ||
+      std::string_view(reinterpret_cast<const char*>(magic), kRecords) != kBagMagic) {
     throw InputError(
         fmt::format("{}: is a bag of another version; expected version 2.0 (`rosbag fix`)", file_->name()));
   }
-  if (!read_record(kBegin, bag) || bag.op() != kBag) {
-    throw InputError(fmt::format("{}: byte {}: has no bag header; expected one", file_->name(), kBegin));
+  if (!read_record(kRecords, bag) || bag.op() != kBag) {
+    throw InputError(fmt::format("{}: byte {}: has no bag header; expected one", file_->name(), kRecords));
   }
   if (const std::string encryptor = bag.text("encryptor"); !encryptor.empty()) {
     throw InputError(fmt::format("{}: is encrypted by {}; expected a bag that is not", file_->name(), encryptor));
   }
-  const auto index = bag.number<std::uint64_t>("index_pos");
-  if (index == 0 || !read_index(index, bag.number<std::uint32_t>("chunk_count"))) {
-    faults_.add("no index: the bag was not closed, or is cut short", fmt::format("byte {}", index));
-    topics_.clear();
-    chunks_.clear();
-    scan();
+  const auto offset = bag.number<std::uint64_t>("index_pos");
+  Index index;
+  if (offset == 0 || !read_index(offset, bag.number<std::uint32_t>("chunk_count"), index)) {
+    faults_.add("no index: the bag was not closed, or is cut short", fmt::format("byte {}", offset));
+    connections_.clear();
+    index.clear();
+    find_chunks(index, file_->size());
   } else {
-    end_ = index;
+    find_chunks(index, offset);
   }
-  std::sort(topics_.begin(), topics_.end(), [](const Topic& a, const Topic& b) { return a.id < b.id; });
+  std::ranges::sort(connections_, {}, &Connection::id);
 }
 
 /// False when it isn't whole.
@@ -81,15 +104,16 @@ bool RosBag::read_data(const BagRecord& record, std::vector<std::byte>& data) {
 }
 
 /// Connections and chunks, as listed at the end of the bag.
-bool RosBag::read_index(std::uint64_t offset, std::uint32_t chunks) {
+bool RosBag::read_index(std::uint64_t offset, std::uint32_t chunks, Index& index) {
   BagRecord record;
+  if (offset > file_->size()) return false;
   while (offset < file_->size()) {
     if (!read_record(offset, record) || !read_data(record, packed_)) return false;
-    if (record.op() == kConnection) add_topic(record, packed_);
+    if (record.op() == kConnection) add_connection(record, packed_);
     if (record.op() == kChunkInfo) {
-      const auto seconds = record.number<std::uint64_t>("end_time");
-      chunks_.push_back({record.number<std::uint64_t>("chunk_pos"),
-                         static_cast<std::int64_t>((seconds & 0xFFFF'FFFF) * 1'000'000'000 + (seconds >> 32))});
+      const auto at = record.number<std::uint64_t>("chunk_pos");
+      index[at] = {at, 0, bag_time(record.number<std::uint64_t>("start_time")),
+                   bag_time(record.number<std::uint64_t>("end_time"))};
       ByteCursor counts(packed_);
       while (counts.left() >= 8) {
         const auto connection = counts.get<std::uint32_t>();
@@ -98,113 +122,102 @@ bool RosBag::read_index(std::uint64_t offset, std::uint32_t chunks) {
     }
     offset = record.data + record.size;
   }
-  return chunks_.size() == chunks;
+  return index.size() == chunks;
 }
 
-/// Reads all chunks for what an index would say.
-void RosBag::scan() {
-  go_to(kBegin);
+/// Where a record is broken, it goes on with the next chunk of the index.
+void RosBag::find_chunks(const Index& index, std::uint64_t end) {
   BagRecord record;
-  while (next_chunk()) {
-    while (used_ < chunk_.size()) {
-      ByteCursor cursor(std::span<const std::byte>(chunk_).subspan(used_));
-      const auto header = cursor.bytes(cursor.get<std::uint32_t>());
-      const auto data = cursor.bytes(cursor.get<std::uint32_t>());
-      if (!cursor.ok() || !parse_fields(header, record)) break;
-      used_ += cursor.at();
-      if (record.op() == kConnection) add_topic(record, data);
-      if (record.op() == kMessage) count(record.number<std::uint32_t>("conn"), 1);
+  std::size_t named = 0;
+  for (std::uint64_t at = kRecords; at < end;) {
+    check_interruption();
+    const std::string place = fmt::format("byte {}", at);
+    if (!read_record(at, record)) {
+      const auto next = index.upper_bound(at);
+      faults_.add(next == index.end() ? "broken or cut records, where reading ends"
+                                      : "broken records, behind which reading goes on with the next chunk",
+                  place);
+      at = next == index.end() ? end : next->first;
+      continue;
     }
-    used_ = chunk_.size();
+    Chunk chunk{at, record.data + record.size - at};
+    at = record.data + record.size;
+    if (record.op() != kChunk) continue;
+    if (const auto known = index.find(chunk.offset); known != index.end()) {
+      ++named;
+      chunk.start = known->second.start;
+      chunk.end = known->second.end;
+      chunks_.push_back(chunk);
+    } else {
+      if (!index.empty()) faults_.add("chunks that the index does not name", place);
+      if (scan(chunk)) chunks_.push_back(chunk);
+    }
+  }
+  if (named < index.size()) {
+    faults_.add("chunks that are not where the index says", "the index",
+                static_cast<std::int64_t>(index.size() - named));
   }
 }
 
-void RosBag::add_topic(const BagRecord& record, std::span<const std::byte> data) {
-  const auto id = record.number<std::uint32_t>("conn");
-  BagRecord connection;
-  if (!parse_fields(data, connection)) return;
-  Topic topic{id, record.text("topic"), plain_type(connection.text("type")), {}, Wire::ros1, true};
-  for (Topic& known : topics_) {
-    if (known.id != id) continue;
-    topic.count = known.count;
-    known = topic;
+/// Reads a chunk for what an index would say. False for one without messages.
+bool RosBag::scan(Chunk& chunk) {
+  std::vector<std::byte> content;
+  if (!unpack(chunk.offset, content)) return false;
+  for_records(content, [&](const BagRecord& record, std::span<const std::byte> data) {
+    if (record.op() == kConnection) add_connection(record, data);
+    if (record.op() != kMessage) return;
+    count(record.number<std::uint32_t>("conn"), 1);
+    chunk.add_time(bag_time(record.number<std::uint64_t>("time")));
+  });
+  return chunk.start <= chunk.end;
+}
+
+void RosBag::add_connection(const BagRecord& record, std::span<const std::byte> data) {
+  BagRecord header;
+  if (!parse_fields(data, header)) return;
+  Connection connection{
+      record.number<std::uint32_t>("conn"), record.text("topic"), plain_type(header.text("type")), {}};
+  for (Connection& known : connections_) {
+    if (known.id != connection.id) continue;
+    connection.count = known.count;
+    known = connection;
     return;
   }
-  topics_.push_back(topic);
+  connections_.push_back(connection);
 }
 
-void RosBag::count(std::uint32_t connection, std::uint64_t messages) {
-  for (Topic& topic : topics_) {
-    if (topic.id == connection) topic.count = topic.count.value_or(0) + messages;
+void RosBag::count(std::uint32_t id, std::uint64_t messages) {
+  for (Connection& connection : connections_) {
+    if (connection.id == id) connection.count = connection.count.value_or(0) + messages;
   }
 }
 
-/// Makes the next chunk the current one. False at the end.
-bool RosBag::next_chunk() {
+/// What a chunk's record holds. False where that is broken: a fault.
+bool RosBag::unpack(std::uint64_t offset, std::vector<std::byte>& chunk) {
   BagRecord record;
-  while (at_ < end_) {
-    check_interruption();
-    if (!read_record(at_, record)) {
-      faults_.add("broken or cut records, where reading ends", place());
-      at_ = end_;
-      return false;
-    }
-    const bool loaded = record.op() == kChunk && load_chunk(record);
-    at_ = record.data + record.size;
-    if (loaded) return true;
-  }
-  return false;
-}
-
-bool RosBag::load_chunk(const BagRecord& record) {
-  const std::string compression = record.text("compression");
-  const auto size = record.number<std::uint32_t>("size");
-  used_ = 0;
   bool whole = false;
-  if (compression == "none") {
-    whole = read_data(record, chunk_);
-  } else if (size <= kMostBagChunk && read_data(record, packed_)) {
-    if (compression == "lz4") whole = decompress_lz4(packed_, size, chunk_) && chunk_.size() == size;
-    if (compression == "bz2") whole = decompress_bzip2(packed_, size, chunk_) && chunk_.size() == size;
+  if (read_record(offset, record)) {
+    const std::string compression = record.text("compression");
+    const auto size = record.number<std::uint32_t>("size");
+    if (compression == "none") {
+      whole = read_data(record, chunk);
+    } else if (size <= kMostBagChunk && read_data(record, packed_)) {
+      if (compression == "lz4") whole = decompress_lz4(packed_, size, chunk) && chunk.size() == size;
+      if (compression == "bz2") whole = decompress_bzip2(packed_, size, chunk) && chunk.size() == size;
+    }
   }
-  if (!whole) {
-    chunk_.clear();
-    faults_.add("broken chunks", place());
-  }
+  if (!whole) faults_.add("broken chunks", fmt::format("byte {}", offset));
   return whole;
 }
 
-std::optional<Message> RosBag::next() {
-  do {
-    if (const auto message = next_in_chunk()) return message;
-  } while (next_chunk());
-  return std::nullopt;
-}
-
-std::optional<Message> RosBag::next_in_chunk() {
-  BagRecord record;
-  while (used_ < chunk_.size()) {
-    ByteCursor cursor(std::span<const std::byte>(chunk_).subspan(used_));
-    const auto header = cursor.bytes(cursor.get<std::uint32_t>());
-    const auto data = cursor.bytes(cursor.get<std::uint32_t>());
-    if (!cursor.ok() || !parse_fields(header, record)) {
-      faults_.add("chunks with broken records", place());
-      used_ = chunk_.size();
-      return std::nullopt;
-    }
-    used_ += cursor.at();
+void RosBag::load_chunk(const Chunk& chunk, LoadedChunk& content) {
+  if (!unpack(chunk.offset, content.bytes)) return;
+  const bool whole = for_records(content.bytes, [&](const BagRecord& record, std::span<const std::byte> data) {
     const auto connection = record.number<std::uint32_t>("conn");
-    if (record.op() == kMessage && selected_.contains(connection)) return Message{connection, data};
-  }
-  return std::nullopt;
-}
-
-void RosBag::seek(std::int64_t t) {
-  std::uint64_t first = end_;
-  for (const ChunkInfo& chunk : chunks_) {
-    if (chunk.end >= t) first = std::min(first, chunk.offset);
-  }
-  go_to(chunks_.empty() ? kBegin : first);
+    if (record.op() != kMessage || !selected_.contains(connection)) return;
+    content.messages.push_back({bag_time(record.number<std::uint64_t>("time")), {connection, Wire::ros1, data}});
+  });
+  if (!whole) faults_.add("chunks with broken records", fmt::format("byte {}", chunk.offset));
 }
 
 EventFormat ros1_bag_format() {

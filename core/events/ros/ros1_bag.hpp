@@ -9,6 +9,7 @@
 
 #include "core/events/bytes/bytes.hpp"
 #include "core/events/formats.hpp"
+#include "core/events/ros/chunk_order.hpp"
 #include "core/events/ros/message_source.hpp"
 #include "core/io/byte_source.hpp"
 
@@ -39,50 +40,41 @@ struct BagRecord {
 /// four bytes changed, 396 ended the program with SIGSEGV and 145 made it allocate more than 256 MiB. To guard it, one
 /// would have to parse every record before; this reader is no more than that, and as fast
 /// (bench/micro/bag_reading.cpp).
+///
+/// Chunks are found by the lengths of the records, and their times by the index; a chunk that the index does not name,
+/// and all where there is none, are read for it first.
 class RosBag : public ros::MessageSource {
  public:
   RosBag(std::unique_ptr<ByteSource> file, Faults& faults);
 
-  const std::vector<ros::Topic>& topics() const override { return topics_; }
-  void select(std::set<std::uint32_t> topics) override {
-    selected_ = std::move(topics);
-    go_to(kBegin);
+  const std::vector<ros::Connection>& connections() const override { return connections_; }
+  void select(std::set<std::uint32_t> connections) override {
+    selected_ = std::move(connections);
+    order_.begin(chunks_);
   }
-  std::optional<ros::Message> next() override;
-  void seek(std::int64_t t) override;
+  std::optional<ros::Message> next() override { return order_.next(); }
+  void seek(std::int64_t t) override { order_.begin(chunks_, t); }
 
  private:
-  static constexpr std::uint64_t kBegin = 13;  ///< of the records, behind the magic bytes
-  struct ChunkInfo {
-    std::uint64_t offset = 0;
-    std::int64_t end = 0;  ///< [ns]
-  };
+  using Index = std::map<std::uint64_t, ros::Chunk>;  ///< by their offsets
 
-  void go_to(std::uint64_t offset) {
-    at_ = offset;
-    chunk_.clear();
-    used_ = 0;
-  }
   bool read_record(std::uint64_t offset, BagRecord& record);
   bool read_data(const BagRecord& record, std::vector<std::byte>& data);
-  bool read_index(std::uint64_t offset, std::uint32_t chunks);
-  void scan();
-  bool next_chunk();
-  bool load_chunk(const BagRecord& record);
-  std::optional<ros::Message> next_in_chunk();
-  void add_topic(const BagRecord& record, std::span<const std::byte> data);
+  bool read_index(std::uint64_t offset, std::uint32_t chunks, Index& index);
+  void find_chunks(const Index& index, std::uint64_t end);
+  bool scan(ros::Chunk& chunk);
+  void load_chunk(const ros::Chunk& chunk, ros::LoadedChunk& content);
+  bool unpack(std::uint64_t offset, std::vector<std::byte>& chunk);
+  void add_connection(const BagRecord& record, std::span<const std::byte> data);
   void count(std::uint32_t connection, std::uint64_t messages);
-  std::string place() const { return "byte " + std::to_string(at_); }
 
   std::unique_ptr<ByteSource> file_;
   Faults& faults_;
-  std::vector<ros::Topic> topics_;
+  std::vector<ros::Connection> connections_;
   std::set<std::uint32_t> selected_;
-  std::vector<ChunkInfo> chunks_;
-  std::vector<std::byte> header_, packed_, chunk_;
-  std::size_t used_ = 0;   ///< of the chunk
-  std::uint64_t at_ = 0;   ///< next record of the file
-  std::uint64_t end_ = 0;  ///< of the chunks
+  std::vector<ros::Chunk> chunks_;
+  std::vector<std::byte> header_, packed_;
+  ros::ChunkOrder order_;
 };
 
 EventFormat ros1_bag_format();

@@ -51,9 +51,9 @@ class Ros2Folder : public MessageSource {
  public:
   Ros2Folder(const std::string& folder, Faults& faults);
 
-  const std::vector<Topic>& topics() const override { return metadata_.topics; }
-  void select(std::set<std::uint32_t> topics) override {
-    selected_ = std::move(topics);
+  const std::vector<Connection>& connections() const override { return metadata_.topics; }
+  void select(std::set<std::uint32_t> connections) override {
+    selected_ = std::move(connections);
     go_to(0);
   }
   std::optional<Message> next() override;
@@ -135,16 +135,19 @@ void Ros2Folder::open(std::size_t file) {
 void Ros2Folder::select_in(MessageSource& messages) {
   std::set<std::uint32_t> chosen;
   topic_of_.clear();
-  for (const Topic& topic : messages.topics()) {
+  for (const Connection& there : messages.connections()) {
+    bool named = false, taken = false;
     for (const std::uint32_t id : selected_) {
-      const Topic& wanted = metadata_.topics[id];
-      if (topic.name != wanted.name) continue;
-      if (topic.type == wanted.type && topic.wire == wanted.wire && topic.readable) {
-        chosen.insert(topic.id);
-        topic_of_[topic.id] = id;
-      } else {
-        faults_.add(fmt::format("files whose topics are not as {} says", kMetadata), metadata_.files[file_ - 1].path);
-      }
+      const Connection& wanted = metadata_.topics[id];
+      if (there.topic != wanted.topic) continue;
+      named = true;
+      if (there.type != wanted.type || !there.readable) continue;
+      taken = true;
+      topic_of_[there.id] = id;
+    }
+    if (taken) chosen.insert(there.id);
+    if (named && !taken) {
+      faults_.add(fmt::format("files whose topics are not as {} says", kMetadata), metadata_.files[file_ - 1].path);
     }
   }
   messages.select(chosen);
@@ -153,7 +156,7 @@ void Ros2Folder::select_in(MessageSource& messages) {
 std::optional<Message> Ros2Folder::next() {
   while (reading_ || open_next()) {
     while (auto message = open_->next()) {
-      message->topic = topic_of_.at(message->topic);
+      message->connection = topic_of_.at(message->connection);
       if (unpack(*message)) return message;
     }
     reading_ = false;

@@ -3,6 +3,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <numeric>
 
 #include "core/events/testing/mcap_writer.hpp"
 #include "core/events/testing/recordings.hpp"
@@ -46,10 +47,11 @@ std::string mcap_of(int first, int last) {
   return mcap(chunk("lz4", topics("cdr") + records));
 }
 
-/// Written by Python's sqlite3, in the layout of rosbag2_storage_sqlite3.
-std::string sqlite_of(const testing::TemporaryFolder& folder, int first, int last, bool packed) {
+/// Written by Python's sqlite3, in the layout of rosbag2_storage_sqlite3. `order`: of the messages in the file; two
+/// rows of the table of topics share them.
+std::string sqlite_of(const testing::TemporaryFolder& folder, const std::vector<int>& order, bool packed) {
   std::string rows;
-  for (int i = first; i < last; ++i) {
+  for (const int i : order) {
     rows += fmt::format("{} ", recorded(i));
     for (const char c : packed ? compressed(cdr_packet(i)) : cdr_packet(i)) {
       rows += fmt::format("{:02x}", static_cast<unsigned char>(c));
@@ -62,11 +64,12 @@ db = sqlite3.connect(sys.argv[1])
 db.execute('CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT, qos TEXT)')
 db.execute('CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB)')
 db.execute('CREATE INDEX timestamp_idx ON messages (timestamp ASC)')
-for topic in (4, '/imu', 'sensor_msgs/msg/Imu'), (5, '/events', 'event_camera_msgs/msg/EventPacket'):
+for topic in (4, '/imu', 'sensor_msgs/msg/Imu'), (5, '/events', 'event_camera_msgs/msg/EventPacket'), (6, '/events', 'event_camera_msgs/msg/EventPacket'):
     db.execute("INSERT INTO topics VALUES (?, ?, ?, 'cdr', '')", topic)
-for line in open(sys.argv[2]):
+for i, line in enumerate(open(sys.argv[2])):
     t, data = line.split()
-    db.execute('INSERT INTO messages(topic_id, timestamp, data) VALUES (5, ?, ?)', (int(t), bytes.fromhex(data)))
+    row = 5 + i % 2, int(t), bytes.fromhex(data)
+    db.execute('INSERT INTO messages(topic_id, timestamp, data) VALUES (?, ?, ?)', row)
 db.commit()
 )py");
   const std::string path = folder.file("written.db3");
@@ -74,6 +77,12 @@ db.commit()
   const std::string arguments = script + " " + path + " " + folder.write("rows.txt", rows);
   REQUIRE(std::system(("/usr/bin/python3 " + arguments).c_str()) == 0);
   return testing::read_file(path);
+}
+
+std::string sqlite_of(const testing::TemporaryFolder& folder, int first, int last, bool packed) {
+  std::vector<int> order(index(last - first));
+  std::iota(order.begin(), order.end(), first);
+  return sqlite_of(folder, order, packed);
 }
 
 /// As rosbag2 writes it.
@@ -158,6 +167,22 @@ TEST_CASE("A ROS 2 recording of several files is read, sought and described as o
     reader->seek(7'000'000 + 50'000 * 45);
     CHECK(testing::read_all(*reader).size() < 20);  // the files before the third aren't read
   }
+}
+
+TEST_CASE("A ROS 2 bag in SQLite is read in the order of its timestamps, with an index of them or without") {
+  const testing::TemporaryFolder folder;
+  std::vector<int> order(kPackets);
+  for (int i = 0; i < kPackets; ++i) order[index(i)] = i * 7 % kPackets;
+  const std::string path = folder.write("a.db3", sqlite_of(folder, order, false));
+  if (GENERATE(false, true)) {
+    REQUIRE(std::system(("/usr/bin/python3 -c \"import sqlite3; sqlite3.connect('" + path +
+                         "').execute('DROP INDEX timestamp_idx')\"")
+                            .c_str()) == 0);
+  }
+  const auto reader = open_events(path);
+  check_events(*reader);
+  CHECK(reader->info().topics.back() == "/events (event_camera_msgs/EventPacket), 60 messages");
+  testing::check_seeking(path);
 }
 
 TEST_CASE("A compressed file of a ROS 2 recording is unpacked once, and leaves nothing in the temporary folder") {

@@ -37,7 +37,7 @@ Ros2Metadata parse(const YAML::Node& recording, const std::string& folder) {
     const YAML::Node topic = entry["topic_metadata"];
     metadata.topics.push_back({static_cast<std::uint32_t>(metadata.topics.size()), topic["name"].as<std::string>(),
                                ros::plain_type(topic["type"].as<std::string>()),
-                               entry["message_count"].as<std::uint64_t>(), ros::Wire::cdr,
+                               entry["message_count"].as<std::uint64_t>(),
                                topic["serialization_format"].as<std::string>() == "cdr"});
   }
   const std::string format = recording["compression_format"].as<std::string>(""),

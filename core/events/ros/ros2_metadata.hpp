@@ -15,9 +15,9 @@ struct Ros2Metadata {
     std::string path;
     std::optional<std::int64_t> end;  ///< time of the last message [ns]
   };
-  std::vector<File> files;           ///< in the order of recording; all in the recording's folder
-  std::vector<ros::Topic> topics;    ///< ids: their places here
-  bool messages_compressed = false;  ///< each for itself, zstd
+  std::vector<File> files;              ///< in the order of recording; all in the recording's folder
+  std::vector<ros::Connection> topics;  ///< ids: their places here
+  bool messages_compressed = false;     ///< each for itself, zstd
 };
 
 /// Throws InputError when the file is no such description, or names a compression other than zstd. Of the files' paths

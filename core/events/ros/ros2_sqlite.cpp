@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <limits>
 
 #include "core/io/byte_source.hpp"
 #include "core/support/error.hpp"
@@ -31,15 +32,17 @@ class SqliteBag : public MessageSource {
  public:
   SqliteBag(const std::string& path, Faults& faults, bool count);
 
-  const std::vector<Topic>& topics() const override { return topics_; }
-  void select(std::set<std::uint32_t> topics) override {
-    selected_ = std::move(topics);
-    query_.reset();
-    first_ = 0;
-    ended_ = false;
+  const std::vector<Connection>& connections() const override { return connections_; }
+  void select(std::set<std::uint32_t> connections) override {
+    selected_ = std::move(connections);
+    seek(std::numeric_limits<std::int64_t>::min());
   }
   std::optional<Message> next() override;
-  void seek(std::int64_t t) override;
+  void seek(std::int64_t t) override {
+    order_.reset();
+    from_ = t;
+    ended_ = false;
+  }
 
  private:
   Statement prepare(const std::string& query);
@@ -51,10 +54,11 @@ class SqliteBag : public MessageSource {
   std::string path_;
   Faults& faults_;
   std::unique_ptr<sqlite3, CloseDatabase> database_;
-  std::vector<Topic> topics_;
+  bool whole_ = true;  ///< no pages are missing
+  std::vector<Connection> connections_;
   std::set<std::uint32_t> selected_;
-  Statement query_;
-  std::int64_t first_ = 0;  ///< row to begin with
+  Statement order_, message_;  ///< rows by their times, which SQLite sorts on disk where it has no index; one row
+  std::int64_t from_ = 0;      ///< [ns]
   bool ended_ = false;
 };
 
@@ -98,6 +102,7 @@ SqliteBag::SqliteBag(const std::string& path, Faults& faults, bool count) : path
   database_.reset(database);
   if (result != SQLITE_OK) throw InputError(fmt::format("{}: SQLite cannot open it: {}", path, sqlite3_errstr(result)));
   if (const std::uint64_t missing = missing_pages(path); missing > 0) {
+    whole_ = false;
     faults_.add("pages missing at the end: the file is cut short", fmt::format("{} of them", missing));
   }
   sqlite3_limit(database, SQLITE_LIMIT_LENGTH, kMostMessageBytes);
@@ -141,54 +146,50 @@ std::string SqliteBag::text(sqlite3_stmt* statement, int column) const {
 void SqliteBag::read_topics() {
   const Statement topics = prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
   while (step(topics.get())) {
-    topics_.push_back({static_cast<std::uint32_t>(sqlite3_column_int64(topics.get(), 0)),
-                       text(topics.get(), 1),
-                       plain_type(text(topics.get(), 2)),
-                       {},
-                       Wire::cdr,
-                       text(topics.get(), 3) == "cdr"});
+    connections_.push_back({static_cast<std::uint32_t>(sqlite3_column_int64(topics.get(), 0)),
+                            text(topics.get(), 1),
+                            plain_type(text(topics.get(), 2)),
+                            {},
+                            text(topics.get(), 3) == "cdr"});
   }
 }
 
 /// Of several topics SQLite has to read half of the file for that; of one it has an index.
 void SqliteBag::count_messages() {
-  for (Topic& topic : topics_) topic.count = 0;
+  for (Connection& connection : connections_) connection.count = 0;
   const Statement counts =
-      prepare(topics_.size() == 1 ? fmt::format("SELECT {}, COUNT(*) FROM messages", topics_.front().id)
-                                  : "SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id");
+      prepare(connections_.size() == 1 ? fmt::format("SELECT {}, COUNT(*) FROM messages", connections_.front().id)
+                                       : "SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id");
   while (step(counts.get())) {
-    for (Topic& topic : topics_) {
-      if (topic.id == static_cast<std::uint32_t>(sqlite3_column_int64(counts.get(), 0))) {
-        topic.count = static_cast<std::uint64_t>(sqlite3_column_int64(counts.get(), 1));
+    for (Connection& connection : connections_) {
+      if (connection.id == static_cast<std::uint32_t>(sqlite3_column_int64(counts.get(), 0))) {
+        connection.count = static_cast<std::uint64_t>(sqlite3_column_int64(counts.get(), 1));
       }
     }
   }
 }
 
+/// A file that is cut short lacks some of its index of times, too: it is read in the order of its rows.
 std::optional<Message> SqliteBag::next() {
   if (ended_) return std::nullopt;
-  if (!query_) {
-    query_ = prepare(fmt::format("SELECT topic_id, data FROM messages WHERE id >= {} AND topic_id IN ({}) ORDER BY id",
-                                 first_, fmt::join(selected_, ", ")));
+  if (!order_) {
+    order_ = prepare(fmt::format("SELECT id FROM messages WHERE topic_id IN ({}) AND {}timestamp >= {} ORDER BY {}id",
+                                 fmt::join(selected_, ", "), whole_ ? "" : "+", from_, whole_ ? "timestamp, " : ""));
+    message_ = prepare("SELECT topic_id, data FROM messages WHERE id = ?");
   }
-  if (!step(query_.get())) {
-    ended_ = true;
-    return std::nullopt;
+  sqlite3_reset(message_.get());
+  if (step(order_.get())) {
+    sqlite3_bind_int64(message_.get(), 1, sqlite3_column_int64(order_.get(), 0));
+    if (step(message_.get())) {
+      const void* const data = sqlite3_column_blob(message_.get(), 1);
+      const auto size = static_cast<std::size_t>(sqlite3_column_bytes(message_.get(), 1));
+      return Message{static_cast<std::uint32_t>(sqlite3_column_int64(message_.get(), 0)),
+                     Wire::cdr,
+                     {static_cast<const std::byte*>(data), data == nullptr ? 0 : size}};
+    }
   }
-  const void* const data = sqlite3_column_blob(query_.get(), 1);
-  const auto size = static_cast<std::size_t>(sqlite3_column_bytes(query_.get(), 1));
-  return Message{static_cast<std::uint32_t>(sqlite3_column_int64(query_.get(), 0)),
-                 {static_cast<const std::byte*>(data), data == nullptr ? 0 : size}};
-}
-
-void SqliteBag::seek(std::int64_t t) {
-  query_.reset();
-  ended_ = false;
-  const Statement first = prepare(
-      fmt::format("SELECT id FROM messages WHERE timestamp >= {} AND topic_id IN ({}) ORDER BY timestamp, id LIMIT 1",
-                  t, fmt::join(selected_, ", ")));
-  ended_ = !step(first.get());
-  if (!ended_) first_ = sqlite3_column_int64(first.get(), 0);
+  ended_ = true;
+  return std::nullopt;
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 namespace evbench {
 
-/// A ROS 2 bag in SQLite (rosbag2_storage_sqlite3): tables topics and messages, in the order of recording.
+/// A ROS 2 bag in SQLite (rosbag2_storage_sqlite3): tables topics and messages.
 /// `count`: the messages of each topic, which takes a while. Throws InputError when SQLite can't open it, or it has
 /// other tables.
 std::unique_ptr<ros::MessageSource> open_sqlite_bag(const std::string& path, Faults& faults, bool count);

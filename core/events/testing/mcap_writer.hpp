@@ -4,21 +4,17 @@
 #include <zstd.h>
 
 #include <cstdint>
-#include <cstring>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include "core/events/testing/fields.hpp"
 
 /// MCAP files for tests, written by its specification, and what goes into them.
 namespace evbench::testing::mcap_writer {
 
-template <class T>
-std::string bytes(T value) {
-  std::string text(sizeof(T), '\0');
-  std::memcpy(text.data(), &value, sizeof(T));
-  return text;
-}
-inline std::string text(const std::string& characters) {
-  return bytes(static_cast<std::uint32_t>(characters.size())) + characters;
-}
+using testing::bytes;
+using testing::text;
 
 /// A packet of one libcaer event, in ROS 1's serialisation.
 inline std::string packet(std::uint32_t t, const std::string& encoding = "libcaer") {
@@ -38,7 +34,9 @@ inline std::string topics(const std::string& encoding = "ros1") {
   return record(3, bytes<std::uint16_t>(1) + text("event_camera_msgs/msg/EventPacket") + text("ros1msg") + text("")) +
          record(4, bytes<std::uint16_t>(9) + bytes<std::uint16_t>(1) + text("/events") + text(encoding) + text(""));
 }
-inline std::string chunk(const std::string& compression, const std::string& records) {
+/// `start`, `end`: times of its messages [ns].
+inline std::string chunk(const std::string& compression, const std::string& records, std::uint64_t start = 0,
+                         std::uint64_t end = 0) {
   std::string packed = records;
   if (compression == "lz4") {
     packed.resize(LZ4F_compressFrameBound(records.size(), nullptr));
@@ -47,12 +45,39 @@ inline std::string chunk(const std::string& compression, const std::string& reco
     packed.resize(ZSTD_compressBound(records.size()));
     packed.resize(ZSTD_compress(packed.data(), packed.size(), records.data(), records.size(), 1));
   }
-  return record(6, bytes<std::uint64_t>(0) + bytes<std::uint64_t>(0) + bytes<std::uint64_t>(records.size()) +
-                       bytes<std::uint32_t>(0) + text(compression) + bytes<std::uint64_t>(packed.size()) + packed);
+  return record(6, bytes(start) + bytes(end) + bytes<std::uint64_t>(records.size()) + bytes<std::uint32_t>(0) +
+                       text(compression) + bytes<std::uint64_t>(packed.size()) + packed);
 }
 inline std::string mcap(const std::string& records) {
   const std::string magic = "\x89MCAP0\r\n";
   return magic + record(1, text("") + text("test")) + records;
+}
+
+/// With a summary: what describes topics, an index of the parts that are chunks, and how many messages channels have.
+inline std::string closed_mcap(const std::vector<std::string>& parts, const std::string& topics,
+                               const std::vector<std::pair<std::uint16_t, std::uint64_t>>& counts) {
+  std::string file = mcap(""), index, channels;
+  std::uint32_t chunks = 0;
+  for (const std::string& part : parts) {
+    if (part.front() == '\6') {
+      ++chunks;
+      index += record(8, part.substr(9, 16) + bytes<std::uint64_t>(file.size()) + bytes<std::uint64_t>(part.size()) +
+                             text("") + bytes<std::uint64_t>(0) + text("") + std::string(16, '\0'));
+    }
+    file += part;
+  }
+  file += record(0x0F, bytes<std::uint32_t>(0));
+  std::uint64_t messages = 0;
+  for (const auto& [channel, count] : counts) {
+    messages += count;
+    channels += bytes(channel) + bytes(count);
+  }
+  const auto summary = static_cast<std::uint64_t>(file.size());
+  file += topics + index;
+  file += record(0x0B, bytes(messages) + bytes<std::uint16_t>(1) + std::string(12, '\0') + bytes(chunks) +
+                           std::string(16, '\0') + text(channels));
+  file += record(2, bytes(summary) + bytes<std::uint64_t>(0) + bytes<std::uint32_t>(0));
+  return file + mcap("").substr(0, 8);
 }
 
 }  // namespace evbench::testing::mcap_writer
