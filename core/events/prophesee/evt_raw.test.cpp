@@ -1,6 +1,7 @@
 #include "core/events/prophesee/evt_raw.hpp"
 
 #include "core/events/bytes/bytes.hpp"
+#include "core/events/event_stream.hpp"
 #include "core/events/formats.hpp"
 #include "core/events/testing/reading.hpp"
 #include "core/support/error.hpp"
@@ -106,6 +107,44 @@ TEST_CASE("EVT 2 times count on when their 34 bits are used up") {
   const auto reader = evt2(kHeader2 + data_of(Words32{0x8FFFFFFF, 0x1FC00801, 0x80000000, 0x00401002}));
   CHECK(read_all(*reader) ==
         std::vector<Event>{{(std::int64_t{1} << 34) - 1, 1, 1, true}, {(std::int64_t{1} << 34) + 1, 2, 2, false}});
+}
+
+TEST_CASE("EVT 3 events of a time that was left over in a buffer are an oddity, and the others have their own times") {
+  const auto path = data_file("cases/evt3_stale/evt3_stale.raw");
+  if (!path) return;
+  EventStream stream(*path);
+  const auto events = read_all(stream);
+  CHECK(events.size() == 3000);
+  CHECK(events.front().t < 100);
+  CHECK(events.back().t == 299'900);
+  CHECK(stream.faults().size() == 2);
+  EventStream strict(*path, {.read = {.strict = true}});
+  CHECK_THROWS_WITH(read_all(strict), Catch::Matchers::ContainsSubstring("restarted"));
+}
+
+TEST_CASE("One wrong word of EVT 3's time, or another camera's start, does not move what follows") {
+  Words16 words{0x0001};  // 20 s of an event each 4096 us
+  for (int i = 0; i < 5000; ++i) words.insert(words.end(), {std::uint16_t(0x8000 | (i & 0xFFF)), 0x2001});
+  for (const std::size_t at : {1001u, 3001u, 8001u}) {
+    for (const std::uint16_t wrong : Words16{0x8001, 0x8800, 0x8FFE}) {
+      Words16 broken = words;
+      broken[at] = wrong;
+      EventStream stream(evt3(kHeader3 + data_of(broken)), "test");
+      const auto events = read_all(stream);
+      CAPTURE(at, wrong);
+      CHECK(events.size() == 4999);
+      CHECK(events.back().t == 4999 * 4096);
+      CHECK(stream.faults().size() == 2);
+    }
+  }
+  Words16 restarted = words;
+  restarted.insert(restarted.end(), words.begin() + 1, words.begin() + 1001);
+  EventStream stream(evt3(kHeader3 + data_of(restarted)), "test");
+  CHECK(read_all(stream).size() == 5000);
+  CHECK(stream.faults().front().first.find("restarted") != std::string::npos);
+  restarted.insert(restarted.end(), words.begin() + 1, words.begin() + 1001);
+  EventStream broken(evt3(kHeader3 + data_of(restarted)), "test");
+  CHECK_THROWS_WITH(read_all(broken), Catch::Matchers::ContainsSubstring("restarted"));
 }
 
 TEST_CASE("EVT 2.1 words give an event for each bit, whichever half comes first") {
