@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/data/time_unit.hpp"
 #include "core/events/event.hpp"
 #include "core/events/faults.hpp"
 #include "core/geometry/camera.hpp"
@@ -20,7 +21,9 @@ struct ReadOptions {
   bool strict = false;        ///< faults are errors, not counted skips
   bool lenient = false;       ///< however many they are (EventStream::large_loss)
   int width = 0, height = 0;  ///< sensor [px], where the file of events doesn't say; before what lies beside it
-  std::string columns = {};   ///< of text, e.g. "t_us,x,y,p" (text_layout.hpp); empty: as the file looks
+  /// Of text and of rows of HDF5, e.g. "t_us,x,y,p"; of HDF5's single columns only the unit counts. Empty: as the file
+  /// looks.
+  std::string columns = {};
 };
 
 /// What a recording's headers say.
@@ -30,6 +33,7 @@ struct StreamInfo {
   bool size_assumed = false;                                  ///< the file doesn't say it; the data set has it
   std::optional<std::int64_t> count;                          ///< of events, where known without reading them
   std::optional<std::int64_t> start, end;                     ///< [µs] of the first and last event, likewise
+  std::optional<TimeUnit> guessed_time_unit;                  ///< of the file's times, where nothing says it
   std::vector<std::string> topics;                            ///< everything in a container: "name (type), n messages"
   std::vector<std::pair<std::string, std::string>> metadata;  ///< further fields of the header
 };

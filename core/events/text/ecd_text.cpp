@@ -46,6 +46,7 @@ StreamInfo info_of(const TextLayout& layout, const ReadOptions& options) {
   info.width = layout.width > 0 ? layout.width : options.width;
   info.height = layout.height > 0 ? layout.height : options.height;
   info.metadata = layout.description();
+  if (layout.unit_is_guessed) info.guessed_time_unit = layout.unit;
   return info;
 }
 
