@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/events/formats.hpp"
+#include "core/events/time_guess.hpp"
 #include "core/support/error.hpp"
 #include "core/support/json.hpp"
 
@@ -73,6 +74,10 @@ RecordingSummary summarise(const std::string& path, const StreamOptions& options
   ask("calibration", [&] { s.calibration = stream.reader().calibration(); });
   ask("ground truth", [&] { s.ground_truth = stream.reader().ground_truth().value_or(PoseTrajectory()); });
   s.info = stream.info();  // with remarks on what was read just now
+  if (s.info.guessed_time_unit) {
+    const auto doubt = doubtful_rate(s.events, static_cast<double>(s.end - s.start), *s.info.guessed_time_unit);
+    if (doubt) s.info.metadata.emplace_back("remark", *doubt);
+  }
   s.info.metadata.insert(s.info.metadata.end(), unusable.begin(), unusable.end());
   s.faults = stream.faults();
   s.large_loss = stream.large_loss();

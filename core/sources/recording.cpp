@@ -8,6 +8,7 @@
 #include "core/datasets/catalogue.hpp"
 #include "core/events/companions/companions.hpp"
 #include "core/events/formats.hpp"
+#include "core/events/time_guess.hpp"
 #include "core/io/path.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/error.hpp"
@@ -74,7 +75,7 @@ void Recording::Options::declare(OptionSet& set) {
       .size(2)
       .rising();
   set.require_one_of({"dataset", "folder", "events", "calibration"});
-  set.add("columns", columns, "of a text of events, e.g. \"t_us,x,y,p\"; empty: as the file looks");
+  set.add("columns", columns, "of a text of events or rows of HDF5, e.g. \"t_us,x,y,p\"; empty: as the file looks");
   set.add("topic", topic, "of a bag, group of an HDF5 file: whose events; empty: the only one, or the first");
   set.add("lenient", lenient, "go on however many of the events have to be left out");
   set.add("time_offset", time_offset, "added to the ground truth's times to get the sequence's [s]");
@@ -143,6 +144,10 @@ Recording::Own Recording::find_own(const Options& options, const std::string& fo
   if (find_camera) own.camera = reader->calibration();
   if (find_truth) own.ground_truth = reader->ground_truth();
   const StreamInfo& info = reader->info();
+  if (info.start && info.end && info.count && info.guessed_time_unit) {
+    const auto duration = static_cast<double>(*info.end) - static_cast<double>(*info.start);
+    if (const auto doubt = doubtful_rate(*info.count, duration, *info.guessed_time_unit)) remarks_.push_back(*doubt);
+  }
   if (info.start && info.end && *info.start < *info.end) {
     own.events = {1e-6 * static_cast<double>(*info.start), 1e-6 * static_cast<double>(*info.end)};
   }

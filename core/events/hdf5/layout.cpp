@@ -77,8 +77,9 @@ std::vector<EventLayout> find_events(const File& file) {
     if (!file.has_dataset(rows)) continue;
     EventLayout layout;
     layout.group = rows;
-    layout.name = "MVSEC";
+    layout.name = "rows";
     if (rows.starts_with("davis/")) {
+      layout.name = "MVSEC";
       layout.width = 346;
       layout.height = 260;
     }

@@ -226,12 +226,13 @@ std::unique_ptr<EventReader> open_hdf5(const std::string& path, const ReadOption
 }
 
 EventFormat hdf5_format() {
-  return {"hdf5", "HDF5 as in DSEC, MVSEC, TUM-VIE, M3ED, EDS",
+  return {"hdf5", "HDF5 as in DSEC, MVSEC, TUM-VIE, M3ED, EDS, v2e",
           [](const std::string&, std::span<const std::byte> head) { return has_signature(head); },
           [](const std::string& path, const ReadOptions& options) {
             hdf5::try_events(path, options.topic, options.columns);
             return open_hdf5(path, options);
-          }};
+          },
+          true};
 }
 
 }  // namespace evbench

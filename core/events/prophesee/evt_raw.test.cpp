@@ -182,6 +182,24 @@ TEST_CASE("RAW files of another encoding, without a header, or with an endless o
   CHECK_THROWS_AS(evt3("% evt 3.0\n% " + std::string(100'000, 'x')), InputError);
 }
 
+TEST_CASE("RAW files of other encodings are refused by the word of their header, and others have no columns") {
+  const TemporaryFolder folder;
+  const std::string data = data_of(Words32{0, 1, 2});
+  for (const std::string line : {"% evt 4.0", "% format EVT4;height=720;width=1280", "% format HISTO3D;height=72"}) {
+    const auto path = folder.write("a.raw", line + "\n% end\n" + data);
+    CHECK_THROWS_WITH(open_events(path), Catch::Matchers::ContainsSubstring("in its header; expected EVT 2, 2.1 or 3"));
+  }
+  CHECK_THROWS_WITH(open_events(folder.file("a.raw")), Catch::Matchers::ContainsSubstring("encoding \"HISTO3D\""));
+  const auto text = folder.write("a.txt", "% format txyp\n0.1 1 2 1\n0.2 1 2 0\n");
+  CHECK(read_all(*open_events(text)).size() == 2);
+  const auto evt3_file = folder.write("b.raw", kHeader3 + data_of(Words16{0x8001, 0x0010, 0x2001}));
+  CHECK(read_all(*open_events(evt3_file)).size() == 1);
+  CHECK_THROWS_WITH(open_events(evt3_file, {.columns = "t,x,y,p"}),
+                    Catch::Matchers::ContainsSubstring("has no columns"));
+  CHECK_THROWS_WITH(open_events(folder.write("dv.xml", "<?xml version=\"1.0\"?>\n<opencv_storage>\n")),
+                    Catch::Matchers::ContainsSubstring("is XML, e.g. a calibration or settings of DV"));
+}
+
 TEST_CASE("What makes no sense in a RAW file is counted and skipped, or refused") {
   const std::string early = kHeader3 + data_of(Words16{0x2001, 0x8001, 0x2002, 0x0003, 0x2004, 0x9000, 0x1000}) + "x";
   const auto reader = evt3(early);
