@@ -56,9 +56,10 @@ void add_read_options(CLI::App& command, ReadOptions& options) {
       ->check(CLI::Range(1, 65536));
   command.add_option("--height", options.height, "Sensor's height, likewise [px]")->check(CLI::Range(1, 65536));
   command
-      .add_option("--columns", options.columns,
-                  "Columns of text in their order, where it is not what it looks like: t (or t_s, t_ms, t_us, t_ns), "
-                  "x, y, p; anything else is passed over")
+      .add_option(
+          "--columns", options.columns,
+          "Columns of text or of HDF5's rows in their order, where it is not what it looks like: t (or t_s, t_ms, "
+          "t_us, t_ns), x, y, p; anything else is passed over. Of HDF5's single columns only the unit counts")
       ->type_name("t,x,y,p");
 }
 

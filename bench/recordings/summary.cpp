@@ -6,6 +6,7 @@
 
 #include "bench/recordings/own_calibration.hpp"
 #include "core/events/formats.hpp"
+#include "core/events/time_guess.hpp"
 #include "core/support/error.hpp"
 #include "core/support/json.hpp"
 
@@ -73,6 +74,10 @@ RecordingSummary summarise(const std::string& path, const StreamOptions& options
   s.calibration = own.calibration;
   if (own.ground_truth) s.ground_truth = std::move(*own.ground_truth);
   s.info = stream.info();  // with remarks on what was read just now
+  if (s.info.guessed_time_unit) {
+    const auto doubt = doubtful_rate(s.events, static_cast<double>(s.end - s.start), *s.info.guessed_time_unit);
+    if (doubt) s.info.metadata.emplace_back("remark", *doubt);
+  }
   s.info.metadata.insert(s.info.metadata.end(), own.unusable.begin(), own.unusable.end());
   s.faults = stream.faults();
   s.large_loss = stream.large_loss();

@@ -41,6 +41,9 @@ Camera read_calib(const std::string& path, int width, int height, DistortionMode
   if (!reader.next()) {
     throw InputError(fmt::format("{}: is empty; expected one record {}, or YAML", path, full.columns));
   }
+  if (reader.text().starts_with('<')) {
+    reader.fail(fmt::format("is XML, as DV writes calibrations; expected one record {}, or YAML", full.columns));
+  }
   if (is_yaml(reader)) return yaml_camera(Field::read_yaml(path), camera, {width, height, model});
   const std::size_t count = reader.columns().size();
   if (count < kPinhole || model == DistortionModel::none) reader.expect_columns(full.count, full.columns);

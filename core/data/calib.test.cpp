@@ -38,6 +38,8 @@ TEST_CASE("A calibration that is written reads back as the same camera") {
 TEST_CASE("A damaged calibration is refused with what is wrong") {
   CHECK_THROWS_AS(calib(""), InputError);
   CHECK_THROWS_WITH(calib(""), ContainsSubstring("is empty"));
+  CHECK_THROWS_WITH(calib("<?xml version=\"1.0\"?>\n<opencv_storage>\n"),
+                    ContainsSubstring(":1: is XML, as DV writes"));
   CHECK_THROWS_WITH(calib("199 198 132\n"), ContainsSubstring("has 3 columns; expected 9"));
   CHECK_THROWS_WITH(calib("199 198 132 110 0.1\n"), ContainsSubstring("has 1 lens coefficients; expected k1 k2 p1 p2"));
   CHECK_THROWS_WITH(calib("199 198 132 110 1 2 3 4 5 6\n"),

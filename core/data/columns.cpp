@@ -43,7 +43,8 @@ struct Name {
   TimeUnit unit = TimeUnit::unsaid;
 };
 
-Name read_name(const std::string& text) {
+Name read_name(const std::string& name_in_file) {
+  const std::string text = with_plain_micro(name_in_file);
   const std::size_t bracket = std::min(text.find_first_of("[("), text.size());
   Name name;
   for (const char c : text.substr(0, bracket)) {

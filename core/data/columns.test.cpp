@@ -25,6 +25,8 @@ TEST_CASE("A time's name says its unit, in brackets or behind it") {
   CHECK(columns("#timestamp [ns],x,y").time_unit() == TimeUnit::nanoseconds);
   CHECK(columns("# time [us] x y").time_unit() == TimeUnit::microseconds);
   CHECK(columns("x y t_ms").time_unit() == TimeUnit::milliseconds);
+  CHECK(columns("x y t_\xC2\xB5s").time_unit() == TimeUnit::microseconds);
+  CHECK(columns("t[\xCE\xBCs] x y").time_unit() == TimeUnit::microseconds);
   CHECK(columns("t(sec) x y").time_unit() == TimeUnit::seconds);
   CHECK(columns("t x y").time_unit() == TimeUnit::unsaid);
 }

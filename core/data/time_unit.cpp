@@ -22,9 +22,16 @@ double overlap(double from_a, double to_a, double from_b, double to_b) {
 
 }  // namespace
 
+std::string with_plain_micro(std::string text) {
+  for (const char* micro : {"\xC2\xB5", "\xCE\xBC"}) {  // the sign, and the Greek letter
+    for (std::size_t at = text.find(micro); at != std::string::npos; at = text.find(micro)) text.replace(at, 2, "u");
+  }
+  return text;
+}
+
 std::optional<TimeUnit> parse_time_unit(std::string_view text) {
   std::string name;
-  for (const char c : text) {
+  for (const char c : with_plain_micro(std::string(text))) {
     if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
       name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     }

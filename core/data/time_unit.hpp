@@ -12,7 +12,10 @@ enum class TimeUnit { unsaid, seconds, milliseconds, microseconds, nanoseconds }
 
 inline constexpr std::array kTimeUnitNames{"auto", "s", "ms", "us", "ns"};
 
-/// "[ns]", "usec", "seconds"; none for anything else.
+/// With u for µ, in UTF-8.
+std::string with_plain_micro(std::string text);
+
+/// "[ns]", "usec", "µs", "seconds"; none for anything else.
 std::optional<TimeUnit> parse_time_unit(std::string_view text);
 
 /// "microseconds".

@@ -19,9 +19,8 @@ namespace evbench {
 
 const std::vector<EventFormat>& event_formats() {
   static const std::vector<EventFormat> formats = {
-      native_format(),      hdf5_format(), aedat4_format(),  ros1_bag_format(), ros2_folder_format(),
-      ros2_sqlite_format(), mcap_format(), evt2_format(),    evt21_format(),    evt3_format(),
-      dat_format(),         es_format(),   ecd_text_format()};
+      native_format(), hdf5_format(), aedat4_format(), ros1_bag_format(), ros2_folder_format(), ros2_sqlite_format(),
+      mcap_format(),   raw_format(),  dat_format(),    es_format(),       ecd_text_format()};
   return formats;
 }
 

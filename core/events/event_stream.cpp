@@ -92,17 +92,18 @@ bool EventStream::read(std::vector<Event>& events) {
 
 std::optional<std::string> EventStream::large_loss() const {
   std::int64_t lost = 0;
-  std::pair<std::string, Faults::Fault> worst;
-  for (auto& fault : faults()) {
-    lost += fault.second.count;
-    if (fault.second.count > worst.second.count) worst = std::move(fault);
-  }
+  auto kinds = faults();
+  std::ranges::stable_sort(kinds, std::ranges::greater(), [](const auto& kind) { return kind.second.count; });
+  for (const auto& kind : kinds) lost += kind.second.count;
   const std::int64_t all = good_ + lost;
   if (10 * lost <= all) return std::nullopt;
+  const auto& [worst, fault] = kinds.front();
+  std::string others;
+  for (const auto& [kind, other] : std::span(kinds).subspan(1)) others += fmt::format("; {} {}", other.count, kind);
   return fmt::format(
-      "{}: {:.1f} % of the events, {} of {}, have to be left out, most of them as {} (the first: {}); expected a "
+      "{}: {:.1f} % of the events, {} of {}, have to be left out, most of them as {} (the first: {}){}; expected a "
       "recording with fewer faults, or --lenient (source.lenient in a run's config)",
-      path_, 100.0 * static_cast<double>(lost) / static_cast<double>(all), lost, all, worst.first, worst.second.first);
+      path_, 100.0 * static_cast<double>(lost) / static_cast<double>(all), lost, all, worst, fault.first, others);
 }
 
 /// Keeps what is in order, in the sensor, and in the range, with times of the stream.

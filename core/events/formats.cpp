@@ -54,6 +54,10 @@ std::unique_ptr<EventReader> open_recording(const std::string& path, const ReadO
   if (events.empty()) events = path;  // a folder that is a format itself
   const std::vector<std::byte> head = read_head(events);
   if (const EventFormat* format = find_format(events, head)) {
+    if (!options.columns.empty() && !format->has_columns) {
+      throw InputError(fmt::format("{}: has no columns, which {} would name: it is {}", events, options.columns,
+                                   format->description));
+    }
     auto reader = format->open(events, options);
     check_topics(events, reader->info(), options);
     return with_companions(std::move(reader), files, options);
@@ -63,6 +67,9 @@ std::unique_ptr<EventReader> open_recording(const std::string& path, const ReadO
         fmt::format("{}: is a folder that is no recording (e.g. with an events.txt); expected one, or a "
                     "file of events",
                     path));
+  }
+  if (!head.empty() && head.front() == std::byte{'<'}) {
+    throw InputError(fmt::format("{}: is XML, e.g. a calibration or settings of DV; expected events", events));
   }
   std::vector<std::string> names;
   for (const EventFormat& format : event_formats()) names.push_back(format.name);

@@ -13,11 +13,12 @@ namespace evbench {
 
 /// A file format; the folders beside this file have a family of them each.
 struct EventFormat {
-  std::string name;         ///< e.g. "evt3"
+  std::string name;         ///< e.g. "raw"
   std::string description;  ///< a line
   /// By the beginning of the file (up to 64 KiB; empty for a folder), not by its name.
   std::function<bool(const std::string& path, std::span<const std::byte> head)> recognises;
   std::function<std::unique_ptr<EventReader>(const std::string& path, const ReadOptions& options)> open;
+  bool has_columns = false;  ///< that ReadOptions::columns may name
 };
 
 /// All of them, in the order in which they are asked (all_formats.cpp).

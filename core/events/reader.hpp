@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/data/time_unit.hpp"
 #include "core/events/event.hpp"
 #include "core/events/faults.hpp"
 #include "core/geometry/camera.hpp"
@@ -22,7 +23,9 @@ struct ReadOptions {
   bool strict = false;        ///< faults are errors, not counted skips
   bool lenient = false;       ///< however many they are (EventStream::large_loss)
   int width = 0, height = 0;  ///< sensor [px], where the file of events doesn't say; before what lies beside it
-  std::string columns = {};   ///< of text, e.g. "t_us,x,y,p" (text_layout.hpp); empty: as the file looks
+  /// Of text and of rows of HDF5, e.g. "t_us,x,y,p"; of HDF5's single columns only the unit counts. Empty: as the file
+  /// looks.
+  std::string columns = {};
 };
 
 /// Keys of the metadata, of what a run's log repeats: the topics of a bag that calibration and ground truth are from,
@@ -39,6 +42,7 @@ struct StreamInfo {
   bool size_assumed = false;                                  ///< nothing says it; what the data set has
   std::optional<std::int64_t> count;                          ///< of events, where known without reading them
   std::optional<std::int64_t> start, end;                     ///< [µs] of the first and last event, likewise
+  std::optional<TimeUnit> guessed_time_unit;                  ///< of the file's times, where nothing says it
   std::vector<std::string> topics;                            ///< everything in a container: "name (type), n messages"
   std::vector<std::pair<std::string, std::string>> metadata;  ///< further fields of the header
 };

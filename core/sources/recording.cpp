@@ -10,6 +10,7 @@
 #include "core/events/event_stream.hpp"
 #include "core/events/formats.hpp"
 #include "core/events/sensor_size.hpp"
+#include "core/events/time_guess.hpp"
 #include "core/io/path.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/error.hpp"
@@ -75,7 +76,7 @@ void Recording::Options::declare(OptionSet& set) {
       .size(2)
       .rising();
   set.require_one_of({"dataset", "folder", "events", "calibration"});
-  set.add("columns", columns, "of a text of events, e.g. \"t_us,x,y,p\"; empty: as the file looks");
+  set.add("columns", columns, "of a text of events or rows of HDF5, e.g. \"t_us,x,y,p\"; empty: as the file looks");
   set.add("topic", topic, "of a bag, group of an HDF5 file: whose events; empty: the only one, or the first");
   set.add(
       "ground_truth_topic", ground_truth_topic,
@@ -155,8 +156,13 @@ Recording::Own Recording::find_own(const Options& options, const std::string& fo
                                                    std::make_shared<const RecordingFiles>(path), read_options_);
   if (find_camera) own.camera = reader->calibration();
   if (find_truth) own.ground_truth = reader->ground_truth();
-  if (path == events_) own.info = reader->info();
-  for (const auto& [key, text] : reader->info().metadata) {
+  const StreamInfo& info = reader->info();
+  if (path == events_) own.info = info;
+  if (info.start && info.end && info.count && info.guessed_time_unit) {
+    const auto duration = static_cast<double>(*info.end) - static_cast<double>(*info.start);
+    if (const auto doubt = doubtful_rate(*info.count, duration, *info.guessed_time_unit)) remarks_.push_back(*doubt);
+  }
+  for (const auto& [key, text] : info.metadata) {
     if (key == "remark" && find_truth) remarks_.push_back(text);
     if (key == kUnusableCalibration) own.unusable += (own.unusable.empty() ? "" : "; ") + text;
     const bool topic =

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 #include "core/events/bytes/event_words.hpp"
+#include "core/events/event_time.hpp"
 
 namespace evbench::hdf5 {
 namespace {
@@ -34,21 +36,60 @@ void for_each(const ColumnView& column, std::size_t count, F f) {
   });
 }
 
-template <class Number>
+template <TimeUnit unit, class Number>
 std::int64_t microseconds(Number t, std::int64_t offset) {
   if constexpr (std::is_floating_point_v<Number>) {
     // llround's result, up to 1 us beyond 142 years, in instructions that are vectorised.
-    const double us = 1e6 * static_cast<double>(t);
+    constexpr double kFactor = unit == TimeUnit::seconds        ? 1e6
+                               : unit == TimeUnit::milliseconds ? 1e3
+                               : unit == TimeUnit::microseconds ? 1.0
+                                                                : 1e-3;
+    const double us = kFactor * static_cast<double>(t);
     const bool is_time = std::abs(us) < kMostTime;
     const auto rounded = static_cast<std::int64_t>((is_time ? us : 0.0) + (us < 0.0 ? -0.5 : 0.5));
     return is_time ? rounded + offset : kBroken;
-  } else if constexpr (sizeof(Number) < 8) {
+  } else if constexpr (sizeof(Number) < 8 && unit == TimeUnit::microseconds) {
     return static_cast<std::int64_t>(t) + offset;
   } else {
-    constexpr auto kMost = static_cast<Number>(kMostTime);
-    const bool is_time = t < kMost && (std::is_unsigned_v<Number> || t > Number(0) - kMost);
-    return is_time ? static_cast<std::int64_t>(t) + offset : kBroken;
+    constexpr auto kMost = static_cast<std::int64_t>(kMostTime);
+    std::int64_t us = 0;
+    const bool fits = std::in_range<std::int64_t>(t) && to_microseconds(static_cast<std::int64_t>(t), unit, us);
+    return fits && us < kMost && us > -kMost ? us + offset : kBroken;
   }
+}
+
+/// Calls f(microseconds) with the function of a unit.
+template <class F>
+void with_unit(TimeUnit unit, F f) {
+  const auto call = [&]<TimeUnit known>() {
+    f([](auto t, std::int64_t offset) { return microseconds<known>(t, offset); });
+  };
+  switch (unit) {
+    case TimeUnit::seconds: return call.template operator()<TimeUnit::seconds>();
+    case TimeUnit::milliseconds: return call.template operator()<TimeUnit::milliseconds>();
+    case TimeUnit::nanoseconds: return call.template operator()<TimeUnit::nanoseconds>();
+    default: return call.template operator()<TimeUnit::microseconds>();
+  }
+}
+
+template <class Number>
+bool is_minus_one(Number number) {
+  if constexpr (std::is_floating_point_v<Number>) {
+    return number == Number(-1) || number == Number(0xFF) || number == Number(0xFFFF) || number == Number(0xFFFFFFFF);
+  } else {
+    const auto bits = static_cast<std::uint64_t>(number);  // sign extended
+    return bits == 0xFF || bits == 0xFFFF || bits == 0xFFFFFFFF || bits == ~std::uint64_t{0};
+  }
+}
+
+/// Breaks the times of those that are no polarity.
+void read_polarities(const ColumnView& column, std::size_t count, Darker darker, std::uint8_t* p, std::int64_t* t) {
+  const bool zero = darker != Darker::minus_one, minus_one = darker != Darker::zero;
+  for_each(column, count, [=](std::size_t i, auto number) {
+    const bool is_off = (zero && number == 0) || (minus_one && is_minus_one(number));
+    p[i] = number == 1;
+    t[i] = number == 1 || is_off || t[i] == kBroken ? t[i] : kNoPolarity;
+  });
 }
 
 /// Breaks the times of those that are no pixel's coordinate.
@@ -67,24 +108,36 @@ void read_pixels(const ColumnView& column, std::size_t count, std::uint16_t* pix
 
 }  // namespace
 
-bool to_events(const ColumnView& x, const ColumnView& y, const ColumnView& t, const ColumnView& p, std::int64_t offset,
-               std::span<Event> events) {
+void DarkerCount::add(const ColumnView& p, std::size_t count) {
+  for_each(p, count, [&](std::size_t, auto number) {
+    zeros_ += number == 0 ? 1 : 0;
+    minus_ones_ += is_minus_one(number) ? 1 : 0;
+  });
+}
+
+Darker DarkerCount::darker() const {
+  if (zeros_ + minus_ones_ == 0) return Darker::unsaid;
+  return zeros_ >= minus_ones_ ? Darker::zero : Darker::minus_one;
+}
+
+bool to_events(const ColumnViews& columns, const TimeScale& scale, Darker darker, std::span<Event> events) {
   Block block{};
   std::int64_t* const block_t = block.t.data();
-  std::uint8_t* const block_p = block.p.data();
   std::uint64_t broken = 0;
   for (std::size_t done = 0; done < events.size(); done += kBlock) {
     const std::size_t count = std::min(kBlock, events.size() - done);
     const auto rest = [&](const ColumnView& column) {
       return ColumnView{column.values, column.first + done * column.step, column.step};
     };
-    for_each(rest(t), count, [=](std::size_t i, auto number) { block_t[i] = microseconds(number, offset); });
-    read_pixels(rest(x), count, block.x.data(), block_t);
-    read_pixels(rest(y), count, block.y.data(), block_t);
-    for_each(rest(p), count, [=](std::size_t i, auto number) { block_p[i] = number > 0; });
+    with_unit(scale.unit, [&, offset = scale.offset](auto to_us) {
+      for_each(rest(columns.t), count, [=](std::size_t i, auto number) { block_t[i] = to_us(number, offset); });
+    });
+    read_pixels(rest(columns.x), count, block.x.data(), block_t);
+    read_pixels(rest(columns.y), count, block.y.data(), block_t);
+    read_polarities(rest(columns.p), count, darker, block.p.data(), block_t);
     Event* const out = events.data() + done;
     for (std::size_t i = 0; i < count; ++i) {
-      broken |= static_cast<std::uint64_t>(block.t[i] == kBroken);
+      broken |= static_cast<std::uint64_t>(block.t[i] <= kNoPolarity);
       store_event(static_cast<std::uint64_t>(block.t[i]),
                   block.x[i] | std::uint64_t{block.y[i]} << 16 | std::uint64_t{block.p[i]} << 32, out + i);
     }
@@ -92,9 +145,17 @@ bool to_events(const ColumnView& x, const ColumnView& y, const ColumnView& t, co
   return broken == 0;
 }
 
-std::int64_t to_time(const ColumnView& t, std::size_t row, std::int64_t offset) {
+std::int64_t to_time(const ColumnView& t, std::size_t row, const TimeScale& scale) {
   std::int64_t result = kBroken;
-  t.values->visit([&](auto numbers) { result = microseconds(numbers[t.first + row * t.step], offset); });
+  t.values->visit([&](auto numbers) {
+    with_unit(scale.unit, [&](auto to_us) { result = to_us(numbers[t.first + row * t.step], scale.offset); });
+  });
+  return result;
+}
+
+double to_double(const ColumnView& column, std::size_t row) {
+  double result = 0.0;
+  column.values->visit([&](auto numbers) { result = static_cast<double>(numbers[column.first + row * column.step]); });
   return result;
 }
 

@@ -4,26 +4,51 @@
 #include <limits>
 #include <span>
 
+#include "core/data/time_unit.hpp"
 #include "core/events/event.hpp"
 #include "core/events/hdf5/file.hpp"
 
 namespace evbench::hdf5 {
 
-/// The time of an event whose x, y or t is no pixel or no time.
-inline constexpr std::int64_t kBroken = std::numeric_limits<std::int64_t>::min();
+/// The time of an event whose x, y or t is no pixel or no time, and of one whose polarity is none.
+inline constexpr std::int64_t kBroken = std::numeric_limits<std::int64_t>::min(), kNoPolarity = kBroken + 1;
 
-/// Where x, y, t and p stand in what has been read: columns of their own, or every fourth number of rows x y t p.
+/// Where a column stands in what has been read: it is all of it, or every n-th number of rows of n.
 struct ColumnView {
-  const Values* values;
+  const Values* values = nullptr;
   std::size_t first = 0, step = 1;
 };
 
-/// Columns of whatever types to events: x and y in pixels; t in integer µs or floating-point s, to which `offset` [µs]
-/// is added; a positive p is brighter. False when there are broken ones.
-bool to_events(const ColumnView& x, const ColumnView& y, const ColumnView& t, const ColumnView& p, std::int64_t offset,
-               std::span<Event> events);
+struct ColumnViews {
+  ColumnView x, y, t, p;
+};
+
+/// What the numbers of t count, and what is added to them.
+struct TimeScale {
+  TimeUnit unit = TimeUnit::microseconds;
+  std::int64_t offset = 0;  ///< [µs]
+};
+
+/// What stands for darker, where 1 is brighter. −1 may be stored as the largest number of an unsigned type of 8, 16, 32
+/// or 64 bits. Unsaid: no event has told it as yet, and either counts.
+enum class Darker { unsaid, zero, minus_one };
+
+/// Finds out which one it is: what most numbers are.
+class DarkerCount {
+ public:
+  void add(const ColumnView& p, std::size_t count);
+  Darker darker() const;
+
+ private:
+  std::size_t zeros_ = 0, minus_ones_ = 0;
+};
+
+/// Columns of whatever types to events. False when there are broken ones.
+bool to_events(const ColumnViews& columns, const TimeScale& scale, Darker darker, std::span<Event> events);
 
 /// [µs]; the largest leave room for an offset and a zero. `row` counts from the view's first.
-std::int64_t to_time(const ColumnView& t, std::size_t row, std::int64_t offset);
+std::int64_t to_time(const ColumnView& t, std::size_t row, const TimeScale& scale);
+
+double to_double(const ColumnView& column, std::size_t row);
 
 }  // namespace evbench::hdf5

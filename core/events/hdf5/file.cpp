@@ -121,6 +121,61 @@ void set_cache(hid_t creation, hid_t access, std::size_t number_size, const std:
   H5Pset_chunk_cache(access, 521, compressed ? std::max<std::size_t>(1u << 20, 2 * bytes) : 0, 1.0);
 }
 
+/// What read(to) reads; none where it is no single string.
+template <class Read>
+std::optional<std::string> read_text(hid_t type, hid_t space, const std::string& name, Read read) {
+  constexpr std::size_t kMost = 4096;
+  if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1) return std::nullopt;
+  if (H5Tis_variable_str(type) > 0) {
+    char* text = nullptr;
+    checked(read(&text), name);
+    std::string result = text == nullptr ? "" : text;
+    H5free_memory(text);
+    return result;
+  }
+  const std::size_t size = H5Tget_size(type);
+  if (size > kMost) throw InputError(fmt::format("{}: has {} bytes; expected up to {}", name, size, kMost));
+  std::string result(size, '\0');
+  checked(read(result.data()), name);
+  return result.c_str();  // up to the padding
+}
+
+/// "x, y, p, t": of a compound's numbers.
+std::string member_names(hid_t type) {
+  std::vector<std::string> names;
+  for (int i = 0; i < H5Tget_nmembers(type); ++i) {
+    char* name = H5Tget_member_name(type, static_cast<unsigned>(i));
+    names.emplace_back(name == nullptr ? "" : name);
+    H5free_memory(name);
+  }
+  return fmt::to_string(fmt::join(names, ", "));
+}
+
+/// Metavision's filter, which only its own plugin decompresses.
+bool is_ecf(hid_t dataset) {
+  constexpr H5Z_filter_t kEcf = 0x8ECF;
+  const Handle creation(H5Dget_create_plist(dataset), close_properties);
+  for (int i = 0; i < H5Pget_nfilters(creation.get()); ++i) {
+    unsigned flags = 0, config = 0;
+    std::size_t values = 0;
+    if (H5Pget_filter2(creation.get(), static_cast<unsigned>(i), &flags, &values, nullptr, 0, nullptr, &config) ==
+        kEcf) {
+      return true;
+    }
+  }
+  return false;
+}
+
+[[noreturn]] void refuse_type(hid_t dataset, hid_t type, const std::string& name) {
+  if (H5Tget_class(type) != H5T_COMPOUND) {
+    throw InputError(fmt::format("{}: has no numbers; expected integers or floating point", name));
+  }
+  throw InputError(
+      fmt::format("{}: is a compound type ({:.80}), as Metavision writes it{}; expected data sets of numbers, or what "
+                  "metavision_file_to_csv or metavision_file_to_dat makes of such a file",
+                  name, member_names(type), is_ecf(dataset) ? ", compressed with its ECF filter" : ""));
+}
+
 #if H5_VERSION_GE(1, 12, 0)
 using ObjectInfo = H5O_info2_t;
 constexpr auto kVisitObjects = H5Ovisit3;
@@ -240,7 +295,7 @@ Dataset File::dataset(const std::string& path) const {
   Handle id(checked(H5Dopen2(id_.get(), path.c_str(), H5P_DEFAULT), name), close_dataset);
   const Handle type(checked(H5Dget_type(id.get()), name), close_type);
   const auto number = number_type(type.get());
-  if (!number) throw InputError(fmt::format("{}: has no numbers; expected integers or floating point", name));
+  if (!number) refuse_type(id.get(), type.get(), name);
   dataset.type_ = *number;
   const Handle space(checked(H5Dget_space(id.get()), name), close_space);
   const int rank = H5Sget_simple_extent_ndims(space.get());
@@ -264,26 +319,26 @@ Dataset File::dataset(const std::string& path) const {
 }
 
 std::string File::text(const std::string& path) const {
-  constexpr std::size_t kMost = 4096;
   const std::string name = fmt::format("{}: /{}", path_, path);
   const Handle id(checked(H5Dopen2(id_.get(), path.c_str(), H5P_DEFAULT), name), close_dataset);
   const Handle type(checked(H5Dget_type(id.get()), name), close_type);
   const Handle space(checked(H5Dget_space(id.get()), name), close_space);
-  if (H5Tget_class(type.get()) != H5T_STRING || H5Sget_simple_extent_npoints(space.get()) != 1) {
-    throw InputError(fmt::format("{}: is not a string; expected one", name));
-  }
-  if (H5Tis_variable_str(type.get()) > 0) {
-    char* text = nullptr;
-    checked(H5Dread(id.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &text), name);
-    std::string result = text == nullptr ? "" : text;
-    H5free_memory(text);
-    return result;
-  }
-  const std::size_t size = H5Tget_size(type.get());
-  if (size > kMost) throw InputError(fmt::format("{}: has {} bytes; expected up to {}", name, size, kMost));
-  std::string result(size, '\0');
-  checked(H5Dread(id.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, result.data()), name);
-  return result.c_str();  // up to the padding
+  const auto text = read_text(type.get(), space.get(), name, [&](void* to) {
+    return H5Dread(id.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, to);
+  });
+  if (!text) throw InputError(fmt::format("{}: is not a string; expected one", name));
+  return *text;
+}
+
+std::string File::text_attribute(const std::string& object, const std::string& name) const {
+  const std::string of = "/" + object, place = fmt::format("{}: {}: attribute {}", path_, of, name);
+  if (H5Aexists_by_name(id_.get(), of.c_str(), name.c_str(), H5P_DEFAULT) <= 0) return "";
+  const Handle id(H5Aopen_by_name(id_.get(), of.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), close_attribute);
+  checked(id.get(), place);
+  const Handle type(checked(H5Aget_type(id.get()), place), close_type);
+  const Handle space(checked(H5Aget_space(id.get()), place), close_space);
+  return read_text(type.get(), space.get(), place, [&](void* to) { return H5Aread(id.get(), type.get(), to); })
+      .value_or("");
 }
 
 std::vector<int> File::attribute(const std::string& group, const std::string& name) const {

@@ -69,7 +69,9 @@ class Dataset {
   std::uint64_t rows() const { return shape_.empty() ? 1 : shape_[0]; }
   std::uint64_t columns() const;  ///< numbers a row
   const std::vector<std::uint64_t>& shape() const { return shape_; }
-  std::string describe() const;  ///< e.g. "uint16", "float64 x 4"
+  std::string describe() const;                      ///< e.g. "uint16", "float64 x 4"
+  const std::string& name() const { return name_; }  ///< file and path, for messages
+  bool is_floating() const { return type_ == Values::Type::f32 || type_ == Values::Type::f64; }
 
   /// Rows first ... first + count - 1. Throws InputError when the file is broken there.
   void read(std::uint64_t first, std::uint64_t count, Values& values) const;
@@ -80,7 +82,7 @@ class Dataset {
 
  private:
   friend class File;
-  std::string name_;  ///< file and path, for messages
+  std::string name_;
   Handle id_;
   std::vector<std::uint64_t> shape_;
   Values::Type type_ = Values::Type::u8;
@@ -104,6 +106,8 @@ class File {
   std::string text(const std::string& path) const;  ///< of a data set that is one string
   /// An attribute of a group ("" is the root) of up to 16 integers; none when there isn't such a one.
   std::vector<int> attribute(const std::string& group, const std::string& name) const;
+  /// Likewise one that is a string, of a group or data set; empty when there isn't such a one.
+  std::string text_attribute(const std::string& object, const std::string& name) const;
   const std::string& path() const { return path_; }
 
  private:

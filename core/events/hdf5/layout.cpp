@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/support/error.hpp"
 
@@ -76,8 +77,9 @@ std::vector<EventLayout> find_events(const File& file) {
     if (!file.has_dataset(rows)) continue;
     EventLayout layout;
     layout.group = rows;
-    layout.name = "MVSEC";
+    layout.name = "rows";
     if (rows.starts_with("davis/")) {
+      layout.name = "MVSEC";
       layout.width = 346;
       layout.height = 260;
     }
@@ -85,6 +87,48 @@ std::vector<EventLayout> find_events(const File& file) {
   }
   std::sort(layouts.begin(), layouts.end(), [](const auto& a, const auto& b) { return a.group < b.group; });
   return layouts;
+}
+
+EventOrder find_order(const EventLayout& layout, const Dataset& rows, const EventOrder& asked) {
+  constexpr std::uint64_t kRows = 1000;
+  using enum EventColumn;
+  const std::string place = rows.name();
+  const std::size_t columns = asked.empty() ? 4 : asked.size();
+  if (rows.shape().size() != 2 || rows.columns() != columns) {
+    throw InputError(fmt::format("{}: is {}; expected rows of {} numbers: {}", place, rows.describe(), columns,
+                                 asked.empty() ? "time, x, y and polarity" : to_string(asked)));
+  }
+  const EventOrder x_y_t_p{x, y, t, p};
+  if (!asked.empty()) return asked;
+  if (layout.name == "MVSEC" || rows.rows() == 0) return x_y_t_p;
+  Values values;
+  rows.read(0, std::min(rows.rows(), kRows), values);
+  const std::vector<double> numbers = values.doubles();
+  std::vector<EventRow> sample(numbers.size() / columns);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    sample[i / columns].values.push_back(numbers[i]);
+    sample[i / columns].have_fractions.push_back(numbers[i] != std::floor(numbers[i]));
+  }
+  const EventOrder orders[] = {{t, x, y, p}, x_y_t_p, {x, y, p, t}};
+  return find_event_order(sample, orders, place);
+}
+
+TimeUnit find_time_unit(const File& file, const EventLayout& layout) {
+  const auto said = [&](const std::string& object, std::initializer_list<const char*> names) {
+    for (const char* name : names) {
+      const std::string text = file.text_attribute(object, name);
+      if (text.empty()) continue;
+      if (const auto unit = parse_time_unit(text)) return *unit;
+      throw InputError(
+          fmt::format("{}: /{}: attribute {} is \"{:.40}\"; expected s, ms, us or ns, or --columns "
+                      "(source.columns in a run's config) with e.g. t_us,x,y,p",
+                      file.path(), object, name, text));
+    }
+    return TimeUnit::unsaid;
+  };
+  const TimeUnit unit = said(layout.times(), {"unit", "units", "Unit", "Units", "time_unit", "time_units"});
+  if (unit != TimeUnit::unsaid) return unit;
+  return said(layout.is_rows() ? parent(layout.group) : layout.group, {"time_unit", "time_units"});
 }
 
 std::optional<std::pair<int, int>> find_sensor_size(const File& file, const std::string& group) {
@@ -109,7 +153,7 @@ EventLayout choose_events(const File& file, const std::string& topic) {
   if (layouts.empty()) {
     throw InputError(
         fmt::format("{}: has no events that evbench knows; expected data sets x, y, t, p in a group, or a "
-                    "data set 'events' of rows x y t p",
+                    "data set 'events' of such rows",
                     file.path()));
   }
   if (topic.empty()) return layouts.front();

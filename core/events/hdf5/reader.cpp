@@ -10,15 +10,15 @@
 #include "core/events/hdf5/columns.hpp"
 #include "core/events/hdf5/file.hpp"
 #include "core/events/hdf5/layout.hpp"
+#include "core/events/hdf5/meaning.hpp"
+#include "core/events/hdf5/table.hpp"
 #include "core/events/hdf5/trial.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
 namespace {
 
-using hdf5::kBroken;
-
-constexpr double kMostOffset = 2e18;  ///< [µs]
+using hdf5::kBroken, hdf5::kNoPolarity;
 
 class Hdf5Reader : public EventReader {
  public:
@@ -31,71 +31,42 @@ class Hdf5Reader : public EventReader {
   std::optional<Camera> calibration() override;
 
  private:
-  void open_columns();
   void describe(const ReadOptions& options);
   void find_sensor(const ReadOptions& options);
   void load();
-  bool convert(std::uint64_t row, std::span<Event> events) const;
   void drop_broken(std::uint64_t row, std::vector<Event>& events);
-  std::int64_t time(std::uint64_t row) const;
+  std::int64_t time(std::uint64_t row) const { return table_.time(row, meaning_.scale); }
 
   hdf5::File file_;
   hdf5::EventLayout layout_;
-  hdf5::Dataset x_, y_, t_, p_, rows_, index_;
-  struct {
-    hdf5::Values x, y, t, p, rows;
-    std::uint64_t begin = 0, end = 0;
-  } loaded_;  ///< some rows
+  EventColumns asked_;
+  hdf5::EventTable table_;
+  hdf5::Meaning meaning_;
+  hdf5::Dataset index_;
+  hdf5::EventTable::Piece loaded_;
   StreamInfo info_;
   Faults faults_, opening_faults_;
-  std::int64_t offset_ = 0;   ///< added to all times [µs]
-  std::uint64_t length_ = 0;  ///< events
-  std::uint64_t next_ = 0;    ///< row
+  std::uint64_t length_;    ///< events
+  std::uint64_t next_ = 0;  ///< row
 };
 
 Hdf5Reader::Hdf5Reader(const std::string& path, const ReadOptions& options)
     : file_(path),
       layout_(choose_events(file_, options.topic)),
+      asked_(options.columns.empty() ? EventColumns()
+                                     : named_event_columns(options.columns, path + ": what is asked for")),
+      table_(file_, layout_, asked_.order),
+      meaning_(find_meaning(file_, layout_, table_, asked_.unit)),
       faults_(path, options.strict),
-      opening_faults_(faults_) {
-  open_columns();
-  if (!layout_.offset.empty()) {
-    const double offset = file_.dataset(layout_.offset).first(0);
-    if (!(std::abs(offset) < kMostOffset)) throw InputError(fmt::format("{}: /{}: is no time", path, layout_.offset));
-    offset_ = std::llround(offset);
+      opening_faults_(faults_),
+      length_(table_.rows()) {
+  if (!layout_.index.empty()) index_ = file_.dataset(layout_.index);
+  if (table_.surplus() > 0) {
+    faults_.add("columns of different length", fmt::format("row {}", length_),
+                static_cast<std::int64_t>(table_.surplus()));
   }
   describe(options);
   opening_faults_ = faults_;
-}
-
-void Hdf5Reader::open_columns() {
-  if (layout_.is_rows()) {
-    rows_ = file_.dataset(layout_.group);
-    if (rows_.shape().size() != 2 || rows_.columns() != 4) {
-      throw InputError(fmt::format("{}: /{}: is {}; expected rows of 4 numbers x y t p", file_.path(), layout_.group,
-                                   rows_.describe()));
-    }
-    length_ = rows_.rows();
-    return;
-  }
-  x_ = file_.dataset(layout_.x);
-  y_ = file_.dataset(layout_.y);
-  t_ = file_.dataset(layout_.t);
-  p_ = file_.dataset(layout_.p);
-  length_ = std::min({x_.rows(), y_.rows(), t_.rows(), p_.rows()});
-  std::uint64_t longest = 0;
-  for (const hdf5::Dataset* column : {&x_, &y_, &t_, &p_}) {
-    if (column->shape().empty() || column->columns() != 1) {
-      throw InputError(fmt::format("{}: /{}: has a column that is {}; expected one number a row", file_.path(),
-                                   layout_.group, column->describe()));
-    }
-    longest = std::max(longest, column->rows());
-  }
-  if (longest != length_) {
-    faults_.add("columns of different length", fmt::format("row {}", length_),
-                static_cast<std::int64_t>(longest - length_));
-  }
-  if (!layout_.index.empty()) index_ = file_.dataset(layout_.index);
 }
 
 void Hdf5Reader::describe(const ReadOptions& options) {
@@ -116,7 +87,12 @@ void Hdf5Reader::describe(const ReadOptions& options) {
     }
   }
   info_.metadata.emplace_back("events in", "/" + layout_.group);
-  if (offset_ != 0) info_.metadata.emplace_back("t_offset [us]", fmt::to_string(offset_));
+  if (layout_.is_rows()) info_.metadata.emplace_back("columns", to_string(table_.order()));
+  info_.metadata.emplace_back("unit of time", to_string(meaning_.scale.unit) + meaning_.unit_origin);
+  if (meaning_.unit_is_guessed) info_.guessed_time_unit = meaning_.scale.unit;
+  if (meaning_.scale.offset != 0) {
+    info_.metadata.emplace_back("t_offset [us]", fmt::to_string(meaning_.scale.offset));
+  }
   find_sensor(options);
 }
 
@@ -144,12 +120,6 @@ void Hdf5Reader::find_sensor(const ReadOptions& options) {
   }
 }
 
-std::int64_t Hdf5Reader::time(std::uint64_t row) const {
-  hdf5::Values values;
-  (layout_.is_rows() ? rows_ : t_).read(row, 1, values);
-  return hdf5::to_time({&values, layout_.is_rows() ? 2u : 0u}, 0, offset_);
-}
-
 bool Hdf5Reader::read(std::vector<Event>& events) {
   constexpr std::uint64_t kEventsAtOnce = 1 << 14;  // they stay in the second-level cache
   while (next_ < length_) {
@@ -157,7 +127,7 @@ bool Hdf5Reader::read(std::vector<Event>& events) {
     events.resize(std::min(kEventsAtOnce, loaded_.end - next_));
     const std::uint64_t row = next_;
     next_ += events.size();
-    if (!convert(row, events)) drop_broken(row, events);
+    if (!to_events(table_.views(loaded_, row), meaning_.scale, meaning_.darker, events)) drop_broken(row, events);
     if (!events.empty()) return true;
   }
   events.clear();
@@ -167,37 +137,25 @@ bool Hdf5Reader::read(std::vector<Event>& events) {
 /// Some rows from the next on: so many that what a call of the library costs does not count.
 void Hdf5Reader::load() {
   const std::uint64_t most = layout_.is_rows() ? 1 << 14 : 1 << 17;
-  const std::uint64_t end = std::min(length_, (next_ / most + 1) * most), count = end - next_;
-  loaded_.end = 0;  // nothing, should this fail
-  if (layout_.is_rows()) {
-    rows_.read(next_, count, loaded_.rows);
-  } else {
-    x_.read(next_, count, loaded_.x);
-    y_.read(next_, count, loaded_.y);
-    t_.read(next_, count, loaded_.t);
-    p_.read(next_, count, loaded_.p);
-  }
-  loaded_.begin = next_;
-  loaded_.end = end;
-}
-
-/// False when some are broken.
-bool Hdf5Reader::convert(std::uint64_t row, std::span<Event> events) const {
-  const std::size_t first = row - loaded_.begin;
-  if (!layout_.is_rows()) {
-    return hdf5::to_events({&loaded_.x, first}, {&loaded_.y, first}, {&loaded_.t, first}, {&loaded_.p, first}, offset_,
-                           events);
-  }
-  const auto column = [&](std::size_t number) { return hdf5::ColumnView{&loaded_.rows, 4 * first + number, 4}; };
-  return hdf5::to_events(column(0), column(1), column(2), column(3), offset_, events);
+  table_.read(next_, std::min(length_, (next_ / most + 1) * most), loaded_);
+  if (meaning_.darker != hdf5::Darker::unsaid) return;
+  hdf5::DarkerCount count;
+  count.add(table_.views(loaded_, loaded_.begin).p, loaded_.end - loaded_.begin);
+  meaning_.darker = count.darker();
 }
 
 void Hdf5Reader::drop_broken(std::uint64_t row, std::vector<Event>& events) {
-  const auto is_broken = [](const Event& event) { return event.t == kBroken; };
-  row += static_cast<std::uint64_t>(std::ranges::find_if(events, is_broken) - events.begin());
-  const auto count = std::erase_if(events, is_broken);
-  faults_.add("events whose x, y or t is no pixel or no time", fmt::format("row {}", row),
-              static_cast<std::int64_t>(count));
+  const auto tell = [&](const std::string& kind, const auto& is_wrong) {
+    const auto first = std::ranges::find_if(events, is_wrong);
+    if (first == events.end()) return;
+    const std::string where = fmt::format("row {}", row + static_cast<std::uint64_t>(first - events.begin()));
+    faults_.add(kind, where, std::ranges::count_if(events, is_wrong));
+  };
+  tell("events whose x, y or t is no pixel or no time", [](const Event& event) { return event.t == kBroken; });
+  tell(
+      fmt::format("events whose polarity is neither {} nor 1", meaning_.darker == hdf5::Darker::minus_one ? "-1" : "0"),
+      [](const Event& event) { return event.t == kNoPolarity; });
+  std::erase_if(events, [](const Event& event) { return event.t <= kNoPolarity; });
 }
 
 /// By the index of milliseconds where it agrees with the times, by bisection of the times elsewhere.
@@ -206,8 +164,8 @@ void Hdf5Reader::seek(std::int64_t t) {
   const auto may_start_at = [&](std::uint64_t row) { return row == 0 || (row <= length_ && time(row - 1) < t); };
   next_ = 0;
   if (length_ == 0 || t <= time(0)) return;
-  const std::uint64_t ms = (static_cast<std::uint64_t>(t) - static_cast<std::uint64_t>(offset_)) / 1000;
-  if (!layout_.index.empty() && t > offset_ && ms < index_.rows()) {
+  const std::uint64_t ms = (static_cast<std::uint64_t>(t) - static_cast<std::uint64_t>(meaning_.scale.offset)) / 1000;
+  if (!layout_.index.empty() && t > meaning_.scale.offset && ms < index_.rows()) {
     const double row = index_.first(ms);
     if (row >= 0.0 && row <= static_cast<double>(length_) && may_start_at(static_cast<std::uint64_t>(row))) {
       next_ = static_cast<std::uint64_t>(row);
@@ -268,12 +226,13 @@ std::unique_ptr<EventReader> open_hdf5(const std::string& path, const ReadOption
 }
 
 EventFormat hdf5_format() {
-  return {"hdf5", "HDF5 as in DSEC, MVSEC, TUM-VIE, M3ED, EDS",
+  return {"hdf5", "HDF5 as in DSEC, MVSEC, TUM-VIE, M3ED, EDS, v2e",
           [](const std::string&, std::span<const std::byte> head) { return has_signature(head); },
           [](const std::string& path, const ReadOptions& options) {
-            hdf5::try_events(path, options.topic);
+            hdf5::try_events(path, options.topic, options.columns);
             return open_hdf5(path, options);
-          }};
+          },
+          true};
 }
 
 }  // namespace evbench

@@ -28,7 +28,9 @@ void try_file(const std::string& path, const std::vector<std::string>& what) {
 
 }  // namespace
 
-void try_events(const std::string& path, const std::string& topic) { try_file(path, {"events", topic}); }
+void try_events(const std::string& path, const std::string& topic, const std::string& columns) {
+  try_file(path, {"events", topic, columns});
+}
 
 void try_datasets(const std::string& path, const std::vector<std::string>& names) {
   std::vector<std::string> what{"datasets"};

@@ -10,8 +10,8 @@ namespace evbench::hdf5 {
 /// (trial_main.cpp), which is looked for beside the one that runs; without it there is no trial.
 
 /// Of all that the reader of events gives but for most of the events: numbers that are broken elsewhere are beyond
-/// that. `topic`: ReadOptions'.
-void try_events(const std::string& path, const std::string& topic);
+/// that. `topic`, `columns`: ReadOptions'.
+void try_events(const std::string& path, const std::string& topic, const std::string& columns);
 
 /// Of whole data sets; a missing one is for the caller to find.
 void try_datasets(const std::string& path, const std::vector<std::string>& names);

@@ -1,6 +1,6 @@
-// evbench-hdf5-trial FILE events TOPIC, or FILE datasets NAME...: once it is told a line, reads these of an HDF5 file
-// as far as trial.hpp says, then answers with a line, whatever is to be said of the file. No answer: the HDF5 library
-// crashed, or took too long.
+// evbench-hdf5-trial FILE events TOPIC COLUMNS, or FILE datasets NAME...: once it is told a line, reads these of an
+// HDF5 file as far as trial.hpp says, then answers with a line, whatever is to be said of the file. No answer: the HDF5
+// library crashed, or took too long.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -37,8 +37,8 @@ int main(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (words.size() < 3 || std::getchar() == EOF) return 2;
   try {
-    if (words[1] == "events") {
-      look_through(*evbench::open_hdf5(words[0], {.topic = words[2]}));
+    if (words[1] == "events" && words.size() == 4) {
+      look_through(*evbench::open_hdf5(words[0], {.topic = words[2], .columns = words[3]}));
     } else {
       const evbench::hdf5::File file(words[0]);
       for (const std::string& name : std::span(words).subspan(2)) {

@@ -42,6 +42,14 @@ TEST_CASE("DAT times count on when their 32 bits are used up, and may step back 
   CHECK(events[2].t == 0x100000003);
 }
 
+TEST_CASE("A DAT time that is wrong does not move the events after it") {
+  const auto reader = dat(kDatHeader2 + kChanges + data_of(Words{10, 0, 0xF0000000, 0, 11, 0}));
+  const auto events = read_all(*reader);
+  REQUIRE(events.size() == 3);
+  CHECK(events[2].t == 11);
+  CHECK(fault_counts(*reader) == std::vector<std::int64_t>{1});
+}
+
 TEST_CASE("DAT files of other versions and events, without pixels, or without a header are refused") {
   CHECK_THROWS_AS(dat(""), InputError);
   CHECK_THROWS_AS(dat(kDatHeader2), InputError);

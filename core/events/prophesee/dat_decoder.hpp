@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/events/bytes/bytes.hpp"
 #include "core/events/bytes/event_decoder.hpp"
+#include "core/events/bytes/wrapping_counter.hpp"
 
 namespace evbench {
 
@@ -18,10 +18,10 @@ class DatDecoder final : public EventDecoder {
 
  private:
   template <int x_bits, int y_bits>
-  Progress decode_as(std::span<const std::byte> in, std::span<Event> out);
+  Progress decode_as(std::span<const std::byte> in, std::uint64_t offset, std::span<Event> out);
 
   Version version_;
-  WrappingCounter time_{32};
+  WrappingCounter time_{32, 1};
 };
 
 }  // namespace evbench

@@ -2,6 +2,7 @@
 
 #include <bit>
 
+#include "core/events/bytes/bytes.hpp"
 #include "core/events/bytes/fault_count.hpp"
 
 namespace evbench {
@@ -30,12 +31,13 @@ EventDecoder::Progress Evt21Decoder::decode(std::span<const std::byte> in, std::
     } else if (type <= kOn) {
       early.add(offset + at);
     } else if (type == kTimeHigh) {
-      time_ = high_.update(head & 0xFFFFFFF) << 6;
+      time_ = high_.update(head & 0xFFFFFFF, offset + at) << 6;
       has_time_ = true;
     } else if (type != kTrigger && type != kOthers && type != kContinued) {
       unknown.add(offset + at);
     }
   }
+  high_.report(faults);
   early.report(faults, "words with events before the first time");
   unknown.report(faults, "words of unknown type");
   return {at, count};

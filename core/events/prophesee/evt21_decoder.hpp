@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/events/bytes/bytes.hpp"
 #include "core/events/bytes/event_decoder.hpp"
+#include "core/events/bytes/wrapping_counter.hpp"
 
 namespace evbench {
 
@@ -18,7 +18,7 @@ class Evt21Decoder final : public EventDecoder {
 
  private:
   Order order_;
-  WrappingCounter high_{28};
+  WrappingCounter high_{28, 64};
   std::int64_t time_ = 0;  ///< of the high bits [µs]
   bool has_time_ = false;
 };

@@ -1,5 +1,6 @@
 #include "core/events/prophesee/evt2_decoder.hpp"
 
+#include "core/events/bytes/bytes.hpp"
 #include "core/events/bytes/fault_count.hpp"
 
 namespace evbench {
@@ -26,12 +27,13 @@ EventDecoder::Progress Evt2Decoder::decode(std::span<const std::byte> in, std::u
       event += has_time_;
       if (!has_time_) early.add(position());
     } else if (type == kTimeHigh) {
-      time_ = high_.update(word & 0xFFFFFFF) << 6;
+      time_ = high_.update(word & 0xFFFFFFF, position()) << 6;
       has_time_ = true;
     } else if (type != kTrigger && type != kOthers && type != kContinued) {
       unknown.add(position());
     }
   }
+  high_.report(faults);
   early.report(faults, "events before the first time");
   unknown.report(faults, "words of unknown type");
   return {static_cast<std::size_t>(at - in.data()), static_cast<std::size_t>(event - out.data())};

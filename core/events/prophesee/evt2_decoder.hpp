@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/events/bytes/bytes.hpp"
 #include "core/events/bytes/event_decoder.hpp"
+#include "core/events/bytes/wrapping_counter.hpp"
 
 namespace evbench {
 
@@ -14,7 +14,7 @@ class Evt2Decoder final : public EventDecoder {
   void reset() override { *this = {}; }
 
  private:
-  WrappingCounter high_{28};
+  WrappingCounter high_{28, 64};
   std::int64_t time_ = 0;  ///< of the high bits [µs]
   bool has_time_ = false;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/events/bytes/bytes.hpp"
 #include "core/events/bytes/fault_count.hpp"
 
 namespace evbench {
@@ -40,8 +41,8 @@ bool polarity(std::uint32_t word) { return (word & 0x800) != 0; }
 
 }  // namespace
 
-void Evt3Decoder::set_time_high(std::uint32_t value) {
-  const std::int64_t high = high_.update(value) << 12;
+void Evt3Decoder::set_time_high(std::uint32_t value, std::uint64_t place) {
+  const std::int64_t high = high_.update(value, place) << 12;
   // The low bits come with the next word; until then a new high begins at its zero.
   if (high != (time_ & ~kLowMask)) time_ = high;
   has_time_ = true;
@@ -53,7 +54,7 @@ std::size_t Evt3Decoder::find_state(std::span<const std::byte> in, std::uint64_t
   std::size_t at = 0;
   for (; at + kWord <= in.size() && !(has_time_ && has_row_); at += kWord) {
     const std::uint32_t word = load<std::uint16_t>(in.data() + at), type = word >> 12;
-    if (type == kTimeHigh) set_time_high(word & 0xFFF);
+    if (type == kTimeHigh) set_time_high(word & 0xFFF, offset + at);
     if (type == kTimeLow && has_time_) time_ = (time_ & ~kLowMask) | (word & 0xFFF);
     if (type == kRow) {
       y_ = static_cast<std::uint16_t>(coordinate(word));
@@ -73,6 +74,7 @@ EventDecoder::Progress Evt3Decoder::decode(std::span<const std::byte> in, std::u
   FaultCount unknown;
   const std::byte* at = in.data() + begin;
   const std::byte* const end = in.data() + in.size() / kWord * kWord;
+  const auto place = [&] { return offset + static_cast<std::uint64_t>(at - in.data()); };
   Event* event = out.data();
   const Event* const last = out.data() + (out.size() < kMostOfWord ? 0 : out.size() - kMostOfWord + 1);
   std::int64_t time = time_;
@@ -94,14 +96,15 @@ EventDecoder::Progress Evt3Decoder::decode(std::span<const std::byte> in, std::u
       vector_ = {coordinate(word), polarity(word)};
     } else if (type == kTimeHigh) {
       time_ = time;
-      set_time_high(word & 0xFFF);
+      set_time_high(word & 0xFFF, place());
       time = time_;
     } else if (((kKnown >> type) & 1) == 0) {
-      unknown.add(offset + static_cast<std::uint64_t>(at - in.data()));
+      unknown.add(place());
     }
   }
   time_ = time;
   y_ = y;
+  high_.report(faults);
   unknown.report(faults, "words of unknown type");
   return {static_cast<std::size_t>(at - in.data()), static_cast<std::size_t>(event - out.data())};
 }

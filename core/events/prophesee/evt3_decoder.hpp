@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/events/bytes/bytes.hpp"
 #include "core/events/bytes/event_decoder.hpp"
+#include "core/events/bytes/wrapping_counter.hpp"
 
 namespace evbench {
 
@@ -21,9 +21,9 @@ class Evt3Decoder final : public EventDecoder {
   };
 
   std::size_t find_state(std::span<const std::byte> in, std::uint64_t offset, Faults& faults);
-  void set_time_high(std::uint32_t value);
+  void set_time_high(std::uint32_t value, std::uint64_t place);
 
-  WrappingCounter high_{12};
+  WrappingCounter high_{12, 4096};
   std::int64_t time_ = 0;  ///< [µs]
   std::uint16_t y_ = 0;
   Vector vector_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/events/bytes/decoded_reader.hpp"
 #include "core/events/prophesee/evt21_decoder.hpp"
 #include "core/events/prophesee/evt2_decoder.hpp"
@@ -21,10 +23,16 @@ std::string encoding(const PropheseeHeader& header) {
   return format.empty() ? version : format;
 }
 
-bool has_encoding(std::span<const std::byte> head, const std::string& expected) {
+/// Of any encoding, those that evbench does not read, too: a comment of a text may look like the name of one, but text
+/// has no bytes below tabs.
+bool is_raw(std::span<const std::byte> head) {
   if (head.size() < 2 || head[0] != std::byte{'%'}) return false;
   try {
-    return encoding(parse_prophesee_header(head, "")) == expected;
+    const PropheseeHeader header = parse_prophesee_header(head, "");
+    const std::string name = encoding(header);
+    const auto data = head.subspan(static_cast<std::size_t>(header.size));
+    return name == "2" || name == "2.1" || name == "3" || name.starts_with("EVT") ||
+           (!name.empty() && std::ranges::any_of(data, [](std::byte byte) { return byte < std::byte{0x09}; }));
   } catch (const InputError&) {
     return false;
   }
@@ -47,16 +55,6 @@ std::unique_ptr<EventReader> make_reader(std::unique_ptr<ByteSource> source, con
   return std::make_unique<DecodedReader>(std::move(source), header.size, std::move(decoder), std::move(info), options);
 }
 
-using Open = std::unique_ptr<EventReader> (*)(std::unique_ptr<ByteSource>, const ReadOptions&);
-
-EventFormat format(const std::string& name, const std::string& version, Open open) {
-  return {name, fmt::format("Prophesee RAW, EVT {}", version),
-          [version](const std::string&, std::span<const std::byte> head) { return has_encoding(head, version); },
-          [open](const std::string& path, const ReadOptions& options) {
-            return open(std::make_unique<FileBytes>(path), options);
-          }};
-}
-
 }  // namespace
 
 std::unique_ptr<EventReader> open_evt2(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
@@ -76,8 +74,18 @@ std::unique_ptr<EventReader> open_evt3(std::unique_ptr<ByteSource> source, const
   return make_reader(std::move(source), header, std::make_unique<Evt3Decoder>(), "3", options);
 }
 
-EventFormat evt2_format() { return format("evt2", "2", open_evt2); }
-EventFormat evt21_format() { return format("evt21", "2.1", open_evt21); }
-EventFormat evt3_format() { return format("evt3", "3", open_evt3); }
+EventFormat raw_format() {
+  return {"raw", "Prophesee RAW, EVT 2, 2.1 and 3",
+          [](const std::string&, std::span<const std::byte> head) { return is_raw(head); },
+          [](const std::string& path, const ReadOptions& options) {
+            auto source = std::make_unique<FileBytes>(path);
+            const std::string found = encoding(read_prophesee_header(*source));
+            if (found == "2") return open_evt2(std::move(source), options);
+            if (found == "2.1") return open_evt21(std::move(source), options);
+            if (found == "3") return open_evt3(std::move(source), options);
+            throw InputError(
+                fmt::format("{}: has encoding \"{:.40}\" in its header; expected EVT 2, 2.1 or 3", path, found));
+          }};
+}
 
 }  // namespace evbench

@@ -14,8 +14,7 @@ std::unique_ptr<EventReader> open_evt2(std::unique_ptr<ByteSource> source, const
 std::unique_ptr<EventReader> open_evt21(std::unique_ptr<ByteSource> source, const ReadOptions& options);
 std::unique_ptr<EventReader> open_evt3(std::unique_ptr<ByteSource> source, const ReadOptions& options);
 
-EventFormat evt2_format();
-EventFormat evt21_format();
-EventFormat evt3_format();
+/// Of these three; a RAW file of another encoding is refused by that name.
+EventFormat raw_format();
 
 }  // namespace evbench

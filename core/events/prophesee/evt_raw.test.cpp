@@ -1,6 +1,7 @@
 #include "core/events/prophesee/evt_raw.hpp"
 
 #include "core/events/bytes/bytes.hpp"
+#include "core/events/event_stream.hpp"
 #include "core/events/formats.hpp"
 #include "core/events/testing/reading.hpp"
 #include "core/support/error.hpp"
@@ -108,6 +109,44 @@ TEST_CASE("EVT 2 times count on when their 34 bits are used up") {
         std::vector<Event>{{(std::int64_t{1} << 34) - 1, 1, 1, true}, {(std::int64_t{1} << 34) + 1, 2, 2, false}});
 }
 
+TEST_CASE("EVT 3 events of a time that was left over in a buffer are an oddity, and the others have their own times") {
+  const auto path = data_file("cases/evt3_stale/evt3_stale.raw");
+  if (!path) return;
+  EventStream stream(*path);
+  const auto events = read_all(stream);
+  CHECK(events.size() == 3000);
+  CHECK(events.front().t < 100);
+  CHECK(events.back().t == 299'900);
+  CHECK(stream.faults().size() == 2);
+  EventStream strict(*path, {.read = {.strict = true}});
+  CHECK_THROWS_WITH(read_all(strict), Catch::Matchers::ContainsSubstring("restarted"));
+}
+
+TEST_CASE("One wrong word of EVT 3's time, or another camera's start, does not move what follows") {
+  Words16 words{0x0001};  // 20 s of an event each 4096 us
+  for (int i = 0; i < 5000; ++i) words.insert(words.end(), {std::uint16_t(0x8000 | (i & 0xFFF)), 0x2001});
+  for (const std::size_t at : {1001u, 3001u, 8001u}) {
+    for (const std::uint16_t wrong : Words16{0x8001, 0x8800, 0x8FFE}) {
+      Words16 broken = words;
+      broken[at] = wrong;
+      EventStream stream(evt3(kHeader3 + data_of(broken)), "test");
+      const auto events = read_all(stream);
+      CAPTURE(at, wrong);
+      CHECK(events.size() == 4999);
+      CHECK(events.back().t == 4999 * 4096);
+      CHECK(stream.faults().size() == 2);
+    }
+  }
+  Words16 restarted = words;
+  restarted.insert(restarted.end(), words.begin() + 1, words.begin() + 1001);
+  EventStream stream(evt3(kHeader3 + data_of(restarted)), "test");
+  CHECK(read_all(stream).size() == 5000);
+  CHECK(stream.faults().front().first.find("restarted") != std::string::npos);
+  restarted.insert(restarted.end(), words.begin() + 1, words.begin() + 1001);
+  EventStream broken(evt3(kHeader3 + data_of(restarted)), "test");
+  CHECK_THROWS_WITH(read_all(broken), Catch::Matchers::ContainsSubstring("restarted"));
+}
+
 TEST_CASE("EVT 2.1 words give an event for each bit, whichever half comes first") {
   const std::vector<Event> expected{{0x45, 32, 3, true}, {0x45, 63, 3, true}, {0x46, 64, 4, false}};
   const std::uint64_t time = std::uint64_t{0x80000001} << 32;
@@ -141,6 +180,24 @@ TEST_CASE("RAW files of another encoding, without a header, or with an endless o
   CHECK_THROWS_AS(evt3("RIFF"), InputError);
   CHECK_THROWS_AS(evt3(""), InputError);
   CHECK_THROWS_AS(evt3("% evt 3.0\n% " + std::string(100'000, 'x')), InputError);
+}
+
+TEST_CASE("RAW files of other encodings are refused by the word of their header, and others have no columns") {
+  const TemporaryFolder folder;
+  const std::string data = data_of(Words32{0, 1, 2});
+  for (const std::string line : {"% evt 4.0", "% format EVT4;height=720;width=1280", "% format HISTO3D;height=72"}) {
+    const auto path = folder.write("a.raw", line + "\n% end\n" + data);
+    CHECK_THROWS_WITH(open_events(path), Catch::Matchers::ContainsSubstring("in its header; expected EVT 2, 2.1 or 3"));
+  }
+  CHECK_THROWS_WITH(open_events(folder.file("a.raw")), Catch::Matchers::ContainsSubstring("encoding \"HISTO3D\""));
+  const auto text = folder.write("a.txt", "% format txyp\n0.1 1 2 1\n0.2 1 2 0\n");
+  CHECK(read_all(*open_events(text)).size() == 2);
+  const auto evt3_file = folder.write("b.raw", kHeader3 + data_of(Words16{0x8001, 0x0010, 0x2001}));
+  CHECK(read_all(*open_events(evt3_file)).size() == 1);
+  CHECK_THROWS_WITH(open_events(evt3_file, {.columns = "t,x,y,p"}),
+                    Catch::Matchers::ContainsSubstring("has no columns"));
+  CHECK_THROWS_WITH(open_events(folder.write("dv.xml", "<?xml version=\"1.0\"?>\n<opencv_storage>\n")),
+                    Catch::Matchers::ContainsSubstring("is XML, e.g. a calibration or settings of DV"));
 }
 
 TEST_CASE("What makes no sense in a RAW file is counted and skipped, or refused") {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/events/bytes/bytes.hpp"
+#include "core/events/bytes/wrapping_counter.hpp"
 
 namespace evbench {
 namespace {
@@ -11,19 +12,19 @@ namespace {
 void decode_libcaer(std::span<const std::byte> bytes, std::int64_t base, const std::string& where,
                     std::vector<Event>& events, Faults& faults) {
   constexpr std::size_t kSize = 8;
-  std::int64_t wrapped = 0, last = 0, invalid = 0;
-  for (; bytes.size() >= kSize; bytes = bytes.subspan(kSize)) {
+  WrappingCounter counter{31, 1};
+  std::int64_t invalid = 0;
+  for (std::uint64_t at = 0; bytes.size() >= kSize; bytes = bytes.subspan(kSize), at += kSize) {
     const auto word = load<std::uint32_t>(bytes.data());
-    const auto time = static_cast<std::int64_t>(load<std::uint32_t>(bytes.data() + 4) & 0x7FFF'FFFF);
-    if (last - time > (std::int64_t{1} << 30)) wrapped += std::int64_t{1} << 31;
-    last = time;
+    const std::int64_t time = counter.update(load<std::uint32_t>(bytes.data() + 4) & 0x7FFF'FFFF, at);
     if ((word & 1) == 0) {
       ++invalid;
       continue;
     }
-    events.push_back({base + wrapped + time, static_cast<std::uint16_t>(word >> 17),
+    events.push_back({base + time, static_cast<std::uint16_t>(word >> 17),
                       static_cast<std::uint16_t>((word >> 2) & 0x7FFF), (word & 2) != 0});
   }
+  counter.report(faults, (where + ", byte").c_str());
   if (invalid > 0) faults.add("events that the camera marked as invalid", where, invalid);
   if (!bytes.empty()) faults.add("packets that end within an event", where);
 }
@@ -31,13 +32,14 @@ void decode_libcaer(std::span<const std::byte> bytes, std::int64_t base, const s
 /// The high four bits of a word say what the others are.
 void decode_libcaer_cmp(std::span<const std::byte> bytes, std::int64_t base, const std::string& where,
                         std::vector<Event>& events, Faults& faults) {
+  WrappingCounter counter{12, 4096};
   std::int64_t high = 0, low = 0, unknown = 0;
   std::uint16_t x = 0, y = 0;
   bool on = false;
-  for (; bytes.size() >= 2; bytes = bytes.subspan(2)) {
+  for (std::uint64_t at = 0; bytes.size() >= 2; bytes = bytes.subspan(2), at += 2) {
     const auto word = load<std::uint16_t>(bytes.data());
     switch (word >> 12) {
-      case 0: high = (word & 0xFFF) << 12; break;
+      case 0: high = counter.update(word & 0xFFF, at) << 12; break;
       case 1: low = word & 0xFFF; break;
       case 2: x = word & 0x7FF; break;
       case 3:
@@ -56,6 +58,7 @@ void decode_libcaer_cmp(std::span<const std::byte> bytes, std::int64_t base, con
       default: ++unknown;
     }
   }
+  counter.report(faults, (where + ", byte").c_str());
   if (unknown > 0) faults.add("unknown words of libcaer_cmp", where, unknown);
   if (!bytes.empty()) faults.add("packets that end within an event", where);
 }

@@ -35,9 +35,11 @@ std::string data_of(const std::vector<T>& numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T)};
 }
 
-inline std::vector<Event> read_all(EventReader& reader) {
+/// Of an EventReader or EventStream.
+template <class Source>
+std::vector<Event> read_all(Source& source) {
   std::vector<Event> all;
-  for (std::vector<Event> chunk; reader.read(chunk);) all.insert(all.end(), chunk.begin(), chunk.end());
+  for (std::vector<Event> chunk; source.read(chunk);) all.insert(all.end(), chunk.begin(), chunk.end());
   return all;
 }
 

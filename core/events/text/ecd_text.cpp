@@ -25,8 +25,9 @@ std::string_view text_of(std::span<const std::byte> bytes) {
 }
 
 bool is_text(std::span<const std::byte> head) {
-  // "#!": of other formats, e.g. AEDAT; "{": JSON, e.g. a config.
+  // "#!": of other formats, e.g. AEDAT; "{": JSON, e.g. a config; "<": XML.
   return !head.empty() && !text_of(head).starts_with("#!") && !text_of(head).starts_with("{") &&
+         !text_of(head).starts_with("<") &&
          std::none_of(head.begin(), head.end(), [](std::byte byte) {
            return byte < std::byte{0x20} && byte != std::byte{'\n'} && byte != std::byte{'\r'} &&
                   byte != std::byte{'\t'};
@@ -46,6 +47,7 @@ StreamInfo info_of(const TextLayout& layout, const ReadOptions& options) {
   info.width = layout.width > 0 ? layout.width : options.width;
   info.height = layout.height > 0 ? layout.height : options.height;
   info.metadata = layout.description();
+  if (layout.unit_is_guessed) info.guessed_time_unit = layout.unit;
   return info;
 }
 
@@ -146,7 +148,7 @@ EventFormat ecd_text_format() {
             std::array<std::byte, 512> content{};
             return is_text(std::span(content).first(open_compressed_file(path)->read(0, content)));
           },
-          open_ecd_text};
+          open_ecd_text, true};
 }
 
 }  // namespace evbench

@@ -8,12 +8,13 @@
 
 #include "core/events/bytes/bytes.hpp"
 #include "core/events/bytes/fault_count.hpp"
+#include "core/events/event_time.hpp"
 #include "core/support/index.hpp"
 
 namespace evbench {
 namespace {
 
-using Column = TextLayout::Column;
+using Column = EventColumn;
 
 constexpr std::size_t kLongestLine = 1 << 16;
 // How far behind a line's beginning parse_common may look: half of it for where a column begins, half for the column.
@@ -94,14 +95,10 @@ bool read_polarity(const char*& at, bool& on) {
 
 /// Any number of the unit; integers exactly.
 bool parse_time(std::string_view text, TimeUnit unit, std::int64_t& t) {
-  constexpr std::int64_t kLatestNanosecond = 9'000'000'000'000'000'000;
   std::int64_t integer = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), integer);
-  if (unit == TimeUnit::nanoseconds && error == std::errc() && end == text.data() + text.size()) {
-    if (integer > kLatestNanosecond || integer < -kLatestNanosecond) return false;
-    const std::int64_t part = ((integer % 1000) + 1000) % 1000;
-    t = (integer - part) / 1000 + (part >= 500 ? 1 : 0);
-    return true;
+  if (error == std::errc() && end == text.data() + text.size()) {
+    return to_microseconds(integer, unit, t) && std::abs(static_cast<double>(t)) <= kLatestTime;
   }
   double number = 0.0;
   if (!parse_number(text, number)) return false;

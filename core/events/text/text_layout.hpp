@@ -6,15 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/data/time_unit.hpp"
+#include "core/events/event_columns.hpp"
 
 namespace evbench {
 
 /// How a text file holds events: a line each, columns between blanks, tabs, commas or semicolons.
 struct TextLayout {
-  enum class Column : std::uint8_t { t, x, y, p, other };
-
-  std::vector<Column> columns;
+  EventOrder columns;
   TimeUnit unit = TimeUnit::seconds;
   bool unit_is_guessed = true;  ///< as no name says it
   std::string origin;           ///< what tells the order of the columns, for people; empty: their values

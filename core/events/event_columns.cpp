@@ -1,0 +1,95 @@
+#include "core/events/event_columns.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/data/columns.hpp"
+#include "core/support/error.hpp"
+#include "core/support/index.hpp"
+
+namespace evbench {
+namespace {
+
+constexpr Quantity kEventQuantities[] = {kTime, {"x", "x.*"}, {"y", "y.*"}, {"p", "p.*|on"}};
+
+/// Nobody writes pixels with a fraction and times without.
+bool fits(const EventRow& row, const EventOrder& order, std::size_t time) {
+  constexpr double kMostPixels = 65535.0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const double value = row.values[i];
+    const bool is_pixel = value >= 0.0 && value <= kMostPixels && value == std::floor(value) &&
+                          (!row.have_fractions[i] || row.have_fractions[time]);
+    if ((order[i] == EventColumn::x || order[i] == EventColumn::y) && !is_pixel) return false;
+    if (order[i] == EventColumn::p && value != 0.0 && std::abs(value) != 1.0) return false;
+  }
+  return true;
+}
+
+std::int64_t count_fitting(std::span<const EventRow> rows, const EventOrder& order, bool in_time_order) {
+  const std::size_t time = index(std::ranges::find(order, EventColumn::t) - order.begin());
+  double last = rows.front().values[time];
+  return std::ranges::count_if(rows, [&](const EventRow& row) {
+    const double t = row.values[time], before = std::exchange(last, t);
+    // Out of order only what can't be a pixel.
+    return fits(row, order, time) && (in_time_order ? t >= before : bool(row.have_fractions[time]));
+  });
+}
+
+}  // namespace
+
+std::string to_string(const EventOrder& order) {
+  constexpr const char* kNames[] = {"t", "x", "y", "p", "-"};
+  std::vector<std::string> names;
+  for (const EventColumn column : order) names.emplace_back(kNames[index(column)]);
+  return fmt::to_string(fmt::join(names, " "));
+}
+
+bool read_event_columns(std::string_view names, EventColumns& columns) {
+  const Columns found(names, kEventQuantities);
+  EventOrder order(found.size(), EventColumn::other);
+  constexpr EventColumn kColumns[] = {EventColumn::t, EventColumn::x, EventColumn::y, EventColumn::p};
+  for (std::size_t i = 0; i < std::size(kEventQuantities); ++i) {
+    const auto column = found.find(kEventQuantities[i].name);
+    if (!column) return false;
+    order[*column] = kColumns[i];
+  }
+  columns = {std::move(order), found.time_unit()};
+  return true;
+}
+
+EventColumns named_event_columns(std::string_view names, const std::string& place) {
+  EventColumns columns;
+  if (read_event_columns(names, columns)) return columns;
+  throw InputError(fmt::format("{}: names the columns \"{:.80}\"; expected time, x, y and polarity", place, names));
+}
+
+EventOrder find_event_order(std::span<const EventRow> rows, std::span<const EventOrder> orders,
+                            const std::string& place) {
+  std::vector<std::string> possible;
+  for (const bool in_time_order : {true, false}) {
+    std::vector<std::int64_t> counts;
+    for (const EventOrder& order : orders) counts.push_back(count_fitting(rows, order, in_time_order));
+    const std::int64_t most = std::ranges::max(counts);
+    if (most == 0) continue;
+    if (std::ranges::count(counts, most) == 1) {
+      if (20 * most >= 19 * std::ssize(rows)) return orders[index(std::ranges::find(counts, most) - counts.begin())];
+      continue;
+    }
+    for (std::size_t i = 0; i < orders.size() && possible.size() < 2; ++i) {
+      if (counts[i] == most) possible.push_back(to_string(orders[i]));
+    }
+  }
+  std::vector<std::string> all;
+  for (const EventOrder& order : orders) all.push_back(to_string(order));
+  throw InputError(fmt::format("{}: has lines like \"{}\", which {}; give --columns (source.columns in a run's config)",
+                               place, fmt::to_string(fmt::join(rows.front().values, " ")),
+                               possible.empty()
+                                   ? fmt::format("are neither \"{}\"", fmt::to_string(fmt::join(all, "\" nor \"")))
+                                   : fmt::format("may be \"{}\"", fmt::to_string(fmt::join(possible, "\" and \"")))));
+}
+
+}  // namespace evbench

@@ -1,0 +1,85 @@
+#include "core/events/hdf5/meaning.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/events/time_guess.hpp"
+#include "core/support/error.hpp"
+
+namespace evbench::hdf5 {
+namespace {
+
+struct Sample {
+  double first_time = 0.0;
+  bool have_fractions = false;
+  DarkerCount darker;
+};
+
+Sample take_sample(const EventTable& table) {
+  constexpr std::uint64_t kRows = 1000;
+  Sample sample;
+  const std::uint64_t rows = table.rows(), count = std::min(rows, kRows);
+  EventTable::Piece piece;
+  for (const std::uint64_t begin : {std::uint64_t{0}, (rows - count) / 2, rows - count}) {
+    table.read_times_and_polarities(begin, begin + count, piece);
+    const ColumnViews views = table.views(piece, begin);
+    sample.darker.add(views.p, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double t = to_double(views.t, i);
+      if (begin == 0 && i == 0) sample.first_time = t;
+      sample.have_fractions |= std::isfinite(t) && t != std::floor(t);
+    }
+  }
+  return sample;
+}
+
+/// Of the same unit as the times.
+double read_offset(const File& file, const EventLayout& layout) {
+  if (layout.offset.empty()) return 0.0;
+  const Dataset dataset = file.dataset(layout.offset);
+  return dataset.first(0);
+}
+
+void check_rate(const EventTable& table, const TimeScale& scale) {
+  constexpr double kFewest = 1.0;  // events a second
+  const std::int64_t start = table.time(0, scale), end = table.time(table.rows() - 1, scale);
+  if (start == kBroken || end == kBroken) return;
+  const auto duration = static_cast<double>(end) - static_cast<double>(start);
+  const auto count = static_cast<std::int64_t>(table.rows());
+  const auto doubt = doubtful_rate(count, duration, scale.unit);
+  if (doubt && static_cast<double>(count) < kFewest * 1e-6 * duration) {
+    throw InputError(fmt::format("{}: {}", table.times().name(), *doubt));
+  }
+}
+
+}  // namespace
+
+Meaning find_meaning(const File& file, const EventLayout& layout, const EventTable& table, TimeUnit asked) {
+  constexpr double kMostOffset = 2e18;  // [us]
+  const Sample sample = take_sample(table);
+  const double offset = read_offset(file, layout);
+  Meaning meaning;
+  meaning.darker = sample.darker.darker();
+  meaning.scale.unit = asked;
+  meaning.unit_origin = " (as asked for)";
+  if (asked == TimeUnit::unsaid) {
+    meaning.scale.unit = find_time_unit(file, layout);
+    meaning.unit_origin = " (as an attribute says)";
+  }
+  if (meaning.scale.unit == TimeUnit::unsaid) {
+    meaning.unit_is_guessed = true;
+    meaning.scale.unit = guess_time_unit(sample.first_time + offset, sample.have_fractions, table.times().name());
+    meaning.unit_origin = sample.have_fractions ? " (as they have fractions)" : " (as they are whole numbers)";
+  }
+  const double offset_us = offset * 1e6 / per_second(meaning.scale.unit);
+  if (!(std::abs(offset_us) < kMostOffset)) {
+    throw InputError(fmt::format("{}: /{}: is no time", file.path(), layout.offset));
+  }
+  meaning.scale.offset = std::llround(offset_us);
+  if (meaning.unit_is_guessed && table.rows() > 0) check_rate(table, meaning.scale);
+  return meaning;
+}
+
+}  // namespace evbench::hdf5
