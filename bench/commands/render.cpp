@@ -54,7 +54,7 @@ void execute(const RenderArguments& arguments) {
     });
   }
   if (arguments.quiet) return;
-  for (const std::string& remark : report.remarks) fmt::print(stderr, "evbench: {}\n", remark);
+  for (const std::string& remark : report.remarks) fmt::print(stderr, "evbench render: {}\n", remark);
   for (const auto& [kind, fault] : report.faults) {
     fmt::print("left out: {} {}; the first: {}\n", fault.count, kind, fault.first);
   }

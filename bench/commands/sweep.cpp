@@ -38,21 +38,6 @@ struct SweepArguments {
   bool dry_run = false, quiet = false;
 };
 
-std::string shown_duration(double seconds) {
-  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
-  return fmt::format("{:.1f} h", seconds / 3600.0);
-}
-
-std::string shown_progress(const SweepProgress& now) {
-  std::string text = fmt::format("{} of {} done", now.done, now.runs);
-  if (now.failed > 0) text += fmt::format(", {} failed", now.failed);
-  text += fmt::format(", {} running", now.running);
-  if (now.elsewhere > 0) text += fmt::format(", {} elsewhere", now.elsewhere);
-  if (now.seconds_left > 0.0) text += fmt::format(", about {} left", shown_duration(now.seconds_left));
-  return text;
-}
-
 void print_plan(const std::vector<PlannedRun>& runs, const SweepPlan& plan, const ExecutorOptions& options) {
   constexpr const char* kConditions[] = {"to do", "complete", "broken off", "damaged"};
   std::set<std::string> all, to_do, failed;  // keys: a job may stand at several places
@@ -86,7 +71,7 @@ int do_locally(const std::vector<PlannedRun>& runs, const SweepArguments& argume
       line.clear();
       fmt::print(stderr, "{}\n", describe(progress.troubled[told]));
     }
-    line.update(shown_progress(progress));
+    line.update(describe(progress));
     now = progress;
   };
   const auto complete = [&] {
@@ -179,10 +164,10 @@ int execute(SweepArguments& arguments, Plugins& plugins) {
 void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code) {
   auto arguments = std::make_shared<SweepArguments>();
   CLI::App* command = app.add_subcommand("sweep", "Vary a config along axes: many runs, each in a process of its own");
-  command->add_option("file", arguments->file, "JSON: a sweep, or a config (then with --over)")->required();
+  command->add_option("file", arguments->file, "JSON: a sweep, or a config (then with --vary)")->required();
   command
       ->add_option(
-          "--over", arguments->over,
+          "--vary", arguments->over,
           "Vary the config over these values, another axis: KEY=VALUES, e.g. seed=1..5, KEY=a,b, KEY=0.01..1:7log")
       ->type_name("KEY=VALUES")
       ->allow_extra_args(false);
