@@ -12,6 +12,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/exit_code.hpp"
+#include "bench/commands/name_check.hpp"
 #include "bench/commands/number_check.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/run_folder.hpp"
@@ -192,7 +193,7 @@ void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code) {
       ->add_option("--executor", arguments->executor,
                    "local: here; slurm: a job array; none: only write OUT/NAME/manifest.jsonl, of which evbench task "
                    "does a line")
-      ->check(CLI::IsMember({"local", "slurm", "none"}))
+      ->check(one_of({"local", "slurm", "none"}))
       ->capture_default_str();
   command->add_option("--partition", arguments->slurm.partition, "Slurm: partition");
   command->add_option("--time", arguments->slurm.time, "Slurm: time of a task, e.g. 30 or 2:00:00; else by --timeout");
