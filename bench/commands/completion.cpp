@@ -113,6 +113,7 @@ _evbench() {
     _evbench_names "$reached" "$place"
   fi
   COMPREPLY=($(compgen -W "$names" -- "$current"))
+  return 0  # none fits: bash completes files
 }
 complete -o default -F _evbench evbench
 )";

@@ -1,9 +1,11 @@
 #include "bench/commands/man_page.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <algorithm>
-#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "bench/commands/command_line.hpp"
 #include "bench/commands/exit_code.hpp"
@@ -38,8 +40,8 @@ std::string item(const CLI::Option& option) {
     text += names;
   }
   if (takes_value(option)) {
-    std::string type = option.get_type_name();
-    if (const std::string text_of = "TEXT:{"; type.starts_with(text_of)) type = type.substr(text_of.size() - 1);
+    const std::vector<std::string> choices = choices_of(option);
+    const std::string type = choices.empty() ? option.get_type_name() : fmt::format("{}", fmt::join(choices, " | "));
     if (!(option.get_positional() && type == "TEXT")) text += " \\fI" + escaped(type) + "\\fR";
     if (!option.get_default_str().empty()) text += escaped(" (" + option.get_default_str() + ")");
   }
