@@ -23,5 +23,5 @@ cat <<'END'
 export PATH=$PWD/build/release/bin:$PATH
 evbench table results/table1_simulated --format markdown                           # a table for a paper, again
 evbench figure trajectory results/table1_simulated --out trajectories.svg          # and a figure of its runs
-evbench sweep configs/examples/simulated_tracks.json --over seed=1..5 -j 2         # over seeds
+evbench sweep configs/examples/simulated_tracks.json --vary seed=1..5 -j 2         # over seeds
 END

@@ -24,7 +24,8 @@ void check_refused(const TemporaryFolder& folder, const std::string& arguments, 
   const Outcome outcome = testing::evbench(folder, arguments);
   INFO(arguments << "\n" << outcome.err);
   CHECK(outcome.exit_code == exit_code);
-  CHECK_THAT(outcome.err, Catch::Matchers::StartsWith("evbench: ") && ContainsSubstring(message));
+  CHECK_THAT(outcome.err, Catch::Matchers::StartsWith("evbench " + arguments.substr(0, arguments.find(' ')) + ": ") &&
+                              ContainsSubstring(message));
   CHECK(std::ranges::count(outcome.err, '\n') == 1);
   CHECK(outcome.out.empty());
 }

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -10,33 +9,32 @@
 #include <string>
 #include <vector>
 
+#include "bench/commands/command_line.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/exit_code.hpp"
+#include "bench/commands/failures.hpp"
 #include "bench/plugins.hpp"
 #include "bench/version.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
-#include "core/support/nearest.hpp"
 
 namespace {
 
-/// A sentence where a word stands in the place of a command and is none; empty: that is not what is wrong.
-std::string command_suggestion(const CLI::App& app, int argc, char** argv) {
-  const CLI::App* place = &app;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const auto commands = place->get_subcommands({});
-    if (commands.empty() || word.empty() || word.starts_with('-')) return "";
-    const auto found = std::ranges::find(commands, word, [](const CLI::App* command) { return command->get_name(); });
-    if (found == commands.end()) {
-      std::vector<std::string> names;
-      for (const CLI::App* command : commands) names.push_back(command->get_name());
-      return fmt::format("evbench: \"{}\" is no command{}\n", word, evbench::suggestion(word, names));
-    }
-    place = *found;
+/// Each of the messages begins with the command.
+int tell(const std::string& command, const std::string& message, int exit_code) {
+  fmt::print(stderr, "{}: {}\n", command, message);
+  return exit_code;
+}
+
+int refuse(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  if (argc == 1) {
+    fmt::print(stderr, "{}", app.help());
+    return evbench::kExitBadInput;
   }
-  return "";
+  const evbench::NamedCommand command = evbench::reached_command(app);
+  const std::string text = evbench::explain(app, error, {argv + 1, argv + argc});
+  return tell(command.words, fmt::format("{}\n{}", text, evbench::usage_of(command)), evbench::kExitBadInput);
 }
 
 int run_program(int argc, char** argv) {
@@ -84,34 +82,30 @@ int run_program(int argc, char** argv) {
   evbench::add_new_config(app, plugins);
   evbench::add_new_plugin(app, plugins);
   evbench::add_check_plugin(app, plugins, exit_code);
+  evbench::add_help(app);
+  const auto fail = [&](const std::string& message, int code) {
+    return tell(evbench::reached_command(app).words, message, code);
+  };
   try {
     app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // for help, or the version
+    app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    if (const std::string text = command_suggestion(app, argc, argv); !text.empty()) {
-      fmt::print(stderr, "{}", text);
-      return evbench::kExitBadInput;
-    }
-    if (argc == 1) {
-      fmt::print(stderr, "{}", app.help());
-      return evbench::kExitBadInput;
-    }
-    return app.exit(error) == 0 ? evbench::kExitDone : evbench::kExitBadInput;
+    return refuse(app, error, argc, argv);
   } catch (const evbench::Interrupted& interrupted) {
-    fmt::print(stderr, "evbench: {}\n", interrupted.what());
-    return 128 + interrupted.signal();
+    return fail(interrupted.what(), 128 + interrupted.signal());
   } catch (const evbench::OutputError& error) {
-    fmt::print(stderr, "evbench: {}\n", error.what());
-    return evbench::kExitNotWritten;
+    return fail(error.what(), evbench::kExitNotWritten);
+  } catch (const evbench::SeveralErrors& errors) {
+    for (const std::string& message : errors.others()) fail(message, evbench::kExitBadInput);
+    return fail(errors.what(), evbench::kExitBadInput);
   } catch (const std::filesystem::filesystem_error& error) {  // a folder that can't be read, links in a circle
-    fmt::print(stderr, "evbench: {}: {}\n", error.path1().string(), error.code().message());
-    return evbench::kExitBadInput;
+    return fail(fmt::format("{}: {}", error.path1().string(), error.code().message()), evbench::kExitBadInput);
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "evbench: the memory is not enough\n");
-    return evbench::kExitNotWritten;
+    return fail("the memory is not enough", evbench::kExitNotWritten);
   } catch (const std::exception& error) {
     if (std::ferror(stdout) != 0) return evbench::kExitNotWritten;  // is told at the end
-    fmt::print(stderr, "evbench: {}\n", error.what());
-    return evbench::kExitBadInput;
+    return fail(error.what(), evbench::kExitBadInput);
   }
   return exit_code;
 }

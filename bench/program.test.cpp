@@ -43,6 +43,16 @@ TEST_CASE("Every command has help, and the program a version", "[slow]") {
              ContainsSubstring("--set") && ContainsSubstring("metrics.json"));
 }
 
+TEST_CASE("help prints what --help does, of all commands and of each") {
+  const TemporaryFolder folder;
+  for (const char* command : {"", "run", "dataset get", "completion"}) {
+    INFO(command);
+    const Outcome help = testing::evbench(folder, std::string("help ") + command);
+    CHECK(help.exit_code == 0);
+    CHECK(help.out == testing::evbench(folder, std::string(command) + " --help").out);
+  }
+}
+
 TEST_CASE("All plugins are listed, and each is described for people and as a JSON Schema", "[slow]") {
   const TemporaryFolder folder;
   const std::string list = testing::evbench(folder, "list").out;
@@ -77,14 +87,22 @@ TEST_CASE("A command line that is not understood ends with exit code 2 and says 
   refused("frobnicate", "\"frobnicate\" is no command; known: ");
   refused("runn c.json", "\"runn\" is no command; did you mean \"run\"?");
   refused("dataset lst", "\"lst\" is no command; did you mean \"list\"?");
-  refused("run", "config is required");
-  refused("run c.json --foo", "--foo");
+  refused("run", "evbench run: config is required\nUsage: evbench run [OPTIONS] config\n");
+  refused("run c.json --quite", "evbench run: there is no option --quite; did you mean \"--quiet\"?\nUsage: ");
+  refused("run c.json --jobz=2", "there is no option --jobz; did you mean \"--jobs\"?");
+  refused("eval --algin a b", "evbench eval: there is no option --algin; did you mean \"--align\"?");
+  refused("sweep c.json --over seed=1", "there is no option --over");
+  refused("dataset", "evbench dataset: expected a command: list, get\nUsage: evbench dataset ");
+  refused("dataset get --quiet=3 a b", "evbench dataset get: ");
+  refused("table . --format txt", "evbench table: --format: \"txt\" is none of its names; did you mean \"text\"?");
+  refused("help runn", "evbench help: \"runn\" is no command; did you mean \"run\"?");
+  refused("help dataset gte", "did you mean \"get\"?");
   refused("describe backnd gp_map", "backnd");
   refused("describe backend", "expected config, a plugin's name");
   refused("describe gp_mop", "expected config, a plugin's name");
   refused("describe config gp_map", "expected no name");
   refused("describe backend gp_mop", "did you mean \"gp_map\"?");
-  refused("table nowhere", "nowhere: is not a folder");
+  refused("table nowhere", "evbench table: nowhere: is not a folder");
   refused("table .", "no metrics.json");
   refused("run c.json --set seed", "expected KEY=VALUE");
   refused("run c.json --set seed=1 source.duration=2", "source.duration=2");
@@ -113,10 +131,34 @@ TEST_CASE("A run that is watched says how far it is, where its errors go", "[slo
   folder.write("c.json", dump_json(short_config()));
   const Outcome watched = testing::evbench(folder, "run c.json --watch");
   CHECK(watched.exit_code == 0);
-  for (const char* const part : {"of 3.00 s", " tracks, ", " landmarks, ", " states, delay ", "x real time\n"}) {
+  for (const char* const part : {"of 3.00 s", " tracks, ", " landmarks, ", " states, delay ", ", real-time factor "}) {
     CHECK_THAT(watched.err, ContainsSubstring(part));
   }
-  CHECK_THAT(watched.out, ContainsSubstring("written: results/short") && !ContainsSubstring("x real time"));
+  CHECK_THAT(watched.out, ContainsSubstring("written: results/short") && !ContainsSubstring("delay "));
+}
+
+TEST_CASE("Runs of a config that are done at a time are those that are done in turn", "[slow]") {
+  const TemporaryFolder folder;
+  folder.write("c.json", dump_json(short_comparison()));
+  REQUIRE(testing::evbench(folder, "run c.json --quiet --problem --tracks --out one").exit_code == 0);
+  const Outcome several = testing::evbench(folder, "run c.json --problem --tracks --out two -j 2");
+  CHECK(several.exit_code == 0);
+  CHECK(several.err.empty());
+  CHECK(several.out.find("asynchronous") < several.out.find("frames of 50 ms"));
+  CHECK_THAT(several.out, ContainsSubstring("ATE [m]") && ContainsSubstring("written: two/short"));
+  REQUIRE(names_in(folder.file("one/short")) == names_in(folder.file("two/short")));
+  for (const std::string& key : names_in(folder.file("one/short"))) {
+    INFO(key);
+    const std::string one = folder.file("one/short/" + key), two = folder.file("two/short/" + key);
+    CHECK(names_in(one) == names_in(two));
+    for (const char* file : {"/final.tum", "/online.tum", "/told.txt", "/map.ply", "/tracks.txt", "/job.json"}) {
+      CHECK(read_file(one + file) == read_file(two + file));
+    }
+  }
+  CHECK_THAT(testing::evbench(folder, "run c.json -j 2 --out two").out, ContainsSubstring("complete already: 2 of 2"));
+  const std::string before = read_file(*runs_of(folder.file("two/short")).begin() + "/timing.csv");
+  CHECK(testing::evbench(folder, "run c.json -j 2 --out two --force --quiet").exit_code == 0);
+  CHECK(read_file(*runs_of(folder.file("two/short")).begin() + "/timing.csv") != before);
 }
 
 TEST_CASE("What a run's front-end told is told again by the front-end recorded", "[slow]") {
@@ -193,7 +235,8 @@ TEST_CASE("A run that is interrupted leaves no half of it, and says what is comp
     until ls results/short/bundle_adjustment-*/metrics.json > /dev/null 2>&1; do sleep 0.1; done
     sleep 0.5; kill -TERM $pid; kill -TERM $pid; wait $pid)");
   CHECK(outcome.exit_code == 143);
-  CHECK(outcome.err == "evbench: c.json: interrupted; 1 of 2 runs are complete, the same command goes on from there\n");
+  CHECK(outcome.err ==
+        "evbench run: c.json: interrupted; 1 of 2 runs are complete, the same command goes on from there\n");
   CHECK_THAT(outcome.out, ContainsSubstring("frames") && ContainsSubstring("ATE [m]") &&
                               ContainsSubstring("written: results/short"));
   CHECK(names_in(folder.file("results/short")).size() == 1);

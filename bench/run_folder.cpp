@@ -117,7 +117,7 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
   if (!execution.complete) return record;
   record.data_s = result.data_s;
   record.runtime_s = times.frontend + times.backend;
-  if (*record.runtime_s > 0.0) record.realtime_factor = *record.data_s / *record.runtime_s;
+  record.realtime_factor = realtime_factor(*record.data_s, *record.runtime_s);
   record.times = {times.source, times.frontend, times.backend, times.waiting, times.harness, times.total};
   std::vector<double> updates;
   for (const UpdateRecord& update : result.updates) updates.push_back(update.seconds);

@@ -176,6 +176,8 @@ function(evbench_install_package)
             FILES_MATCHING PATTERN "*.hpp" PATTERN "testing" EXCLUDE)
   endforeach()
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/configs DESTINATION ${CMAKE_INSTALL_DATADIR}/evbench)
+  install(FILES ${CMAKE_SOURCE_DIR}/examples/python/evbench_process.py DESTINATION ${CMAKE_INSTALL_DATADIR}/evbench/python)
+  evbench_install_documents()
   set(package ${CMAKE_INSTALL_LIBDIR}/cmake/evbench)
   install(EXPORT evbench_targets NAMESPACE evbench:: DESTINATION ${package})
   configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/evbenchConfig.cmake.in
@@ -186,4 +188,30 @@ function(evbench_install_package)
           DESTINATION ${package})
   install(FILES ${CMAKE_SOURCE_DIR}/core/testing/catch2.hpp
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/evbench/core/testing)
+endfunction()
+
+# Documents, by the paths with which messages cite them; completion and the manual page, which the program itself writes
+# when it is installed.
+function(evbench_install_documents)
+  file(GLOB_RECURSE documents CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/core/*.md
+       ${CMAKE_SOURCE_DIR}/eval/*.md ${CMAKE_SOURCE_DIR}/frontends/*.md ${CMAKE_SOURCE_DIR}/backends/*.md
+       ${CMAKE_SOURCE_DIR}/bench/*.md)
+  list(FILTER documents EXCLUDE REGEX "/templates/")
+  foreach(document IN LISTS documents ITEMS README.md LICENSE)
+    get_filename_component(folder ${document} DIRECTORY)
+    install(FILES ${CMAKE_SOURCE_DIR}/${document} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
+  endforeach()
+  if(CMAKE_CROSSCOMPILING)
+    return()
+  endif()
+  set(written ${CMAKE_BINARY_DIR}/written)
+  install(CODE "
+    file(MAKE_DIRECTORY \"${written}\")
+    set(evbench \"${CMAKE_COMMAND}\" -E env --unset=EVBENCH_PLUGINS \"$<TARGET_FILE:evbench>\")
+    execute_process(COMMAND \${evbench} completion bash OUTPUT_FILE \"${written}/evbench\" COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND \${evbench} completion zsh OUTPUT_FILE \"${written}/_evbench\" COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND \${evbench} man OUTPUT_FILE \"${written}/evbench.1\" COMMAND_ERROR_IS_FATAL ANY)")
+  install(FILES ${written}/evbench DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${written}/_evbench DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  install(FILES ${written}/evbench.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 endfunction()

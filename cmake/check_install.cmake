@@ -1,6 +1,6 @@
 # cmake -DBUILD=... -DWORK=... -DGENERATOR=... -DCXX=... [-DFLAGS=...] -P check_install.cmake: installs to a temporary prefix. As a
 # stranger would, outside the build tree, builds and runs a program that finds evbench there, and takes a new plugin of
-# each kind from `evbench new-plugin` to a table; then gives the program libraries that are no plugins of this evbench.
+# each kind from `evbench new-plugin` to a table; looks for the documents that messages cite; then gives the program libraries that are no plugins of this evbench.
 cmake_minimum_required(VERSION 3.22)
 
 include(${CMAKE_CURRENT_LIST_DIR}/as_stranger.cmake)
@@ -10,13 +10,15 @@ run(COMMAND ${evbench} list)
 foreach(kind IN LISTS kinds)
   run(COMMAND ${evbench} new-plugin ${kind} my_${kind} --out ${WORK}/project/my_${kind} OUTPUT "build/libmy_${kind}.so")
 endforeach()
+run(COMMAND ${evbench} new-plugin backend my_minimal --minimal --out ${WORK}/project/my_minimal
+    OUTPUT "build/libmy_minimal.so")
 
 # All in one project, which is configured once.
 file(WRITE ${WORK}/project/CMakeLists.txt [[
 cmake_minimum_required(VERSION 3.22)
 project(stranger LANGUAGES CXX)
 enable_testing()
-foreach(kind backend frontend source)
+foreach(kind backend frontend source minimal)
   add_subdirectory(my_${kind})
 endforeach()
 find_package(evbench 0.1 REQUIRED)
@@ -60,8 +62,28 @@ foreach(kind IN LISTS kinds)
   run(COMMAND ${evbench} run ${WORK}/project/my_${kind}/config.json --out ${WORK}/results --plugin ${library}
       OUTPUT "my_backend +[0-9]|gp_map +[0-9]")
 endforeach()
+run(COMMAND ${evbench} run ${WORK}/project/my_minimal/config.json --out ${WORK}/results --plugin
+            ${WORK}/build/libmy_minimal.so OUTPUT "my_minimal +[0-9]")
 run(COMMAND ${evbench} table ${WORK}/results/my_backend OUTPUT "my_backend +[0-9]")
 run(COMMAND ${CMAKE_COMMAND} -E env EVBENCH_PLUGINS=${WORK}/build ${evbench} check-plugin my_source OUTPUT "ok")
+
+# Documents that help and descriptions cite; what shells and man read.
+set(share ${WORK}/prefix/share)
+execute_process(COMMAND ${evbench} --help-all OUTPUT_VARIABLE texts COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${evbench} list OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "[a-z_]+/[a-z_/]+\\.md" cited "${texts}${list}")
+foreach(document IN LISTS cited ITEMS core/process/protocol.md bench/sweep/sweep.md eval/metrics.md README.md)
+  if(NOT EXISTS ${share}/doc/evbench/${document})
+    message(SEND_ERROR "${document} is cited, and is not installed in ${share}/doc/evbench; expected it there")
+  endif()
+endforeach()
+run(COMMAND bash -n ${share}/bash-completion/completions/evbench)
+foreach(file zsh/site-functions/_evbench man/man1/evbench.1 evbench/python/evbench_process.py)
+  file(SIZE ${share}/${file} size)
+  if(size LESS 500)
+    message(SEND_ERROR "${share}/${file} has ${size} bytes; expected all of it")
+  endif()
+endforeach()
 
 file(WRITE ${WORK}/text.so "no library")
 file(COPY_FILE ${WORK}/build/libmy_source.so ${WORK}/twin.so)

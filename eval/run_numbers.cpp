@@ -36,6 +36,14 @@ void list_numbers(const Json& node, const std::string& prefix, std::set<std::str
   }
 }
 
+/// Keys that runs have, those first that are columns of tables.
+std::vector<std::string> suggested_keys(const std::vector<RunNumbers>& runs) {
+  std::vector<std::string> keys = keys_of(runs);
+  const auto place = [](const std::string& key) { return std::ranges::find(known_metrics(), key, &Metric::key); };
+  std::ranges::stable_sort(keys, {}, place);
+  return keys;
+}
+
 constexpr const char* kParts[] = {"final", "online", "covariance", "common"};
 
 }  // namespace
@@ -104,7 +112,7 @@ std::vector<Metric> metrics_of(const std::vector<std::string>& keys, const std::
   for (const std::string& key : keys) {
     if (!any_has(runs, key)) {
       throw InputError(fmt::format("no run has the metric \"{}\"{} (evbench table --list-metrics has them all)", key,
-                                   suggestion(key, keys_of(runs))));
+                                   suggestion(key, suggested_keys(runs))));
     }
     metrics.push_back(metric_of(key));
   }

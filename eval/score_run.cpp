@@ -13,13 +13,6 @@
 namespace evbench {
 namespace {
 
-/// An estimate's file: empty where there is no estimate.
-PoseTrajectory read_estimate(const std::string& path) {
-  std::error_code error;
-  const bool empty = std::filesystem::is_regular_file(path, error) && std::filesystem::file_size(path, error) == 0;
-  return empty ? PoseTrajectory() : read_tum(path);
-}
-
 /// The protocol's time range, as far as the run goes.
 OptionSet::List clip(const OptionSet::List& range, const std::optional<TimeRange>& run) {
   if (!run) return range;
@@ -99,6 +92,12 @@ Json covariance_scores(const std::vector<RelativePose>& poses, const PoseTraject
 }
 
 }  // namespace
+
+PoseTrajectory read_estimate(const std::string& path) {
+  std::error_code error;
+  const bool empty = std::filesystem::is_regular_file(path, error) && std::filesystem::file_size(path, error) == 0;
+  return empty ? PoseTrajectory() : read_tum(path);
+}
 
 void score_run(const std::string& folder, const ScoreOptions& options, RunRecord& record) {
   const auto set = [&](bool online, Json& scores, std::string& unscored) {

@@ -7,6 +7,9 @@
 
 namespace evbench {
 
+/// A run's final.tum or online.tum; empty where the run has no trajectory.
+PoseTrajectory read_estimate(const std::string& path);
+
 /// Scores what lies in a run's folder, final.tum, online.tum, told.txt (at zero and at equal latency) and
 /// covariance.txt against groundtruth.tum: sets the record's scores, or why there are none (no groundtruth.tum, no
 /// trajectory, too few poses to compare). Ground truth outside of the record's range is not used. So the scores of a

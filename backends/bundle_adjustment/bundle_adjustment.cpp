@@ -310,8 +310,11 @@ void BundleAdjustment::update_motion(int view) {
 }
 
 void BundleAdjustment::finish() {
+  const std::string reason = waiting_for_;
+  const bool had_frames = !map_.views.empty();
   if (std::optional<Frame> frame = frames_.rest()) process(std::move(*frame));
   if (segments_.empty()) {
+    if (had_frames) waiting_for_ = reason;  // the rest of a frame shows few tracks
     monitor_.fail(map_.views.empty() ? 0.0 : map_.views.back().t, "never initialised: " + waiting_for_);
     return;
   }

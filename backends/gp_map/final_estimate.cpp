@@ -14,11 +14,12 @@
 namespace evbench::gp_map {
 
 void GpMap::finish() {
+  const bool had_map = world_.has_value();
   const std::string reason = first_map_.reason();  // while there were data: the last state stands after their end
   if (const std::optional<double> last = placement_.last()) step(*last);
   if (!world_) {
     monitor_.fail(std::min(first_map_.newest(), until_),
-                  reason.empty() ? "no observations" : "no first map: " + reason);
+                  "no first map: " + (had_map ? first_map_.reason() : reason));
     return;
   }
   world_->trusted = true;  // nothing more will tell whether the map is right

@@ -68,6 +68,11 @@ void FirstMapFinder::begin_anew() {
   waiting_ = "the last one had no place for most tracks";
 }
 
+std::string FirstMapFinder::reason() const {
+  if (refused_.empty() || waiting_.empty()) return refused_ + waiting_;
+  return fmt::format("{}; the last attempt, from {:.3f} to {:.3f} s: {}", waiting_, last_->t0, last_->t1, refused_);
+}
+
 /// None where there is nothing new to see.
 std::optional<FirstMapFinder::Look> FirstMapFinder::look_at(const TrackBuffer& tracks, double t) {
   state_times_.push_back(t);
@@ -75,7 +80,11 @@ std::optional<FirstMapFinder::Look> FirstMapFinder::look_at(const TrackBuffer& t
   waiting_ = matches.reason;
   if (!matches.reason.empty() || !worthwhile(matches)) return std::nullopt;
   std::vector<double> times = view_times(matches.t0, matches.t1, options_.initialiser.window);
-  if (times.size() < 3) return std::nullopt;
+  if (times.size() < 3) {
+    waiting_ = fmt::format("{} tracks are seen from {:.3f} to {:.3f} s, {:.3f} s needed", matches.tracks.size(),
+                           matches.t0, matches.t1, 2.0 * options_.initialiser.window);
+    return std::nullopt;
+  }
   last_ = Progress{matches.t0, matches.t1, matches.median_motion()};
   Initialiser::Attempt attempt = initialiser_.explain(matches);
   refused_ = attempt.reason;

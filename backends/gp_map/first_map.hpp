@@ -40,8 +40,8 @@ class FirstMapFinder {
   /// The last map was none: another one is looked for from the next view on.
   void begin_anew();
 
-  /// Why there is none: why the last attempt was vain, or what it would have taken to make one.
-  const std::string& reason() const { return refused_.empty() ? waiting_ : refused_; }
+  /// Why there is none: what it would have taken to make another attempt, and why the last one was vain.
+  std::string reason() const;
 
   /// Of the last state before the first map; 0 before any.
   double newest() const { return state_times_.empty() ? 0.0 : state_times_.back(); }
@@ -71,7 +71,8 @@ class FirstMapFinder {
   Initialiser initialiser_;
   std::optional<Progress> last_;
   std::vector<double> state_times_;
-  std::string refused_, waiting_;
+  std::string refused_;  ///< by the last attempt
+  std::string waiting_ = "no observations";
 };
 
 }  // namespace evbench::gp_map

@@ -184,7 +184,19 @@ TEST_CASE("A camera at rest gives no map and says so") {
   const auto result = run(scene);
   CHECK(result.backend->status().state == RunState::failed);
   CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("no first map"));
+  CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("the tracks have moved by"));
   CHECK(result.backend->trajectory().empty());
+}
+
+TEST_CASE("Observations of a time that is too short for a first map are told as such, not as none") {
+  for (const double duration : {0.05, 0.13, 0.18}) {
+    INFO(duration);
+    const auto result = run(TrackedScene(duration));
+    CHECK(result.backend->status().state == RunState::failed);
+    CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("no first map: "));
+    CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring(duration < 0.1 ? "track" : "needed"));
+    CHECK_THAT(result.backend->status().reason, !Catch::Matchers::ContainsSubstring("no observations"));
+  }
 }
 
 TEST_CASE("Nothing, one track, and two observations are no reason to crash") {
@@ -192,6 +204,7 @@ TEST_CASE("Nothing, one track, and two observations are no reason to crash") {
   empty.advance({{}, {}, 1.0});
   empty.finish();
   CHECK(empty.status().state == RunState::failed);
+  CHECK(empty.status().reason == "no first map: no observations");
   CHECK_FALSE(empty.pose(0.5));
 
   GpMap one({}, {});
@@ -200,6 +213,7 @@ TEST_CASE("Nothing, one track, and two observations are no reason to crash") {
   one.advance({track, {}, 1.0});
   one.finish();
   CHECK(one.status().state == RunState::failed);
+  CHECK_THAT(one.status().reason, Catch::Matchers::ContainsSubstring("1 track observed around"));
 }
 
 TEST_CASE("Covariance is positive and smallest at the anchor", "[slow]") {

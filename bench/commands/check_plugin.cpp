@@ -12,6 +12,7 @@
 #include "bench/battery/battery.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/exit_code.hpp"
+#include "bench/commands/name_check.hpp"
 #include "core/plugin/registry.hpp"
 #include "core/support/error.hpp"
 #include "core/support/json_reason.hpp"
@@ -164,7 +165,7 @@ void add_check_plugin(CLI::App& app, const Plugins& plugins, int& exit_code) {
   CLI::App* command = app.add_subcommand("check-plugin", "Check that plugins do what all of their kind must do");
   command->add_option("name", arguments->names, "Names; without one all from outside, or all where there are none");
   command->add_option("--kind", arguments->kind, "source, frontend or backend; without it each kind")
-      ->check(CLI::IsMember({"source", "frontend", "backend"}));
+      ->check(one_of({"source", "frontend", "backend"}));
   command->add_option("--options", arguments->options, "The plugin's options, a JSON object")->capture_default_str();
   command->add_option("--source", arguments->source,
                       "What front-ends are tried on, as in a config: {\"type\": NAME, options}; by default simulated "

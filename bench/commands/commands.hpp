@@ -43,6 +43,9 @@ void add_status(CLI::App& app, int& exit_code);
 /// `exit_code` likewise: 3 when a check fails.
 void add_check_plugin(CLI::App& app, const Plugins& plugins, int& exit_code);
 
+/// The commands that tell of the others: help, completion, man. To be added last.
+void add_help(CLI::App& app);
+
 /// The option --set of commands that read configs, a KEY=VALUE each time; `text`: its help.
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const std::string& text);
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/name_check.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/common_time.hpp"
 #include "eval/comparison_table.hpp"
@@ -40,7 +41,7 @@ void add_compare(CLI::App& app) {
                   "What is compared, e.g. ate.trans_m.rmse,common.rpe.trans_m.rmse,times.backend_ms.p99");
   command->add_flag("--online", arguments->options.online, "Scores of the poses as estimated when they were made");
   command->add_option("--format", arguments->format, "Format")
-      ->check(CLI::IsMember({"text", "markdown", "csv", "latex"}))
+      ->check(one_of({"text", "markdown", "csv", "latex"}))
       ->capture_default_str();
   add_text_output(*command, arguments->out);
   command->callback([arguments] { execute(*arguments); });

@@ -7,6 +7,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/failures.hpp"
+#include "bench/commands/name_check.hpp"
 #include "bench/commands/number_check.hpp"
 #include "core/data/pose_file.hpp"
 #include "core/data/tum.hpp"
@@ -181,13 +182,13 @@ void add_file_options(CLI::App& command, EvalArguments& arguments) {
           "--format", arguments.format,
           "Columns of both files: tum (t x y z qx qy qz qw), euroc (t x y z qw qx qy qz), kitti (3x4 matrices), "
           "robotevt (t r11..r33 x y z); auto: as their names or number tell")
-      ->check(CLI::IsMember(to_strings(kPoseFormatNames)))
+      ->check(one_of(to_strings(kPoseFormatNames)))
       ->capture_default_str();
   command.add_option("--times", arguments.times, "Times, one a line, of trajectories without (KITTI)")
       ->type_name("FILE");
   const auto add_unit = [&](const char* name, std::string& unit, const std::string& whose) {
     command.add_option(name, unit, "Unit of the " + whose + "'s times; auto: as their column's name says, or seconds")
-        ->check(CLI::IsMember(to_strings(kTimeUnitNames)))
+        ->check(one_of(to_strings(kTimeUnitNames)))
         ->capture_default_str();
   };
   add_unit("--groundtruth_unit", arguments.ground_truth_unit, "ground truth");
@@ -201,7 +202,7 @@ void add_alignment_options(CLI::App& command, EvalArguments& arguments) {
   auto* origin = command.add_flag("--align_origin", arguments.align_origin, "Make the first poses equal");
   origin->excludes(align)->excludes(scale);
   command.add_option("--alignment", arguments.alignment, "The same by name, and yaw only (about z)")
-      ->check(CLI::IsMember(to_strings(kAlignmentNames)))
+      ->check(one_of(to_strings(kAlignmentNames)))
       ->excludes(align)
       ->excludes(scale)
       ->excludes(origin);
@@ -230,7 +231,7 @@ void add_relative_options(CLI::App& command, EvalArguments& arguments) {
       ->check(above_zero())
       ->capture_default_str();
   command.add_option("-u,--delta_unit", arguments.delta_unit, "Unit of delta: frames, seconds, metres, degrees")
-      ->check(CLI::IsMember({"f", "s", "m", "d"}))
+      ->check(one_of({"f", "s", "m", "d"}))
       ->capture_default_str();
   command.add_option("-t,--delta_tol", options.rpe_tolerance, "How far from delta a pair may be, relative to it")
       ->check(not_negative())
@@ -247,7 +248,7 @@ void add_segment_options(CLI::App& command, EvalArguments& arguments) {
           .add_option("--segments", options.segments,
                       "Also errors over sub-trajectories in % and deg/m, as rpg_trajectory_evaluation (rpg) or "
                       "the KITTI odometry benchmark (kitti) define them")
-          ->check(CLI::IsMember(to_strings(kSegmentRuleNames)))
+          ->check(one_of(to_strings(kSegmentRuleNames)))
           ->capture_default_str();
   command
       .add_option("--segment_lengths", options.segment_lengths,
@@ -258,13 +259,13 @@ void add_segment_options(CLI::App& command, EvalArguments& arguments) {
       ->type_name("LENGTH,...")
       ->needs(rule);
   command.add_option("--segment_unit", options.segment_unit, "What --segment_lengths are in")
-      ->check(CLI::IsMember(to_strings(kLengthUnitNames)))
+      ->check(one_of(to_strings(kLengthUnitNames)))
       ->capture_default_str();
 }
 
 void add_output_options(CLI::App& command, EvalArguments& arguments) {
   command.add_option("--table", arguments.table, "Print a table of this format; of several estimates: text")
-      ->check(CLI::IsMember(to_strings(kTableFormatNames)));
+      ->check(one_of(to_strings(kTableFormatNames)));
   command
       .add_option("--json", arguments.json,
                   "Write the scores, with the structure of a run's metrics.json; of several estimates a list of them")

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/name_check.hpp"
 #include "bench/experiment.hpp"
 #include "bench/plugins.hpp"
 #include "bench/run_folder.hpp"
@@ -145,7 +146,7 @@ void add_export(CLI::App& app, const Plugins& plugins) {
       ->type_name("FILE.zip");
   command
       ->add_option("--evo-error", arguments->evo_error, "Which errors: absolute or relative, translation or rotation")
-      ->check(CLI::IsMember(to_strings(kEvoErrorNames)))
+      ->check(one_of(to_strings(kEvoErrorNames)))
       ->capture_default_str();
   command
       ->add_option("--rpg", arguments->rpg,

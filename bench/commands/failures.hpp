@@ -1,21 +1,30 @@
 #pragma once
 
-#include <fmt/format.h>
-
-#include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/support/error.hpp"
 
 namespace evbench {
 
-/// What went wrong with some of many, told when the others are done: prints all messages but the last, which is thrown
-/// as an InputError. Nothing where there are none.
-inline void throw_together(const std::vector<std::string>& messages) {
+/// What went wrong with some of many; what() is the last of the messages.
+class SeveralErrors : public InputError {
+ public:
+  SeveralErrors(std::vector<std::string> others, const std::string& last)
+      : InputError(last), others_(std::move(others)) {}
+  const std::vector<std::string>& others() const { return others_; }
+
+ private:
+  std::vector<std::string> others_;
+};
+
+/// Tells it when the others are done. Nothing where there are no messages.
+inline void throw_together(std::vector<std::string> messages) {
   if (messages.empty()) return;
-  for (std::size_t i = 0; i + 1 < messages.size(); ++i) fmt::print(stderr, "evbench: {}\n", messages[i]);
-  throw InputError(messages.back());
+  const std::string last = std::move(messages.back());
+  messages.pop_back();
+  throw SeveralErrors(std::move(messages), last);
 }
 
 }  // namespace evbench

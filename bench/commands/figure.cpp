@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/name_check.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/common_time.hpp"
 #include "bench/figures/run_figures.hpp"
@@ -125,7 +126,7 @@ void add_figure(CLI::App& app) {
   auto arguments = std::make_shared<FigureArguments>();
   CLI::App* command =
       app.add_subcommand("figure", "Draw runs for a paper: sweeps, boxes, errors, trajectories, profiles");
-  command->add_option("kind", arguments->kind, "What is drawn")->required()->check(CLI::IsMember(kind_names()));
+  command->add_option("kind", arguments->kind, "What is drawn")->required()->check(one_of(kind_names()));
   add_folders(*command, arguments->folders);
   command->add_option("--out", arguments->out, "The file: .svg, .pdf or .png")->required()->type_name("FILE");
   add_list_option(*command, "--metrics", arguments->options.metrics, "What is shown, a panel each; else ATE, RPE");

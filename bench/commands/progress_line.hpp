@@ -9,35 +9,54 @@
 
 namespace evbench {
 
-/// How far long work is, on the standard error: one line that rewrites itself, on a terminal only; or, for who wants to
-/// watch from anywhere, a new line each second.
+/// How often it is told how far work is.
+struct ProgressPace {
+  bool rewritten = false;                        ///< one line that rewrites itself; else a line each time
+  std::chrono::milliseconds first{0}, every{0};  ///< since the beginning; from one to the next
+  bool silent = false;
+};
+
+/// On a terminal a line that rewrites itself; in a log, which keeps all of them, a line each 10 s, and none of work
+/// that is done by then; where it is watched, a line each second.
+inline ProgressPace progress_pace(bool terminal, bool quiet, bool watch) {
+  using std::chrono::milliseconds;
+  if (watch) return {false, milliseconds(0), milliseconds(1000), quiet};
+  if (terminal) return {true, milliseconds(0), milliseconds(100), quiet};
+  return {false, milliseconds(10000), milliseconds(10000), quiet};
+}
+
+/// How far long work is, on the standard error.
 class ProgressLine {
  public:
   ProgressLine(std::string title, bool quiet, bool watch = false)
-      : title_(std::move(title)), rewritten_(!watch && !quiet && ::isatty(STDERR_FILENO) != 0), watched_(watch) {}
+      : ProgressLine(std::move(title), progress_pace(::isatty(STDERR_FILENO) != 0, quiet, watch)) {}
+  ProgressLine(std::string title, const ProgressPace& pace)
+      : title_(std::move(title)), pace_(pace), next_(Clock::now() + pace.first) {}
   ~ProgressLine() { clear(); }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   /// Makes room for other text; the next update shows the line again.
   void clear() {
-    if (rewritten_) fmt::print(stderr, "\r\033[K");
+    if (pace_.rewritten && !pace_.silent) fmt::print(stderr, "\r\033[K");
     std::fflush(stderr);
   }
 
-  /// May be called as often as one likes: shown ten times a second at most, once where it is watched.
+  /// May be called as often as one likes.
   void update(const std::string& text) {
-    const auto now = std::chrono::steady_clock::now();
-    if (!(rewritten_ || watched_) || now - last_ < std::chrono::milliseconds(watched_ ? 1000 : 100)) return;
-    last_ = now;
-    fmt::print(stderr, "{}{}  {}{}", rewritten_ ? "\r\033[K" : "", title_, text, rewritten_ ? "" : "\n");
+    const auto now = Clock::now();
+    if (pace_.silent || now < next_) return;
+    next_ = now + pace_.every;
+    fmt::print(stderr, "{}{}  {}{}", pace_.rewritten ? "\r\033[K" : "", title_, text, pace_.rewritten ? "" : "\n");
     std::fflush(stderr);
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   std::string title_;
-  bool rewritten_, watched_;
-  std::chrono::steady_clock::time_point last_ = {};
+  ProgressPace pace_;
+  Clock::time_point next_;
 };
 
 }  // namespace evbench

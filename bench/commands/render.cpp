@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/name_check.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/commands/time_range.hpp"
 #include "bench/recordings/config_events.hpp"
@@ -54,7 +55,7 @@ void execute(const RenderArguments& arguments) {
     });
   }
   if (arguments.quiet) return;
-  for (const std::string& remark : report.remarks) fmt::print(stderr, "evbench: {}\n", remark);
+  for (const std::string& remark : report.remarks) fmt::print(stderr, "evbench render: {}\n", remark);
   for (const auto& [kind, fault] : report.faults) {
     fmt::print("left out: {} {}; the first: {}\n", fault.count, kind, fault.first);
   }
@@ -86,7 +87,7 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
       .add_option("--mode", arguments.mode,
                   "events: red (brighter) and blue (darker), the newest on top; time_surface: the fainter the older; "
                   "compensated: moved along the camera's motion to one time")
-      ->check(CLI::IsMember({"events", "time_surface", "compensated"}))
+      ->check(one_of({"events", "time_surface", "compensated"}))
       ->type_name("NAME")
       ->capture_default_str();
   command.add_option("--decay", arguments.decay, "Time constant of time surfaces [ms]; default: 30")

@@ -10,6 +10,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/exit_code.hpp"
 #include "bench/commands/failures.hpp"
+#include "bench/commands/name_check.hpp"
 #include "bench/commands/run.hpp"
 #include "bench/published.hpp"
 #include "core/support/interruption.hpp"
@@ -89,7 +90,7 @@ void add_reproduce(CLI::App& app, Plugins& plugins, int& exit_code) {
   command->add_option("--out", arguments->run.out, "Folder for results")->capture_default_str();
   add_overrides(*command, arguments->run.overrides, "Override a value of all configs: KEY=VALUE, e.g. seed=3");
   command->add_option("--format", arguments->format, "Format of the table")
-      ->check(CLI::IsMember({"text", "markdown", "csv", "latex"}))
+      ->check(one_of({"text", "markdown", "csv", "latex"}))
       ->capture_default_str();
   command->add_flag("--force", arguments->run.force, "Do runs again that are complete already");
   command->add_flag("--quiet", arguments->run.quiet, "Print nothing but the table and errors");

@@ -7,7 +7,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -21,18 +20,13 @@
 #include "bench/plugins.hpp"
 #include "bench/run_folder.hpp"
 #include "bench/runner.hpp"
+#include "bench/sweep/local_executor.hpp"
+#include "bench/sweep/process_pool.hpp"
 #include "core/support/interruption.hpp"
 #include "eval/table.hpp"
 
 namespace evbench {
 namespace {
-
-/// A run of the config, and what determines its result.
-struct PlannedRun {
-  RunConfig config;
-  JobIdentity identity;
-  std::string folder;
-};
 
 /// All runs in the config's order. Two that would do the same work are a mistake in the config.
 std::vector<PlannedRun> plan(const Experiment& experiment, const Source& source, const Plugins& plugins,
@@ -46,13 +40,26 @@ std::vector<PlannedRun> plan(const Experiment& experiment, const Source& source,
       throw InputError(fmt::format("{}: the back-ends \"{}\" and \"{}\" are the same: type and options are equal",
                                    arguments.config, other.config.label, config.label));
     }
-    std::string folder = fmt::format("{}/{}/{}", arguments.out, experiment.name, identity.key);
-    planned.push_back({config, std::move(identity), std::move(folder)});
+    planned.push_back({config, std::move(identity), {}, "", "", {}});
+  }
+  if (arguments.jobs > 1) {
+    share_what_is_made_of_events(planned, plugins, [&](const Job&) { return !source.event_files().empty(); });
   }
   return planned;
 }
 
-/// The runs of an experiment one after the other: those that are complete already are taken, the others done.
+ExecutorOptions executor_options(const RunArguments& arguments) {
+  ExecutorOptions options;
+  options.out = arguments.out;
+  options.processes = arguments.jobs;
+  options.retry_failed = true;
+  options.force = arguments.force;
+  options.outputs = {arguments.problem, arguments.tracks};
+  return options;
+}
+
+/// The runs of an experiment: those that are complete already are taken, the others done, one after the other here or
+/// several at a time in processes of their own.
 class Runs {
  public:
   Runs(const RunArguments& arguments, const Plugins& plugins, const Experiment& experiment, const Source& source)
@@ -74,10 +81,14 @@ class Runs {
   }
 
   void run_all() {
+    if (arguments_.jobs > 1) {
+      run_in_processes();
+      return;
+    }
     for (const PlannedRun& run : runs_) {
       check_interruption();
       const auto complete = complete_run(run);
-      records_.push_back(complete ? adopt_run(*complete, run.folder, run.config) : do_run(run));
+      records_.push_back(complete ? adopt_run(*complete, folder_of(run), run.config) : do_run(run));
     }
   }
 
@@ -85,27 +96,48 @@ class Runs {
   std::size_t size() const { return runs_.size(); }
 
  private:
+  std::string folder_of(const PlannedRun& run) const {
+    return fmt::format("{}/{}/{}", arguments_.out, run.config.experiment, run.identity.key);
+  }
+
   std::optional<std::string> complete_run(const PlannedRun& run) const {
     if (arguments_.force) return std::nullopt;
     auto folder = find_complete_run(arguments_.out, run.config.experiment, run.identity);
-    const auto lacks = [&](bool wanted, const char* file) {
-      return wanted && folder && !std::filesystem::exists(*folder + file);
+    const RunOutputs wanted{arguments_.problem, arguments_.tracks};
+    return folder && wanted.are_in(*folder) ? folder : std::nullopt;
+  }
+
+  /// The records are in the config's order, whichever run ends first.
+  void run_in_processes() {
+    ProgressLine line(arguments_.config, arguments_.quiet, arguments_.watch);
+    const auto tell = [&](const SweepProgress& now) { line.update(describe(now)); };
+    const auto read = [&] {
+      for (const PlannedRun& run : runs_) {
+        std::string ignored;
+        const RunCondition condition = condition_of(folder_of(run), run.identity.key, ignored);
+        if (condition == RunCondition::absent || condition == RunCondition::damaged) continue;
+        records_.push_back(read_record(folder_of(run)));
+      }
     };
-    if (lacks(arguments_.problem, "/problem.txt") || lacks(arguments_.tracks, "/track_ends.txt")) return std::nullopt;
-    return folder;
+    try {
+      do_runs(runs_, plugins_, executor_options(arguments_), tell);
+    } catch (const InputError&) {
+      read();
+      throw;
+    }
+    read();
   }
 
   RunRecord do_run(const PlannedRun& run) const {
     RunFolder folder(arguments_.out, run.config.experiment, run.identity.key);
     ProgressLine line(fmt::format("[{}/{}] {}", records_.size() + 1, runs_.size(), run.config.label), arguments_.quiet,
                       arguments_.watch);
-    const auto start = std::chrono::steady_clock::now();
     const auto tell = [&](const RunProgress& now) {
-      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      const double pace = (now.t - source_.time_range().from) / std::max(seconds, 1e-9);
-      line.update(
-          fmt::format("{:.2f} of {:.2f} s, {} tracks, {} landmarks, {} states, delay {:.0f} ms, {:.2f} x real time",
-                      std::min(now.t, now.end), now.end, now.tracks, now.landmarks, now.states, 1e3 * now.delay, pace));
+      std::string text =
+          fmt::format("{:.2f} of {:.2f} s, {} tracks, {} landmarks, {} states, delay {:.0f} ms",
+                      std::min(now.t, now.end), now.end, now.tracks, now.landmarks, now.states, 1e3 * now.delay);
+      if (now.realtime_factor) text += fmt::format(", real-time factor {:.2f}", *now.realtime_factor);
+      line.update(text);
     };
     const Execution execution = execute(run.config.job, source_, plugins_, tell, arguments_.tracks);
     return folder.write(run.config, run.identity, source_, ground_truth_, execution, arguments_.problem);
@@ -170,6 +202,7 @@ void check(const RunArguments& arguments, const Plugins& plugins) {
 
 int run_config(const RunArguments& arguments, Plugins& plugins) {
   const Interruption interruption(arguments.config + ": interrupted; no run was begun");
+  if (arguments.jobs > 1) stay_without_threads();
   if (arguments.check) {
     check(arguments, plugins);
     return kExitDone;
@@ -223,6 +256,13 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
   command->add_option("config", arguments->config, "JSON config")->required();
   add_overrides(*command, arguments->overrides, "Override a value: KEY=VALUE, e.g. backend.placement.rate=50");
   command->add_option("--out", arguments->out, "Folder for results")->capture_default_str();
+  command
+      ->add_option(
+          "-j,--jobs", arguments->jobs,
+          "Runs at a time, of a config with several back-ends, each in a process of its own; 1 where times are "
+          "compared")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
   command->add_flag("--force", arguments->force, "Do runs again that are complete already");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->add_flag("--problem", arguments->problem,

@@ -16,6 +16,7 @@ struct RunArguments {
   bool check = false;
   bool problem = false, tracks = false, watch = false;
   bool force = false;
+  int jobs = 1;  ///< runs at a time; more than one: each in a process of its own
 };
 
 /// Does it: runs a config, writes the folders of its runs below `out`, prints the table. Returns the exit code:

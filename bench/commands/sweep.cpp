@@ -12,6 +12,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/exit_code.hpp"
+#include "bench/commands/name_check.hpp"
 #include "bench/commands/number_check.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/plugins.hpp"
@@ -38,21 +39,6 @@ struct SweepArguments {
   std::string executor = "local";
   bool dry_run = false, quiet = false;
 };
-
-std::string shown_duration(double seconds) {
-  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
-  return fmt::format("{:.1f} h", seconds / 3600.0);
-}
-
-std::string shown_progress(const SweepProgress& now) {
-  std::string text = fmt::format("{} of {} done", now.done, now.runs);
-  if (now.failed > 0) text += fmt::format(", {} failed", now.failed);
-  text += fmt::format(", {} running", now.running);
-  if (now.elsewhere > 0) text += fmt::format(", {} elsewhere", now.elsewhere);
-  if (now.seconds_left > 0.0) text += fmt::format(", about {} left", shown_duration(now.seconds_left));
-  return text;
-}
 
 void print_plan(const std::vector<PlannedRun>& runs, const SweepPlan& plan, const ExecutorOptions& options) {
   constexpr const char* kConditions[] = {"to do", "complete", "broken off", "damaged"};
@@ -87,7 +73,7 @@ int do_locally(const std::vector<PlannedRun>& runs, const SweepArguments& argume
       line.clear();
       fmt::print(stderr, "{}\n", describe(progress.troubled[told]));
     }
-    line.update(shown_progress(progress));
+    line.update(describe(progress));
     now = progress;
   };
   const auto complete = [&] {
@@ -185,10 +171,10 @@ int execute(SweepArguments& arguments, Plugins& plugins) {
 void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code) {
   auto arguments = std::make_shared<SweepArguments>();
   CLI::App* command = app.add_subcommand("sweep", "Vary a config along axes: many runs, each in a process of its own");
-  command->add_option("file", arguments->file, "JSON: a sweep, or a config (then with --over)")->required();
+  command->add_option("file", arguments->file, "JSON: a sweep, or a config (then with --vary)")->required();
   command
       ->add_option(
-          "--over", arguments->over,
+          "--vary", arguments->over,
           "Vary the config over these values, another axis: KEY=VALUES, e.g. seed=1..5, KEY=a,b, KEY=0.01..1:7log")
       ->type_name("KEY=VALUES")
       ->allow_extra_args(false);
@@ -214,7 +200,7 @@ void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code) {
       ->add_option("--executor", arguments->executor,
                    "local: here; slurm: a job array; none: only write OUT/NAME/manifest.jsonl, of which evbench task "
                    "does a line")
-      ->check(CLI::IsMember({"local", "slurm", "none"}))
+      ->check(one_of({"local", "slurm", "none"}))
       ->capture_default_str();
   command->add_option("--partition", arguments->slurm.partition, "Slurm: partition");
   command->add_option("--time", arguments->slurm.time, "Slurm: time of a task, e.g. 30 or 2:00:00; else by --timeout");

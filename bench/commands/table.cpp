@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/name_check.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/common_time.hpp"
 
@@ -42,7 +43,7 @@ void add_table(CLI::App& app) {
       ->add_option(
           "--format", arguments->format,
           "Format; latex has few columns, see --metrics, and needs booktabs; long: CSV, a line a run and metric")
-      ->check(CLI::IsMember(to_strings(kTableFormatNames)))
+      ->check(one_of(to_strings(kTableFormatNames)))
       ->capture_default_str();
   add_text_output(*command, arguments->out);
   add_list_option(*command, "--metrics", arguments->options.metrics,

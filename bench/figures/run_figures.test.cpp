@@ -265,7 +265,7 @@ TEST_CASE("Figures that can't be written or drawn are errors, and nothing is rep
   refused("--out f.svg --only seed=17", "none of 12 runs is left by --only");
   const Outcome nowhere = testing::evbench(results.folder, "figure sweep . --out nowhere/f.svg");
   CHECK(nowhere.exit_code == 4);
-  CHECK_THAT(nowhere.err, ContainsSubstring("evbench: nowhere/f.svg: can't be written: "));
+  CHECK_THAT(nowhere.err, ContainsSubstring("evbench figure: nowhere/f.svg: can't be written: "));
   results.folder.write("f.svg", "mine");
   refused("--out f.svg", "f.svg: exists already");
   CHECK(read_file(results.folder.file("f.svg")) == "mine");

@@ -1,5 +1,6 @@
 #include "bench/new_plugin/new_plugin.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "bench/commands/exit_code.hpp"
@@ -44,6 +45,12 @@ TEST_CASE("The program says what to do with a new plugin, which may go into an e
   CHECK(names_in(folder.file("empty")).contains("mine.cpp"));
   CHECK(testing::evbench(folder, "new-plugin source mine").exit_code == 0);
   CHECK(names_in(folder.path()) == std::set<std::string>{"empty", "mine"});
+  CHECK(testing::evbench(folder, "new-plugin backend small_one --minimal").exit_code == 0);
+  CHECK(names_in(folder.file("small_one")) ==
+        std::set<std::string>{".gitignore", "CMakeLists.txt", "config.json", "small_one.cpp"});
+  const std::string source = read_file(folder.file("small_one/small_one.cpp"));
+  CHECK_THAT(source, ContainsSubstring("class SmallOne : ") && !ContainsSubstring("NAME"));
+  CHECK(std::ranges::count(source, '\n') < 60);
 }
 
 TEST_CASE("A new plugin that can't be is refused with a sentence, and nothing is left behind", "[slow]") {
@@ -65,6 +72,8 @@ TEST_CASE("A new plugin that can't be is refused with a sentence, and nothing is
   refused("backend test", "CMake keeps for itself");
   refused("backend gp_map", "a backend is called \"gp_map\" already (built in)");
   refused("tracker mine", "tracker");
+  refused("bakend mine", "did you mean \"backend\"?");
+  refused("source mine --minimal", "--minimal: is of a backend; this is a source");
   refused("backend mine --out full", "full: is there already; expected a new folder");
   refused("backend mine --out file", "file: is there already");
   refused("backend mine --out file/mine", "file", kExitNotWritten);

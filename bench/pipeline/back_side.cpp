@@ -215,6 +215,7 @@ RunProgress BackSide::progress() const {
     result.landmarks = updates.back().landmarks;
   }
   if (estimator.newest) result.delay = seen_ - estimator.newest->t;
+  result.backend_s = seconds();
   return result;
 }
 

@@ -37,7 +37,7 @@ std::optional<TrackBatch> FrontSide::next() {
 }
 
 FrontFacts FrontSide::facts() const {
-  FrontFacts facts{frontend_.waited(), seconds(), work_, first_ ? last_ - *first_ : 0.0, {}};
+  FrontFacts facts{frontend_.waited(), seconds(), work_, data_s_, {}};
   for (const std::string& remark : source_.remarks()) facts.log.push_back("source: " + remark);
   for (const std::string& remark : frontend_.remarks()) facts.log.push_back("frontend: " + remark);
   return facts;
@@ -59,6 +59,7 @@ TrackBatch FrontSide::exchange() {
   }
   batch.seen = batch.known_at();
   work_.push_back({*batch.seen, seconds() - before});
+  frontend_s_ = seconds();
   return batch;
 }
 
@@ -102,7 +103,7 @@ void FrontSide::count(TrackBatch& batch) {
       [&](const TrackEnd& ended) { live_.erase(ended.track); });
   if (!batch.observations.empty()) {
     if (!first_) first_ = batch.observations.front().t;
-    last_ = batch.observations.back().t;
+    data_s_ = batch.observations.back().t - *first_;
   }
   if (!more_) {
     for (const TrackId track : live_) batch.ended.push_back({track, batch.until});

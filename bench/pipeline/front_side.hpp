@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -27,6 +28,11 @@ class FrontSide : public BatchStream {
   std::optional<TrackBatch> next() override;
 
   FrontFacts facts() const override;
+
+  /// Of what has been handed over so far, as FrontFacts; may be asked from another thread.
+  double data_s() const { return data_s_; }
+  double frontend_s() const { return frontend_s_; }
+
   double spent() const override { return watch_.seconds(); }
 
  private:
@@ -49,8 +55,8 @@ class FrontSide : public BatchStream {
   bool begun_ = false;
   std::int64_t exchanges_ = 0;  ///< whole intervals since the beginning of the range
   std::set<TrackId> live_;
-  std::optional<double> first_;
-  double last_ = 0.0;
+  std::optional<double> first_;  ///< [s] observation
+  std::atomic<double> data_s_ = 0.0, frontend_s_ = 0.0;
   Stopwatch watch_;
   std::vector<Work> work_;
 };

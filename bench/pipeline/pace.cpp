@@ -4,6 +4,10 @@
 
 namespace evbench {
 
+std::optional<double> realtime_factor(double data_s, double processing_s) {
+  return processing_s > 0.0 ? std::optional(data_s / processing_s) : std::nullopt;
+}
+
 std::optional<double> slowest_pace(const std::vector<std::vector<Work>>& parts, double begin, double window) {
   std::vector<Work> all;
   for (const std::vector<Work>& part : parts) all.insert(all.end(), part.begin(), part.end());

@@ -25,3 +25,8 @@ TEST_CASE("Work of less than the window has no slowest pace, nor has none") {
 }
 
 }  // namespace evbench
+
+TEST_CASE("The real-time factor is data time by processing time, and none where nothing took time") {
+  CHECK(realtime_factor(10.0, 4.0) == 2.5);
+  CHECK_FALSE(realtime_factor(10.0, 0.0));
+}

@@ -10,6 +10,7 @@
 #include "bench/pipeline/batch_queue.hpp"
 #include "bench/pipeline/feedback_line.hpp"
 #include "bench/pipeline/front_side.hpp"
+#include "bench/pipeline/pace.hpp"
 #include "core/support/peak_memory.hpp"
 
 namespace evbench {
@@ -104,8 +105,12 @@ RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackE
   TrackBatch tracks;
   FeedbackLine feedback(options.latency, options.mode == "free");
   FrontSide front(frontend, source, options, feedback, keep_tracks ? &tracks : nullptr);
+  const Progress tell = [&](RunProgress now) {
+    now.realtime_factor = realtime_factor(front.data_s(), front.frontend_s() + now.backend_s);
+    progress(now);
+  };
   RunResult result = run(source, front, frontend.needs(), feedback, make_backend, std::move(context), options,
-                         trajectory_rate, progress);
+                         trajectory_rate, progress ? tell : Progress());
   if (keep_tracks) result.tracks = std::move(tracks);
   return result;
 }

@@ -52,10 +52,12 @@ struct RunProgress {
   double t = 0.0, end = 0.0;  ///< [s] sequence time that the estimate has reached; the range's end
   std::size_t tracks = 0;     ///< alive
   int states = 0, landmarks = 0;
-  double delay = 0.0;  ///< [s] data time by which the newest pose is behind what has been looked at
+  double delay = 0.0;                     ///< [s] data time by which the newest pose is behind what has been looked at
+  double backend_s = 0.0;                 ///< [s] that the back-ends have taken
+  std::optional<double> realtime_factor = {};  ///< so far, as tables have it
 };
 
-/// Called after each exchange.
+/// Called after each exchange; the factor is known where the front-end itself is at work.
 using Progress = std::function<void(const RunProgress&)>;
 
 /// Makes a back-end; called again after a loss.

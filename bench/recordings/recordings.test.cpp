@@ -220,7 +220,7 @@ TEST_CASE("A recording may come from a pipe or the standard input, of any format
   const Outcome broken = testing::shell(folder, "head -c 100 a.evb | \"$evbench\" info -");
   CHECK(broken.exit_code == 2);
   CHECK_THAT(broken.err,
-             ContainsSubstring("evbench: -: ") && ContainsSubstring("truncated") && !ContainsSubstring("/proc"));
+             ContainsSubstring("evbench info: -: ") && ContainsSubstring("truncated") && !ContainsSubstring("/proc"));
 }
 
 TEST_CASE("convert undoes the lens: events go to where a pinhole sees them, or are left out and counted", "[slow]") {

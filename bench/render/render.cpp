@@ -132,6 +132,7 @@ class Renderer {
     if (beside_ && !drawn_beside_) throw InputError(fmt::format(kNone, beside_path_));
   }
 
+  std::string run_remark() const { return run_ ? run_->remark() : ""; }
   bool lacks_tracks() const { return tracks_ && !drawn_tracks_; }
   std::string tracks_range() const { return tracks_->range_text(); }
 
@@ -215,9 +216,10 @@ RenderReport render(const std::string& in, const std::string& out, const RenderO
   renderer.expect_events();
   if (renderer.lacks_tracks()) {
     report.remarks.push_back(
-        fmt::format("{}: none of its tracks is in view at the times that are drawn; they go from {}", asked.tracks,
-                    renderer.tracks_range()));
+        fmt::format("{}: none of its tracks is in view at the times that are drawn; they go from {}",
+                    asked.run.empty() ? asked.tracks : asked.run, renderer.tracks_range()));
   }
+  if (const std::string remark = renderer.run_remark(); !remark.empty()) report.remarks.push_back(remark);
   sink->finish();
   report.faults = renderer.faults();
   return report;

@@ -14,6 +14,7 @@
 #include "core/data/tum.hpp"
 #include "core/support/error.hpp"
 #include "eval/alignment.hpp"
+#include "eval/score_run.hpp"
 
 namespace evbench {
 namespace {
@@ -68,13 +69,22 @@ RunOverlay::RunOverlay(const std::string& folder, const Camera& camera)
                           camera.height)
                   .observations),
       map_(read_map(file_of(folder, "map.ply", ""))),
-      estimate_(read_tum(file_of(folder, "final.tum", ""))) {
+      estimate_(read_estimate(file_of(folder, "final.tum", ""))) {
   for (const TrackObservation& z : tracks_) times_[z.track].push_back(z.t);
   aligned_ = estimate_.poses();
-  if (!std::filesystem::exists(folder + "/groundtruth.tum") || estimate_.empty()) return;
+  if (estimate_.empty()) remark_ = fmt::format("{}: has no trajectory; its tracks are drawn", folder);
+  if (!std::filesystem::exists(folder + "/groundtruth.tum")) return;
   const PoseTrajectory truth = read_tum(folder + "/groundtruth.tum");
-  truth_ = truth.cut(estimate_.start(), estimate_.end()).poses();
-  aligned_ = aligned(estimate_, truth);
+  if (estimate_.empty()) {
+    truth_ = truth.poses();
+    return;
+  }
+  try {
+    aligned_ = aligned(estimate_, truth);
+    truth_ = truth.cut(estimate_.start(), estimate_.end()).poses();
+  } catch (const InputError& error) {  // few poses, or none at the truth's times
+    remark_ = fmt::format("{}: the ground truth is left out: {}", folder, error.what());
+  }
 }
 
 RunOverlay::Sight RunOverlay::sight_of(TrackId track, double t) const {
@@ -115,9 +125,9 @@ void RunOverlay::draw_landmarks(double t, int scale, const Palette& palette, Pic
 
 Picture RunOverlay::draw_trajectory(double t, int size, const Palette& palette) const {
   Picture picture(size, size, palette.background);
-  if (aligned_.empty()) return picture;
   std::vector<StampedPose> all = aligned_;
   all.insert(all.end(), truth_.begin(), truth_.end());
+  if (all.empty()) return picture;
   const Frame frame = frame_of(all);
   const double width = std::max(1e-9, std::max(frame.to[0] - frame.from[0], frame.to[1] - frame.from[1]));
   const auto place = [&](const Vector3& p) {

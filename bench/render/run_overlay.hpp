@@ -13,7 +13,7 @@
 namespace evbench {
 
 /// A run as one sees it beside its events: where its final estimate says that its landmarks are in the image, which of
-/// them are tracked, and where the camera has been.
+/// them are tracked, and where the camera has been. A run that failed has tracks alone.
 class RunOverlay {
  public:
   /// Throws InputError for a folder that is not a run's, or was made without --tracks.
@@ -22,12 +22,15 @@ class RunOverlay {
   /// In time order.
   const std::vector<TrackObservation>& tracks() const { return tracks_; }
 
+  /// What can't be drawn as it should be, and why; empty where all can.
+  const std::string& remark() const { return remark_; }
+
   /// Landmarks over a picture of the sensor at t [s], each pixel of it `scale` pixels wide: a ring where it is tracked,
   /// a bold one for a while when it has been found again, a cross where it was seen before and is not now.
   void draw_landmarks(double t, int scale, const Palette& palette, Picture& picture) const;
 
-  /// A square picture of so many pixels: ground truth, where there is one, and the estimate up to t, aligned by Sim(3),
-  /// in the two directions in which they are widest.
+  /// A square picture of so many pixels: ground truth and the estimate up to t, as far as there are such, aligned by
+  /// Sim(3), in the two directions in which they are widest.
   Picture draw_trajectory(double t, int size, const Palette& palette) const;
 
  private:
@@ -40,6 +43,7 @@ class RunOverlay {
   std::vector<Landmark> map_;
   PoseTrajectory estimate_;  ///< as the back-end has it
   std::vector<StampedPose> aligned_, truth_;
+  std::string remark_;
 };
 
 }  // namespace evbench

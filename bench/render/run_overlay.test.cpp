@@ -88,6 +88,31 @@ TEST_CASE("The trajectory grows with time, over all of the truth") {
   CHECK(drawn(overlay.draw_trajectory(4.0, 200, light_palette())) > half);
 }
 
+TEST_CASE("Of a run without a trajectory the tracks are drawn, and the truth") {
+  const TemporaryFolder folder;
+  write_run(folder);
+  write_file(folder.file("final.tum"), "");
+  write_file(folder.file("map.ply"), format_map(std::vector<Landmark>{}));
+  const RunOverlay overlay(folder.path(), camera());
+  CHECK(overlay.tracks().size() > 400);
+  CHECK_THAT(overlay.remark(), Catch::Matchers::ContainsSubstring("has no trajectory"));
+  CHECK(drawn_at(overlay, 0.9) == std::array<int, 3>{0, 0, 0});
+  CHECK(drawn(overlay.draw_trajectory(2.0, 200, light_palette())) > 0);
+  std::filesystem::remove(folder.file("groundtruth.tum"));
+  CHECK(drawn(RunOverlay(folder.path(), camera()).draw_trajectory(2.0, 200, light_palette())) == 0);
+}
+
+TEST_CASE("A trajectory that can't be aligned with the truth is drawn alone, with a remark") {
+  const TemporaryFolder folder;
+  write_run(folder);
+  write_file(folder.file("final.tum"), "1 0 0 0 0 0 0 1\n1.01 0.1 0 0 0 0 0 1\n");
+  const RunOverlay overlay(folder.path(), camera());
+  CHECK_THAT(overlay.remark(), Catch::Matchers::ContainsSubstring("the ground truth is left out: "));
+  CHECK(drawn(overlay.draw_trajectory(2.0, 200, light_palette())) > 0);
+  write_run(folder);
+  CHECK(RunOverlay(folder.path(), camera()).remark().empty());
+}
+
 TEST_CASE("A folder without tracks is refused with what makes them") {
   const TemporaryFolder folder;
   write_run(folder);

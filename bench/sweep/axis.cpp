@@ -212,7 +212,7 @@ ZippedAxes read_axis(const Json& json, const std::string& place) {
 }
 
 Axis parse_axis(const std::string& text) {
-  const std::string place = "--over " + text;
+  const std::string place = "--vary " + text;
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) throw InputError(fmt::format("{}: expected KEY=VALUES", place));
   Axis axis{text.substr(0, equals), {}};

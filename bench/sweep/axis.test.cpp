@@ -88,7 +88,7 @@ TEST_CASE("An axis that can't be is refused with its place and what was expected
   refused(R"({"zip": [{"key": "a", "values": [1]}]})", "two axes or more");
   for (const char* const text : {"a", "=1", "a=", "a=1,,2", "a=1,1", "a=3..1"}) {
     INFO(text);
-    CHECK_THROWS_WITH(parse_axis(text), ContainsSubstring("--over " + std::string(text)));
+    CHECK_THROWS_WITH(parse_axis(text), ContainsSubstring("--vary " + std::string(text)));
   }
   for (const char* const range : {"1...3", "1..", "1..b", "1..2:1", "0.1..1:0", "0..1:2.5", "0..1:x", "0..1:1000000"}) {
     INFO(range);

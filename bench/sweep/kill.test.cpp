@@ -19,7 +19,7 @@ using Catch::Matchers::ContainsSubstring;
 namespace {
 
 /// A sweep of six runs in `folder`, below `out`.
-const std::string kKilledSweep = "sweep c.json --over seed=1..6 --quiet --out ";
+const std::string kKilledSweep = "sweep c.json --vary seed=1..6 --quiet --out ";
 
 /// Starts the program; its process.
 pid_t start(const TemporaryFolder& folder, const std::string& out) {
@@ -28,7 +28,7 @@ pid_t start(const TemporaryFolder& folder, const std::string& out) {
   const int null = ::open("/dev/null", O_RDWR);
   for (int stream = 0; stream < 3; ++stream) ::dup2(null, stream);
   if (::chdir(folder.path().c_str()) == 0) {
-    ::execl(EVBENCH_PROGRAM, "evbench", "sweep", "c.json", "--over", "seed=1..6", "--quiet", "--out", out.c_str(),
+    ::execl(EVBENCH_PROGRAM, "evbench", "sweep", "c.json", "--vary", "seed=1..6", "--quiet", "--out", out.c_str(),
             nullptr);
   }
   ::_exit(127);

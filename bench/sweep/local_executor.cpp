@@ -16,6 +16,7 @@
 #include "bench/runner.hpp"
 #include "bench/sweep/process_pool.hpp"
 #include "bench/sweep/shared_events.hpp"
+#include "bench/sweep/time_left.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
@@ -41,14 +42,25 @@ std::unique_ptr<Source> make_source(const Job& job, const Plugins& plugins, cons
   return shared.events.empty() ? std::move(source) : with_recorded_events(std::move(source), shared.events);
 }
 
+/// Seeds say little of how long a run takes.
+RunDurations::Traits traits_of(const PlannedRun& run) {
+  RunDurations::Traits traits{run.config.label, {}};
+  for (const auto& [axis, value] : run.axes) {
+    if (axis != "seed") traits.values.push_back(axis + "=" + value);
+  }
+  return traits;
+}
+
 /// In a process of its own: does the run and writes its folder.
-std::string do_run(const PlannedRun& run, const Plugins& plugins, const SharedFiles& shared, RunFolder& folder) {
+std::string do_run(const PlannedRun& run, const Plugins& plugins, const SharedFiles& shared, const RunOutputs& outputs,
+                   RunFolder& folder) {
   try {
     const Job& job = run.config.job;
     const auto batches = shared.tracks.empty() ? nullptr : RecordedBatches::open(shared.tracks);
     const std::unique_ptr<Source> source = make_source(job, plugins, batches ? SharedFiles() : shared);
-    const Execution execution = batches ? execute(job, *source, plugins, *batches) : execute(job, *source, plugins, {});
-    folder.write(run.config, run.identity, *source, ground_truth_tum(*source), execution);
+    const Execution execution =
+        batches ? execute(job, *source, plugins, *batches) : execute(job, *source, plugins, {}, outputs.tracks);
+    folder.write(run.config, run.identity, *source, ground_truth_tum(*source), execution, outputs.problem);
     return kWritten;
   } catch (const OutputError& error) {
     return kNotWritten + error.what();
@@ -81,6 +93,12 @@ std::string make_shared_files(decltype(make_tracks)* make, const Job& job, const
   }
 }
 
+std::string shown_duration(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  return fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
 class Executor {
  public:
   Executor(const std::vector<PlannedRun>& runs, const Plugins& plugins, const ExecutorOptions& options)
@@ -104,13 +122,12 @@ class Executor {
   SweepProgress run(const std::function<void(const SweepProgress&)>& tell) {
     take_results();
     progress_.before = progress_.done;
-    const Clock::time_point begin = Clock::now();
     while (progress_.done < progress_.runs) {
       check_interruption();
       start_some();
       for (const Ending& ending : pool_.wait(std::chrono::milliseconds(50))) take_ending(ending);
       if (Clock::now() - looked_ > kLookElsewhere) look_elsewhere();
-      estimate(std::chrono::duration<double>(Clock::now() - begin).count());
+      estimate();
       tell(progress_);
     }
     return std::move(progress_);
@@ -119,9 +136,10 @@ class Executor {
  private:
   struct Job {
     const PlannedRun* run;
-    bool retry;                         ///< what broke off is done again
-    bool killed;                        ///< from outside, once
-    std::unique_ptr<RunFolder> folder;  ///< its claim on the run
+    bool retry;                                     ///< what broke off is done again
+    bool killed;                                    ///< from outside, once
+    std::unique_ptr<RunFolder> folder;              ///< its claim on the run
+    std::optional<Clock::time_point> started = {};  ///< while its process runs
   };
 
   /// What a front-end or a source gives, and several runs need.
@@ -143,7 +161,7 @@ class Executor {
   void take_results() {
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
       check_interruption();
-      if (!take_result(jobs_[i])) waiting_.push_back(i);
+      if (options_.force || !take_result(jobs_[i])) waiting_.push_back(i);
     }
     keep_together();
   }
@@ -168,11 +186,17 @@ class Executor {
     const RunCondition condition = condition_of(folder_of(job), job.run->identity.key, why);
     if (condition == RunCondition::complete || condition == RunCondition::absent) {
       const auto found = find_complete_run(options_.out, job.run->config.experiment, job.run->identity);
-      return found && adopt(job, *found);
+      return found && options_.outputs.are_in(*found) && adopt(job, *found);
     }
     if (job.retry) return false;
     fail(job, condition == RunCondition::damaged ? "damaged: " + why : why);
     return true;
+  }
+
+  bool is_complete(const Job& job) const {
+    std::string ignored;
+    return !options_.force && options_.outputs.are_in(folder_of(job)) &&
+           condition_of(folder_of(job), job.run->identity.key, ignored) == RunCondition::complete;
   }
 
   /// Another process may be adopting it, too: it is then looked at again later.
@@ -198,7 +222,8 @@ class Executor {
   void start(std::size_t i) {
     Job& job = jobs_[i];
     const PlannedRun& run = *job.run;
-    Shared* const tracks = shared(run.tracks, "tracks", kBatches, make_tracks);
+    // Shared tracks are as the back-end gets them, not as they were told.
+    Shared* const tracks = shared(options_.outputs.tracks ? "" : run.tracks, "tracks", kBatches, make_tracks);
     Shared* const events = shared(run.events, "events", kEvents, make_events);
     if (file_of(tracks).empty() && !get(events, i, {})) return;
     SharedFiles files{"", file_of(events)};
@@ -211,14 +236,14 @@ class Executor {
       job.retry = false;  // what that process makes of it is its result
       return;
     }
-    std::string ignored;
-    if (condition_of(folder_of(job), run.identity.key, ignored) == RunCondition::complete) {  // since it was looked at
+    if (is_complete(job)) {  // since it was looked at
       job.folder.reset();
       if (!take_result(job)) waiting_.push_back(i);
       return;
     }
-    const auto work = [&] { return do_run(run, plugins_, files, *job.folder); };
+    const auto work = [&] { return do_run(run, plugins_, files, options_.outputs, *job.folder); };
     pool_.start(i, work, options_.limits);
+    job.started = Clock::now();
   }
 
   /// What runs share of this name; nullptr where there is no name.
@@ -289,6 +314,8 @@ class Executor {
       return;
     }
     Job& job = jobs_[ending.id];
+    job.started.reset();
+    if (!ending.from_outside) durations_.add(traits_of(*job.run), ending.seconds);
     if (ending.report == kWritten) {
       job.folder.reset();
       count(job, read_record(folder_of(job)));
@@ -339,10 +366,26 @@ class Executor {
     ++progress_.done;
   }
 
-  void estimate(double seconds) {
-    const auto here = static_cast<double>(progress_.done - progress_.before);
-    const auto left = static_cast<double>(progress_.runs - progress_.done);
-    progress_.seconds_left = here > 0.0 ? seconds / here * left : 0.0;
+  /// Again when a run has ended: it then takes as long as the runs that are done suggest. Those that another process
+  /// does count as if they had just begun.
+  void estimate() {
+    const auto now = Clock::now();
+    if (progress_.done != estimated_at_) {
+      estimated_at_ = progress_.done;
+      std::vector<double> seconds;
+      for (const Job& job : jobs_) {
+        if (job.started) {
+          const double so_far = std::chrono::duration<double>(now - *job.started).count();
+          seconds.push_back(std::max(0.0, durations_.expected(traits_of(*job.run)) - so_far));
+        }
+      }
+      for (const std::size_t i : elsewhere_) seconds.push_back(durations_.expected(traits_of(*jobs_[i].run)));
+      for (const std::size_t i : waiting_) seconds.push_back(durations_.expected(traits_of(*jobs_[i].run)));
+      const auto processes = static_cast<std::size_t>(options_.processes) + elsewhere_.size();
+      done_at_ = now + std::chrono::duration_cast<Clock::duration>(
+                           std::chrono::duration<double>(time_left(seconds, processes)));
+    }
+    progress_.seconds_left = std::max(0.0, std::chrono::duration<double>(done_at_ - now).count());
   }
 
   const Plugins& plugins_;
@@ -354,15 +397,32 @@ class Executor {
   std::size_t shared_made_ = 0;               ///< numbers of processes that were given to what runs share
   std::map<std::string, std::size_t> users_;  ///< jobs that are not done, by the events that they need
   Clock::time_point looked_ = {};
+  RunDurations durations_;
+  std::optional<std::size_t> estimated_at_;  ///< runs that were done then
+  Clock::time_point done_at_ = {};           ///< as expected then
   SweepProgress progress_;
   ProcessPool pool_;  // the last one: its processes end before what they use
 };
 
 }  // namespace
 
+bool RunOutputs::are_in(const std::string& folder) const {
+  return (!problem || std::filesystem::exists(folder + "/problem.txt")) &&
+         (!tracks || std::filesystem::exists(folder + "/track_ends.txt"));
+}
+
 std::string describe(const TroubledRun& run) {
   return fmt::format("{}: {}{}{}: {}", run.lost ? "lost" : "failed", run.label, run.place.empty() ? "" : ", ",
                      run.place, run.reason);
+}
+
+std::string describe(const SweepProgress& now) {
+  std::string text = fmt::format("{} of {} done", now.done, now.runs);
+  if (now.failed > 0) text += fmt::format(", {} failed", now.failed);
+  text += fmt::format(", {} running", now.running);
+  if (now.elsewhere > 0) text += fmt::format(", {} elsewhere", now.elsewhere);
+  if (now.seconds_left > 0.0) text += fmt::format(", about {} left", shown_duration(now.seconds_left));
+  return text;
 }
 
 std::optional<TroubledRun> trouble_of(const RunRecord& record, const std::string& place) {

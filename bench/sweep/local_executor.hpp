@@ -11,11 +11,21 @@
 
 namespace evbench {
 
+/// What is written of a run only where it is asked for.
+struct RunOutputs {
+  bool problem = false, tracks = false;
+
+  /// Are those that are asked for in a run's folder?
+  bool are_in(const std::string& folder) const;
+};
+
 struct ExecutorOptions {
   std::string out = "results";
   int processes = 1;  ///< at a time
   RunLimits limits;
   bool retry_failed = false;  ///< do runs again that broke off, and damaged ones
+  bool force = false;         ///< and complete ones
+  RunOutputs outputs;         ///< a complete run without them is done again
 };
 
 /// A run whose result is a failure, or that was lost.
@@ -43,6 +53,9 @@ struct SweepProgress {
   std::vector<TroubledRun> troubled;
   double seconds_left = 0.0;  ///< expected [s]; 0: not known
 };
+
+/// "3 of 8 done, 1 failed, 2 running, about 5 min left".
+std::string describe(const SweepProgress& progress);
 
 /// Takes the runs that are complete below `out`, named and scored as the plan says, and returns the others, each job
 /// once: those to be done, with those that broke off or are damaged where `retry_failed` asks for them.

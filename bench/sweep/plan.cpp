@@ -57,7 +57,8 @@ class Planner {
       look_at_sources();
       for (auto& [config, axes] : gathered_) add(std::move(config), std::move(axes));
     });
-    share_what_is_made_of_events();
+    share_what_is_made_of_events(plan_.runs, plugins_,
+                                 [&](const Job& job) { return !sources_.at(source_of(job)).events.empty(); });
     return std::move(plan_);
   }
 
@@ -106,27 +107,6 @@ class Planner {
         "the runs \"{}\" ({}) and \"{}\" ({}) are the same job, {}, and differ in their protocol, of which a run has "
         "one; expected \"evaluation\" to be no axis: evbench score DIR --set evaluation.KEY=VALUE scores a sweep again",
         a.config.label, place_of(a.axes), b.config.label, place_of(b.axes), a.identity.key));
-  }
-
-  void share_what_is_made_of_events() {
-    std::map<std::string, std::set<std::string>> jobs;  // that need the same events or tracks
-    for (PlannedRun& run : plan_.runs) {
-      const PluginConfig& frontend = run.config.job.frontend;
-      if (!plugins_.of<FrontEnd>().find(frontend.type, frontend.place + ".type").reads_events) continue;
-      Json job = parse_json(run.identity.text);
-      job.erase("backend");
-      job.erase("trajectory_rate");
-      run.tracks = sha256(dump_json(job)).substr(0, 10);
-      jobs[run.tracks].insert(run.identity.key);
-      if (!sources_.at(source_of(run.config.job)).events.empty()) continue;
-      run.events = sha256(dump_json(Json({{"seed", job["seed"]}, {"source", job["source"]}}))).substr(0, 10);
-      jobs[run.events].insert(run.identity.key);
-    }
-    for (PlannedRun& run : plan_.runs) {
-      for (std::string* shared : {&run.tracks, &run.events}) {
-        if (!shared->empty() && jobs[*shared].size() == 1) shared->clear();
-      }
-    }
   }
 
   static std::string source_of(const Job& job) {
@@ -225,6 +205,28 @@ Json SweepPlan::to_json() const {
 }
 
 SweepPlan plan_sweep(const Sweep& sweep, const Plugins& plugins) { return Planner(sweep, plugins).plan(); }
+
+void share_what_is_made_of_events(std::vector<PlannedRun>& runs, const Plugins& plugins,
+                                  const std::function<bool(const Job&)>& events_in_files) {
+  std::map<std::string, std::set<std::string>> jobs;  // that need the same events or tracks
+  for (PlannedRun& run : runs) {
+    const PluginConfig& frontend = run.config.job.frontend;
+    if (!plugins.of<FrontEnd>().find(frontend.type, frontend.place + ".type").reads_events) continue;
+    Json job = parse_json(run.identity.text);
+    job.erase("backend");
+    job.erase("trajectory_rate");
+    run.tracks = sha256(dump_json(job)).substr(0, 10);
+    jobs[run.tracks].insert(run.identity.key);
+    if (events_in_files(run.config.job)) continue;
+    run.events = sha256(dump_json(Json({{"seed", job["seed"]}, {"source", job["source"]}}))).substr(0, 10);
+    jobs[run.events].insert(run.identity.key);
+  }
+  for (PlannedRun& run : runs) {
+    for (std::string* shared : {&run.tracks, &run.events}) {
+      if (!shared->empty() && jobs[*shared].size() == 1) shared->clear();
+    }
+  }
+}
 
 std::vector<PlannedRun> select_runs(const SweepPlan& plan, const std::vector<std::string>& only) {
   std::map<std::string, std::set<std::string>> wanted;

@@ -47,6 +47,11 @@ struct SweepPlan {
 /// differ in protocol: it is one run.
 SweepPlan plan_sweep(const Sweep& sweep, const Plugins& plugins);
 
+/// Sets PlannedRun::tracks and PlannedRun::events of runs that need the same. `events_in_files`: does the job's source
+/// read its events from files?
+void share_what_is_made_of_events(std::vector<PlannedRun>& runs, const Plugins& plugins,
+                                  const std::function<bool(const Job&)>& events_in_files);
+
 /// The runs with one of these values, "AXIS=VALUE", on each axis that is named. Throws InputError for an axis or value
 /// that the plan doesn't have, with the nearest axis or all values.
 std::vector<PlannedRun> select_runs(const SweepPlan& plan, const std::vector<std::string>& only);

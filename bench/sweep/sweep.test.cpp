@@ -109,9 +109,9 @@ TEST_CASE("A sweep that can't be is refused before anything is written, with pla
   refused(R"({"config": "c.json", "timeout": -1})", "timeout: ");
   refused("{", "is not JSON");
   for (const auto& [arguments, message] :
-       std::map<std::string, std::string>{{"sweep c.json --over sede=1", "did you mean \"seed\"?"},
-                                          {"sweep c.json --over seed=1 --only seed=2", "has no such value"},
-                                          {"sweep c.json --over seed=1 --out c.json", "c.json/tiny: can't be made"},
+       std::map<std::string, std::string>{{"sweep c.json --vary sede=1", "did you mean \"seed\"?"},
+                                          {"sweep c.json --vary seed=1 --only seed=2", "has no such value"},
+                                          {"sweep c.json --vary seed=1 --out c.json", "c.json/tiny: can't be made"},
                                           {"status .", "no sweep.json in it"},
                                           {"task c.json 5", "has 1 lines; expected a line 5"},
                                           {"task c.json 1", "is no run of a sweep's manifest"}}) {
@@ -134,20 +134,20 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
   const auto sweep = [&](const std::string& arguments) {
     return testing::evbench(folder, "sweep c.json " + arguments);
   };
-  const Outcome planned = sweep("--over seed=1..2 --dry-run");
+  const Outcome planned = sweep("--vary seed=1..2 --dry-run");
   CHECK(planned.exit_code == 0);
   CHECK_THAT(planned.out, ContainsSubstring("seed=1\n") && ContainsSubstring("2 runs, 2 to do"));
   CHECK_FALSE(std::filesystem::exists(folder.file("results")));
 
-  const Outcome first = sweep("--over seed=1..2");
+  const Outcome first = sweep("--vary seed=1..2");
   CHECK(first.exit_code == 0);
   CHECK_THAT(first.out, ContainsSubstring("results/tiny: 2 runs, 0 of them done before, 0 failed"));
   const auto before = results_of(folder.file("results/tiny"));
-  CHECK_THAT(sweep("--over seed=1..3").out, ContainsSubstring("3 runs, 2 of them done before"));
-  CHECK_THAT(sweep("--over seed=1..3 --set name=other").out,
+  CHECK_THAT(sweep("--vary seed=1..3").out, ContainsSubstring("3 runs, 2 of them done before"));
+  CHECK_THAT(sweep("--vary seed=1..3 --set name=other").out,
              ContainsSubstring("results/other: 3 runs, 3 of them done before"));
-  CHECK_THAT(sweep("--over seed=1..3 --set evaluation.rpe_delta=0.2").out, ContainsSubstring("3 of them done before"));
-  CHECK_THAT(sweep("--over seed=1..2").out, ContainsSubstring("2 of them done before"));
+  CHECK_THAT(sweep("--vary seed=1..3 --set evaluation.rpe_delta=0.2").out, ContainsSubstring("3 of them done before"));
+  CHECK_THAT(sweep("--vary seed=1..2").out, ContainsSubstring("2 of them done before"));
   CHECK_THAT(testing::evbench(folder, "status results").out,
              ContainsSubstring("results/other: 3 of 3 done") &&
                  ContainsSubstring("results/tiny: 2 of 2 done, 0 failed") &&
@@ -159,22 +159,22 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
 
   // Both see the same damage, and say so.
   REQUIRE(testing::shell(folder, "rm -r results/other; rm results/tiny/*/final.tum").exit_code == 0);
-  const Outcome damaged = sweep("--over seed=1..2");
+  const Outcome damaged = sweep("--vary seed=1..2");
   CHECK(damaged.exit_code == 3);
   CHECK_THAT(damaged.err, ContainsSubstring("damaged: ") && ContainsSubstring("final.tum: is missing"));
   CHECK_THAT(damaged.out, ContainsSubstring("2 failed"));
-  CHECK_THAT(sweep("--over seed=1..2 --dry-run").out, ContainsSubstring("2 runs, 0 to do, 2 broken off or damaged"));
+  CHECK_THAT(sweep("--vary seed=1..2 --dry-run").out, ContainsSubstring("2 runs, 0 to do, 2 broken off or damaged"));
   CHECK_THAT(testing::evbench(folder, "status results").out, ContainsSubstring("0 of 2 done, 2 failed"));
-  REQUIRE(sweep("--over seed=1..2 --retry-failed").exit_code == 0);
+  REQUIRE(sweep("--vary seed=1..2 --retry-failed").exit_code == 0);
   for (const std::string damage : {"truncate -s 100 $f/final.tum", "rm $f/status.json", "echo > $f/job.json"}) {
     INFO(damage);
     REQUIRE(testing::shell(folder, "for f in results/tiny/*-*; do " + damage + "; done").exit_code == 0);
     CHECK_THAT(testing::evbench(folder, "status results").out, ContainsSubstring("0 of 2 done, 2 failed"));
-    CHECK_THAT(sweep("--over seed=1..2").out, ContainsSubstring("2 failed"));
-    REQUIRE(sweep("--over seed=1..2 --retry-failed").exit_code == 0);
+    CHECK_THAT(sweep("--vary seed=1..2").out, ContainsSubstring("2 failed"));
+    REQUIRE(sweep("--vary seed=1..2 --retry-failed").exit_code == 0);
     CHECK(testing::evbench(folder, "status results").exit_code == 0);
   }
-  CHECK(sweep("--over seed=1..2 --retry-failed").exit_code == 0);
+  CHECK(sweep("--vary seed=1..2 --retry-failed").exit_code == 0);
   auto after = results_of(folder.file("results/tiny"));
   for (const auto& [path, content] : before) {
     INFO(path);
@@ -185,17 +185,17 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
 TEST_CASE("Two processes share a sweep, and lines of its manifest, done one by one, give the same bytes", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
-  REQUIRE(testing::evbench(folder, "sweep c.json --over seed=1..6 --out one").exit_code == 0);
+  REQUIRE(testing::evbench(folder, "sweep c.json --vary seed=1..6 --out one").exit_code == 0);
   const Outcome both = testing::shell(folder,
-                                      "\"$evbench\" sweep c.json --over seed=1..6 --out two > a & first=$!;"
-                                      "\"$evbench\" sweep c.json --over seed=1..6 --out two > b && wait $first");
+                                      "\"$evbench\" sweep c.json --vary seed=1..6 --out two > a & first=$!;"
+                                      "\"$evbench\" sweep c.json --vary seed=1..6 --out two > b && wait $first");
   CHECK(both.exit_code == 0);
   CHECK_THAT(read_file(folder.file("a")), ContainsSubstring("6 runs"));
   CHECK_THAT(read_file(folder.file("b")), ContainsSubstring("6 runs"));
   const auto expected = results_of(folder.file("one/tiny"));
   CHECK(difference(expected, results_of(folder.file("two/tiny"))).empty());
 
-  REQUIRE(testing::evbench(folder, "sweep c.json --over seed=1..6 --out three --executor none").exit_code == 0);
+  REQUIRE(testing::evbench(folder, "sweep c.json --vary seed=1..6 --out three --executor none").exit_code == 0);
   CHECK(testing::evbench(folder, "status three").exit_code == 3);
   const std::string task = "\"$evbench\" task three/tiny/manifest.jsonl ";
   CHECK_THAT(testing::evbench(folder, "score three").err, ContainsSubstring("none of these runs was done yet"));
@@ -247,7 +247,7 @@ TEST_CASE("Simulated events are made once for runs that share them, change nothi
   config["source"] = {{"type", "event_simulation"}, {"duration", 0.3}};
   config["frontend"] = {{"type", "haste"}};  // guided
   folder.write("c.json", dump_json(config));
-  const std::string sweep = "sweep c.json --quiet --over backend.frame_duration=0.1,0.05 --over frontend.tracks=40,60 ";
+  const std::string sweep = "sweep c.json --quiet --vary backend.frame_duration=0.1,0.05 --vary frontend.tracks=40,60 ";
   const std::vector<PlannedRun> runs =
       plan(folder, "c.json", {"backend.frame_duration=0.1,0.05", "frontend.tracks=40,60"}).runs;
   for (const PlannedRun& run : runs) CHECK((!run.events.empty() && run.events == runs[0].events));

@@ -76,7 +76,18 @@ class OptionSet {
   Option& add(const std::string& name, Target target, const std::string& text);
   template <class T>
   Option& add(const std::string& name, T& member, const std::string& text) {
-    return add(name, Target(&member), text);
+    constexpr bool kIsTarget = std::is_constructible_v<Target, T*>;
+    static_assert(!std::is_enum_v<T>,
+                  "an option that is an enumeration needs the names of its values, for 0, 1, ...: "
+                  "set.add(name, member, {\"none\", \"huber\"}, text)");
+    static_assert(kIsTarget || std::is_enum_v<T>,
+                  "an option is a bool, int, std::int64_t, double, std::string, std::vector<double>, Json, or an "
+                  "enumeration with the names of its values; a struct of options is a group()");
+    if constexpr (kIsTarget) {
+      return add(name, Target(&member), text);
+    } else {
+      return options_.back();  // is not compiled: one error is enough
+    }
   }
 
   /// An enumeration, written as text: the names of its values 0, 1, ...

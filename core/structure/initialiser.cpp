@@ -22,6 +22,8 @@ double median_depth(const TwoViewCandidate& candidate) {
   return median(std::move(depths));
 }
 
+std::string counted(std::size_t tracks) { return fmt::format("{} track{}", tracks, tracks == 1 ? "" : "s"); }
+
 InitialGuess to_guess(const TwoViewCandidate& candidate, const TrackMatches& matches) {
   const double depth = median_depth(candidate);
   InitialGuess guess;
@@ -77,17 +79,24 @@ Initialiser::Attempt Initialiser::attempt(const TrackBuffer& tracks, double t) {
 TrackMatches Initialiser::match(const TrackBuffer& tracks, double t) {
   pass_stand(tracks, t);
   TrackMatches now;
+  std::size_t common = 0;
   for (const bool or_nearest : {false, true}) {
     const PlaceWindow window(options_.window, or_nearest);
     TrackMatches matches;
     if (reference_) matches = matches_between(tracks, *reference_, t, window);
     if (are_enough(matches)) return matches;
+    common = std::max(common, matches.tracks.size());
     if (!are_enough(now)) now = matches_between(tracks, t, t, window);
   }
-  reference_ = are_enough(now) ? std::optional(t) : std::nullopt;
   TrackMatches none;
-  none.reason = reference_ ? fmt::format("first view set at {:.3f} s with {} tracks", t, now.tracks.size())
-                           : fmt::format("{} tracks at {:.3f} s, {} needed", now.tracks.size(), t, options_.min_tracks);
+  if (reference_) {
+    none.reason = fmt::format("{} common to the views at {:.3f} s and {:.3f} s, {} needed; ", counted(common),
+                              *reference_, t, options_.min_tracks);
+  }
+  reference_ = are_enough(now) ? std::optional(t) : std::nullopt;
+  none.reason += reference_ ? fmt::format("first view set at {:.3f} s with {}", t, counted(now.tracks.size()))
+                            : fmt::format("{} observed around {:.3f} s, {} needed for a first view",
+                                          counted(now.tracks.size()), t, options_.min_tracks);
   return none;
 }
 

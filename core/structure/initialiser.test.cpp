@@ -93,10 +93,26 @@ TEST_CASE("the first view moves on when its tracks have ended") {
   Initialiser initialiser({}, davis());
   initialiser.attempt(tracks, 0.02);
   CHECK(initialiser.reference_time() == 0.02);
-  CHECK(initialiser.attempt(tracks, 0.3).reason.find("0 tracks") == 0);
+  CHECK(
+      initialiser.attempt(tracks, 0.3).reason ==
+      "0 tracks common to the views at 0.020 s and 0.300 s, 15 needed; 0 tracks observed around 0.300 s, 15 needed for "
+      "a first view");
   CHECK_FALSE(initialiser.reference_time());
   initialiser.attempt(tracks, 0.55);
   CHECK(initialiser.reference_time() == 0.55);
+}
+
+TEST_CASE("tracks in view that are not common to both views are told apart from those that are") {
+  TrackBuffer tracks;
+  const auto see = [&](TrackId id, double from, double to) {
+    for (double t = from; t < to; t += 0.01) tracks.add(std::vector{TrackObservation{id, t, {50.0, 50.0}, 1.0}});
+  };
+  for (TrackId id = 0; id < 20; ++id) see(id, 0.0, id == 0 ? 1.0 : 0.5);
+  for (TrackId id = 20; id < 40; ++id) see(id, 0.6, 1.0);
+  Initialiser initialiser({}, davis());
+  initialiser.attempt(tracks, 0.1);
+  CHECK(initialiser.attempt(tracks, 0.8).reason ==
+        "1 track common to the views at 0.100 s and 0.800 s, 15 needed; first view set at 0.800 s with 21 tracks");
 }
 
 TEST_CASE("no tracks give no guess") {

@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -41,6 +43,33 @@ std::vector<std::string> most_similar(const std::string& name, std::span<const s
   return names;
 }
 
+std::vector<std::string> parts_of(const std::string& path) {
+  std::istringstream text(path);
+  std::vector<std::string> parts;
+  for (std::string part; std::getline(text, part, '.');) parts.push_back(part);
+  return parts;
+}
+
+/// The shortest path, as "ate.trans_m.rmse", that has all parts of this one in their order, as "ate.rmse", and others
+/// between them; of equally long ones the first.
+std::string fuller_path(const std::string& path, std::span<const std::string> candidates) {
+  const std::vector<std::string> parts = parts_of(path);
+  std::string best;
+  if (parts.size() < 2) return best;
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  for (const std::string& candidate : candidates) {
+    const std::vector<std::string> all = parts_of(candidate);
+    auto wanted = parts.begin();
+    for (const std::string& part : all) {
+      if (wanted != parts.end() && part == *wanted) ++wanted;
+    }
+    if (wanted != parts.end() || all.size() >= fewest) continue;
+    best = candidate;
+    fewest = all.size();
+  }
+  return best;
+}
+
 }  // namespace
 
 std::string nearest_name(const std::string& name, std::span<const std::string> candidates) {
@@ -53,7 +82,10 @@ std::string nearest_name(const std::string& name, std::span<const std::string> c
       best_distance = distance;
     }
   }
-  return best;
+  constexpr std::size_t kSlip = 2;  // of the fingers
+  if (!best.empty() && best_distance <= kSlip) return best;
+  const std::string fuller = fuller_path(name, candidates);
+  return fuller.empty() ? best : fuller;
 }
 
 std::string suggestion(const std::string& name, std::span<const std::string> candidates) {

@@ -29,3 +29,12 @@ TEST_CASE("Of many names a suggestion offers those that have the word in them, t
   CHECK(many.starts_with("; the most similar of 63: ate.rmse, rpe.rmse, times.max, "));
   CHECK(many.size() < 250);
 }
+
+TEST_CASE("A path in which parts are missing stands for the shortest, first one that has them") {
+  const std::vector<std::string> names = {"common.ate.trans_m.rmse", "ate.trans_m.rmse", "ate.rot_deg.rmse",
+                                          "times.max"};
+  CHECK(nearest_name("ate.rmse", names) == "ate.trans_m.rmse");
+  CHECK(nearest_name("common.rmse", names) == "common.ate.trans_m.rmse");
+  CHECK(nearest_name("rmse.ate", names).empty());
+  CHECK(nearest_name("rmse", names).empty());  // could be any
+}

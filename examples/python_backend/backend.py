@@ -1,6 +1,9 @@
 """A back-end for evbench (core/process/protocol.md): frames of observations, a map from two views, resection."""
-import json, sys
+import os, sys
 import numpy as np
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "python"))
+import evbench_process
 
 HOME = (np.eye(3), np.zeros(3))  # a pose is (R, t) with x_camera = R x_world + t
 
@@ -78,7 +81,7 @@ def start():  # a first map from the oldest frame and the newest, once their ima
     for frame in frames[1:]: poses.append(resect(frame, poses[-1]) or poses[-1])
     refine(10)
 
-def step(t, frame):  # a new frame; returns the state
+def step(t, frame):  # a new frame
     times.append(t), frames.append(frame)
     if not poses: start()
     else:
@@ -86,19 +89,12 @@ def step(t, frame):  # a new frame; returns the state
         poses.append(pose or poses[-1])
         for k in sorted(frame) if pose else []: locate(k)
         alone.append(t) if pose is None else alone.clear()
-    if alone: return "lost" if t - alone[0] > hello["patience"] else "degraded"
+
+def state():
+    if alone: return "lost" if times[-1] - alone[0] > hello["patience"] else "degraded"
     return "tracking" if poses else "no_map"
 
-def say(answer): print(json.dumps(answer), flush=True)
-
-hello = json.loads(sys.stdin.readline())
-c, width = hello["camera"], hello["options"].get("frame", 0.05)
-random = np.random.default_rng(hello["seed"])
-noise = hello["options"].get("noise", 1.0) / c["fx"]
-times, frames, poses, points, alone, sums, outliers, state = [], [], [], {}, [], {}, [], "no_map"
-say({"evbench": 1, "name": "two views and resection"})
-for message in map(json.loads, sys.stdin):
-    if "finish" in message: break
+def take(message):
     online, dropped = [], len(outliers)
     for track, t, u, v, _ in message["observations"]:
         ray = t, (u - c["cx"]) / c["fx"], (v - c["cy"]) / c["fy"]
@@ -106,9 +102,18 @@ for message in map(json.loads, sys.stdin):
     for i in [i for i in sorted(sums) if (i + 1) * width <= message["until"]]:
         centre = (i + 0.5) * width
         lines = {k: np.array(x) - [centre, 0, 0] for k, x in sums.pop(i).items()}  # where each track is at that time:
-        state = step(centre, {k: np.polyfit(x[:, 0], x[:, 1:], 1)[1] for k, x in lines.items() if x[0, 0] < 0 < x[-1, 0]})
+        step(centre, {k: np.polyfit(x[:, 0], x[:, 1:], 1)[1] for k, x in lines.items() if x[0, 0] < 0 < x[-1, 0]})
         online += [stamped(times[-1], poses[-1])] if poses else []
     newest = {"newest": online[-1]} if online else {}
-    say({"state": state, "online": online, "outliers": outliers[dropped:], **newest})
-refine(3)
-say({"trajectory": [stamped(*pose) for pose in zip(times, poses)], "map": [[k, *X] for k, X in points.items()]})
+    return {"state": state(), "online": online, "outliers": outliers[dropped:], **newest}
+
+def finish():
+    refine(3)
+    return {"trajectory": [stamped(*pose) for pose in zip(times, poses)], "map": [[k, *X] for k, X in points.items()]}
+
+hello = evbench_process.hello()
+c, width = hello["camera"], hello["options"].get("frame", 0.05)
+random = np.random.default_rng(hello["seed"])
+noise = hello["options"].get("noise", 1.0) / c["fx"]
+times, frames, poses, points, alone, sums, outliers = [], [], [], {}, [], {}, []
+evbench_process.serve("two views and resection", take, finish)

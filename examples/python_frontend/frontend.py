@@ -1,10 +1,11 @@
 """A front-end for evbench (core/process/protocol.md): follows the centres of dots from window to window of events."""
-import json, sys
+import os, sys
 import numpy as np
 
-def say(answer): print(json.dumps(answer), flush=True)
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "python"))
+import evbench_process
 
-hello = json.loads(sys.stdin.readline())
+hello = evbench_process.hello()
 size = np.array([hello["camera"]["width"], hello["camera"]["height"]])
 options = {"window": 0.01, "radius": 6.0, "sigma": 0.4, "most": 60, **hello["options"]}
 window, radius = options["window"], options["radius"]
@@ -46,10 +47,8 @@ def follow(t, xy, on):  # one window that ends at t: observations and ended trac
         observations.append([made, t, *found, options["sigma"]])
     return observations, ended
 
-say({"evbench": 1, "name": "centres of dots"})
-events, end = [], hello["range"][0] + window
-for message in map(json.loads, sys.stdin):
-    if "finish" in message: break
+def take(message):
+    global events, end
     events += message["events"]
     observations, ended = [], []
     while end <= message["until"]:
@@ -58,5 +57,9 @@ for message in map(json.loads, sys.stdin):
         new, gone = follow(end, table[:count, 1:3], table[:count, 3] > 0)
         observations, ended, events = observations + new, ended + gone, events[count:]
         end += window
-    say({"observations": observations, "ended": ended})
-say({"remarks": [f"{made} tracks"]})
+    return {"observations": observations, "ended": ended}
+
+def finish(): return {"remarks": [f"{made} tracks"]}
+
+events, end = [], hello["range"][0] + window
+evbench_process.serve("centres of dots", take, finish)

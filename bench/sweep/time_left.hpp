@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace evbench {
+
+/// What is expected of how long runs take, learnt from those that are done.
+///
+/// A run takes as long as the mean of the most similar ones that are done: of the same label if there are any and, of
+/// those, with the most values on axes in common.
+class RunDurations {
+ public:
+  /// What a run's duration may depend on.
+  struct Traits {
+    std::string label;
+    std::vector<std::string> values;  ///< "AXIS=VALUE", in the order of the sweep's axes
+  };
+
+  void add(const Traits& traits, double seconds);
+
+  /// [s]; 0 where none is done.
+  double expected(const Traits& traits) const;
+
+ private:
+  struct Done {
+    Traits traits;
+    double seconds;
+  };
+  std::vector<Done> done_;
+};
+
+/// How long it takes until runs are done that take so long each [s], started in this order, so many at a time.
+double time_left(std::span<const double> seconds, std::size_t at_a_time);
+
+}  // namespace evbench
