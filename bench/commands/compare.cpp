@@ -5,6 +5,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/run_outputs.hpp"
+#include "bench/commands/run_selection.hpp"
 #include "bench/common_time.hpp"
 #include "eval/comparison_table.hpp"
 
@@ -12,7 +13,7 @@ namespace evbench {
 namespace {
 
 struct CompareArguments {
-  std::vector<std::string> folders;
+  RunSelection runs;
   std::string format = "text";
   TextOutput out;
   ComparisonOptions options;
@@ -22,7 +23,7 @@ void execute(const CompareArguments& arguments) {
   arguments.out.check();
   ComparisonOptions options = arguments.options;
   options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
-  use_runs(arguments.folders, [&](std::vector<RunRecord>& runs) {
+  use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
     if (any_of_common_time(options.metrics)) score_common_time(runs, options.online);
     arguments.out.write(make_comparison_table(runs, options));
   });
@@ -33,7 +34,7 @@ void execute(const CompareArguments& arguments) {
 void add_compare(CLI::App& app) {
   auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand("compare", "Compare back-ends pair by pair on the same data, with statistics");
-  add_folders(*command, arguments->folders);
+  add_run_selection(*command, arguments->runs);
   command->add_option("--base", arguments->options.base, "What the others are compared with: its label; else the first")
       ->type_name("NAME");
   add_list_option(*command, "--metrics", arguments->options.metrics,

@@ -4,17 +4,9 @@
 
 #include <filesystem>
 
-#include "bench/commands/failures.hpp"
 #include "core/io/atomic_file.hpp"
-#include "eval/find_runs.hpp"
 
 namespace evbench {
-
-void add_folders(CLI::App& command, std::vector<std::string>& folders) {
-  command.add_option("folders", folders, "Folders of runs, searched with all folders below")
-      ->required()
-      ->type_name("DIR");
-}
 
 CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::vector<std::string>& items,
                              const std::string& text, const std::string& type) {
@@ -22,13 +14,6 @@ CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::ve
       ->delimiter(',')
       ->allow_extra_args(false)  // so that folders may stand behind it
       ->type_name(type);
-}
-
-void use_runs(const std::vector<std::string>& folders, const std::function<void(std::vector<RunRecord>&)>& use) {
-  std::vector<std::string> unreadable;
-  std::vector<RunRecord> runs = find_runs(folders, &unreadable);
-  if (!runs.empty()) use(runs);
-  throw_together(unreadable);
 }
 
 void TextOutput::check() const {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/commands/commands.hpp"
-#include "bench/commands/run_outputs.hpp"
+#include "bench/commands/run_selection.hpp"
 #include "bench/common_time.hpp"
 #include "bench/run_folder.hpp"
 #include "core/support/interruption.hpp"

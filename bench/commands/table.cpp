@@ -4,13 +4,14 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/run_outputs.hpp"
+#include "bench/commands/run_selection.hpp"
 #include "bench/common_time.hpp"
 
 namespace evbench {
 namespace {
 
 struct TableArguments {
-  std::vector<std::string> folders;
+  RunSelection runs;
   std::string format = "text";
   TextOutput out;
   bool list_metrics = false;
@@ -20,12 +21,12 @@ struct TableArguments {
 void execute(const TableArguments& arguments) {
   arguments.out.check();
   if (arguments.list_metrics) {
-    use_runs(arguments.folders, [&](const std::vector<RunRecord>& runs) { arguments.out.write(list_metrics(runs)); });
+    use_runs(arguments.runs, [&](const std::vector<RunRecord>& runs) { arguments.out.write(list_metrics(runs)); });
     return;
   }
   TableOptions options = arguments.options;
   options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
-  use_runs(arguments.folders, [&](std::vector<RunRecord>& runs) {
+  use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
     if (shows_common_time(options, runs.size())) score_common_time(runs, options.online);
     arguments.out.write(make_table(runs, options));
   });
@@ -37,7 +38,7 @@ void add_table(CLI::App& app) {
   auto arguments = std::make_shared<TableArguments>();
   CLI::App* command =
       app.add_subcommand("table", "Make a table of runs: text, Markdown, CSV, LaTeX; with statistics over seeds");
-  add_folders(*command, arguments->folders);
+  add_run_selection(*command, arguments->runs);
   command
       ->add_option(
           "--format", arguments->format,
