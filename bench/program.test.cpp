@@ -127,7 +127,7 @@ TEST_CASE("What a run's front-end told is told again by the front-end recorded",
   REQUIRE(testing::evbench(folder, "run c.json --tracks --quiet --out first").exit_code == 0);
   const auto run = [&](const std::string& out) {
     const std::string experiment = folder.file(out + "/short");
-    return experiment + "/" + *names_in(experiment).begin();
+    return *runs_of(experiment).begin();
   };
   config["frontend"] = {{"type", "recorded"}, {"tracks", run("first") + "/tracks.txt"}};
   config["frontend"]["ends"] = "ends.txt";
@@ -196,7 +196,7 @@ TEST_CASE("A run that is interrupted leaves no half of it, and says what is comp
   CHECK(outcome.err == "evbench: c.json: interrupted; 1 of 2 runs are complete, the same command goes on from there\n");
   CHECK_THAT(outcome.out, ContainsSubstring("frames") && ContainsSubstring("ATE [m]") &&
                               ContainsSubstring("written: results/short"));
-  CHECK(names_in(folder.file("results/short")).size() == 1);
+  CHECK(runs_of(folder.file("results/short")).size() == 1);
 }
 
 TEST_CASE("No command replaces what it reads, or writes two outputs to one file, forced or not", "[slow]") {

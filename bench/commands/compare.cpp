@@ -17,6 +17,7 @@ struct CompareArguments {
   std::string format = "text";
   TextOutput out;
   ComparisonOptions options;
+  bool wide = false;
 };
 
 void execute(const CompareArguments& arguments) {
@@ -44,6 +45,8 @@ void add_compare(CLI::App& app) {
       ->check(CLI::IsMember({"text", "markdown", "csv", "latex"}))
       ->capture_default_str();
   add_text_output(*command, arguments->out);
+  add_wide(*command, arguments->options.layout, arguments->wide);
+  command->add_flag("--body", arguments->options.layout.body, "LaTeX: the tabular alone, without float and caption");
   command->callback([arguments] { execute(*arguments); });
 }
 

@@ -8,15 +8,16 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/failures.hpp"
 #include "bench/commands/number_check.hpp"
+#include "bench/commands/run_outputs.hpp"
 #include "core/data/pose_file.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
+#include "core/support/json.hpp"
 #include "eval/error_files.hpp"
 #include "eval/json_file.hpp"
 #include "eval/protocol.hpp"
 #include "eval/score_run.hpp"
 #include "eval/table.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -33,6 +34,8 @@ struct EvalArguments {
   std::string alignment;
   std::string delta_unit = "f";
   std::string table;  ///< format; empty: a table of several estimates, all numbers of one
+  TableLayout layout;
+  bool wide = false;
   std::string json, aligned, errors;
   bool force = false;
   ScoreOptions options = {.rpe_delta = 1.0};  ///< what goes straight into the protocol
@@ -151,7 +154,8 @@ void print_scores(const EvalArguments& arguments, const std::vector<RunRecord>& 
     return;
   }
   const std::string format = arguments.table.empty() ? "text" : arguments.table;
-  fmt::print("{}", make_table(records, {.format = parse_name<TableFormat>(kTableFormatNames, format, "table format")}));
+  fmt::print("{}", make_table(records, {.format = parse_name<TableFormat>(kTableFormatNames, format, "table format"),
+                                        .layout = arguments.layout}));
 }
 
 void execute(const EvalArguments& arguments) {
@@ -265,6 +269,7 @@ void add_segment_options(CLI::App& command, EvalArguments& arguments) {
 void add_output_options(CLI::App& command, EvalArguments& arguments) {
   command.add_option("--table", arguments.table, "Print a table of this format; of several estimates: text")
       ->check(CLI::IsMember(to_strings(kTableFormatNames)));
+  add_wide(command, arguments.layout, arguments.wide);
   command
       .add_option("--json", arguments.json,
                   "Write the scores, with the structure of a run's metrics.json; of several estimates a list of them")

@@ -40,14 +40,16 @@ void add_table(CLI::App& app) {
       app.add_subcommand("table", "Make a table of runs: text, Markdown, CSV, LaTeX; with statistics over seeds");
   add_run_selection(*command, arguments->runs);
   command
-      ->add_option(
-          "--format", arguments->format,
-          "Format; latex has few columns, see --metrics, and needs booktabs; long: CSV, a line a run and metric")
+      ->add_option("--format", arguments->format,
+                   "Format; latex has few columns and needs the packages booktabs and siunitx; long: CSV, a line a run "
+                   "and metric")
       ->check(CLI::IsMember(to_strings(kTableFormatNames)))
       ->capture_default_str();
   add_text_output(*command, arguments->out);
-  add_list_option(*command, "--metrics", arguments->options.metrics,
-                  "Columns, e.g. ate.trans_m.rmse,rpe.trans_m.median,runtime_s");
+  add_list_option(*command, "--metrics,--columns", arguments->options.metrics,
+                  "Columns, e.g. ate.trans_m.rmse,rpe.trans_m.median,runtime_s; key, folder and status are some, too");
+  add_wide(*command, arguments->options.layout, arguments->options.folders);
+  command->add_flag("--body", arguments->options.layout.body, "LaTeX: the tabular alone, without float and caption");
   add_list_option(*command, "--over", arguments->options.over,
                   "Summarise over these columns: a row for all runs that differ in nothing else, e.g. seed, or "
                   "seed,experiment",

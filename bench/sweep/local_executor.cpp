@@ -13,6 +13,7 @@
 
 #include "bench/pipeline/batch_recording.hpp"
 #include "bench/run_folder.hpp"
+#include "bench/run_index.hpp"
 #include "bench/runner.hpp"
 #include "bench/sweep/process_pool.hpp"
 #include "bench/sweep/shared_events.hpp"
@@ -84,7 +85,9 @@ std::string make_shared_files(decltype(make_tracks)* make, const Job& job, const
 class Executor {
  public:
   Executor(const std::vector<PlannedRun>& runs, const Plugins& plugins, const ExecutorOptions& options)
-      : plugins_(plugins), options_(options) {
+      : plugins_(plugins),
+        options_(options),
+        index_(runs.empty() ? "" : options.out + "/" + runs.front().config.experiment) {
     std::set<std::string> keys;
     for (const PlannedRun& run : runs) {
       if (!keys.insert(run.identity.key).second) continue;
@@ -102,17 +105,14 @@ class Executor {
   }
 
   SweepProgress run(const std::function<void(const SweepProgress&)>& tell) {
-    take_results();
-    progress_.before = progress_.done;
-    const Clock::time_point begin = Clock::now();
-    while (progress_.done < progress_.runs) {
-      check_interruption();
-      start_some();
-      for (const Ending& ending : pool_.wait(std::chrono::milliseconds(50))) take_ending(ending);
-      if (Clock::now() - looked_ > kLookElsewhere) look_elsewhere();
-      estimate(std::chrono::duration<double>(Clock::now() - begin).count());
-      tell(progress_);
+    try {
+      take_results();
+      do_all(tell);
+    } catch (const Interrupted&) {
+      index_.write();
+      throw;
     }
+    index_.write();
     return std::move(progress_);
   }
 
@@ -134,6 +134,21 @@ class Executor {
     std::unique_ptr<AtomicFolder> folder = nullptr;  ///< the claim on it, while it is made
     std::vector<std::size_t> waiting = {};           ///< jobs
   };
+
+  void do_all(const std::function<void(const SweepProgress&)>& tell) {
+    progress_.before = progress_.done;
+    const Clock::time_point begin = Clock::now();
+    while (progress_.done < progress_.runs) {
+      check_interruption();
+      start_some();
+      for (const Ending& ending : pool_.wait(std::chrono::milliseconds(50))) take_ending(ending);
+      if (Clock::now() - looked_ > kLookElsewhere) look_elsewhere();
+      estimate(std::chrono::duration<double>(Clock::now() - begin).count());
+      if (progress_.done > indexed_) index_.add();
+      indexed_ = progress_.done;
+      tell(progress_);
+    }
+  }
 
   std::string folder_of(const Job& job) const { return folder_of(*job.run, job.run->identity.key); }
   std::string folder_of(const PlannedRun& run, const std::string& key) const {
@@ -354,6 +369,8 @@ class Executor {
   std::size_t shared_made_ = 0;               ///< numbers of processes that were given to what runs share
   std::map<std::string, std::size_t> users_;  ///< jobs that are not done, by the events that they need
   Clock::time_point looked_ = {};
+  RunIndex index_;
+  std::size_t indexed_ = 0;  ///< runs that were done when the index was told
   SweepProgress progress_;
   ProcessPool pool_;  // the last one: its processes end before what they use
 };
