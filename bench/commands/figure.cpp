@@ -77,22 +77,22 @@ struct FigureArguments {
   RunSelection runs;
   std::string out, python;
   double width_mm = 0.0, height_mm = 0.0;  ///< 0: the figure's own
-  bool keep_script = false, force = false;
+  bool keep_script = false, force = false, no_caption = false;
   FigureOptions options;
 };
 
 void execute(const FigureArguments& arguments) {
   const std::filesystem::path out(arguments.out);
   const std::string script = std::filesystem::path(out).replace_extension(".py").string();
-  if (out.extension() != ".svg" && out.extension() != ".pdf" && out.extension() != ".png") {
-    throw InputError(fmt::format("{}: is no .svg, .pdf or .png; expected one of these", arguments.out));
-  }
+  check_figure_name(arguments.out);
   check_outputs({arguments.out, arguments.keep_script ? script : ""}, {}, arguments.force);
   use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
     if (any_of_common_time(arguments.options.metrics)) score_common_time(runs, arguments.options.online);
     Figure figure = find_kind(arguments.kind).make(runs, arguments.options);
     if (arguments.width_mm > 0.0) figure.width_mm = arguments.width_mm;
     if (arguments.height_mm > 0.0) figure.height_mm = arguments.height_mm;
+    if (arguments.no_caption) figure.caption.clear();
+    for (const std::string& remark : figure.remarks) fmt::print(stderr, "remark: {}\n", remark);
     if (arguments.keep_script) write_file(script, drawing_script(figure));
     const std::string warnings = draw(figure, arguments.out, arguments.python);
     if (!warnings.empty()) fmt::print(stderr, "{}: is drawn, but Python warns:{}\n", arguments.out, warnings);
@@ -122,6 +122,7 @@ void add_figure(CLI::App& app) {
       ->check(CLI::Range(20.0, 2000.0));
   command->add_option("--height", arguments->height_mm, "Height of the panels, without legend and caption [mm]")
       ->check(CLI::Range(20.0, 2000.0));
+  command->add_flag("--no-caption", arguments->no_caption, "Without the sentences below it, for who writes their own");
   command->add_flag("--keep-script", arguments->keep_script,
                     "Also write FILE with the ending .py: the Python script that draws it, to be changed by hand");
   command->add_option("--python", arguments->python, "A Python with matplotlib; else python3")->type_name("PROGRAM");
