@@ -204,7 +204,7 @@ TEST_CASE("No command replaces what it reads, or writes two outputs to one file,
   write_recording(folder);
   folder.write("c.json", dump_json(short_config()));
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
-  REQUIRE(testing::shell(folder, "mv results/short/* run").exit_code == 0);
+  REQUIRE(testing::shell(folder, "mv results/short/*/ run").exit_code == 0);
   const std::string before = testing::shell(folder, "sha256sum * run/* 2> /dev/null").out;
   for (const char* const command :
        {"eval groundtruth.txt groundtruth.txt --aligned groundtruth.txt",

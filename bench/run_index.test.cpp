@@ -65,7 +65,10 @@ TEST_CASE("Of a plugin that was rebuilt the newest runs count, which is said, an
       json["seed"] = seed;
       json["key"] = name + std::to_string(seed);
       results.add(json["key"], json,
-                  {{"seed", seed}, {"source", {{"type", "simulation"}}}, {"backend", {{"type", "mine"}}}});
+                  {{"seed", seed},
+                   {"source", {{"type", "simulation"}, {"motion", "arm"}}},
+                   {"frontend", {{"type", "oracle"}}},
+                   {"backend", {{"type", "mine"}}}});
       results.folder.write(json["key"].get<std::string>() + "/manifest.json",
                            dump_json({{"finished", name == std::string("old") ? "2024-01-01" : "2024-01-02"}}));
       results.add_seed("base", seed, 1.0);

@@ -99,17 +99,14 @@ std::vector<Mark> draw_method(const Places& places, std::size_t number, const Fi
   return marks;
 }
 
-/// Does every method that has the axis have one value of it, and each another? Then labels differ as the axis does.
+/// Does every method that has the axis have one value of it, and not all the same? Then labels differ as the axis does.
 bool labels_follow(const std::vector<Places>& methods) {
   std::set<double> values;
-  std::size_t with = 0;
   for (const Places& places : methods) {
     if (places.at.size() > 1) return false;
-    if (places.at.empty()) continue;
-    ++with;
-    values.insert(places.at.begin()->first);
+    for (const auto& [value, runs] : places.at) values.insert(value);
   }
-  return with > 1 && values.size() == with;
+  return values.size() > 1;
 }
 
 }  // namespace
