@@ -45,8 +45,8 @@ struct TableOptions {
 ///
 /// Pairs, coverage and scale are columns, or, where `metrics` leaves them out, ranges below. The best value of a
 /// column, among runs of the same experiment, sequence (seed included) and protocol, is bold in Markdown and LaTeX and
-/// marked with * in text, which is explained below; runs that were lost or failed do not compete. A value that a run does not have is "-" (CSV:
-/// empty). Why runs have no scores, or were lost, stands below.
+/// marked with * in text, which is explained below; runs that were lost or failed do not compete. A value that a run
+/// does not have is "-" (CSV: empty). Why runs have no scores, or were lost, stands below.
 ///
 /// With `over`, runs that differ in nothing else are a row: median and quartiles of each number, and how many of them
 /// succeeded, that is, have scores and were neither lost nor failed. Those that did not count as worse than all others

@@ -29,8 +29,8 @@ struct RunSelection {
 /// The folders and the options that choose among their runs.
 void add_run_selection(CLI::App& command, RunSelection& selection);
 
-/// use_runs() with those that are selected: of each label and config the newest job alone (eval/newest_jobs.hpp), unless
-/// all are wanted. How many were left out is told on the standard error.
+/// use_runs() with those that are selected: of each label and config the newest job alone (eval/newest_jobs.hpp),
+/// unless all are wanted. How many were left out is told on the standard error.
 void use_runs(const RunSelection& selection, const std::function<void(std::vector<RunRecord>&)>& use);
 
 /// Leaves the runs that have of each name, "NAME=VALUE", one of the values asked for. Names are those of run_columns(),
