@@ -181,7 +181,7 @@ TEST_CASE("A run that can't be written whole leaves the run before as it was", "
   CHECK(outcome.exit_code == kExitNotWritten);
   CHECK_THAT(outcome.err, ContainsSubstring("can't be written: File too large") && !ContainsSubstring(".part"));
   CHECK(testing::shell(folder, "cd results/short && sha256sum */*").out == before);
-  CHECK(names_in(folder.file("results/short")).size() == 1);
+  CHECK(runs_of(folder.file("results/short")).size() == 1);
 }
 
 TEST_CASE("A run on a disk that is full leaves nothing there", "[slow]") {

@@ -281,5 +281,5 @@ TEST_CASE("A run that is ended leaves what is complete, prints its table, and go
   CHECK_THAT(outcome.err, ContainsSubstring("c.json: interrupted; 1 of 2 runs are complete"));
   CHECK_THAT(outcome.out,
              ContainsSubstring("quick") && !ContainsSubstring("slow") && ContainsSubstring("written: results/short"));
-  CHECK(names_in(folder.file("results/short")).size() == 1);
+  CHECK(runs_of(folder.file("results/short")).size() == 1);
 }

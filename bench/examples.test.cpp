@@ -84,7 +84,7 @@ TEST_CASE("Examples that need no data of one's own are fine as they are, and one
       folder, "run '" + std::string(EVBENCH_CONFIGS) + "/examples/tracks_from_file.json' --quiet --out results");
   CAPTURE(run.err);
   CHECK(run.exit_code == 0);
-  for (const std::string& key : names_in(folder.file("results/tracks_from_file"))) {
-    CHECK(parse_json(read_file(folder.file("results/tracks_from_file/" + key + "/status.json"))).at("state") == "ok");
+  for (const std::string& path : runs_of(folder.file("results/tracks_from_file"))) {
+    CHECK(parse_json(read_file(path + "/status.json")).at("state") == "ok");
   }
 }

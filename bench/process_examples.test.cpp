@@ -20,8 +20,7 @@ Outcome run_example(const TemporaryFolder& folder, const std::string& name, cons
 /// metrics.json of each run, by label, and the run's folder as "folder".
 std::map<std::string, Json> metrics(const TemporaryFolder& folder, const std::string& experiment) {
   std::map<std::string, Json> result;
-  for (const std::string& run : names_in(folder.file("results/" + experiment))) {
-    const std::string path = folder.file("results/" + experiment + "/" + run);
+  for (const std::string& path : runs_of(folder.file("results/" + experiment))) {
     Json content = parse_json(read_file(path + "/metrics.json"));
     content["folder"] = path;
     result[content.at("label")] = content;

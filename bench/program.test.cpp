@@ -169,7 +169,7 @@ TEST_CASE("What a run's front-end told is told again by the front-end recorded",
   REQUIRE(testing::evbench(folder, "run c.json --tracks --quiet --out first").exit_code == 0);
   const auto run = [&](const std::string& out) {
     const std::string experiment = folder.file(out + "/short");
-    return experiment + "/" + *names_in(experiment).begin();
+    return *runs_of(experiment).begin();
   };
   config["frontend"] = {{"type", "recorded"}, {"tracks", run("first") + "/tracks.txt"}};
   config["frontend"]["ends"] = "ends.txt";
@@ -239,7 +239,7 @@ TEST_CASE("A run that is interrupted leaves no half of it, and says what is comp
         "evbench run: c.json: interrupted; 1 of 2 runs are complete, the same command goes on from there\n");
   CHECK_THAT(outcome.out, ContainsSubstring("frames") && ContainsSubstring("ATE [m]") &&
                               ContainsSubstring("written: results/short"));
-  CHECK(names_in(folder.file("results/short")).size() == 1);
+  CHECK(runs_of(folder.file("results/short")).size() == 1);
 }
 
 TEST_CASE("No command replaces what it reads, or writes two outputs to one file, forced or not", "[slow]") {
@@ -247,7 +247,7 @@ TEST_CASE("No command replaces what it reads, or writes two outputs to one file,
   write_recording(folder);
   folder.write("c.json", dump_json(short_config()));
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
-  REQUIRE(testing::shell(folder, "mv results/short/* run").exit_code == 0);
+  REQUIRE(testing::shell(folder, "mv results/short/*/ run").exit_code == 0);
   const std::string before = testing::shell(folder, "sha256sum * run/* 2> /dev/null").out;
   for (const char* const command :
        {"eval groundtruth.txt groundtruth.txt --aligned groundtruth.txt",

@@ -16,10 +16,20 @@ namespace evbench {
 namespace {
 
 PublishedRow read_row(const RecordReader& json) {
-  PublishedRow row{json.text("label"), {}};
+  PublishedRow row{json.text("label"), json.text_or("over", ""), {}};
   if (!json.at("values").is_object()) json.fail("values", "numbers by metric");
   const RecordReader values(json.at("values"), json.place() + ".values");
-  for (const auto& [key, value] : json.at("values").items()) row.values.emplace_back(key, values.number(key.c_str()));
+  for (const auto& [key, value] : json.at("values").items()) {
+    if (row.over.empty()) {
+      row.values.push_back({key, values.number(key.c_str()), std::nullopt});
+      continue;
+    }
+    const bool two = value.is_array() && value.size() == 2 && value[0].is_number() && value[1].is_number();
+    if (!two || value[0].get<double>() <= 0.0 || value[1].get<double>() <= 0.0) {
+      values.fail(key.c_str(), "two numbers above 0, of \"label\" and of \"over\"");
+    }
+    row.values.push_back({key, value[0].get<double>(), value[1].get<double>()});
+  }
   return row;
 }
 
@@ -36,21 +46,43 @@ const RunRecord* find_run(std::span<const RunRecord> runs, const std::string& ex
   return found == runs.end() ? nullptr : &*found;
 }
 
-std::string number_text(const std::optional<double>& value, bool csv) {
+std::string text_of(const std::optional<double>& value, int digits, bool csv) {
   if (!value) return csv ? "" : "-";
-  return csv ? fmt::format("{}", *value) : fmt::format("{:.4g}", *value);
+  return csv ? fmt::format("{}", *value) : fmt::format("{:.{}g}", *value, digits);
 }
 
-void add_row(TextTable& table, const PublishedResult& result, const std::string& label, const Metric& metric,
-             const RunRecord* run, double published, bool csv) {
-  const std::optional<double> ours = run == nullptr ? std::nullopt : RunNumbers(*run, false).at(metric.key);
-  const std::optional<double> ratio = ours ? std::optional(*ours / published) : std::nullopt;
-  table.rows.push_back({{result.config},
-                        {label},
-                        {csv ? metric.key : metric.header},
-                        {number_text(ours, csv)},
-                        {number_text(published, csv)},
-                        {number_text(ratio, csv)}});
+std::optional<double> number_of(const RunRecord* run, const std::string& metric) {
+  return run != nullptr && run->competes() ? RunNumbers(*run, false).at(metric) : std::nullopt;
+}
+
+/// Does what the paper says of a ratio, that it is below or above 1, hold here?
+std::string holds(const std::optional<double>& here, double paper, bool csv) {
+  if (!here) return csv ? "" : "-";
+  return (*here < 1.0) == (paper < 1.0) ? "yes" : "no";
+}
+
+void add_row(TextTable& table, const std::string& experiment, const PublishedRow& row, const PublishedValue& value,
+             const RunRecord* own, const RunRecord* base, bool csv) {
+  const Metric metric = metric_of(value.metric);
+  std::optional<double> here = number_of(own, value.metric);
+  double paper = value.own;
+  if (value.base) {
+    const std::optional<double> other = number_of(base, value.metric);
+    here = here && other && *other > 0.0 ? std::optional(*here / *other) : std::nullopt;
+    paper /= *value.base;
+  }
+  const int digits = value.base ? 2 : 4;
+  table.rows.push_back({{experiment},
+                        {row.label},
+                        {row.over},
+                        {csv          ? metric.key
+                         : value.base ? metric.header.substr(0, metric.header.find(" ["))
+                                      : metric.header},
+                        {text_of(here, digits, csv)},
+                        {text_of(paper, digits, csv)},
+                        {value.base ? holds(here, paper, csv)
+                         : csv      ? ""
+                                    : "-"}});
 }
 
 }  // namespace
@@ -63,13 +95,20 @@ Published read_published(const std::string& path) {
   return published;
 }
 
-std::string published_table(const Published& published, std::span<const RunRecord> runs, TableFormat format) {
+std::string published_table(const Published& published, std::span<const RunRecord> runs, TableFormat format,
+                            const TableLayout& layout) {
   const bool csv = format == TableFormat::csv;
   TextTable table;
-  table.columns = {{"experiment", false}, {csv ? "label" : "", false}, {"metric", false}, {"here", true},
-                   {"paper", true},       {"here / paper", true}};
+  table.columns = {{"experiment", false}, {csv ? "label" : "", false},
+                   {"over", false},       {"metric", false},
+                   {"here", true},        {"paper", true},
+                   {"holds", false}};
   table.experiments = {"Here and in the paper"};
   table.notes.push_back(fmt::format("Paper: {}.", published.paper));
+  table.notes.emplace_back(
+      "Where a row is of one back-end over another, its numbers are the ratio of their errors, here and in the paper: "
+      "metres of another recording, at another scale, can't be compared. A claim holds where both ratios are on the "
+      "same side of 1.");
   std::vector<std::string> untold;
   for (const RunRecord& run : runs) {
     const bool told =
@@ -80,8 +119,9 @@ std::string published_table(const Published& published, std::span<const RunRecor
     const auto ours = std::ranges::find(runs, result.config, &RunRecord::experiment);
     if (ours == runs.end()) continue;
     for (const PublishedRow& row : result.rows) {
-      const RunRecord* run = find_run(runs, result.config, row.label);
-      for (const auto& [key, value] : row.values) add_row(table, result, row.label, metric_of(key), run, value, csv);
+      const RunRecord* own = find_run(runs, result.config, row.label);
+      const RunRecord* base = find_run(runs, result.config, row.over);
+      for (const PublishedValue& value : row.values) add_row(table, result.config, row, value, own, base, csv);
     }
     const std::string here =
         ours->final_scores.is_null() ? "no scores" : protocol(ours->final_scores, ours->folder + "/metrics.json");
@@ -89,7 +129,7 @@ std::string published_table(const Published& published, std::span<const RunRecor
                                       result.protocol, result.not_equal));
   }
   for (const std::string& name : untold) table.notes.push_back(fmt::format("{}: the paper has no number of it.", name));
-  return format_table(table, format);
+  return format_table(table, format, layout);
 }
 
 }  // namespace evbench

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "eval/run_record.hpp"
@@ -10,10 +10,19 @@
 
 namespace evbench {
 
-/// What a paper says of one back-end.
+/// A number of a paper, by its metric, as in tables.
+struct PublishedValue {
+  std::string metric;
+  double own;
+  std::optional<double> base;  ///< of what the row compares with
+};
+
+/// What a paper says of one back-end. Errors in metres are of its recording: only how they compare with those of
+/// another back-end can be found again elsewhere.
 struct PublishedRow {
-  std::string label;                                   ///< of the run in our config
-  std::vector<std::pair<std::string, double>> values;  ///< by metric, as in tables
+  std::string label;  ///< of the run in our config
+  std::string over;   ///< of the run that it is compared with; empty: the values themselves are
+  std::vector<PublishedValue> values;
 };
 
 /// What a paper says of an experiment of ours.
@@ -34,9 +43,11 @@ struct Published {
 /// Throws InputError with the place for a file that can't be read or is not of that structure.
 Published read_published(const std::string& path);
 
-/// Our numbers of these runs beside the paper's, a row an experiment, back-end and metric; below stand both protocols,
-/// and why numbers can't be equal. What the paper tells of a run that is not there, or has no such number, is shown
-/// with "-". Experiments that the paper says nothing of are named.
-std::string published_table(const Published& published, std::span<const RunRecord> runs, TableFormat format);
+/// What these runs say of what the paper claims, a row an experiment, claim and metric: a ratio of two back-ends, and
+/// whether it is on the same side of 1 as the paper's, or a number itself; below stand both protocols, and why numbers
+/// can't be equal. What the paper tells of a run that is not there, or has no such number, is shown with "-".
+/// Experiments that the paper says nothing of are named.
+std::string published_table(const Published& published, std::span<const RunRecord> runs, TableFormat format,
+                            const TableLayout& layout = {});
 
 }  // namespace evbench

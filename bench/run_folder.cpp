@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -15,6 +16,7 @@
 #include "core/data/tracks.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/sha256.hpp"
+#include "core/io/utc_time.hpp"
 #include "eval/json_file.hpp"
 #include "eval/score_run.hpp"
 
@@ -55,6 +57,7 @@ Json manifest_json(const RunConfig& config, const JobIdentity& identity, const R
   for (const auto& [path, digest] : identity.files) inputs[path] = digest;
   return {{"program", {{"version", kVersion}, {"commit", kCommit}, {"build", kBuild}}},
           {"host", {{"name", host.data()}, {"processor", processor()}, {"cores", std::thread::hardware_concurrency()}}},
+          {"finished", utc_time(std::chrono::system_clock::now())},
           {"seed", config.job.seed},
           {"key", identity.key},
           {"config_sha256", sha256(json_file_text(config.resolved()))},

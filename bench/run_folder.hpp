@@ -26,8 +26,8 @@ class EmptyFolders {
 ///
 ///   config.json      resolved, complete: can be run again from anywhere
 ///   job.json         what determines the trajectory: its SHA-256 begins with the key's digits
-///   manifest.json    program, host, seed, SHA-256 of config.json, of each input and of the tracks; how long the files
-///                    are that stay as they are
+///   manifest.json    program, host, when the run was done, seed, SHA-256 of config.json, of each input and of the
+///                    tracks; how long the files are that stay as they are
 ///   final.tum, online.tum, map.ply   the estimate: after the fact, causal, landmarks
 ///   told.txt         every pose told while the data came in, with the time at which it was known
 ///   covariance.txt   relative poses with the covariances that the back-end gave, where it has them

@@ -9,13 +9,13 @@
 #include <set>
 
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 #include "eval/holm.hpp"
 #include "eval/methods.hpp"
 #include "eval/paired_comparison.hpp"
 #include "eval/run_columns.hpp"
 #include "eval/table_notes.hpp"
 #include "eval/table_text.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -68,10 +68,13 @@ class Comparison {
     if (methods_.size() < 2) throw InputError("all runs are of one method; expected two or more to compare");
     base_ = options.base.empty() ? &methods_.front() : &find_method(methods_, options.base);
     metrics_ = compared_metrics(options, numbers_);
-    for (const char* name :
-         {"", "metric", "pairs", "failed", "base failed", "ratio", "better in", "p", "p, Holm", "effect"}) {
+    const std::pair<const char*, std::size_t> names[] = {
+        // and ranks
+        {"", 0},      {"metric", 0},    {"pairs", 0}, {"failed", 2},  {"base failed", 3},
+        {"ratio", 0}, {"better in", 4}, {"p", 5},     {"p, Holm", 0}, {"effect", 1}};
+    for (const auto& [name, rank] : names) {
       table_.columns.push_back(
-          {csv_ && *name == '\0' ? "method" : name, *name != '\0' && std::string(name) != "metric"});
+          {csv_ && *name == '\0' ? "method" : name, *name != '\0' && std::string(name) != "metric", rank});
     }
     if (csv_) table_.columns.insert(table_.columns.begin() + 6, {{"from", true}, {"to", true}});
   }
@@ -85,7 +88,7 @@ class Comparison {
                       base_->name));
     }
     add_notes();
-    return format_table(table_, options_.format);
+    return format_table(table_, options_.format, options_.layout);
   }
 
  private:
@@ -150,12 +153,11 @@ class Comparison {
         "Ratio: median of own / base (where higher is better, of base / own) with its 95 % interval (bootstrap); below "
         "1 "
         "the method is better. A failed run is infinitely worse than any other, two failed ones are equal.");
-    notes.push_back(
-        fmt::format("p: Wilcoxon's signed-rank test, two-sided; Holm: corrected for the comparisons of a "
-                    "metric; bold (*): better with p < {} after correction. Effect: matched-pairs rank-biserial "
-                    "correlation, -1: better in all pairs.",
-                    kSignificant) +
-        too_few_.value_or(""));
+    notes.push_back(fmt::format("p: Wilcoxon's signed-rank test, two-sided; Holm: corrected for the comparisons of a "
+                                "metric. {}: better with p < {} after correction. Effect: matched-pairs rank-biserial "
+                                "correlation, -1: better in all pairs.",
+                                mark_name(options_.format), kSignificant) +
+                    too_few_.value_or(""));
     for (const std::string& protocol : protocols_.texts) notes.push_back(fmt::format("Protocol: {}.", protocol));
   }
 

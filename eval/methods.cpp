@@ -16,7 +16,8 @@ namespace {
 
 /// The columns in which runs of one label on the same data differ, and the label.
 std::vector<const RunColumn*> method_columns(const std::vector<RunColumn>& columns,
-                                             const std::vector<std::size_t>& data, const std::string& without) {
+                                             const std::vector<std::size_t>& data, const std::string& without,
+                                             const std::string& apart) {
   const RunColumn& labels = find_column(columns, "label");
   std::map<std::pair<std::size_t, std::string>, std::size_t> firsts;
   std::set<const RunColumn*> differing;
@@ -25,6 +26,9 @@ std::vector<const RunColumn*> method_columns(const std::vector<RunColumn>& colum
     for (const RunColumn& column : columns) {
       if (column.values[i] != column.values[first]) differing.insert(&column);
     }
+  }
+  for (const RunColumn& column : columns) {
+    if (column.name == apart && column.varies()) differing.insert(&column);
   }
   std::vector<const RunColumn*> result = {&labels};
   for (const RunColumn& column : columns) {
@@ -46,9 +50,9 @@ std::string method_name(const std::vector<const RunColumn*>& columns, std::size_
 }  // namespace
 
 std::vector<Method> methods_of(const std::vector<RunNumbers>& runs, const std::vector<RunColumn>& columns,
-                               const std::string& without) {
+                               const std::string& without, const std::string& apart) {
   const std::vector<std::size_t> data = number_data(runs);
-  const std::vector<const RunColumn*> naming = method_columns(columns, data, without);
+  const std::vector<const RunColumn*> naming = method_columns(columns, data, without, apart);
   const auto left_out = std::ranges::find(columns, without, &RunColumn::name);
   const auto place = [&](std::size_t i) {
     return fmt::format("{} {}", data[i], left_out == columns.end() ? "" : left_out->values[i]);

@@ -14,7 +14,7 @@ const std::vector<Metric>& known_metrics() {
   static const std::vector<Metric> metrics = {
       {"ate.trans_m.rmse", "ATE [m]", Better::lower, kAll},
       {"ate.trans_percent", "ATE [% of path]", Better::lower, kRowARun},
-      {"ate.rot_deg.rmse", "ATE [deg]", Better::lower, kAll},
+      {"ate.rot_deg.rmse", "ATE [deg]", Better::lower, kScreen},
       {"ate.rot_centred_deg.rmse", "ATE, centred [deg]", Better::lower, kOnRequest},
       {"rpe.trans_m.rmse", "RPE [m]", Better::lower, kAll},
       {"rpe.rot_deg.rmse", "RPE [deg]", Better::lower, kAll},
@@ -46,7 +46,7 @@ const std::vector<Metric>& known_metrics() {
       {"segments.trans_percent.mean", "segments [%]", Better::lower, kAll},
       {"segments.rot_deg_per_m.mean", "segments [deg/m]", Better::lower, kAll},
       {"pairs", "pairs", Better::neither, kRowARun, 0},
-      {"coverage", "covered [%]", Better::neither, kScreen, 1, 100.0},
+      {"coverage", "covered [%]", Better::neither, kScreen, 1, 100.0, "cov. [%]"},
       {"scale", "scale", Better::neither, kRowARun, 4},
       {"times.source_s", "source [s]", Better::neither, kOnRequest, 3},
       {"times.frontend_s", "front-end [s]", Better::neither, kScreen, 3},
@@ -60,7 +60,7 @@ const std::vector<Metric>& known_metrics() {
       {"times.backend_ms.p99", "update, p99 [ms]", Better::lower, kSummary},
       {"times.backend_ms.max", "update, max [ms]", Better::lower, kSummary},
       {"runtime_s", "processing [s]", Better::lower, kOnRequest, 3},
-      {"realtime_factor", "real-time factor", Better::higher, kAll},
+      {"realtime_factor", "real-time factor", Better::higher, kAll, {}, 1.0, "RTF"},
       {"peak_rss_mib", "memory [MiB]", Better::lower, kSummary, 1},
   };
   return metrics;

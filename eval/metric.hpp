@@ -23,6 +23,7 @@ struct Metric {
   ShownIn shown;
   std::optional<int> decimals = {};  ///< fixed; else as many as the smallest value of the column needs for three digits
   double factor = 1.0;               ///< shown is factor times the value
+  std::string brief = {};            ///< a shorter header, for a column of a page; empty: the header
 };
 
 /// Those that have a header of their own, in the order of columns.

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "core/support/json_reason.hpp"
 #include "core/support/json.hpp"
+#include "core/support/json_reason.hpp"
 
 namespace evbench {
 namespace {
@@ -79,12 +79,13 @@ std::string row(const std::string& name, const Statistics& s) {
 
 }  // namespace
 
-std::string protocol(const Json& scores, const std::string& place) {
+std::string protocol(const Json& scores, const std::string& place, const ProtocolParts& parts) {
   try {
-    std::string text = fmt::format("{}; {}; {}", alignment_text(scores.at("alignment")),
-                                   association_text(scores.at("association")), relative_text(scores.at("rpe")));
-    if (scores.contains("segments")) text += "; segments " + segments_text(scores.at("segments"));
-    if (scores.contains("equal_latency") && !scores.at("equal_latency").is_null()) {
+    std::string text =
+        fmt::format("{}; {}", alignment_text(scores.at("alignment")), association_text(scores.at("association")));
+    if (parts.relative) text += "; " + relative_text(scores.at("rpe"));
+    if (parts.segments && scores.contains("segments")) text += "; segments " + segments_text(scores.at("segments"));
+    if (parts.latency && scores.contains("equal_latency") && !scores.at("equal_latency").is_null()) {
       text += fmt::format("; equal latency {} s", scores.at("equal_latency").at("latency_s").get<double>());
     }
     return text;

@@ -14,11 +14,6 @@
 namespace evbench {
 namespace {
 
-std::string text_of(const Json* value) {
-  if (value == nullptr || value->is_null()) return "";
-  return value->is_string() ? value->get<std::string>() : value->dump();
-}
-
 /// Paths of the settings that differ between two runs, in their order.
 void add_differences(const RunSettings& a, const RunSettings& b, std::vector<std::string>& paths) {
   const auto add = [&](const std::string& path) {
@@ -96,7 +91,7 @@ std::vector<RunColumn> run_columns(std::span<const RunRecord> runs) {
   }
   for (const std::string& path : varying_settings(runs)) {
     const auto text = [&](const RunRecord& run) {
-      return run.axes.empty() ? text_of(find_setting(run.settings, path)) : std::string();
+      return run.axes.empty() ? setting_text(run.settings, path) : std::string();
     };
     columns.push_back(column(path, runs, text));
   }

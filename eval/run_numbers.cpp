@@ -145,7 +145,7 @@ void keep_one_of_each(std::vector<std::size_t>& indices, const std::vector<RunNu
     if (is_new || (!run.key.empty() && first.key == run.key)) return !is_new;
     throw InputError(
         fmt::format("{} and {} are both \"{}\"{}, and not the same job; expected one run of each, e.g. of "
-                    "one version of the program",
+                    "one version of the program: by --only, or the newest of each label and config without --all",
                     first.folder, run.folder, run.label, run.seed ? fmt::format(", seed {}", *run.seed) : ""));
   });
 }

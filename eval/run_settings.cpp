@@ -30,6 +30,12 @@ const Json* find_setting(const RunSettings& settings, const std::string& path) {
   return found == settings.end() ? nullptr : &found->second;
 }
 
+std::string setting_text(const RunSettings& settings, const std::string& path) {
+  const Json* value = find_setting(settings, path);
+  if (value == nullptr || value->is_null()) return "";
+  return value->is_string() ? value->get<std::string>() : value->dump();
+}
+
 bool settings_less(const RunSettings& a, const RunSettings& b) {
   return std::ranges::lexicographical_compare(
       a, b, [](const auto& x, const auto& y) { return x.first != y.first ? x.first < y.first : x.second < y.second; });

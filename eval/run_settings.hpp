@@ -22,6 +22,9 @@ RunSettings settings_of(const Json& config);
 /// Nothing where the settings don't have it.
 const Json* find_setting(const RunSettings& settings, const std::string& path);
 
+/// As tables show it; empty where the settings don't have it.
+std::string setting_text(const RunSettings& settings, const std::string& path);
+
 /// Are the values of `a` before those of `b`? Numbers compare as numbers.
 bool settings_less(const RunSettings& a, const RunSettings& b);
 

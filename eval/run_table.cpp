@@ -82,6 +82,8 @@ std::vector<Cell> cells_of(const TableRuns& runs, const Text& text) {
   return cells;
 }
 
+std::string folder_of(const RunRecord& run) { return run.folder; }
+
 /// Are there rows that no cell tells apart?
 bool ambiguous(const TextTable& table) {
   std::set<std::vector<std::string>> seen;
@@ -93,16 +95,30 @@ bool ambiguous(const TextTable& table) {
 }
 
 /// What tells the runs apart; in CSV all that does, else as much as is needed.
-void add_names(TextTable& table, const TableRuns& runs, bool csv) {
+void add_names(TextTable& table, const TableRuns& runs, const TableOptions& options) {
+  const bool csv = options.format == TableFormat::csv, print = options.format == TableFormat::latex;
   for (const RunColumn& column : runs.columns) {
     const bool label = column.name == "label";
     if (!csv && !label && !column.varies()) continue;
     add_column(table, label && !csv ? "" : column.name, false, cells_of(column.values));
   }
   const auto key = [](const RunRecord& run) { return run.key; };
-  if (csv || ambiguous(table)) add_column(table, "key", false, cells_of(runs, key));
-  const auto folder = [](const RunRecord& run) { return run.folder; };
-  if (csv || ambiguous(table)) add_column(table, "folder", false, cells_of(runs, folder));
+  const bool keys = csv || asks_for(options, "key") || ambiguous(table);
+  if (keys) add_column(table, "key", false, cells_of(runs, key));
+  if (csv || (!print && ambiguous(table))) add_column(table, "folder", false, cells_of(runs, folder_of));
+}
+
+/// What the mark of the best values means, where there is one.
+std::string mark_note(const TextTable& table, const TableRuns& runs, TableFormat format) {
+  const auto marked = [](const std::vector<Cell>& cells) { return std::ranges::any_of(cells, &Cell::best); };
+  const bool any = std::ranges::any_of(table.rows, marked);
+  std::string note;
+  if (any)
+    note = fmt::format("{}: the best of a column among runs of one sequence, seed and protocol.", mark_name(format));
+  if (std::ranges::any_of(runs.runs, [](const RunNumbers& run) { return run.run().done && !run.run().competes(); })) {
+    note += fmt::format("{}Lost and failed runs do not compete for the best value.", any ? " " : "");
+  }
+  return note;
 }
 
 bool all_fine(const TableRuns& runs) {
@@ -118,12 +134,16 @@ TextTable run_table(const TableRuns& runs, const TableOptions& options) {
   const bool csv = options.format == TableFormat::csv;
   TextTable table;
   table.rows.resize(runs.runs.size());
-  add_names(table, runs, csv);
+  add_names(table, runs, options);
   for (const Metric& metric : runs.metrics) {
-    add_column(table, csv ? metric.key : metric.header, true, metric_cells(runs, metric, csv));
+    add_column(table, csv ? metric.key : header_of(metric, options.format), true, metric_cells(runs, metric, csv),
+               rank_of(metric, options));
   }
-  if (options.format != TableFormat::latex || !all_fine(runs)) {
-    add_column(table, "status", false, cells_of(runs, csv ? status_word : status_text));
+  const bool print = options.format == TableFormat::latex;
+  if (!print || !all_fine(runs) || asks_for(options, "status")) {
+    std::vector<Cell> cells;
+    for (const RunNumbers& run : runs.runs) cells.push_back({csv || print ? status_word(run.run()) : status_text(run)});
+    add_column(table, "status", false, std::move(cells));
     if (csv) add_column(table, "reason", false, cells_of(runs, status_reason));
   }
   if (csv) {
@@ -139,10 +159,12 @@ TextTable run_table(const TableRuns& runs, const TableOptions& options) {
     }
     add_column(table, "protocol", false, std::move(cells));
   }
-  table.notes = table_notes(runs.runs, run_names(runs.columns), runs.metrics, runs.protocols, options.online);
-  if (std::ranges::any_of(runs.runs, [](const RunNumbers& run) { return run.run().done && !run.run().competes(); })) {
-    table.notes.emplace_back("Lost and failed runs do not compete for the best value.");
+  const bool has_folder = std::ranges::find(table.columns, "folder", &TextTable::Column::header) != table.columns.end();
+  if ((options.folders || asks_for(options, "folder")) && !has_folder) {
+    add_column(table, "folder", false, cells_of(runs, folder_of));
   }
+  table.notes = table_notes(runs.runs, run_names(runs.columns), runs.metrics, runs.protocols, options);
+  if (std::string note = mark_note(table, runs, options.format); !note.empty()) table.notes.push_back(std::move(note));
   return table;
 }
 

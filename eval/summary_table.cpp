@@ -93,7 +93,7 @@ std::string number_text(double value, int decimals) {
 }
 
 void add_metric(TextTable& table, const std::vector<Group>& rows, const TableRuns& runs, const Metric& metric,
-                std::span<const std::size_t> data) {
+                std::span<const std::size_t> data, const TableOptions& options) {
   std::vector<std::optional<Quartiles>> quartiles_of_rows;
   std::vector<std::optional<double>> medians;
   for (const Group& row : rows) {
@@ -120,7 +120,7 @@ void add_metric(TextTable& table, const std::vector<Group>& rows, const TableRun
     for (const std::size_t r : of_one) groups.push_back(rows[r]);
     if (const auto best = distinguished(groups, runs, metric, data)) cells[of_one[*best]].best = true;
   }
-  add_column(table, metric.header, true, std::move(cells));
+  add_column(table, header_of(metric, options.format), true, std::move(cells), rank_of(metric, options));
 }
 
 void add_metric_csv(TextTable& table, const std::vector<Group>& rows, const TableRuns& runs, const Metric& metric) {
@@ -167,7 +167,7 @@ std::string extent(const RunColumn& column) {
 
 /// What the cells are, and what bold means.
 std::vector<std::string> summary_notes(const std::vector<Group>& rows, const TableRuns& runs, const Columns& columns,
-                                       std::span<const std::size_t> data) {
+                                       std::span<const std::size_t> data, TableFormat format) {
   std::vector<std::string> over;
   for (const RunColumn* column : columns.over) over.push_back(extent(*column));
   const auto fails = [](const RunNumbers& run) { return run.run().done && !run.succeeded(); };
@@ -186,10 +186,11 @@ std::vector<std::string> summary_notes(const std::vector<Group>& rows, const Tab
     too_few.insert(too_few_pairs(largest, of_one.size() - 1));
   }
   if (!compared) return notes;
-  notes.push_back(fmt::format(
-      "Bold (*): better than every other row of the same data, p < {} (Wilcoxon signed-rank, paired by data, "
-      "Holm's correction for the number of rows).",
-      kSignificant));
+  notes.push_back(
+      fmt::format("{}: better than every other row of the same data, p < {} (Wilcoxon signed-rank, paired by data, "
+                  "Holm's correction "
+                  "for the number of rows).",
+                  mark_name(format), kSignificant));
   if (!too_few.contains("")) notes.back() += *too_few.begin();
   return notes;
 }
@@ -213,12 +214,12 @@ TextTable summary_table(const TableRuns& runs, const TableOptions& options) {
   add_success(table, rows, runs, csv);
   for (const Metric& metric : runs.metrics) {
     if (csv) add_metric_csv(table, rows, runs, metric);
-    if (!csv) add_metric(table, rows, runs, metric, data);
+    if (!csv) add_metric(table, rows, runs, metric, data, options);
   }
   if (csv)
     add_column(table, "trajectory", false, std::vector<Cell>(rows.size(), {options.online ? "online" : "final"}));
-  table.notes = summary_notes(rows, runs, columns, data);
-  std::ranges::move(table_notes(runs.runs, run_names(runs.columns), runs.metrics, runs.protocols, options.online),
+  table.notes = summary_notes(rows, runs, columns, data, options.format);
+  std::ranges::move(table_notes(runs.runs, run_names(runs.columns), runs.metrics, runs.protocols, options),
                     std::back_inserter(table.notes));
   return table;
 }

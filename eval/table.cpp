@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "core/support/error.hpp"
+#include "core/support/index.hpp"
 #include "eval/table_parts.hpp"
 
 namespace evbench {
@@ -19,9 +22,19 @@ bool shown_by_default(const Metric& metric, const TableOptions& options) {
   return options.over.empty() ? metric.shown.screen : metric.shown.summary;
 }
 
+constexpr const char* kTextColumns[] = {"key", "folder", "status"};
+
 /// The columns to show: those asked for, else the default ones that at least one run has.
 std::vector<Metric> choose_metrics(const std::vector<RunNumbers>& runs, const TableOptions& options) {
-  std::vector<Metric> metrics = metrics_of(options.metrics, runs);
+  std::vector<std::string> keys;
+  for (const std::string& key : options.metrics) {
+    if (std::ranges::find(kTextColumns, key) == std::end(kTextColumns)) {
+      keys.push_back(key);
+    } else if (!options.over.empty()) {
+      throw InputError(fmt::format("\"{}\" is of one run, and a row of --over is of several; expected a number", key));
+    }
+  }
+  std::vector<Metric> metrics = metrics_of(keys, runs);
   const auto waited = [](const RunNumbers& run) { return run.run().times && run.run().times->waiting > 0.0; };
   const bool all_in_one_thread = std::ranges::none_of(runs, waited);
   const bool row_a_run = options.format == TableFormat::csv && options.over.empty();
@@ -46,9 +59,28 @@ int decimals_of(const std::vector<std::optional<double>>& values) {
   return std::clamp(2 - static_cast<int>(std::floor(std::log10(smallest))), 1, 6);
 }
 
-void add_column(TextTable& table, const std::string& header, bool number, std::vector<TextTable::Cell> cells) {
-  table.columns.push_back({header, number});
+void add_column(TextTable& table, const std::string& header, bool number, std::vector<TextTable::Cell> cells,
+                std::size_t rank) {
+  table.columns.push_back({header, number, rank});
   for (std::size_t i = 0; i < cells.size(); ++i) table.rows[i].push_back(std::move(cells[i]));
+}
+
+std::string header_of(const Metric& metric, TableFormat format) {
+  return format == TableFormat::latex && !metric.brief.empty() ? metric.brief : metric.header;
+}
+
+std::size_t rank_of(const Metric& metric, const TableOptions& options) {
+  constexpr std::array kFirst = {"ate.trans_m.rmse", "rpe.trans_m.rmse", "coverage",
+                                 "realtime_factor",  "ate.rot_deg.rmse", "rpe.rot_deg.rmse"};
+  if (!options.metrics.empty()) return 0;
+  const auto first = std::ranges::find(kFirst, metric.key);
+  if (first != kFirst.end()) return index(first - kFirst.begin());
+  const auto known = std::ranges::find(known_metrics(), metric.key, &Metric::key);
+  return kFirst.size() + index(known - known_metrics().begin());
+}
+
+bool asks_for(const TableOptions& options, const char* column) {
+  return std::ranges::find(options.metrics, column) != options.metrics.end();
 }
 
 std::vector<std::string> run_names(const std::vector<RunColumn>& columns) {
@@ -94,8 +126,49 @@ std::string list_metrics(std::span<const RunRecord> runs) {
   return text;
 }
 
-std::string make_table(std::span<const RunRecord> runs, const TableOptions& options) {
-  if (runs.empty()) throw InputError("there is no run to make a table of");
+namespace {
+
+/// Of absolute paths, by the text itself, what stands behind the folder that all of them have in common.
+std::map<std::string, std::string> without_common_folder(const std::set<std::string>& texts) {
+  std::vector<std::string> paths;
+  std::ranges::copy_if(texts, std::back_inserter(paths), [](const std::string& text) { return text.starts_with('/'); });
+  std::map<std::string, std::string> shorter;
+  if (paths.empty()) return shorter;
+  std::string common = paths.front().substr(0, paths.front().rfind('/') + 1);
+  for (const std::string& path : paths) {
+    while (!path.starts_with(common)) common.erase(common.rfind('/', common.size() - 2) + 1);
+  }
+  for (const std::string& path : paths) shorter[path] = path.substr(common.size());
+  return shorter;
+}
+
+/// For print: paths that stand for labels and experiments, as those of files that are compared, say what they differ
+/// in.
+std::vector<RunRecord> without_folders(std::span<const RunRecord> runs) {
+  std::set<std::string> labels, experiments;
+  for (const RunRecord& run : runs) {
+    labels.insert(run.label);
+    experiments.insert(run.experiment);
+  }
+  const auto shorter_labels = without_common_folder(labels), shorter_experiments = without_common_folder(experiments);
+  const auto shorten = [](std::string& text, const std::map<std::string, std::string>& shorter) {
+    if (const auto found = shorter.find(text); found != shorter.end()) text = found->second;
+  };
+  std::vector<RunRecord> result(runs.begin(), runs.end());
+  for (RunRecord& run : result) {
+    shorten(run.label, shorter_labels);
+    shorten(run.experiment, shorter_experiments);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string make_table(std::span<const RunRecord> found, const TableOptions& options) {
+  if (found.empty()) throw InputError("there is no run to make a table of");
+  const bool print = options.format == TableFormat::latex;
+  const std::vector<RunRecord> shortened = print ? without_folders(found) : std::vector<RunRecord>();
+  const std::span<const RunRecord> runs = print ? shortened : found;
   TableRuns all;
   all.runs = numbers_of(runs, options.online);
   all.protocols = collect_protocols(all.runs);
@@ -116,7 +189,7 @@ std::string make_table(std::span<const RunRecord> runs, const TableOptions& opti
                     "common.ate.trans_m.rmse,...",
                     kCommonTimeRuns));
   }
-  return format_table(table, options.format);
+  return format_table(table, options.format, options.layout);
 }
 
 }  // namespace evbench

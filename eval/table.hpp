@@ -12,14 +12,23 @@ namespace evbench {
 enum class TableFormat { text, markdown, csv, latex, long_csv };
 inline constexpr NameList<5> kTableFormatNames = {"text", "markdown", "csv", "latex", "long"};
 
+/// How a table is written down.
+struct TableLayout {
+  /// Of text, in characters: columns that do not fit are left out, the least important first, and named below; 0: all.
+  std::size_t width = 0;
+  bool body = false;  ///< of LaTeX: the tabular alone, what is said about it in comments
+};
+
 struct TableOptions {
   TableFormat format = TableFormat::text;
   bool online = false;  ///< the scores of the estimates at the moment they were made, instead of the final ones
   /// Columns: paths into metrics.json ("realtime_factor", "times.waiting_s") or into its scores ("rpe.trans_m.median");
-  /// empty: the default columns.
+  /// empty: the default columns. "key", "folder" and "status" are columns, too, of a table with a row a run.
   std::vector<std::string> metrics = {};
   /// What rows are summarised over, e.g. {"seed"}: names of run_columns(). Empty: a row a run.
   std::vector<std::string> over = {};
+  TableLayout layout = {};
+  bool folders = false;  ///< a column with the folder of each run, where a row is a run
 };
 
 /// A table of runs, a row each, in the order given. What tells them apart are columns: the label, the experiment and
@@ -27,11 +36,17 @@ struct TableOptions {
 /// where these do not suffice. CSV has label, experiment, seed, key and folder always.
 ///
 /// The protocol stands below (CSV: in columns; LaTeX: in the caption), and whether the final or the online trajectory
-/// is scored; runs of different protocols are marked with its number. LaTeX has fewer default columns, for a page.
+/// is scored; runs of different protocols are marked with its number. LaTeX has fewer default columns, with shorter
+/// headers, for a column of a page; it has no folders, of paths that stand for labels what they differ in, and no
+/// sentence about what went wrong with a run, but its status as a column.
+///
+/// Beside the status of a run stands what is missing of its trajectory: "ok, covers 73 %" where that is less than 90 %
+/// of the time, "ok, from 1.20 s" where it begins more than a second after the sequence.
+///
 /// Pairs, coverage and scale are columns, or, where `metrics` leaves them out, ranges below. The best value of a
 /// column, among runs of the same experiment, sequence (seed included) and protocol, is bold in Markdown and LaTeX and
-/// marked with * in text; runs that were lost or failed do not compete. A value that a run does not have is "-" (CSV:
-/// empty). Why runs have no scores, or were lost, stands below.
+/// marked with * in text, which is explained below; runs that were lost or failed do not compete. A value that a run
+/// does not have is "-" (CSV: empty). Why runs have no scores, or were lost, stands below.
 ///
 /// With `over`, runs that differ in nothing else are a row: median and quartiles of each number, and how many of them
 /// succeeded, that is, have scores and were neither lost nor failed. Those that did not count as worse than all others

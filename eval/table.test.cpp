@@ -1,11 +1,12 @@
 #include "eval/table.hpp"
 
+#include <cstdlib>
 #include <filesystem>
 
-#include "core/testing/catch2.hpp"
-#include "eval/table_text.hpp"
-#include "eval/testing/runs.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
+#include "eval/table_latex.hpp"
+#include "eval/testing/runs.hpp"
 
 namespace evbench {
 namespace {
@@ -24,10 +25,11 @@ TEST_CASE("A table shows the protocol, and the best value of each column") {
   const std::string text = text_of(results, {});
   CHECK_THAT(line_with(text, "asynchronous"), ContainsSubstring("0.0120*"));
   CHECK_THAT(line_with(text, "bundle"), ContainsSubstring("0.0340") && !ContainsSubstring("0.0340*"));
-  CHECK_THAT(text, ContainsSubstring("Experiment: arm.") &&
+  CHECK_THAT(text, ContainsSubstring("Experiment: arm.") && ContainsSubstring("\n*: the best of a column among ") &&
                        ContainsSubstring("Protocol: Sim(3) alignment on all poses; nearest ground "
                                          "truth within 0.01 s; RPE over 0.1 seconds, all pairs"));
-  CHECK_THAT(text_of(results, {.format = TableFormat::markdown}), ContainsSubstring("**0.0120**"));
+  CHECK_THAT(text_of(results, {.format = TableFormat::markdown}),
+             ContainsSubstring("**0.0120**") && ContainsSubstring("\nBold: the best of a column among "));
 }
 
 TEST_CASE("Only runs of one experiment and protocol that kept track compete") {
@@ -261,17 +263,18 @@ TEST_CASE("Every format says which trajectory is scored") {
   CHECK_THAT(text_of(results, {.format = TableFormat::csv, .online = true}), ContainsSubstring(",online,"));
 }
 
-TEST_CASE("LaTeX is a float for a page: few columns, booktabs' rules, a label, the protocol in the caption") {
+TEST_CASE("LaTeX is a float for a column: few columns with short headers, a label, the protocol in the caption") {
   Results results;
   results.add("a", run("arm_2", "asynchronous", scores_with(0.012)));
-  results.add("b", run("arm_2", "bundle", scores_with(0.034)));
+  results.add("b", run("arm_2", "bundle", scores_with(0.134)));
   const std::string latex = text_of(results, {.format = TableFormat::latex});
-  CHECK(line_with(latex, "ATE [m]") ==
-        "                 &         ATE [m] & ATE [deg] & RPE [m] & RPE [deg] & real-time factor \\\\");
-  CHECK_THAT(line_with(latex, "asynchronous"), ContainsSubstring("& \\textbf{0.0120} &"));
-  CHECK_THAT(latex, ContainsSubstring("\\begin{tabular}{lrrrrr}") &&
+  CHECK(line_with(latex, "{ATE [m]}") == "     & {ATE [m]} & {RPE [m]} & {RPE [deg]} & {RTF} \\\\");
+  CHECK_THAT(line_with(latex, "asynchronous"), ContainsSubstring("asynchronous & \\bfseries 0.0120 & "));
+  CHECK_THAT(latex, ContainsSubstring("\\begin{tabular}{lS[detect-weight, mode=text, table-format=1.4]S[") &&
                         ContainsSubstring("\\caption[{arm\\_2}]{arm\\_2.") && ContainsSubstring("\\label{tab:arm_2}") &&
-                        !ContainsSubstring("\\hline"));
+                        ContainsSubstring("\\usepackage{booktabs, siunitx}") && ContainsSubstring("Bold: the best") &&
+                        ContainsSubstring("RTF, the real-time factor: ") && !ContainsSubstring("\\hline") &&
+                        !ContainsSubstring("*") && !ContainsSubstring(results.folder.path()));
   const std::vector<std::string> order = {"\\begin{table}",   "\\caption",   "Protocol: Sim(3)", "\\label",
                                           "\\begin{tabular}", "\\toprule",   "\\midrule",        "\\bottomrule",
                                           "\\end{tabular}",   "\\end{table}"};
@@ -283,10 +286,131 @@ TEST_CASE("LaTeX is a float for a page: few columns, booktabs' rules, a label, t
   }
   CHECK(std::ranges::count(latex, '{') == std::ranges::count(latex, '}'));
   results.add("c", run("arm_2", "third", scores_with(0.034), "degraded"));
-  CHECK_THAT(text_of(results, {.format = TableFormat::latex}),
-             ContainsSubstring("& status ") && ContainsSubstring("degraded at 3.25 s"));
+  const std::string degraded = text_of(results, {.format = TableFormat::latex});
+  CHECK_THAT(degraded, ContainsSubstring("& status ") && ContainsSubstring("& degraded \\\\") &&
+                           !ContainsSubstring("Degraded: ") && !ContainsSubstring("3.25"));
   CHECK_THAT(text_of(results, {.format = TableFormat::latex, .metrics = {"coverage"}}),
-             ContainsSubstring("covered [\\%]") && !ContainsSubstring("ATE [m]"));
+             ContainsSubstring("{cov. [\\%]}") && !ContainsSubstring("{ATE [m]}"));
+}
+
+TEST_CASE("The body of a LaTeX table is its tabular, with the protocol as a comment") {
+  Results results;
+  results.add("a", run("arm", "one", scores_with(0.012)));
+  results.add("b", run("arm", "two", nullptr, "lost"));
+  const std::string body = text_of(results, {.format = TableFormat::latex, .layout = {.body = true}});
+  CHECK(body.starts_with("% \\usepackage{booktabs, siunitx}\n"));
+  CHECK_THAT(body, ContainsSubstring("\n% Protocol: Sim(3) alignment") && !ContainsSubstring("caption") &&
+                       !ContainsSubstring("\\begin{table}") && ContainsSubstring("two & {--} & {--} & "));
+  CHECK(body.ends_with("\\end{tabular}\n"));
+}
+
+TEST_CASE("LaTeX names files that are compared by what their paths differ in") {
+  std::vector<RunRecord> records;
+  for (const char* path : {"/data/mine/a/final.tum", "/data/mine/b/final.tum"}) {
+    RunRecord& record = records.emplace_back();
+    record.experiment = "/data/truth/groundtruth.txt";
+    record.label = path;
+    record.final_scores = scores_with(0.02);
+  }
+  const std::string latex = make_table(records, {.format = TableFormat::latex});
+  CHECK_THAT(latex, ContainsSubstring(" a/final.tum & ") && ContainsSubstring(" b/final.tum & ") &&
+                        ContainsSubstring("\\label{tab:groundtruth.txt}") && !ContainsSubstring("/data"));
+  CHECK_THAT(make_table(records, {.format = TableFormat::csv}), ContainsSubstring("/data/mine/a/final.tum"));
+}
+
+TEST_CASE("In LaTeX numbers are aligned by their points, whatever else stands in a column") {
+  TextTable table;
+  table.columns = {{"", false}, {"error"}, {"p"}, {"runs"}};
+  table.rows = {{{"a_1"}, {"-0.125"}, {"1e-05"}, {"5 of 5"}},
+                {{"b"}, {"12.5", true}, {"0.25"}, {"4 of 5"}},
+                {{"c"}, {"fails"}, {"-"}, {"0 of 5"}}};
+  const std::string latex = format_latex(table, true);
+  CHECK_THAT(latex, ContainsSubstring("{lS[detect-weight, mode=text, table-format=-2.3]S[detect-weight, mode=text, "
+                                      "table-format=1.2e-1]r}"));
+  CHECK_THAT(latex, ContainsSubstring("a\\_1 & -0.125 & 1e-5 & 5 of 5") &&
+                        ContainsSubstring("b & \\bfseries 12.5 & 0.25 & 4 of 5") &&
+                        ContainsSubstring("c & {fails} & {--} & 0 of 5"));
+}
+
+TEST_CASE("LaTeX tables are what pdflatex can set") {
+  if (std::system("command -v pdflatex > /dev/null 2>&1") != 0) {  // NOLINT(cert-env33-c,concurrency-mt-unsafe)
+    WARN("left out: pdflatex is not installed");
+    return;
+  }
+  Results results;
+  results.add("a", run("arm_2", "50 % [of] a_b & {c} #1 $x^2~\\y", scores_with(0.012)));
+  results.add("b", run("arm_2", "lost", scores_with(0.134), "lost"));
+  for (const bool body : {false, true}) {
+    const std::string latex = text_of(results, {.format = TableFormat::latex, .layout = {.body = body}});
+    results.folder.write(
+        "t.tex", "\\documentclass[twocolumn]{article}\\usepackage{booktabs,siunitx}\\begin{document}\n" + latex +
+                     "\\end{document}\n");
+    const std::string command =
+        "cd '" + results.folder.path() + "' && pdflatex -interaction=nonstopmode -halt-on-error t.tex > log.txt 2>&1";
+    CHECK(std::system(command.c_str()) == 0);  // NOLINT(cert-env33-c,concurrency-mt-unsafe)
+  }
+}
+
+TEST_CASE("Text leaves out the least important columns where there is no room for them, and names them") {
+  Results results;
+  results.add("a", run("arm", "asynchronous", scores_with(0.012)));
+  results.add("b", run("arm", "bundle adjustment", scores_with(0.034)));
+  const std::string all = text_of(results, {});
+  CHECK_THAT(all, !ContainsSubstring("Left out"));
+  for (const std::size_t width : {80, 100, 120}) {
+    INFO(width);
+    const std::string text = text_of(results, {.layout = {.width = width}});
+    const std::string header = line_with(text, "ATE [m]");
+    for (const char* name : {"asynchronous", "bundle adjustment", "ATE [m]"}) {
+      CHECK(line_with(text, name).size() <= width);
+    }
+    CHECK_THAT(header, ContainsSubstring("RPE [m]") && ContainsSubstring("covered [%]") &&
+                           ContainsSubstring("real-time factor") && ContainsSubstring("status"));
+    CHECK_THAT(text, ContainsSubstring(fmt::format("Left out for a width of {}: ", width)) &&
+                         ContainsSubstring("waiting [s] (evbench table --wide has all columns)"));
+  }
+  CHECK_THAT(line_with(text_of(results, {.layout = {.width = 120}}), "ATE [m]"), ContainsSubstring("RPE [deg]"));
+  CHECK_THAT(text_of(results, {.metrics = {"ate.trans_m.rmse", "pairs", "scale"}, .layout = {.width = 20}}),
+             ContainsSubstring("scale") && !ContainsSubstring("Left out"));
+  CHECK(text_of(results, {.format = TableFormat::csv, .layout = {.width = 80}}) ==
+        text_of(results, {.format = TableFormat::csv}));
+}
+
+TEST_CASE("The folder of a run is a column where that is asked for") {
+  Results results;
+  results.add("a", run("arm", "mine", scores_with(0.02)));
+  const std::string folder = results.folder.file("a");
+  CHECK_THAT(text_of(results, {}), !ContainsSubstring(folder));
+  CHECK_THAT(line_with(text_of(results, {.folders = true}), "mine"), ContainsSubstring(folder));
+  const std::string chosen = text_of(results, {.metrics = {"ate.trans_m.rmse", "key", "folder"}});
+  CHECK_THAT(line_with(chosen, "mine "), ContainsSubstring("mine-0123456789") && ContainsSubstring(folder));
+  CHECK_THROWS_WITH(text_of(results, {.metrics = {"folder"}, .over = {"seed"}}),
+                    ContainsSubstring("\"folder\" is of one run"));
+}
+
+TEST_CASE("Beside ok stands what part of the time is missing") {
+  const auto status = [](double coverage, double first) {
+    Results results;
+    Json json = run("arm", "mine", scores_with(0.02));
+    json["range_s"] = {2.0, 12.0};
+    json["final"]["coverage"] = coverage;
+    json["final"]["span_s"] = {2.0 + first, 12.0};
+    results.add("a", json);
+    const std::string line = line_with(text_of(results, {}), "mine ");
+    return line.substr(line.find("ok"));
+  };
+  CHECK(status(0.98, 0.1) == "ok");
+  CHECK(status(0.73, 0.5) == "ok, covers 73 %");
+  CHECK(status(0.95, 1.25) == "ok, from 3.25 s");
+  CHECK(status(0.5, 1.25) == "ok, covers 50 % from 3.25 s");
+  // Without ground truth the estimate's own time tells it.
+  Results results;
+  Json json = run("arm", "mine", nullptr);
+  json["range_s"] = {0.0, 10.0};
+  json["status"] = {{"state", "ok"}, {"pieces", {{{"from", 3.0}, {"to", 10.0}, {"poses", 9}}}}, {"scored_piece", 1}};
+  results.add("a", json);
+  CHECK_THAT(line_with(text_of(results, {}), "mine "), ContainsSubstring("ok, covers 70 % from 3.00 s"));
+  CHECK_THAT(text_of(results, {.format = TableFormat::csv}), ContainsSubstring(",ok,,final,"));
 }
 
 TEST_CASE("Characters with a meaning in LaTeX and Markdown are escaped") {

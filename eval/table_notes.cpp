@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -101,6 +102,31 @@ std::vector<std::string> common_time_notes(const std::vector<RunNumbers>& runs) 
   return {fmt::format("Common time: {} every run covers that was not lost.", span)};
 }
 
+/// What part of the sequence a trajectory is of, where that is not most of it; by the poses that are scored, or where
+/// there is no ground truth by its own.
+std::string missing_text(const RunNumbers& numbers) {
+  constexpr double kMost = 0.9, kSoon = 1.0;  // [s]
+  const RunRecord& run = numbers.run();
+  const RunStatus& status = *run.status;
+  std::optional<TimeRange> span;
+  if (status.scored > 0 && status.scored <= status.pieces.size()) {
+    span = TimeRange{status.pieces[status.scored - 1].from, status.pieces[status.scored - 1].to};
+  }
+  std::optional<double> covered = numbers.at("coverage");
+  if (const Json scored = numbers.scores().is_object() ? numbers.scores().value("span_s", Json()) : Json();
+      scored.is_array() && scored.size() == 2) {
+    span = TimeRange{scored[0].get<double>(), scored[1].get<double>()};
+  }
+  const bool known = run.range && std::isfinite(run.range->from) && run.range->to > run.range->from;
+  if (!covered && span && known) covered = (span->to - span->from) / (run.range->to - run.range->from);
+  std::string text;
+  if (covered && *covered < kMost) text = fmt::format(", covers {:.0f} %", 100.0 * *covered);
+  if (span && known && span->from - run.range->from > kSoon) {
+    text += fmt::format("{} from {:.2f} s", text.empty() ? "," : "", span->from);
+  }
+  return text;
+}
+
 }  // namespace
 
 Protocols collect_protocols(const std::vector<RunNumbers>& runs) {
@@ -119,16 +145,17 @@ Protocols collect_protocols(const std::vector<RunNumbers>& runs) {
 }
 
 std::vector<std::string> table_notes(const std::vector<RunNumbers>& runs, const std::vector<std::string>& names,
-                                     const std::vector<Metric>& metrics, const Protocols& protocols, bool online) {
+                                     const std::vector<Metric>& metrics, const Protocols& protocols,
+                                     const TableOptions& options) {
   const auto shown = [&](const char* key) { return std::ranges::find(metrics, key, &Metric::key) != metrics.end(); };
   std::vector<std::string> notes;
   if (protocols.texts.empty()) {
     notes.emplace_back("No run has scores.");
   } else {
     const bool of_runs = std::ranges::any_of(runs, [](const RunNumbers& run) { return run.run().status.has_value(); });
-    notes.emplace_back(online    ? "Online: each pose as estimated at the time it was made. "
-                       : of_runs ? "Final: the trajectory as estimated after the whole sequence. "
-                                 : "");
+    notes.emplace_back(options.online ? "Online: each pose as estimated at the time it was made. "
+                       : of_runs      ? "Final: the trajectory as estimated after the whole sequence. "
+                                      : "");
     notes.back() += "ATE and RPE columns are root mean squares unless they say otherwise.";
   }
   for (std::size_t i = 0; i < protocols.texts.size(); ++i) {
@@ -140,18 +167,22 @@ std::vector<std::string> table_notes(const std::vector<RunNumbers>& runs, const 
     std::ranges::move(common_time_notes(runs), std::back_inserter(notes));
   }
   if (shown("realtime_factor")) {
-    notes.emplace_back(
-        "Real-time factor: data time / processing time (front-end and back-end); above 1 is faster than "
-        "real time.");
+    notes.push_back(
+        fmt::format("{}: data time / processing time (front-end and back-end); above 1 is faster than real time.",
+                    options.format == TableFormat::latex ? "RTF, the real-time factor" : "Real-time factor"));
   }
-  std::ranges::move(trouble_notes(runs, names, online), std::back_inserter(notes));
+  if (options.format != TableFormat::latex) {
+    std::ranges::move(trouble_notes(runs, names, options.online), std::back_inserter(notes));
+  }
   return notes;
 }
 
-std::string status_text(const RunRecord& run) {
+std::string status_text(const RunNumbers& numbers) {
   constexpr std::size_t kShort = 40;
+  const RunRecord& run = numbers.run();
   const std::string word = status_word(run);
-  if (!run.done || !run.status || run.status->status.state == RunState::ok) return word.empty() ? "-" : word;
+  if (!run.done || !run.status) return word.empty() ? "-" : word;
+  if (run.status->status.state == RunState::ok) return word + missing_text(numbers);
   const Status& status = run.status->status;
   if (run.status->complete) return fmt::format("{} at {:.2f} s", word, status.time);
   return status.reason.size() <= kShort ? status.reason : word;  // it broke off: at no time of the data

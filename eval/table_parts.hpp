@@ -37,7 +37,16 @@ int decimals_of(const std::vector<std::optional<double>>& values);
 /// What each run is called in notes: by its label, and by the other columns in which runs of that label differ.
 std::vector<std::string> run_names(const std::vector<RunColumn>& columns);
 
-void add_column(TextTable& table, const std::string& header, bool number, std::vector<TextTable::Cell> cells);
+void add_column(TextTable& table, const std::string& header, bool number, std::vector<TextTable::Cell> cells,
+                std::size_t rank = 0);
+
+/// The column of a metric: its header in this format, and its rank (TextTable::Column) among those that are shown.
+/// None goes that was asked for.
+std::string header_of(const Metric& metric, TableFormat format);
+std::size_t rank_of(const Metric& metric, const TableOptions& options);
+
+/// Is a column of text, "key", "folder" or "status", among options.metrics?
+bool asks_for(const TableOptions& options, const char* column);
 
 /// "experiment" and the like, as far as there is one.
 std::vector<std::string> distinct_experiments(const TableRuns& runs);

@@ -2,9 +2,11 @@
 
 #include <fmt/ranges.h>
 
-#include <cctype>
-#include <cstring>
+#include <algorithm>
 #include <functional>
+#include <numeric>
+
+#include "eval/table_latex.hpp"
 
 namespace evbench {
 namespace {
@@ -57,16 +59,45 @@ std::vector<std::vector<std::string>> padded_rows(const TextTable& table,
   return rows;
 }
 
-std::string format_text(const TextTable& table) {
+/// Which of these columns, all of one width in all rows, fit: those of the highest ranks go, as long as there are any.
+std::vector<std::size_t> fitting_columns(const TextTable& table, const std::vector<std::string>& cells,
+                                         std::size_t width) {
+  std::vector<std::size_t> columns(cells.size());
+  std::iota(columns.begin(), columns.end(), 0);
+  const auto rank = [&](std::size_t c) { return table.columns[c].rank; };
+  const auto total = [&] {
+    std::size_t sum = columns.size() - 1;
+    for (const std::size_t c : columns) sum += width_of(cells[c]);
+    return sum;
+  };
+  while (width > 0 && total() > width) {
+    const auto last = std::ranges::max_element(columns, {}, rank);
+    if (rank(*last) == 0) break;
+    columns.erase(last);
+  }
+  return columns;
+}
+
+std::string format_text(const TextTable& table, std::size_t width) {
   const auto rows = padded_rows(table, [](const Cell& cell) {
     if (cell.aside.empty()) return cell.text + (cell.best ? "*" : " ");
     return fmt::format("{}{} {} ", cell.text, cell.best ? "*" : "", cell.aside);
   });
+  const std::vector<std::size_t> columns = fitting_columns(table, rows.front(), width);
   std::string text;
   for (const auto& row : rows) {
-    std::string line = fmt::format("{}", fmt::join(row, " "));
+    std::string line;
+    for (const std::size_t c : columns) line += (c == columns.front() ? "" : " ") + row[c];
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
+  }
+  std::vector<std::string> left_out;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (std::ranges::find(columns, c) == columns.end()) left_out.push_back(table.columns[c].header);
+  }
+  if (!left_out.empty()) {
+    text += fmt::format("Left out for a width of {}: {} (evbench table --wide has all columns).\n", width,
+                        fmt::join(left_out, "; "));
   }
   for (const std::string& note : table.notes) text += note + "\n";
   return text;
@@ -101,38 +132,6 @@ std::string format_csv(const TextTable& table) {
   return text;
 }
 
-/// What may stand in a \\label.
-std::string label_of(const TextTable& table) {
-  std::string label = fmt::format("tab:{}", fmt::join(table.experiments, "+"));
-  const auto safe = [](unsigned char c) {
-    return std::isalnum(c) != 0 || (c != 0 && std::strchr(":+-._/", c) != nullptr);
-  };
-  std::ranges::replace_if(label, std::not_fn(safe), '-');
-  return label;
-}
-
-std::string format_latex(const TextTable& table) {
-  const auto rows = padded_rows(table, [](const Cell& cell) {
-    const std::string text = escape_latex(cell.text), aside = escape_latex(cell.aside);
-    return (cell.best ? fmt::format("\\textbf{{{}}}", text) : text) +
-           (aside.empty() ? "" : fmt::format(" {{\\scriptsize {}}}", aside));
-  });
-  std::string alignment;
-  for (const TextTable::Column& column : table.columns) alignment += column.number ? 'r' : 'l';
-  std::string text = "\\begin{table}  % \\usepackage{booktabs}\n  \\centering\n";
-  const std::string title = escape_latex(fmt::format("{}", fmt::join(table.experiments, ", ")));
-  text += fmt::format("  \\caption[{{{0}}}]{{{0}.", title);
-  for (const std::string& note : table.notes) text += fmt::format("\n    {}", escape_latex(note));
-  text += "}\n";
-  text += fmt::format("  \\label{{{}}}\n", label_of(table));
-  text += fmt::format("  \\begin{{tabular}}{{{}}}\n    \\toprule\n", alignment);
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    text += fmt::format("    {} \\\\\n", fmt::join(rows[r], " & "));
-    if (r == 0) text += "    \\midrule\n";
-  }
-  return text + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
-}
-
 }  // namespace
 
 std::string csv_line(const std::vector<std::string>& cells) {
@@ -144,42 +143,17 @@ std::string csv_line(const std::vector<std::string>& cells) {
   return line + "\n";
 }
 
-std::string escape_latex(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-      case '%':
-      case '$':
-      case '#':
-      case '_':
-      case '{':
-      case '}': (result += '\\') += c; break;
-      case '~': result += "\\textasciitilde{}"; break;
-      case '^': result += "\\textasciicircum{}"; break;
-      case '\\': result += "\\textbackslash{}"; break;
-      case '<': result += "\\textless{}"; break;
-      case '>': result += "\\textgreater{}"; break;
-      case '|': result += "\\textbar{}"; break;
-      case '[':
-        result += result.empty() ? "{[}" : "[";
-        break;  // first in a row it would be an argument of the line break
-      case '\n': result += ' '; break;
-      default: result += c;
-    }
-  }
-  return result;
-}
+const char* mark_name(TableFormat format) { return format == TableFormat::text ? "*" : "Bold"; }
 
-std::string format_table(const TextTable& table, TableFormat format) {
+std::string format_table(const TextTable& table, TableFormat format, const TableLayout& layout) {
   switch (format) {
-    case TableFormat::text: return format_text(table);
+    case TableFormat::text: return format_text(table, layout.width);
     case TableFormat::markdown: return format_markdown(table);
     case TableFormat::csv: return format_csv(table);
     case TableFormat::latex:
     case TableFormat::long_csv: break;
   }
-  return format_latex(table);
+  return format_latex(table, layout.body);
 }
 
 }  // namespace evbench

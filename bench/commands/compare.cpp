@@ -6,6 +6,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/run_outputs.hpp"
+#include "bench/commands/run_selection.hpp"
 #include "bench/common_time.hpp"
 #include "eval/comparison_table.hpp"
 
@@ -13,17 +14,18 @@ namespace evbench {
 namespace {
 
 struct CompareArguments {
-  std::vector<std::string> folders;
+  RunSelection runs;
   std::string format = "text";
   TextOutput out;
   ComparisonOptions options;
+  bool wide = false;
 };
 
 void execute(const CompareArguments& arguments) {
   arguments.out.check();
   ComparisonOptions options = arguments.options;
   options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
-  use_runs(arguments.folders, [&](std::vector<RunRecord>& runs) {
+  use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
     if (any_of_common_time(options.metrics)) score_common_time(runs, options.online);
     arguments.out.write(make_comparison_table(runs, options));
   });
@@ -34,7 +36,7 @@ void execute(const CompareArguments& arguments) {
 void add_compare(CLI::App& app) {
   auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand("compare", "Compare back-ends pair by pair on the same data, with statistics");
-  add_folders(*command, arguments->folders);
+  add_run_selection(*command, arguments->runs);
   command->add_option("--base", arguments->options.base, "What the others are compared with: its label; else the first")
       ->type_name("NAME");
   add_list_option(*command, "--metrics", arguments->options.metrics,
@@ -44,6 +46,8 @@ void add_compare(CLI::App& app) {
       ->check(one_of({"text", "markdown", "csv", "latex"}))
       ->capture_default_str();
   add_text_output(*command, arguments->out);
+  add_wide(*command, arguments->options.layout, arguments->wide);
+  command->add_flag("--body", arguments->options.layout.body, "LaTeX: the tabular alone, without float and caption");
   command->callback([arguments] { execute(*arguments); });
 }
 

@@ -4,20 +4,23 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <set>
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/failures.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/number_check.hpp"
+#include "bench/commands/run_outputs.hpp"
+#include "bench/figures/run_figures.hpp"
 #include "core/data/pose_file.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
+#include "core/support/json.hpp"
 #include "eval/error_files.hpp"
 #include "eval/json_file.hpp"
 #include "eval/protocol.hpp"
 #include "eval/score_run.hpp"
 #include "eval/table.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -34,8 +37,11 @@ struct EvalArguments {
   std::string alignment;
   std::string delta_unit = "f";
   std::string table;  ///< format; empty: a table of several estimates, all numbers of one
+  TableLayout layout;
+  bool wide = false;
   std::string json, aligned, errors;
-  bool force = false;
+  std::string plot, plot_kind = "trajectory";
+  bool no_caption = false, force = false;
   ScoreOptions options = {.rpe_delta = 1.0};  ///< what goes straight into the protocol
 };
 
@@ -126,7 +132,8 @@ std::string json_text(const std::vector<RunRecord>& records) {
 void check(const EvalArguments& arguments) {
   std::vector<std::string> read = arguments.estimates;
   read.insert(read.end(), {arguments.ground_truth, arguments.times});
-  check_outputs({arguments.json, arguments.aligned, arguments.errors}, read, arguments.force);
+  check_outputs({arguments.json, arguments.aligned, arguments.errors, arguments.plot}, read, arguments.force);
+  if (!arguments.plot.empty()) check_figure_name(arguments.plot);
   if (arguments.estimates.size() > 1 && !(arguments.aligned.empty() && arguments.errors.empty())) {
     throw InputError(
         fmt::format("--aligned and --errors are of one estimate; {} are given", arguments.estimates.size()));
@@ -141,6 +148,32 @@ void write_outputs(const EvalArguments& arguments, const std::vector<RunRecord>&
   if (!arguments.errors.empty()) write_file(arguments.errors, errors_csv(last.scores));
 }
 
+/// What a plot calls the estimates: by their files' names, where these differ.
+std::vector<std::string> plot_names(const std::vector<RunRecord>& records) {
+  std::set<std::string> names;
+  std::vector<std::string> files, paths;
+  for (const RunRecord& record : records) {
+    paths.push_back(record.label);
+    files.push_back(std::filesystem::path(record.label).filename().string());
+    names.insert(files.back());
+  }
+  return names.size() == files.size() ? files : paths;
+}
+
+void plot_trajectories(const EvalArguments& arguments, const std::vector<RunRecord>& records,
+                       std::vector<Scores> scores, bool numbered) {
+  ScoredTrajectories scored{plot_names(records), std::move(scores), "", numbered};
+  if (!arguments.no_caption) {
+    scored.caption = fmt::format("{}. {}.", std::filesystem::path(arguments.ground_truth).filename().string(),
+                                 protocol(records.front().final_scores, arguments.ground_truth, {false, false, false}));
+  }
+  const Figure figure = arguments.plot_kind == "error"      ? error_figure(scored)
+                        : arguments.plot_kind == "position" ? position_figure(scored)
+                                                            : trajectory_figure(scored);
+  const std::string warnings = draw(figure, arguments.plot, "");
+  if (!warnings.empty()) fmt::print(stderr, "{}: is drawn, but Python warns:{}\n", arguments.plot, warnings);
+}
+
 /// Nothing where an output goes to the terminal.
 void print_scores(const EvalArguments& arguments, const std::vector<RunRecord>& records, const ScoredEstimate& last) {
   for (const std::string* path : {&arguments.json, &arguments.aligned, &arguments.errors}) {
@@ -152,7 +185,8 @@ void print_scores(const EvalArguments& arguments, const std::vector<RunRecord>& 
     return;
   }
   const std::string format = arguments.table.empty() ? "text" : arguments.table;
-  fmt::print("{}", make_table(records, {.format = parse_name<TableFormat>(kTableFormatNames, format, "table format")}));
+  fmt::print("{}", make_table(records, {.format = parse_name<TableFormat>(kTableFormatNames, format, "table format"),
+                                        .layout = arguments.layout}));
 }
 
 void execute(const EvalArguments& arguments) {
@@ -161,17 +195,20 @@ void execute(const EvalArguments& arguments) {
   print_remarks(ground_truth);
   std::vector<RunRecord> records;
   ScoredEstimate last;
+  std::vector<Scores> scores;
   std::vector<std::string> failures;
   for (const std::string& path : arguments.estimates) {
     try {
       last = score_file(ground_truth, path, arguments);
       records.push_back(record_of(arguments.ground_truth, path, last.scores));
+      if (!arguments.plot.empty()) scores.push_back(last.scores);
     } catch (const InputError& error) {
       failures.emplace_back(error.what());
     }
   }
   if (records.empty()) throw_together(failures);
   write_outputs(arguments, records, last);
+  if (!arguments.plot.empty()) plot_trajectories(arguments, records, std::move(scores), ground_truth.numbered);
   print_scores(arguments, records, last);
   throw_together(failures);
 }
@@ -266,6 +303,7 @@ void add_segment_options(CLI::App& command, EvalArguments& arguments) {
 void add_output_options(CLI::App& command, EvalArguments& arguments) {
   command.add_option("--table", arguments.table, "Print a table of this format; of several estimates: text")
       ->check(one_of(to_strings(kTableFormatNames)));
+  add_wide(command, arguments.layout, arguments.wide);
   command
       .add_option("--json", arguments.json,
                   "Write the scores, with the structure of a run's metrics.json; of several estimates a list of them")
@@ -273,6 +311,16 @@ void add_output_options(CLI::App& command, EvalArguments& arguments) {
   command.add_option("--aligned", arguments.aligned, "Write the estimate as it is compared, aligned (TUM)")
       ->type_name("FILE");
   command.add_option("--errors", arguments.errors, "Write the error of each pose: CSV")->type_name("FILE");
+  command
+      .add_option("--plot", arguments.plot,
+                  "Draw the aligned estimates and the ground truth to this .svg, .pdf or .png, by Python's matplotlib")
+      ->type_name("FILE");
+  command
+      .add_option("--plot_kind", arguments.plot_kind,
+                  "What is drawn: trajectory (from three sides), position (x, y, z over time), error (over time)")
+      ->check(CLI::IsMember({"trajectory", "position", "error"}))
+      ->capture_default_str();
+  command.add_flag("--no-caption", arguments.no_caption, "The plot without the sentence below it");
   command.add_flag("--force", arguments.force, "Replace files that exist");
 }
 

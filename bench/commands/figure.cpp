@@ -4,19 +4,17 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/run_outputs.hpp"
+#include "bench/commands/run_selection.hpp"
 #include "bench/common_time.hpp"
 #include "bench/figures/run_figures.hpp"
 #include "core/io/atomic_file.hpp"
-#include "eval/run_columns.hpp"
 #include "eval/table.hpp"
 
 namespace evbench {
@@ -77,43 +75,25 @@ void check_options(const CLI::App& command, const FigureKind& kind) {
 
 struct FigureArguments {
   std::string kind;
-  std::vector<std::string> folders, only;
+  RunSelection runs;
   std::string out, python;
   double width_mm = 0.0, height_mm = 0.0;  ///< 0: the figure's own
-  bool keep_script = false, force = false;
+  bool keep_script = false, force = false, no_caption = false;
   FigureOptions options;
 };
-
-/// Leaves the runs that have of each name, NAME=VALUE, one of the values asked for.
-void keep_only(const std::vector<std::string>& only, std::vector<RunRecord>& runs) {
-  const std::vector<RunColumn> columns = run_columns(runs);
-  std::map<const RunColumn*, std::set<std::string>> asked;
-  for (const std::string& condition : only) {
-    const std::size_t equals = condition.find('=');
-    asked[&find_column(columns, condition.substr(0, equals))].insert(condition.substr(equals + 1));
-  }
-  std::vector<RunRecord> left;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const auto fits = [&](const auto& column) { return column.second.contains(column.first->values[i]); };
-    if (std::ranges::all_of(asked, fits)) left.push_back(std::move(runs[i]));
-  }
-  if (left.empty()) throw InputError(fmt::format("none of {} runs is left by --only", runs.size()));
-  runs = std::move(left);
-}
 
 void execute(const FigureArguments& arguments) {
   const std::filesystem::path out(arguments.out);
   const std::string script = std::filesystem::path(out).replace_extension(".py").string();
-  if (out.extension() != ".svg" && out.extension() != ".pdf" && out.extension() != ".png") {
-    throw InputError(fmt::format("{}: is no .svg, .pdf or .png; expected one of these", arguments.out));
-  }
+  check_figure_name(arguments.out);
   check_outputs({arguments.out, arguments.keep_script ? script : ""}, {}, arguments.force);
-  use_runs(arguments.folders, [&](std::vector<RunRecord>& runs) {
-    if (!arguments.only.empty()) keep_only(arguments.only, runs);
+  use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
     if (any_of_common_time(arguments.options.metrics)) score_common_time(runs, arguments.options.online);
     Figure figure = find_kind(arguments.kind).make(runs, arguments.options);
     if (arguments.width_mm > 0.0) figure.width_mm = arguments.width_mm;
     if (arguments.height_mm > 0.0) figure.height_mm = arguments.height_mm;
+    if (arguments.no_caption) figure.caption.clear();
+    for (const std::string& remark : figure.remarks) fmt::print(stderr, "remark: {}\n", remark);
     if (arguments.keep_script) write_file(script, drawing_script(figure));
     const std::string warnings = draw(figure, arguments.out, arguments.python);
     if (!warnings.empty()) fmt::print(stderr, "{}: is drawn, but Python warns:{}\n", arguments.out, warnings);
@@ -127,7 +107,7 @@ void add_figure(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("figure", "Draw runs for a paper: sweeps, boxes, errors, trajectories, profiles");
   command->add_option("kind", arguments->kind, "What is drawn")->required()->check(one_of(kind_names()));
-  add_folders(*command, arguments->folders);
+  add_run_selection(*command, arguments->runs);
   command->add_option("--out", arguments->out, "The file: .svg, .pdf or .png")->required()->type_name("FILE");
   add_list_option(*command, "--metrics", arguments->options.metrics, "What is shown, a panel each; else ATE, RPE");
   command->add_option("--axis", arguments->options.axis, "What a sweep is drawn against, e.g. backend.frame_duration")
@@ -138,19 +118,12 @@ void add_figure(CLI::App& app) {
   command->add_option("--across", arguments->options.across, "The other axis of a map")->type_name("NAME");
   command->add_option("--base", arguments->options.base, "What a map compares with; else the method without the axis")
       ->type_name("METHOD");
-  command
-      ->add_option("--only", arguments->only,
-                   "Only runs with this value, e.g. seed=3; several of one name: any of them")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false)
-      ->check([](const std::string& value) {
-        return value.find('=') == std::string::npos ? fmt::format("{}: expected NAME=VALUE", value) : std::string();
-      });
   command->add_flag("--online", arguments->options.online, "The poses as estimated when they were made");
   command->add_option("--width", arguments->width_mm, "Width [mm]; else 174, a page's")
       ->check(CLI::Range(20.0, 2000.0));
   command->add_option("--height", arguments->height_mm, "Height of the panels, without legend and caption [mm]")
       ->check(CLI::Range(20.0, 2000.0));
+  command->add_flag("--no-caption", arguments->no_caption, "Without the sentences below it, for who writes their own");
   command->add_flag("--keep-script", arguments->keep_script,
                     "Also write FILE with the ending .py: the Python script that draws it, to be changed by hand");
   command->add_option("--python", arguments->python, "A Python with matplotlib; else python3")->type_name("PROGRAM");

@@ -48,7 +48,8 @@ TEST_CASE("render draws a run's tracks over its events", "[slow]") {
   folder.write("calib.txt", "20 20 10 5 0 0 0 0 0\n");
   folder.write("c.json", dump_json(short_config()));
   REQUIRE(testing::evbench(folder, "run c.json --tracks --quiet").exit_code == 0);
-  const std::string run = "results/short/" + *names_in(folder.file("results/short")).begin();
+  const std::filesystem::path made = *runs_of(folder.file("results/short")).begin();
+  const std::string run = "results/short/" + made.filename().string();
   CHECK(testing::evbench(folder, "render a.evb plain.png --to 0.05").exit_code == 0);
   CHECK(testing::evbench(folder, "render a.evb run.png --to 0.05 --calib calib.txt --run " + run).exit_code == 0);
   const cv::Mat plain = cv::imread(folder.file("plain.png")), drawn = cv::imread(folder.file("run.png"));

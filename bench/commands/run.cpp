@@ -16,9 +16,11 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/exit_code.hpp"
 #include "bench/commands/progress_line.hpp"
+#include "bench/commands/run_outputs.hpp"
 #include "bench/common_time.hpp"
 #include "bench/plugins.hpp"
 #include "bench/run_folder.hpp"
+#include "bench/run_index.hpp"
 #include "bench/runner.hpp"
 #include "bench/sweep/local_executor.hpp"
 #include "bench/sweep/process_pool.hpp"
@@ -67,7 +69,8 @@ class Runs {
         plugins_(plugins),
         source_(source),
         runs_(plan(experiment, source, plugins, arguments)),
-        ground_truth_(ground_truth_tum(source)) {}
+        ground_truth_(ground_truth_tum(source)),
+        index_(arguments.out + "/" + experiment.name) {}
 
   void tell_complete() const {
     if (runs_.front().config.job.pipeline.mode == "free" && !arguments_.quiet) {
@@ -89,7 +92,9 @@ class Runs {
       check_interruption();
       const auto complete = complete_run(run);
       records_.push_back(complete ? adopt_run(*complete, folder_of(run), run.config) : do_run(run));
+      index_.add();
     }
+    index_.write();
   }
 
   const std::vector<RunRecord>& records() const { return records_; }
@@ -149,13 +154,14 @@ class Runs {
   std::vector<PlannedRun> runs_;
   std::string ground_truth_;
   std::vector<RunRecord> records_;
+  RunIndex index_;
 };
 
 void print_table(const Runs& runs, const RunArguments& arguments, const std::string& experiment) {
   if (arguments.quiet || runs.records().empty()) return;
   std::vector<RunRecord> records = runs.records();
   score_common_time(records, false);
-  fmt::print("{}", make_table(records, {}));
+  fmt::print("{}", make_table(records, {.layout = {.width = text_width()}}));
   fmt::print("\nwritten: {}\n", (std::filesystem::path(arguments.out) / experiment).string());
   std::fflush(stdout);
 }
@@ -200,7 +206,7 @@ void check(const RunArguments& arguments, const Plugins& plugins) {
 
 }  // namespace
 
-int run_config(const RunArguments& arguments, Plugins& plugins) {
+int run_config(const RunArguments& arguments, Plugins& plugins, std::vector<RunRecord>* records) {
   const Interruption interruption(arguments.config + ": interrupted; no run was begun");
   if (arguments.jobs > 1) stay_without_threads();
   if (arguments.check) {
@@ -228,6 +234,7 @@ int run_config(const RunArguments& arguments, Plugins& plugins) {
     throw;
   }
   print_table(runs, arguments, experiment.name);
+  if (records != nullptr) records->insert(records->end(), runs.records().begin(), runs.records().end());
   const bool failed = std::ranges::any_of(
       runs.records(), [](const RunRecord& run) { return run.status && run.status->status.state == RunState::failed; });
   return failed ? kExitFailed : kExitDone;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/plugin/registry.hpp"
+#include "eval/run_record.hpp"
 
 namespace evbench {
 
@@ -20,7 +21,8 @@ struct RunArguments {
 };
 
 /// Does it: runs a config, writes the folders of its runs below `out`, prints the table. Returns the exit code:
-/// kExitDone, or kExitFailed when a run failed. Throws InputError and Interrupted as the command does.
-int run_config(const RunArguments& arguments, Plugins& plugins);
+/// kExitDone, or kExitFailed when a run failed. Throws InputError and Interrupted as the command does. `records` gets
+/// its runs.
+int run_config(const RunArguments& arguments, Plugins& plugins, std::vector<RunRecord>* records = nullptr);
 
 }  // namespace evbench

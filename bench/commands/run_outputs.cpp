@@ -1,20 +1,17 @@
 #include "bench/commands/run_outputs.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
+#include <charconv>
+#include <cstdlib>
 #include <filesystem>
+#include <string_view>
 
-#include "bench/commands/failures.hpp"
 #include "core/io/atomic_file.hpp"
-#include "eval/find_runs.hpp"
 
 namespace evbench {
-
-void add_folders(CLI::App& command, std::vector<std::string>& folders) {
-  command.add_option("folders", folders, "Folders of runs, searched with all folders below")
-      ->required()
-      ->type_name("DIR");
-}
 
 CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::vector<std::string>& items,
                              const std::string& text, const std::string& type) {
@@ -24,11 +21,28 @@ CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::ve
       ->type_name(type);
 }
 
-void use_runs(const std::vector<std::string>& folders, const std::function<void(std::vector<RunRecord>&)>& use) {
-  std::vector<std::string> unreadable;
-  std::vector<RunRecord> runs = find_runs(folders, &unreadable);
-  if (!runs.empty()) use(runs);
-  throw_together(unreadable);
+std::size_t text_width() {
+  constexpr std::size_t kUsual = 120;
+  winsize size{};
+  if (::isatty(STDOUT_FILENO) != 0 && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
+    return size.ws_col;
+  }
+  const char* columns = std::getenv("COLUMNS");  // NOLINT(concurrency-mt-unsafe)
+  const std::string_view text = columns == nullptr ? "" : columns;
+  std::size_t width = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), width);
+  return error == std::errc() && end == text.data() + text.size() && width > 0 ? width : kUsual;
+}
+
+void add_wide(CLI::App& command, TableLayout& layout, bool& wide) {
+  layout.width = text_width();
+  command.add_flag_callback(
+      "--wide",
+      [&layout, &wide] {
+        layout.width = 0;
+        wide = true;
+      },
+      "All columns of a table of text, else as many as fit the terminal ($COLUMNS, or 120, where there is none)");
 }
 
 void TextOutput::check() const {

@@ -1,26 +1,25 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "eval/run_record.hpp"
+#include "eval/table.hpp"
 
-// What commands have in common that look for runs and make something of them.
+// What commands have in common that make something of runs.
 
 namespace evbench {
-
-/// The folders that a command looks for runs in.
-void add_folders(CLI::App& command, std::vector<std::string>& folders);
 
 /// An option that takes a list, its items between commas; `type`: how the help shows it.
 CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::vector<std::string>& items,
                              const std::string& text, const std::string& type = "KEY,...");
 
-/// Calls `use` with all runs of these folders (eval/find_runs.hpp). Those that can't be read are told when it is done;
-/// then, and where there is no other run, throws InputError for the last of them.
-void use_runs(const std::vector<std::string>& folders, const std::function<void(std::vector<RunRecord>&)>& use);
+/// The width of a table of text that is printed [characters]: the terminal's; where the standard output is none, what
+/// the environment variable COLUMNS says, else 120.
+std::size_t text_width();
+
+/// The option --wide: all columns, however wide the table gets. It overrides `width`, which is set to text_width().
+void add_wide(CLI::App& command, TableLayout& layout, bool& wide);
 
 /// Where a table goes.
 struct TextOutput {

@@ -3,13 +3,16 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/run_outputs.hpp"
+#include "bench/commands/run_selection.hpp"
 #include "bench/common_time.hpp"
 #include "bench/run_folder.hpp"
+#include "bench/run_index.hpp"
 #include "core/support/interruption.hpp"
 #include "eval/table.hpp"
 
@@ -44,9 +47,15 @@ void execute(const ScoreArguments& arguments) {
       records[i] = score_again(std::filesystem::canonical(found_as).string(), protocols[i]);
       records[i].folder = found_as;
     }
+    std::set<std::string> experiments;
+    for (const RunRecord& run : records)
+      experiments.insert(std::filesystem::canonical(run.folder).parent_path().string());
+    for (const std::string& experiment : experiments) {
+      if (std::filesystem::exists(experiment + "/index.csv")) write_run_index(experiment);
+    }
     if (arguments.quiet) return;
     score_common_time(records, false);
-    fmt::print("{}", make_table(records, {}));
+    fmt::print("{}", make_table(records, {.layout = {.width = text_width()}}));
   });
 }
 

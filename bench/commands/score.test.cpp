@@ -18,9 +18,7 @@ struct ScoredRuns {
   ScoredRuns() {
     folder.write("c.json", dump_json(short_comparison()));
     REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
-    for (const std::string& name : names_in(folder.file("results/short"))) {
-      runs.push_back(folder.file("results/short/" + name));
-    }
+    for (const std::string& run : runs_of(folder.file("results/short"))) runs.push_back(run);
   }
   std::string sums() const {
     return testing::shell(folder, "cd results && find . -type f | sort | xargs sha256sum").out;

@@ -5,13 +5,14 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/run_outputs.hpp"
+#include "bench/commands/run_selection.hpp"
 #include "bench/common_time.hpp"
 
 namespace evbench {
 namespace {
 
 struct TableArguments {
-  std::vector<std::string> folders;
+  RunSelection runs;
   std::string format = "text";
   TextOutput out;
   bool list_metrics = false;
@@ -21,12 +22,12 @@ struct TableArguments {
 void execute(const TableArguments& arguments) {
   arguments.out.check();
   if (arguments.list_metrics) {
-    use_runs(arguments.folders, [&](const std::vector<RunRecord>& runs) { arguments.out.write(list_metrics(runs)); });
+    use_runs(arguments.runs, [&](const std::vector<RunRecord>& runs) { arguments.out.write(list_metrics(runs)); });
     return;
   }
   TableOptions options = arguments.options;
   options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
-  use_runs(arguments.folders, [&](std::vector<RunRecord>& runs) {
+  use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
     if (shows_common_time(options, runs.size())) score_common_time(runs, options.online);
     arguments.out.write(make_table(runs, options));
   });
@@ -38,16 +39,18 @@ void add_table(CLI::App& app) {
   auto arguments = std::make_shared<TableArguments>();
   CLI::App* command =
       app.add_subcommand("table", "Make a table of runs: text, Markdown, CSV, LaTeX; with statistics over seeds");
-  add_folders(*command, arguments->folders);
+  add_run_selection(*command, arguments->runs);
   command
-      ->add_option(
-          "--format", arguments->format,
-          "Format; latex has few columns, see --metrics, and needs booktabs; long: CSV, a line a run and metric")
+      ->add_option("--format", arguments->format,
+                   "Format; latex has few columns and needs the packages booktabs and siunitx; long: CSV, a line a run "
+                   "and metric")
       ->check(one_of(to_strings(kTableFormatNames)))
       ->capture_default_str();
   add_text_output(*command, arguments->out);
-  add_list_option(*command, "--metrics", arguments->options.metrics,
-                  "Columns, e.g. ate.trans_m.rmse,rpe.trans_m.median,runtime_s");
+  add_list_option(*command, "--metrics,--columns", arguments->options.metrics,
+                  "Columns, e.g. ate.trans_m.rmse,rpe.trans_m.median,runtime_s; key, folder and status are some, too");
+  add_wide(*command, arguments->options.layout, arguments->options.folders);
+  command->add_flag("--body", arguments->options.layout.body, "LaTeX: the tabular alone, without float and caption");
   add_list_option(*command, "--over", arguments->options.over,
                   "Summarise over these columns: a row for all runs that differ in nothing else, e.g. seed, or "
                   "seed,experiment",

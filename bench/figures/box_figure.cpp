@@ -28,7 +28,7 @@ Row row_of(const Method& method, const FigureRuns& all, const Metric& metric) {
 }  // namespace
 
 Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  const FigureRuns all(runs, options.online);
+  const FigureRuns all(runs, options.online, "", "experiment");
   const std::vector<Metric> metrics = all.metrics(options);
   Figure figure;
   figure.legend = false;
@@ -39,12 +39,13 @@ Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options)
     groups.push_back(method.runs);
   }
   bool some_failed = false;
+  std::vector<std::vector<double>> drawn;  // in each panel
   std::vector<std::string> told;  // of failures, by the first panel of a row, which has the names for all of it
   for (const Metric& metric : metrics) {
     const bool begins_row = figure.panels.size() % figure.columns == 0;
     if (begins_row) told.clear();
     Panel panel{{metric.header}, {}, {}};
-    std::vector<double> drawn;
+    drawn.emplace_back();
     for (std::size_t m = 0; m < all.methods.size(); ++m) {
       Row row = row_of(all.methods[m], all, metric);
       some_failed = some_failed || !row.failures.empty();
@@ -54,18 +55,19 @@ Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options)
       } else {
         panel.names.push_back(row.failures == told[m] ? "" : row.failures);
       }
-      drawn.insert(drawn.end(), row.values.begin(), row.values.end());
+      drawn.back().insert(drawn.back().end(), row.values.begin(), row.values.end());
       if (!row.values.empty()) {
         panel.marks.push_back({Mark::Kind::box, m, {static_cast<double>(m)}, std::move(row.values)});
       }
     }
-    panel.x.log = spread_wide(drawn);
     figure.panels.push_back(std::move(panel));
   }
+  for (Panel& panel : figure.panels) panel.x.log = any_spread_wide(drawn);
   const std::size_t rows = (figure.panels.size() + figure.columns - 1) / figure.columns;
   figure.height_mm = (13.0 + 6.5 * static_cast<double>(all.methods.size())) * static_cast<double>(rows);
   const std::string what = all.pooled("Boxes between quartiles, with the median and each run as a point", groups);
-  figure.caption = all.scored_caption(what + (some_failed ? " Those that failed are in no box." : ""), options.online);
+  figure.caption =
+      all.scored_caption(what + (some_failed ? " Those that failed are in no box." : ""), options.online, metrics);
   return figure;
 }
 

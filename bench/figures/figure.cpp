@@ -35,7 +35,10 @@ Json to_json(const Mark& mark) {
 }
 
 Json to_json(const PanelAxis& axis) {
-  return {{"label", axis.label}, {"scale", axis.log ? "log" : "linear"}, {"share", axis.share}};
+  return {{"label", axis.label},
+          {"scale", axis.log ? "log" : "linear"},
+          {"share", axis.share},
+          {"ends", numbers(axis.ends)}};
 }
 
 Json to_json(const Panel& panel) {
@@ -59,9 +62,13 @@ std::size_t legend_columns(const Figure& figure) {
 }
 
 Json to_json(const Figure& figure) {
-  Json json = {{"width_mm", figure.width_mm}, {"height_mm", figure.height_mm},
-               {"columns", figure.columns},   {"legend", figure.legend},
-               {"caption", figure.caption},   {"legend_columns", legend_columns(figure)}};
+  Json json = {{"width_mm", figure.width_mm},
+               {"height_mm", figure.height_mm},
+               {"columns", figure.columns},
+               {"legend", figure.legend},
+               {"alike", figure.alike},
+               {"caption", figure.caption},
+               {"legend_columns", legend_columns(figure)}};
   json["series"] = Json::array();
   std::size_t number = 0;  // of the colour: the truth has none
   for (const Series& series : figure.series) {
@@ -100,6 +107,12 @@ std::string drawing_script(const Figure& figure) {
   const std::string place = "@DATA@";
   std::string data = to_json(figure).dump(-1, ' ', true);  // ASCII: no doubt about the file's encoding
   return script.replace(script.find(place), place.size(), data);
+}
+
+void check_figure_name(const std::string& file) {
+  const std::filesystem::path extension = std::filesystem::path(file).extension();
+  if (extension == ".svg" || extension == ".pdf" || extension == ".png") return;
+  throw InputError(fmt::format("{}: is no .svg, .pdf or .png; expected one of these", file));
 }
 
 std::string draw(const Figure& figure, const std::string& file, const std::string& python) {

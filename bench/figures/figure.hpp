@@ -10,7 +10,7 @@ namespace evbench {
 /// What a colour and a name in the legend stand for.
 struct Series {
   std::string label;
-  bool truth = false;  ///< black and thin
+  bool truth = false;  ///< black, thin and dashed, on top
 };
 
 /// Something drawn in a panel, of one series.
@@ -33,7 +33,8 @@ struct Mark {
 struct PanelAxis {
   std::string label;  ///< with its unit
   bool log = false;
-  bool share = false;  ///< from 0 to 1
+  bool share = false;             ///< from 0 to 1
+  std::vector<double> ends = {};  ///< numbers that stand below it whatever others do: its first and its last value
 };
 
 /// A pair of axes with what is drawn in it.
@@ -49,15 +50,20 @@ struct Panel {
 struct Figure {
   std::vector<Series> series;
   std::vector<Panel> panels;
-  std::string caption;  ///< what it is of, and the protocol, small below
+  std::string caption;                    ///< what it is of, and the protocol, small below
+  std::vector<std::string> remarks = {};  ///< for who draws it: what may not be as expected
   std::size_t columns = 1;
   bool legend = true;
+  bool alike = false;  ///< a metre is as long in all panels: on both axes where that is `equal`, else on the y axis
   double width_mm = 174.0, height_mm = 64.0;  ///< of the whole; of the panels alone, names being of one line each
 };
 
 /// The program that draws it: a Python script that needs matplotlib alone, with all data in it
 /// (bench/figures/figure.py). Its arguments are the files to write, .svg, .pdf or .png.
 std::string drawing_script(const Figure& figure);
+
+/// Throws InputError for the name of a file that figures can't be written to: no .svg, .pdf or .png.
+void check_figure_name(const std::string& file);
 
 /// Draws it to a file. `python`: the interpreter; empty: the first of "python3" and "/usr/bin/python3" that has
 /// matplotlib. Throws InputError, with what Python said, where there is none or drawing fails, OutputError where the

@@ -1,6 +1,7 @@
 # Draws what follows as DATA with matplotlib: python3 THIS.py FILE.svg (or .pdf, .png). All numbers, texts and colours
 # are in DATA; how they look is here.
 import json
+import math
 import sys
 import textwrap
 import warnings
@@ -10,7 +11,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 # Okabe and Ito's colours, and Tol's wine instead of black, which is the truth's: people with any kind of colour vision tell
 # them apart; in grey, lines differ by dash and marker.
@@ -45,7 +46,7 @@ def numbers(values):
 def style(series, dense=False):
     """Dense lines, which turn and cross, are thin and without dashes."""
     if series["truth"]:
-        return {"color": "black", "linestyle": "-", "linewidth": 1.2}
+        return {"color": "black", "linestyle": (0, (3, 1.5)), "linewidth": 0.8}
     number = series["number"]
     return {"color": COLOURS[number % len(COLOURS)], "linestyle": "-" if dense else DASHES[number % len(DASHES)],
             "linewidth": 0.8 if dense else 1.3}
@@ -61,7 +62,7 @@ def draw(axes, mark, series):
     kind = mark["kind"]
     mark = {**mark, **{key: numbers(mark[key]) for key in ("x", "y", "low", "high")}}
     if kind == "line":
-        axes.plot(mark["x"], mark["y"], zorder=3, **style(series, dense=True))
+        axes.plot(mark["x"], mark["y"], zorder=5 if series["truth"] else 3, **style(series, dense=True))
     elif kind == "points":
         axes.plot(mark["x"], mark["y"], marker=marker(series), markeredgecolor="white", markeredgewidth=0.4, zorder=4, **look)
         axes.update_datalim([(x, 0) for x in mark["x"]], updatey=False)  # of what has no height, as it failed, too
@@ -148,6 +149,27 @@ def set_scale(axis, scale, low, high, ticks=6):
     axis.set_minor_formatter(NullFormatter())
 
 
+def set_ends(axis, scale, ends, low, high, least):
+    """Ticks at the ends of what is drawn, and those between that are not too near: `least` is a share of the axis."""
+    def place(value):
+        return math.log(value) if scale == "log" else value
+
+    gap = least * (place(high) - place(low))
+    between = [tick for tick in axis.get_major_locator().tick_values(low, high)
+               if all(abs(place(tick) - place(end)) > gap for end in ends) and ends[0] < tick < ends[-1]]
+    axis.set_major_locator(FixedLocator(sorted({*ends, *between})))
+    axis.set_major_formatter(FuncFormatter(plain))
+
+
+def spread_alike(grid, panels):
+    """Axes of metres span as much in all panels."""
+    spans = [(axes, side) for axes, panel in zip(grid, panels) for side in ("xy" if panel["equal"] else "y")]
+    limits = [getattr(axes, f"get_{side}lim")() for axes, side in spans]
+    half = 0.5 * max(high - low for low, high in limits)
+    for (axes, side), (low, high) in zip(spans, limits):
+        getattr(axes, f"set_{side}lim")(0.5 * (low + high) - half, 0.5 * (low + high) + half)
+
+
 def axis_label(axis, width):
     """On as many lines as it takes: layout does not see to it that a label is no longer than its axis."""
     return wrap(axis["label"] + (" (logarithmic)" if axis["scale"] == "log" else ""), width)
@@ -174,13 +196,15 @@ def draw_panel(axes, panel, series, width, height):
     if not any(mark["kind"] == "cells" for mark in panel["marks"]):  # which have ticks of their own
         set_scale(axes.xaxis, panel["x"]["scale"], *axes.get_xlim(), ticks=max(1, min(6, int(width / TICK_WIDTH))))
         set_scale(axes.yaxis, panel["y"]["scale"], *axes.get_ylim())
+        if panel["x"]["ends"]:
+            set_ends(axes.xaxis, panel["x"]["scale"], panel["x"]["ends"], *axes.get_xlim(), TICK_WIDTH / width)
     if panel["names"]:
         axes.set_yticks(range(len(panel["names"])), panel["names"])
         axes.invert_yaxis()
         axes.grid(False, axis="y")
         axes.tick_params(axis="y", length=0)
     if panel["equal"]:
-        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_aspect("equal", adjustable="box")
 
 
 def wrap_names(panels, width):
@@ -217,6 +241,8 @@ def main():
     for number, panel in enumerate(panels):
         draw_panel(grid[number // columns][number % columns], panel, data["series"],
                    (data["width_mm"] - names_width) / columns - TICKS_SIZE, panels_height / rows - TICKS_SIZE)
+    if data["alike"]:
+        spread_alike(grid.flat, panels)
     for number in range(len(panels), rows * columns):
         grid[number // columns][number % columns].set_visible(False)
     figure.text(1.5 / data["width_mm"], 1.0 / height, "\n".join(caption), fontsize=5.5, color="#555555", va="bottom")

@@ -9,11 +9,15 @@
 #include <set>
 
 #include "core/support/error.hpp"
+#include "eval/protocol.hpp"
 
 namespace evbench {
 
-FigureRuns::FigureRuns(std::span<const RunRecord> records, bool online, const std::string& without)
-    : runs(numbers_of(records, online)), columns(run_columns(records)), methods(methods_of(runs, columns, without)) {
+FigureRuns::FigureRuns(std::span<const RunRecord> records, bool online, const std::string& without,
+                       const std::string& apart)
+    : runs(numbers_of(records, online)),
+      columns(columns_with(records, without)),
+      methods(methods_of(runs, columns, without, apart)) {
   if (methods.empty()) throw InputError("none of these runs was done yet; expected some to draw");
 }
 
@@ -45,10 +49,26 @@ std::string FigureRuns::caption(const std::string& what) const {
   return fmt::format("{}. {}", fmt::join(experiments, ", "), what);
 }
 
-std::string FigureRuns::scored_caption(const std::string& what, bool online) const {
+std::string FigureRuns::scored_caption(const std::string& what, bool online, const std::vector<Metric>& metrics) const {
+  const auto any = [&](const char* part) {
+    return std::ranges::any_of(metrics,
+                               [&](const Metric& metric) { return metric.key.find(part) != std::string::npos; });
+  };
+  const auto is_measured = [](const Metric& metric) {
+    const std::string& key = metric.key;
+    return key.starts_with("times.") || key == "runtime_s" || key == "realtime_factor" || key == "peak_rss_mib";
+  };
+  if (!metrics.empty() && std::ranges::all_of(metrics, is_measured)) return caption(what);
+  const ProtocolParts parts{any("rpe."), any("segments."), any("equal_latency.")};
   std::string text = caption(what) + (online ? " Online: each pose as estimated at the time it was made."
                                              : " Final: the trajectory as estimated after the whole sequence.");
-  for (const std::string& protocol : collect_protocols(runs).texts) text += fmt::format(" {}.", protocol);
+  std::vector<std::string> protocols;
+  for (const RunNumbers& run : runs) {
+    if (run.scores().is_null()) continue;
+    std::string one = protocol(run.scores(), run.run().folder + "/metrics.json", parts);
+    if (std::ranges::find(protocols, one) == protocols.end()) protocols.push_back(std::move(one));
+  }
+  for (const std::string& one : protocols) text += fmt::format(" {}.", one);
   return text;
 }
 
@@ -74,6 +94,22 @@ bool spread_wide(const std::vector<double>& values) {
     high = std::max(high, value);
   }
   return high > 4.0 * low;
+}
+
+bool any_spread_wide(const std::vector<std::vector<double>>& panels) {
+  const auto is_positive = [](double value) { return !std::isfinite(value) || value > 0.0; };
+  return std::ranges::any_of(panels, spread_wide) &&
+         std::ranges::all_of(
+             panels, [&](const std::vector<double>& values) { return std::ranges::all_of(values, is_positive); });
+}
+
+std::vector<RunColumn> columns_with(std::span<const RunRecord> runs, const std::string& axis) {
+  std::vector<RunColumn> columns = run_columns(runs);
+  const bool has = std::ranges::find(columns, axis, &RunColumn::name) != columns.end();
+  RunColumn column{axis, {}};
+  for (const RunRecord& run : runs) column.values.push_back(setting_text(run.settings, axis));
+  if (!has && column.varies()) columns.push_back(std::move(column));
+  return columns;
 }
 
 }  // namespace evbench

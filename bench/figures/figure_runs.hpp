@@ -12,8 +12,10 @@ namespace evbench {
 
 /// What every figure is made from.
 struct FigureRuns {
-  /// `without`: a column that is no part of methods' names (methods_of()).
-  FigureRuns(std::span<const RunRecord> runs, bool online, const std::string& without = "");
+  /// `without`: a column, or a setting, that is no part of methods' names, `apart`: a column that always is one
+  /// (methods_of()).
+  FigureRuns(std::span<const RunRecord> runs, bool online, const std::string& without = "",
+             const std::string& apart = "");
 
   std::vector<RunNumbers> runs;
   std::vector<RunColumn> columns;
@@ -29,8 +31,9 @@ struct FigureRuns {
   /// Experiments, and what is drawn: a sentence.
   std::string caption(const std::string& what) const;
 
-  /// The same of what follows from scores: with the trajectory that they are of, and the protocols.
-  std::string scored_caption(const std::string& what, bool online) const;
+  /// The same of what follows from trajectories, and of these metrics: with the trajectory that they are of, and as
+  /// much of the protocols as they follow from. Where all of them are times and the like that is nothing.
+  std::string scored_caption(const std::string& what, bool online, const std::vector<Metric>& metrics) const;
 };
 
 /// The number that is all of a text, if it is one.
@@ -41,5 +44,12 @@ void check_numbers(const RunColumn& column);
 
 /// Are these positive numbers so far apart that their logarithms should be drawn?
 bool spread_wide(const std::vector<double>& values);
+
+/// Should logarithms be drawn in all panels of a figure, which have these values? Where one should have them, if none
+/// has a value that is not positive.
+bool any_spread_wide(const std::vector<std::vector<double>>& panels);
+
+/// run_columns(), and the setting `axis` as one of them where labels differ wherever it does, so that it is none.
+std::vector<RunColumn> columns_with(std::span<const RunRecord> runs, const std::string& axis);
 
 }  // namespace evbench

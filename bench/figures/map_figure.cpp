@@ -92,7 +92,7 @@ Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options)
                                      "Below 1, blue, the former is better. Cells are of one size, "
                                      "whatever lies between their values.",
                                      shown, method.name, base.name, pairs, pairs == 1 ? "" : "s"),
-                         options.online);
+                         options.online, metrics);
   return figure;
 }
 

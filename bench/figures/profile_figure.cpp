@@ -66,7 +66,8 @@ Figure profile_figure(std::span<const RunRecord> runs, const FigureOptions& opti
   }
   figure.columns = std::min<std::size_t>(figure.panels.size(), 2);
   figure.caption = all.scored_caption(
-      fmt::format("Performance profiles (Dolan and Moré 2002) over {} sequences and seeds.", problems), options.online);
+      fmt::format("Performance profiles (Dolan and Moré 2002) over {} sequences and seeds.", problems), options.online,
+      metrics);
   return figure;
 }
 

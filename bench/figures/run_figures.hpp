@@ -6,6 +6,7 @@
 
 #include "bench/figures/figure.hpp"
 #include "eval/run_record.hpp"
+#include "eval/scores.hpp"
 
 namespace evbench {
 
@@ -18,6 +19,19 @@ struct FigureOptions {
   std::string base = "";  ///< of maps: the method that all is compared with; empty: the one without axis
   bool online = false;    ///< the scores of the online trajectories, instead of the final ones
 };
+
+/// Trajectories of one sequence that were scored, wherever they come from.
+struct ScoredTrajectories {
+  std::vector<std::string> names;  ///< one each
+  std::vector<Scores> scores;
+  std::string caption;
+  bool numbered = false;  ///< poses have numbers, not times
+};
+
+/// Their errors over time; their coordinates over time, and they from three sides, with the ground truth.
+Figure error_figure(const ScoredTrajectories& scored);
+Figure position_figure(const ScoredTrajectories& scored);
+Figure trajectory_figure(const ScoredTrajectories& scored);
 
 // All throw InputError where there is nothing to draw, saying what was expected. What failed is shown: as a number
 // above a sweep's panel or behind a box's name, as a share that is not reached in a profile, in the caption elsewhere.

@@ -124,6 +124,71 @@ TEST_CASE("A value of the axis at which the median fails is in the figure", "[sl
              ContainsSubstring("<!-- 0.4 -->") && ContainsSubstring("<!-- 3/3 -->"));
 }
 
+TEST_CASE("Two experiments in one box plot are told apart") {
+  const Results results;
+  for (int seed = 1; seed <= 3; ++seed) {
+    results.add_seed("mine", seed, 0.1 * seed);
+    Json json = run("legs", "mine", scores_with(0.2));
+    json["seed"] = seed;
+    results.add(
+        "legs" + std::to_string(seed), json,
+        {{"seed", seed}, {"source", {{"type", "simulation"}, {"motion", "leg"}}}, {"backend", {{"type", "mine"}}}});
+  }
+  const Figure figure = box_figure(results.find(), {});
+  REQUIRE(figure.series.size() == 2);
+  CHECK(figure.series[0].label == "mine, experiment arm");
+  CHECK(figure.series[1].label == "mine, experiment legs");
+}
+
+TEST_CASE("A sweep over a setting in which labels differ, too, is drawn and says so") {
+  const Results results;
+  for (const double frame : {0.05, 0.1, 0.2}) {
+    const std::string label = fmt::format("bundle {}", frame);
+    results.add(label, run("arm", label, scores_with(frame)),
+                {{"source", {{"type", "simulation"}}}, {"backend", {{"frame_duration", frame}}}});
+  }
+  const Figure figure = sweep_figure(results.find(), {.axis = "backend.frame_duration"});
+  REQUIRE(figure.series.size() == 3);
+  CHECK(mark_of(figure.panels.at(0), Mark::Kind::points, 0).x == std::vector{0.1});
+  REQUIRE(figure.remarks.size() == 1);
+  CHECK_THAT(figure.remarks[0], ContainsSubstring("Labels differ wherever backend.frame_duration does"));
+  CHECK_THAT(figure.caption, ContainsSubstring(figure.remarks[0]));
+  std::vector<RunRecord> one = results.find();
+  for (RunRecord& run : one) run.label = "bundle";
+  const Figure joined = sweep_figure(one, {});
+  CHECK(joined.remarks.empty());
+  CHECK(mark_of(joined.panels.at(0), Mark::Kind::points, 0).x.size() == 3);
+  CHECK_THROWS_WITH(sweep_figure(results.find(), {.axis = "backend.frame"}),
+                    ContainsSubstring("runs do not differ in \"backend.frame\""));
+}
+
+TEST_CASE("Panels of one figure are scaled alike, and an axis has ticks at both of its ends") {
+  const Swept results;  // ATE from 0.05 to 0.6, RPE the same everywhere
+  const Figure sweep = sweep_figure(results.find(), {.axis = "backend.frame_duration"});
+  REQUIRE(sweep.panels.size() == 2);
+  for (const Panel& panel : sweep.panels) {
+    CHECK(panel.y.log);
+    CHECK(panel.x.ends == std::vector{0.05, 0.2});
+  }
+  for (const Panel& panel : box_figure(results.find(), {}).panels) CHECK(panel.x.log);
+  ScoredTrajectories scored{{"mine"}, {Scores()}, "arm."};
+  CHECK(trajectory_figure(scored).alike);
+  CHECK(position_figure(scored).alike);
+  CHECK_FALSE(error_figure(scored).alike);
+  CHECK(error_figure(scored).panels.at(0).y.label == "translation error [m]");
+}
+
+TEST_CASE("Below a figure stands the part of the protocol that it follows from") {
+  const Swept results;
+  const std::vector<RunRecord> runs = results.find();
+  const auto caption = [&](const std::vector<std::string>& metrics) {
+    return box_figure(runs, {.metrics = metrics}).caption;
+  };
+  CHECK_THAT(caption({"ate.trans_m.rmse"}), ContainsSubstring("Sim(3)") && !ContainsSubstring("RPE"));
+  CHECK_THAT(caption({"rpe.trans_m.rmse"}), ContainsSubstring("Sim(3)") && ContainsSubstring("RPE over 0.1 seconds"));
+  CHECK_THAT(caption({"realtime_factor"}), !ContainsSubstring("Sim(3)") && !ContainsSubstring("Final"));
+}
+
 TEST_CASE("What runs that are drawn together differ in is said") {
   const Swept results;
   std::vector<RunRecord> runs = results.find();
@@ -193,6 +258,10 @@ TEST_CASE("Figures of runs are drawn by the program, the same bytes each time", 
     CHECK_THAT(read_file(folder.file(kind + ".svg")), ContainsSubstring("<svg") && ContainsSubstring("</svg>"));
   }
   const std::string svg = read_file(folder.file("trajectory.svg"));
+  CHECK_THAT(svg, ContainsSubstring("Sim(3)") && !ContainsSubstring("RPE"));
+  REQUIRE(testing::evbench(folder, "figure trajectory results --out plain.svg --no-caption --labels asynchronous=Ours")
+              .exit_code == 0);
+  CHECK_THAT(read_file(folder.file("plain.svg")), ContainsSubstring("Ours") && !ContainsSubstring("Sim(3)"));
   REQUIRE(shell(folder, "/usr/bin/python3 trajectory.py again.svg again.pdf").exit_code == 0);
   CHECK(read_file(folder.file("again.svg")) == svg);
   CHECK(read_file(folder.file("again.pdf")).starts_with("%PDF"));
@@ -243,6 +312,31 @@ TEST_CASE("Runs that are asked for by several values of one name have any of the
   };
   CHECK_THAT(script_of("--only seed=1 --only seed=3 --only label=asynchronous"), ContainsSubstring("\"x\":[1.0,3.0]"));
   CHECK_THAT(script_of("--only label=asynchronous"), ContainsSubstring("\"x\":[1.0,2.0,3.0]"));
+}
+
+TEST_CASE("Trajectories from elsewhere are drawn with their ground truth", "[slow]") {
+  const TemporaryFolder folder;
+  folder.write("c.json", dump_json(short_comparison()));
+  REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
+  for (const std::string& run : runs_of(folder.file("results/short"))) {
+    const std::string label = parse_json(read_file(run + "/metrics.json")).at("label");
+    folder.write(label == "asynchronous" ? "a.tum" : "b.tum", read_file(run + "/final.tum"));
+    folder.write("truth.tum", read_file(run + "/groundtruth.tum"));
+  }
+  for (const std::string kind : {"trajectory", "position", "error"}) {
+    const Outcome outcome = testing::evbench(
+        folder, "eval truth.tum a.tum b.tum -as --interpolate --plot " + kind + ".svg --plot_kind " + kind);
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK_THAT(outcome.out, ContainsSubstring("ATE [m]"));
+    CHECK_THAT(read_file(folder.file(kind + ".svg")), ContainsSubstring("a.tum") && ContainsSubstring("b.tum") &&
+                                                          ContainsSubstring("Sim(3)") && !ContainsSubstring("RPE") &&
+                                                          !ContainsSubstring(folder.path()));
+  }
+  const Outcome refused = testing::evbench(folder, "eval truth.tum a.tum -as --plot error.svg");
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.err, ContainsSubstring("error.svg: exists already"));
+  CHECK_THAT(testing::evbench(folder, "eval truth.tum a.tum --plot f.jpg").err, ContainsSubstring("is no .svg"));
 }
 
 TEST_CASE("What Python warns of is passed on", "[slow]") {

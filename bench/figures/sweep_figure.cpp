@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "bench/figures/figure_runs.hpp"
 #include "core/support/error.hpp"
@@ -20,7 +21,7 @@ bool is_numeric_axis(const RunColumn& column) {
 
 /// The axis asked for, or the only one that has numbers.
 std::string axis_of(std::span<const RunRecord> runs, const FigureOptions& options) {
-  const std::vector<RunColumn> columns = run_columns(runs);
+  const std::vector<RunColumn> columns = columns_with(runs, options.axis);
   if (!options.axis.empty()) {
     check_numbers(find_column(columns, options.axis));
     return options.axis;
@@ -98,6 +99,16 @@ std::vector<Mark> draw_method(const Places& places, std::size_t number, const Fi
   return marks;
 }
 
+/// Does every method that has the axis have one value of it, and not all the same? Then labels differ as the axis does.
+bool labels_follow(const std::vector<Places>& methods) {
+  std::set<double> values;
+  for (const Places& places : methods) {
+    if (places.at.size() > 1) return false;
+    for (const auto& [value, runs] : places.at) values.insert(value);
+  }
+  return values.size() > 1;
+}
+
 }  // namespace
 
 Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
@@ -119,19 +130,24 @@ Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& option
     }
   }
   bool some_failed = false;
+  std::vector<std::vector<double>> heights;  // in each panel
   for (const Metric& metric : metrics) {
     Panel panel{{options.axis_label.empty() ? name : options.axis_label, spread_wide(values)}, {metric.header}, {}};
-    std::vector<double> heights;
+    if (!values.empty()) {
+      const auto [first, last] = std::ranges::minmax(values);
+      panel.x.ends = first < last ? std::vector{first, last} : std::vector{first};
+    }
+    heights.emplace_back();
     for (std::size_t m = 0; m < places.size(); ++m) {
       for (Mark& mark : draw_method(places[m], m, all, metric)) {
         some_failed = some_failed || mark.kind == Mark::Kind::failures;
-        heights.insert(heights.end(), mark.y.begin(), mark.y.end());
+        heights.back().insert(heights.back().end(), mark.y.begin(), mark.y.end());
         panel.marks.push_back(std::move(mark));
       }
     }
-    panel.y.log = spread_wide(heights);
     figure.panels.push_back(std::move(panel));
   }
+  for (Panel& panel : figure.panels) panel.y.log = any_spread_wide(heights);
   figure.columns = std::min<std::size_t>(figure.panels.size(), 2);
   figure.height_mm = 64.0 * std::ceil(static_cast<double>(figure.panels.size()) / 2.0);
   std::string what = all.pooled("Medians, and bands between quartiles", groups);
@@ -140,7 +156,12 @@ Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& option
         " Above: how many of the runs failed; they count as worse than all others, and quartiles that are theirs are "
         "not drawn.";
   }
-  figure.caption = all.scored_caption(what, options.online);
+  if (labels_follow(places)) {
+    figure.remarks.push_back(
+        fmt::format("Labels differ wherever {} does: no curve joins their points, unless they get one label.", name));
+    what += " " + figure.remarks.back();
+  }
+  figure.caption = all.scored_caption(what, options.online, metrics);
   return figure;
 }
 

@@ -36,15 +36,9 @@ std::string name_of_sequence(const std::vector<RunColumn>& columns, const std::v
 }
 
 /// The runs of the first sequence, scored by their own protocols.
-struct ScoredRuns {
-  std::vector<std::string> names;
-  std::vector<Scores> scores;
-  std::string caption;
-};
-
-ScoredRuns score_first_sequence(std::span<const RunRecord> records, const FigureRuns& all, const FigureOptions& options,
-                                const std::string& what) {
-  ScoredRuns result;
+ScoredTrajectories score_first_sequence(std::span<const RunRecord> records, const FigureRuns& all,
+                                        const FigureOptions& options, const std::string& what) {
+  ScoredTrajectories result;
   std::vector<std::string> sequences;
   for (const RunRecord& run : records) sequences.push_back(sequence_of(run));
   const std::size_t first = all.methods.front().runs.front();
@@ -76,21 +70,23 @@ ScoredRuns score_first_sequence(std::span<const RunRecord> records, const Figure
       distinct.size() > 1 ? fmt::format(" (the first of {} sequences and seeds)", distinct.size()) : "";
   const FigureRuns of_sequence(drawn, options.online);
   result.caption = of_sequence.scored_caption(
-      fmt::format("{}{}{}{}.{}", what, name.empty() ? "" : ", ", name, others, missing), options.online);
+      fmt::format("{}{}{}{}.{}", what, name.empty() ? "" : ", ", name, others, missing), options.online, {});
   return result;
 }
 
 constexpr int kTime = -1;
 
+const char* time_label(const ScoredTrajectories& scored) { return scored.numbered ? "number of the pose" : "time [s]"; }
+
 /// The axes of each panel: time, or a coordinate.
-Figure figure_of_trajectories(const ScoredRuns& scored, const std::vector<std::pair<int, int>>& axes) {
+Figure figure_of_trajectories(const ScoredTrajectories& scored, const std::vector<std::pair<int, int>>& axes) {
   Figure figure;
   figure.series.push_back({"ground truth", true});
   for (const std::string& name : scored.names) figure.series.push_back({name});
   const auto longest = std::ranges::max_element(scored.scores, {}, &Scores::coverage);
   const std::array names{"x [m]", "y [m]", "z [m]"};
   for (const auto& [across, up] : axes) {
-    Panel panel{{across == kTime ? "time [s]" : names[index(across)]}, {names[index(up)]}, {}};
+    Panel panel{{across == kTime ? time_label(scored) : names[index(across)]}, {names[index(up)]}, {}};
     panel.equal = across != kTime;
     const auto add = [&, across = across, up = up](std::size_t series, const std::vector<PosePair>& pairs, auto pose) {
       Mark line{Mark::Kind::line, series, {}};
@@ -106,6 +102,7 @@ Figure figure_of_trajectories(const ScoredRuns& scored, const std::vector<std::p
     }
     figure.panels.push_back(std::move(panel));
   }
+  figure.alike = true;
   if (axes.front().first == kTime) {
     figure.height_mm = 128.0;
   } else {
@@ -117,19 +114,15 @@ Figure figure_of_trajectories(const ScoredRuns& scored, const std::vector<std::p
 
 }  // namespace
 
-Figure error_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  const ScoredRuns scored =
-      score_first_sequence(runs, FigureRuns(runs, options.online), options, "Error of each pose after alignment");
+Figure error_figure(const ScoredTrajectories& scored) {
   Figure figure;
-  Panel translation{{"time [s]"}, {"translation [m]"}, {}}, rotation{{"time [s]"}, {"rotation [deg]"}, {}};
-  std::vector<double> trans_m, rot_deg;
+  Panel translation{{time_label(scored)}, {"translation error [m]"}, {}};
+  Panel rotation{{time_label(scored)}, {"rotation error [deg]"}, {}};
   for (std::size_t i = 0; i < scored.scores.size(); ++i) {
     figure.series.push_back({scored.names[i]});
     PoseErrors errors = absolute_errors(scored.scores[i].compared);
     std::vector<double> times;
     for (const PosePair& pair : scored.scores[i].compared) times.push_back(pair.t);
-    trans_m.insert(trans_m.end(), errors.trans_m.begin(), errors.trans_m.end());
-    rot_deg.insert(rot_deg.end(), errors.rot_deg.begin(), errors.rot_deg.end());
     translation.marks.push_back({Mark::Kind::line, i, times, std::move(errors.trans_m)});
     rotation.marks.push_back({Mark::Kind::line, i, std::move(times), std::move(errors.rot_deg)});
   }
@@ -139,16 +132,27 @@ Figure error_figure(std::span<const RunRecord> runs, const FigureOptions& option
   return figure;
 }
 
+Figure position_figure(const ScoredTrajectories& scored) {
+  return figure_of_trajectories(scored, {{kTime, 0}, {kTime, 1}, {kTime, 2}});
+}
+
+Figure trajectory_figure(const ScoredTrajectories& scored) {
+  return figure_of_trajectories(scored, {{0, 1}, {0, 2}, {1, 2}});
+}
+
+Figure error_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
+  return error_figure(
+      score_first_sequence(runs, FigureRuns(runs, options.online), options, "Error of each pose after alignment"));
+}
+
 Figure position_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  return figure_of_trajectories(
-      score_first_sequence(runs, FigureRuns(runs, options.online), options, "Position over time, after alignment"),
-      {{kTime, 0}, {kTime, 1}, {kTime, 2}});
+  return position_figure(
+      score_first_sequence(runs, FigureRuns(runs, options.online), options, "Position over time, after alignment"));
 }
 
 Figure trajectory_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  return figure_of_trajectories(score_first_sequence(runs, FigureRuns(runs, options.online), options,
-                                                     "Trajectories after alignment, from three sides"),
-                                {{0, 1}, {0, 2}, {1, 2}});
+  return trajectory_figure(score_first_sequence(runs, FigureRuns(runs, options.online), options,
+                                                "Trajectories after alignment, from three sides"));
 }
 
 }  // namespace evbench

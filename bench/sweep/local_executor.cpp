@@ -13,6 +13,7 @@
 
 #include "bench/pipeline/batch_recording.hpp"
 #include "bench/run_folder.hpp"
+#include "bench/run_index.hpp"
 #include "bench/runner.hpp"
 #include "bench/sweep/process_pool.hpp"
 #include "bench/sweep/shared_events.hpp"
@@ -102,7 +103,9 @@ std::string shown_duration(double seconds) {
 class Executor {
  public:
   Executor(const std::vector<PlannedRun>& runs, const Plugins& plugins, const ExecutorOptions& options)
-      : plugins_(plugins), options_(options) {
+      : plugins_(plugins),
+        options_(options),
+        index_(runs.empty() ? "" : options.out + "/" + runs.front().config.experiment) {
     std::set<std::string> keys;
     for (const PlannedRun& run : runs) {
       if (!keys.insert(run.identity.key).second) continue;
@@ -120,16 +123,14 @@ class Executor {
   }
 
   SweepProgress run(const std::function<void(const SweepProgress&)>& tell) {
-    take_results();
-    progress_.before = progress_.done;
-    while (progress_.done < progress_.runs) {
-      check_interruption();
-      start_some();
-      for (const Ending& ending : pool_.wait(std::chrono::milliseconds(50))) take_ending(ending);
-      if (Clock::now() - looked_ > kLookElsewhere) look_elsewhere();
-      estimate();
-      tell(progress_);
+    try {
+      take_results();
+      do_all(tell);
+    } catch (const Interrupted&) {
+      index_.write();
+      throw;
     }
+    index_.write();
     return std::move(progress_);
   }
 
@@ -152,6 +153,20 @@ class Executor {
     std::unique_ptr<AtomicFolder> folder = nullptr;  ///< the claim on it, while it is made
     std::vector<std::size_t> waiting = {};           ///< jobs
   };
+
+  void do_all(const std::function<void(const SweepProgress&)>& tell) {
+    progress_.before = progress_.done;
+    while (progress_.done < progress_.runs) {
+      check_interruption();
+      start_some();
+      for (const Ending& ending : pool_.wait(std::chrono::milliseconds(50))) take_ending(ending);
+      if (Clock::now() - looked_ > kLookElsewhere) look_elsewhere();
+      estimate();
+      if (progress_.done > indexed_) index_.add();
+      indexed_ = progress_.done;
+      tell(progress_);
+    }
+  }
 
   std::string folder_of(const Job& job) const { return folder_of(*job.run, job.run->identity.key); }
   std::string folder_of(const PlannedRun& run, const std::string& key) const {
@@ -400,6 +415,8 @@ class Executor {
   RunDurations durations_;
   std::optional<std::size_t> estimated_at_;  ///< runs that were done then
   Clock::time_point done_at_ = {};           ///< as expected then
+  RunIndex index_;
+  std::size_t indexed_ = 0;  ///< runs that were done when the index was told
   SweepProgress progress_;
   ProcessPool pool_;  // the last one: its processes end before what they use
 };

@@ -236,7 +236,7 @@ TEST_CASE(
   shared.erase("sweep.json");
   CHECK(difference(expected, shared) == "");
   testing::evbench(folder, "sweep c.json --quiet --out guided --set frontend.guidance.veto=true");
-  CHECK(names_in(folder.file("guided/tiny")).size() == 4);
+  CHECK(runs_of(folder.file("guided/tiny")).size() == 3);
   CHECK(names_in(folder.file("guided/.tracks")).empty());
 }
 
