@@ -86,6 +86,8 @@ std::string new_config(const std::string& recording, const RecordingSummary& s, 
   source.add("", "type", "recording");
   source.add("", fs::is_directory(recording) ? "folder" : "events", path_for(recording, place));
   if (!options.read.topic.empty()) source.add("", "topic", options.read.topic);
+  if (!options.read.ground_truth_topic.empty()) source.add("", "ground_truth_topic", options.read.ground_truth_topic);
+  if (!options.read.camera_info_topic.empty()) source.add("", "camera_info_topic", options.read.camera_info_topic);
   if (!options.read.columns.empty()) source.add("", "columns", options.read.columns);
   if (options.read.lenient) source.add("However many events have to be left out.", "lenient", true);
   const Camera camera =
