@@ -122,7 +122,7 @@ TEST_CASE("HDF5 polarities that may mean several things are counted and refused"
 
 TEST_CASE("HDF5 rows are read in whatever order their columns are") {
   const testing::TemporaryFolder folder;
-  const std::vector<Event> expected{{1000, 5, 6, true}, {2000, 107, 8, false}, {3000, 9, 200, true}};
+  const std::vector<Event> expected{{1000, 5, 8, true}, {2000, 107, 6, false}, {3000, 9, 200, true}};
   const auto read = [&](const std::vector<std::uint32_t>& rows, hsize_t columns, const ReadOptions& options = {}) {
     const std::string path = folder.file("rows.h5");
     {
@@ -133,10 +133,10 @@ TEST_CASE("HDF5 rows are read in whatever order their columns are") {
     CHECK(reader->info().metadata.at(1).first == "columns");
     return read_all(*reader);
   };
-  CHECK(read({1000, 5, 6, 1, 2000, 107, 8, 0, 3000, 9, 200, 1}, 4) == expected);
-  CHECK(read({5, 6, 1, 1000, 107, 8, 0, 2000, 9, 200, 1, 3000}, 4) == expected);
-  CHECK(read({5, 6, 1000, 1, 107, 8, 2000, 0, 9, 200, 3000, 1}, 4) == expected);
-  CHECK(read({7, 1, 5, 6, 1, 7, 2, 107, 8, 0, 7, 3, 9, 200, 1}, 5, {.columns = "-,t_ms,x,y,p"}) == expected);
+  CHECK(read({1000, 5, 8, 1, 2000, 107, 6, 0, 3000, 9, 200, 1}, 4) == expected);
+  CHECK(read({5, 8, 1, 1000, 107, 6, 0, 2000, 9, 200, 1, 3000}, 4) == expected);
+  CHECK(read({5, 8, 1000, 1, 107, 6, 2000, 0, 9, 200, 3000, 1}, 4) == expected);
+  CHECK(read({7, 1, 5, 8, 1, 7, 2, 107, 6, 0, 7, 3, 9, 200, 1}, 5, {.columns = "-,t_ms,x,y,p"}) == expected);
   CHECK_THROWS_WITH(read({1, 1, 1, 1}, 4), Catch::Matchers::ContainsSubstring("may be \"t x y p\" and \"x y t p\"; "
                                                                               "give --columns"));
   CHECK_THROWS_WITH(read({5, 6, 7, 8}, 4), Catch::Matchers::ContainsSubstring("/events: has lines like \"5 6 7 8\""));
