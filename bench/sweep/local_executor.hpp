@@ -25,7 +25,7 @@ struct ExecutorOptions {
   RunLimits limits;
   bool retry_failed = false;  ///< do runs again that broke off, and damaged ones
   bool force = false;         ///< and complete ones
-  RunOutputs outputs;         ///< a complete run without them is done again
+  RunOutputs outputs = {};    ///< a complete run without them is done again
 };
 
 /// A run whose result is a failure, or that was lost.
