@@ -18,7 +18,31 @@ TEST_CASE("Columns are known by their names, whatever separates them and whateve
   CHECK(columns("t x y").text() == "t x y");
   CHECK(columns("# Timestamp, Pos X [m], foo, Y").text() == "t x - y");
   CHECK(columns("\"y\";\"x\";\"time\"").text() == "y x t");
-  CHECK(columns("x y x t").text() == "x y - t");
+}
+
+TEST_CASE("Two columns that one name may mean are quoted, a message's own stamp goes before other times") {
+  CHECK(columns("a_x b_x y t").ambiguity() == "\"a_x\" and \"b_x\", either of which may be x");
+  CHECK(columns("time, stamp, x, y").ambiguity() == "\"time\" and \"stamp\", either of which may be t");
+  CHECK(columns("t_s,t_ns,x,y").ambiguity() == "\"t_s\" and \"t_ns\", either of which may be t");
+  CHECK(columns("x y t").ambiguity().empty());
+  const Columns topic = columns("%time,field.header.seq,field.header.stamp,field.x,field.y");
+  CHECK(topic.text() == "- - t x y");
+  CHECK(topic.ambiguity().empty());
+  CHECK(columns("a.header.stamp,b.header.stamp,x,y").ambiguity() ==
+        "\"a.header.stamp\" and \"b.header.stamp\", either of which may be t");
+}
+
+TEST_CASE("A time may be two columns, of seconds and of nanoseconds") {
+  for (const char* names : {"sec,nsec,x,y", "t [s],header.stamp.secs,header.stamp.nsecs,x,y",
+                            "stamp.nanosec,stamp.sec,x,y", "sec [s], nsec [ns], x, y"}) {
+    CAPTURE(names);
+    const Columns both = columns(names);
+    CHECK(both.ambiguity().empty());
+    CHECK(both.nanoseconds());
+    CHECK(both.time_unit() == TimeUnit::seconds);
+  }
+  CHECK_FALSE(columns("sec,x,y").nanoseconds());
+  CHECK_FALSE(columns("t_sec,stamp_nsec,x,y").ambiguity().empty());
 }
 
 TEST_CASE("A time's name says its unit, in brackets or behind it") {

@@ -33,9 +33,12 @@ std::optional<TimeUnit> parse_time_unit(std::string_view text) {
     return std::ranges::any_of(names, [&](const char* known) { return name == known; });
   };
   if (is({"s", "sec", "secs", "second", "seconds"})) return TimeUnit::seconds;
-  if (is({"ms", "msec", "msecs", "millis", "millisecond", "milliseconds"})) return TimeUnit::milliseconds;
-  if (is({"us", "usec", "usecs", "micros", "microsecond", "microseconds"})) return TimeUnit::microseconds;
-  if (is({"ns", "nsec", "nsecs", "nanos", "nanosecond", "nanoseconds"})) return TimeUnit::nanoseconds;
+  if (is({"ms", "msec", "msecs", "millis", "millisec", "millisecs", "millisecond", "milliseconds"}))
+    return TimeUnit::milliseconds;
+  if (is({"us", "usec", "usecs", "micros", "microsec", "microsecs", "microsecond", "microseconds"}))
+    return TimeUnit::microseconds;
+  if (is({"ns", "nsec", "nsecs", "nanos", "nanosec", "nanosecs", "nanosecond", "nanoseconds"}))
+    return TimeUnit::nanoseconds;
   return std::nullopt;
 }
 

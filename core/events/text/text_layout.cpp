@@ -44,9 +44,10 @@ void read_size(std::string_view line, TextLayout& layout) {
 
 constexpr Quantity kQuantities[] = {kTime, {"x", "x.*"}, {"y", "y.*"}, {"p", "p.*|on"}};
 
-/// Takes the columns' order, and the unit of time where it is said. False unless all four quantities are there.
-bool take_names(std::string_view line, TextLayout& layout) {
-  const Columns names(line, kQuantities);
+/// Takes the columns' order, and the unit of time where it is said. False unless all four quantities are there, each
+/// once.
+bool take_names(const Columns& names, TextLayout& layout) {
+  if (!names.ambiguity().empty() || names.nanoseconds()) return false;
   std::vector<Column> order(names.size(), Column::other);
   constexpr Column kColumns[] = {Column::t, Column::x, Column::y, Column::p};
   for (std::size_t i = 0; i < std::size(kQuantities); ++i) {
@@ -61,9 +62,17 @@ bool take_names(std::string_view line, TextLayout& layout) {
 }
 
 void read_names(std::string_view line, TextLayout& layout, const std::string& place) {
-  if (take_names(line, layout)) return;
-  throw InputError(fmt::format("{}: names the columns \"{:.80}\"; expected time, x, y and polarity", place,
-                               fmt::to_string(fmt::join(split(line), ", "))));
+  const Columns names(line, kQuantities);
+  if (take_names(names, layout)) return;
+  if (!names.ambiguity().empty()) {
+    throw InputError(
+        fmt::format("{}: the columns are named {}; give --columns (source.columns in a run's config), "
+                    "with - for one of them",
+                    place, names.ambiguity()));
+  }
+  throw InputError(fmt::format("{}: names the columns \"{:.80}\"; expected time, x, y and polarity{}", place,
+                               fmt::to_string(fmt::join(split(line), ", ")),
+                               names.nanoseconds() ? ", the time in one column" : ""));
 }
 
 /// A line of numbers.
@@ -188,7 +197,8 @@ TextLayout detect_text_layout(std::string_view head, bool whole, const std::stri
     if (is_passed_over(line)) {
       if (line.find("geometry") != std::string_view::npos) read_size(line, layout);
       TextLayout named = layout;
-      if (layout.columns.empty() && take_names(line, named) && named.columns.size() == kTimeFirst.size()) {
+      if (layout.columns.empty() && take_names(Columns(line, kQuantities), named) &&
+          named.columns.size() == kTimeFirst.size()) {
         layout = named;
         layout.origin = " (named in a comment)";
       }
