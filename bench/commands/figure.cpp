@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/number_check.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/common_time.hpp"
 #include "bench/figures/run_figures.hpp"
@@ -146,10 +147,9 @@ void add_figure(CLI::App& app) {
         return value.find('=') == std::string::npos ? fmt::format("{}: expected NAME=VALUE", value) : std::string();
       });
   command->add_flag("--online", arguments->options.online, "The poses as estimated when they were made");
-  command->add_option("--width", arguments->width_mm, "Width [mm]; else 174, a page's")
-      ->check(CLI::Range(20.0, 2000.0));
+  command->add_option("--width", arguments->width_mm, "Width [mm]; else 174, a page's")->check(in_range(20.0, 2000.0));
   command->add_option("--height", arguments->height_mm, "Height of the panels, without legend and caption [mm]")
-      ->check(CLI::Range(20.0, 2000.0));
+      ->check(in_range(20.0, 2000.0));
   command->add_flag("--keep-script", arguments->keep_script,
                     "Also write FILE with the ending .py: the Python script that draws it, to be changed by hand");
   command->add_option("--python", arguments->python, "A Python with matplotlib; else python3")->type_name("PROGRAM");

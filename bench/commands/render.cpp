@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/number_check.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/commands/time_range.hpp"
 #include "bench/recordings/config_events.hpp"
@@ -68,15 +69,15 @@ void add_time_options(CLI::App& command, RenderArguments& arguments) {
   auto* duration = command.add_option("--duration", arguments.duration,
                                       "Events of how long a picture shows [ms]; default: 20, or what --from and --to "
                                       "enclose; in a video 1 to 10 times the time between pictures");
-  duration->check(CLI::Range(0.001, 1e9));
+  duration->check(in_range(0.001, 1e9));
   command.add_option("--count", options.count, "How many events a picture shows, instead of a duration")
       ->check(CLI::Range(1, 100000000))
       ->excludes(duration);
   command.add_option("--fps", options.fps, "Pictures a second of playback")
-      ->check(CLI::Range(0.1, 1000.0))
+      ->check(in_range(0.1, 1000.0))
       ->capture_default_str();
   command.add_option("--speed", options.speed, "Of playback: 0.1 is ten times slower than it was")
-      ->check(CLI::Range(1e-6, 1e6))
+      ->check(in_range(1e-6, 1e6))
       ->capture_default_str();
 }
 
@@ -90,7 +91,7 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
       ->type_name("NAME")
       ->capture_default_str();
   command.add_option("--decay", arguments.decay, "Time constant of time surfaces [ms]; default: 30")
-      ->check(CLI::Range(0.001, 1e9));
+      ->check(in_range(0.001, 1e9));
   command
       .add_option("--trajectory", options.trajectory,
                   "Motion for compensation (TUM, T_world_camera); default: the recording's ground truth")
@@ -104,7 +105,7 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
   command
       .add_option("--depth", options.depth,
                   "Compensate translation, too, for a plane at this depth [m] in front of the camera")
-      ->check(CLI::Range(1e-6, 1e9));
+      ->check(in_range(1e-6, 1e9));
 }
 
 void add_picture_options(CLI::App& command, RenderArguments& arguments) {
@@ -112,7 +113,7 @@ void add_picture_options(CLI::App& command, RenderArguments& arguments) {
   auto* tracks = command.add_option("--tracks", options.tracks, "Draw these feature tracks (id t x y) over the events");
   tracks->type_name("FILE");
   command.add_option("--tail", arguments.tail, "How long a track's tail is [ms]; default: 100")
-      ->check(CLI::Range(0.001, 1e9))
+      ->check(in_range(0.001, 1e9))
       ->needs(tracks);
   command
       .add_option(

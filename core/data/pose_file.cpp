@@ -262,4 +262,13 @@ PoseFile read_poses(const std::string& path, const PoseFileOptions& options) {
   return file;
 }
 
+void set_time_unit(PoseFile& file, TimeUnit unit) {
+  std::vector<StampedPose> poses = std::move(file.trajectory).poses();
+  for (StampedPose& pose : poses) pose.t /= per_second(unit);
+  const auto same_time = [](const StampedPose& a, const StampedPose& b) { return a.t == b.t; };
+  poses.erase(std::ranges::unique(poses, same_time).begin(), poses.end());
+  file.trajectory = PoseTrajectory(std::move(poses));
+  file.unknown_unit.clear();
+}
+
 }  // namespace evbench

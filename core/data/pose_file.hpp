@@ -55,4 +55,7 @@ struct PoseFile {
 /// missing, and a file without poses.
 PoseFile read_poses(const std::string& path, const PoseFileOptions& options = {});
 
+/// For times whose unit is unknown: as in seconds from now on. Poses whose times are equal then are left out.
+void set_time_unit(PoseFile& file, TimeUnit unit);
+
 }  // namespace evbench

@@ -59,6 +59,16 @@ std::optional<TimeUnit> usual_time_unit(double time) {
   return std::nullopt;
 }
 
+std::optional<TimeUnit> unit_that_meets(double from, double to, double range_from, double range_to) {
+  std::optional<TimeUnit> found;
+  for (const TimeUnit unit : kFiner) {
+    if (overlap(from / per_second(unit), to / per_second(unit), range_from, range_to) < 0.0) continue;
+    if (found) return std::nullopt;
+    found = unit;
+  }
+  return found;
+}
+
 std::string times_beside(double from, double to, double range_from, double range_to, const std::string& option) {
   constexpr double kAboutThere = 0.01;
   const auto fit = [&](TimeUnit unit) {
