@@ -5,6 +5,7 @@
 #include "bench/pipeline/batch_recording.hpp"
 #include "bench/pipeline/feedback_line.hpp"
 #include "bench/pipeline/front_side.hpp"
+#include "core/events/event_front_end.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
@@ -105,6 +106,8 @@ void check_job(const Job& job, const Source& source, const Plugins& plugins) {
   context.camera = source.camera().pinhole;
   context.patience = job.pipeline.patience;
   make_backend(job, context, plugins);
+  const auto& frontend = plugins.of<FrontEnd>().find(job.frontend.type, job.frontend.place + ".type");
+  if (frontend.reads_events) expect_events(source, job.frontend.place);
 }
 
 }  // namespace evbench

@@ -114,14 +114,16 @@ void remark_order(const PoseFile& ground_truth, const PoseFile& estimate, const 
              better->of_ground_truth ? "groundtruth" : "estimate", name);
 }
 
-/// A pose of the estimate counts once: the sparser trajectory leads, unless the ground truth is interpolated.
-void remark_left_aside(const std::string& path, const EvalArguments& arguments, const Scores& scores,
-                       std::size_t poses) {
+/// Where the ground truth is the sparser one, its poses lead.
+void remark_left_aside(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, const std::string& path,
+                       const EvalArguments& arguments, const Scores& scores) {
   if (scores.left_aside == 0) return;
-  const bool nearest = !arguments.interpolate;
+  const bool truth_leads = !arguments.interpolate && ground_truth.size() < estimate.size();
   fmt::print(stderr, "remark: {}: {} of its {} poses are left aside, without ground truth of their own within {} s{}\n",
-             path, scores.left_aside, poses, scores.options.tolerance,
-             nearest ? "; --interpolate takes it between two poses" : "");
+             path, scores.left_aside, estimate.size(), scores.options.tolerance,
+             truth_leads ? "; --interpolate, with a larger --t_max_diff, takes it between two of the ground truth's "
+                           "fewer poses"
+                         : "");
 }
 
 std::string alignment_name(const EvalArguments& arguments) {
@@ -162,7 +164,7 @@ ScoredEstimate score_file(PoseFile ground_truth, const std::string& path, const 
   try {
     Scores scores = score(ground_truth.trajectory, estimate.trajectory, score_options(arguments));
     remark_order(ground_truth, estimate, path, arguments, scores);
-    remark_left_aside(path, arguments, scores, estimate.trajectory.size());
+    remark_left_aside(ground_truth.trajectory, estimate.trajectory, path, arguments, scores);
     return {std::move(estimate.trajectory), std::move(scores)};
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", path, error.what()));

@@ -13,6 +13,7 @@
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
+#include "eval/names.hpp"
 
 namespace evbench {
 namespace {
@@ -26,6 +27,7 @@ struct RenderArguments {
   std::string in, out, mode = "events";
   TimeRangeArguments range;
   std::optional<double> duration, decay, tail;  // [ms]
+  std::string quaternion = "auto";
   bool quiet = false, force = false;
   RenderOptions options;
 };
@@ -34,6 +36,8 @@ RenderOptions render_options(const RenderArguments& arguments) {
   RenderOptions options = arguments.options;
   set_time_range(arguments.range, options.stream);
   options.mode = parse_mode(arguments.mode);
+  options.quaternion =
+      parse_name<QuaternionOrder>(kQuaternionOrderNames, arguments.quaternion, "order of a quaternion");
   if (arguments.duration) options.duration = *arguments.duration * 1e-3;
   if (arguments.decay) options.decay = *arguments.decay * 1e-3;
   if (arguments.tail) options.tail = *arguments.tail * 1e-3;
@@ -92,10 +96,16 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
       ->capture_default_str();
   command.add_option("--decay", arguments.decay, "Time constant of time surfaces [ms]; default: 30")
       ->check(in_range(0.001, 1e9));
+  auto* trajectory =
+      command.add_option("--trajectory", options.trajectory,
+                         "Motion for compensation (TUM, T_world_camera); default: the recording's ground truth");
+  trajectory->type_name("FILE");
   command
-      .add_option("--trajectory", options.trajectory,
-                  "Motion for compensation (TUM, T_world_camera); default: the recording's ground truth")
-      ->type_name("FILE");
+      .add_option("--quaternion", arguments.quaternion,
+                  "Order of its quaternion's columns; auto: as their names or number tell")
+      ->check(CLI::IsMember(to_strings(kQuaternionOrderNames)))
+      ->needs(trajectory)
+      ->capture_default_str();
   command
       .add_option("--calib", options.calibration,
                   "Calibration for compensation and for a run's landmarks, text or YAML; default: the recording's")

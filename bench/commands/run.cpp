@@ -131,7 +131,13 @@ void print_table(const Runs& runs, const RunArguments& arguments, const std::str
 void check_writable(const std::string& folder) {
   std::error_code error;
   std::filesystem::path place = std::filesystem::absolute(folder);
-  while (!std::filesystem::exists(place, error) && place.has_relative_path()) place = place.parent_path();
+  while (!std::filesystem::exists(place, error) && place.has_relative_path()) {
+    if (error == std::errc::filename_too_long) {
+      throw OutputError(fmt::format("{:.80}...: has {} characters, too long for the name of a folder", place.string(),
+                                    place.string().size()));
+    }
+    place = place.parent_path();
+  }
   if (!std::filesystem::is_directory(place, error)) {
     throw OutputError(fmt::format("{}: is no folder; expected one for results", place.string()));
   }
@@ -141,7 +147,7 @@ void check_writable(const std::string& folder) {
 }
 
 void check(const RunArguments& arguments, const Experiment& experiment, const Plugins& plugins) {
-  check_writable(arguments.out);
+  check_writable(arguments.out + "/" + experiment.name);
   const std::unique_ptr<Source> source = make_source(experiment.runs.front().job, plugins);
   for (const RunConfig& config : experiment.runs) check_job(config.job, *source, plugins);
   fmt::print("{}: fine, {} run{}\n", arguments.config, experiment.runs.size(), experiment.runs.size() == 1 ? "" : "s");

@@ -68,6 +68,13 @@ TEST_CASE("Times that do not meet a range are told with the unit in which they w
   CHECK(times_beside(10, 20, 0, 6, "unit") == "go from 10 to 20 s");
 }
 
+TEST_CASE("A unit is found where times meet a range in no other") {
+  CHECK(unit_that_meets(1.4e15, 1.4e15 + 1e7, 1.4e9, 1.4e9 + 5.0) == TimeUnit::microseconds);
+  CHECK(unit_that_meets(1.4e12, 1.4e12 + 1e4, 1.4e9 + 9.0, 1.4e9 + 50.0) == TimeUnit::milliseconds);
+  CHECK_FALSE(unit_that_meets(1.4e15, 1.4e15 + 1e7, 0.0, 60.0));
+  CHECK_FALSE(unit_that_meets(1e11, 2e11, 50.0, 1e6));  // microseconds, or nanoseconds
+}
+
 TEST_CASE("Names that are as long as a line, or as many as fit one, are names of nothing") {
   constexpr std::array quantities{kTime, Quantity{"x", "(.*_)?x"}};
   std::string one, many;
