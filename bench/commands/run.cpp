@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <climits>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -131,13 +132,14 @@ void print_table(const Runs& runs, const RunArguments& arguments, const std::str
 void check_writable(const std::string& folder) {
   std::error_code error;
   std::filesystem::path place = std::filesystem::absolute(folder);
-  while (!std::filesystem::exists(place, error) && place.has_relative_path()) {
-    if (error == std::errc::filename_too_long) {
-      throw OutputError(fmt::format("{:.80}...: has {} characters, too long for the name of a folder", place.string(),
-                                    place.string().size()));
+  for (const std::filesystem::path& name : place) {
+    if (name.native().size() > NAME_MAX || place.native().size() > PATH_MAX) {
+      throw OutputError(
+          fmt::format("{:.80}...: is too long for a folder; expected names of at most {} characters, {} in all",
+                      name.string(), NAME_MAX, PATH_MAX));
     }
-    place = place.parent_path();
   }
+  while (!std::filesystem::exists(place, error) && place.has_relative_path()) place = place.parent_path();
   if (!std::filesystem::is_directory(place, error)) {
     throw OutputError(fmt::format("{}: is no folder; expected one for results", place.string()));
   }

@@ -187,14 +187,18 @@ class PoseTimes {
   std::string unknown_unit_;
 };
 
-/// What a reader of the file could have taken otherwise; empty for what is TUM's all along.
+/// As TUM's all along: nothing that one could have taken otherwise.
+bool is_usual(const TextReader& first, const Columns& columns, bool named) {
+  const bool by_blanks = first.text().find_first_of(",;") == std::string::npos;
+  return columns.text() == kLayouts[0].columns && (named || by_blanks);
+}
+
+/// What a reader of the file could have taken otherwise; empty for what is usual.
 std::string assumption(const TextReader& first, bool named, const Columns& columns, const PoseTimes& times,
                        const PoseFileOptions& options) {
   const bool asked = options.format != PoseFormat::automatic && columns.text().find('-') == std::string::npos;
-  const bool by_blanks = first.text().find_first_of(",;") == std::string::npos;
-  const bool usual = columns.text() == kLayouts[0].columns && (named || by_blanks);
   std::string text;
-  if (!asked && !usual) {
+  if (!asked && !is_usual(first, columns, named)) {
     text += fmt::format(", columns {} ({}{})", columns.text(), named ? "as they are named" : "assumed",
                         options.quaternion == QuaternionOrder::automatic ? "" : "; the quaternion as asked for");
   }
@@ -229,8 +233,8 @@ PoseFile read_poses(const std::string& path, const PoseFileOptions& options) {
   PoseFile file;
   file.numbered = times.numbered();
   file.quaternion = order_of(columns);
-  file.quaternion_is_assumed =
-      !named && options.format == PoseFormat::automatic && options.quaternion == QuaternionOrder::automatic;
+  file.quaternion_is_assumed = !named && options.format == PoseFormat::automatic &&
+                               options.quaternion == QuaternionOrder::automatic && !is_usual(reader, columns, false);
   if (const auto text = assumption(reader, named.has_value(), columns, times, options); !text.empty()) {
     file.remarks.push_back(text);
   }
