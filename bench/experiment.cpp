@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <climits>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -222,6 +223,10 @@ void check_name(const std::string& name, const std::string& path) {
   if (!fine) {
     throw InputError(
         fmt::format("{}: name: \"{}\" can't name a folder; expected letters, digits, _ - . +", path, name));
+  }
+  if (name.size() > NAME_MAX) {
+    throw InputError(fmt::format("{}: name: \"{:.40}...\" has {} characters; expected at most {}, as it names a folder",
+                                 path, name, name.size(), NAME_MAX));
   }
 }
 

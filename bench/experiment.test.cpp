@@ -178,6 +178,9 @@ TEST_CASE("A config that is not as expected is refused with the place and the ne
   for (const char* name : {"a/b", "..", ".hidden", "a b"}) {
     CHECK_THROWS_WITH(read(with("/name", name)), ContainsSubstring("can't name a folder"));
   }
+  CHECK_NOTHROW(read(with("/name", std::string(255, 'n'))));
+  CHECK_THROWS_WITH(read(with("/name", std::string(256, 'n'))),
+                    ContainsSubstring("has 256 characters; expected at most 255, as it names a folder"));
 }
 
 TEST_CASE("The libraries that a config names are taken from its folder, and are part of the config that a run writes") {

@@ -214,6 +214,28 @@ TEST_CASE("Checking a config finds what would fail at once", "[slow]") {
   }
 }
 
+TEST_CASE("Checking a config finds events that share no time with the ground truth", "[slow]") {
+  const TemporaryFolder folder;
+  write_recording(folder);
+  folder.write("events.txt", "1400000000.1 5 7 1\n1400000000.2 6 8 0\n");
+  const std::string events = R"( --set 'frontend={"type": "haste"}')", check = "\"$evbench\" run --check recording.json";
+  const Outcome apart = testing::shell(folder, check + events);
+  CHECK(apart.exit_code == 2);
+  CHECK_THAT(apart.err, ContainsSubstring("frontend: the recording has no events from") &&
+                            ContainsSubstring("its first one is at 1400000000.100000 s"));
+  CHECK(testing::shell(folder, check).exit_code == 0);  // tracks from a file: no events are read
+  folder.write("events.txt", "0.1 5 7 1\n0.2 6 8 0\n");
+  CHECK(testing::shell(folder, check + events).exit_code == 0);
+}
+
+TEST_CASE("A folder for temporary files that is missing is named", "[slow]") {
+  const TemporaryFolder folder;
+  folder.write("events.txt", "0.1 5 7 1\n0.2 6 8 0\n");
+  const Outcome outcome = testing::shell(folder, "TMPDIR=no/folder \"$evbench\" render events.txt out.mp4");
+  CHECK(outcome.exit_code == 4);
+  CHECK_THAT(outcome.err, ContainsSubstring("TMPDIR: is \"no/folder\", which is no folder"));
+}
+
 TEST_CASE("Checking a config runs and writes nothing") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_comparison()));
@@ -303,4 +325,7 @@ TEST_CASE("Checking a config finds a folder for results that can't be written", 
   const Outcome outcome = testing::evbench(folder, "run c.json --check --out c.json/results");
   CHECK(outcome.exit_code == 4);
   CHECK_THAT(outcome.err, ContainsSubstring("c.json: is no folder; expected one for results"));
+  const Outcome too_long = testing::evbench(folder, "run c.json --check --out new/" + std::string(256, 'n'));
+  CHECK(too_long.exit_code == 4);
+  CHECK_THAT(too_long.err, ContainsSubstring("nnn...: is too long for a folder"));
 }

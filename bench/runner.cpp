@@ -9,6 +9,7 @@
 #include "bench/pipeline/batch_recording.hpp"
 #include "bench/pipeline/feedback_line.hpp"
 #include "bench/pipeline/front_side.hpp"
+#include "core/events/event_front_end.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
 
@@ -132,6 +133,8 @@ std::vector<std::string> check_job(const Job& job, const Source& source, const P
   if (starts_none(plugins.of<BackEnd>().find(job.backend.type, job.backend.place + ".type"), job.backend)) {
     make_backend(job, context, plugins);
   }
+  const auto& frontend = plugins.of<FrontEnd>().find(job.frontend.type, job.frontend.place + ".type");
+  if (frontend.reads_events) expect_events(source, job.frontend.place);
   return unchecked;
 }
 

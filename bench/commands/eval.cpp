@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "bench/commands/commands.hpp"
@@ -15,10 +15,12 @@
 #include "core/data/pose_file.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
+#include "core/support/index.hpp"
 #include "core/support/json.hpp"
 #include "eval/error_files.hpp"
 #include "eval/json_file.hpp"
 #include "eval/protocol.hpp"
+#include "eval/quaternion_order.hpp"
 #include "eval/score_run.hpp"
 #include "eval/table.hpp"
 
@@ -30,10 +32,11 @@ struct EvalArguments {
   std::string ground_truth;
   std::vector<std::string> estimates;
   std::string format = "auto", times, ground_truth_unit = "auto", estimate_unit = "auto";
+  std::string ground_truth_quaternion = "auto", estimate_quaternion = "auto";
   bool align = false, correct_scale = false, align_origin = false;
   bool interpolate = false, all_pairs = false, pairs_from_reference = false;
   int n_to_align = -1;
-  double t_start = -std::numeric_limits<double>::infinity(), t_end = std::numeric_limits<double>::infinity();
+  std::optional<double> t_start, t_end;
   std::string alignment;
   std::string delta_unit = "f";
   std::string table;  ///< format; empty: a table of several estimates, all numbers of one
@@ -45,12 +48,15 @@ struct EvalArguments {
   ScoreOptions options = {.rpe_delta = 1.0};  ///< what goes straight into the protocol
 };
 
-PoseFile read_file(const std::string& path, const std::string& unit, const EvalArguments& arguments) {
+PoseFile read_file(const std::string& path, const std::string& unit, const std::string& quaternion,
+                   const EvalArguments& arguments) {
   PoseFileOptions options;
   options.format = parse_name<PoseFormat>(kPoseFormatNames, arguments.format, "format");
+  options.quaternion = parse_name<QuaternionOrder>(kQuaternionOrderNames, quaternion, "order of a quaternion");
   options.time_unit = parse_name<TimeUnit>(kTimeUnitNames, unit, "unit of time");
   options.times = arguments.times;
   options.may_number = true;
+  options.may_lack_unit = true;
   return read_poses(path, options);
 }
 
@@ -71,6 +77,62 @@ void check_numbers(const PoseFile& ground_truth, const PoseFile& estimate, const
                                poses, expected));
 }
 
+/// Where nothing in a file tells the unit of its times, the other trajectory's do, which go from `from` to `to`.
+void find_unit(PoseFile& file, const std::string& path, double from, double to, const char* option) {
+  if (file.unknown_unit.empty()) return;
+  const auto unit = unit_that_meets(file.trajectory.start(), file.trajectory.end(), from, to);
+  if (!unit) {
+    throw InputError(fmt::format("{}; no unit alone makes them meet the other trajectory's, {} to {} s: give {}",
+                                 file.unknown_unit, from, to, option));
+  }
+  set_time_unit(file, *unit);
+  fmt::print(stderr, "remark: {}: read with times in {}, in which they meet the other trajectory's\n", path,
+             to_string(*unit));
+}
+
+void find_units(PoseFile& ground_truth, PoseFile& estimate, const std::string& path, const EvalArguments& arguments) {
+  if (!ground_truth.unknown_unit.empty() && !estimate.unknown_unit.empty()) {
+    throw InputError(fmt::format("{}; nor is the ground truth's known: give --estimate_unit and --groundtruth_unit",
+                                 estimate.unknown_unit));
+  }
+  const PoseTrajectory &truth = ground_truth.trajectory, &estimated = estimate.trajectory;
+  const double offset = arguments.options.time_offset;
+  find_unit(estimate, path, truth.start() - offset, truth.end() - offset, "--estimate_unit");
+  find_unit(ground_truth, arguments.ground_truth, estimated.start() + offset, estimated.end() + offset,
+            "--groundtruth_unit");
+}
+
+/// Quaternions in a wrong order are still rotations: the ground truth tells.
+void remark_order(const PoseFile& ground_truth, const PoseFile& estimate, const std::string& path,
+                  const EvalArguments& arguments, const Scores& scores) {
+  const Similarity undone = scores.alignment.transform.inverse();
+  std::vector<PosePair> pairs = scores.compared;
+  for (PosePair& pair : pairs) pair.estimate = undone * pair.estimate;
+  const auto better =
+      better_quaternion_order(pairs, {ground_truth.quaternion, estimate.quaternion, ground_truth.quaternion_is_assumed,
+                                      estimate.quaternion_is_assumed});
+  if (!better) return;
+  const char* const name = kQuaternionOrderNames[index(better->order)];
+  fmt::print(stderr,
+             "remark: {}: its quaternions seem to be in the order {}: so read, turns of {:.0f} degrees differ from the "
+             "other trajectory's by {:.2g} instead of {:.2g} degrees{}; give --{}_quaternion {}\n",
+             better->of_ground_truth ? arguments.ground_truth : path, name, better->turn_deg, better->reordered_deg,
+             better->as_read_deg, better->frames_differ ? ", but for a rotation between the two bodies' frames" : "",
+             better->of_ground_truth ? "groundtruth" : "estimate", name);
+}
+
+/// Where the ground truth is the sparser one, its poses lead.
+void remark_left_aside(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, const std::string& path,
+                       const EvalArguments& arguments, const Scores& scores) {
+  if (scores.left_aside == 0) return;
+  const bool truth_leads = !arguments.interpolate && ground_truth.size() < estimate.size();
+  fmt::print(stderr, "remark: {}: {} of its {} poses are left aside, without ground truth of their own within {} s{}\n",
+             path, scores.left_aside, estimate.size(), scores.options.tolerance,
+             truth_leads ? "; --interpolate, with a larger --t_max_diff, takes it between two of the ground truth's "
+                           "fewer poses"
+                         : "");
+}
+
 std::string alignment_name(const EvalArguments& arguments) {
   if (!arguments.alignment.empty()) return arguments.alignment;
   if (arguments.align_origin) return "origin";
@@ -88,10 +150,11 @@ std::string unit_name(const std::string& letter) {
 ScoreOptions score_options(const EvalArguments& arguments) {
   ScoreOptions options = arguments.options;
   options.alignment = alignment_name(arguments);
-  options.align_first = std::max(arguments.n_to_align, 0);
+  options.align_first = std::max(arguments.n_to_align, 0);  // 0: all
   options.association = arguments.interpolate ? "interpolated" : "nearest";
-  if (std::isfinite(arguments.t_start) || std::isfinite(arguments.t_end)) {
-    options.time_range = {arguments.t_start, arguments.t_end};
+  if (arguments.t_start || arguments.t_end) {
+    constexpr double kOpen = std::numeric_limits<double>::infinity();
+    options.time_range = {arguments.t_start.value_or(-kOpen), arguments.t_end.value_or(kOpen)};
   }
   options.rpe_unit = unit_name(arguments.delta_unit);
   options.rpe_pairing = arguments.all_pairs ? "all" : "consecutive";
@@ -100,17 +163,19 @@ ScoreOptions score_options(const EvalArguments& arguments) {
 }
 
 /// Errors name the estimate's file, as those of reading do.
-ScoredEstimate score_file(const PoseFile& ground_truth, const std::string& path, const EvalArguments& arguments) {
-  PoseFile estimate = read_file(path, arguments.estimate_unit, arguments);
+ScoredEstimate score_file(PoseFile ground_truth, const std::string& path, const EvalArguments& arguments) {
+  PoseFile estimate = read_file(path, arguments.estimate_unit, arguments.estimate_quaternion, arguments);
   print_remarks(estimate);
   check_numbers(ground_truth, estimate, path, arguments);
-  ScoredEstimate scored{std::move(estimate.trajectory), {}};
+  find_units(ground_truth, estimate, path, arguments);
   try {
-    scored.scores = score(ground_truth.trajectory, scored.estimate, score_options(arguments));
+    Scores scores = score(ground_truth.trajectory, estimate.trajectory, score_options(arguments));
+    remark_order(ground_truth, estimate, path, arguments, scores);
+    remark_left_aside(ground_truth.trajectory, estimate.trajectory, path, arguments, scores);
+    return {std::move(estimate.trajectory), std::move(scores)};
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", path, error.what()));
   }
-  return scored;
 }
 
 /// What only a run knows is left open.
@@ -191,7 +256,8 @@ void print_scores(const EvalArguments& arguments, const std::vector<RunRecord>& 
 
 void execute(const EvalArguments& arguments) {
   check(arguments);
-  const PoseFile ground_truth = read_file(arguments.ground_truth, arguments.ground_truth_unit, arguments);
+  const PoseFile ground_truth =
+      read_file(arguments.ground_truth, arguments.ground_truth_unit, arguments.ground_truth_quaternion, arguments);
   print_remarks(ground_truth);
   std::vector<RunRecord> records;
   ScoredEstimate last;
@@ -230,6 +296,15 @@ void add_file_options(CLI::App& command, EvalArguments& arguments) {
   };
   add_unit("--groundtruth_unit", arguments.ground_truth_unit, "ground truth");
   add_unit("--estimate_unit", arguments.estimate_unit, "estimate");
+  const auto add_order = [&](const char* name, std::string& order, const std::string& whose) {
+    command
+        .add_option(name, order,
+                    "Order of the " + whose + "'s quaternion columns; auto: as their names or the format tell")
+        ->check(CLI::IsMember(to_strings(kQuaternionOrderNames)))
+        ->capture_default_str();
+  };
+  add_order("--groundtruth_quaternion", arguments.ground_truth_quaternion, "ground truth");
+  add_order("--estimate_quaternion", arguments.estimate_quaternion, "estimate");
 }
 
 void add_alignment_options(CLI::App& command, EvalArguments& arguments) {
@@ -244,9 +319,15 @@ void add_alignment_options(CLI::App& command, EvalArguments& arguments) {
       ->excludes(scale)
       ->excludes(origin);
   auto* first = command.add_option("--n_to_align", arguments.n_to_align, "Align on this many first poses; -1: all")
+                    ->check([](const std::string& text) {
+                      return text.find_first_not_of("+-0") == std::string::npos
+                                 ? fmt::format("{}: expected at least 1, or -1 for all poses", text)
+                                 : std::string();
+                    })
                     ->check(CLI::Range(-1, std::numeric_limits<int>::max()));
   command.add_option("--align_range", arguments.options.align_range, "Align on the poses between two times [s]")
       ->expected(2)
+      ->check(finite_number())
       ->type_name("FROM TO")
       ->excludes(first);
 }
@@ -256,9 +337,11 @@ void add_association_options(CLI::App& command, EvalArguments& arguments) {
   command.add_option("--t_max_diff", options.tolerance, "Ground truth at most this far in time from a pose [s]")
       ->check(not_negative())
       ->capture_default_str();
-  command.add_option("--t_offset", options.time_offset, "Added to the estimate's times [s]")->capture_default_str();
-  command.add_option("--t_start", arguments.t_start, "Use ground truth from this time on [s]");
-  command.add_option("--t_end", arguments.t_end, "Use ground truth up to this time [s]");
+  command.add_option("--t_offset", options.time_offset, "Added to the estimate's times [s]")
+      ->check(finite_number())
+      ->capture_default_str();
+  command.add_option("--t_start", arguments.t_start, "Use ground truth from this time on [s]")->check(finite_number());
+  command.add_option("--t_end", arguments.t_end, "Use ground truth up to this time [s]")->check(finite_number());
   command.add_flag("--interpolate", arguments.interpolate, "Interpolate the ground truth at the estimate's times");
 }
 

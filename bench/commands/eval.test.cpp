@@ -245,12 +245,102 @@ TEST_CASE("eval gives the same scores for the same trajectories in KITTI's and E
   CHECK(ate("") == Approx(expected).epsilon(1e-9));
 }
 
+TEST_CASE("eval says how many poses of the estimate it left aside", "[slow]") {
+  const Trajectories files;
+  write_file(files.ground_truth, format_tum(sample(wavy_pose, 20, 0.1)));
+  const Outcome sparse = testing::evbench(files.folder, "eval truth.txt estimate.txt -as --json scores.json");
+  CHECK(sparse.exit_code == 0);
+  CHECK_THAT(sparse.out, ContainsSubstring("20 poses compared, 180 of the estimate left aside"));
+  CHECK_THAT(sparse.err, ContainsSubstring("estimate.txt: 180 of its 200 poses are left aside") &&
+                             ContainsSubstring("--interpolate"));
+  const Outcome all = testing::evbench(files.folder, "eval truth.txt truth.txt");
+  CHECK(all.err.empty());
+  CHECK_THAT(all.out, !ContainsSubstring("left aside"));
+}
+
+TEST_CASE("eval finds out the unit of times that may be any by the other trajectory, or refuses them", "[slow]") {
+  const Trajectories files;
+  const auto in_unit = [](double per_second) {
+    std::string text;
+    for (const auto& [t, T] : sample(wavy_pose, 200, 0.01, 1.4e9).poses()) {
+      text += fmt::format("{:.0f} {} {} {} {} {} {} {}\n", per_second * t, T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(),
+                          T.q.z(), T.q.w());
+    }
+    return text;
+  };
+  write_file(files.ground_truth, format_tum(sample(wavy_pose, 200, 0.01, 1.4e9)));
+  for (const auto& [count, unit] : {std::pair{1e3, "milliseconds"}, {1e6, "microseconds"}}) {
+    write_file(files.estimate, in_unit(count));
+    for (const char* command : {"eval truth.txt estimate.txt", "eval estimate.txt truth.txt"}) {
+      const Outcome outcome = testing::evbench(files.folder, command);
+      CHECK(outcome.exit_code == 0);
+      CHECK_THAT(outcome.err, ContainsSubstring(fmt::format("estimate.txt: read with times in {}", unit)));
+      CHECK_THAT(outcome.out, ContainsSubstring("200 poses compared"));
+    }
+    CHECK_THROWS_WITH(files.eval("--t_offset 1000"),
+                      ContainsSubstring("estimate.txt:1: the time is") && ContainsSubstring("give --estimate_unit"));
+  }
+  write_file(files.ground_truth, in_unit(1e6));
+  CHECK_THROWS_WITH(files.eval(""), ContainsSubstring("--estimate_unit and --groundtruth_unit"));
+}
+
+TEST_CASE("eval says that another order of the quaternions fits, and how to choose it", "[slow]") {
+  const Trajectories files;
+  std::string w_first;
+  for (const auto& [t, T] : sample(wavy_pose, 200, 0.05).poses()) {
+    w_first += fmt::format("{},{},{},{},{},{},{},{}\n", t, T.p.x(), T.p.y(), T.p.z(), T.q.w(), T.q.x(), T.q.y(),
+                           T.q.z());
+  }
+  write_file(files.ground_truth, format_tum(sample(wavy_pose, 200, 0.05)));
+  write_file(files.estimate, w_first);
+  const Outcome assumed = testing::evbench(files.folder, "eval truth.txt estimate.txt -a");
+  CHECK_THAT(assumed.err, ContainsSubstring("columns t px py pz qx qy qz qw (assumed)") &&
+                              ContainsSubstring("its quaternions seem to be in the order wxyz") &&
+                              ContainsSubstring("give --estimate_quaternion wxyz"));
+  const Outcome chosen = testing::evbench(files.folder, "eval truth.txt estimate.txt -a --estimate_quaternion wxyz");
+  CHECK_THAT(chosen.err, !ContainsSubstring("seem to be"));
+  CHECK(files.eval("-a --estimate_quaternion wxyz").at("final").at("ate").at("rot_deg").at("rmse").get<double>() <
+        1e-6);
+  // The ground truth's is the one of which less is known.
+  CHECK_THAT(testing::evbench(files.folder, "eval estimate.txt truth.txt -a").err,
+             ContainsSubstring("estimate.txt: its quaternions seem") &&
+                 ContainsSubstring("give --groundtruth_quaternion wxyz"));
+  CHECK_THROWS_AS(files.eval("--estimate_quaternion abcd"), CLI::ParseError);
+}
+
+TEST_CASE("eval scores other tools' files as they are meant") {
+  const struct {
+    const char *truth, *estimate, *options, *score;
+    double expected, error;
+  } cases[] = {
+      {"cases/columns/groundtruth.txt", "cases/columns/rostopic_late.csv", "-a", "/ate/trans_m/rmse", 0.0168, 1e-4},
+      {"cases/vins/groundtruth.csv", "cases/vins/vins_result_no_loop.csv", "-a", "/ate/rot_deg/rmse", 0.0363, 1e-4},
+      {"cases/vins/groundtruth.csv", "cases/vins/vins_result_no_loop.csv", "-a", "/rpe/trans_m/rmse", 0.0224, 1e-4},
+      {"trajectories/deio_poster_translation/groundtruth.txt", "trajectories/deio_poster_translation/estimate.txt",
+       "-as --t_offset -1468940220.331 --estimate_quaternion yzwx", "/ate/rot_deg/rmse", 1.082, 1e-3}};
+  for (const auto& [truth, estimate, options, score, expected, error] : cases) {
+    const auto truth_path = data_file(truth), estimate_path = data_file(estimate);
+    if (!truth_path || !estimate_path) return;
+    CAPTURE(estimate, score);
+    const TemporaryFolder folder;
+    CLI::App app;
+    add_eval(app);
+    app.parse(fmt::format("eval {} {} {} --json {}", *truth_path, *estimate_path, options, folder.file("s.json")));
+    const Json scores = parse_json(read_file(folder.file("s.json"))).at("final");
+    CHECK(scores.at(Json::json_pointer(score)).get<double>() == Approx(expected).margin(error));
+  }
+}
+
 TEST_CASE("eval refuses what it can't score and then writes nothing") {
   const Trajectories files;
   CHECK_THROWS_AS(files.eval("--t_offset 100"), InputError);
   files.folder.write("estimate.txt", "1 0 0 0 0 0 0 1\n0.5 0 0 0 0 0 0 1\n");
   CHECK_THROWS_WITH(files.eval(""), ContainsSubstring("estimate.txt"));
-  CHECK_THROWS_AS(files.eval("-d 0"), CLI::ParseError);
+  for (const char* options : {"-d 0", "--t_offset nan", "--t_start nan", "--t_end inf", "--align_range 0 nan -a",
+                              "-a --n_to_align 0", "-a --n_to_align -2"}) {
+    CAPTURE(options);
+    CHECK_THROWS_AS(files.eval(options), CLI::ParseError);
+  }
   CHECK_FALSE(std::filesystem::exists(files.json));
 }
 

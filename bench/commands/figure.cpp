@@ -10,6 +10,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/name_check.hpp"
+#include "bench/commands/number_check.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/commands/run_selection.hpp"
 #include "bench/common_time.hpp"
@@ -119,8 +120,7 @@ void add_figure(CLI::App& app) {
   command->add_option("--base", arguments->options.base, "What a map compares with; else the method without the axis")
       ->type_name("METHOD");
   command->add_flag("--online", arguments->options.online, "The poses as estimated when they were made");
-  command->add_option("--width", arguments->width_mm, "Width [mm]; else 174, a page's")
-      ->check(CLI::Range(20.0, 2000.0));
+  command->add_option("--width", arguments->width_mm, "Width [mm]; else 174, a page's")->check(in_range(20.0, 2000.0));
   command->add_option("--height", arguments->height_mm, "Height of the panels, without legend and caption [mm]")
       ->check(CLI::Range(20.0, 2000.0));
   command->add_flag("--no-caption", arguments->no_caption, "Without the sentences below it, for who writes their own");

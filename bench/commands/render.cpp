@@ -7,12 +7,14 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/name_check.hpp"
+#include "bench/commands/number_check.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/commands/time_range.hpp"
 #include "bench/recordings/config_events.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
+#include "eval/names.hpp"
 
 namespace evbench {
 namespace {
@@ -26,6 +28,7 @@ struct RenderArguments {
   std::string in, out, mode = "events";
   TimeRangeArguments range;
   std::optional<double> duration, decay, tail;  // [ms]
+  std::string quaternion = "auto";
   bool quiet = false, force = false;
   RenderOptions options;
 };
@@ -34,6 +37,8 @@ RenderOptions render_options(const RenderArguments& arguments) {
   RenderOptions options = arguments.options;
   set_time_range(arguments.range, options.stream);
   options.mode = parse_mode(arguments.mode);
+  options.quaternion =
+      parse_name<QuaternionOrder>(kQuaternionOrderNames, arguments.quaternion, "order of a quaternion");
   if (arguments.duration) options.duration = *arguments.duration * 1e-3;
   if (arguments.decay) options.decay = *arguments.decay * 1e-3;
   if (arguments.tail) options.tail = *arguments.tail * 1e-3;
@@ -69,15 +74,15 @@ void add_time_options(CLI::App& command, RenderArguments& arguments) {
   auto* duration = command.add_option("--duration", arguments.duration,
                                       "Events of how long a picture shows [ms]; default: 20, or what --from and --to "
                                       "enclose; in a video 1 to 10 times the time between pictures");
-  duration->check(CLI::Range(0.001, 1e9));
+  duration->check(in_range(0.001, 1e9));
   command.add_option("--count", options.count, "How many events a picture shows, instead of a duration")
       ->check(CLI::Range(1, 100000000))
       ->excludes(duration);
   command.add_option("--fps", options.fps, "Pictures a second of playback")
-      ->check(CLI::Range(0.1, 1000.0))
+      ->check(in_range(0.1, 1000.0))
       ->capture_default_str();
   command.add_option("--speed", options.speed, "Of playback: 0.1 is ten times slower than it was")
-      ->check(CLI::Range(1e-6, 1e6))
+      ->check(in_range(1e-6, 1e6))
       ->capture_default_str();
 }
 
@@ -91,11 +96,17 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
       ->type_name("NAME")
       ->capture_default_str();
   command.add_option("--decay", arguments.decay, "Time constant of time surfaces [ms]; default: 30")
-      ->check(CLI::Range(0.001, 1e9));
+      ->check(in_range(0.001, 1e9));
+  auto* trajectory =
+      command.add_option("--trajectory", options.trajectory,
+                         "Motion for compensation (TUM, T_world_camera); default: the recording's ground truth");
+  trajectory->type_name("FILE");
   command
-      .add_option("--trajectory", options.trajectory,
-                  "Motion for compensation (TUM, T_world_camera); default: the recording's ground truth")
-      ->type_name("FILE");
+      .add_option("--quaternion", arguments.quaternion,
+                  "Order of its quaternion's columns; auto: as their names or number tell")
+      ->check(CLI::IsMember(to_strings(kQuaternionOrderNames)))
+      ->needs(trajectory)
+      ->capture_default_str();
   command
       .add_option("--calib", options.calibration,
                   "Calibration for compensation and for a run's landmarks, text or YAML; default: the recording's")
@@ -105,7 +116,7 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
   command
       .add_option("--depth", options.depth,
                   "Compensate translation, too, for a plane at this depth [m] in front of the camera")
-      ->check(CLI::Range(1e-6, 1e9));
+      ->check(in_range(1e-6, 1e9));
 }
 
 void add_picture_options(CLI::App& command, RenderArguments& arguments) {
@@ -113,7 +124,7 @@ void add_picture_options(CLI::App& command, RenderArguments& arguments) {
   auto* tracks = command.add_option("--tracks", options.tracks, "Draw these feature tracks (id t x y) over the events");
   tracks->type_name("FILE");
   command.add_option("--tail", arguments.tail, "How long a track's tail is [ms]; default: 100")
-      ->check(CLI::Range(0.001, 1e9))
+      ->check(in_range(0.001, 1e9))
       ->needs(tracks);
   command
       .add_option(

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -170,6 +171,13 @@ void print_table(const Runs& runs, const RunArguments& arguments, const std::str
 void check_writable(const std::string& folder) {
   std::error_code error;
   std::filesystem::path place = std::filesystem::absolute(folder);
+  for (const std::filesystem::path& name : place) {
+    if (name.native().size() > NAME_MAX || place.native().size() > PATH_MAX) {
+      throw OutputError(
+          fmt::format("{:.80}...: is too long for a folder; expected names of at most {} characters, {} in all",
+                      name.string(), NAME_MAX, PATH_MAX));
+    }
+  }
   while (!std::filesystem::exists(place, error) && place.has_relative_path()) place = place.parent_path();
   if (!std::filesystem::is_directory(place, error)) {
     throw OutputError(fmt::format("{}: is no folder; expected one for results", place.string()));
@@ -194,6 +202,7 @@ void check(const RunArguments& arguments, const Plugins& plugins) {
     return;
   }
   const Experiment experiment = read_experiment(arguments.config, arguments.overrides, plugins);
+  check_writable(arguments.out + "/" + experiment.name);
   const std::unique_ptr<Source> source = make_source(experiment.runs.front().job, plugins);
   for (const RunConfig& config : experiment.runs) {
     for (std::string& text : check_job(config.job, *source, plugins)) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bench/commands/number_check.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
@@ -18,8 +19,8 @@ std::optional<std::int64_t> microseconds(const std::optional<double>& seconds, c
 }  // namespace
 
 void add_time_range(CLI::App& command, TimeRangeArguments& range, StreamOptions& options) {
-  command.add_option("--from", range.from, "Only events from this time on [s], after --rebase");
-  command.add_option("--to", range.to, "Only events before this time [s], after --rebase");
+  command.add_option("--from", range.from, "Only events from this time on [s], after --rebase")->check(finite_number());
+  command.add_option("--to", range.to, "Only events before this time [s], after --rebase")->check(finite_number());
   command.add_flag("--rebase", options.rebase, "The first event's time becomes zero");
 }
 

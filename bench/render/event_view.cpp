@@ -32,10 +32,11 @@ cv::Size sensor_size(const std::string& path, const StreamOptions& options, cons
 
 }  // namespace
 
-PoseTrajectory motion_of(const std::string& path, const RenderOptions& options, EventStream& stream) {
-  PoseTrajectory trajectory = options.trajectory.empty() ? stream.reader().ground_truth().value_or(PoseTrajectory())
-                                                         : read_poses(options.trajectory).trajectory;
-  if (!trajectory.empty()) return trajectory;
+PoseFile motion_of(const std::string& path, const RenderOptions& options, EventStream& stream) {
+  if (!options.trajectory.empty()) return read_poses(options.trajectory, {.quaternion = options.quaternion});
+  PoseFile own;
+  own.trajectory = stream.reader().ground_truth().value_or(PoseTrajectory());
+  if (!own.trajectory.empty()) return own;
   throw InputError(fmt::format("{}: has no ground truth; compensation needs --trajectory", path));
 }
 
@@ -65,7 +66,7 @@ EventView::EventView(const std::string& path, const RenderOptions& options, cons
 
 void EventView::prepare_compensation(const std::string& path, const RenderOptions& options) {
   const std::string whose = options.trajectory.empty() ? path : options.trajectory;
-  trajectory_ = motion_of(path, options, stream_);
+  trajectory_ = motion_of(path, options, stream_).trajectory;
   const Camera camera = camera_of(path, options, stream_, size_, "compensation");
   compensation_.emplace(trajectory_, camera, options.depth, whose);
 }

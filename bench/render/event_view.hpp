@@ -12,8 +12,8 @@
 namespace evbench {
 
 /// The motion for compensation: the file that the options name, or the recording's own. Throws InputError where there
-/// is neither.
-PoseTrajectory motion_of(const std::string& path, const RenderOptions& options, EventStream& stream);
+/// is neither. What was assumed of a file is in its remarks.
+PoseFile motion_of(const std::string& path, const RenderOptions& options, EventStream& stream);
 
 /// The camera: of the file that the options name, or the recording's own. Throws InputError where there is neither, and
 /// where it is not of the sensor's size. `what` needs it, for the message.

@@ -162,10 +162,13 @@ class Renderer {
 
 /// What is compensated without --from or --to: the time that the trajectory covers. Says so where that is not all.
 RenderOptions within_motion(const std::string& in, const RenderOptions& asked, RenderReport& report) {
-  if (asked.mode != RenderMode::compensated || (asked.stream.from && asked.stream.to)) return asked;
+  if (asked.mode != RenderMode::compensated) return asked;
   RenderOptions options = asked;
   EventStream stream(in, asked.stream);
-  const PoseTrajectory motion = motion_of(in, asked, stream);
+  const PoseFile file = motion_of(in, asked, stream);
+  report.remarks.insert(report.remarks.end(), file.remarks.begin(), file.remarks.end());
+  if (asked.stream.from && asked.stream.to) return asked;
+  const PoseTrajectory& motion = file.trajectory;
   const auto time = [&](double t, double (*round)(double)) {
     return static_cast<std::int64_t>(round(t * 1e6)) - stream.zero();
   };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/render/palette.hpp"
+#include "core/data/pose_file.hpp"
 #include "core/events/event_stream.hpp"
 
 namespace evbench {
@@ -29,12 +30,13 @@ struct RenderOptions {
   double fps = 30.0, speed = 1.0;  ///< pictures a second of playback; seconds of the recording in one of playback
   std::optional<int> scale;        ///< pixels a sensor pixel; none: so many that the sensor has 640 or more across
   bool dark = false;
-  bool time = false;            ///< is written into the pictures (time_label.hpp)
-  std::string tracks;           ///< file `id t x y`, drawn over `in`; empty: none
-  double tail = 0.1;            ///< of tracks [s]
-  std::string trajectory;       ///< for compensation; empty: the recording's own
-  std::string calibration;      ///< likewise
-  std::string camera;           ///< of a calibration of several; empty: the only one
+  bool time = false;                                        ///< is written into the pictures (time_label.hpp)
+  std::string tracks;                                       ///< file `id t x y`, drawn over `in`; empty: none
+  double tail = 0.1;                                        ///< of tracks [s]
+  std::string trajectory;                                   ///< for compensation; empty: the recording's own
+  QuaternionOrder quaternion = QuaternionOrder::automatic;  ///< of the trajectory's columns
+  std::string calibration;                                  ///< for compensation; empty: the recording's own
+  std::string camera;                                       ///< of a calibration of several; empty: the only one
   std::optional<double> depth;  ///< of the plane [m]; none: only the rotation is compensated
   std::string run;              ///< folder of a run with tracks, to be drawn over `in` and beside it; empty: none
   std::string beside;           ///< another recording, at the right; empty: none

@@ -8,6 +8,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "core/io/part_file.hpp"
+#include "core/io/temporary_file.hpp"
 #include "core/support/error.hpp"
 
 namespace evbench {
@@ -18,7 +19,7 @@ namespace {
 class NameWithExtension {
  public:
   NameWithExtension(const std::string& target, const std::string& extension) : extension_(extension) {
-    std::string folder = (fs::temp_directory_path() / "evbench-XXXXXX").string();
+    std::string folder = temporary_folder() + "/evbench-XXXXXX";
     if (::mkdtemp(folder.data()) == nullptr) throw OutputError(fmt::format("{}: can't be made", folder));
     folder_ = folder;
     fs::create_symlink(fs::absolute(target), path());

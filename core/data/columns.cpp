@@ -39,14 +39,18 @@ std::vector<std::string> split_names(std::string_view line) {
 }
 
 struct Name {
-  std::string words;  ///< in lower case, with _ between them
+  std::string text;   ///< as it stands in the file
+  std::string words;  ///< in lower case, with _ between them, without a unit of time
+  std::string unit_word;
   TimeUnit unit = TimeUnit::unsaid;
 };
 
 Name read_name(const std::string& name_in_file) {
+  constexpr std::size_t kShortestWord = 3;  // a unit that stands alone, "sec", is a time; "s" may be anything
   const std::string text = with_plain_micro(name_in_file);
   const std::size_t bracket = std::min(text.find_first_of("[("), text.size());
   Name name;
+  name.text = text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
   for (const char c : text.substr(0, bracket)) {
     const bool letter = std::isalnum(static_cast<unsigned char>(c)) != 0;
     if (letter) {
@@ -56,13 +60,25 @@ Name read_name(const std::string& name_in_file) {
     }
   }
   if (name.words.ends_with('_')) name.words.pop_back();
-  std::string unit = text.substr(bracket);
-  if (const std::size_t last = name.words.rfind('_'); unit.empty() && last != std::string::npos) {
-    unit = name.words.substr(last + 1);
-    if (parse_time_unit(unit)) name.words.resize(last);
+  const std::size_t last = name.words.rfind('_');
+  const bool alone = last == std::string::npos;
+  const std::string word = alone ? name.words : name.words.substr(last + 1);
+  if (const auto unit = parse_time_unit(word); unit && !(alone && word.size() < kShortestWord)) {
+    name.words = alone ? kTime.name : name.words.substr(0, last);
+    name.unit_word = word;
+    name.unit = *unit;
   }
-  name.unit = parse_time_unit(unit).value_or(TimeUnit::unsaid);
+  if (const auto unit = parse_time_unit(text.substr(bracket))) name.unit = *unit;
   return name;
+}
+
+/// ROS's two parts of a stamp, in this order.
+bool are_parts(const Name& whole, const Name& rest) {
+  const auto is = [](const std::string& word, std::initializer_list<const char*> words) {
+    return std::ranges::any_of(words, [&](const char* known) { return word == known; });
+  };
+  return whole.words == rest.words && is(whole.unit_word, {"sec", "secs"}) &&
+         is(rest.unit_word, {"nsec", "nsecs", "nanosec", "nanosecs"});
 }
 
 bool is_number(std::string_view column) {
@@ -72,6 +88,9 @@ bool is_number(std::string_view column) {
   return !text.empty() && *end == '\0';
 }
 
+/// Is the present record a line of names?
+bool names_columns(const TextReader& reader) { return std::ranges::none_of(reader.columns(), is_number); }
+
 /// Without the mark of a comment.
 std::string_view bare(std::string_view line) {
   return line.substr(std::min(line.find_first_not_of("#% \t"), line.size()));
@@ -79,18 +98,36 @@ std::string_view bare(std::string_view line) {
 
 }  // namespace
 
-Columns::Columns(std::string_view names, std::span<const Quantity> quantities) {
+Columns::Columns(std::string_view line, std::span<const Quantity> quantities) {
   constexpr std::size_t kLongest = 64;  // std::regex takes stack by the length, and nobody's names are longer
-  std::vector<std::regex> aliases;
-  for (const Quantity& quantity : quantities) aliases.emplace_back(quantity.aliases);
-  for (const std::string& text : split_names(bare(names))) {
-    const Name name = read_name(text);
-    const auto known = std::ranges::find_if(quantities, [&](const Quantity& quantity) {
-      return name.words.size() <= kLongest && !find(quantity.name) &&
-             std::regex_match(name.words, aliases[static_cast<std::size_t>(&quantity - quantities.data())]);
-    });
-    quantities_.emplace_back(known == quantities.end() ? "" : known->name);
-    if (quantities_.back() == kTime.name) time_unit_ = name.unit;
+  std::vector<Name> names;
+  for (const std::string& text : split_names(bare(line))) names.push_back(read_name(text));
+  quantities_.resize(names.size());
+  for (const Quantity& quantity : quantities) {
+    const std::regex aliases(quantity.aliases), preferred(quantity.preferred == nullptr ? "" : quantity.preferred);
+    std::vector<std::size_t> fitting, best;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::string& words = names[i].words;
+      if (!quantities_[i].empty() || words.size() > kLongest || !std::regex_match(words, aliases)) continue;
+      fitting.push_back(i);
+      if (std::regex_match(words, preferred)) best.push_back(i);
+    }
+    if (!best.empty()) fitting = best;
+    if (fitting.empty()) continue;
+    const bool is_time = std::string_view(quantity.name) == kTime.name;
+    if (is_time && fitting.size() == 2) {
+      if (are_parts(names[fitting[1]], names[fitting[0]])) std::swap(fitting[0], fitting[1]);
+      if (are_parts(names[fitting[0]], names[fitting[1]])) {
+        nanoseconds_ = fitting[1];
+        fitting.pop_back();
+      }
+    }
+    quantities_[fitting.front()] = quantity.name;
+    if (is_time) time_unit_ = names[fitting.front()].unit;
+    if (fitting.size() > 1 && ambiguity_.empty()) {
+      ambiguity_ = fmt::format("\"{:.80}\" and \"{:.80}\", either of which may be {}", names[fitting[0]].text,
+                               names[fitting[1]].text, quantity.name);
+    }
   }
 }
 
@@ -116,6 +153,16 @@ std::string Columns::text() const {
   return fmt::to_string(fmt::join(names, " "));
 }
 
+Columns Columns::in_order(std::span<const Quantity> quantities) const {
+  Columns columns = *this;
+  auto next = quantities.begin();
+  for (std::string& name : columns.quantities_) {
+    const auto known = std::ranges::find(quantities, name, [](const Quantity& quantity) { return quantity.name; });
+    if (known != quantities.end()) name = (next++)->name;
+  }
+  return columns;
+}
+
 Columns Columns::followed_to(std::size_t size) const {
   Columns columns = *this;
   columns.quantities_.resize(std::max(size, this->size()));
@@ -124,32 +171,51 @@ Columns Columns::followed_to(std::size_t size) const {
 
 std::optional<Columns> read_names(TextReader& reader, std::span<const Quantity> quantities,
                                   const std::function<bool(const Columns&)>& complete, const std::string& expected) {
-  if (std::ranges::any_of(reader.columns(), is_number)) {
-    Columns columns(reader.comment(), quantities);
-    if (columns.size() == reader.columns().size() && complete(columns)) return columns;
-    return std::nullopt;
-  }
-  Columns columns(reader.text(), quantities);
-  if (!complete(columns)) {
+  const bool in_record = names_columns(reader);
+  Columns columns(in_record ? reader.text() : reader.comment(), quantities);
+  const bool all = complete(columns);
+  if (!in_record && !(all && columns.size() == reader.columns().size())) return std::nullopt;
+  if (!all) {
     reader.fail(
         fmt::format("names the columns \"{:.80}\"; expected names such as {}, or numbers", reader.text(), expected));
   }
-  reader.next();
+  if (!columns.ambiguity().empty()) {
+    reader.fail(
+        fmt::format("the columns are named {}; expected one of them: leave the other out", columns.ambiguity()));
+  }
+  if (in_record) reader.next();
   return columns;
 }
 
-TimeColumn::TimeColumn(const TextReader& reader, std::size_t column, TimeUnit asked, TimeUnit named)
-    : column_(column), unit_(asked != TimeUnit::unsaid ? asked : named) {
-  if (unit_ != TimeUnit::unsaid) return;
-  const double time = reader.number(column, "the time");
-  const auto usual = usual_time_unit(time);
-  if (!usual) {
-    reader.fail(
-        fmt::format("the time is {}, too late for seconds; expected its unit, as an option or in the column's "
-                    "name, e.g. t_us",
-                    time));
+void pass_over_names(TextReader& reader) {
+  if (names_columns(reader)) reader.next();
+}
+
+TimeColumn::TimeColumn(const TextReader& reader, const Columns& columns, TimeUnit asked)
+    : column_(*columns.find(kTime.name)),
+      nanoseconds_(columns.nanoseconds()),
+      unit_(asked == TimeUnit::unsaid || nanoseconds_ ? columns.time_unit() : asked),
+      guessed_(unit_ == TimeUnit::unsaid) {
+  if (guessed_) unit_ = usual_time_unit(count(reader)).value_or(TimeUnit::unsaid);
+}
+
+void TimeColumn::expect_unit(const TextReader& reader) const {
+  if (unit_ == TimeUnit::unsaid) reader.fail(unknown_time_unit(count(reader)));
+}
+
+double TimeColumn::count(const TextReader& reader) const {
+  if (!nanoseconds_) return reader.number(column_, "the time");
+  const std::int64_t seconds = reader.integer(column_, "the time's seconds");
+  const std::int64_t rest = reader.integer(*nanoseconds_, "the time's nanoseconds");
+  if (rest < 0 || rest >= 1'000'000'000) {
+    reader.fail(fmt::format("the time's nanoseconds are {}; expected 0 to 999999999, beside whole seconds", rest));
   }
-  unit_ = *usual;
+  return static_cast<double>(seconds) + 1e-9 * static_cast<double>(rest);
+}
+
+std::string unknown_time_unit(double time) {
+  return fmt::format(
+      "the time is {}, too late for seconds; expected its unit, as an option or in the column's name, e.g. t_us", time);
 }
 
 }  // namespace evbench

@@ -18,7 +18,31 @@ TEST_CASE("Columns are known by their names, whatever separates them and whateve
   CHECK(columns("t x y").text() == "t x y");
   CHECK(columns("# Timestamp, Pos X [m], foo, Y").text() == "t x - y");
   CHECK(columns("\"y\";\"x\";\"time\"").text() == "y x t");
-  CHECK(columns("x y x t").text() == "x y - t");
+}
+
+TEST_CASE("Two columns that one name may mean are quoted, a message's own stamp goes before other times") {
+  CHECK(columns("a_x b_x y t").ambiguity() == "\"a_x\" and \"b_x\", either of which may be x");
+  CHECK(columns("time, stamp, x, y").ambiguity() == "\"time\" and \"stamp\", either of which may be t");
+  CHECK(columns("t_s,t_ns,x,y").ambiguity() == "\"t_s\" and \"t_ns\", either of which may be t");
+  CHECK(columns("x y t").ambiguity().empty());
+  const Columns topic = columns("%time,field.header.seq,field.header.stamp,field.x,field.y");
+  CHECK(topic.text() == "- - t x y");
+  CHECK(topic.ambiguity().empty());
+  CHECK(columns("a.header.stamp,b.header.stamp,x,y").ambiguity() ==
+        "\"a.header.stamp\" and \"b.header.stamp\", either of which may be t");
+}
+
+TEST_CASE("A time may be two columns, of seconds and of nanoseconds") {
+  for (const char* names : {"sec,nsec,x,y", "t [s],header.stamp.secs,header.stamp.nsecs,x,y",
+                            "stamp.nanosec,stamp.sec,x,y", "sec [s], nsec [ns], x, y"}) {
+    CAPTURE(names);
+    const Columns both = columns(names);
+    CHECK(both.ambiguity().empty());
+    CHECK(both.nanoseconds());
+    CHECK(both.time_unit() == TimeUnit::seconds);
+  }
+  CHECK_FALSE(columns("sec,x,y").nanoseconds());
+  CHECK_FALSE(columns("t_sec,stamp_nsec,x,y").ambiguity().empty());
 }
 
 TEST_CASE("A time's name says its unit, in brackets or behind it") {
@@ -44,6 +68,13 @@ TEST_CASE("Times that do not meet a range are told with the unit in which they w
   CHECK(times_beside(2000, 4000, 0, 6, "unit") ==
         "go from 2000 to 4000 s; in milliseconds (unit: ms) they would go from 2 to 4 s");
   CHECK(times_beside(10, 20, 0, 6, "unit") == "go from 10 to 20 s");
+}
+
+TEST_CASE("A unit is found where times meet a range in no other") {
+  CHECK(unit_that_meets(1.4e15, 1.4e15 + 1e7, 1.4e9, 1.4e9 + 5.0) == TimeUnit::microseconds);
+  CHECK(unit_that_meets(1.4e12, 1.4e12 + 1e4, 1.4e9 + 9.0, 1.4e9 + 50.0) == TimeUnit::milliseconds);
+  CHECK_FALSE(unit_that_meets(1.4e15, 1.4e15 + 1e7, 0.0, 60.0));
+  CHECK_FALSE(unit_that_meets(1e11, 2e11, 50.0, 1e6));  // microseconds, or nanoseconds
 }
 
 TEST_CASE("Names that are as long as a line, or as many as fit one, are names of nothing") {

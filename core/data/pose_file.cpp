@@ -50,6 +50,13 @@ constexpr Layout kLayouts[] = {
     {PoseFormat::euroc, "t px py pz qw qx qy qz"},
 };
 
+std::array<Quantity, 4> quaternion_in(QuaternionOrder order) {
+  std::array<Quantity, 4> quaternion;
+  std::ranges::rotate_copy(kQuaternion, kQuaternion.end() - (index(order) - index(QuaternionOrder::xyzw)),
+                           quaternion.begin());
+  return quaternion;
+}
+
 /// Where a record has its pose.
 class PoseColumns {
  public:
@@ -78,14 +85,26 @@ class PoseColumns {
   std::vector<std::size_t> position_, quaternion_, matrix_;
 };
 
+/// Commas and nanoseconds since 1970: EuRoC's times, and those of VINS and other tools for it, which write their
+/// quaternions as its ground truth does, and no names.
+bool looks_like_euroc(const TextReader& reader) {
+  return reader.text().find(',') != std::string::npos &&
+         usual_time_unit(reader.number(0, "the time")) == TimeUnit::nanoseconds;
+}
+
 /// By the number of the record's columns: a format's, or of all formats the first whose rotation is one. What has a
 /// quaternion may be followed by more.
 Columns find_layout(const TextReader& reader, PoseFormat format) {
   const std::size_t count = reader.columns().size();
-  std::vector<Columns> known, fitting;
-  for (const Layout& layout : kLayouts) {
-    if (format == PoseFormat::automatic || layout.format == format) known.emplace_back(layout.columns, kQuantities);
+  std::vector<Layout> layouts;
+  std::ranges::copy_if(kLayouts, std::back_inserter(layouts), [&](const Layout& layout) {
+    return format == PoseFormat::automatic || layout.format == format;
+  });
+  if (format == PoseFormat::automatic && looks_like_euroc(reader)) {
+    std::ranges::stable_partition(layouts, [](const Layout& layout) { return layout.format == PoseFormat::euroc; });
   }
+  std::vector<Columns> known, fitting;
+  for (const Layout& layout : layouts) known.emplace_back(layout.columns, kQuantities);
   for (const Columns& columns : known) {
     if (columns.size() == count) fitting.push_back(columns);
   }
@@ -97,25 +116,46 @@ Columns find_layout(const TextReader& reader, PoseFormat format) {
   return rotating == fitting.end() ? fitting.front() : *rotating;
 }
 
+/// The same columns with the quaternion in another order.
+Columns in_order(const Columns& columns, QuaternionOrder order, const TextReader& reader) {
+  if (order == QuaternionOrder::automatic) return columns;
+  if (columns.find_all(kQuaternion).empty()) {
+    reader.fail(fmt::format("has no quaternion (columns {}), whose order is given as {}", columns.text(),
+                            kQuaternionOrderNames[index(order)]));
+  }
+  return columns.in_order(quaternion_in(order));
+}
+
+/// Of columns that are one behind the other.
+QuaternionOrder order_of(const Columns& columns) {
+  const std::vector<std::size_t> at = columns.find_all(kQuaternion);
+  for (const auto order :
+       {QuaternionOrder::xyzw, QuaternionOrder::wxyz, QuaternionOrder::zwxy, QuaternionOrder::yzwx}) {
+    if (!at.empty() && columns.in_order(quaternion_in(order)).find_all(kQuaternion) == at) return order;
+  }
+  return QuaternionOrder::automatic;
+}
+
 /// Of poses, one after the other: from a column, from a file of their own, or their numbers.
 class PoseTimes {
  public:
   PoseTimes(const TextReader& poses, const Columns& columns, const PoseFileOptions& options) {
-    if (const auto column = columns.find(kTime.name)) {
-      column_.emplace(poses, *column, options.time_unit, columns.time_unit());
+    if (columns.find(kTime.name)) {
+      column_.emplace(poses, columns, options.time_unit);
     } else if (!options.times.empty()) {
       file_.emplace(options.times);
-      if (file_->next()) column_.emplace(*file_, 0, options.time_unit, TimeUnit::unsaid);
+      if (file_->next()) column_.emplace(*file_, Columns(kTime.name, kQuantities), options.time_unit);
     } else if (!options.may_number) {
       poses.fail(fmt::format("has no time (columns {}); expected times in it, or the name of a file with a time a line",
                              columns.text()));
     }
   }
 
+  /// [s]; as it stands in the file where unknown_unit() says something at the end.
   double next(const TextReader& poses) {
-    if (!file_) return column_ ? column_->read(poses) : static_cast<double>(number_++);
+    if (!file_) return column_ ? read(poses) : static_cast<double>(number_++);
     if (file_->columns().empty()) poses.fail(fmt::format("has no time in {}; expected a time a pose", file_->path()));
-    const double t = column_->read(*file_);
+    const double t = read(*file_);
     file_->next();
     return t;
   }
@@ -127,25 +167,43 @@ class PoseTimes {
 
   bool numbered() const { return !column_; }
   TimeUnit unit() const { return column_ ? column_->unit() : TimeUnit::seconds; }
+  const std::string& unknown_unit() const { return unknown_unit_; }
 
  private:
+  /// A unit that is a guess by the first time may turn out to be none: 5e10 is followed by 2e11.
+  double read(const TextReader& reader) {
+    const double t = column_->read(reader);
+    const double count = t * per_second(column_->unit());
+    const auto usual = usual_time_unit(count);
+    if (column_->is_guessed() && unknown_unit_.empty() && !(usual && *usual == column_->unit())) {
+      unknown_unit_ = fmt::format("{}: {}", reader.place(), unknown_time_unit(count));
+    }
+    return t;
+  }
+
   std::optional<TimeColumn> column_;
   std::optional<TextReader> file_;
   std::int64_t number_ = 0;
+  std::string unknown_unit_;
 };
 
-/// What a reader of the file could have taken otherwise; empty for what is TUM's all along.
+/// As TUM's all along: nothing that one could have taken otherwise.
+bool is_usual(const TextReader& first, const Columns& columns, bool named) {
+  const bool by_blanks = first.text().find_first_of(",;") == std::string::npos;
+  return columns.text() == kLayouts[0].columns && (named || by_blanks);
+}
+
+/// What a reader of the file could have taken otherwise; empty for what is usual.
 std::string assumption(const TextReader& first, bool named, const Columns& columns, const PoseTimes& times,
                        const PoseFileOptions& options) {
   const bool asked = options.format != PoseFormat::automatic && columns.text().find('-') == std::string::npos;
-  const bool by_blanks = first.text().find_first_of(",;") == std::string::npos;
-  const bool usual = columns.text() == kLayouts[0].columns && (named || by_blanks);
   std::string text;
-  if (!asked && !usual) {
-    text += fmt::format(", columns {} ({})", columns.text(), named ? "as they are named" : "assumed");
+  if (!asked && !is_usual(first, columns, named)) {
+    text += fmt::format(", columns {} ({}{})", columns.text(), named ? "as they are named" : "assumed",
+                        options.quaternion == QuaternionOrder::automatic ? "" : "; the quaternion as asked for");
   }
   if (times.numbered()) text += ", without times: poses are numbered";
-  if (options.time_unit == TimeUnit::unsaid && times.unit() != TimeUnit::seconds) {
+  if (options.time_unit == TimeUnit::unsaid && per_second(times.unit()) != 1.0) {
     text += ", times in " + to_string(times.unit());
   }
   return text.empty() ? "" : fmt::format("{}: read with{}", first.path(), text.substr(1));
@@ -160,17 +218,23 @@ PoseFile read_poses(const std::string& path, const PoseFileOptions& options) {
   };
   reader.next();
   expect_poses();
-  const bool asked = options.format != PoseFormat::automatic;
-  const auto will_do = [&](const Columns& c) { return asked || PoseColumns(c).complete(); };
-  std::optional<Columns> named = read_names(reader, kQuantities, will_do, kLayouts[0].columns);
+  std::optional<Columns> named;
+  if (options.format == PoseFormat::automatic) {
+    const auto complete = [](const Columns& c) { return PoseColumns(c).complete(); };
+    named = read_names(reader, kQuantities, complete, kLayouts[0].columns);
+  } else {
+    pass_over_names(reader);
+  }
   expect_poses();
-  if (asked) named.reset();
-  const Columns columns = named ? *named : find_layout(reader, options.format);
+  const Columns columns = in_order(named ? *named : find_layout(reader, options.format), options.quaternion, reader);
   const PoseColumns pose(columns);
   PoseTimes times(reader, columns, options);
 
   PoseFile file;
   file.numbered = times.numbered();
+  file.quaternion = order_of(columns);
+  file.quaternion_is_assumed = !named && options.format == PoseFormat::automatic &&
+                               options.quaternion == QuaternionOrder::automatic && !is_usual(reader, columns, false);
   if (const auto text = assumption(reader, named.has_value(), columns, times, options); !text.empty()) {
     file.remarks.push_back(text);
   }
@@ -192,12 +256,23 @@ PoseFile read_poses(const std::string& path, const PoseFileOptions& options) {
     }
   }
   times.expect_end();
+  if (!options.may_lack_unit && !times.unknown_unit().empty()) throw InputError(times.unknown_unit());
+  file.unknown_unit = times.unknown_unit();
   if (repeated > 0) {
     file.remarks.push_back(fmt::format("{}: {} pose{} with the time of the one before, left out; the first: {}", path,
                                        repeated, repeated == 1 ? "" : "s", first_repeated));
   }
   file.trajectory = PoseTrajectory(std::move(poses), path);
   return file;
+}
+
+void set_time_unit(PoseFile& file, TimeUnit unit) {
+  std::vector<StampedPose> poses = std::move(file.trajectory).poses();
+  for (StampedPose& pose : poses) pose.t /= per_second(unit);
+  const auto same_time = [](const StampedPose& a, const StampedPose& b) { return a.t == b.t; };
+  poses.erase(std::ranges::unique(poses, same_time).begin(), poses.end());
+  file.trajectory = PoseTrajectory(std::move(poses));
+  file.unknown_unit.clear();
 }
 
 }  // namespace evbench

@@ -136,6 +136,39 @@ TEST_CASE("Columns are in the order that names say") {
   check_quarter_turn(poses("a b c d e f g h\n0.5 1 2 3 0 0 0.70710678 0.70710678\n", {.format = PoseFormat::tum}), 0.5);
 }
 
+TEST_CASE("Of the times of a topic that was written out, the header's stamp counts") {
+  const std::string pose =
+      "field.pose.position.x,field.pose.position.y,field.pose.position.z,"
+      "field.pose.orientation.x,field.pose.orientation.y,field.pose.orientation.z,"
+      "field.pose.orientation.w";
+  check_quarter_turn(poses("%time,field.header.seq,field.header.stamp,field.header.frame_id," + pose +
+                           "\n1403636580938555648,0,1403636580838555648,world,1,2,3,0,0,0.70710678,0.70710678\n"),
+                     1403636580838555648 / 1e9);
+  check_quarter_turn(poses("Time,header.stamp.secs,header.stamp.nsecs," + pose +
+                           "\n1.5,1,500000000,1,2,3,0,0,0.70710678,0.70710678\n"),
+                     1.5);
+  check_quarter_turn(poses("#sec,nsec,x,y,z,qx,qy,qz,qw\n1583836591,182590976,1,2,3,0,0,0.70710678,0.70710678\n"),
+                     1583836591.182590976);
+  CHECK_THROWS_WITH(poses("sec,nsec,x,y,z,qx,qy,qz,qw\n1,1000000000,1,2,3,0,0,0,1\n"),
+                    ContainsSubstring("poses.txt:2: the time's nanoseconds are 1000000000; expected 0 to 999999999"));
+}
+
+TEST_CASE("Names of two poses in a line are refused and quoted") {
+  const std::string two =
+      "box_px box_py box_pz box_qx box_qy box_qz box_qw cam_px cam_py cam_pz cam_qx cam_qy cam_qz "
+      "cam_qw";
+  const std::string numbers = "0 1 2 3 0 0 0 1 4 5 6 0 0 0 1\n";
+  for (const std::string& text : {"t " + two + "\n" + numbers, "# t " + two + "\n" + numbers}) {
+    CHECK_THROWS_WITH(poses(text), ContainsSubstring("poses.txt:") &&
+                                       ContainsSubstring("\"box_px\" and \"cam_px\", either of which may be px"));
+  }
+  CHECK_THROWS_WITH(poses("t,field.pose.position.x,y,z,field.transform.translation.x,qx,qy,qz,qw\n0,1,2,3,4,0,0,0,1\n"),
+                    ContainsSubstring("\"field.pose.position.x\" and \"field.transform.translation.x\""));
+  CHECK_THROWS_WITH(poses("time,stamp,x,y,z,qx,qy,qz,qw\n0,0,1,2,3,0,0,0,1\n"),
+                    ContainsSubstring("\"time\" and \"stamp\", either of which may be t"));
+  CHECK(poses("t " + two + "\n" + numbers, {.format = PoseFormat::tum}).trajectory.poses()[0].T.p.x() == 1.0);
+}
+
 TEST_CASE("EuRoC's ground truth is known by its names or by its columns, in nanoseconds") {
   const std::string names =
       "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], "
@@ -155,6 +188,39 @@ TEST_CASE("EuRoC's ground truth is known by its names or by its columns, in nano
       0.5);
   check_quarter_turn(poses("1403636580838555648 1 2 3 0 0 0.70710678 0.70710678\n"), 1403636580838555648 / 1e9);
   check_quarter_turn(poses("0.5 1 2 3 0.70710678 0 0 0.70710678\n", {.format = PoseFormat::euroc}), 0.5);
+}
+
+TEST_CASE("Nanoseconds between commas, without names, are laid out as EuRoC's ground truth, as VINS writes them") {
+  for (const char* more : {"\n", ",\n", ",0.1,0.2,0.3,\n"}) {
+    const PoseFile file = poses("1403636580838555648,1,2,3,0.70710678,0,0,0.70710678" + std::string(more));
+    check_quarter_turn(file, 1403636580838555648 / 1e9);
+    CHECK(file.quaternion == QuaternionOrder::wxyz);
+    CHECK(file.quaternion_is_assumed);
+    CHECK_THAT(file.remarks.at(0), ContainsSubstring("qw qx qy qz") && ContainsSubstring("assumed"));
+  }
+}
+
+TEST_CASE("A quaternion is read in the order that is asked for, whatever the file looks like") {
+  const struct {
+    QuaternionOrder order;
+    const char* text;
+  } cases[] = {{QuaternionOrder::xyzw, "0 0 0.70710678 0.70710678"},
+               {QuaternionOrder::wxyz, "0.70710678 0 0 0.70710678"},
+               {QuaternionOrder::zwxy, "0.70710678 0.70710678 0 0"},
+               {QuaternionOrder::yzwx, "0 0.70710678 0.70710678 0"}};
+  for (const auto& [order, text] : cases) {
+    CAPTURE(text);
+    for (const char* names : {"", "# t px py pz qx qy qz qw\n", "t px py pz qw qx qy qz\n"}) {
+      const PoseFile file = poses(fmt::format("{}0.5 1 2 3 {}\n", names, text), {.quaternion = order});
+      check_quarter_turn(file, 0.5);
+      CHECK(file.quaternion == order);
+      CHECK_FALSE(file.quaternion_is_assumed);
+    }
+  }
+  CHECK_THROWS_WITH(poses("0 1 0 0 1 0 1 0 2 0 0 1 3\n", {.quaternion = QuaternionOrder::wxyz}),
+                    ContainsSubstring("has no quaternion") && ContainsSubstring("given as wxyz"));
+  CHECK(poses("0.5 1 2 3 0 0 0 1\n").quaternion == QuaternionOrder::xyzw);
+  CHECK(poses("t px py pz qz qy qx qw\n0.5 1 2 3 0 0 0 1\n").quaternion == QuaternionOrder::automatic);
 }
 
 TEST_CASE("KITTI's matrices come with times in a file of their own, in the line, or are numbered on request") {
@@ -187,6 +253,13 @@ TEST_CASE("Times too late for seconds need their unit") {
   const std::string late = "1403636580838555 0 0 0 0 0 0 1\n";
   CHECK_THROWS_WITH(poses(late), ContainsSubstring("poses.txt:1: the time is 1403636580838555, too late for seconds"));
   CHECK(poses(late, {.time_unit = TimeUnit::microseconds}).trajectory.start() == 1403636580838555 / 1e6);
+  const PoseFile open = poses(late, {.may_lack_unit = true});
+  CHECK(open.trajectory.start() == 1403636580838555);
+  CHECK_THAT(open.unknown_unit, ContainsSubstring("poses.txt:1: the time is 1403636580838555, too late for seconds"));
+  // The first time alone does not tell.
+  CHECK_THROWS_WITH(poses("0 0 0 0 0 0 0 1\n" + late), ContainsSubstring("poses.txt:2: the time is 1403636580838555"));
+  CHECK_THROWS_WITH(poses("0 0 0 0 0 0 0 1\n1403636580838555648 0 0 0 0 0 0 1\n"),
+                    ContainsSubstring("poses.txt:2: the time is 1.4036365808385556e+18, too late for seconds"));
 }
 
 TEST_CASE("A truncated gzip file is refused, a whole one is read") {

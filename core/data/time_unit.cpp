@@ -40,9 +40,12 @@ std::optional<TimeUnit> parse_time_unit(std::string_view text) {
     return std::ranges::any_of(names, [&](const char* known) { return name == known; });
   };
   if (is({"s", "sec", "secs", "second", "seconds"})) return TimeUnit::seconds;
-  if (is({"ms", "msec", "msecs", "millis", "millisecond", "milliseconds"})) return TimeUnit::milliseconds;
-  if (is({"us", "usec", "usecs", "micros", "microsecond", "microseconds"})) return TimeUnit::microseconds;
-  if (is({"ns", "nsec", "nsecs", "nanos", "nanosecond", "nanoseconds"})) return TimeUnit::nanoseconds;
+  if (is({"ms", "msec", "msecs", "millis", "millisec", "millisecs", "millisecond", "milliseconds"}))
+    return TimeUnit::milliseconds;
+  if (is({"us", "usec", "usecs", "micros", "microsec", "microsecs", "microsecond", "microseconds"}))
+    return TimeUnit::microseconds;
+  if (is({"ns", "nsec", "nsecs", "nanos", "nanosec", "nanosecs", "nanosecond", "nanoseconds"}))
+    return TimeUnit::nanoseconds;
   return std::nullopt;
 }
 
@@ -61,6 +64,16 @@ std::optional<TimeUnit> usual_time_unit(double time) {
   if (std::abs(time) >= kEarliestNanosecond) return TimeUnit::nanoseconds;
   if (std::abs(time) < kLatestSecond) return TimeUnit::seconds;
   return std::nullopt;
+}
+
+std::optional<TimeUnit> unit_that_meets(double from, double to, double range_from, double range_to) {
+  std::optional<TimeUnit> found;
+  for (const TimeUnit unit : kFiner) {
+    if (overlap(from / per_second(unit), to / per_second(unit), range_from, range_to) < 0.0) continue;
+    if (found) return std::nullopt;
+    found = unit;
+  }
+  return found;
 }
 
 std::string times_beside(double from, double to, double range_from, double range_to, const std::string& option) {

@@ -28,6 +28,9 @@ double per_second(TimeUnit unit);
 /// machine's start are alike.
 std::optional<TimeUnit> usual_time_unit(double time);
 
+/// The unit, other than seconds, in which times would meet a range [s]; none unless it is exactly one.
+std::optional<TimeUnit> unit_that_meets(double from, double to, double range_from, double range_to);
+
 /// For a file's times [s] that do not meet a range [s]: "go from 50637 to 5259582 s", and the unit, as the value of an
 /// option, in which they would be about there, if there is one.
 std::string times_beside(double from, double to, double range_from, double range_to, const std::string& option);

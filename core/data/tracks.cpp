@@ -27,16 +27,15 @@ bool is_integer(std::string_view text) {
 
 /// At the first record; a line of names is passed over.
 Columns find_columns(TextReader& reader, const std::string& asked) {
-  const auto named = read_names(
-      reader, kQuantities, [&](const Columns& c) { return !asked.empty() || complete(c); }, kUsual);
   if (!asked.empty()) {
+    pass_over_names(reader);
     Columns columns(asked, kQuantities);
-    if (complete(columns)) return columns;
+    if (complete(columns) && columns.ambiguity().empty()) return columns;
     throw InputError(
         fmt::format("{}: what is asked for names the columns \"{:.80}\"; expected id, t, x and y, and - for others",
                     reader.path(), asked));
   }
-  if (named) return *named;
+  if (const auto named = read_names(reader, kQuantities, complete, kUsual)) return *named;
   const auto record = reader.columns();
   const bool haste = record.size() == 5 && is_integer(record.back()) && !is_integer(record.front());
   const Columns columns(haste ? kHaste : kUsual, kQuantities);
@@ -82,7 +81,8 @@ TrackFile read_tracks(const std::string& path, int width, int height, const Trac
   for (; !reader.columns().empty(); reader.next()) {
     reader.expect_columns(columns.size(), columns.text().c_str());
     if (!time) {
-      time.emplace(reader, at[1], options.time_unit, columns.time_unit());
+      time.emplace(reader, columns, options.time_unit);
+      time->expect_unit(reader);
       file.assumption = assumption(path, columns, time->unit());
     }
     all.push_back({reader.integer(at[0], "the id"),

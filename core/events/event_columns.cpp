@@ -50,6 +50,7 @@ std::string to_string(const EventOrder& order) {
 
 bool read_event_columns(std::string_view names, EventColumns& columns) {
   const Columns found(names, kEventQuantities);
+  if (!found.ambiguity().empty() || found.nanoseconds()) return false;
   EventOrder order(found.size(), EventColumn::other);
   constexpr EventColumn kColumns[] = {EventColumn::t, EventColumn::x, EventColumn::y, EventColumn::p};
   for (std::size_t i = 0; i < std::size(kEventQuantities); ++i) {
@@ -64,7 +65,14 @@ bool read_event_columns(std::string_view names, EventColumns& columns) {
 EventColumns named_event_columns(std::string_view names, const std::string& place) {
   EventColumns columns;
   if (read_event_columns(names, columns)) return columns;
-  throw InputError(fmt::format("{}: names the columns \"{:.80}\"; expected time, x, y and polarity", place, names));
+  const Columns found(names, kEventQuantities);
+  if (!found.ambiguity().empty()) {
+    throw InputError(fmt::format(
+        "{}: the columns are named {}; give --columns (source.columns in a run's config), with - for one of them", place,
+        found.ambiguity()));
+  }
+  throw InputError(fmt::format("{}: names the columns \"{:.80}\"; expected time, x, y and polarity{}", place, names,
+                               found.nanoseconds() ? ", the time in one column" : ""));
 }
 
 EventOrder find_event_order(std::span<const EventRow> rows, std::span<const EventOrder> orders,

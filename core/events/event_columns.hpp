@@ -25,7 +25,7 @@ struct EventColumns {
 };
 
 /// By their names in their order, e.g. "x,y,p,t_us". False, and nothing is changed, unless time, x, y and polarity are
-/// among them.
+/// among them, each once.
 bool read_event_columns(std::string_view names, EventColumns& columns);
 
 /// Throws InputError where that is false.

@@ -31,6 +31,20 @@ bool leave_much_free(int max_x, int max_y, const Camera& camera, std::int64_t ev
 
 }  // namespace
 
+void expect_events(const Source& source, const std::string& place) {
+  if (source.silence_is_known()) return;
+  std::vector<Event> first;
+  if (const auto events = source.events(); !events || events->read(first)) return;
+  const auto reader = source.all_events();
+  while (reader->read(first) && first.empty()) {
+  }
+  const std::string found =
+      first.empty() ? "it has none at all" : fmt::format("its first one is at {:.6f} s", seconds(first.front().t));
+  const TimeRange range = source.time_range();
+  throw InputError(fmt::format("{}: the recording has no events from {} to {} s, the source's time range; {}", place,
+                               range.from, range.to, found));
+}
+
 EventFrontEnd::EventFrontEnd(const FrontEndContext& context, const std::string& name)
     : camera_(context.source.camera()),
       range_(context.source.time_range()),
@@ -50,7 +64,7 @@ bool EventFrontEnd::advance(const Horizon& horizon, TrackBatch& batch) {
     ++ticks_;
     look();
   }
-  if (is_over()) require_events();
+  if (is_over() && events_ == 0) expect_events(source_, place_);
   told_.tell(is_over() ? clock_ : complete(), horizon.observations, batch);
   batch.seen = clock_;
   return !is_over() || !told_.empty();
@@ -64,19 +78,6 @@ void EventFrontEnd::follow(double t) {
     take(events);
   }
   clock_ = t;
-}
-
-/// A simulated camera may see nothing; a recording without events in the time range is another one's, or is misread.
-void EventFrontEnd::require_events() const {
-  if (events_ > 0 || silence_is_known_) return;
-  std::vector<Event> first;
-  const auto reader = source_.all_events();
-  while (reader->read(first) && first.empty()) {
-  }
-  const std::string found =
-      first.empty() ? "it has none at all" : fmt::format("its first one is at {:.6f} s", seconds(first.front().t));
-  throw InputError(fmt::format("{}: the recording has no events from {} to {} s, the source's time range; {}", place_,
-                               range_.from, range_.to, found));
 }
 
 std::optional<double> EventFrontEnd::data_end() const {

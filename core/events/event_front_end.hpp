@@ -11,6 +11,10 @@
 
 namespace evbench {
 
+/// Throws InputError where a recording has no events in the source's time range: it is another one's, or is misread. A
+/// simulated camera may see nothing. Reads up to the first event; `place` is the front-end's, for messages.
+void expect_events(const Source& source, const std::string& place);
+
 /// A front-end that goes through its source's events: what those have in common that do. Events come in pieces; at
 /// every tick, 5 ms of data time apart however the run exchanges, and at the end of the time range, it looks after what
 /// it tracks. Where a recording ends before the time range does, so do the data; one without any event in it is an
@@ -45,7 +49,6 @@ class EventFrontEnd : public FrontEnd {
 
  private:
   void follow(double t);
-  void require_events() const;
   bool is_over() const { return clock_ >= range_.to || (feed_.ended() && !silence_is_known_); }
 
   const Source& source_;

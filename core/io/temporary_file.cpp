@@ -1,6 +1,7 @@
 #include "core/io/temporary_file.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -8,9 +9,22 @@
 #include <filesystem>
 
 #include "core/io/write_all.hpp"
+#include "core/support/error.hpp"
 
 namespace evbench {
-TemporaryFile::TemporaryFile() : path_((std::filesystem::temp_directory_path() / "evbench-XXXXXX").string()) {
+
+std::string temporary_folder() {
+  for (const char* name : {"TMPDIR", "TMP", "TEMP", "TEMPDIR"}) {
+    const char* const folder = std::getenv(name);
+    if (folder == nullptr || *folder == '\0') continue;
+    std::error_code error;
+    if (std::filesystem::is_directory(folder, error)) return folder;
+    throw OutputError(fmt::format("{}: is \"{}\", which is no folder; expected one for temporary files", name, folder));
+  }
+  return "/tmp";
+}
+
+TemporaryFile::TemporaryFile() : path_(temporary_folder() + "/evbench-XXXXXX") {
   file_ = ::mkostemp(path_.data(), O_CLOEXEC);
   if (file_ < 0) fail_to_write(path_, errno);
 }

@@ -6,7 +6,11 @@
 
 namespace evbench {
 
-/// A file in the folder for temporary files ($TMPDIR, /tmp) that disappears with the object: for what has to be read by
+/// The folder for temporary files: $TMPDIR ($TMP, $TEMP, $TEMPDIR), or /tmp. Throws OutputError, naming the variable,
+/// where there is no such folder.
+std::string temporary_folder();
+
+/// A file in the folder for temporary files that disappears with the object: for what has to be read by
 /// a path, by libraries that follow it or by other processes. All functions throw OutputError where it can't be
 /// written.
 class TemporaryFile {

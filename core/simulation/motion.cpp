@@ -92,11 +92,14 @@ class PaceClock {
 };
 
 Motion from_trajectory(const MotionOptions& options, double duration, const std::string& folder,
-                       const std::string& place) {
+                       const std::string& place, std::vector<std::string>* remarks) {
   if (options.trajectory.empty()) {
     throw InputError(fmt::format("{}.trajectory: is empty; expected the path of a trajectory", place));
   }
-  const PoseTrajectory file = read_poses(resolve_path(options.trajectory, folder)).trajectory;
+  const PoseFile poses =
+      read_poses(resolve_path(options.trajectory, folder), {.quaternion = options.trajectory_quaternion});
+  if (remarks != nullptr) remarks->insert(remarks->end(), poses.remarks.begin(), poses.remarks.end());
+  const PoseTrajectory& file = poses.trajectory;
   constexpr double kFarApart = 100.0;  // [s] between two poses: those of no camera's motion
   if (file.size() > 1 && file.end() - file.start() > kFarApart * static_cast<double>(file.size() - 1)) {
     throw InputError(fmt::format("{}.trajectory: {} has {} poses from {} to {} s; expected times in seconds", place,
@@ -114,10 +117,10 @@ Motion from_trajectory(const MotionOptions& options, double duration, const std:
 }
 
 Motion base_motion(const MotionOptions& options, double duration, std::uint64_t seed, const std::string& folder,
-                   const std::string& place) {
+                   const std::string& place, std::vector<std::string>* remarks) {
   if (options.kind == "smooth_random") return smooth_random(options, seed);
   if (options.kind == "robot_arm") return robot_arm(options, seed);
-  return from_trajectory(options, duration, folder, place);
+  return from_trajectory(options, duration, folder, place, remarks);
 }
 
 }  // namespace
@@ -133,6 +136,8 @@ void MotionOptions::declare(OptionSet& set) {
   set.add("distance", distance, "distance of the point that robot_arm looks at [m]").above(0.0);
   set.add("trajectory", trajectory, "path of a trajectory to follow: its poses are joined by a smooth (C2) spline")
       .path();
+  set.add("trajectory_quaternion", trajectory_quaternion, {kQuaternionOrderNames.begin(), kQuaternionOrderNames.end()},
+          "order of its quaternion's columns; auto: as their names or number tell");
   set.add("start", start, "where in the trajectory to begin, after its first pose [s]").range(0.0);
   set.add("knot_rate", knot_rate, "poses of the trajectory that are used [Hz]; fewer smooth its noise; 0: all")
       .range(0.0, 1e4);
@@ -145,7 +150,7 @@ void MotionOptions::declare(OptionSet& set) {
 }
 
 Motion make_motion(const MotionOptions& options, double duration, std::uint64_t seed, const std::string& folder,
-                   const std::string& place) {
+                   const std::string& place, std::vector<std::string>* remarks) {
   constexpr double kGap = 2.0 * StoppingClock::kRamp;
   const std::vector<TimeSpan> hold = parse_time_spans(options.hold, place + ".hold", kGap);
   const std::vector<TimeSpan> no_translation =
@@ -154,7 +159,7 @@ Motion make_motion(const MotionOptions& options, double duration, std::uint64_t 
   // The position rests in both kinds of spans, the rotation in the first only.
   const StoppingClock rotation_clock(hold), position_clock(no_translation);
   const PaceClock own_time(options.pace, duration);
-  const Motion base = base_motion(options, own_time(duration), seed, folder, place);
+  const Motion base = base_motion(options, own_time(duration), seed, folder, place, remarks);
   return [base, own_time, rotation_clock, position_clock](double t) {
     return SE3{base(own_time(rotation_clock(t))).q, base(own_time(position_clock(t))).p};
   };

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/data/pose_file.hpp"
 #include "core/motion/pose_trajectory.hpp"
 #include "core/plugin/options.hpp"
 
@@ -21,6 +22,7 @@ struct MotionOptions {
   double period = 6.0;
   double distance = 1.5;
   std::string trajectory;
+  QuaternionOrder trajectory_quaternion = QuaternionOrder::automatic;
   double start = 0.0;
   double knot_rate = 20.0;
   double scale = 1.0;
@@ -38,9 +40,10 @@ struct MotionOptions {
 ///   What joins them must be no back-end's motion model, which it would favour.
 /// Each is run through faster or slower by `pace`, which goes from its first value to its second over the sequence, by
 /// the same factor each second.
-/// Throws InputError, naming `place`, when a trajectory file is missing, too short for `duration` [s], or damaged.
+/// Throws InputError, naming `place`, when a trajectory file is missing, too short for `duration` [s], or damaged. What
+/// was assumed of it is added to `remarks`, where they are asked for.
 Motion make_motion(const MotionOptions& options, double duration, std::uint64_t seed, const std::string& folder,
-                   const std::string& place);
+                   const std::string& place, std::vector<std::string>* remarks = nullptr);
 
 /// The motion sampled at `rate` [Hz] over [0, duration].
 PoseTrajectory sample_motion(const Motion& motion, double duration, double rate);

@@ -71,7 +71,9 @@ std::unique_ptr<EventReader> EventSimulation::all_events() const {
 }
 
 std::vector<std::string> EventSimulation::remarks() const {
-  return {fmt::format("events simulated while they are read; path {:.3f} m", ground_truth().path_length())};
+  std::vector<std::string> result = motion_remarks();
+  result.push_back(fmt::format("events simulated while they are read; path {:.3f} m", ground_truth().path_length()));
+  return result;
 }
 
 }  // namespace evbench

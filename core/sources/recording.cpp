@@ -63,6 +63,9 @@ void Recording::Options::declare(OptionSet& set) {
       .path();
   set.add("ground_truth_format", ground_truth_format, {kPoseFormatNames.begin(), kPoseFormatNames.end()},
           "its format, or that of groundtruth.txt; auto: as the columns' names or number tell");
+  set.add("ground_truth_quaternion", ground_truth_quaternion,
+          {kQuaternionOrderNames.begin(), kQuaternionOrderNames.end()},
+          "order of its quaternion's columns; auto: as their names or the format tell");
   set.add("ground_truth_times", ground_truth_times, "file with its times, one a line, where it has none (KITTI)")
       .path();
   set.add("ground_truth_time_unit", ground_truth_time_unit, {kTimeUnitNames.begin(), kTimeUnitNames.end()},
@@ -116,7 +119,7 @@ Recording::Recording(const Options& options, const SourceContext& context) : pla
   usual("calib.txt", options.distortion != Options().distortion, resolved.calibration);
   usual("groundtruth.txt",
         options.ground_truth_format != PoseFormat::automatic || options.ground_truth_time_unit != TimeUnit::unsaid ||
-            !options.ground_truth_times.empty(),
+            options.ground_truth_quaternion != QuaternionOrder::automatic || !options.ground_truth_times.empty(),
         resolved.ground_truth);
 
   Own own = find_own(resolved, folder);
@@ -235,6 +238,7 @@ void Recording::check_sizes(const Options& options, const StreamInfo& recording)
 void Recording::set_ground_truth(const Options& options, Own& own) {
   if (!options.ground_truth.empty()) {
     PoseFile file = read_poses(options.ground_truth, {.format = options.ground_truth_format,
+                                                      .quaternion = options.ground_truth_quaternion,
                                                       .time_unit = options.ground_truth_time_unit,
                                                       .times = options.ground_truth_times});
     own.ground_truth = std::move(file.trajectory);

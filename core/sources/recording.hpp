@@ -23,6 +23,7 @@ class Recording : public Source {
     std::string dataset, folder, events, calibration, camera;
     std::string ground_truth, ground_truth_times;
     PoseFormat ground_truth_format = PoseFormat::automatic;
+    QuaternionOrder ground_truth_quaternion = QuaternionOrder::automatic;
     TimeUnit ground_truth_time_unit = TimeUnit::unsaid;
     int width = 0, height = 0;
     std::string distortion = "radial_tangential";

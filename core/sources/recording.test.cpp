@@ -130,6 +130,16 @@ TEST_CASE("A recording reads ground truth as EuRoC and KITTI lay it out, and say
                     ContainsSubstring("in milliseconds (ground_truth_time_unit: ms) they would go from 1 to 2 s"));
 }
 
+TEST_CASE("A recording's ground truth has its quaternions in the order that is asked for, in the usual file, too") {
+  const testing::TemporaryFolder folder;
+  folder.write("calib.txt", kCalibration);
+  folder.write("groundtruth.txt", "0 1 2 3 0.6 0.8 0 0\n1 1 2 3 0.6 0.8 0 0\n");
+  CHECK(open(R"({"folder": "."})", folder.path()).ground_truth().poses()[0].T.q.x() == Approx(0.6));
+  const Recording source = open(R"({"folder": ".", "ground_truth_quaternion": "wxyz"})", folder.path());
+  CHECK(source.ground_truth().poses()[0].T.q.w() == Approx(0.6));
+  CHECK(source.ground_truth().poses()[0].T.q.x() == Approx(0.8));
+}
+
 TEST_CASE("A recording takes one camera of a Kalibr chain, with its size and lens") {
   const testing::TemporaryFolder folder;
   folder.write("groundtruth.txt", kGroundTruth);

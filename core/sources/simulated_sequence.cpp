@@ -20,7 +20,7 @@ SimulatedSequence::SimulatedSequence(const Options& options, const SourceContext
       seed_(options.seed < 0 ? context.seed : static_cast<std::uint64_t>(options.seed)),
       camera_(make_camera(options.camera, context.folder, context.place + ".camera")),
       motion_(make_motion(options.motion, duration_, random(Part::motion).next(), context.folder,
-                          context.place + ".motion")),
+                          context.place + ".motion", &motion_remarks_)),
       ground_truth_(sample_motion(motion_, duration_, options.ground_truth_rate)) {
   if (!options.camera.calib.empty()) add_file(resolve_path(options.camera.calib, context.folder));
   if (options.motion.kind == "trajectory") add_file(resolve_path(options.motion.trajectory, context.folder));

@@ -49,12 +49,14 @@ class SimulatedSequence : public Source {
   const Motion& motion() const { return motion_; }
   /// `scene`: makes what is seen, when tracks are asked for; `place`: where the options stand, for messages.
   void make_tracks_of(std::function<Scene()> scene, const TrackOptions& options, const std::string& place);
+  const std::vector<std::string>& motion_remarks() const { return motion_remarks_; }  ///< on its file, if it has one
   void add_file(const std::string& path) { files_.push_back(path); }
 
  private:
   double duration_;
   std::uint64_t seed_;
   Camera camera_;
+  std::vector<std::string> motion_remarks_;
   Motion motion_;
   PoseTrajectory ground_truth_;
   std::function<SimulatedTracks()> make_tracks_;

@@ -31,9 +31,11 @@ std::vector<std::string> Simulation::remarks() const {
   const auto count = [this](TrackKind kind) {
     return std::ranges::count(tracks().tracks, kind, &SimulatedTracks::Track::kind);
   };
-  return {fmt::format("{} tracks simulated ({} outliers, {} drifting), {} observations, path {:.3f} m",
-                      tracks().tracks.size(), count(TrackKind::outlier), count(TrackKind::drift),
-                      tracks().observations.size(), ground_truth().path_length())};
+  std::vector<std::string> result = motion_remarks();
+  result.push_back(fmt::format("{} tracks simulated ({} outliers, {} drifting), {} observations, path {:.3f} m",
+                               tracks().tracks.size(), count(TrackKind::outlier), count(TrackKind::drift),
+                               tracks().observations.size(), ground_truth().path_length()));
+  return result;
 }
 
 }  // namespace evbench

@@ -233,6 +233,17 @@ TEST_CASE("Columns that are asked for stand in place of those that are found, or
                     Catch::Matchers::ContainsSubstring("5 columns; expected 4, as they are named"));
 }
 
+TEST_CASE("Names that may mean two columns are quoted, unless one is left out of what is asked for") {
+  using Catch::Matchers::ContainsSubstring;
+  CHECK_THROWS_WITH(text("t,x,x_raw,y,p\n0.1,5,6,7,1\n"),
+                    ContainsSubstring("test:1: the columns are named \"x\" and \"x_raw\", either of which may be x") &&
+                        ContainsSubstring("--columns"));
+  CHECK_THROWS_WITH(text("0.1,5,6,7,1\n", {.columns = "t,x,x_raw,y,p"}),
+                    ContainsSubstring("what is asked for: the columns are named \"x\" and \"x_raw\""));
+  CHECK(read_all(*text("t,x,x_raw,y,p\n0.1,5,6,7,1\n", {.columns = "t,x,-,y,p"})).front().x == 5);
+  CHECK_THROWS_WITH(text("sec nsec x y p\n1 500 5 7 1\n"), ContainsSubstring("the time in one column"));
+}
+
 TEST_CASE("Without pictures a calibration that fits the Event-Camera Dataset's sensor tells its size") {
   const TemporaryFolder folder;
   folder.write("events.txt", kRecording[0].second);
