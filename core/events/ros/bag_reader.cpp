@@ -28,7 +28,8 @@ std::vector<Candidate> candidates_of(const std::vector<Topic>& topics, std::init
   for (const Topic& topic : topics) {
     if (topic.readable && std::ranges::count(types, topic.type) > 0) candidates.push_back({topic, topic.name});
   }
-  std::ranges::stable_partition(candidates, [](const Candidate& candidate) { return candidate.topic.count != 0; });
+  std::stable_partition(candidates.begin(), candidates.end(),
+                        [](const Candidate& candidate) { return candidate.topic.count != 0; });
   return candidates;
 }
 
