@@ -33,7 +33,7 @@ std::string written(const ProgressPace& pace) {
 
 }  // namespace
 
-TEST_CASE("A log gets a line each 10 s, from the tenth on; a terminal one that rewrites itself") {
+TEST_CASE("A log gets a line each 10 s, from the tenth on, and a terminal one that rewrites itself") {
   const ProgressPace log = progress_pace(false, false, false), terminal = progress_pace(true, false, false);
   CHECK_FALSE(log.rewritten);
   CHECK(log.first == milliseconds(10000));
