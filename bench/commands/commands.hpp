@@ -9,6 +9,9 @@
 
 namespace evbench {
 
+/// All of the program's, in the order of its help.
+void add_commands(CLI::App& app, Plugins& plugins, int& exit_code);
+
 /// Each adds a subcommand of `evbench`; its callback throws InputError, which `main` catches. `plugins` must outlive
 /// the program's parsing.
 void add_eval(CLI::App& app);

@@ -23,26 +23,7 @@ TEST_CASE("No option of any command takes a number that is not finite") {
   CLI::App app;
   Plugins plugins;
   int exit_code = 0;
-  add_run(app, plugins, exit_code);
-  add_sweep(app, plugins, exit_code);
-  add_status(app, exit_code);
-  add_task(app, plugins, exit_code);
-  add_reproduce(app, plugins, exit_code);
-  add_eval(app);
-  add_score(app);
-  add_table(app);
-  add_compare(app);
-  add_figure(app);
-  add_export(app, plugins);
-  add_list(app, plugins);
-  add_describe(app, plugins);
-  add_solve(app);
-  add_info(app, plugins);
-  add_convert(app, plugins);
-  add_dataset(app);
-  add_render(app, plugins);
-  add_new_plugin(app, plugins);
-  add_check_plugin(app, plugins, exit_code);
+  add_commands(app, plugins, exit_code);
   int numbers = 0;
   for (CLI::App* command : app.get_subcommands({})) {
     for (CLI::Option* option : command->get_options()) {
