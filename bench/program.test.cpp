@@ -92,7 +92,7 @@ TEST_CASE("A command line that is not understood ends with exit code 2 and says 
   refused("run c.json --jobz=2", "there is no option --jobz; did you mean \"--jobs\"?");
   refused("eval --algin a b", "evbench eval: there is no option --algin; did you mean \"--align\"?");
   refused("sweep c.json --over seed=1", "there is no option --over");
-  refused("dataset", "evbench dataset: expected a command: list, get\nUsage: evbench dataset ");
+  refused("dataset", "evbench dataset: expected a command: list, get, verify\nUsage: evbench dataset ");
   refused("dataset get --quiet=3 a b", "evbench dataset get: ");
   refused("table . --format txt", "evbench table: --format: \"txt\" is none of its names; did you mean \"text\"?");
   refused("help runn", "evbench help: \"runn\" is no command; did you mean \"run\"?");

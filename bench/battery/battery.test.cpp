@@ -88,7 +88,8 @@ TEST_CASE("The battery finds what is wrong with a careless back-end, in words") 
   Registry<BackEnd>::Entry entry;
   entry.with_options = [](const auto& use) {
     OptionSet none;
-    use({none, [] { return std::vector<std::string>(); }});
+    use({none, [] { return std::vector<std::string>(); },
+         [](const std::string&) { return std::vector<std::string>(); }});
   };
   entry.make = [](const Json&, const BackEndContext& context) {
     return std::make_unique<Careless>(Careless::Options{}, context);

@@ -34,7 +34,7 @@ TEST_CASE("Bash completes commands, options, and values that are one of a few na
   const auto offers = [&](const std::string& words) { return offered(folder, words); };
   CHECK(offers("evbench sw") == Names{"sweep"});
   CHECK(offers("evbench \"\"").contains("check-plugin"));
-  CHECK(offers("evbench dataset \"\"") == Names{"get", "list"});
+  CHECK(offers("evbench dataset \"\"") == Names{"get", "list", "verify"});
   CHECK(offers("evbench help sta") == Names{"status"});
   CHECK(offers("evbench run --fo") == Names{"--force"});
   CHECK(offers("evbench run c.json --out --fo").empty());  // the folder's name

@@ -122,7 +122,7 @@ void add_figure(CLI::App& app) {
   command->add_flag("--online", arguments->options.online, "The poses as estimated when they were made");
   command->add_option("--width", arguments->width_mm, "Width [mm]; else 174, a page's")->check(in_range(20.0, 2000.0));
   command->add_option("--height", arguments->height_mm, "Height of the panels, without legend and caption [mm]")
-      ->check(CLI::Range(20.0, 2000.0));
+      ->check(in_range(20.0, 2000.0));
   command->add_flag("--no-caption", arguments->no_caption, "Without the sentences below it, for who writes their own");
   command->add_flag("--keep-script", arguments->keep_script,
                     "Also write FILE with the ending .py: the Python script that draws it, to be changed by hand");

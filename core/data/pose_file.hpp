@@ -33,7 +33,7 @@ struct PoseFile {
   PoseTrajectory trajectory;
   std::vector<std::string> remarks;  ///< sentences: what was assumed, or left out
   bool numbered = false;             ///< times are numbers of poses
-  std::string unknown_unit;          ///< why the unit of the times is not known: they are as they stand; empty: seconds
+  std::string unknown_unit = {};     ///< why the unit of the times is not known: they are as they stand; empty: seconds
   QuaternionOrder quaternion = QuaternionOrder::automatic;  ///< as it was read; automatic: none of the others
   bool quaternion_is_assumed = false;                       ///< neither names nor the options tell its order
 };
