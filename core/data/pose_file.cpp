@@ -101,7 +101,8 @@ Columns find_layout(const TextReader& reader, PoseFormat format) {
     return format == PoseFormat::automatic || layout.format == format;
   });
   if (format == PoseFormat::automatic && looks_like_euroc(reader)) {
-    std::ranges::stable_partition(layouts, [](const Layout& layout) { return layout.format == PoseFormat::euroc; });
+    std::stable_partition(layouts.begin(), layouts.end(),
+                          [](const Layout& layout) { return layout.format == PoseFormat::euroc; });
   }
   std::vector<Columns> known, fitting;
   for (const Layout& layout : layouts) known.emplace_back(layout.columns, kQuantities);
@@ -270,7 +271,7 @@ void set_time_unit(PoseFile& file, TimeUnit unit) {
   std::vector<StampedPose> poses = std::move(file.trajectory).poses();
   for (StampedPose& pose : poses) pose.t /= per_second(unit);
   const auto same_time = [](const StampedPose& a, const StampedPose& b) { return a.t == b.t; };
-  poses.erase(std::ranges::unique(poses, same_time).begin(), poses.end());
+  poses.erase(std::unique(poses.begin(), poses.end(), same_time), poses.end());
   file.trajectory = PoseTrajectory(std::move(poses));
   file.unknown_unit.clear();
 }
