@@ -152,7 +152,8 @@ std::optional<BetterOrder> better_quaternion_order(std::span<const PosePair> pai
     all.estimate[shift] = rotations(pairs, turns, false, shift);
   }
   for (auto better : {same_frames(all, read), other_frames(all, read)}) {
-    if (!better || better->reordered_deg > kBetter * better->as_read_deg || better->reordered_deg > kFitsWell * angle) {
+    if (!better || better->as_read_deg < kDegree || better->reordered_deg > kBetter * better->as_read_deg ||
+        better->reordered_deg > kFitsWell * angle) {
       continue;
     }
     better->turn_deg = angle / kDegree;

@@ -210,6 +210,7 @@ void check(const RunArguments& arguments, const Plugins& plugins) {
     }
   }
   fmt::print("{}: fine, {} run{}\n", arguments.config, experiment.runs.size(), experiment.runs.size() == 1 ? "" : "s");
+  if (!missing.empty()) unchecked.push_back(missing);
   for (const std::string& text : unchecked) fmt::print("not checked: {}\n", text);
 }
 

@@ -24,7 +24,13 @@ int execute(const TaskArguments& arguments, Plugins& plugins) {
   const Interruption interruption(arguments.manifest + ": interrupted; what was complete stays");
   stay_without_threads();
   int exit_code = kExitDone;
-  for (const ManifestLine& line : read_manifest(arguments.manifest, arguments.line, arguments.stride, plugins)) {
+  const Announce announce = announcement(false);
+  const std::vector<ManifestLine> lines =
+      read_manifest(arguments.manifest, arguments.line, arguments.stride, plugins, {.announce = announce});
+  std::vector<const Job*> jobs;
+  for (const ManifestLine& line : lines) jobs.push_back(&line.run.config.job);
+  announce_commands(jobs, plugins, announce);
+  for (const ManifestLine& line : lines) {
     const SweepProgress now = do_runs({line.run}, plugins, line.options, [](const SweepProgress&) {});
     for (const TroubledRun& run : now.troubled) fmt::print("{}\n", describe(run));
     if (now.troubled.empty()) fmt::print("done: {}, {}\n", line.run.config.label, place_of(line.run.axes));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "bench/experiment.hpp"
 #include "bench/job.hpp"
 #include "core/data/calib.hpp"
+#include "core/data/pose_file.hpp"
 #include "core/process/line_tail.hpp"
 #include "core/support/error.hpp"
 #include "core/support/json.hpp"
@@ -51,13 +53,37 @@ class Lines {
   std::string text_;
 };
 
-std::string text_of(const Lines& source, const std::string& recording, const RecordingSummary& s, bool truth) {
+/// Sensor, calibration and ground truth, as `info` tells them.
+std::string found_text(const RecordingSummary& s) {
+  std::string text =
+      s.info.width > 0 ? fmt::format("Sensor {}x{} pixels", s.info.width, s.info.height) : "Sensor of unknown size";
+  for (const auto& [key, value] : s.info.metadata) {
+    const bool told = key == "calibration" || key == "ground truth" || key == kCameraInfoIn || key == kGroundTruthIn ||
+                      key == kTopicChoice || key == "sensor size";
+    if (told) text += fmt::format("; {}: {}", key, printable(value, 200));
+  }
+  return text + ".";
+}
+
+/// What names a folder of results; empty: the file's own name does.
+std::string experiment_name(const std::string& place) {
+  const std::string stem = fs::path(place).stem().string();
+  std::string name = stem;
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '-' && c != '.' && c != '+'; }, '_');
+  if (name.starts_with('.')) name.front() = '_';
+  return name == stem ? "" : name;
+}
+
+std::string text_of(const Lines& source, const std::string& recording, const std::string& name,
+                    const RecordingSummary& s, bool truth) {
   return fmt::format(
       "{{\n"
       "  // {}: {}, {} events in {:.3f} s.\n"
       "  // Lines that begin like this one are comments. evbench describe config and evbench describe source "
       "recording\n"
       "  // say what else can be set.\n"
+      "{}"
       "  \"source\": {{\n{}\n  }},\n"
       "  // What tracks features in the events; evbench list names others.\n"
       "  \"frontend\": {{\"type\": \"haste\"}},\n"
@@ -66,7 +92,8 @@ std::string text_of(const Lines& source, const std::string& recording, const Rec
       "  // {}\n"
       "  \"evaluation\": {{}}\n"
       "}}\n",
-      printable(recording, 200), s.info.format, s.events, s.duration(), source.text(),
+      printable(recording, 200), s.info.format, s.events, s.duration(),
+      name.empty() ? "" : fmt::format("  \"name\": \"{}\",\n", name), source.text(),
       truth ? "ATE and RPE after a similarity alignment (Sim(3)); evbench describe config has the other protocols."
             : "Nothing is scored, as there is no ground truth; the trajectories can be drawn by evbench figure.");
 }
@@ -77,13 +104,17 @@ std::string new_config(const std::string& recording, const RecordingSummary& s, 
                        const std::string& place, const Plugins& plugins) {
   if (s.events == 0) throw InputError(fmt::format("{}: has no events; expected a recording of some", recording));
   if (options.calibration.empty() && !s.calibration) {
-    throw InputError(fmt::format(
-        "{}: no calibration was found in it or beside it; expected one by --calibration FILE (fx fy cx cy k1 "
-        "k2 p1 p2 k3 in a line, or YAML of Kalibr, ROS or OpenCV)",
-        recording));
+    const auto unusable =
+        std::ranges::find(s.info.metadata, kUnusableCalibration, [](const auto& entry) { return entry.first; });
+    const std::string why = unusable == s.info.metadata.end() ? "was found in it or beside it"
+                                                              : "of it can be used (" + unusable->second + ")";
+    throw InputError(
+        fmt::format("{}: no calibration {}; expected one by --calibration FILE (fx fy cx cy k1 "
+                    "k2 p1 p2 k3 in a line, or YAML of Kalibr, ROS or OpenCV)",
+                    recording, why));
   }
   Lines source;
-  source.add("", "type", "recording");
+  source.add(found_text(s), "type", "recording");
   source.add("", fs::is_directory(recording) ? "folder" : "events", path_for(recording, place));
   if (!options.read.topic.empty()) source.add("", "topic", options.read.topic);
   if (!options.read.ground_truth_topic.empty()) source.add("", "ground_truth_topic", options.read.ground_truth_topic);
@@ -104,17 +135,19 @@ std::string new_config(const std::string& recording, const RecordingSummary& s, 
                "width", width);
     source.add("", "height", height);
   }
-  const bool truth = !options.ground_truth.empty() || !s.ground_truth.empty();
+  PoseTrajectory poses = s.ground_truth;
+  if (!options.ground_truth.empty()) poses = read_poses(options.ground_truth, {}).trajectory;
+  const bool truth = !poses.empty();
   if (!options.ground_truth.empty()) source.add("", "ground_truth", path_for(options.ground_truth, place));
   double from = 1e-6 * static_cast<double>(s.start), to = 1e-6 * static_cast<double>(s.end);
   std::string what = "All of it, in seconds.";
-  if (options.ground_truth.empty() && truth && s.ground_truth.start() < to && s.ground_truth.end() > from) {
-    from = std::max(from, s.ground_truth.start());
-    to = std::min(to, s.ground_truth.end());
-    what = fmt::format("What events and ground truth ({}) have in common, in seconds.", s.ground_truth.size());
+  if (truth && poses.start() < to && poses.end() > from) {
+    from = std::max(from, poses.start());
+    to = std::min(to, poses.end());
+    what = fmt::format("What events and ground truth ({}) have in common, in seconds.", poses.size());
   }
   source.add(what, "time_range", {from, to});
-  const std::string text = text_of(source, recording, s, truth);
+  const std::string text = text_of(source, recording, experiment_name(place), s, truth);
   // It must run as it is.
   const Json json = Json::parse(text, nullptr, true, true);
   const Experiment experiment = ConfigFile(place, json, plugins).experiment({});

@@ -15,7 +15,8 @@
 namespace evbench {
 namespace {
 
-ManifestLine read_line(const std::string& text, const std::string& place, Plugins& plugins, Digests& digests) {
+ManifestLine read_line(const std::string& text, const std::string& place, Plugins& plugins, const LibraryPolicy& policy,
+                       Digests& digests) {
   const Json json = try_parse_json(text);
   ManifestLine line;
   try {
@@ -27,7 +28,7 @@ ManifestLine read_line(const std::string& text, const std::string& place, Plugin
     for (const Json& library : json.at("config").at("plugins")) {
       libraries.push_back(resolve_path(library.get<std::string>(), "."));
     }
-    load_named_plugins(plugins, libraries, place, {});
+    load_named_plugins(plugins, libraries, place, policy);
     for (const auto& [axis, value] : json.at("axes").items())
       line.run.axes.emplace_back(axis, value.get<std::string>());
     line.run.config = ConfigFile(place, json.at("config"), plugins).experiment({}).runs.at(0);
@@ -87,7 +88,7 @@ std::string format_manifest(const std::vector<PlannedRun>& runs, const ExecutorO
 }
 
 std::vector<ManifestLine> read_manifest(const std::string& path, std::size_t first, std::size_t stride,
-                                        Plugins& plugins) {
+                                        Plugins& plugins, const LibraryPolicy& policy) {
   std::ifstream file(path);
   if (!file) throw InputError(fmt::format("{}: can't be read; expected the manifest of a sweep", path));
   Digests digests;
@@ -98,7 +99,7 @@ std::vector<ManifestLine> read_manifest(const std::string& path, std::size_t fir
     const std::size_t number = texts.size();
     const bool wanted = stride == 0 ? number == first : number >= first && (number - first) % stride == 0;
     if (!wanted) continue;
-    lines.push_back(read_line(text, fmt::format("{}:{}", path, number), plugins, digests));
+    lines.push_back(read_line(text, fmt::format("{}:{}", path, number), plugins, policy, digests));
   }
   if (lines.empty()) throw InputError(fmt::format("{}: has {} lines; expected a line {}", path, texts.size(), first));
   share_events(lines, texts);

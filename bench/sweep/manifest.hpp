@@ -19,9 +19,9 @@ struct ManifestLine {
 };
 
 /// Reads the lines `first`, `first` + `stride`, ... (numbered from 1; stride 0: that one alone) and loads the libraries
-/// that they name. Throws InputError for a file that can't be read, a line that is no run, a `first` beyond the last
-/// line, and files that have changed since the manifest was written: the key would be another one.
+/// that they name, by the policy. Throws InputError for a file that can't be read, a line that is no run, a `first`
+/// beyond the last line, and files that have changed since the manifest was written: the key would be another one.
 std::vector<ManifestLine> read_manifest(const std::string& path, std::size_t first, std::size_t stride,
-                                        Plugins& plugins);
+                                        Plugins& plugins, const LibraryPolicy& policy = {});
 
 }  // namespace evbench

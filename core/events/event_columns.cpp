@@ -24,7 +24,10 @@ bool fits(const EventRow& row, const EventOrder& order, std::size_t time) {
     const bool is_pixel = value >= 0.0 && value <= kMostPixels && value == std::floor(value) &&
                           (!row.have_fractions[i] || row.have_fractions[time]);
     if ((order[i] == EventColumn::x || order[i] == EventColumn::y) && !is_pixel) return false;
-    if (order[i] == EventColumn::p && value != 0.0 && std::abs(value) != 1.0) return false;
+    constexpr double kMinusOnes[] = {-1.0, 255.0, 65535.0, 4294967295.0};  // stored with a sign or without
+    const bool is_polarity =
+        value == 0.0 || value == 1.0 || std::ranges::find(kMinusOnes, value) != std::end(kMinusOnes);
+    if (order[i] == EventColumn::p && !is_polarity) return false;
   }
   return true;
 }
@@ -68,8 +71,8 @@ EventColumns named_event_columns(std::string_view names, const std::string& plac
   const Columns found(names, kEventQuantities);
   if (!found.ambiguity().empty()) {
     throw InputError(fmt::format(
-        "{}: the columns are named {}; give --columns (source.columns in a run's config), with - for one of them", place,
-        found.ambiguity()));
+        "{}: the columns are named {}; give --columns (source.columns in a run's config), with - for one of them",
+        place, found.ambiguity()));
   }
   throw InputError(fmt::format("{}: names the columns \"{:.80}\"; expected time, x, y and polarity{}", place, names,
                                found.nanoseconds() ? ", the time in one column" : ""));

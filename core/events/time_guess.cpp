@@ -41,29 +41,20 @@ TimeUnit guess_time_unit(double time, bool have_fractions, const std::string& pl
 }
 
 std::optional<std::string> doubtful_rate(std::int64_t count, double duration, TimeUnit unit) {
-  constexpr double kFewest = 1e3, kMost = 1e9;  // events a second
+  constexpr double kFewest = 1e3, kUsual = 3e5, kMost = 1e9;  // events a second
   constexpr std::int64_t kEnough = 200;
   const double rate = 1e6 * static_cast<double>(count) / duration;
   if (count < kEnough || duration < 0.0 || (rate >= kFewest && rate <= kMost)) return std::nullopt;
   if (!(duration > 0.0)) return fmt::format("all {} events have the same time: are its digits lost?", count);
   const auto rate_in = [&](TimeUnit other) { return rate * per_second(other) / per_second(unit); };
-  // The next finer or coarser one that makes it plausible.
-  const auto is_finer = [&](TimeUnit other) {
-    return per_second(other) > per_second(unit) && rate_in(other) >= kFewest / 10;
-  };
-  const auto is_coarser = [&](TimeUnit other) {
-    return per_second(other) < per_second(unit) && rate_in(other) <= kMost;
-  };
-  const auto* const finer = std::ranges::find_if(kUnits, is_finer);
-  const auto coarser = std::ranges::find_if(std::rbegin(kUnits), std::rend(kUnits), is_coarser);
-  std::optional<TimeUnit> best;
-  if (rate < kFewest && finer != std::end(kUnits)) best = *finer;
-  if (rate > kMost && coarser != std::rend(kUnits)) best = *coarser;
+  // The one that makes it most plausible.
+  const auto improbability = [&](TimeUnit other) { return std::abs(std::log10(rate_in(other) / kUsual)); };
+  const TimeUnit best = *std::ranges::min_element(kUnits, {}, improbability);
   std::string text =
       fmt::format("{:.4g} events/s on average, {} than event cameras give", rate, rate < kFewest ? "fewer" : "more");
-  if (best) {
+  if (best != unit) {
     text += fmt::format(": are the times {}? In {} (--columns {}) it would be {:.4g}/s", to_string(unit),
-                        to_string(*best), columns_of(*best), rate_in(*best));
+                        to_string(best), columns_of(best), rate_in(best));
   }
   return text;
 }

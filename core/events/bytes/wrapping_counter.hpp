@@ -7,9 +7,9 @@
 namespace evbench {
 
 /// Continues a camera's counter of time over the end of its range. It wraps where it was near the end and is near the
-/// beginning: over a gap of a sixteenth of the range, or of up to a quarter where it has run for as long as the gap.
-/// Any other step back by more than 0.25 s is a fault, and time steps back with it. When the counter jumps and one of
-/// the next words goes on from before the jump, so does time: words between were wrong.
+/// beginning: over a gap that is no longer than it has run, and no longer than a quarter of the range. Any other step
+/// back by more than 0.25 s is a fault, and time steps back with it. When the counter jumps and one of the next words
+/// goes on from before the jump, so does time: words between were wrong.
 class WrappingCounter {
  public:
   /// `unit`: what it counts [µs].

@@ -4,17 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/events/time_guess.hpp"
 #include "core/support/error.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench::hdf5 {
 namespace {
 
 struct Sample {
-  double first_time = 0.0;
+  std::vector<double> times;  ///< finite ones, sorted
   bool have_fractions = false;
   DarkerCount darker;
+
+  double quantile(double share) const {
+    return times.empty() ? 0.0
+                         : times[index(static_cast<std::ptrdiff_t>(share * static_cast<double>(times.size() - 1)))];
+  }
 };
 
 Sample take_sample(const EventTable& table) {
@@ -28,10 +35,12 @@ Sample take_sample(const EventTable& table) {
     sample.darker.add(views.p, count);
     for (std::size_t i = 0; i < count; ++i) {
       const double t = to_double(views.t, i);
-      if (begin == 0 && i == 0) sample.first_time = t;
-      sample.have_fractions |= std::isfinite(t) && t != std::floor(t);
+      if (!std::isfinite(t)) continue;
+      sample.times.push_back(t);
+      sample.have_fractions |= t != std::floor(t);
     }
   }
+  std::ranges::sort(sample.times);
   return sample;
 }
 
@@ -42,15 +51,17 @@ double read_offset(const File& file, const EventLayout& layout) {
   return dataset.first(0);
 }
 
-void check_rate(const EventTable& table, const TimeScale& scale) {
-  constexpr double kFewest = 1.0;  // events a second
-  const std::int64_t start = table.time(0, scale), end = table.time(table.rows() - 1, scale);
-  if (start == kBroken || end == kBroken) return;
-  const auto duration = static_cast<double>(end) - static_cast<double>(start);
+/// Of all but the earliest and latest tenth of the sample, so that single broken times do not count. Microseconds that
+/// are taken for seconds make a million times fewer events a second.
+void check_rate(const EventTable& table, const Sample& sample, TimeUnit unit) {
+  const double fewest = unit == TimeUnit::seconds ? 100.0 : 1.0;  // events a second
+  const double duration = 1e6 / per_second(unit) * (sample.quantile(0.9) - sample.quantile(0.1));
   const auto count = static_cast<std::int64_t>(table.rows());
-  const auto doubt = doubtful_rate(count, duration, scale.unit);
-  if (doubt && static_cast<double>(count) < kFewest * 1e-6 * duration) {
-    throw InputError(fmt::format("{}: {}", table.times().name(), *doubt));
+  const auto doubt = doubtful_rate(count, duration, unit);
+  if (doubt && static_cast<double>(count) < fewest * 1e-6 * duration) {
+    throw InputError(
+        fmt::format("{}: {}; --columns t_{},x,y,p (source.columns in a run's config) takes them as they are",
+                    table.times().name(), *doubt, kTimeUnitNames[index(unit)]));
   }
 }
 
@@ -70,7 +81,7 @@ Meaning find_meaning(const File& file, const EventLayout& layout, const EventTab
   }
   if (meaning.scale.unit == TimeUnit::unsaid) {
     meaning.unit_is_guessed = true;
-    meaning.scale.unit = guess_time_unit(sample.first_time + offset, sample.have_fractions, table.times().name());
+    meaning.scale.unit = guess_time_unit(sample.quantile(0.5) + offset, sample.have_fractions, table.times().name());
     meaning.unit_origin = sample.have_fractions ? " (as they have fractions)" : " (as they are whole numbers)";
   }
   const double offset_us = offset * 1e6 / per_second(meaning.scale.unit);
@@ -78,7 +89,7 @@ Meaning find_meaning(const File& file, const EventLayout& layout, const EventTab
     throw InputError(fmt::format("{}: /{}: is no time", file.path(), layout.offset));
   }
   meaning.scale.offset = std::llround(offset_us);
-  if (meaning.unit_is_guessed && table.rows() > 0) check_rate(table, meaning.scale);
+  if (meaning.unit_is_guessed && table.rows() > 0) check_rate(table, sample, meaning.scale.unit);
   return meaning;
 }
 

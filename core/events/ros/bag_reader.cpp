@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/events/ros/camera_info.hpp"
 #include "core/events/ros/event_packet.hpp"
@@ -16,6 +17,7 @@ namespace evbench::ros {
 namespace {
 
 constexpr std::uint32_t kMostSide = 1 << 16;
+constexpr std::int64_t kPause = 250'000'000;  ///< [ns] between packets: what they count may have gone round
 
 constexpr const char *kPoseType = "geometry_msgs/PoseStamped", *kCameraInfoType = "sensor_msgs/CameraInfo";
 constexpr TopicKind kEvents{"events", "--topic (source.topic in a run's config)"},
@@ -74,6 +76,7 @@ class BagReader : public EventReader {
   void look_at_first();
   void rewind();
   void restart();
+  void synchronise(std::int64_t t, const std::string& where);
   void tell(const std::string& key, const std::string& text);
   std::vector<std::optional<CameraInfo>> first_infos(const std::vector<Candidate>& candidates);
   std::string mismatch(const std::optional<CameraInfo>& info) const;
@@ -96,7 +99,9 @@ class BagReader : public EventReader {
   bool camera_time_ = false;        ///< times are the camera's, not ROS's
   std::int64_t stamp_ = 0;          ///< of the last packet [ns]
   std::int64_t ros_minus_own_ = 0;  ///< ROS time of the camera's zero [µs]
-  std::int64_t turns_ = 0;          ///< added after a seek: the camera's time without its high bits knows no more [µs]
+  bool zero_is_known_ = false;      ///< ros_minus_own_ is
+  bool synchronised_ = false;       ///< turns_ is right for the packets that follow
+  std::int64_t turns_ = 0;          ///< added to times after a seek or a pause [µs]
 };
 
 BagReader::BagReader(const std::string& path, const std::string& format, const ReadOptions& options, OpenSource open)
@@ -147,6 +152,7 @@ void BagReader::look_at_first() {
   if (!events.empty()) info_.start = events.front().t;
   if (camera_time_ && !events.empty()) {
     ros_minus_own_ = stamp_ / 1000 - events.front().t;
+    zero_is_known_ = true;
     tell("ROS time of the camera's zero [us]", fmt::to_string(ros_minus_own_));
   }
   rewind();
@@ -161,6 +167,7 @@ void BagReader::rewind() {
 void BagReader::restart() {
   faults_ = open_faults_;
   decoder_.reset();
+  synchronised_ = false;
   messages_ = 0;
 }
 
@@ -184,9 +191,13 @@ std::optional<std::int64_t> BagReader::next_message(std::vector<Event>& events) 
     }
     width = packet->width;
     height = packet->height;
-    stamp_ = packet->stamp;
     camera_time_ = packet->encoding == "evt3";
+    if (camera_time_ && std::abs(packet->stamp - std::exchange(stamp_, packet->stamp)) > kPause) {
+      decoder_.reset();
+      synchronised_ = false;
+    }
     decoder_.decode({packet->events, packet->encoding, packet->time_base}, where, events, faults_);
+    if (camera_time_ && !synchronised_ && events.size() > before) synchronise(events[before].t, where);
     if (turns_ != 0) {
       for (std::size_t i = before; i < events.size(); ++i) events[i].t += turns_;
     }
@@ -201,11 +212,25 @@ std::optional<std::int64_t> BagReader::next_message(std::vector<Event>& events) 
     height = array_.height;
     events.insert(events.end(), array_.events.begin(), array_.events.end());
   }
-  if (info_.width == 0 && width <= kMostSide && height <= kMostSide) {
+  const bool is_size = width > 0 && height > 0 && width <= kMostSide && height <= kMostSide;
+  if (info_.width == 0 && is_size) {
     info_.width = static_cast<int>(width);
     info_.height = static_cast<int>(height);
   }
   return static_cast<std::int64_t>(events.size() - before);
+}
+
+/// The camera's 24 bits of time do not say how often they have gone round while nothing was read; the packet's stamp
+/// does, but for a camera that was restarted meanwhile.
+void BagReader::synchronise(std::int64_t t, const std::string& where) {
+  constexpr std::int64_t kTurn = std::int64_t{1} << 24, kMostDrift = 1'000'000;  // [µs]
+  synchronised_ = true;
+  if (!zero_is_known_) return;
+  const std::int64_t ahead = stamp_ / 1000 - ros_minus_own_ - t;
+  turns_ = kTurn * static_cast<std::int64_t>(std::llround(static_cast<double>(ahead) / static_cast<double>(kTurn)));
+  if (std::abs(ahead - turns_) <= kMostDrift) return;
+  faults_.add("restarts of the camera's clock, after which times are the packets' stamps", where);
+  turns_ = ahead;
 }
 
 bool BagReader::read(std::vector<Event>& events) {
@@ -219,7 +244,7 @@ bool BagReader::read(std::vector<Event>& events) {
 /// By the time of recording, and by the packets' stamps for how often the camera's 24 bits of time have gone round;
 /// from the beginning where the events found are later than t.
 void BagReader::seek(std::int64_t t) {
-  constexpr std::int64_t kMargin = 100'000, kTurn = std::int64_t{1} << 24;  // [µs]
+  constexpr std::int64_t kMargin = 100'000;  // [µs]
   rewind();
   if (!info_.start || t <= *info_.start) return;
   const std::int64_t ros_time = std::min(t, std::numeric_limits<std::int64_t>::max() / 2000) + ros_minus_own_ - kMargin;
@@ -231,11 +256,7 @@ void BagReader::seek(std::int64_t t) {
   std::vector<Event> events;
   while (events.empty() && next_message(events)) {
   }
-  if (camera_time_ && !events.empty()) {
-    const std::int64_t expected = stamp_ / 1000 - ros_minus_own_;
-    turns_ = kTurn * static_cast<std::int64_t>(std::llround(static_cast<double>(expected - events.front().t) / kTurn));
-  }
-  if (events.empty() || events.front().t + turns_ > t) {
+  if (events.empty() || events.front().t > t) {
     rewind();
   } else {
     go();
@@ -290,17 +311,20 @@ std::optional<PoseTrajectory> BagReader::ground_truth() {
   return PoseTrajectory(std::move(poses), path_);
 }
 
-/// Of each candidate the first message that is whole.
+/// Of each candidate the first message of a calibrated camera, or else the last that is whole.
 std::vector<std::optional<CameraInfo>> BagReader::first_infos(const std::vector<Candidate>& candidates) {
   std::set<std::uint32_t> connections;
   for (const Candidate& candidate : candidates) connections.merge(std::set(candidate.topic.connections));
   std::vector<std::optional<CameraInfo>> infos(candidates.size());
+  const auto is_calibrated = [](const std::optional<CameraInfo>& info) { return info && info->K[0] != 0.0; };
   for_each(connections, [&](const Message& message) {
     for (std::size_t i = 0; i < infos.size(); ++i) {
       const bool its = candidates[i].topic.connections.contains(message.connection);
-      if (its && !infos[i]) infos[i] = parse_camera_info(message.data, message.wire);
+      if (its && !is_calibrated(infos[i])) {
+        if (auto info = parse_camera_info(message.data, message.wire)) infos[i] = std::move(info);
+      }
     }
-    return std::ranges::any_of(infos, [](const auto& info) { return !info.has_value(); });
+    return !std::ranges::all_of(infos, is_calibrated);
   });
   return infos;
 }
