@@ -124,7 +124,7 @@ std::string mark_note(const TextTable& table, const TableRuns& runs, TableFormat
 bool all_fine(const TableRuns& runs) {
   return std::ranges::all_of(runs.runs, [](const RunNumbers& numbers) {
     const RunRecord& run = numbers.run();
-    return run.done && (!run.status || run.status->status.state == RunState::ok);
+    return run.done && (!run.status || status_text(numbers) == to_string(RunState::ok));
   });
 }
 
@@ -142,7 +142,11 @@ TextTable run_table(const TableRuns& runs, const TableOptions& options) {
   const bool print = options.format == TableFormat::latex;
   if (!print || !all_fine(runs) || asks_for(options, "status")) {
     std::vector<Cell> cells;
-    for (const RunNumbers& run : runs.runs) cells.push_back({csv || print ? status_word(run.run()) : status_text(run)});
+    for (const RunNumbers& run : runs.runs) {
+      const std::string word = status_word(run.run());
+      const bool short_word = csv || (print && word != to_string(RunState::ok));
+      cells.push_back({short_word ? word : status_text(run)});
+    }
     add_column(table, "status", false, std::move(cells));
     if (csv) add_column(table, "reason", false, cells_of(runs, status_reason));
   }

@@ -411,6 +411,7 @@ TEST_CASE("Beside ok stands what part of the time is missing") {
   results.add("a", json);
   CHECK_THAT(line_with(text_of(results, {}), "mine "), ContainsSubstring("ok, covers 70 % from 3.00 s"));
   CHECK_THAT(text_of(results, {.format = TableFormat::csv}), ContainsSubstring(",ok,,final,"));
+  CHECK_THAT(text_of(results, {.format = TableFormat::latex}), ContainsSubstring("ok, covers 70 \\% from 3.00 s"));
 }
 
 TEST_CASE("Characters with a meaning in LaTeX and Markdown are escaped") {
