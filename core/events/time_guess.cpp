@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "core/support/error.hpp"
 #include "core/support/index.hpp"
@@ -47,8 +48,11 @@ std::optional<std::string> doubtful_rate(std::int64_t count, double duration, Ti
   if (count < kEnough || duration < 0.0 || (rate >= kFewest && rate <= kMost)) return std::nullopt;
   if (!(duration > 0.0)) return fmt::format("all {} events have the same time: are its digits lost?", count);
   const auto rate_in = [&](TimeUnit other) { return rate * per_second(other) / per_second(unit); };
-  // The one that makes it most plausible.
-  const auto improbability = [&](TimeUnit other) { return std::abs(std::log10(rate_in(other) / kUsual)); };
+  // The one that makes it most plausible; seconds are what has fractions, which nanoseconds don't.
+  const auto improbability = [&](TimeUnit other) {
+    if (unit == TimeUnit::seconds && other == TimeUnit::nanoseconds) return std::numeric_limits<double>::infinity();
+    return std::abs(std::log10(rate_in(other) / kUsual));
+  };
   const TimeUnit best = *std::ranges::min_element(kUnits, {}, improbability);
   std::string text =
       fmt::format("{:.4g} events/s on average, {} than event cameras give", rate, rate < kFewest ? "fewer" : "more");

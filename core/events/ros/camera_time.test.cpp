@@ -17,7 +17,7 @@ std::string word(unsigned type, std::int64_t value) {
 }
 
 /// event_camera_msgs/EventPacket of two events at the camera's time t [µs], stamped with `stamp` [µs].
-BagMessage packet(std::int64_t t, std::int64_t stamp) {
+BagMessage camera_packet(std::int64_t t, std::int64_t stamp) {
   std::string words;
   for (const std::int64_t at : {t, t + 10}) {
     words += word(0x8, at >> 12) + word(0x6, at) + word(0x0, 20) + word(0x2, 30);
@@ -29,11 +29,12 @@ BagMessage packet(std::int64_t t, std::int64_t stamp) {
 }
 
 /// A packet each 50 ms over some spans of time [s].
-std::vector<BagMessage> packets(const std::vector<std::pair<double, double>>& spans, std::int64_t camera_behind = 0) {
+std::vector<BagMessage> camera_packets(const std::vector<std::pair<double, double>>& spans,
+                                       std::int64_t camera_behind = 0) {
   std::vector<BagMessage> messages;
   for (const auto& [from, to] : spans) {
     for (auto t = static_cast<std::int64_t>(1e6 * from); t < static_cast<std::int64_t>(1e6 * to); t += kPacketTime) {
-      messages.push_back(packet(t - camera_behind, t));
+      messages.push_back(camera_packet(t - camera_behind, t));
     }
   }
   return messages;
@@ -47,7 +48,7 @@ std::string write_bag(const testing::TemporaryFolder& folder, const std::vector<
 
 TEST_CASE("Packets that pause, for longer than the camera's time goes round too, have their own times") {
   const testing::TemporaryFolder folder;
-  const std::string path = write_bag(folder, packets({{0, 14}, {17, 18}, {23, 24}, {50, 51}, {100, 110}}));
+  const std::string path = write_bag(folder, camera_packets({{0, 14}, {17, 18}, {23, 24}, {50, 51}, {100, 110}}));
   const std::vector<Event> all = testing::read_all(path);
   CHECK(open_events(path)->faults().empty());
   REQUIRE(all.size() == 2 * 20 * 27);
@@ -68,8 +69,8 @@ TEST_CASE("Packets that pause, for longer than the camera's time goes round too,
 
 TEST_CASE("A camera that was restarted between packets goes on by their stamps, which is a fault") {
   const testing::TemporaryFolder folder;
-  std::vector<BagMessage> messages = packets({{0, 10}});
-  const std::vector<BagMessage> later = packets({{15, 20}}, 15'000'000);
+  std::vector<BagMessage> messages = camera_packets({{0, 10}});
+  const std::vector<BagMessage> later = camera_packets({{15, 20}}, 15'000'000);
   messages.insert(messages.end(), later.begin(), later.end());
   const auto reader = open_events(write_bag(folder, messages));
   const std::vector<Event> all = testing::read_all(*reader);
