@@ -139,7 +139,7 @@ std::string new_config(const std::string& recording, const RecordingSummary& s, 
   if (!options.ground_truth.empty()) poses = read_poses(options.ground_truth, {}).trajectory;
   const bool truth = !poses.empty();
   if (!options.ground_truth.empty()) source.add("", "ground_truth", path_for(options.ground_truth, place));
-  double from = 1e-6 * static_cast<double>(s.start), to = 1e-6 * static_cast<double>(s.end);
+  double from = static_cast<double>(s.start) / 1e6, to = static_cast<double>(s.end) / 1e6;
   std::string what = "All of it, in seconds.";
   if (truth && poses.start() < to && poses.end() > from) {
     from = std::max(from, poses.start());
