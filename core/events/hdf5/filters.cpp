@@ -82,7 +82,8 @@ std::optional<std::vector<std::byte>> decompress_lzf(std::span<const std::byte> 
     if (distance >= length) {
       std::copy_n(to - distance, length, to);
     } else {
-      for (std::size_t i = 0; i < length; ++i) to[i] = to[i - distance];  // a copy of what it makes itself
+      const std::byte* const from = to - distance;
+      for (std::size_t i = 0; i < length; ++i) to[i] = from[i];  // a copy of what it makes itself
     }
     made += length;
   }
