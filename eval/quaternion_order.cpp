@@ -113,8 +113,10 @@ std::optional<BetterOrder> same_frames(const Rotations& turns, const QuaternionO
   if (truth && estimate) {
     // Both fit where the worlds are the same: then it is that of which less is known.
     const bool truth_is_suspect = read.ground_truth_is_assumed && !read.estimate_is_assumed;
-    const double favour = truth_is_suspect ? 2.0 : 0.5;
-    if (truth->reordered_deg < favour * estimate->reordered_deg) best = truth;
+    constexpr double kRounding = 1e-9;  // [rad]: both are exact
+    const bool is_truth = truth_is_suspect ? truth->reordered_deg < 2.0 * estimate->reordered_deg + kRounding
+                                           : truth->reordered_deg + kRounding < 0.5 * estimate->reordered_deg;
+    if (is_truth) best = truth;
   }
   if (best) best->as_read_deg = difference_of(0, 0);
   return best;
