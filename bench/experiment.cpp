@@ -269,11 +269,11 @@ Experiment read_config(const Json& json, const std::string& path, const Plugins&
 
 /// A file or folder that is read as events, and not as JSON.
 bool is_recording(const std::string& path) {
-  if (path == "-" || !std::filesystem::exists(path)) return false;
-  if (std::filesystem::is_regular_file(path)) {
-    const int first = (std::ifstream(path) >> std::ws).peek();
-    if (first == '{' || first == '/') return false;  // an object, or a comment before it
-  }
+  std::error_code none;
+  const bool is_file = std::filesystem::is_regular_file(path, none);  // what a pipe gives can be read once
+  if (!is_file && !std::filesystem::is_directory(path, none)) return false;
+  const int first = is_file ? (std::ifstream(path) >> std::ws).peek() : 0;
+  if (first == '{' || first == '/') return false;  // an object, or a comment before it
   try {
     const auto reader = open_events(path, {});
     return true;

@@ -17,9 +17,8 @@ namespace {
 
 constexpr const char* kPlace =
     "Datasets are kept in the folder that EVBENCH_DATASETS names, or ~/.cache/evbench/datasets, each in one of its\n"
-    "name; beside it, NAME.download has what was fetched of one that is not complete yet, NAME.fetched.json address, "
-    "size\n"
-    "and SHA-256 of what was fetched and of every file. A source of type recording takes them by name:\n"
+    "name. Beside it, NAME.download has what was fetched of one that is not complete yet; NAME.fetched.json has\n"
+    "address, size and SHA-256 of what was fetched, and of every file. A source of type recording takes them by name:\n"
     "{\"dataset\": \"ecd/dynamic_6dof\"}. Their licences are their own.";
 
 /// "1234.5 MiB" of all its files, as the servers say; "?" where one doesn't.
@@ -78,7 +77,7 @@ void get_dataset(const std::string& name, bool quiet) {
 
 void verify(const std::string& name) {
   const Interruption interruption(name + ": interrupted");
-  const std::string folder = existing_dataset_folder(name, "dataset verify");
+  const std::string folder = existing_dataset_folder(name, name);
   const std::vector<std::string> differences = verify_dataset(folder);
   if (!differences.empty()) throw_together(differences);
   fmt::print("{}: as it was fetched\n", folder);

@@ -300,7 +300,7 @@ void add_file_options(CLI::App& command, EvalArguments& arguments) {
     command
         .add_option(name, order,
                     "Order of the " + whose + "'s quaternion columns; auto: as their names or the format tell")
-        ->check(CLI::IsMember(to_strings(kQuaternionOrderNames)))
+        ->check(one_of(to_strings(kQuaternionOrderNames)))
         ->capture_default_str();
   };
   add_order("--groundtruth_quaternion", arguments.ground_truth_quaternion, "ground truth");
@@ -401,7 +401,7 @@ void add_output_options(CLI::App& command, EvalArguments& arguments) {
   command
       .add_option("--plot_kind", arguments.plot_kind,
                   "What is drawn: trajectory (from three sides), position (x, y, z over time), error (over time)")
-      ->check(CLI::IsMember({"trajectory", "position", "error"}))
+      ->check(one_of({"trajectory", "position", "error"}))
       ->capture_default_str();
   command.add_flag("--no-caption", arguments.no_caption, "The plot without the sentence below it");
   command.add_flag("--force", arguments.force, "Replace files that exist");

@@ -104,7 +104,7 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
   command
       .add_option("--quaternion", arguments.quaternion,
                   "Order of its quaternion's columns; auto: as their names or number tell")
-      ->check(CLI::IsMember(to_strings(kQuaternionOrderNames)))
+      ->check(one_of(to_strings(kQuaternionOrderNames)))
       ->needs(trajectory)
       ->capture_default_str();
   command

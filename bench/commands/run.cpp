@@ -18,6 +18,7 @@
 #include "bench/commands/exit_code.hpp"
 #include "bench/commands/progress_line.hpp"
 #include "bench/commands/run_outputs.hpp"
+#include "bench/commands/run_selection.hpp"
 #include "bench/common_time.hpp"
 #include "bench/plugins.hpp"
 #include "bench/run_folder.hpp"
@@ -261,9 +262,7 @@ std::function<void(const std::string&)> announcement(bool quiet) {
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const std::string& text) {
   command.add_option("--set", overrides, text)
       ->type_name("KEY=VALUE")
-      ->check([](const std::string& value) {
-        return value.find('=') == std::string::npos ? fmt::format("{}: expected KEY=VALUE", value) : std::string();
-      })
+      ->check(has_equals("KEY=VALUE"))
       ->allow_extra_args(false);  // so that the config may stand behind it
 }
 

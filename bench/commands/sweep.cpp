@@ -31,7 +31,7 @@ namespace {
 
 struct SweepArguments {
   std::string file;
-  std::vector<std::string> over, only, overrides;
+  std::vector<std::string> vary, only, overrides;
   ExecutorOptions options;
   std::optional<double> seconds, memory_mib;
   std::optional<int> at_a_time;
@@ -135,7 +135,7 @@ int execute(SweepArguments& arguments, Plugins& plugins) {
   stay_without_threads();
   const Announce announce = announcement(arguments.quiet);
   const LibraryPolicy policy = {.refused_by = arguments.dry_run ? "--dry-run" : "", .announce = announce};
-  Sweep sweep = read_sweep(arguments.file, arguments.overrides, arguments.over, plugins, policy);
+  Sweep sweep = read_sweep(arguments.file, arguments.overrides, arguments.vary, plugins, policy);
   sweep.limits.seconds = arguments.seconds.value_or(sweep.limits.seconds);
   sweep.limits.memory_mib = arguments.memory_mib.value_or(sweep.limits.memory_mib);
   ExecutorOptions& options = arguments.options;
@@ -174,7 +174,7 @@ void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code) {
   command->add_option("file", arguments->file, "JSON: a sweep, or a config (then with --vary)")->required();
   command
       ->add_option(
-          "--vary", arguments->over,
+          "--vary", arguments->vary,
           "Vary the config over these values, another axis: KEY=VALUES, e.g. seed=1..5, KEY=a,b, KEY=0.01..1:7log")
       ->type_name("KEY=VALUES")
       ->allow_extra_args(false);

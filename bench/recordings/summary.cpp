@@ -62,11 +62,7 @@ RecordingSummary summarise(const std::string& path, const StreamOptions& options
     if (s.events == 0) s.start = events.front().t;
     s.end = events.back().t;
     s.events += static_cast<std::int64_t>(events.size());
-    for (const Event& event : events) {
-      s.on += event.on ? 1 : 0;
-      s.max_x = std::max<int>(s.max_x, event.x);
-      s.max_y = std::max<int>(s.max_y, event.y);
-    }
+    s.on += std::ranges::count(events, true, &Event::on);
     s.rates.add(events);
     if (progress) progress(s.events, s.end);
   }
@@ -79,6 +75,8 @@ RecordingSummary summarise(const std::string& path, const StreamOptions& options
     if (doubt) s.info.metadata.emplace_back("remark", *doubt);
   }
   s.info.metadata.insert(s.info.metadata.end(), own.unusable.begin(), own.unusable.end());
+  s.max_x = std::max(stream.max_x(), 0);
+  s.max_y = std::max(stream.max_y(), 0);
   s.faults = stream.faults();
   s.large_loss = stream.large_loss();
   return s;

@@ -45,7 +45,7 @@ void WrappingCounter::jump(std::uint32_t value, std::uint64_t place) {
     --doubted_words_;
   }
   const std::int64_t counter = run_.time & mask_, ahead = (value - counter) & mask_;
-  const std::int64_t longest_gap = std::max(near_, std::min(range_ / 4, run_.time - run_.start));
+  const std::int64_t longest_gap = std::min(range_ / 4, run_.time - run_.start);
   if (value >= counter || ahead <= longest_gap) {
     run_.time += ahead;
     return;

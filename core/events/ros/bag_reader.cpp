@@ -316,15 +316,15 @@ std::vector<std::optional<CameraInfo>> BagReader::first_infos(const std::vector<
   std::set<std::uint32_t> connections;
   for (const Candidate& candidate : candidates) connections.merge(std::set(candidate.topic.connections));
   std::vector<std::optional<CameraInfo>> infos(candidates.size());
-  const auto is_calibrated = [](const std::optional<CameraInfo>& info) { return info && info->K[0] != 0.0; };
+  const auto is_good = [](const std::optional<CameraInfo>& info) { return info && is_calibrated(*info); };
   for_each(connections, [&](const Message& message) {
     for (std::size_t i = 0; i < infos.size(); ++i) {
       const bool its = candidates[i].topic.connections.contains(message.connection);
-      if (its && !is_calibrated(infos[i])) {
+      if (its && !is_good(infos[i])) {
         if (auto info = parse_camera_info(message.data, message.wire)) infos[i] = std::move(info);
       }
     }
-    return !std::ranges::all_of(infos, is_calibrated);
+    return !std::ranges::all_of(infos, is_good);
   });
   return infos;
 }
