@@ -26,7 +26,8 @@ Eigen::Matrix<double, M, N> central_differences(Function f, double h = 1e-3) {
 class RandomTangents {
  public:
   Vector3 direction() {
-    const Vector3 v(normal_(generator_), normal_(generator_), normal_(generator_));
+    Vector3 v;
+    for (double& x : v) x = normal_(generator_);  // one after the other: the order of arguments is the compiler's
     return v.normalized();
   }
   double uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(generator_); }
@@ -41,11 +42,16 @@ class RandomTangents {
     }
   }
   Vector6 tangent(int i) {
-    Vector6 xi;
-    xi << angle(i) * direction(), uniform(0.0, 3.0) * direction();
-    return xi;
+    const double rotation = angle(i);
+    const Vector3 axis = direction();
+    const double distance = uniform(0.0, 3.0);
+    return (Vector6() << rotation * axis, distance * direction()).finished();
   }
-  SE3 pose() { return se3::exp((Vector6() << uniform(0, 3) * direction(), 2.0 * direction()).finished()); }
+  SE3 pose() {
+    const double angle = uniform(0.0, 3.0);
+    const Vector3 axis = direction();
+    return se3::exp((Vector6() << angle * axis, 2.0 * direction()).finished());
+  }
 
  private:
   std::mt19937_64 generator_{42};

@@ -155,34 +155,30 @@ TEST_CASE("Redoing only what changed gives the states of redoing everything, and
   agreement.check_shares(2 * all);
 }
 
-TEST_CASE("One observation linearised close before the camera costs the digits that rounding explains, and no others",
-          "[random]") {
-  constexpr std::uint64_t kSeed = 200'108'650;
-  const EngineOptions options = draw_options(linear_options(), kSeed);
-  RandomSession session(kSeed, {.engine = options, .anchor = false});
-  play(session);
-  session.update();
-  FactorGraph problem = session.linear_problem();
-  Engine fresh(problem, options);
-  fresh.update();
-  const double bound = rounding_bounds(problem).back().position;
-  CHECK(bound > 0.1);
-  CHECK((session.engine().graph().states.back().T.p - fresh.graph().states.back().T.p).norm() < bound);
-
-  int nearest = -1;
-  double information = 0.0;  // beside priors of 1
-  IntervalLinearisation linear;
-  for (int k = 1; k < static_cast<int>(problem.states.size()); ++k) {
-    linearise_interval(problem, k, linear);
-    for (const auto& coupling : linear.couplings) {
-      if (coupling.landmark_landmark.norm() <= information) continue;
-      information = coupling.landmark_landmark.norm();
-      nearest = coupling.landmark;
-    }
+TEST_CASE("One observation linearised close before the camera costs the digits that rounding explains, and no others") {
+  int compared = 0, beyond_usual = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    CAPTURE(seed);
+    const EngineOptions options = draw_options(linear_options(), seed);
+    RandomSession session(seed, {.engine = options, .anchor = false});
+    for (int i = 0; i < 30; ++i) session.operate();
+    session.update();
+    const int close = session.add_close_landmark(1e-4);
+    session.update();
+    if (session.undetermined()) continue;
+    ++compared;
+    FactorGraph problem = session.linear_problem();
+    Engine fresh(problem, options);
+    fresh.update();
+    const double difference = (session.engine().graph().states.back().T.p - fresh.graph().states.back().T.p).norm();
+    const double bound = rounding_bounds(problem).back().position;
+    CHECK(difference < bound);
+    if (difference > 1e-7) ++beyond_usual;
+    problem.remove_landmark(close);
+    CHECK(rounding_bounds(problem).back().position < 1e-3 * bound);
   }
-  CHECK(information > 1e12);
-  problem.remove_landmark(nearest);
-  CHECK(rounding_bounds(problem).back().position < 1e-3 * bound);
+  CHECK(compared > 20);
+  CHECK(beyond_usual > 0);
 }
 
 TEST_CASE("With a lag the states are those of full history as long as the problem is linear", "[random]") {

@@ -169,6 +169,13 @@ void RandomSession::add_landmark() {
   insert_landmark(T * q, guess, chance(0.9) ? LandmarkPrior{guess, 1.0} : LandmarkPrior{});
 }
 
+int RandomSession::add_close_landmark(double depth) {
+  const Vector3 guess = state_guesses_.back().T * Vector3(0.0, 0.0, depth);
+  const int j = insert_landmark(true_pose(newest()) * Vector3(0.1, -0.2, 3.0), guess, {guess, 1.0});
+  CHECK(give(j, *measure(j, newest())));
+  return j;
+}
+
 /// None when it is not before the camera.
 std::optional<Observation> RandomSession::measure(int landmark, double t) {
   const Vector3 q = true_pose(t).inverse() * truth_[index(landmark)];

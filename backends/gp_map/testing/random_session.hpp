@@ -31,6 +31,8 @@ class RandomSession {
   void operate();
   void update();
   void check_covariances();
+  /// One that the newest state observes and that is guessed, and so linearised, this deep [m] before it. Its number.
+  int add_close_landmark(double depth);
 
   Random& random() { return random_; }
   Engine& engine() { return engine_; }
