@@ -3,7 +3,7 @@
 #   ./test.sh                 what every commit must pass: the fuzz targets for some seconds each, all tests but the long ones
 #   ./test.sh STAGE...        fast       those that take less than half a second, in a minute
 #                             long       those that take longer than seven seconds, and 100,000 random sequences, 100 kills
-#                             sanitize   all but the long ones with AddressSanitizer and UndefinedBehaviorSanitizer
+#                             sanitize   all but the long ones and those of the installation with ASan and UBSan
 #                             thread     what runs in several threads with ThreadSanitizer
 #                             release, debug, clang, fuzz      all but the long ones of that preset
 # Tests of real data need EVBENCH_DATA and EVBENCH_PROBLEMS (README.md); without them they say that they are skipped.
