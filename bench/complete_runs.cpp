@@ -48,7 +48,7 @@ std::string damage_of(const std::string& folder, const std::string& key) {
     return fmt::format("{}/job.json: is not that of the job; expected what {} stands for", folder, key);
   }
   for (const char* name :
-       {"config.json", "manifest.json", "final.tum", "online.tum", "told.txt", "map.ply", "log.txt"}) {
+       {"config.json", "manifest.json", "final.tum", "causal.tum", "causal_poses.txt", "map.ply", "log.txt"}) {
     if (!fs::is_regular_file(folder + "/" + name, error)) return fmt::format("{}/{}: is missing", folder, name);
   }
   try {

@@ -151,7 +151,7 @@ TEST_CASE("The trajectory has seen an event within a tenth of a second, as long 
     CHECK(delay->max <= 0.1);
     // Nor does it wait with what it tells: from the first pose on there is a newer one at all times.
     double before = told.front().t;
-    for (const OnlinePose& pose : told) {
+    for (const CausalPose& pose : told) {
       if (pose.t <= before) continue;
       CHECK(pose.t - before < 0.1);
       before = pose.t;

@@ -49,7 +49,7 @@ TEST_CASE("The example back-end in Python estimates the motion, and the same byt
 
   REQUIRE(run_example(again, "python_backend", shorter + " --set pipeline.mode=concurrent").exit_code == 0);
   std::map<std::string, Json> concurrent = metrics(again, "python_backend");
-  for (const char* const file : {"/final.tum", "/online.tum", "/map.ply"}) {
+  for (const char* const file : {"/final.tum", "/causal.tum", "/map.ply"}) {
     CHECK(read_file(runs["Python"].at("folder").get<std::string>() + file) ==
           read_file(concurrent["Python"].at("folder").get<std::string>() + file));
   }

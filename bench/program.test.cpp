@@ -151,7 +151,7 @@ TEST_CASE("Runs of a config that are done at a time are those that are done in t
     INFO(key);
     const std::string one = folder.file("one/short/" + key), two = folder.file("two/short/" + key);
     CHECK(names_in(one) == names_in(two));
-    for (const char* file : {"/final.tum", "/online.tum", "/told.txt", "/map.ply", "/tracks.txt", "/job.json"}) {
+    for (const char* file : {"/final.tum", "/causal.tum", "/causal_poses.txt", "/map.ply", "/tracks.txt", "/job.json"}) {
       CHECK(read_file(one + file) == read_file(two + file));
     }
   }

@@ -97,7 +97,7 @@ RunStatus status_of(const Execution& execution) {
   status.complete = execution.complete;
   for (const StillSpan& span : result.still) status.still.push_back({span.from, span.to});
   for (const Piece& piece : result.pieces) {
-    const PoseTrajectory& poses = piece.final_trajectory.empty() ? piece.online_trajectory : piece.final_trajectory;
+    const PoseTrajectory& poses = piece.final_trajectory.empty() ? piece.causal_trajectory : piece.final_trajectory;
     status.pieces.push_back({poses.empty() ? 0.0 : poses.start(), poses.empty() ? 0.0 : poses.end(),
                              piece.final_trajectory.size(), piece.map.size()});
   }
@@ -133,8 +133,8 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
 
 void write_piece(const AtomicFolder& folder, const Piece& piece, const std::string& suffix) {
   folder.write("final" + suffix + ".tum", format_tum(piece.final_trajectory));
-  folder.write("online" + suffix + ".tum", format_tum(piece.online_trajectory));
-  folder.write("told" + suffix + ".txt", format_online_poses(piece.told));
+  folder.write("causal" + suffix + ".tum", format_tum(piece.causal_trajectory));
+  folder.write("causal_poses" + suffix + ".txt", format_causal_poses(piece.told));
   if (!piece.relative.empty()) folder.write("covariance" + suffix + ".txt", format_relative_poses(piece.relative));
   folder.write("map" + suffix + ".ply", format_map(piece.map));
 }

@@ -28,8 +28,8 @@ class EmptyFolders {
 ///   job.json         what determines the trajectory: its SHA-256 begins with the key's digits
 ///   manifest.json    program, host, when the run was done, seed, SHA-256 of config.json, of each input and of the
 ///                    tracks; how long the files are that stay as they are
-///   final.tum, online.tum, map.ply   the estimate: after the fact, causal, landmarks
-///   told.txt         every pose told while the data came in, with the time at which it was known
+///   final.tum, causal.tum, map.ply   the estimate: after the fact, causal, landmarks
+///   causal_poses.txt         every pose told while the data came in, with the time at which it was known
 ///   covariance.txt   relative poses with the covariances that the back-end gave, where it has them
 ///   groundtruth.tum  the source's, in the time range of the run (and 1 s around it), where there is one
 ///   metrics.json, status.json        eval/metrics.md
@@ -38,7 +38,7 @@ class EmptyFolders {
 ///   learnt.csv       what the back-end has learnt of its parameters by then, where it does
 ///   log.txt
 ///
-/// Where the estimate is in pieces, these are of the longest one; the others are final.piece2.tum, online.piece2.tum,
+/// Where the estimate is in pieces, these are of the longest one; the others are final.piece2.tum, causal.piece2.tum,
 /// and so on, numbered in time order from 1 (status.json lists all). The folder appears complete or not at all; an
 /// older run of the same key is replaced.
 class RunFolder {

@@ -20,7 +20,7 @@ using Catch::Matchers::ContainsSubstring;
 namespace {
 
 const std::set<std::string> kFiles = {"config.json",  "job.json",   "manifest.json",   "final.tum",
-                                      "online.tum",   "told.txt",   "groundtruth.tum", "map.ply",
+                                      "causal.tum",   "causal_poses.txt",   "groundtruth.tum", "map.ply",
                                       "metrics.json", "timing.csv", "log.txt",         "status.json"};
 
 /// The runs of a config by label.
@@ -98,7 +98,7 @@ TEST_CASE("The same config twice gives the same bytes, but for measured times", 
     INFO(label);
     const std::string& other = runs.second.at(label);
     CHECK(std::filesystem::path(path).filename() == std::filesystem::path(other).filename());
-    for (const char* name : {"config.json", "job.json", "final.tum", "online.tum", "told.txt", "groundtruth.tum",
+    for (const char* name : {"config.json", "job.json", "final.tum", "causal.tum", "causal_poses.txt", "groundtruth.tum",
                              "map.ply", "status.json"}) {
       CHECK(read_file(path + "/" + name) == read_file(other + "/" + name));
     }
@@ -108,7 +108,7 @@ TEST_CASE("The same config twice gives the same bytes, but for measured times", 
     const Json a = json_file(path, "metrics.json"), b = json_file(other, "metrics.json");
     CHECK(a.at("final").at("ate").at("trans_m").at("rmse").is_number());
     CHECK(dump_json(a.at("final")) == dump_json(b.at("final")));
-    CHECK(dump_json(a.at("online")) == dump_json(b.at("online")));
+    CHECK(dump_json(a.at("causal")) == dump_json(b.at("causal")));
   }
 }
 
@@ -116,12 +116,12 @@ TEST_CASE("A run is scored for what was known at once and after the same wait, a
   const TwoRuns& runs = two_runs();
   for (const auto& [label, path] : runs.first) {
     INFO(label);
-    const Json metrics = json_file(path, "metrics.json"), online = metrics.at("online");
+    const Json metrics = json_file(path, "metrics.json"), causal = metrics.at("causal");
     const auto ate = [](const Json& scores) { return scores.at("ate").at("trans_m").at("rmse").get<double>(); };
-    CHECK(online.at("zero_latency").at("latency_s") == 0.0);
-    CHECK(online.at("equal_latency").at("latency_s") == 0.2);
-    CHECK(ate(online.at("equal_latency")) < ate(online.at("zero_latency")));
-    CHECK(online.at("zero_latency").at("pairs") > 300);  // of ground truth at 200 Hz
+    CHECK(causal.at("zero_latency").at("latency_s") == 0.0);
+    CHECK(causal.at("equal_latency").at("latency_s") == 0.2);
+    CHECK(ate(causal.at("equal_latency")) < ate(causal.at("zero_latency")));
+    CHECK(causal.at("zero_latency").at("pairs") > 300);  // of ground truth at 200 Hz
     CHECK(metrics.at("covariance").is_null() == (label != "asynchronous"));
   }
   const Json covariance = json_file(runs.first.at("asynchronous"), "metrics.json").at("covariance");
@@ -134,14 +134,14 @@ TEST_CASE("A run is scored for what was known at once and after the same wait, a
     CHECK(covariance.at(kind).at("within_3_sigma") > 0.8);
   }
   const std::string folder = "'" + runs.folder.file("first") + "'";
-  const Outcome table = testing::evbench(runs.folder, "table --online " + folder);
+  const Outcome table = testing::evbench(runs.folder, "table --causal " + folder);
   CHECK_THAT(table.out, ContainsSubstring("ATE at zero latency [m]") && ContainsSubstring("ATE at equal latency [m]") &&
                             ContainsSubstring("equal latency 0.2 s"));
   CHECK_THAT(testing::evbench(runs.folder, "table --metrics covariance.over_1s.nees,covariance.newest.within_2_sigma," +
-                                               std::string("online.zero_latency.ate.trans_m.rmse ") + folder)
+                                               std::string("causal.zero_latency.ate.trans_m.rmse ") + folder)
                  .out,
              ContainsSubstring("NEES over 1 s") && ContainsSubstring("covariance.newest.within_2_sigma") &&
-                 ContainsSubstring("online ATE at zero latency [m]"));
+                 ContainsSubstring("causal ATE at zero latency [m]"));
 }
 
 TEST_CASE("A table scores its runs over the time that all of them cover, too", "[slow]") {
@@ -168,11 +168,11 @@ TEST_CASE("A table scores its runs over the time that all of them cover, too", "
     CHECK(record.common_scores.at("coverage") > 0.99);
   }
   score_common_time(records, true);
-  const double begin = std::max(span(records[0].online_scores).first, span(records[1].online_scores).first);
+  const double begin = std::max(span(records[0].causal_scores).first, span(records[1].causal_scores).first);
   for (const RunRecord& record : records) {
     const Json& at_latency = record.common_scores.at("equal_latency");
     CHECK(at_latency.at("latency_s") == 0.2);
-    CHECK(at_latency.at("pairs") < record.online_scores.at("equal_latency").at("pairs"));
+    CHECK(at_latency.at("pairs") < record.causal_scores.at("equal_latency").at("pairs"));
     CHECK(span(at_latency).first >= begin);
   }
   records[0].folder = "/nowhere";
@@ -215,14 +215,14 @@ TEST_CASE("Metrics of a run have the documented keys, the same as those of evben
     CHECK(times.at("max") > 0.0);
   }
   CHECK(metrics.at("status") == json_file(path, "status.json"));
-  for (const char* trajectory : {"final", "online"}) {
+  for (const char* trajectory : {"final", "causal"}) {
     for (const char* key : {"/ate/trans_m/rmse", "/ate/rot_deg/rmse", "/ate/trans_percent", "/rpe/trans_m/rmse",
                             "/rpe/rot_deg/median", "/rpe/pairs", "/coverage", "/pairs", "/scale", "/path_m"}) {
       INFO(trajectory << key);
       CHECK(metrics.at(trajectory).at(Json::json_pointer(key)).is_number());
     }
   }
-  const std::string files = "'" + path + "/final.tum' '" + path + "/online.tum'";
+  const std::string files = "'" + path + "/final.tum' '" + path + "/causal.tum'";
   REQUIRE(testing::evbench(runs.folder, "eval " + files + " --json eval.json -as").exit_code == 0);
   const Json eval = parse_json(read_file(runs.folder.file("eval.json")));
   CHECK(keys_of(eval.at("final")) == keys_of(metrics.at("final")));
@@ -279,7 +279,7 @@ TEST_CASE("Of an estimate in pieces the longest one is scored, and the others li
   for (const auto& [from, to] : {std::pair{0.1, 0.6}, {0.7, 2.9}, {2.95, 3.0}}) {
     Piece piece;
     piece.final_trajectory = source->ground_truth().cut(from, to);
-    piece.online_trajectory = source->ground_truth().cut(from + 0.01, to);
+    piece.causal_trajectory = source->ground_truth().cut(from + 0.01, to);
     piece.map.resize(3);
     execution.result.pieces.push_back(piece);
   }
@@ -291,8 +291,8 @@ TEST_CASE("Of an estimate in pieces the longest one is scored, and the others li
     record = run.write(config, identity_of(config), *source, ground_truth_tum(*source), execution);
   }
   std::set<std::string> expected = kFiles;
-  for (const char* name : {"final.piece1.tum", "online.piece1.tum", "told.piece1.txt", "map.piece1.ply",
-                           "final.piece3.tum", "online.piece3.tum", "told.piece3.txt", "map.piece3.ply"}) {
+  for (const char* name : {"final.piece1.tum", "causal.piece1.tum", "told.piece1.txt", "map.piece1.ply",
+                           "final.piece3.tum", "causal.piece3.tum", "told.piece3.txt", "map.piece3.ply"}) {
     expected.insert(name);
   }
   const std::string made = folder.file("out/short/mine");

@@ -61,7 +61,7 @@ class Comparison {
   Comparison(std::span<const RunRecord> runs, const ComparisonOptions& options)
       : options_(options),
         csv_(options.format == TableFormat::csv),
-        numbers_(numbers_of(runs, options.online)),
+        numbers_(numbers_of(runs, options.causal)),
         data_(number_data(numbers_)),
         protocols_(collect_protocols(numbers_)),
         methods_(methods_of(numbers_, run_columns(runs))) {

@@ -10,7 +10,7 @@ namespace evbench {
 
 struct ComparisonOptions {
   TableFormat format = TableFormat::text;  ///< not long
-  bool online = false;                     ///< as in TableOptions
+  bool causal = false;                     ///< as in TableOptions
   std::vector<std::string> metrics = {};   ///< of which lower or higher is better; empty: ATE, RPE, real-time factor
   TableLayout layout = {};                 ///< as in TableOptions
   std::string base = "";                   ///< what the others are compared with: a method's name; empty: the first

@@ -52,7 +52,7 @@ TEST_CASE("Folders without runs and damaged metrics are errors with the place") 
   CHECK_THAT(message("{\"final\": "), ContainsSubstring("key/metrics.json: is not JSON"));
   CHECK_THAT(message("[1, 2]"), ContainsSubstring("expected a JSON object"));
   CHECK_THAT(message("{\"label\": \"a\"}"), ContainsSubstring("\"final\" is missing"));
-  CHECK_THAT(message("{\"final\": null, \"online\": null}"), ContainsSubstring("\"experiment\" is missing"));
+  CHECK_THAT(message("{\"final\": null, \"causal\": null}"), ContainsSubstring("\"experiment\" is missing"));
 }
 
 TEST_CASE("Runs of a sweep stand in its order, with their places on its axes, those not run yet among them") {

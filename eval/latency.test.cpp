@@ -23,7 +23,7 @@ double x_at(const PoseTrajectory& trajectory, double t) { return trajectory.pose
 
 TEST_CASE("At zero latency a pose counts from when it was known, and is predicted by constant velocity until then") {
   // Frames of 0.2 s: a pose stands in the middle and is known 0.1 s later. From 1 s on the camera rests.
-  std::vector<OnlinePose> told;
+  std::vector<CausalPose> told;
   for (int i = 0; i < 10; ++i) {
     const double t = 0.1 + 0.2 * i;
     told.push_back({{t, straight(std::min(t, 1.0))}, t + 0.1});
@@ -38,7 +38,7 @@ TEST_CASE("At zero latency a pose counts from when it was known, and is predicte
 }
 
 TEST_CASE("A latency lets later poses and better estimates of older times count, not sooner than they were known") {
-  std::vector<OnlinePose> told;
+  std::vector<CausalPose> told;
   for (int i = 0; i <= 100; ++i) {
     const double t = 0.02 * i;
     told.push_back({{t, {Eigen::Quaterniond::Identity(), {0.0, 1.0, 0.0}}}, t});  // rough
@@ -52,7 +52,7 @@ TEST_CASE("A latency lets later poses and better estimates of older times count,
 }
 
 TEST_CASE("With enough latency nothing is predicted, and interpolation is that of any trajectory") {
-  std::vector<OnlinePose> told;
+  std::vector<CausalPose> told;
   std::vector<StampedPose> poses;
   for (double t = 0.0; t < 2.0; t += 0.05) {
     told.push_back({{t, wavy_pose(t)}, t + 0.03});
@@ -67,14 +67,14 @@ TEST_CASE("With enough latency nothing is predicted, and interpolation is that o
 
 TEST_CASE("Predictions use the back-end's own velocity where it tells one, and end after a second") {
   const Vector6 velocity = (Vector6() << 0, 0, 0, 3, 0, 0).finished();
-  const std::vector<OnlinePose> told = {{{0.0, straight(0.0)}, 0.0}, {{0.5, straight(0.5)}, 0.5, velocity}};
+  const std::vector<CausalPose> told = {{{0.0, straight(0.0)}, 0.0}, {{0.5, straight(0.5)}, 0.5, velocity}};
   const PoseTrajectory poses = estimates_at_latency(told, grid(0.0, 4.0), 0.0);
   CHECK(x_at(poses, 0.4) == Approx(0.0));
   CHECK(x_at(poses, 1.0) == Approx(0.5 + 3.0 * 0.5));
   CHECK(poses.end() == Approx(1.5));
   CHECK(estimates_at_latency({}, grid(0.0, 1.0), 0.0).empty());
   // Poses of observations that follow one another closely say nothing of a velocity.
-  const std::vector<OnlinePose> dense = {
+  const std::vector<CausalPose> dense = {
       {{0.0, straight(0.0)}, 0.0}, {{0.1, straight(0.1)}, 0.1}, {{0.1 + 1e-6, straight(0.11)}, 0.1 + 1e-6}};
   CHECK(x_at(estimates_at_latency(dense, grid(0.0, 0.5), 0.0), 0.5) == Approx(0.11 + 0.4 * 1.1).epsilon(1e-3));
 }

@@ -67,7 +67,7 @@ const std::vector<Metric>& known_metrics() {
 }
 
 Metric metric_of(const std::string& key) {
-  for (const std::string of : {"final", "online"}) {  // the scores of the trajectory that the table isn't of
+  for (const std::string of : {"final", "causal"}) {  // the scores of the trajectory that the table isn't of
     if (!key.starts_with(of + ".")) continue;
     Metric metric = metric_of(key.substr(of.size() + 1));
     metric.header = metric.header == metric.key ? key : of + " " + metric.header;

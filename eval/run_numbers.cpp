@@ -44,16 +44,16 @@ std::vector<std::string> suggested_keys(const std::vector<RunNumbers>& runs) {
   return keys;
 }
 
-constexpr const char* kParts[] = {"final", "online", "covariance", "common"};
+constexpr const char* kParts[] = {"final", "causal", "covariance", "common"};
 
 }  // namespace
 
-RunNumbers::RunNumbers(const RunRecord& run, bool online)
-    : run_(&run), online_(online), others_(to_json_without_scores(run)) {}
+RunNumbers::RunNumbers(const RunRecord& run, bool causal)
+    : run_(&run), online_(causal), others_(to_json_without_scores(run)) {}
 
 const Json* RunNumbers::part(const std::string& name) const {
   if (name == "final") return &run_->final_scores;
-  if (name == "online") return &run_->online_scores;
+  if (name == "causal") return &run_->causal_scores;
   if (name == "covariance") return &run_->covariance;
   return name == "common" ? &run_->common_scores : nullptr;
 }
@@ -68,7 +68,7 @@ std::optional<double> RunNumbers::at(const std::string& key) const {
 }
 
 bool RunNumbers::succeeded() const {
-  const std::string& unscored = online_ ? run_->online_unscored : run_->final_unscored;
+  const std::string& unscored = online_ ? run_->causal_unscored : run_->final_unscored;
   return run_->competes() && (!scores().is_null() || unscored == kNoGroundTruth);
 }
 
@@ -91,9 +91,9 @@ std::set<std::string> RunNumbers::keys() const {
   return keys;
 }
 
-std::vector<RunNumbers> numbers_of(std::span<const RunRecord> runs, bool online) {
+std::vector<RunNumbers> numbers_of(std::span<const RunRecord> runs, bool causal) {
   std::vector<RunNumbers> numbers;
-  for (const RunRecord& run : runs) numbers.emplace_back(run, online);
+  for (const RunRecord& run : runs) numbers.emplace_back(run, causal);
   return numbers;
 }
 

@@ -13,15 +13,15 @@
 
 namespace evbench {
 
-/// The numbers of a run, of its final or its online trajectory. Refers to the record, which must outlive it.
+/// The numbers of a run, of its final or its causal trajectory. Refers to the record, which must outlive it.
 class RunNumbers {
  public:
-  RunNumbers(const RunRecord& run, bool online);
+  RunNumbers(const RunRecord& run, bool causal);
 
   const RunRecord& run() const { return *run_; }
 
   /// null where the run has none.
-  const Json& scores() const { return online_ ? run_->online_scores : run_->final_scores; }
+  const Json& scores() const { return online_ ? run_->causal_scores : run_->final_scores; }
 
   /// The number at a path like "ate.trans_m.rmse" of the scores, or else of all that metrics.json has, and of "common",
   /// if there is one.
@@ -48,7 +48,7 @@ class RunNumbers {
 };
 
 /// Of all runs.
-std::vector<RunNumbers> numbers_of(std::span<const RunRecord> runs, bool online);
+std::vector<RunNumbers> numbers_of(std::span<const RunRecord> runs, bool causal);
 
 /// The paths of all that any of the runs has.
 std::vector<std::string> keys_of(const std::vector<RunNumbers>& runs);

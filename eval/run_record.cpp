@@ -98,11 +98,11 @@ Json metrics_json(const RunRecord& record, bool scores) {
   json["position"] = record.position ? Json(*record.position) : Json();
   if (scores) {
     json["final"] = record.final_scores;
-    json["online"] = record.online_scores;
+    json["causal"] = record.causal_scores;
     json["covariance"] = record.covariance;
   }
   if (!record.final_unscored.empty()) json["final_unscored"] = record.final_unscored;
-  if (!record.online_unscored.empty()) json["online_unscored"] = record.online_unscored;
+  if (!record.causal_unscored.empty()) json["causal_unscored"] = record.causal_unscored;
   json["range_s"] = record.range ? Json{record.range->from, record.range->to} : Json();
   json["runtime_s"] = or_null(record.runtime_s);
   json["data_s"] = or_null(record.data_s);
@@ -149,7 +149,7 @@ Json to_json(const RunRecord& record) { return metrics_json(record, true); }
 RunRecord read_record(const Json& metrics, const std::string& place) {
   const RecordReader json(metrics, place);
   RunRecord record;
-  for (const auto& [key, scores] : {std::pair{"final", &record.final_scores}, {"online", &record.online_scores}}) {
+  for (const auto& [key, scores] : {std::pair{"final", &record.final_scores}, {"causal", &record.causal_scores}}) {
     if (!metrics.contains(key) || !(json.at(key).is_object() || json.at(key).is_null())) {
       throw InputError(fmt::format("{}: \"{}\" is missing; expected scores or null", place, key));
     }
@@ -162,7 +162,7 @@ RunRecord read_record(const Json& metrics, const std::string& place) {
   record.key = json.text_or("key", "");
   record.position = json.count_or_null("position");
   record.final_unscored = json.text_or("final_unscored", "");
-  record.online_unscored = json.text_or("online_unscored", "");
+  record.causal_unscored = json.text_or("causal_unscored", "");
   record.range = read_range(json);
   record.runtime_s = json.number_or_null("runtime_s");
   record.data_s = json.number_or_null("data_s");

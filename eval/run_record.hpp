@@ -66,10 +66,10 @@ struct RunRecord {
   RunAxes axes;                           ///< its place in a sweep, where it is of one; not in the file
   bool done = true;                       ///< false: a sweep has planned it, and it was not run; not in the file
   std::string damage;                     ///< of a sweep's run that can't be read, done then being false: why
-  Json final_scores, online_scores;       ///< as to_json(Scores) gives them; null: none
+  Json final_scores, causal_scores;       ///< as to_json(Scores) gives them; null: none
   Json covariance;                        ///< {kind: as to_json(CovarianceScores) gives it}; null: none
   Json common_scores;                     ///< over the time that all runs of a table cover; not in the file
-  std::string final_unscored, online_unscored;  ///< why there are no scores; kNoGroundTruth: nobody could have any
+  std::string final_unscored, causal_unscored;  ///< why there are no scores; kNoGroundTruth: nobody could have any
   std::optional<TimeRange> range;               ///< [s] of the sequence that was run: nothing outside is scored
   std::optional<double> runtime_s;              ///< processing time: front-end and back-end
   std::optional<double> data_s;                 ///< time of the sequence that was given
@@ -84,13 +84,13 @@ struct RunRecord {
 
 /// The contents of metrics.json and of status.json. The same record gives the same bytes.
 Json to_json(const RunRecord& record);
-/// metrics.json without the scores, "final", "online" and "covariance", which are most of it.
+/// metrics.json without the scores, "final", "causal" and "covariance", which are most of it.
 Json to_json_without_scores(const RunRecord& record);
 Json to_json(const RunStatus& status);
 
 /// A record from the contents of metrics.json; keys that are not known are passed over, `place` begins messages. What
 /// is written again has the same bytes. Throws InputError for a key that is missing or of a wrong type, naming it:
-/// experiment, label, final and online must be there, the others may be missing or null.
+/// experiment, label, final and causal must be there, the others may be missing or null.
 RunRecord read_record(const Json& metrics, const std::string& place);
 
 /// A run's folder: its metrics.json, and the settings in its config.json. Throws InputError, likewise for a file that

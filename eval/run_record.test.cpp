@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "core/data/online_poses.hpp"
+#include "core/data/causal_poses.hpp"
 #include "core/data/relative_poses.hpp"
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
@@ -27,7 +27,7 @@ RunRecord full_record() {
   record.seed = 18446744073709551615U;
   record.key = "mine-0123456789";
   record.final_unscored = "no ground truth";
-  record.online_scores = {{"pairs", 3}, {"coverage", 1.0 / 3.0}};
+  record.causal_scores = {{"pairs", 3}, {"coverage", 1.0 / 3.0}};
   record.range = {0.1, 30.0};
   record.runtime_s = 1.0 / 7.0;
   record.data_s = 29.9;
@@ -87,7 +87,7 @@ TEST_CASE("Times of steps are told in milliseconds, by median, 99th percentile a
 
 TEST_CASE("What an older version did not write yet is not known, and keys of a newer one are passed over") {
   const RunRecord read = read_record(
-      {{"experiment", "e"}, {"label", "l"}, {"final", nullptr}, {"online", nullptr}, {"brand_new", 1}}, "m.json");
+      {{"experiment", "e"}, {"label", "l"}, {"final", nullptr}, {"causal", nullptr}, {"brand_new", 1}}, "m.json");
   CHECK_FALSE(read.seed);
   CHECK(read.key.empty());
   CHECK_FALSE(read.times);
@@ -121,7 +121,7 @@ TEST_CASE("A damaged metrics.json is refused with the file and the key") {
 TEST_CASE("A run's folder is scored from its files, within the run's range, and says why where it can't be") {
   const TemporaryFolder folder;
   const PoseTrajectory truth = sample(wavy_pose, 400, 0.01);
-  folder.write("online.tum", "");
+  folder.write("causal.tum", "");
   write_file(folder.file("final.tum"), format_tum(disturbed(truth)));
   RunRecord record = full_record();
   record.range = {1.0, 3.0};
@@ -133,8 +133,8 @@ TEST_CASE("A run's folder is scored from its files, within the run's range, and 
   CHECK(record.final_unscored.empty());
   CHECK(record.final_scores.at("association").at("time_range_s") == Json{1.0, 3.0});
   CHECK(record.final_scores.at("pairs") == 201);
-  CHECK(record.online_scores.is_null());
-  CHECK(record.online_unscored == "no trajectory: 2 tracks, 15 needed");
+  CHECK(record.causal_scores.is_null());
+  CHECK(record.causal_unscored == "no trajectory: 2 tracks, 15 needed");
 
   score_run(folder.path(), {.alignment = "se3", .time_range = {2.0, 9.0}}, record);
   CHECK(record.final_scores.at("alignment").at("method") == "se3");
@@ -153,34 +153,34 @@ TEST_CASE("A run is scored at a latency by what it told, and by its covariances,
   const PoseTrajectory truth = sample(wavy_pose, 400, 0.01);
   write_file(folder.file("groundtruth.tum"), format_tum(truth));
   write_file(folder.file("final.tum"), format_tum(truth));
-  write_file(folder.file("online.tum"), format_tum(truth));
+  write_file(folder.file("causal.tum"), format_tum(truth));
   RunRecord record = full_record();
   record.range = {0.0, 4.0};
   score_run(folder.path(), {.alignment = "none"}, record);
-  CHECK_FALSE(record.online_scores.contains("zero_latency"));
+  CHECK_FALSE(record.causal_scores.contains("zero_latency"));
   CHECK(record.covariance.is_null());
 
-  std::vector<OnlinePose> told;  // frames of 0.1 s, known when they end
+  std::vector<CausalPose> told;  // frames of 0.1 s, known when they end
   for (int i = 0; i < 39; ++i) told.push_back({{0.05 + 0.1 * i, wavy_pose(0.05 + 0.1 * i)}, 0.1 + 0.1 * i});
-  write_file(folder.file("told.txt"), format_online_poses(told));
+  write_file(folder.file("causal_poses.txt"), format_causal_poses(told));
   write_file(folder.file("covariance.txt"),
              format_relative_poses(std::vector<RelativePose>{
                  {"over_1s", 1.0, 2.0, wavy_pose(1.0).inverse() * wavy_pose(2.0), Matrix6::Identity()}}));
   score_run(folder.path(), {.alignment = "none", .latency = 0.3}, record);
   const auto ate = [&](const char* latency) {
-    return record.online_scores.at(latency).at("ate").at("trans_m").at("rmse").get<double>();
+    return record.causal_scores.at(latency).at("ate").at("trans_m").at("rmse").get<double>();
   };
-  CHECK(record.online_scores.at("delay_s").at("median").get<double>() == Approx(0.05));
-  CHECK(record.online_scores.at("delay_s").at("max").get<double>() == Approx(0.05));
+  CHECK(record.causal_scores.at("delay_s").at("median").get<double>() == Approx(0.05));
+  CHECK(record.causal_scores.at("delay_s").at("max").get<double>() == Approx(0.05));
   CHECK(ate("zero_latency") > 0.005);
   CHECK(ate("equal_latency") < 0.3 * ate("zero_latency"));
-  CHECK(record.online_scores.at("equal_latency").at("latency_s") == 0.3);
+  CHECK(record.causal_scores.at("equal_latency").at("latency_s") == 0.3);
   CHECK(record.covariance.at("over_1s").at("n") == 1);
   CHECK(record.covariance.at("over_1s").at("within_1_sigma") == 1.0);
   CHECK(dump_json(to_json(read_record(to_json(record), "m"))) == dump_json(to_json(record)));
 
-  folder.write("told.txt", "1 2 3\n");
-  CHECK_THROWS_WITH(score_run(folder.path(), {}, record), ContainsSubstring("told.txt:1: has 3 columns"));
+  folder.write("causal_poses.txt", "1 2 3\n");
+  CHECK_THROWS_WITH(score_run(folder.path(), {}, record), ContainsSubstring("causal_poses.txt:1: has 3 columns"));
 }
 
 }  // namespace evbench

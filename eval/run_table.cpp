@@ -151,7 +151,7 @@ TextTable run_table(const TableRuns& runs, const TableOptions& options) {
     if (csv) add_column(table, "reason", false, cells_of(runs, status_reason));
   }
   if (csv) {
-    const char* trajectory = options.online ? "online" : "final";
+    const char* trajectory = options.causal ? "causal" : "final";
     add_column(table, "trajectory", false, std::vector<Cell>(runs.runs.size(), {trajectory}));
   }
   if (csv || runs.protocols.texts.size() > 1) {

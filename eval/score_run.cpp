@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/data/online_poses.hpp"
+#include "core/data/causal_poses.hpp"
 #include "core/data/tum.hpp"
 #include "eval/covariance_scores.hpp"
 #include "eval/latency.hpp"
@@ -29,10 +29,10 @@ struct RunTrajectories {
   PoseTrajectory ground_truth, estimate;  ///< each empty where there is none
 };
 
-RunTrajectories read_trajectories(const std::string& folder, bool online) {
+RunTrajectories read_trajectories(const std::string& folder, bool causal) {
   const std::string truth = folder + "/groundtruth.tum";
   return {std::filesystem::exists(truth) ? read_tum(truth) : PoseTrajectory(),
-          read_estimate(folder + (online ? "/online.tum" : "/final.tum"))};
+          read_estimate(folder + (causal ? "/causal.tum" : "/final.tum"))};
 }
 
 /// Throws InputError with the reason where there are no scores.
@@ -53,7 +53,7 @@ Scores compare(const PoseTrajectory& ground_truth, const PoseTrajectory& estimat
 }
 
 /// The scores of what the back-end would have given for each ground-truth pose's time, `latency` later.
-Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<OnlinePose>& told, double latency,
+Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<CausalPose>& told, double latency,
                        const ScoreOptions& options, const RunRecord& record) {
   std::vector<double> times;
   for (const StampedPose& pose : ground_truth.poses()) times.push_back(pose.t - options.time_offset);
@@ -66,12 +66,12 @@ Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<Onl
   }
 }
 
-/// To the scores of the online estimate those at zero and at equal latency, where it was told what was known when.
+/// To the scores of the causal estimate those at zero and at equal latency, where it was told what was known when.
 void add_latencies(const std::string& folder, const PoseTrajectory& ground_truth, const ScoreOptions& options,
                    const RunRecord& record, Json& scores) {
-  const std::string path = folder + "/told.txt";
+  const std::string path = folder + "/causal_poses.txt";
   if (!exists(path)) return;
-  const std::vector<OnlinePose> told = read_online_poses(path);
+  const std::vector<CausalPose> told = read_causal_poses(path);
   if (const std::optional<Delay> delay = delay_of(told)) {
     scores["delay_s"] = {{"median", delay->median}, {"p99", delay->p99}, {"max", delay->max}};
   }
@@ -100,8 +100,8 @@ PoseTrajectory read_estimate(const std::string& path) {
 }
 
 void score_run(const std::string& folder, const ScoreOptions& options, RunRecord& record) {
-  const auto set = [&](bool online, Json& scores, std::string& unscored) {
-    const RunTrajectories trajectories = read_trajectories(folder, online);
+  const auto set = [&](bool causal, Json& scores, std::string& unscored) {
+    const RunTrajectories trajectories = read_trajectories(folder, causal);
     scores = nullptr;
     unscored.clear();
     try {
@@ -110,10 +110,10 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
       unscored = error.what();
       return;
     }
-    if (online) add_latencies(folder, trajectories.ground_truth, options, record, scores);
+    if (causal) add_latencies(folder, trajectories.ground_truth, options, record, scores);
   };
   set(false, record.final_scores, record.final_unscored);
-  set(true, record.online_scores, record.online_unscored);
+  set(true, record.causal_scores, record.causal_unscored);
   record.covariance = nullptr;
   if (const std::string path = folder + "/covariance.txt"; exists(path) && !record.final_scores.is_null()) {
     record.covariance = covariance_scores(read_relative_poses(path), read_tum(folder + "/groundtruth.tum"),
@@ -121,16 +121,16 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
   }
 }
 
-Json scores_of(const std::string& folder, bool online, const ScoreOptions& options, const RunRecord& record) {
-  const RunTrajectories trajectories = read_trajectories(folder, online);
+Json scores_of(const std::string& folder, bool causal, const ScoreOptions& options, const RunRecord& record) {
+  const RunTrajectories trajectories = read_trajectories(folder, causal);
   Json scores = to_json(compare(trajectories.ground_truth, trajectories.estimate, options, record));
-  if (online) add_latencies(folder, trajectories.ground_truth, options, record, scores);
+  if (causal) add_latencies(folder, trajectories.ground_truth, options, record, scores);
   return scores;
 }
 
-ScoredEstimate score_estimate(const std::string& folder, bool online, const ScoreOptions& options,
+ScoredEstimate score_estimate(const std::string& folder, bool causal, const ScoreOptions& options,
                               const RunRecord& record) {
-  RunTrajectories trajectories = read_trajectories(folder, online);
+  RunTrajectories trajectories = read_trajectories(folder, causal);
   try {
     Scores scores = compare(trajectories.ground_truth, trajectories.estimate, options, record);
     return {std::move(trajectories.estimate), std::move(scores)};

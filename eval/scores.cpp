@@ -83,7 +83,7 @@ void ScoreOptions::declare(OptionSet& set) {
       .rising();
   set.add("min_pairs", min_pairs, "fewer compared poses are an error").range(3);
   set.add("latency", latency,
-          "how long one waits for each online pose, the same for all back-ends of a table: scores at equal latency "
+          "how long one waits for each causal pose, the same for all back-ends of a table: scores at equal latency "
           "[s]")
       .range(0.0, 10.0);
   set.add("rpe_delta", rpe_delta, "distance of the two poses of a relative error [rpe_unit]").above(0.0);

@@ -217,7 +217,7 @@ TextTable summary_table(const TableRuns& runs, const TableOptions& options) {
     if (!csv) add_metric(table, rows, runs, metric, data, options);
   }
   if (csv)
-    add_column(table, "trajectory", false, std::vector<Cell>(rows.size(), {options.online ? "online" : "final"}));
+    add_column(table, "trajectory", false, std::vector<Cell>(rows.size(), {options.causal ? "causal" : "final"}));
   table.notes = summary_notes(rows, runs, columns, data, options.format);
   std::ranges::move(table_notes(runs.runs, run_names(runs.columns), runs.metrics, runs.protocols, options),
                     std::back_inserter(table.notes));

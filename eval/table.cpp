@@ -170,10 +170,10 @@ std::string make_table(std::span<const RunRecord> found, const TableOptions& opt
   const std::vector<RunRecord> shortened = print ? without_folders(found) : std::vector<RunRecord>();
   const std::span<const RunRecord> runs = print ? shortened : found;
   TableRuns all;
-  all.runs = numbers_of(runs, options.online);
+  all.runs = numbers_of(runs, options.causal);
   all.protocols = collect_protocols(all.runs);
-  if (all.protocols.texts.empty() && options.online) {
-    throw InputError(fmt::format("none of the {} runs has online scores", runs.size()));
+  if (all.protocols.texts.empty() && options.causal) {
+    throw InputError(fmt::format("none of the {} runs has causal scores", runs.size()));
   }
   all.metrics = choose_metrics(all.runs, options);
   all.columns = run_columns(runs);

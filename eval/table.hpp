@@ -21,7 +21,7 @@ struct TableLayout {
 
 struct TableOptions {
   TableFormat format = TableFormat::text;
-  bool online = false;  ///< the scores of the estimates at the moment they were made, instead of the final ones
+  bool causal = false;  ///< the scores of the estimates at the moment they were made, instead of the final ones
   /// Columns: paths into metrics.json ("realtime_factor", "times.waiting_s") or into its scores ("rpe.trans_m.median");
   /// empty: the default columns. "key", "folder" and "status" are columns, too, of a table with a row a run.
   std::vector<std::string> metrics = {};
@@ -35,7 +35,7 @@ struct TableOptions {
 /// the seed where they vary, settings in which runs of one label differ, named as in a config; the key, and the folder,
 /// where these do not suffice. CSV has label, experiment, seed, key and folder always.
 ///
-/// The protocol stands below (CSV: in columns; LaTeX: in the caption), and whether the final or the online trajectory
+/// The protocol stands below (CSV: in columns; LaTeX: in the caption), and whether the final or the causal trajectory
 /// is scored; runs of different protocols are marked with its number. LaTeX has fewer default columns, with shorter
 /// headers, for a column of a page; it has no folders, of paths that stand for labels what they differ in, and no
 /// sentence about what went wrong with a run, but its status as a column.
@@ -59,7 +59,7 @@ struct TableOptions {
 /// runs apart as columns: what pandas and R read at once.
 ///
 /// Throws InputError when there is no run, when no run has a column's value at all, with the nearest known name, when
-/// no run has online scores but they are asked for, and with `over` when runs do not differ in what it names or when
+/// no run has causal scores but they are asked for, and with `over` when runs do not differ in what it names or when
 /// two of a row have the same seed (or whatever `over` names) but are not the same job.
 std::string make_table(std::span<const RunRecord> runs, const TableOptions& options);
 

@@ -76,7 +76,7 @@ TEST_CASE("A run without an estimate is a row without values") {
   results.add("a", run("arm", "good", scores_with(0.020)));
   results.add("b", run("arm", "bad", nullptr, "failed"));
   CHECK_THAT(line_with(text_of(results, {}), "bad"), ContainsSubstring(" - ") && ContainsSubstring("failed at 3.25 s"));
-  CHECK_THROWS_WITH(text_of(results, {.online = true}), "none of the 2 runs has online scores");
+  CHECK_THROWS_WITH(text_of(results, {.causal = true}), "none of the 2 runs has causal scores");
 }
 
 TEST_CASE("Runs that could not be scored still make a table") {
@@ -251,16 +251,16 @@ TEST_CASE("CSV has the exact numbers under the keys of metrics.json") {
 TEST_CASE("Every format says which trajectory is scored") {
   Results results;
   Json json = run("arm", "mine", scores_with(0.02));
-  json["online"] = json["final"];
+  json["causal"] = json["final"];
   results.add("a", json);
   for (const TableFormat format : {TableFormat::text, TableFormat::markdown, TableFormat::latex}) {
     CHECK_THAT(text_of(results, {.format = format}), ContainsSubstring("Final: the trajectory as estimated after"));
-    CHECK_THAT(text_of(results, {.format = format, .online = true}),
-               ContainsSubstring("Online: each pose as estimated"));
+    CHECK_THAT(text_of(results, {.format = format, .causal = true}),
+               ContainsSubstring("Causal: each pose as estimated"));
   }
   CHECK_THAT(text_of(results, {.format = TableFormat::csv}),
              ContainsSubstring(",status,reason,trajectory,protocol\n") && ContainsSubstring(",final,"));
-  CHECK_THAT(text_of(results, {.format = TableFormat::csv, .online = true}), ContainsSubstring(",online,"));
+  CHECK_THAT(text_of(results, {.format = TableFormat::csv, .causal = true}), ContainsSubstring(",causal,"));
 }
 
 TEST_CASE("LaTeX is a float for a column: few columns with short headers, a label, the protocol in the caption") {

@@ -43,7 +43,7 @@ struct Trouble {
 };
 
 /// None where a run was neither lost nor left without scores. The reason of its status tells most.
-std::optional<Trouble> trouble_of(const RunNumbers& numbers, bool online) {
+std::optional<Trouble> trouble_of(const RunNumbers& numbers, bool causal) {
   const RunRecord& run = numbers.run();
   if (!run.damage.empty()) return Trouble{"Damaged", run.damage};
   if (!run.done) return Trouble{"Not run yet", ""};
@@ -52,18 +52,18 @@ std::optional<Trouble> trouble_of(const RunNumbers& numbers, bool online) {
   const bool degraded = run.status && run.status->status.state == RunState::degraded;
   if (scored && degraded) return Trouble{"Degraded", run.status->status.reason};
   if (scored && run.competes()) return std::nullopt;
-  const std::string& unscored = online ? run.online_unscored : run.final_unscored;
+  const std::string& unscored = causal ? run.causal_unscored : run.final_unscored;
   const std::string what = !scored ? "Without scores" : run.status->status.state == RunState::lost ? "Lost" : "Failed";
   return Trouble{what, !reason.empty() ? reason : !unscored.empty() ? unscored : "not known"};
 }
 
 /// A sentence for each trouble, with the runs that had it.
 std::vector<std::string> trouble_notes(const std::vector<RunNumbers>& runs, const std::vector<std::string>& names,
-                                       bool online) {
+                                       bool causal) {
   std::vector<std::pair<Trouble, std::string>> troubles;
   std::size_t told = 0, untold = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const std::optional<Trouble> trouble = trouble_of(runs[i], online);
+    const std::optional<Trouble> trouble = trouble_of(runs[i], causal);
     if (!trouble) continue;
     if (told == kMostTroubles) {
       ++untold;
@@ -153,7 +153,7 @@ std::vector<std::string> table_notes(const std::vector<RunNumbers>& runs, const 
     notes.emplace_back("No run has scores.");
   } else {
     const bool of_runs = std::ranges::any_of(runs, [](const RunNumbers& run) { return run.run().status.has_value(); });
-    notes.emplace_back(options.online ? "Online: each pose as estimated at the time it was made. "
+    notes.emplace_back(options.causal ? "Causal: each pose as estimated at the time it was made. "
                        : of_runs      ? "Final: the trajectory as estimated after the whole sequence. "
                                       : "");
     notes.back() += "ATE and RPE columns are root mean squares unless they say otherwise.";
@@ -172,7 +172,7 @@ std::vector<std::string> table_notes(const std::vector<RunNumbers>& runs, const 
                     options.format == TableFormat::latex ? "RTF, the real-time factor" : "Real-time factor"));
   }
   if (options.format != TableFormat::latex) {
-    std::ranges::move(trouble_notes(runs, names, options.online), std::back_inserter(notes));
+    std::ranges::move(trouble_notes(runs, names, options.causal), std::back_inserter(notes));
   }
   return notes;
 }

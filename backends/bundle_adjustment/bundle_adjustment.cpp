@@ -105,7 +105,7 @@ void BundleAdjustment::process(Frame frame) {
   const SolveReport report = segments_.empty() ? initialise(view) : track(view);
   if (!segments_.empty()) {
     const int first = segments_.back().first;
-    tell_online(view, segments_.size() > maps ? first : std::max(first, view - options_.window + 1), frame.end);
+    publish_newest(view, segments_.size() > maps ? first : std::max(first, view - options_.window + 1), frame.end);
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   updates_.push_back(
@@ -114,13 +114,13 @@ void BundleAdjustment::process(Frame frame) {
 
 /// The newest view first: the others are better estimates of times of which poses were told before, or, of a first map,
 /// of times for which it comes late.
-void BundleAdjustment::tell_online(int view, int oldest, double known_at) const {
+void BundleAdjustment::publish_newest(int view, int oldest, double known_at) const {
   const View& newest = map_.views[at(view)];
-  context_.online({{newest.t, newest.T}, known_at, velocity_});
+  context_.publish({{newest.t, newest.T}, known_at, velocity_});
   if (!newest.estimated()) return;
   for (int i = oldest; i < view; ++i) {
     const View& older = map_.views[at(i)];
-    if (older.estimated()) context_.online({{older.t, older.T}, known_at});
+    if (older.estimated()) context_.publish({{older.t, older.T}, known_at});
   }
 }
 

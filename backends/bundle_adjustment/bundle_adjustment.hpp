@@ -75,7 +75,7 @@ class BundleAdjustment : public BackEnd {
   SE3 predict(double t, int from) const;
 
   void process(Frame frame);
-  void tell_online(int view, int oldest, double known_at) const;
+  void publish_newest(int view, int oldest, double known_at) const;
   SolveReport initialise(int view);
   Trial try_guess(const InitialGuess& guess, int view) const;
   void accept(Trial trial, int view);

@@ -65,14 +65,14 @@ std::vector<TrackObservation> simulate(const Simulation& simulation) {
   return result;
 }
 
-/// `online`: takes the causal poses.
+/// `causal`: takes the causal poses.
 BundleAdjustment make(const PinholeCamera& camera = davis(), const Options& options = {},
-                      std::vector<StampedPose>* online = nullptr) {
+                      std::vector<StampedPose>* causal = nullptr) {
   BackEndContext context;
   context.camera = camera;
-  if (online != nullptr) {
-    context.online = [online](const OnlinePose& pose) {
-      if (online->empty() || pose.t > online->back().t) online->push_back(pose);
+  if (causal != nullptr) {
+    context.publish = [causal](const CausalPose& pose) {
+      if (causal->empty() || pose.t > causal->back().t) causal->push_back(pose);
     };
   }
   return BundleAdjustment(options, context);
@@ -117,14 +117,14 @@ TEST_CASE("a simulated motion is recovered, in a volume and before a plane", "[s
   for (const PointScene scene : {PointScene::volume, PointScene::plane}) {
     Simulation simulation;
     simulation.scene = scene;
-    std::vector<StampedPose> online;
-    BundleAdjustment backend = make(davis(), {}, &online);
+    std::vector<StampedPose> causal;
+    BundleAdjustment backend = make(davis(), {}, &causal);
     feed(backend, simulate(simulation));
     CHECK(backend.status().state == RunState::ok);
     CHECK(backend.trajectory().start() < 0.1);
     CHECK(backend.trajectory().end() > 3.9);
     CHECK(ate(backend.trajectory(), simulation.motion) < 0.01);
-    CHECK(ate(PoseTrajectory(online), simulation.motion) < 0.03);
+    CHECK(ate(PoseTrajectory(causal), simulation.motion) < 0.03);
     CHECK(backend.map().size() == 50);
     CHECK(backend.updates().size() >= 80);
   }
@@ -183,8 +183,8 @@ TEST_CASE("noise that is learnt makes up for sigmas that are wrong by a factor",
 TEST_CASE("a frame's pose is told when the frame ends, and the window's poses are told anew") {
   BackEndContext context;
   context.camera = davis();
-  std::vector<OnlinePose> told;
-  context.online = [&](const OnlinePose& pose) { told.push_back(pose); };
+  std::vector<CausalPose> told;
+  context.publish = [&](const CausalPose& pose) { told.push_back(pose); };
   Options options;
   options.frame_duration = 0.1;
   options.window = 5;
@@ -192,7 +192,7 @@ TEST_CASE("a frame's pose is told when the frame ends, and the window's poses ar
   feed(backend, simulate({}));
   double newest = 0.0;
   int anew = 0;
-  for (const OnlinePose& pose : told) {
+  for (const CausalPose& pose : told) {
     if (pose.t > newest) {
       CHECK(*pose.known_at - pose.t == Approx(0.05).margin(0.01));
       CHECK(pose.velocity);
@@ -224,13 +224,13 @@ TEST_CASE("no observations, one track, and few tracks end as failed with a reaso
     if (z.track < 7) few.push_back(z);
   }
   for (const auto& observations : {std::vector<TrackObservation>{}, one, few}) {
-    std::vector<StampedPose> online;
-    BundleAdjustment backend = make(davis(), {}, &online);
+    std::vector<StampedPose> causal;
+    BundleAdjustment backend = make(davis(), {}, &causal);
     feed(backend, observations);
     CHECK(backend.status().state == RunState::failed);
     CHECK_FALSE(backend.status().reason.empty());
     CHECK(backend.trajectory().empty());
-    CHECK(online.empty());
+    CHECK(causal.empty());
     CHECK(backend.map().empty());
   }
 }
@@ -294,11 +294,11 @@ TEST_CASE("wild observations never make a pose that is not finite") {
     if (observations[i].track % 3 == 0) observations[i].pixel *= 1e6;
     if (observations[i].t > 2.0) observations[i].pixel = Vector2(120, 90);
   }
-  std::vector<StampedPose> online;
-  BundleAdjustment backend = make(davis(), {}, &online);
+  std::vector<StampedPose> causal;
+  BundleAdjustment backend = make(davis(), {}, &causal);
   feed(backend, observations);
   CHECK(finite(backend.trajectory()));
-  CHECK(finite(PoseTrajectory(online)));
+  CHECK(finite(PoseTrajectory(causal)));
 }
 
 TEST_CASE("on the real tracks of poster_translation frames of 50 and 100 ms stay below 8 mm") {

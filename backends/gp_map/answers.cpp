@@ -7,31 +7,31 @@
 #include "backends/gp_map/problem_graph.hpp"
 
 // What the back-end tells of its estimate: poses as they are made, and answers afterwards. While the first map is in
-// doubt, until another explanation has been looked for in vain on both planes and most tracks fit it, no online pose
+// doubt, until another explanation has been looked for in vain on both planes and most tracks fit it, no causal pose
 // and no covariance is told.
 namespace evbench::gp_map {
 
-void GpMap::tell_online(double t) {
+void GpMap::publish_newest(double t) {
   const std::optional<SE3> T = pose(t);  // none where the state has been taken back
-  if (!T || t <= online_ || is_in_doubt()) return;
-  context_.online({{t, *T}, t, velocity(t)});
-  online_ = t;
+  if (!T || t <= published_ || is_in_doubt()) return;
+  context_.publish({{t, *T}, t, velocity(t)});
+  published_ = t;
 }
 
 /// The newest state, and those of late anew: what is seen now tells of them, too.
-void GpMap::tell_recent(double t) {
+void GpMap::publish_recent(double t) {
   if (graph().states.back().t != t) return;  // it has been taken back
   world_->recent.follow(graph(), world_->engine.first_state());
   if (is_in_doubt()) return;
   const auto states = world_->recent.states();
   if (options_.per_observation) {
-    tell_online(t);  // as between the states
+    publish_newest(t);  // as between the states
   } else {
-    context_.online({{t, states.back().T}, t, states.back().velocity});
-    online_ = t;
+    context_.publish({{t, states.back().T}, t, states.back().velocity});
+    published_ = t;
   }
   for (std::size_t i = states.size() - 1; i-- > 0;) {
-    context_.online({{states[i].t, states[i].T}, t, states[i].velocity});
+    context_.publish({{states[i].t, states[i].T}, t, states[i].velocity});
   }
 }
 

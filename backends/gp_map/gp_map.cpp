@@ -66,7 +66,7 @@ void GpMap::step(double t) {
       begin_anew();
     } else {
       check_support();
-      tell_recent(t);
+      publish_recent(t);
       predict_tracks();
     }
   }
@@ -265,7 +265,7 @@ void GpMap::follow_observations(double t, double ahead) {
   if (!world_->new_observations.empty()) world_->follower.open(world_->engine, ahead);
   for (const auto& [landmark, z] : world_->new_observations) {
     world_->follower.follow(world_->engine, landmark, z);
-    tell_online(z.t);
+    publish_newest(z.t);
   }
   world_->new_observations.clear();
   seconds_since_step_ += seconds_since(start);

@@ -118,8 +118,8 @@ class GpMap : public BackEnd {
   int landmarks_in_view() const;
   bool is_young() const { return !(graph().states.back().t > world_->young_until); }
   bool is_in_doubt() const { return is_young() && !world_->trusted; }
-  void tell_online(double t);
-  void tell_recent(double t);
+  void publish_newest(double t);
+  void publish_recent(double t);
   Engine::OptimiseSummary estimate_everything();
   void reconsider_beginning();
   void judge_tracks(const NoiseLearner& noise, const TimeSpan& span);
@@ -145,7 +145,7 @@ class GpMap : public BackEnd {
   double seconds_since_step_ = 0.0;        ///< spent on single observations
   TrackingMonitor monitor_;
   double until_ = 0.0;                                        ///< [s] of the last batch
-  double online_ = -std::numeric_limits<double>::infinity();  ///< [s], time of the last pose told
+  double published_ = -std::numeric_limits<double>::infinity();  ///< [s], time of the last pose told
   std::vector<UpdateRecord> updates_;
 };
 

@@ -42,7 +42,7 @@ TEST_CASE("gp_map is registered and follows a simulated camera", "[slow]") {
   CHECK(result.scores.ate.trans_percent < 1.0);
   CHECK(result.scores.coverage > 0.97);
   CHECK(result.backend->map().size() > 40);
-  CHECK(result.online.size() > 80);
+  CHECK(result.causal.size() > 80);
 }
 
 TEST_CASE("gp_map drops outlier tracks", "[long]") {
@@ -121,7 +121,7 @@ TEST_CASE("A stand before the first motion is in the trajectory, with few states
     CHECK(states.front().t < 1.0);
     const auto still = std::ranges::count_if(states, [&](const ControlState& state) { return state.t < kStand; });
     CHECK(still < 100);
-    CHECK(result.online.start() > kStand + 0.7);  // a pause after the map it would be 0.6 at most
+    CHECK(result.causal.start() > kStand + 0.7);  // a pause after the map it would be 0.6 at most
   }
 }
 
@@ -249,7 +249,7 @@ TEST_CASE("A prior that is learnt while running makes what is told smoother, and
     for (const bool learns : {false, true}) {
       const auto result = run(scene, {.backend = learns ? R"({"final_iterations": 0})"
                                                         : R"({"final_iterations": 0, "learn": {"prior": "never"}})"});
-      const Scores scores = score(scene.ground_truth(), result.online, {.association = "interpolated"});
+      const Scores scores = score(scene.ground_truth(), result.causal, {.association = "interpolated"});
       causal[learns] += scores.rpe.trans_m.rmse;
       last[learns] += result.scores.ate.trans_m.rmse;
     }
@@ -336,8 +336,8 @@ TEST_CASE("Per observation, the causal trajectory has a pose for each, and the f
     INFO(rule);
     const std::string options = std::string(R"({"per_observation": true, "placement": {"rule": ")") + rule + R"("}})";
     const auto result = run(scene, {.backend = options.c_str()});
-    CHECK(result.online.size() > 20 * usual.online.size());
-    const Scores causal = score(scene.ground_truth(), result.online, {.association = "interpolated"});
+    CHECK(result.causal.size() > 20 * usual.causal.size());
+    const Scores causal = score(scene.ground_truth(), result.causal, {.association = "interpolated"});
     CHECK(causal.ate.trans_percent < 1.0);
   }
   CHECK(mean_error(lifetime, R"({"per_observation": true})") < 1.1 * mean_error(lifetime, "{}"));

@@ -143,7 +143,7 @@ void GpMap::trust_what_fits() {
 bool GpMap::is_refuted() const {
   constexpr int kMost = 2;   // times as many as are landmarks
   constexpr int kTimes = 3;  // that one makes way
-  const bool was_told = std::isfinite(online_), data_go_on = graph().states.back().t < until_;
+  const bool was_told = std::isfinite(published_), data_go_on = graph().states.back().t < until_;
   if (was_told || !is_in_doubt() || world_->doubts > 0 || !data_go_on || times_refuted_ == kTimes) return false;
   const int without_place = misfits();
   return without_place >= options_.initialiser.min_tracks && without_place > kMost * landmarks_in_view();

@@ -69,7 +69,7 @@ struct World {
   ViolentMotion violent_motion;
   PriorLearner prior;
   NoiseLearner noise;
-  RecentMotion recent;                  ///< as it is told online
+  RecentMotion recent;                  ///< as it is told causal
   std::optional<Vector6> hindsight_qc;  ///< the newest density that has been learnt with hindsight
   double next_hindsight;                ///< [s]
 

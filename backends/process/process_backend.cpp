@@ -45,9 +45,9 @@ void ProcessBackEnd::advance(const TrackBatch& batch) {
   left_out_ += write_batch(line, batch);
   line.push_back('}');
   dialogue_.ask(line, fmt::format("the batch until {} s", batch.until), [&](const Json& answer) {
-    check_keys(answer, {"state", "reason", "online", "newest", "covariance", "outliers", "expected"});
+    check_keys(answer, {"state", "reason", "causal", "newest", "covariance", "outliers", "expected"});
     take_state(answer, batch.until);
-    take_online(answer, batch.until);
+    take_published(answer, batch.until);
     take_newest(answer, batch.until);
     feedback_.t = batch.until;
   });
@@ -81,13 +81,13 @@ void ProcessBackEnd::take_state(const Json& answer, double until) {
   feedback_.state = now;
 }
 
-void ProcessBackEnd::take_online(const Json& answer, double until) {
-  const Json* const found = find(answer, "online");
+void ProcessBackEnd::take_published(const Json& answer, double until) {
+  const Json* const found = find(answer, "causal");
   if (found == nullptr) return;
-  for (std::size_t i = 0; i < list(*found, {"online"}).size(); ++i) {
-    const auto [pose, velocity] = moving_pose((*found)[i], {"online", i});
-    check_not_later(pose.t, until, {"online", i});
-    context_.online({pose, until, velocity});
+  for (std::size_t i = 0; i < list(*found, {"causal"}).size(); ++i) {
+    const auto [pose, velocity] = moving_pose((*found)[i], {"causal", i});
+    check_not_later(pose.t, until, {"causal", i});
+    context_.publish({pose, until, velocity});
     told_ = true;
   }
 }

@@ -31,7 +31,7 @@ class ProcessBackEnd : public BackEnd {
 
  private:
   void take_state(const Json& answer, double until);
-  void take_online(const Json& answer, double until);
+  void take_published(const Json& answer, double until);
   void take_newest(const Json& answer, double until);
   void take_final(const Json& answer);
   void take_status(const Json& status);
@@ -44,7 +44,7 @@ class ProcessBackEnd : public BackEnd {
   PoseTrajectory trajectory_;
   std::vector<Landmark> map_;
   std::vector<UpdateRecord> updates_;
-  bool told_ = false;  ///< an online pose
+  bool told_ = false;  ///< an causal pose
   int left_out_ = 0;   ///< observations that are not finite
 };
 

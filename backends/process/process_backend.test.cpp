@@ -31,7 +31,7 @@ last = 0.0
 while "finish" not in (m := hear()):
   print(json.dumps(m), file=sys.stderr)
   last = m["until"]
-  say({"state": "tracking", "online": [pose(last, last)], "newest": pose(last, last), "outliers": [len(m["observations"])]})
+  say({"state": "tracking", "causal": [pose(last, last)], "newest": pose(last, last), "outliers": [len(m["observations"])]})
 say({"trajectory": [pose(0, 0), pose(last, last)], "map": [[7, 1, 2, 3]]})
 )";
 
@@ -47,7 +47,7 @@ class Session {
     context.seed = 18446744073709551615U;
     context.folder = folder_.path();
     context.place = "config.json: backend";
-    context.online = [this](const OnlinePose& pose) { online.push_back(pose); };
+    context.publish = [this](const CausalPose& pose) { causal.push_back(pose); };
     context.log = [this](const std::string& line) { log += line + "\n"; };
     backend = std::make_unique<ProcessBackEnd>(options, context);
   }
@@ -62,7 +62,7 @@ class Session {
     return *this;
   }
 
-  std::vector<OnlinePose> online;
+  std::vector<CausalPose> causal;
   std::string log;
   std::unique_ptr<ProcessBackEnd> backend;
 
@@ -103,9 +103,9 @@ TEST_CASE("A back-end process is told camera, observations and ended tracks, and
                               R"({"fx": 500.0, "fy": 510.0, "cx": 320.0, "cy": 240.0}, "options": {"a": [1, null]}})"));
   CHECK_THAT(session.log,
              ContainsSubstring(R"({"until": 0.1, "observations": [[1, 0.05, 1.5, 2.5, 0.7]], "ended": [[1, 0.09)"));
-  REQUIRE(session.online.size() == 3);
-  CHECK(session.online[2].t == 0.1 * 3);  // to the last bit
-  CHECK(session.online[2].T.p == Vector3(0.1 * 3, 0, 0));
+  REQUIRE(session.causal.size() == 3);
+  CHECK(session.causal[2].t == 0.1 * 3);  // to the last bit
+  CHECK(session.causal[2].T.p == Vector3(0.1 * 3, 0, 0));
   CHECK(session.backend->trajectory().size() == 2);
   CHECK(session.backend->trajectory().pose(0.15)->p.x() == Approx(0.15));
   REQUIRE(session.backend->map().size() == 1);
@@ -120,15 +120,15 @@ TEST_CASE(
 say({"evbench": 1})
 while "finish" not in (m := hear()):
   t = m["until"]
-  say({"state": "tracking", "online": [pose(t - 0.05, 1) + [0, 0, 0.5, 2, 0, 0], pose(0, t)]})
+  say({"state": "tracking", "causal": [pose(t - 0.05, 1) + [0, 0, 0.5, 2, 0, 0], pose(0, t)]})
 say({"trajectory": [pose(0, 0)]})
 )");
   session.go();
-  REQUIRE(session.online.size() == 6);
-  CHECK(session.online[4].known_at == 0.1 * 3);
-  CHECK(session.online[4].velocity.value()[3] == 2.0);
-  CHECK(session.online[5].t == 0.0);
-  CHECK_FALSE(session.online[5].velocity);
+  REQUIRE(session.causal.size() == 6);
+  CHECK(session.causal[4].known_at == 0.1 * 3);
+  CHECK(session.causal[4].velocity.value()[3] == 2.0);
+  CHECK(session.causal[5].t == 0.0);
+  CHECK_FALSE(session.causal[5].velocity);
 }
 
 TEST_CASE("Feedback of a back-end process has outliers since the last one, and a velocity also where none was told") {
@@ -205,11 +205,11 @@ TEST_CASE("A back-end process that is lost says so before the end") {
 }
 
 TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence") {
-  CHECK(failure("{'state': 'tracking', 'online': [pose(t, 0)]}").empty());
-  CHECK_THAT(failure("{'state': 'tracking', 'online': [pose(float('nan'), 0)]}"),
+  CHECK(failure("{'state': 'tracking', 'causal': [pose(t, 0)]}").empty());
+  CHECK_THAT(failure("{'state': 'tracking', 'causal': [pose(float('nan'), 0)]}"),
              ContainsSubstring(
                  "config.json: backend: the process \"/usr/bin/python3 backend.py\" answered wrongly: expected one "
-                 "JSON object a line, found {\"state\": \"tracking\", \"online\": [[NaN") &&
+                 "JSON object a line, found {\"state\": \"tracking\", \"causal\": [[NaN") &&
                  ContainsSubstring("JSON has no NaN") && ContainsSubstring("it had been told the batch until 0.1 s") &&
                  ContainsSubstring("it wrote nothing to its standard error"));
   CHECK_THAT(failure("{}"), ContainsSubstring("\"state\" is missing"));
@@ -217,15 +217,15 @@ TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence
   CHECK_THAT(failure("{'state': 'fine'}"), ContainsSubstring("unknown state \"fine\""));
   CHECK_THAT(failure("{'state': 'tracking', 'outlier': []}"),
              ContainsSubstring("unknown key \"outlier\"; did you mean"));
-  CHECK_THAT(failure("{'state': 'tracking', 'online': [pose(t + 0.1, 0)]}"),
+  CHECK_THAT(failure("{'state': 'tracking', 'causal': [pose(t + 0.1, 0)]}"),
              ContainsSubstring("later than what has been seen"));
-  CHECK_THAT(failure("{'state': 'tracking', 'online': [[t, 0, 0, 0, 0, 0, 0, 2]]}"),
+  CHECK_THAT(failure("{'state': 'tracking', 'causal': [[t, 0, 0, 0, 0, 0, 0, 2]]}"),
              ContainsSubstring("quaternion's norm is 2"));
-  CHECK_THAT(failure("{'state': 'tracking', 'online': [[t, 0, 0, 0, 0, 0, 1]]}"),
+  CHECK_THAT(failure("{'state': 'tracking', 'causal': [[t, 0, 0, 0, 0, 0, 1]]}"),
              ContainsSubstring("expected 8 numbers"));
   CHECK_THAT(failure("{'state': 'tracking', 'covariance': [0] * 144}"),
              ContainsSubstring("expected \"newest\" with it"));
-  CHECK_THAT(failure("{'state': 'tracking' if t < 0.15 else 'no_map', 'online': [pose(0.1, 0)]}"),
+  CHECK_THAT(failure("{'state': 'tracking' if t < 0.15 else 'no_map', 'causal': [pose(0.1, 0)]}"),
              ContainsSubstring("expected \"lost\", as poses were told"));
   CHECK_THAT(failure("{'state': 'lost' if t < 0.15 else 'no_map', 'reason': 'fog'}"),
              ContainsSubstring("expected \"lost\""));

@@ -42,7 +42,7 @@ void RotationAveraging::advance(const TrackBatch& batch) {
     const std::size_t before = rotations_.size();
     close_frame();
     if (rotations_.size() == before) continue;
-    context_.online({{time_of(before), {rotations_.back(), Vector3::Zero()}}, batch.until, {}});
+    context_.publish({{time_of(before), {rotations_.back(), Vector3::Zero()}}, batch.until, {}});
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   updates_.push_back({.t = until_,

@@ -46,7 +46,7 @@ void check_poses(const PoseTrajectory& trajectory, const char* which, double end
 void CandidateBackEnd::check_sound(const RunResult& result, double end) {
   for (const Piece& piece : result.pieces) {
     check_poses(piece.final_trajectory, "final", end);
-    check_poses(piece.online_trajectory, "online", end);
+    check_poses(piece.causal_trajectory, "causal", end);
     for (const Landmark& landmark : piece.map) {
       require(landmark.position.allFinite(), "landmark {} is not finite", landmark.track);
     }
@@ -76,7 +76,7 @@ void follows_a_good_sequence(const CandidateBackEnd& candidate) {
           result.status.reason);
   require(piece.final_trajectory.end() > 2.5, "its trajectory ends at {} s of 3 s", piece.final_trajectory.end());
   require(piece.map.size() > 10, "its map has {} landmarks, where 50 tracks are seen", piece.map.size());
-  require(!piece.online_trajectory.empty(), "it told no online pose");
+  require(!piece.causal_trajectory.empty(), "it told no causal pose");
 }
 
 void fails_with_too_little(const CandidateBackEnd& candidate) {
@@ -172,23 +172,23 @@ void stays_finite_with_wild_tracks(const CandidateBackEnd& candidate) {
 /// Within a frame's length: a pose is told when the frame is complete.
 constexpr double kLatency = 0.1;
 
-void tells_online_poses_in_time(const CandidateBackEnd& candidate) {
+void publishes_poses_in_time(const CandidateBackEnd& candidate) {
   constexpr double kCut = 2.0;
   const auto until = [&](double end) {
     SequenceOptions sequence;
     sequence.range = end;
     sequence.keep = [end](TrackObservation& z) { return z.t <= end; };
     const RunResult result = candidate.run(sequence);
-    return result.pieces.empty() ? std::vector<StampedPose>{} : longest(result).online_trajectory.poses();
+    return result.pieces.empty() ? std::vector<StampedPose>{} : longest(result).causal_trajectory.poses();
   };
   const auto early = until(kCut), all = until(3.0);
-  require(!early.empty(), "it tells no online pose in 2 s");
-  require(all.size() > early.size(), "it tells no more online poses in 3 s than in 2 s");
+  require(!early.empty(), "it tells no causal pose in 2 s");
+  require(all.size() > early.size(), "it tells no more causal poses in 3 s than in 2 s");
   for (std::size_t i = 0; i < early.size() && early[i].t < kCut - kLatency; ++i) {
     require(all[i].t == early[i].t && all[i].T.p == early[i].T.p,
-            "its online pose at {} s depends on what is seen later", early[i].t);
+            "its causal pose at {} s depends on what is seen later", early[i].t);
   }
-  require(!until(all.front().t + kLatency).empty(), "its first online pose, of {} s, is told more than {} s later",
+  require(!until(all.front().t + kLatency).empty(), "its first causal pose, of {} s, is told more than {} s later",
           all.front().t, kLatency);
 }
 
@@ -202,7 +202,7 @@ void check_same(const RunResult& a, const RunResult& b, const char* what) {
   require(a.pieces.size() == b.pieces.size(), "{}: {} and {} pieces", what, a.pieces.size(), b.pieces.size());
   for (std::size_t i = 0; i < a.pieces.size(); ++i) {
     require(same(a.pieces[i].final_trajectory, b.pieces[i].final_trajectory), "{}: final trajectories differ", what);
-    require(same(a.pieces[i].online_trajectory, b.pieces[i].online_trajectory), "{}: online trajectories differ", what);
+    require(same(a.pieces[i].causal_trajectory, b.pieces[i].causal_trajectory), "{}: causal trajectories differ", what);
     const auto equal = [](const Landmark& x, const Landmark& y) {
       return x.track == y.track && x.position == y.position;
     };
@@ -300,7 +300,7 @@ std::vector<Check> backend_checks(const Plugins& plugins, const std::string& nam
       check("makes no map out of a camera that never moves, and says why", makes_no_map_at_rest),
       check("is not lost while the camera stands still for ten seconds, and stays where it is", stands_still),
       check("stays finite when tracks are wild", stays_finite_with_wild_tracks),
-      check("tells online poses at their own times, and never otherwise later", tells_online_poses_in_time),
+      check("tells causal poses at their own times, and never otherwise later", publishes_poses_in_time),
       check("gives the same bits for the same observations", repeats_itself),
       check("gives the same bits in one thread and in two, its feedback included", is_the_same_in_two_threads),
       check("feeds back what it knows: states, poses, outliers, where landmarks are expected",

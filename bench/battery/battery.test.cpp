@@ -30,7 +30,7 @@ std::string joined(const std::vector<std::string>& sentences) {
   return text;
 }
 
-/// What a careless author might write: a map at once, online poses in the future, another result each time.
+/// What a careless author might write: a map at once, causal poses in the future, another result each time.
 class Careless : public BackEnd {
  public:
   struct Options {
@@ -41,7 +41,7 @@ class Careless : public BackEnd {
   void advance(const TrackBatch& batch) override {
     const double x = static_cast<double>(++advances_);
     poses_.push_back({batch.until, {Eigen::Quaterniond::Identity(), {x, 0, 0}}});
-    context_.online({poses_.back()});
+    context_.publish({poses_.back()});
   }
   Feedback feedback(const FeedbackNeeds&) override {
     Feedback feedback;

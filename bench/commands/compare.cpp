@@ -26,7 +26,7 @@ void execute(const CompareArguments& arguments) {
   ComparisonOptions options = arguments.options;
   options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
   use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
-    if (any_of_common_time(options.metrics)) score_common_time(runs, options.online);
+    if (any_of_common_time(options.metrics)) score_common_time(runs, options.causal);
     arguments.out.write(make_comparison_table(runs, options));
   });
 }
@@ -41,7 +41,7 @@ void add_compare(CLI::App& app) {
       ->type_name("NAME");
   add_list_option(*command, "--metrics", arguments->options.metrics,
                   "What is compared, e.g. ate.trans_m.rmse,common.rpe.trans_m.rmse,times.backend_ms.p99");
-  command->add_flag("--online", arguments->options.online, "Scores of the poses as estimated when they were made");
+  command->add_flag("--causal", arguments->options.causal, "Scores of the poses as estimated when they were made");
   command->add_option("--format", arguments->format, "Format")
       ->check(one_of({"text", "markdown", "csv", "latex"}))
       ->capture_default_str();

@@ -86,7 +86,7 @@ TEST_CASE("eval writes the structure of a run's metrics, which table reads") {
   const Trajectories files;
   const Json json = files.eval("-as");
   for (const char* key :
-       {"experiment", "label", "final", "online", "runtime_s", "realtime_factor", "peak_rss_mib", "status"}) {
+       {"experiment", "label", "final", "causal", "runtime_s", "realtime_factor", "peak_rss_mib", "status"}) {
     CHECK(json.contains(key));
   }
   for (const char* pointer : {"/ate/trans_m/rmse", "/ate/rot_deg/rmse", "/rpe/trans_m/rmse", "/rpe/rot_deg/sse",

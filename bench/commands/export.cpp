@@ -29,7 +29,7 @@ struct ExportArguments {
   std::vector<std::string> overrides;
   std::string ground_truth, tracks, calibration, aligned, errors, evo, rpg;
   std::string evo_error = kEvoErrorNames[0];
-  bool online = false;
+  bool causal = false;
   bool force = false;
 
   std::vector<std::string> outputs() const { return {ground_truth, tracks, calibration, aligned, errors, evo, rpg}; }
@@ -58,7 +58,7 @@ void check(const ExportArguments& arguments) {
   }
   std::vector<std::string> read = {arguments.from};
   for (const char* name : {"config.json", "job.json", "manifest.json", "metrics.json", "status.json", "final.tum",
-                           "online.tum", "groundtruth.tum", "map.ply", "timing.csv", "log.txt"}) {
+                           "causal.tum", "groundtruth.tum", "map.ply", "timing.csv", "log.txt"}) {
     read.push_back(arguments.from + "/" + name);
   }
   check_outputs(arguments.outputs(), read, arguments.force);
@@ -99,7 +99,7 @@ void export_source(const std::string& config, const ExportArguments& arguments, 
 void export_run(const ExportArguments& arguments) {
   const ScoreOptions protocol = protocol_of_run(arguments.from);
   const RunRecord record = read_record(arguments.from);
-  const auto [estimate, scores] = score_estimate(arguments.from, arguments.online, protocol, record);
+  const auto [estimate, scores] = score_estimate(arguments.from, arguments.causal, protocol, record);
   if (!arguments.aligned.empty()) write_file(arguments.aligned, format_tum(aligned_estimate(estimate, scores)));
   if (!arguments.errors.empty()) write_file(arguments.errors, errors_csv(scores));
   if (!arguments.evo.empty()) {
@@ -152,7 +152,7 @@ void add_export(CLI::App& app, const Plugins& plugins) {
       ->add_option("--rpg", arguments->rpg,
                    "A folder as rpg_trajectory_evaluation reads it: the estimate, the ground truth, the alignment")
       ->type_name("DIR");
-  command->add_flag("--online", arguments->online, "The poses as estimated when they were made, not the final ones");
+  command->add_flag("--causal", arguments->causal, "The poses as estimated when they were made, not the final ones");
   add_overrides(*command, arguments->overrides, "Override a value of the config: KEY=VALUE, e.g. seed=3");
   command->add_flag("--force", arguments->force, "Replace files that exist");
   command->footer(

@@ -67,8 +67,8 @@ TEST_CASE("A run's aligned estimate and errors are those that it was scored by",
   const Json aligned = parse_json(read_file(sequence.folder.file("s.json"))).at("final");
   CHECK(aligned.at("ate").at("trans_m").at("rmse").get<double>() ==
         Approx(scores.at("ate").at("trans_m").at("rmse").get<double>()).epsilon(1e-6));
-  REQUIRE(sequence.run("export '" + run + "' --online --aligned online.txt").exit_code == 0);
-  CHECK(read_file(sequence.folder.file("online.txt")) != read_file(sequence.folder.file("a.txt")));
+  REQUIRE(sequence.run("export '" + run + "' --causal --aligned causal.txt").exit_code == 0);
+  CHECK(read_file(sequence.folder.file("causal.txt")) != read_file(sequence.folder.file("a.txt")));
 }
 
 TEST_CASE("A run is exported as evo's result archive, which reads back as evo reads it", "[slow]") {

@@ -34,20 +34,20 @@ const std::vector<FigureKind>& figure_kinds() {
       {"sweep",
        "metrics against an axis: medians, and bands between the quartiles of all other runs",
        sweep_figure,
-       {"--metrics", "--axis", "--axis-label", "--online"}},
+       {"--metrics", "--axis", "--axis-label", "--causal"}},
       {"map",
        "against an axis and across another one: the ratio of a metric to that of another method",
        map_figure,
-       {"--metrics", "--axis", "--axis-label", "--across", "--base", "--online"}},
-      {"box", "quartiles and median of each back-end's runs, and the runs", box_figure, {"--metrics", "--online"}},
-      {"error", "errors over time of a sequence's runs", error_figure, {"--online"}},
-      {"position", "x, y and z over time, with the ground truth", position_figure, {"--online"}},
-      {"trajectory", "from three sides, with the ground truth", trajectory_figure, {"--online"}},
+       {"--metrics", "--axis", "--axis-label", "--across", "--base", "--causal"}},
+      {"box", "quartiles and median of each back-end's runs, and the runs", box_figure, {"--metrics", "--causal"}},
+      {"error", "errors over time of a sequence's runs", error_figure, {"--causal"}},
+      {"position", "x, y and z over time, with the ground truth", position_figure, {"--causal"}},
+      {"trajectory", "from three sides, with the ground truth", trajectory_figure, {"--causal"}},
       {"times", "the distribution of the times of updates", times_figure, {}},
       {"profile",
        "performance profiles: the share of sequences and seeds within a factor of the best",
        profile_figure,
-       {"--metrics", "--online"}},
+       {"--metrics", "--causal"}},
   };
   return kinds;
 }
@@ -89,7 +89,7 @@ void execute(const FigureArguments& arguments) {
   check_figure_name(arguments.out);
   check_outputs({arguments.out, arguments.keep_script ? script : ""}, {}, arguments.force);
   use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
-    if (any_of_common_time(arguments.options.metrics)) score_common_time(runs, arguments.options.online);
+    if (any_of_common_time(arguments.options.metrics)) score_common_time(runs, arguments.options.causal);
     Figure figure = find_kind(arguments.kind).make(runs, arguments.options);
     if (arguments.width_mm > 0.0) figure.width_mm = arguments.width_mm;
     if (arguments.height_mm > 0.0) figure.height_mm = arguments.height_mm;
@@ -119,7 +119,7 @@ void add_figure(CLI::App& app) {
   command->add_option("--across", arguments->options.across, "The other axis of a map")->type_name("NAME");
   command->add_option("--base", arguments->options.base, "What a map compares with; else the method without the axis")
       ->type_name("METHOD");
-  command->add_flag("--online", arguments->options.online, "The poses as estimated when they were made");
+  command->add_flag("--causal", arguments->options.causal, "The poses as estimated when they were made");
   command->add_option("--width", arguments->width_mm, "Width [mm]; else 174, a page's")->check(in_range(20.0, 2000.0));
   command->add_option("--height", arguments->height_mm, "Height of the panels, without legend and caption [mm]")
       ->check(in_range(20.0, 2000.0));

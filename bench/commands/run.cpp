@@ -294,7 +294,7 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
       "Check the config, and that its files can be read, and stop; starts no command and loads no library "
       "that only the config names, and says what is therefore not checked");
   command->footer(
-      "Each run writes OUT/EXPERIMENT/KEY: config.json, job.json, manifest.json, final.tum, online.tum, told.txt,\n"
+      "Each run writes OUT/EXPERIMENT/KEY: config.json, job.json, manifest.json, final.tum, causal.tum, causal_poses.txt,\n"
       "groundtruth.tum, map.ply, metrics.json, timing.csv, log.txt, status.json. KEY names what determines the\n"
       "trajectory (job.json). A run that is complete below OUT is not done again, but named and scored as the config\n"
       "says; one that broke off with an error is.\n"

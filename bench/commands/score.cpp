@@ -71,7 +71,7 @@ void add_score(CLI::App& app) {
                 "Override a value of the protocol: evaluation.KEY=VALUE, e.g. evaluation.alignment=se3");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->footer(
-      "Reads final.tum, online.tum, told.txt and groundtruth.tum of each run, rewrites its metrics.json, and its\n"
+      "Reads final.tum, causal.tum, causal_poses.txt and groundtruth.tum of each run, rewrites its metrics.json, and its\n"
       "config.json with the protocol. The same protocol gives the same bytes.");
   command->callback([arguments] { execute(*arguments); });
 }

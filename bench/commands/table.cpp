@@ -28,7 +28,7 @@ void execute(const TableArguments& arguments) {
   TableOptions options = arguments.options;
   options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
   use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
-    if (shows_common_time(options, runs.size())) score_common_time(runs, options.online);
+    if (shows_common_time(options, runs.size())) score_common_time(runs, options.causal);
     arguments.out.write(make_table(runs, options));
   });
 }
@@ -57,7 +57,7 @@ void add_table(CLI::App& app) {
                   "NAME,...");
   command->add_flag("--list-metrics", arguments->list_metrics,
                     "List the keys that --metrics knows: all numbers that these runs have, and what tables call them");
-  command->add_flag("--online", arguments->options.online, "Scores of the poses as estimated when they were made");
+  command->add_flag("--causal", arguments->options.causal, "Scores of the poses as estimated when they were made");
   command->callback([arguments] { execute(*arguments); });
 }
 

@@ -28,7 +28,7 @@ Row row_of(const Method& method, const FigureRuns& all, const Metric& metric) {
 }  // namespace
 
 Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  const FigureRuns all(runs, options.online, "", "experiment");
+  const FigureRuns all(runs, options.causal, "", "experiment");
   const std::vector<Metric> metrics = all.metrics(options);
   Figure figure;
   figure.legend = false;
@@ -67,7 +67,7 @@ Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options)
   figure.height_mm = (13.0 + 6.5 * static_cast<double>(all.methods.size())) * static_cast<double>(rows);
   const std::string what = all.pooled("Boxes between quartiles, with the median and each run as a point", groups);
   figure.caption =
-      all.scored_caption(what + (some_failed ? " Those that failed are in no box." : ""), options.online, metrics);
+      all.scored_caption(what + (some_failed ? " Those that failed are in no box." : ""), options.causal, metrics);
   return figure;
 }
 

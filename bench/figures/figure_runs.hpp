@@ -14,7 +14,7 @@ namespace evbench {
 struct FigureRuns {
   /// `without`: a column, or a setting, that is no part of methods' names, `apart`: a column that always is one
   /// (methods_of()).
-  FigureRuns(std::span<const RunRecord> runs, bool online, const std::string& without = "",
+  FigureRuns(std::span<const RunRecord> runs, bool causal, const std::string& without = "",
              const std::string& apart = "");
 
   std::vector<RunNumbers> runs;
@@ -33,7 +33,7 @@ struct FigureRuns {
 
   /// The same of what follows from trajectories, and of these metrics: with the trajectory that they are of, and as
   /// much of the protocols as they follow from. Where all of them are times and the like that is nothing.
-  std::string scored_caption(const std::string& what, bool online, const std::vector<Metric>& metrics) const;
+  std::string scored_caption(const std::string& what, bool causal, const std::vector<Metric>& metrics) const;
 };
 
 /// The number that is all of a text, if it is one.

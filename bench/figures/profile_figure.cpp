@@ -32,7 +32,7 @@ std::vector<std::vector<double>> costs_by_problem(const FigureRuns& all, const M
 }  // namespace
 
 Figure profile_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  const FigureRuns all(runs, options.online);
+  const FigureRuns all(runs, options.causal);
   const std::vector<Metric> metrics = all.metrics(options);
   Figure figure;
   std::size_t problems = 0;
@@ -66,7 +66,7 @@ Figure profile_figure(std::span<const RunRecord> runs, const FigureOptions& opti
   }
   figure.columns = std::min<std::size_t>(figure.panels.size(), 2);
   figure.caption = all.scored_caption(
-      fmt::format("Performance profiles (Dolan and Moré 2002) over {} sequences and seeds.", problems), options.online,
+      fmt::format("Performance profiles (Dolan and Moré 2002) over {} sequences and seeds.", problems), options.causal,
       metrics);
   return figure;
 }

@@ -17,7 +17,7 @@ struct FigureOptions {
   std::string axis_label = "";            ///< what is written there; empty: the axis' name
   std::string across = "";                ///< of maps: the column that is the other axis
   std::string base = "";  ///< of maps: the method that all is compared with; empty: the one without axis
-  bool online = false;    ///< the scores of the online trajectories, instead of the final ones
+  bool causal = false;    ///< the scores of the causal trajectories, instead of the final ones
 };
 
 /// Trajectories of one sequence that were scored, wherever they come from.

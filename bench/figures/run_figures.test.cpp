@@ -285,7 +285,7 @@ TEST_CASE("A figure of one sequence names it, and it and what is exported tell w
     metrics["status"]["state"] = "failed";
     metrics["status"]["reason"] = "timeout after 20 s";
     write_file(run.folder + "/metrics.json", dump_json(metrics));
-    for (const char* estimate : {"/final.tum", "/online.tum"}) write_file(run.folder + estimate, "");
+    for (const char* estimate : {"/final.tum", "/causal.tum"}) write_file(run.folder + estimate, "");
     std::filesystem::remove(run.folder + "/groundtruth.tum");
     score_again(run.folder, protocol_of_run(run.folder));
   }
@@ -375,7 +375,7 @@ TEST_CASE("An option that says nothing of a kind of figure is refused") {
     CHECK_THAT(outcome.err, ContainsSubstring(message));
   };
   refused("box . --axis backend.frame_duration", "--axis says nothing of a figure of the kind box");
-  refused("sweep . --across seed", "it takes --metrics, --axis, --axis-label, --online");
-  refused("times . --online", "it takes none");
+  refused("sweep . --across seed", "it takes --metrics, --axis, --axis-label, --causal");
+  refused("times . --causal", "it takes none");
   CHECK(names_in(results.folder.path()).count("f.svg") == 0);
 }

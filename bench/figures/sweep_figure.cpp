@@ -113,7 +113,7 @@ bool labels_follow(const std::vector<Places>& methods) {
 
 Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
   const std::string name = axis_of(runs, options);
-  const FigureRuns all(runs, options.online, name);
+  const FigureRuns all(runs, options.causal, name);
   const std::vector<Metric> metrics = all.metrics(options);
   const RunColumn& axis = find_column(all.columns, name);
   Figure figure;
@@ -161,7 +161,7 @@ Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& option
         fmt::format("Labels differ wherever {} does: no curve joins their points, unless they get one label.", name));
     what += " " + figure.remarks.back();
   }
-  figure.caption = all.scored_caption(what, options.online, metrics);
+  figure.caption = all.scored_caption(what, options.causal, metrics);
   return figure;
 }
 

@@ -23,7 +23,7 @@ void add_times(const std::string& folder, std::vector<double>& times) {
 }  // namespace
 
 Figure times_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  const FigureRuns all(runs, options.online);
+  const FigureRuns all(runs, options.causal);
   Figure figure;
   Panel panel{{"time of an update [ms]", true}, {"share of updates", false, true}, {}};
   for (const Method& method : all.methods) {

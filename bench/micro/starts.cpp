@@ -146,7 +146,7 @@ Start start(const Beginning& beginning, std::uint64_t seed) {
   context.camera = beginning.camera.pinhole;
   context.seed = seed;
   bool telling = false;
-  context.online = [&](const OnlinePose&) { telling = true; };
+  context.publish = [&](const CausalPose&) { telling = true; };
   gp_map::GpMap backend({}, context);
   TrackPlayer player(beginning.tracks.observations);
   TrackBatch batch;

@@ -61,7 +61,7 @@ BackSide::BackSide(const MakeBackEnd& make, BackEndContext context, const Camera
 void BackSide::begin() {
   auto estimator = std::make_unique<Estimator>(estimators_.size());
   BackEndContext context = context_;
-  context.online = [this, &heard = *estimator](const OnlinePose& pose) { heard.hear(pose, until_, seen_); };
+  context.publish = [this, &heard = *estimator](const CausalPose& pose) { heard.hear(pose, until_, seen_); };
   remembered_.clear();
   begun_ = next_relocalisation_ = until_;
   found_.reset();
@@ -243,7 +243,7 @@ void BackSide::add_pieces(double rate, RunResult& result) {
     result.learnt = backend.learnt();
     result.updates.insert(result.updates.end(), backend.updates().begin(), backend.updates().end());
     const std::size_t stood_in = estimator->world;
-    std::vector<OnlinePose> told_there = std::move(estimator->told_there);
+    std::vector<CausalPose> told_there = std::move(estimator->told_there);
     estimator->stand_alone();
     for (std::size_t i = estimator->number; relocalises_ && i-- > 0 && !estimator->is_elsewhere();) {
       if (!has_piece[i]) continue;
@@ -257,7 +257,7 @@ void BackSide::add_pieces(double rate, RunResult& result) {
       result.pieces.push_back(std::move(*piece));
     } else {
       const Status status = estimator->status();
-      std::erase_if(told_there, [&](const OnlinePose& pose) {
+      std::erase_if(told_there, [&](const CausalPose& pose) {
         return stood_in != estimator->world || (status.state == RunState::lost && pose.t > status.time);
       });
       go_on(result.pieces[entry->second], std::move(*piece), estimator->to_world, std::move(told_there));

@@ -45,14 +45,14 @@ std::vector<SE3> views_of(const PoseTrajectory& trajectory) {
 
 /// A pose ahead of the data counts as known when its time has come. A back-end knows the times of the observations that
 /// it makes poses from; where a front-end tells those late, the poses are known as much later.
-void Estimator::hear(OnlinePose pose, double until, double seen) {
+void Estimator::hear(CausalPose pose, double until, double seen) {
   if (!std::isfinite(pose.t) || !is_finite(pose) || (pose.velocity && !pose.velocity->allFinite())) {
     throw std::runtime_error(fmt::format("the back-end's pose at {:.6f} s is not finite", pose.t));
   }
   const double now = std::max(pose.t, pose.known_at.value_or(seen));
   if (!told.empty() && !(now >= said)) {
     throw std::runtime_error(
-        fmt::format("the back-end told an online pose as known at {:.6f} s after one known at {:.6f} s", now, said));
+        fmt::format("the back-end told an causal pose as known at {:.6f} s after one known at {:.6f} s", now, said));
   }
   said = now;
   const double complete = pose.known_at.value_or(seen), late = seen - until;
@@ -96,11 +96,11 @@ std::optional<Piece> Estimator::piece(double rate) {
   if (result.final_trajectory.empty() || its_status.state == RunState::failed) return std::nullopt;
   // What was told after the data had ended is no estimate from data.
   if (its_status.state == RunState::lost) {
-    const auto late = [&](const OnlinePose& pose) { return pose.t > its_status.time; };
+    const auto late = [&](const CausalPose& pose) { return pose.t > its_status.time; };
     std::erase_if(told, late);
   }
   result.told = std::move(told);
-  result.online_trajectory = newest_poses(result.told);
+  result.causal_trajectory = newest_poses(result.told);
   result.map = trusted_map();
   result.problem = backend->problem();
   result.relative = covariances.finish(*backend);

@@ -19,7 +19,7 @@ struct Estimator {
 
   std::size_t number;  ///< from 0, in the order in which they are made
   std::unique_ptr<BackEnd> backend;
-  std::vector<OnlinePose> told;       ///< in its own world
+  std::vector<CausalPose> told;       ///< in its own world
   double said = 0.0;                  ///< [s], when the last of these was known, in the back-end's words
   std::optional<StampedPose> newest;  ///< of these
   CovarianceSamples covariances;
@@ -29,7 +29,7 @@ struct Estimator {
 
   std::size_t world;                     ///< number of the estimator whose world it is
   Similarity to_world;                   ///< carries its own world to that one
-  std::vector<OnlinePose> told_there{};  ///< what it told since it was found there, in that world
+  std::vector<CausalPose> told_there{};  ///< what it told since it was found there, in that world
 
   void stand_alone() {
     world = number;
@@ -42,7 +42,7 @@ struct Estimator {
 
   /// Takes a pose that was told while data up to `seen` were looked at, of which a batch up to `until` was made [s].
   /// Throws std::runtime_error for one that is not finite or known before what was told already.
-  void hear(OnlinePose pose, double until, double seen);
+  void hear(CausalPose pose, double until, double seen);
 
   /// But for landmarks of doubtful tracks.
   std::vector<Landmark> trusted_map() const;

@@ -15,13 +15,13 @@ RelativePose carried(RelativePose relative, double scale) {
 
 }  // namespace
 
-OnlinePose carried(OnlinePose pose, const Similarity& transform) {
+CausalPose carried(CausalPose pose, const Similarity& transform) {
   pose.T = transform * pose.T;
   if (pose.velocity) pose.velocity->tail<3>() *= transform.scale;
   return pose;
 }
 
-void go_on(Piece& piece, Piece later, const Similarity& transform, std::vector<OnlinePose> told) {
+void go_on(Piece& piece, Piece later, const Similarity& transform, std::vector<CausalPose> told) {
   piece.covered += later.covered;
   std::vector<StampedPose> poses = std::move(piece.final_trajectory).poses();
   const double end = poses.back().t;
@@ -30,7 +30,7 @@ void go_on(Piece& piece, Piece later, const Similarity& transform, std::vector<O
   }
   piece.final_trajectory = PoseTrajectory(std::move(poses), "the back-ends' trajectory");
   piece.told.insert(piece.told.end(), told.begin(), told.end());
-  piece.online_trajectory = newest_poses(piece.told);
+  piece.causal_trajectory = newest_poses(piece.told);
   std::map<TrackId, Vector3> map;
   for (const Landmark& landmark : piece.map) map[landmark.track] = landmark.position;
   for (const Landmark& landmark : later.map) map[landmark.track] = transform * landmark.position;
@@ -41,12 +41,12 @@ void go_on(Piece& piece, Piece later, const Similarity& transform, std::vector<O
   }
 }
 
-PoseTrajectory newest_poses(const std::vector<OnlinePose>& told) {
+PoseTrajectory newest_poses(const std::vector<CausalPose>& told) {
   std::vector<StampedPose> poses;
-  for (const OnlinePose& pose : told) {
+  for (const CausalPose& pose : told) {
     if (poses.empty() || pose.t > poses.back().t) poses.push_back(pose);
   }
-  return PoseTrajectory(std::move(poses), "the online trajectory");
+  return PoseTrajectory(std::move(poses), "the causal trajectory");
 }
 
 }  // namespace evbench

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/data/landmark.hpp"
-#include "core/data/online_poses.hpp"
+#include "core/data/causal_poses.hpp"
 #include "core/data/problem.hpp"
 #include "core/data/relative_poses.hpp"
 #include "core/geometry/similarity.hpp"
@@ -16,8 +16,8 @@ namespace evbench {
 /// those after it that were found in its world.
 struct Piece {
   PoseTrajectory final_trajectory;   ///< after the fact, at the rate asked for; no poses while lost
-  PoseTrajectory online_trajectory;  ///< causal, the back-end's own times: each pose as it was first told
-  std::vector<OnlinePose> told;      ///< all that was told while the data came in, known_at set
+  PoseTrajectory causal_trajectory;  ///< causal, the back-end's own times: each pose as it was first told
+  std::vector<CausalPose> told;      ///< all that was told while the data came in, known_at set
   std::vector<Landmark> map;
   /// That the back-end ended with, where it has one: of several, the first one's.
   std::optional<Problem> problem;
@@ -29,13 +29,13 @@ struct Piece {
 };
 
 /// In the world to which `transform` carries that of the pose: body velocities scale with it.
-OnlinePose carried(OnlinePose pose, const Similarity& transform);
+CausalPose carried(CausalPose pose, const Similarity& transform);
 
 /// A later piece goes on in the world of an earlier one, to which `transform` carries its own. What it told then,
 /// `told`, is in that world already. Landmarks that both have are where the later one saw them.
-void go_on(Piece& piece, Piece later, const Similarity& transform, std::vector<OnlinePose> told);
+void go_on(Piece& piece, Piece later, const Similarity& transform, std::vector<CausalPose> told);
 
 /// Each pose that was the newest when it was told.
-PoseTrajectory newest_poses(const std::vector<OnlinePose>& told);
+PoseTrajectory newest_poses(const std::vector<CausalPose>& told);
 
 }  // namespace evbench

@@ -89,7 +89,7 @@ class Mean : public BackEnd {
     }
     if (!batch.observations.empty()) {
       poses_.push_back({batch.observations.back().t, {Eigen::Quaterniond::Identity(), {sum_.x(), sum_.y(), 0.0}}});
-      context_.online({poses_.back()});
+      context_.publish({poses_.back()});
       silent_since_ = batch.until;
     }
     using Support = TrackingMonitor::Support;
@@ -162,7 +162,7 @@ TEST_CASE("Sequential and concurrent runs give the same bytes, whatever the feed
       const RunResult concurrent = run(two, 2.5, options);
       CHECK(sequential.tracks_sha256 == concurrent.tracks_sha256);
       CHECK(same(sequential.pieces.at(0).final_trajectory, concurrent.pieces.at(0).final_trajectory));
-      CHECK(same(sequential.pieces.at(0).online_trajectory, concurrent.pieces.at(0).online_trajectory));
+      CHECK(same(sequential.pieces.at(0).causal_trajectory, concurrent.pieces.at(0).causal_trajectory));
       CHECK(one.heard == two.heard);
       CHECK(one.heard.size() > 100);
     }
@@ -212,7 +212,7 @@ TEST_CASE("A back-end that says itself when it knew a pose knows it as late, whe
     explicit Exact(const BackEndContext& context) : mean_(quiet(context)), context_(context) {}
     void advance(const TrackBatch& batch) override {
       mean_.advance(batch);
-      for (const TrackObservation& z : batch.observations) context_.online({{z.t, {}}, z.t, {}});
+      for (const TrackObservation& z : batch.observations) context_.publish({{z.t, {}}, z.t, {}});
     }
     Feedback feedback(const FeedbackNeeds& needs) override { return mean_.feedback(needs); }
     void finish() override { mean_.finish(); }
@@ -222,7 +222,7 @@ TEST_CASE("A back-end that says itself when it knew a pose knows it as late, whe
 
    private:
     static BackEndContext quiet(BackEndContext context) {
-      context.online = [](const OnlinePose&) {};
+      context.publish = [](const CausalPose&) {};
       return context;
     }
     Mean mean_;
@@ -234,16 +234,16 @@ TEST_CASE("A back-end that says itself when it knew a pose knows it as late, whe
   REQUIRE(result.pieces.size() == 1);
   const auto& told = result.pieces[0].told;
   REQUIRE(told.size() > 500);
-  for (const OnlinePose& pose : told) {
+  for (const CausalPose& pose : told) {
     if (pose.t < 0.05 || pose.t > 0.9) continue;
     CHECK(*pose.known_at == Approx(pose.t + LateListener::kDelay).margin(1e-9));
   }
-  CHECK(std::ranges::is_sorted(told, {}, [](const OnlinePose& pose) { return *pose.known_at; }));
+  CHECK(std::ranges::is_sorted(told, {}, [](const CausalPose& pose) { return *pose.known_at; }));
 
   Listener prompt(tracks({{0.0, 1.0}}), {});
   const RunResult at_once = run(prompt, 1.0, {}, make);
   REQUIRE(at_once.pieces.size() == 1);
-  for (const OnlinePose& pose : at_once.pieces[0].told) CHECK(*pose.known_at == pose.t);
+  for (const CausalPose& pose : at_once.pieces[0].told) CHECK(*pose.known_at == pose.t);
 }
 
 TEST_CASE("Feedback reaches the front-end after the latency in data time, in order, each once") {
@@ -436,21 +436,21 @@ TEST_CASE("An error in the back-end ends a run in two threads, too") {
   }
 }
 
-TEST_CASE("Online poses that are not finite, or known before what was told already, are an error") {
+TEST_CASE("Causal poses that are not finite, or known before what was told already, are an error") {
   class Tells : public Mean {
    public:
-    Tells(const BackEndContext& context, OnlinePose pose) : Mean(context), online_(context.online), pose_(pose) {}
+    Tells(const BackEndContext& context, CausalPose pose) : Mean(context), publish_(context.publish), pose_(pose) {}
     void advance(const TrackBatch& batch) override {
-      if (batch.until > 0.5) online_({{batch.until, {}}});
-      if (batch.until > 0.5) online_(pose_);
+      if (batch.until > 0.5) publish_({{batch.until, {}}});
+      if (batch.until > 0.5) publish_(pose_);
     }
 
    private:
-    std::function<void(const OnlinePose&)> online_;
-    OnlinePose pose_;
+    std::function<void(const CausalPose&)> publish_;
+    CausalPose pose_;
   };
   Listener frontend(tracks({{0.0, 2.0}}), {});
-  const auto telling = [](const OnlinePose& pose) {
+  const auto telling = [](const CausalPose& pose) {
     return [pose](const BackEndContext& context) { return std::make_unique<Tells>(context, pose); };
   };
   CHECK_THROWS_WITH(run(frontend, 2.0, {}, telling({{0.5, {}}, 0.5})),
@@ -461,14 +461,14 @@ TEST_CASE("Online poses that are not finite, or known before what was told alrea
   CHECK_THROWS_WITH(run(frontend, 2.0, {}, telling({{0.5, {}}, {}, no_velocity})), ContainsSubstring("not finite"));
 }
 
-TEST_CASE("What a back-end tells of an older time again is kept beside the online trajectory, with when it was known") {
+TEST_CASE("What a back-end tells of an older time again is kept beside the causal trajectory, with when it was known") {
   class Smooths : public Mean {
    public:
-    explicit Smooths(const BackEndContext& context) : Mean(context), online_(context.online) {}
+    explicit Smooths(const BackEndContext& context) : Mean(context), publish_(context.publish) {}
     void advance(const TrackBatch& batch) override {
       const SE3 T;
-      online_({{batch.until - 0.005, T}, batch.until - 0.002});
-      if (batch.until > 0.5) online_({{batch.until - 0.205, T}});
+      publish_({{batch.until - 0.005, T}, batch.until - 0.002});
+      if (batch.until > 0.5) publish_({{batch.until - 0.205, T}});
     }
     void finish() override {}
     PoseTrajectory trajectory() const override {
@@ -476,14 +476,14 @@ TEST_CASE("What a back-end tells of an older time again is kept beside the onlin
     }
 
    private:
-    std::function<void(const OnlinePose&)> online_;
+    std::function<void(const CausalPose&)> publish_;
   };
   Listener frontend(tracks({{0.0, 1.0}}), {});
   const RunResult result =
       run(frontend, 1.0, {}, [](const BackEndContext& context) { return std::make_unique<Smooths>(context); });
-  const std::vector<OnlinePose>& told = result.pieces.at(0).told;
-  const PoseTrajectory& online = result.pieces.at(0).online_trajectory;
-  CHECK(online.size() == 100);
+  const std::vector<CausalPose>& told = result.pieces.at(0).told;
+  const PoseTrajectory& causal = result.pieces.at(0).causal_trajectory;
+  CHECK(causal.size() == 100);
   CHECK(told.size() == 150);
   CHECK(told.back().t == Approx(0.795));
   CHECK(told.back().known_at == Approx(1.0));

@@ -80,7 +80,7 @@ class Surveyor : public BackEnd {
     if (!batch.observations.empty()) {
       newest_ = batch.observations.back().t;
       poses_.push_back({newest_, to_own_ * truth(newest_)});
-      context_.online({poses_.back(), {}, velocity()});
+      context_.publish({poses_.back(), {}, velocity()});
     }
     using Support = TrackingMonitor::Support;
     const bool sees = batch.until - newest_ < 0.05;
@@ -155,12 +155,12 @@ TEST_CASE("After a loss the run goes on in the same world where landmarks of bef
   REQUIRE(result.pieces.size() == 1);
   const Piece& piece = result.pieces.front();
   check_true(piece.final_trajectory, 0.0);
-  check_true(piece.online_trajectory, 0.0);
+  check_true(piece.causal_trajectory, 0.0);
   const auto in_gap = [](const StampedPose& pose) { return pose.t > kGap + 0.1 && pose.t < kAgain; };
   CHECK(std::ranges::none_of(piece.final_trajectory.poses(), in_gap));
   CHECK(piece.map.size() == 28);
   for (const Landmark& landmark : piece.map) CHECK((landmark.position - point_of(landmark.track)).norm() < 1e-4);
-  for (const OnlinePose& pose : piece.told) CHECK(pose.velocity->tail<3>().norm() == Approx(0.1).epsilon(1e-3));
+  for (const CausalPose& pose : piece.told) CHECK(pose.velocity->tail<3>().norm() == Approx(0.1).epsilon(1e-3));
   CHECK(std::ranges::any_of(result.log, [](const std::string& line) {
     return line.find("found in the world of before, by ") != std::string::npos;
   }));

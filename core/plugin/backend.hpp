@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/data/landmark.hpp"
-#include "core/data/online_poses.hpp"
+#include "core/data/causal_poses.hpp"
 #include "core/data/problem.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/pose_trajectory.hpp"
@@ -31,7 +31,7 @@ struct BackEndContext {
   /// of those that an update makes, at once. What is said of an older time (again) is a better estimate, for whoever
   /// can wait: for one that smooths. known_at must not decrease. It is in the observations' time: that a front-end told
   /// them later (TrackBatch::seen) is added by the harness.
-  std::function<void(const OnlinePose&)> online = [](const OnlinePose&) {};
+  std::function<void(const CausalPose&)> publish = [](const CausalPose&) {};
   std::function<void(const std::string&)> log = [](const std::string&) {};  ///< a line for the run's log.txt
 };
 

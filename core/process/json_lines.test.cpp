@@ -136,14 +136,14 @@ TEST_CASE("A message that is not what it should be is refused by a sentence that
   CHECK_THAT(refusal("\"lots\"", tracking_state), ContainsSubstring("unknown state \"lots\"; did you mean \"lost\"?"));
   CHECK_THAT(refusal("[1,2]", covariance), ContainsSubstring("144 numbers"));
   CHECK_THAT(refusal("[[0.2,0.1,\"x\"]]", degraded_spans), ContainsSubstring("a span that ends after it begins"));
-  const auto online = [](const Json& value) { poses(value, "online"); };
-  CHECK_THAT(refusal("[[0,0,0,0,0,0,0,0.9]]", online), ContainsSubstring("online[0]: the quaternion's norm is 0.9"));
-  CHECK_THAT(refusal("[[0,0,0,0,0,0,0,1],[0,0,0,0,0,0,0,1]]", online),
-             ContainsSubstring("online[1]: time 0 s is not after"));
+  const auto causal = [](const Json& value) { poses(value, "causal"); };
+  CHECK_THAT(refusal("[[0,0,0,0,0,0,0,0.9]]", causal), ContainsSubstring("causal[0]: the quaternion's norm is 0.9"));
+  CHECK_THAT(refusal("[[0,0,0,0,0,0,0,1],[0,0,0,0,0,0,0,1]]", causal),
+             ContainsSubstring("causal[1]: time 0 s is not after"));
 }
 
 TEST_CASE("A whole number with a decimal point is an integer, as numeric libraries write them") {
   CHECK(integer(parse_json("7.0"), {"track"}) == 7);
   CHECK(integer(parse_json("-7"), {"track"}) == -7);
-  CHECK(pose(parse_json("[1,2,3,4,0,0,0,1.0005]"), {"online"}).T.q.norm() == Approx(1.0).epsilon(1e-15));
+  CHECK(pose(parse_json("[1,2,3,4,0,0,0,1.0005]"), {"causal"}).T.q.norm() == Approx(1.0).epsilon(1e-15));
 }

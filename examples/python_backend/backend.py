@@ -95,7 +95,7 @@ def state():
     return "tracking" if poses else "no_map"
 
 def take(message):
-    online, dropped = [], len(outliers)
+    causal, dropped = [], len(outliers)
     for track, t, u, v, _ in message["observations"]:
         ray = t, (u - c["cx"]) / c["fx"], (v - c["cy"]) / c["fy"]
         sums.setdefault(int(t / width), {}).setdefault(track, []).append(ray)
@@ -103,9 +103,9 @@ def take(message):
         centre = (i + 0.5) * width
         lines = {k: np.array(x) - [centre, 0, 0] for k, x in sums.pop(i).items()}  # where each track is at that time:
         step(centre, {k: np.polyfit(x[:, 0], x[:, 1:], 1)[1] for k, x in lines.items() if x[0, 0] < 0 < x[-1, 0]})
-        online += [stamped(times[-1], poses[-1])] if poses else []
-    newest = {"newest": online[-1]} if online else {}
-    return {"state": state(), "online": online, "outliers": outliers[dropped:], **newest}
+        causal += [stamped(times[-1], poses[-1])] if poses else []
+    newest = {"newest": causal[-1]} if causal else {}
+    return {"state": state(), "causal": causal, "outliers": outliers[dropped:], **newest}
 
 def finish():
     refine(3)

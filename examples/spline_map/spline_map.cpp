@@ -66,7 +66,7 @@ void SplineMap::update(double t) {
     add_landmarks(t);
     watch(from, t);
   }
-  if (mapped_ && !monitor_.lost()) context_.online({{t, spline_.pose(t)}, t});
+  if (mapped_ && !monitor_.lost()) context_.publish({{t, spline_.pose(t)}, t});
   updates_.push_back({t, evbench::seconds_since(start), report.knots, report.landmarks, report.observations,
                       report.iterations, report.usable ? std::optional(report.cost) : std::nullopt});
 }

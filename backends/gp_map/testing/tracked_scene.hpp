@@ -38,7 +38,7 @@ struct RunOptions {
 
 struct Run {
   std::unique_ptr<GpMap> backend;
-  PoseTrajectory online;
+  PoseTrajectory causal;
   Scores scores;  ///< of the final trajectory at 100 Hz; empty when there is none
 };
 

@@ -122,7 +122,7 @@ class ClassName : public evbench::BackEnd {
     const bool known = trajectory_.empty() ? find_first_map(std::move(view)) : follow(std::move(view));
     if (known) {
       trajectory_.push_back({t, views_.back().T});
-      context_.online({trajectory_.back(), t, velocity_});
+      context_.publish({trajectory_.back(), t, velocity_});
     }
     if (!trajectory_.empty()) tracks_.forget_ended_before(t - options_.window);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;

@@ -22,7 +22,7 @@ class ClassName : public evbench::BackEnd {
     const StampedPose pose{batch.observations.back().t, T};
     if (!poses_.empty() && pose.t <= poses_.back().t) return;
     poses_.push_back(pose);
-    context_.online({pose});
+    context_.publish({pose});
   }
 
   Feedback feedback(const FeedbackNeeds&) override { return {}; }

@@ -1,4 +1,4 @@
-#include "core/data/online_poses.hpp"
+#include "core/data/causal_poses.hpp"
 
 #include <fmt/format.h>
 
@@ -19,11 +19,11 @@ Vector6 read_velocity(const TextReader& reader) {
 
 }  // namespace
 
-std::string format_online_poses(std::span<const OnlinePose> poses) {
+std::string format_causal_poses(std::span<const CausalPose> poses) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "# {} [wx wy wz vx vy vz]\n", kColumns);
-  for (const OnlinePose& pose : poses) {
+  for (const CausalPose& pose : poses) {
     const auto& [q, p] = pose.T;
     fmt::format_to(out, "{} {} {} {} {} {} {} {} {}", pose.known_at.value_or(pose.t), pose.t, p.x(), p.y(), p.z(),
                    q.x(), q.y(), q.z(), q.w());
@@ -35,13 +35,13 @@ std::string format_online_poses(std::span<const OnlinePose> poses) {
   return fmt::to_string(text);
 }
 
-std::vector<OnlinePose> read_online_poses(const std::string& path) {
-  std::vector<OnlinePose> poses;
+std::vector<CausalPose> read_causal_poses(const std::string& path) {
+  std::vector<CausalPose> poses;
   TextReader reader(path);
   while (reader.next()) {
     const bool moving = reader.columns().size() == kWithVelocity;
     if (!moving) reader.expect_columns(kWithoutVelocity, kColumns);
-    OnlinePose pose;
+    CausalPose pose;
     pose.known_at = reader.number(0, "known_at");
     pose.t = reader.number(1, "the time");
     pose.T = {read_quaternion(reader, consecutive<4>(5)), read_vector3(reader, consecutive<3>(2), "the position")};
