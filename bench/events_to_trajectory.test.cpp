@@ -29,31 +29,31 @@ Execution run(const Source& source, const Json& frontend = Json::object(), const
   return execute(job, source, plugins, {});
 }
 
-/// The piece that has most poses within a span of time [s]; none where none has any.
-const Piece* piece_of(const RunResult& result, double from, double to = 1e9) {
-  const Piece* best = nullptr;
+/// The segment that has most poses within a span of time [s]; none where none has any.
+const TrajectorySegment* segment_of(const RunResult& result, double from, double to = 1e9) {
+  const TrajectorySegment* best = nullptr;
   std::ptrdiff_t most = 0;
-  for (const Piece& piece : result.pieces) {
-    const auto poses = std::ranges::count_if(piece.final_trajectory.poses(),
+  for (const TrajectorySegment& segment : result.segments) {
+    const auto poses = std::ranges::count_if(segment.final_trajectory.poses(),
                                              [&](const StampedPose& pose) { return pose.t >= from && pose.t <= to; });
     if (poses > most) {
       most = poses;
-      best = &piece;
+      best = &segment;
     }
   }
   return best;
 }
 
 /// Root mean square distance from the truth after a Sim(3) alignment, as a share of the path, within a span of time
-/// [s], of the piece that covers it; what is within `without` is left out.
+/// [s], of the segment that covers it; what is within `without` is left out.
 double error(const Source& source, const Execution& execution, double from = 0.0, double to = 1e9,
              const StillSpan& without = {}) {
   constexpr double kNone = 1e9;
-  const Piece* piece = piece_of(execution.result, from, to);
-  if (!piece) return kNone;
+  const TrajectorySegment* segment = segment_of(execution.result, from, to);
+  if (!segment) return kNone;
   std::vector<PosePair> pairs;
   double path = 0.0;
-  for (const StampedPose& pose : piece->final_trajectory.poses()) {
+  for (const StampedPose& pose : segment->final_trajectory.poses()) {
     const auto T = source.ground_truth().pose(pose.t);
     if (!T || pose.t < from || pose.t > to || (pose.t > without.from && pose.t < without.to)) continue;
     if (!pairs.empty()) path += (pairs.back().ground_truth.p - T->p).norm();
@@ -74,13 +74,13 @@ void check_recovered(const Source& source, const Execution& execution, double fr
   [[maybe_unused]] constexpr double kMostMemory = 400;  // [MiB], of which a scene's events are up to 60
   constexpr double kMissing = 0.3;  // [s], from there on and at the end, as a new map takes its time
   const RunResult& result = execution.result;
-  CAPTURE(from, to_string(result.status.state), result.status.reason, result.pieces.size());
+  CAPTURE(from, to_string(result.status.state), result.status.reason, result.segments.size());
   REQUIRE(execution.complete);
   CHECK((result.status.state == RunState::ok) == result.status.reason.empty());
-  const Piece* piece = piece_of(result, from);
-  REQUIRE(piece);
-  CHECK(piece->final_trajectory.start() < from + kMissing);
-  CHECK(piece->final_trajectory.end() > source.time_range().to - kMissing);
+  const TrajectorySegment* segment = segment_of(result, from);
+  REQUIRE(segment);
+  CHECK(segment->final_trajectory.start() < from + kMissing);
+  CHECK(segment->final_trajectory.end() > source.time_range().to - kMissing);
   CHECK(error(source, execution, from) < kMostError);
 #if !defined(EVBENCH_SANITIZED)
   CHECK(result.peak_rss_mib < kMostMemory);
@@ -127,9 +127,9 @@ TEST_CASE("From events to a trajectory: a swinging camera before a wall, in one 
   CHECK(error(scene, sequential) < 0.01);
   const Execution concurrent = run(scene, Json::object(), "concurrent");
   CHECK(concurrent.result.tracks_sha256 == sequential.result.tracks_sha256);
-  REQUIRE(concurrent.result.pieces.size() == 1);
+  REQUIRE(concurrent.result.segments.size() == 1);
   CHECK(std::ranges::equal(
-      concurrent.result.pieces[0].final_trajectory.poses(), sequential.result.pieces[0].final_trajectory.poses(), {},
+      concurrent.result.segments[0].final_trajectory.poses(), sequential.result.segments[0].final_trajectory.poses(), {},
       [](const StampedPose& pose) { return std::pair(pose.t, pose.T.p); },
       [](const StampedPose& pose) { return std::pair(pose.t, pose.T.p); }));
 }
@@ -140,8 +140,8 @@ TEST_CASE("The trajectory has seen an event within a tenth of a second, as long 
   const EventScene scene(swing, 3.0, wall());
   for (const char* backend : {"gp_map", "bundle_adjustment"}) {
     const Execution execution = run(scene, Json::object(), "sequential", backend);
-    REQUIRE(execution.result.pieces.size() == 1);
-    const auto& told = execution.result.pieces[0].told;
+    REQUIRE(execution.result.segments.size() == 1);
+    const auto& told = execution.result.segments[0].told;
     const std::optional<Delay> delay = delay_of(told);
     CAPTURE(backend);
     REQUIRE(delay);
@@ -169,7 +169,7 @@ TEST_CASE("Landmarks that come back into view are found again, and their tracks 
   };
   const EventScene scene(motion, 6.0, wall());
   const Execution with = run(scene), without = run(scene, parse_json(R"({"guidance": {"reacquire": false}})"));
-  const auto tracks = [&](const Execution& execution) { return execution.result.pieces.at(0).map.size(); };
+  const auto tracks = [&](const Execution& execution) { return execution.result.segments.at(0).map.size(); };
   CHECK(tracks(with) < tracks(without));
   CHECK(error(scene, with) < error(scene, without));
 }
@@ -179,7 +179,7 @@ TEST_CASE("Five seconds without events: the camera stands still, and its traject
   const EventScene scene(motion, 9.0, wall());
   const Execution execution = run(scene);
   CHECK(execution.result.status.state == RunState::ok);
-  CHECK(execution.result.pieces.size() == 1);
+  CHECK(execution.result.segments.size() == 1);
   CHECK_FALSE(execution.result.still.empty());
   CHECK(error(scene, execution) < 0.02);
   check_recovered(scene, execution, 7.0);
@@ -190,8 +190,8 @@ TEST_CASE("After the last event a camera stands still, unless the recording may 
   EventScene scene(motion, 7.0, wall());
   const Execution still = run(scene);
   CHECK(still.result.status.state == RunState::ok);
-  REQUIRE(still.result.pieces.size() == 1);
-  CHECK(still.result.pieces[0].final_trajectory.end() > 6.9);
+  REQUIRE(still.result.segments.size() == 1);
+  CHECK(still.result.segments[0].final_trajectory.end() > 6.9);
   REQUIRE_FALSE(still.result.still.empty());
   CHECK(still.result.still.back().to > 6.9);
 
@@ -200,8 +200,8 @@ TEST_CASE("After the last event a camera stands still, unless the recording may 
     const Execution over = run(scene, Json::object(), mode);
     CHECK(over.result.status.state == RunState::ok);
     CHECK(over.result.still.empty());
-    REQUIRE(over.result.pieces.size() == 1);
-    CHECK(over.result.pieces[0].final_trajectory.end() == Approx(3.0).margin(0.1));
+    REQUIRE(over.result.segments.size() == 1);
+    CHECK(over.result.segments[0].final_trajectory.end() == Approx(3.0).margin(0.1));
     CHECK(std::ranges::any_of(over.result.log, [](const std::string& line) {
       return line.find("the events end at ") != std::string::npos && line.find("7.000 s") != std::string::npos;
     }));
@@ -221,10 +221,10 @@ TEST_CASE("A sensor that tells nothing while the camera moves on: said, and then
       CHECK(result.still.empty());
       CHECK(result.status.state == RunState::degraded);
       CHECK(result.status.reason == "lost: the camera moved while nothing was seen; then found in the same world");
-      REQUIRE(result.pieces.size() == 1);
+      REQUIRE(result.segments.size() == 1);
       check_recovered(scene, execution, gap.to + 1.0);
       CHECK(error(scene, execution, 0.0, 1e9, gap) < 0.015);
-      CHECK(std::ranges::none_of(result.pieces[0].final_trajectory.poses(),
+      CHECK(std::ranges::none_of(result.segments[0].final_trajectory.poses(),
                                  [&](const StampedPose& pose) { return pose.t > gap.from + 0.2 && pose.t < gap.to; }));
     }
   }
@@ -247,7 +247,7 @@ TEST_CASE("What looks the same everywhere, or is elsewhere, is not taken for the
     const Execution execution = run(scene);
     check_recovered(scene, execution, 5.5);
     CHECK(execution.result.status.state == RunState::lost);
-    CHECK(execution.result.pieces.size() == 2);
+    CHECK(execution.result.segments.size() == 2);
   }
 }
 
@@ -283,7 +283,7 @@ TEST_CASE(
     scene.add(noise);
     const Execution execution = run(scene, {{"guidance", {{"corners", true}}}});
     CAPTURE(seed, execution.result.status.reason);
-    CHECK(execution.result.pieces.size() == 1);
+    CHECK(execution.result.segments.size() == 1);
     CHECK(execution.result.status.state != RunState::lost);
     CHECK(error(scene, execution) < 0.08);
     const Execution without = run(scene);
@@ -347,7 +347,7 @@ TEST_CASE("Pure rotation gives no map, and says why, when the camera translates,
   const auto later = [&](double t) { return turn(t) * swing(std::max(0.0, t - 2.0)); };
   const EventScene translating(later, 6.0, wall());
   const Execution execution = run(translating);
-  REQUIRE_FALSE(execution.result.pieces.empty());
+  REQUIRE_FALSE(execution.result.segments.empty());
   CHECK(error(translating, execution, 2.5) < 0.02);
 }
 

@@ -96,12 +96,12 @@ RunStatus status_of(const Execution& execution) {
   status.status = result.status;
   status.complete = execution.complete;
   for (const StillSpan& span : result.still) status.still.push_back({span.from, span.to});
-  for (const Piece& piece : result.pieces) {
-    const PoseTrajectory& poses = piece.final_trajectory.empty() ? piece.causal_trajectory : piece.final_trajectory;
-    status.pieces.push_back({poses.empty() ? 0.0 : poses.start(), poses.empty() ? 0.0 : poses.end(),
-                             piece.final_trajectory.size(), piece.map.size()});
+  for (const TrajectorySegment& segment : result.segments) {
+    const PoseTrajectory& poses = segment.final_trajectory.empty() ? segment.causal_trajectory : segment.final_trajectory;
+    status.segments.push_back({poses.empty() ? 0.0 : poses.start(), poses.empty() ? 0.0 : poses.end(),
+                             segment.final_trajectory.size(), segment.map.size()});
   }
-  if (!result.pieces.empty()) status.scored = result.longest + 1;
+  if (!result.segments.empty()) status.scored = result.longest + 1;
   return status;
 }
 
@@ -131,19 +131,19 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
   return record;
 }
 
-void write_piece(const AtomicFolder& folder, const Piece& piece, const std::string& suffix) {
-  folder.write("final" + suffix + ".tum", format_tum(piece.final_trajectory));
-  folder.write("causal" + suffix + ".tum", format_tum(piece.causal_trajectory));
-  folder.write("causal_poses" + suffix + ".txt", format_causal_poses(piece.told));
-  if (!piece.relative.empty()) folder.write("covariance" + suffix + ".txt", format_relative_poses(piece.relative));
-  folder.write("map" + suffix + ".ply", format_map(piece.map));
+void write_segment(const AtomicFolder& folder, const TrajectorySegment& segment, const std::string& suffix) {
+  folder.write("final" + suffix + ".tum", format_tum(segment.final_trajectory));
+  folder.write("causal" + suffix + ".tum", format_tum(segment.causal_trajectory));
+  folder.write("causal_poses" + suffix + ".txt", format_causal_poses(segment.told));
+  if (!segment.relative.empty()) folder.write("covariance" + suffix + ".txt", format_relative_poses(segment.relative));
+  folder.write("map" + suffix + ".ply", format_map(segment.map));
 }
 
-void write_pieces(const AtomicFolder& folder, const RunResult& result) {
-  for (std::size_t i = 0; i < result.pieces.size(); ++i) {
-    write_piece(folder, result.pieces[i], i == result.longest ? "" : fmt::format(".piece{}", i + 1));
+void write_segments(const AtomicFolder& folder, const RunResult& result) {
+  for (std::size_t i = 0; i < result.segments.size(); ++i) {
+    write_segment(folder, result.segments[i], i == result.longest ? "" : fmt::format(".segment{}", i + 1));
   }
-  if (result.pieces.empty()) write_piece(folder, {}, "");
+  if (result.segments.empty()) write_segment(folder, {}, "");
 }
 
 }  // namespace
@@ -172,8 +172,8 @@ RunRecord RunFolder::write(const RunConfig& config, const JobIdentity& identity,
   write_files(config, identity, result);
   if (!ground_truth.empty()) folder_.write("groundtruth.tum", ground_truth);
   if (!result.learnt.empty()) folder_.write("learnt.csv", learnt_csv(result));
-  if (problem && !result.pieces.empty() && result.pieces[result.longest].problem) {
-    folder_.write("problem.txt", format_problem(*result.pieces[result.longest].problem));
+  if (problem && !result.segments.empty() && result.segments[result.longest].problem) {
+    folder_.write("problem.txt", format_problem(*result.segments[result.longest].problem));
   }
   if (result.tracks) {
     folder_.write("tracks.txt", format_tracks(result.tracks->observations));
@@ -199,7 +199,7 @@ RunRecord RunFolder::write_broken_off(const RunConfig& config, const JobIdentity
 void RunFolder::write_files(const RunConfig& config, const JobIdentity& identity, const RunResult& result) const {
   folder_.write("config.json", json_file_text(config.resolved()));
   folder_.write("job.json", identity.text);
-  write_pieces(folder_, result);
+  write_segments(folder_, result);
   folder_.write("timing.csv", timing_csv(result.updates));
   folder_.write("log.txt", log_text(config, result));
 }

@@ -38,7 +38,7 @@ class EmptyFolders {
 ///   learnt.csv       what the back-end has learnt of its parameters by then, where it does
 ///   log.txt
 ///
-/// Where the estimate is in pieces, these are of the longest one; the others are final.piece2.tum, causal.piece2.tum,
+/// Where the estimate is in segments, these are of the longest one; the others are final.segment2.tum, causal.segment2.tum,
 /// and so on, numbered in time order from 1 (status.json lists all). The folder appears complete or not at all; an
 /// older run of the same key is replaced.
 class RunFolder {

@@ -270,18 +270,18 @@ TEST_CASE("A run without an estimate fails with exit code 3, a status with the r
   CHECK(json_file(folders.begin()->second, "metrics.json").at("final").is_null());
 }
 
-TEST_CASE("Of an estimate in pieces the longest one is scored, and the others lie beside it") {
+TEST_CASE("Of an estimate in segments the longest one is scored, and the others lie beside it") {
   const TemporaryFolder folder;
   const std::string path = folder.write("c.json", dump_json(short_config()));
   const RunConfig config = read_experiment(path, {}, known_plugins()).runs[0];
   const auto source = make_source(config.job, known_plugins());
   Execution execution;
   for (const auto& [from, to] : {std::pair{0.1, 0.6}, {0.7, 2.9}, {2.95, 3.0}}) {
-    Piece piece;
-    piece.final_trajectory = source->ground_truth().cut(from, to);
-    piece.causal_trajectory = source->ground_truth().cut(from + 0.01, to);
-    piece.map.resize(3);
-    execution.result.pieces.push_back(piece);
+    TrajectorySegment segment;
+    segment.final_trajectory = source->ground_truth().cut(from, to);
+    segment.causal_trajectory = source->ground_truth().cut(from + 0.01, to);
+    segment.map.resize(3);
+    execution.result.segments.push_back(segment);
   }
   execution.result.longest = 1;
   execution.result.status = {RunState::lost, "no observations", 0.6, {}};
@@ -291,21 +291,21 @@ TEST_CASE("Of an estimate in pieces the longest one is scored, and the others li
     record = run.write(config, identity_of(config), *source, ground_truth_tum(*source), execution);
   }
   std::set<std::string> expected = kFiles;
-  for (const char* name : {"final.piece1.tum", "causal.piece1.tum", "told.piece1.txt", "map.piece1.ply",
-                           "final.piece3.tum", "causal.piece3.tum", "told.piece3.txt", "map.piece3.ply"}) {
+  for (const char* name : {"final.segment1.tum", "causal.segment1.tum", "told.segment1.txt", "map.segment1.ply",
+                           "final.segment3.tum", "causal.segment3.tum", "told.segment3.txt", "map.segment3.ply"}) {
     expected.insert(name);
   }
   const std::string made = folder.file("out/short/mine");
   CHECK(names_in(made) == expected);
-  const PoseTrajectory scored = read_tum(made + "/final.tum"), first = read_tum(made + "/final.piece1.tum");
+  const PoseTrajectory scored = read_tum(made + "/final.tum"), first = read_tum(made + "/final.segment1.tum");
   CHECK(scored.start() == Approx(0.7).margin(0.01));
   CHECK(first.end() == Approx(0.6).margin(0.01));
   const Json status = json_file(made, "status.json");
-  CHECK(status.at("scored_piece") == 2);
-  REQUIRE(status.at("pieces").size() == 3);
-  CHECK(status.at("pieces")[1].at("poses") == scored.size());
-  CHECK(status.at("pieces")[1].at("landmarks") == 3);
-  CHECK(status.at("pieces")[0].at("to") == first.end());
+  CHECK(status.at("scored_segment") == 2);
+  REQUIRE(status.at("segments").size() == 3);
+  CHECK(status.at("segments")[1].at("poses") == scored.size());
+  CHECK(status.at("segments")[1].at("landmarks") == 3);
+  CHECK(status.at("segments")[0].at("to") == first.end());
   const Json metrics = json_file(made, "metrics.json");
   CHECK(metrics.at("final").at("pairs") == scored.size());
   CHECK(metrics.at("final").at("ate").at("trans_m").at("rmse").get<double>() < 1e-6);

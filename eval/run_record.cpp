@@ -73,11 +73,11 @@ RunStatus read_status(const RecordReader& json) {
   for (const RecordReader& span : json.list("still")) {
     result.still.push_back({span.number("from"), span.number("to")});
   }
-  for (const RecordReader& piece : json.list("pieces")) {
-    result.pieces.push_back({piece.number("from"), piece.number("to"), piece.count_or_null("poses").value_or(0),
-                             piece.count_or_null("landmarks").value_or(0)});
+  for (const RecordReader& segment : json.list("segments")) {
+    result.segments.push_back({segment.number("from"), segment.number("to"), segment.count_or_null("poses").value_or(0),
+                             segment.count_or_null("landmarks").value_or(0)});
   }
-  result.scored = json.count_or_null("scored_piece").value_or(0);
+  result.scored = json.count_or_null("scored_segment").value_or(0);
   result.complete = json.flag_or("complete", true);
   return result;
 }
@@ -127,12 +127,12 @@ Json to_json(const RunStatus& run) {
   }
   json["still"] = Json::array();
   for (const TimeRange& span : run.still) json["still"].push_back(to_json(span));
-  json["pieces"] = Json::array();
-  for (const RunPiece& piece : run.pieces) {
-    json["pieces"].push_back(
-        {{"from", piece.from}, {"to", piece.to}, {"poses", piece.poses}, {"landmarks", piece.landmarks}});
+  json["segments"] = Json::array();
+  for (const RunSegment& segment : run.segments) {
+    json["segments"].push_back(
+        {{"from", segment.from}, {"to", segment.to}, {"poses", segment.poses}, {"landmarks", segment.landmarks}});
   }
-  json["scored_piece"] = run.scored > 0 ? Json(run.scored) : Json();
+  json["scored_segment"] = run.scored > 0 ? Json(run.scored) : Json();
   return json;
 }
 

@@ -15,7 +15,7 @@
 namespace evbench {
 
 /// A part of the estimate in one world frame and scale.
-struct RunPiece {
+struct RunSegment {
   double from = 0.0, to = 0.0;  ///< [s]
   std::size_t poses = 0, landmarks = 0;
 };
@@ -24,8 +24,8 @@ struct RunPiece {
 struct RunStatus {
   Status status;
   std::vector<TimeRange> still;  ///< spans in which the camera stood still
-  std::vector<RunPiece> pieces;  ///< in time order; none when there is no estimate
-  std::size_t scored = 0;        ///< the number of the piece that is scored, from 1; 0: none
+  std::vector<RunSegment> segments;  ///< in time order; none when there is no estimate
+  std::size_t scored = 0;        ///< the number of the segment that is scored, from 1; 0: none
   /// False: the run broke off (a plugin threw an exception). It is done again when it is asked for again.
   bool complete = true;
 };

@@ -37,7 +37,7 @@ RunRecord full_record() {
   RunStatus status;
   status.status = {RunState::lost, "2 tracks, 15 needed", 3.051, {{1.0, 1.5, "8 tracks"}}};
   status.still = {{2.0, 2.5}};
-  status.pieces = {{0.2, 3.0, 281, 40}, {4.0, 30.0, 2601, 77}};
+  status.segments = {{0.2, 3.0, 281, 40}, {4.0, 30.0, 2601, 77}};
   status.scored = 2;
   status.complete = false;
   record.status = status;
@@ -69,7 +69,7 @@ TEST_CASE("A record that was read is written again with the same bytes") {
   REQUIRE(read.status);
   CHECK(read.status->status.state == RunState::lost);
   CHECK(read.status->status.time == 3.051);
-  CHECK(read.status->pieces.at(1).landmarks == 77);
+  CHECK(read.status->segments.at(1).landmarks == 77);
   CHECK(read.status->scored == 2);
   CHECK_FALSE(read.status->complete);
 }
@@ -112,7 +112,7 @@ TEST_CASE("A damaged metrics.json is refused with the file and the key") {
   CHECK_THAT(message_of(with("/status", 3)), ContainsSubstring("m.json: status: expected a JSON object"));
   CHECK_THAT(message_of(with("/status/state", "fine")),
              ContainsSubstring("\"state\" is \"fine\"; expected ok, degraded"));
-  CHECK_THAT(message_of(with("/status/pieces/1/from", "x")), ContainsSubstring("m.json: status: pieces.1: \"from\""));
+  CHECK_THAT(message_of(with("/status/segments/1/from", "x")), ContainsSubstring("m.json: status: segments.1: \"from\""));
   CHECK_THAT(message_of(with("/status/complete", "yes")),
              ContainsSubstring("\"complete\" is \"yes\"; expected true or false"));
   CHECK_THAT(message_of(with("/final", 3)), ContainsSubstring("\"final\" is missing; expected scores or null"));

@@ -44,10 +44,10 @@ void check_poses(const PoseTrajectory& trajectory, const char* which, double end
 
 /// What holds of any run: finite, within the data's time, and a state that fits.
 void CandidateBackEnd::check_sound(const RunResult& result, double end) {
-  for (const Piece& piece : result.pieces) {
-    check_poses(piece.final_trajectory, "final", end);
-    check_poses(piece.causal_trajectory, "causal", end);
-    for (const Landmark& landmark : piece.map) {
+  for (const TrajectorySegment& segment : result.segments) {
+    check_poses(segment.final_trajectory, "final", end);
+    check_poses(segment.causal_trajectory, "causal", end);
+    for (const Landmark& landmark : segment.map) {
       require(landmark.position.allFinite(), "landmark {} is not finite", landmark.track);
     }
   }
@@ -60,23 +60,23 @@ void CandidateBackEnd::check_sound(const RunResult& result, double end) {
     require(!status.reason.empty(), "it is {} without a reason", to_string(status.state));
     require(std::isfinite(status.time), "the time at which it is {} is not finite", to_string(status.state));
   }
-  require((status.state == RunState::failed) == result.pieces.empty(), "it is {} and has {} trajectories",
-          to_string(status.state), result.pieces.size());
+  require((status.state == RunState::failed) == result.segments.empty(), "it is {} and has {} trajectories",
+          to_string(status.state), result.segments.size());
 }
 
-const Piece& longest(const RunResult& result) {
-  require(!result.pieces.empty(), "it makes no trajectory: {}", result.status.reason);
-  return result.pieces[result.longest];
+const TrajectorySegment& longest(const RunResult& result) {
+  require(!result.segments.empty(), "it makes no trajectory: {}", result.status.reason);
+  return result.segments[result.longest];
 }
 
 void follows_a_good_sequence(const CandidateBackEnd& candidate) {
   const RunResult result = candidate.run({});
-  const Piece& piece = longest(result);
+  const TrajectorySegment& segment = longest(result);
   require(result.status.state <= RunState::degraded, "it is {}: {}", to_string(result.status.state),
           result.status.reason);
-  require(piece.final_trajectory.end() > 2.5, "its trajectory ends at {} s of 3 s", piece.final_trajectory.end());
-  require(piece.map.size() > 10, "its map has {} landmarks, where 50 tracks are seen", piece.map.size());
-  require(!piece.causal_trajectory.empty(), "it told no causal pose");
+  require(segment.final_trajectory.end() > 2.5, "its trajectory ends at {} s of 3 s", segment.final_trajectory.end());
+  require(segment.map.size() > 10, "its map has {} landmarks, where 50 tracks are seen", segment.map.size());
+  require(!segment.causal_trajectory.empty(), "it told no causal pose");
 }
 
 void fails_with_too_little(const CandidateBackEnd& candidate) {
@@ -124,11 +124,11 @@ void starts_anew_after_a_loss(const CandidateBackEnd& candidate) {
   const RunResult result = candidate.run(interrupted(8.0, 2.5, 5.0));
   require(result.status.state == RunState::lost, "it is {}, though nothing was seen for 2.5 s",
           to_string(result.status.state));
-  require(result.pieces.size() == 2, "its trajectory has {} pieces; expected one before the loss and one after it",
-          result.pieces.size());
-  const double first = result.pieces[0].final_trajectory.end(), second = result.pieces[1].final_trajectory.start();
-  require(first < 3.6, "the first piece goes on to {} s, though nothing was seen from 2.5 s on", first);
-  require(second > 4.9 && second < 7.0, "the second piece begins at {} s, though tracks came back at 5 s", second);
+  require(result.segments.size() == 2, "its trajectory has {} segments; expected one before the loss and one after it",
+          result.segments.size());
+  const double first = result.segments[0].final_trajectory.end(), second = result.segments[1].final_trajectory.start();
+  require(first < 3.6, "the first segment goes on to {} s, though nothing was seen from 2.5 s on", first);
+  require(second > 4.9 && second < 7.0, "the second segment begins at {} s, though tracks came back at 5 s", second);
 }
 
 void makes_no_map_at_rest(const CandidateBackEnd& candidate) {
@@ -145,11 +145,11 @@ void stands_still(const CandidateBackEnd& candidate) {
   sequence.tracks = R"({"alive": 50, "rate": [50, 100], "lifetime": [20, 30], "noise": 0.3})";
   sequence.keep = [](TrackObservation& z) { return z.t < 4.0 || z.t > 14.0; };
   const RunResult result = candidate.run(sequence);
-  const Piece& piece = longest(result);
+  const TrajectorySegment& segment = longest(result);
   require(result.status.state <= RunState::degraded, "it is {}: {}, though the camera only stood still",
           to_string(result.status.state), result.status.reason);
   require(!result.still.empty() && result.still.front().to > 13.0, "the standstill from 4 to 14 s was not noticed");
-  const PoseTrajectory& trajectory = piece.final_trajectory;
+  const PoseTrajectory& trajectory = segment.final_trajectory;
   require(trajectory.end() > 15.5, "its trajectory ends at {} s of 16 s", trajectory.end());
   const auto early = trajectory.pose(5.0), late = trajectory.pose(13.5);
   require(early && late, "it has no pose while the camera stands still");
@@ -179,7 +179,7 @@ void publishes_poses_in_time(const CandidateBackEnd& candidate) {
     sequence.range = end;
     sequence.keep = [end](TrackObservation& z) { return z.t <= end; };
     const RunResult result = candidate.run(sequence);
-    return result.pieces.empty() ? std::vector<StampedPose>{} : longest(result).causal_trajectory.poses();
+    return result.segments.empty() ? std::vector<StampedPose>{} : longest(result).causal_trajectory.poses();
   };
   const auto early = until(kCut), all = until(3.0);
   require(!early.empty(), "it tells no causal pose in 2 s");
@@ -199,14 +199,14 @@ bool same(const PoseTrajectory& a, const PoseTrajectory& b) {
 }
 
 void check_same(const RunResult& a, const RunResult& b, const char* what) {
-  require(a.pieces.size() == b.pieces.size(), "{}: {} and {} pieces", what, a.pieces.size(), b.pieces.size());
-  for (std::size_t i = 0; i < a.pieces.size(); ++i) {
-    require(same(a.pieces[i].final_trajectory, b.pieces[i].final_trajectory), "{}: final trajectories differ", what);
-    require(same(a.pieces[i].causal_trajectory, b.pieces[i].causal_trajectory), "{}: causal trajectories differ", what);
+  require(a.segments.size() == b.segments.size(), "{}: {} and {} segments", what, a.segments.size(), b.segments.size());
+  for (std::size_t i = 0; i < a.segments.size(); ++i) {
+    require(same(a.segments[i].final_trajectory, b.segments[i].final_trajectory), "{}: final trajectories differ", what);
+    require(same(a.segments[i].causal_trajectory, b.segments[i].causal_trajectory), "{}: causal trajectories differ", what);
     const auto equal = [](const Landmark& x, const Landmark& y) {
       return x.track == y.track && x.position == y.position;
     };
-    require(std::ranges::equal(a.pieces[i].map, b.pieces[i].map, equal), "{}: maps differ", what);
+    require(std::ranges::equal(a.segments[i].map, b.segments[i].map, equal), "{}: maps differ", what);
   }
   require(a.status.state == b.status.state && a.status.reason == b.status.reason, "{}: states differ", what);
 }
@@ -296,7 +296,7 @@ std::vector<Check> backend_checks(const Plugins& plugins, const std::string& nam
             fails_with_too_little),
       check("survives a gap in which no track is alive, and says so", survives_a_gap),
       check("keeps what it had when all tracks end before the clock does, and is lost", keeps_what_it_had),
-      check("starts anew when tracks come back after it was lost, in a second piece", starts_anew_after_a_loss),
+      check("starts anew when tracks come back after it was lost, in a second segment", starts_anew_after_a_loss),
       check("makes no map out of a camera that never moves, and says why", makes_no_map_at_rest),
       check("is not lost while the camera stands still for ten seconds, and stays where it is", stands_still),
       check("stays finite when tracks are wild", stays_finite_with_wild_tracks),

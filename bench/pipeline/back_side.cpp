@@ -220,9 +220,9 @@ RunProgress BackSide::progress() const {
 }
 
 void BackSide::finish(double rate, RunResult& result) {
-  add_pieces(rate, result);
-  for (std::size_t i = 1; i < result.pieces.size(); ++i) {
-    if (result.pieces[i].covered > result.pieces[result.longest].covered) result.longest = i;
+  add_segments(rate, result);
+  for (std::size_t i = 1; i < result.segments.size(); ++i) {
+    if (result.segments[i].covered > result.segments[result.longest].covered) result.longest = i;
   }
   result.still = standstill_.spans();
   result.observations = observations_;
@@ -234,9 +234,9 @@ void BackSide::finish(double rate, RunResult& result) {
 
 /// Of each world that an estimator has made: by final estimates, worlds lie otherwise in one another than while data
 /// came in.
-void BackSide::add_pieces(double rate, RunResult& result) {
-  std::map<std::size_t, std::size_t> piece_of;  // by world
-  std::vector<bool> has_piece;
+void BackSide::add_segments(double rate, RunResult& result) {
+  std::map<std::size_t, std::size_t> segment_of;  // by world
+  std::vector<bool> has_segment;
   for (const auto& estimator : estimators_) {
     BackEnd& backend = *estimator->backend;
     watch_.time([&] { backend.finish(); });
@@ -246,29 +246,29 @@ void BackSide::add_pieces(double rate, RunResult& result) {
     std::vector<CausalPose> told_there = std::move(estimator->told_there);
     estimator->stand_alone();
     for (std::size_t i = estimator->number; relocalises_ && i-- > 0 && !estimator->is_elsewhere();) {
-      if (!has_piece[i]) continue;
+      if (!has_segment[i]) continue;
       if (const auto found = estimator->find_in(*estimators_[i], context_.camera)) estimator->stand_in(*found);
     }
-    auto piece = estimator->piece(rate);
-    has_piece.push_back(piece.has_value());
-    if (!piece) continue;
-    const auto [entry, is_new] = piece_of.try_emplace(estimator->world, result.pieces.size());
+    auto segment = estimator->segment(rate);
+    has_segment.push_back(segment.has_value());
+    if (!segment) continue;
+    const auto [entry, is_new] = segment_of.try_emplace(estimator->world, result.segments.size());
     if (is_new) {
-      result.pieces.push_back(std::move(*piece));
+      result.segments.push_back(std::move(*segment));
     } else {
       const Status status = estimator->status();
       std::erase_if(told_there, [&](const CausalPose& pose) {
         return stood_in != estimator->world || (status.state == RunState::lost && pose.t > status.time);
       });
-      go_on(result.pieces[entry->second], std::move(*piece), estimator->to_world, std::move(told_there));
+      go_on(result.segments[entry->second], std::move(*segment), estimator->to_world, std::move(told_there));
     }
   }
-  result.status = merged_status(has_piece);
+  result.status = merged_status(has_segment);
 }
 
 /// One back-end's status is the run's. With several the run was lost when the first was, and parts are missing; but
 /// where all that followed were found in the world of the first, it went on.
-Status BackSide::merged_status(const std::vector<bool>& has_piece) const {
+Status BackSide::merged_status(const std::vector<bool>& has_segment) const {
   constexpr const char* kFound = "then found in the same world";
   Status merged = estimators_.front()->status();
   bool went_on = estimators_.size() > 1;
@@ -276,7 +276,7 @@ Status BackSide::merged_status(const std::vector<bool>& has_piece) const {
     const Status lost = estimators_[i]->status();
     const Estimator& next = *estimators_[i + 1];
     const Status status = next.status();
-    const bool anew = has_piece[i + 1], found = anew && next.world == estimators_.front()->world;
+    const bool anew = has_segment[i + 1], found = anew && next.world == estimators_.front()->world;
     merged.degraded.push_back({lost.time, anew ? next.backend->trajectory().start() : range_.to,
                                fmt::format("lost: {}{}", lost.reason, found ? fmt::format("; {}", kFound) : "")});
     merged.degraded.insert(merged.degraded.end(), status.degraded.begin(), status.degraded.end());
@@ -286,7 +286,7 @@ Status BackSide::merged_status(const std::vector<bool>& has_piece) const {
     merged.state = RunState::degraded;
     merged.reason = fmt::format("lost: {}; {}", merged.reason, kFound);
   }
-  if (std::ranges::none_of(has_piece, std::identity{})) {
+  if (std::ranges::none_of(has_segment, std::identity{})) {
     merged.state = RunState::failed;
     if (merged.reason.empty()) merged.reason = "no trajectory";
   }

@@ -49,8 +49,8 @@ class BackSide {
   void relocalise();
   void remember_landmarks();
   void expect_remembered(Feedback& feedback) const;
-  void add_pieces(double rate, RunResult& result);
-  Status merged_status(const std::vector<bool>& has_piece) const;
+  void add_segments(double rate, RunResult& result);
+  Status merged_status(const std::vector<bool>& has_segment) const;
 
   const MakeBackEnd& make_;
   BackEndContext context_;

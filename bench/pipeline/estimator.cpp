@@ -83,8 +83,8 @@ void Estimator::stand_in(const Found& found) {
   to_world = found.to_world;
 }
 
-std::optional<Piece> Estimator::piece(double rate) {
-  Piece result;
+std::optional<TrajectorySegment> Estimator::segment(double rate) {
+  TrajectorySegment result;
   result.final_trajectory = sample(*backend, rate);
   if (!std::ranges::all_of(result.final_trajectory.poses(), is_finite)) {
     throw std::runtime_error("the back-end's trajectory is not finite");

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/pipeline/covariance_samples.hpp"
-#include "bench/pipeline/piece.hpp"
+#include "bench/pipeline/trajectory_segment.hpp"
 #include "core/plugin/backend.hpp"
 
 namespace evbench {
@@ -59,7 +59,7 @@ struct Estimator {
 
   /// Its estimate in its own world, once it is finished; none where it has none. `rate`: of the final trajectory [Hz];
   /// 0: the back-end's own poses. Throws std::runtime_error for a trajectory that is not finite.
-  std::optional<Piece> piece(double rate);
+  std::optional<TrajectorySegment> segment(double rate);
 };
 
 }  // namespace evbench

@@ -8,7 +8,7 @@
 
 #include "bench/pipeline/batch_stream.hpp"
 #include "bench/pipeline/options.hpp"
-#include "bench/pipeline/piece.hpp"
+#include "bench/pipeline/trajectory_segment.hpp"
 #include "bench/pipeline/standstill.hpp"
 #include "core/plugin/backend.hpp"
 #include "core/plugin/frontend.hpp"
@@ -33,8 +33,8 @@ struct RunTimes {
 /// What a run of front-end and back-end ended with.
 struct RunResult {
   Status status;              ///< of the whole run
-  std::vector<Piece> pieces;  ///< in the order of their beginnings; none when the run failed
-  std::size_t longest = 0;    ///< of the pieces, by the time that it covers: the one that is scored
+  std::vector<TrajectorySegment> segments;  ///< in the order of their beginnings; none when the run failed
+  std::size_t longest = 0;    ///< of the segments, by the time that it covers: the one that is scored
   std::vector<StillSpan> still;
   std::vector<UpdateRecord> updates;
   std::vector<std::string> learnt;  ///< names of the updates' `learnt`

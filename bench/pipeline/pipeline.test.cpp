@@ -142,8 +142,8 @@ TEST_CASE("A run goes to the end of its range, is lost there without tracks, and
   CHECK(result.status.state == RunState::lost);
   CHECK(result.status.time == Approx(3.0).margin(0.1));
   CHECK(result.data_s == Approx(3.0).margin(0.01));
-  REQUIRE(result.pieces.size() == 1);
-  CHECK(result.pieces[0].final_trajectory.end() == Approx(3.0).margin(0.01));
+  REQUIRE(result.segments.size() == 1);
+  CHECK(result.segments[0].final_trajectory.end() == Approx(3.0).margin(0.01));
   CHECK(result.times.frontend > 0.0);
   CHECK(result.times.backend > 0.0);
   CHECK(result.times.total >= result.times.frontend + result.times.backend);
@@ -161,8 +161,8 @@ TEST_CASE("Sequential and concurrent runs give the same bytes, whatever the feed
       options.mode = "concurrent";
       const RunResult concurrent = run(two, 2.5, options);
       CHECK(sequential.tracks_sha256 == concurrent.tracks_sha256);
-      CHECK(same(sequential.pieces.at(0).final_trajectory, concurrent.pieces.at(0).final_trajectory));
-      CHECK(same(sequential.pieces.at(0).causal_trajectory, concurrent.pieces.at(0).causal_trajectory));
+      CHECK(same(sequential.segments.at(0).final_trajectory, concurrent.segments.at(0).final_trajectory));
+      CHECK(same(sequential.segments.at(0).causal_trajectory, concurrent.segments.at(0).causal_trajectory));
       CHECK(one.heard == two.heard);
       CHECK(one.heard.size() > 100);
     }
@@ -196,8 +196,8 @@ TEST_CASE("What a front-end tells late is known late, and feedback waits for it,
   const RunResult concurrent = run(two, 1.0, options);
   CHECK(sequential.tracks_sha256 == concurrent.tracks_sha256);
   CHECK(one.heard == two.heard);
-  REQUIRE(sequential.pieces.size() == 1);
-  const auto& told = sequential.pieces[0].told;
+  REQUIRE(sequential.segments.size() == 1);
+  const auto& told = sequential.segments[0].told;
   REQUIRE(told.size() > 50);
   for (std::size_t i = 1; i + 4 < told.size(); ++i) {                                     // but for those at the ends
     CHECK(*told[i].known_at == Approx(told[i].t + LateListener::kDelay).margin(0.0011));  // a millisecond a pose
@@ -231,8 +231,8 @@ TEST_CASE("A back-end that says itself when it knew a pose knows it as late, whe
   const auto make = [](const BackEndContext& context) { return std::make_unique<Exact>(context); };
   LateListener late(tracks({{0.0, 1.0}}), {});
   const RunResult result = run(late, 1.0, {}, make);
-  REQUIRE(result.pieces.size() == 1);
-  const auto& told = result.pieces[0].told;
+  REQUIRE(result.segments.size() == 1);
+  const auto& told = result.segments[0].told;
   REQUIRE(told.size() > 500);
   for (const CausalPose& pose : told) {
     if (pose.t < 0.05 || pose.t > 0.9) continue;
@@ -242,8 +242,8 @@ TEST_CASE("A back-end that says itself when it knew a pose knows it as late, whe
 
   Listener prompt(tracks({{0.0, 1.0}}), {});
   const RunResult at_once = run(prompt, 1.0, {}, make);
-  REQUIRE(at_once.pieces.size() == 1);
-  for (const CausalPose& pose : at_once.pieces[0].told) CHECK(*pose.known_at == pose.t);
+  REQUIRE(at_once.segments.size() == 1);
+  for (const CausalPose& pose : at_once.segments[0].told) CHECK(*pose.known_at == pose.t);
 }
 
 TEST_CASE("Feedback reaches the front-end after the latency in data time, in order, each once") {
@@ -321,19 +321,19 @@ TEST_CASE("A stand just before the end of the data remains one, though all track
   CHECK(result.status.state != RunState::lost);
   REQUIRE(result.still.size() >= 1);
   CHECK(result.still[0].from == Approx(2.0).margin(0.01));
-  CHECK(result.pieces.size() == 1);
+  CHECK(result.segments.size() == 1);
 }
 
-TEST_CASE("After a loss another back-end starts, the trajectory is in pieces, and the longest one is told") {
+TEST_CASE("After a loss another back-end starts, the trajectory is in segments, and the longest one is told") {
   Listener frontend(tracks({{0.0, 1.0}, {4.0, 7.0}}), {true, false, false});
   const RunResult result = run(frontend, 7.0);
   CHECK(result.status.state == RunState::lost);
   CHECK(result.status.time == Approx(1.0).margin(0.1));
-  REQUIRE(result.pieces.size() == 2);
+  REQUIRE(result.segments.size() == 2);
   CHECK(result.longest == 1);
-  CHECK(result.pieces[0].final_trajectory.end() < 1.1);
-  CHECK(result.pieces[1].final_trajectory.start() == Approx(4.0).margin(0.02));
-  CHECK(result.pieces[1].final_trajectory.end() == Approx(7.0).margin(0.02));
+  CHECK(result.segments[0].final_trajectory.end() < 1.1);
+  CHECK(result.segments[1].final_trajectory.start() == Approx(4.0).margin(0.02));
+  CHECK(result.segments[1].final_trajectory.end() == Approx(7.0).margin(0.02));
   REQUIRE_FALSE(result.status.degraded.empty());
   CHECK(std::ranges::count(frontend.states, TrackingState::lost) == 1);
 }
@@ -342,7 +342,7 @@ TEST_CASE("A gap within the patience is carried by one and the same back-end") {
   Listener frontend(tracks({{0.0, 1.0}, {1.5, 3.0}}), {});
   const RunResult result = run(frontend, 3.0);
   CHECK(result.status.state == RunState::degraded);
-  CHECK(result.pieces.size() == 1);
+  CHECK(result.segments.size() == 1);
 }
 
 TEST_CASE("A run without any observation fails with a reason, after its whole range") {
@@ -350,7 +350,7 @@ TEST_CASE("A run without any observation fails with a reason, after its whole ra
   const RunResult result = run(frontend, 3.0);
   CHECK(result.status.state == RunState::failed);
   CHECK_FALSE(result.status.reason.empty());
-  CHECK(result.pieces.empty());
+  CHECK(result.segments.empty());
   CHECK(result.data_s == 0.0);
 }
 
@@ -481,8 +481,8 @@ TEST_CASE("What a back-end tells of an older time again is kept beside the causa
   Listener frontend(tracks({{0.0, 1.0}}), {});
   const RunResult result =
       run(frontend, 1.0, {}, [](const BackEndContext& context) { return std::make_unique<Smooths>(context); });
-  const std::vector<CausalPose>& told = result.pieces.at(0).told;
-  const PoseTrajectory& causal = result.pieces.at(0).causal_trajectory;
+  const std::vector<CausalPose>& told = result.segments.at(0).told;
+  const PoseTrajectory& causal = result.segments.at(0).causal_trajectory;
   CHECK(causal.size() == 100);
   CHECK(told.size() == 150);
   CHECK(told.back().t == Approx(0.795));

@@ -152,15 +152,15 @@ TEST_CASE("After a loss the run goes on in the same world where landmarks of bef
   CHECK(result.status.state == RunState::degraded);
   CHECK(result.status.time == Approx(kGap).margin(0.1));
   CHECK(result.status.reason.find("nothing is seen") != std::string::npos);
-  REQUIRE(result.pieces.size() == 1);
-  const Piece& piece = result.pieces.front();
-  check_true(piece.final_trajectory, 0.0);
-  check_true(piece.causal_trajectory, 0.0);
+  REQUIRE(result.segments.size() == 1);
+  const TrajectorySegment& segment = result.segments.front();
+  check_true(segment.final_trajectory, 0.0);
+  check_true(segment.causal_trajectory, 0.0);
   const auto in_gap = [](const StampedPose& pose) { return pose.t > kGap + 0.1 && pose.t < kAgain; };
-  CHECK(std::ranges::none_of(piece.final_trajectory.poses(), in_gap));
-  CHECK(piece.map.size() == 28);
-  for (const Landmark& landmark : piece.map) CHECK((landmark.position - point_of(landmark.track)).norm() < 1e-4);
-  for (const CausalPose& pose : piece.told) CHECK(pose.velocity->tail<3>().norm() == Approx(0.1).epsilon(1e-3));
+  CHECK(std::ranges::none_of(segment.final_trajectory.poses(), in_gap));
+  CHECK(segment.map.size() == 28);
+  for (const Landmark& landmark : segment.map) CHECK((landmark.position - point_of(landmark.track)).norm() < 1e-4);
+  for (const CausalPose& pose : segment.told) CHECK(pose.velocity->tail<3>().norm() == Approx(0.1).epsilon(1e-3));
   CHECK(std::ranges::any_of(result.log, [](const std::string& line) {
     return line.find("found in the world of before, by ") != std::string::npos;
   }));
@@ -194,14 +194,14 @@ TEST_CASE("Once the camera is found in the world of before, the front-end is tol
   CHECK(std::ranges::count_if(expected, of_before) >= 4);
 }
 
-TEST_CASE("After a loss the trajectory is in pieces where too little of before is seen again, or it isn't asked for") {
+TEST_CASE("After a loss the trajectory is in segments where too little of before is seen again, or it isn't asked for") {
   Tracks strangers(5), not_asked(12);
   for (const RunResult& result : {run(strangers), run(not_asked, false)}) {
     CHECK(result.status.state == RunState::lost);
-    REQUIRE(result.pieces.size() == 2);
-    CHECK(result.pieces[0].final_trajectory.end() < kAgain);
-    CHECK(result.pieces[1].final_trajectory.start() >= kAgain);
-    CHECK(result.pieces[1].map.size() == 20);
+    REQUIRE(result.segments.size() == 2);
+    CHECK(result.segments[0].final_trajectory.end() < kAgain);
+    CHECK(result.segments[1].final_trajectory.start() >= kAgain);
+    CHECK(result.segments[1].map.size() == 20);
   }
   CHECK(strangers.heard.back().world == 1);
 }

@@ -52,7 +52,7 @@ struct UpdateRecord {
 /// Calls come in this order: advance, any number of times, each maybe followed by feedback; finish, once; afterwards
 /// queries of the final estimate. An estimate's world frame and scale are the back-end's own. One that is lost, or was
 /// told of a stand that was none, is given no more data, and its estimate until then is kept. The run goes on with
-/// another one made anew, and the trajectory is then in pieces, but for those whose maps show by landmarks of the same
+/// another one made anew, and the trajectory is then in segments, but for those whose maps show by landmarks of the same
 /// tracks how one lies in the other.
 class BackEnd {
  public:

@@ -10,7 +10,7 @@ enum class RunState {
   ok,        ///< an estimate for the whole time
   degraded,  ///< as ok, but for some spans the data did not suffice: a motion model carried the estimate, or it was
              ///< lost and went on in the same world afterwards
-  lost,      ///< the estimate ended before the data did, or is in pieces; what there was is kept
+  lost,      ///< the estimate ended before the data did, or is in segments; what there was is kept
   failed,    ///< no estimate
 };
 

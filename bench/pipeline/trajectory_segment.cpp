@@ -1,4 +1,4 @@
-#include "bench/pipeline/piece.hpp"
+#include "bench/pipeline/trajectory_segment.hpp"
 
 #include <map>
 #include <utility>
@@ -21,23 +21,23 @@ CausalPose carried(CausalPose pose, const Similarity& transform) {
   return pose;
 }
 
-void go_on(Piece& piece, Piece later, const Similarity& transform, std::vector<CausalPose> told) {
-  piece.covered += later.covered;
-  std::vector<StampedPose> poses = std::move(piece.final_trajectory).poses();
+void go_on(TrajectorySegment& segment, TrajectorySegment later, const Similarity& transform, std::vector<CausalPose> told) {
+  segment.covered += later.covered;
+  std::vector<StampedPose> poses = std::move(segment.final_trajectory).poses();
   const double end = poses.back().t;
   for (const StampedPose& pose : later.final_trajectory.poses()) {
     if (pose.t > end) poses.push_back({pose.t, transform * pose.T});
   }
-  piece.final_trajectory = PoseTrajectory(std::move(poses), "the back-ends' trajectory");
-  piece.told.insert(piece.told.end(), told.begin(), told.end());
-  piece.causal_trajectory = newest_poses(piece.told);
+  segment.final_trajectory = PoseTrajectory(std::move(poses), "the back-ends' trajectory");
+  segment.told.insert(segment.told.end(), told.begin(), told.end());
+  segment.causal_trajectory = newest_poses(segment.told);
   std::map<TrackId, Vector3> map;
-  for (const Landmark& landmark : piece.map) map[landmark.track] = landmark.position;
+  for (const Landmark& landmark : segment.map) map[landmark.track] = landmark.position;
   for (const Landmark& landmark : later.map) map[landmark.track] = transform * landmark.position;
-  piece.map.clear();
-  for (const auto& [track, position] : map) piece.map.push_back({track, position});
+  segment.map.clear();
+  for (const auto& [track, position] : map) segment.map.push_back({track, position});
   for (RelativePose& relative : later.relative) {
-    piece.relative.push_back(carried(std::move(relative), transform.scale));
+    segment.relative.push_back(carried(std::move(relative), transform.scale));
   }
 }
 

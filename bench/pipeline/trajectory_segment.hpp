@@ -14,7 +14,7 @@ namespace evbench {
 
 /// A part of the estimate in one world frame and scale: by one back-end, until it was lost or the run ended, and by
 /// those after it that were found in its world.
-struct Piece {
+struct TrajectorySegment {
   PoseTrajectory final_trajectory;   ///< after the fact, at the rate asked for; no poses while lost
   PoseTrajectory causal_trajectory;  ///< causal, the back-end's own times: each pose as it was first told
   std::vector<CausalPose> told;      ///< all that was told while the data came in, known_at set
@@ -31,9 +31,9 @@ struct Piece {
 /// In the world to which `transform` carries that of the pose: body velocities scale with it.
 CausalPose carried(CausalPose pose, const Similarity& transform);
 
-/// A later piece goes on in the world of an earlier one, to which `transform` carries its own. What it told then,
+/// A later segment goes on in the world of an earlier one, to which `transform` carries its own. What it told then,
 /// `told`, is in that world already. Landmarks that both have are where the later one saw them.
-void go_on(Piece& piece, Piece later, const Similarity& transform, std::vector<CausalPose> told);
+void go_on(TrajectorySegment& segment, TrajectorySegment later, const Similarity& transform, std::vector<CausalPose> told);
 
 /// Each pose that was the newest when it was told.
 PoseTrajectory newest_poses(const std::vector<CausalPose>& told);
