@@ -47,7 +47,7 @@ const TrajectorySegment* segment_of(const RunResult& result, double from, double
 /// Root mean square distance from the truth after a Sim(3) alignment, as a share of the path, within a span of time
 /// [s], of the segment that covers it; what is within `without` is left out.
 double error(const Source& source, const Execution& execution, double from = 0.0, double to = 1e9,
-             const StillSpan& without = {}) {
+             const StationaryPeriod& without = {}) {
   constexpr double kNone = 1e9;
   const TrajectorySegment* segment = segment_of(execution.result, from, to);
   if (!segment) return kNone;
@@ -180,7 +180,7 @@ TEST_CASE("Five seconds without events: the camera stands still, and its traject
   const Execution execution = run(scene);
   CHECK(execution.result.status.state == RunState::ok);
   CHECK(execution.result.segments.size() == 1);
-  CHECK_FALSE(execution.result.still.empty());
+  CHECK_FALSE(execution.result.stationary.empty());
   CHECK(error(scene, execution) < 0.02);
   check_recovered(scene, execution, 7.0);
 }
@@ -192,14 +192,14 @@ TEST_CASE("After the last event a camera stands still, unless the recording may 
   CHECK(still.result.status.state == RunState::ok);
   REQUIRE(still.result.segments.size() == 1);
   CHECK(still.result.segments[0].final_trajectory.end() > 6.9);
-  REQUIRE_FALSE(still.result.still.empty());
-  CHECK(still.result.still.back().to > 6.9);
+  REQUIRE_FALSE(still.result.stationary.empty());
+  CHECK(still.result.stationary.back().to > 6.9);
 
   scene.cut_off();
   for (const char* mode : {"sequential", "concurrent"}) {
     const Execution over = run(scene, Json::object(), mode);
     CHECK(over.result.status.state == RunState::ok);
-    CHECK(over.result.still.empty());
+    CHECK(over.result.stationary.empty());
     REQUIRE(over.result.segments.size() == 1);
     CHECK(over.result.segments[0].final_trajectory.end() == Approx(3.0).margin(0.1));
     CHECK(std::ranges::any_of(over.result.log, [](const std::string& line) {
@@ -213,12 +213,12 @@ TEST_CASE("A sensor that tells nothing while the camera moves on: said, and then
   for (const double silence : {2.0, 3.0, 5.0}) {
     for (const std::uint64_t seed : {1, 2}) {
       EventScene scene(swing, silence + 6.0, EventScene::quadrangles(150, seed));
-      const StillSpan gap{2.5, 2.5 + silence};
+      const StationaryPeriod gap{2.5, 2.5 + silence};
       scene.silence(gap.from, gap.to);
       const Execution execution = run(scene);
       const RunResult& result = execution.result;
       CAPTURE(silence, seed, result.status.reason);
-      CHECK(result.still.empty());
+      CHECK(result.stationary.empty());
       CHECK(result.status.state == RunState::degraded);
       CHECK(result.status.reason == "lost: the camera moved while nothing was seen; then found in the same world");
       REQUIRE(result.segments.size() == 1);

@@ -95,7 +95,7 @@ RunStatus status_of(const Execution& execution) {
   RunStatus status;
   status.status = result.status;
   status.complete = execution.complete;
-  for (const StillSpan& span : result.still) status.still.push_back({span.from, span.to});
+  for (const StationaryPeriod& span : result.stationary) status.stationary.push_back({span.from, span.to});
   for (const TrajectorySegment& segment : result.segments) {
     const PoseTrajectory& poses = segment.final_trajectory.empty() ? segment.causal_trajectory : segment.final_trajectory;
     status.segments.push_back({poses.empty() ? 0.0 : poses.start(), poses.empty() ? 0.0 : poses.end(),

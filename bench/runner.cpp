@@ -8,7 +8,7 @@
 
 #include "bench/pipeline/batch_recording.hpp"
 #include "bench/pipeline/feedback_line.hpp"
-#include "bench/pipeline/front_side.hpp"
+#include "bench/pipeline/frontend_runner.hpp"
 #include "core/events/event_front_end.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
@@ -111,7 +111,7 @@ std::optional<std::string> record_front_end(const Job& job, const Source& source
   const std::unique_ptr<FrontEnd> frontend = make_frontend(job, source, plugins);
   if (frontend->needs().any) return std::nullopt;
   FeedbackLine unused(job.pipeline.latency, false);
-  FrontSide front(*frontend, source, job.pipeline, unused);
+  FrontEndRunner front(*frontend, source, job.pipeline, unused);
   return record_batches(front);
 }
 

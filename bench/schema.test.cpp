@@ -118,7 +118,7 @@ TEST_CASE("Configs that are broken are so for the schema and for the program", "
                    with(config, "/backend/label", ""),
                    with(config, "/backend/label", 3),
                    with(config, "/source/duration", 0),
-                   with(config, "/source/motion/kind", "still"),
+                   with(config, "/source/motion/kind", "stationary"),
                    with(config, "/plugins", "a.so"),
                    Json::array(),
                    Json("text"),

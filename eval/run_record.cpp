@@ -70,8 +70,8 @@ RunStatus read_status(const RecordReader& json) {
   for (const RecordReader& span : json.list("degraded")) {
     result.status.degraded.push_back({span.number("from"), span.number("to"), span.text_or("reason", "")});
   }
-  for (const RecordReader& span : json.list("still")) {
-    result.still.push_back({span.number("from"), span.number("to")});
+  for (const RecordReader& span : json.list("stationary")) {
+    result.stationary.push_back({span.number("from"), span.number("to")});
   }
   for (const RecordReader& segment : json.list("segments")) {
     result.segments.push_back({segment.number("from"), segment.number("to"), segment.count_or_null("poses").value_or(0),
@@ -125,8 +125,8 @@ Json to_json(const RunStatus& run) {
   for (const DegradedSpan& span : status.degraded) {
     json["degraded"].push_back({{"from", span.from}, {"to", span.to}, {"reason", span.reason}});
   }
-  json["still"] = Json::array();
-  for (const TimeRange& span : run.still) json["still"].push_back(to_json(span));
+  json["stationary"] = Json::array();
+  for (const TimeRange& span : run.still) json["stationary"].push_back(to_json(span));
   json["segments"] = Json::array();
   for (const RunSegment& segment : run.segments) {
     json["segments"].push_back(

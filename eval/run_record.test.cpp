@@ -36,7 +36,7 @@ RunRecord full_record() {
   record.peak_rss_mib = 31.25;
   RunStatus status;
   status.status = {RunState::lost, "2 tracks, 15 needed", 3.051, {{1.0, 1.5, "8 tracks"}}};
-  status.still = {{2.0, 2.5}};
+  status.stationary = {{2.0, 2.5}};
   status.segments = {{0.2, 3.0, 281, 40}, {4.0, 30.0, 2601, 77}};
   status.scored = 2;
   status.complete = false;

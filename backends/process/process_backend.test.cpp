@@ -170,7 +170,7 @@ TEST_CASE("The status of a run follows from the states that a process answers") 
   const auto status = [&](const std::string& states, const std::string& final) {
     return Session(script(states, final)).go().backend->status();
   };
-  CHECK(status("['no_map', 'tracking', 'standing_still']", one_pose).state == RunState::ok);
+  CHECK(status("['no_map', 'tracking', 'stationary']", one_pose).state == RunState::ok);
   const Status degraded = status("['tracking', 'degraded', 'tracking']", one_pose);
   CHECK(degraded.state == RunState::degraded);
   REQUIRE(degraded.degraded.size() == 1);

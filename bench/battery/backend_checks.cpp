@@ -148,7 +148,7 @@ void stands_still(const CandidateBackEnd& candidate) {
   const TrajectorySegment& segment = longest(result);
   require(result.status.state <= RunState::degraded, "it is {}: {}, though the camera only stood still",
           to_string(result.status.state), result.status.reason);
-  require(!result.still.empty() && result.still.front().to > 13.0, "the standstill from 4 to 14 s was not noticed");
+  require(!result.stationary.empty() && result.stationary.front().to > 13.0, "the standstill from 4 to 14 s was not noticed");
   const PoseTrajectory& trajectory = segment.final_trajectory;
   require(trajectory.end() > 15.5, "its trajectory ends at {} s of 16 s", trajectory.end());
   const auto early = trajectory.pose(5.0), late = trajectory.pose(13.5);

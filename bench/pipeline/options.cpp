@@ -21,7 +21,7 @@ void PipelineOptions::declare(OptionSet& set) {
   set.add("relocalise", relocalise,
           "one that starts anew goes on in the world of before once enough landmarks are in both maps: front-ends are "
           "then told where the others of before are expected");
-  set.add("still_after", still_after,
+  set.add("stationary_after", stationary_after,
           "when no track has been observed for so long and tracks are alive, the camera stands still: the tracks are "
           "told to be where they were [s]; 0: never")
       .range(0.0);

@@ -15,7 +15,7 @@ struct PipelineOptions {
   int queue = 4;
   double patience = 1.0;
   bool relocalise = true;
-  double still_after = 0.1;
+  double stationary_after = 0.1;
 
   void declare(OptionSet& set);
 };

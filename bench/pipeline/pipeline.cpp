@@ -6,10 +6,10 @@
 #include <fstream>
 #include <thread>
 
-#include "bench/pipeline/back_side.hpp"
+#include "bench/pipeline/backend_runner.hpp"
 #include "bench/pipeline/batch_queue.hpp"
 #include "bench/pipeline/feedback_line.hpp"
-#include "bench/pipeline/front_side.hpp"
+#include "bench/pipeline/frontend_runner.hpp"
 #include "bench/pipeline/pace.hpp"
 #include "core/support/peak_memory.hpp"
 
@@ -23,20 +23,20 @@ void reset_peak_memory() {
 }
 
 /// One exchange on the back-end's side.
-void exchange(TrackBatch batch, const FeedbackNeeds& needs, BackSide& back, FeedbackLine& feedback,
+void exchange(TrackBatch batch, const FeedbackNeeds& needs, BackEndRunner& back, FeedbackLine& feedback,
               const Progress& progress) {
   back.take(std::move(batch));
   if (needs.any) feedback.answer(back.feedback(needs));
   if (progress) progress(back.progress());
 }
 
-void run_sequential(BatchStream& front, BackSide& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
+void run_sequential(BatchStream& front, BackEndRunner& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
                     const Progress& progress) {
   while (std::optional<TrackBatch> batch = front.next()) exchange(std::move(*batch), needs, back, feedback, progress);
 }
 
 /// The front-end in a thread of its own. Returns how long the back-end's waited for it [s].
-double run_concurrent(BatchStream& front, BackSide& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
+double run_concurrent(BatchStream& front, BackEndRunner& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
                       std::size_t capacity, const Progress& progress) {
   BatchQueue queue(capacity);
   std::jthread thread([&] {
@@ -68,7 +68,7 @@ RunResult run(const Source& source, BatchStream& front, const FeedbackNeeds& nee
               double trajectory_rate, const Progress& progress) {
   RunResult result;
   context.log = [&](const std::string& line) { result.log.push_back(line); };
-  BackSide back(make_backend, std::move(context), source.camera(), source.time_range(), options);
+  BackEndRunner back(make_backend, std::move(context), source.camera(), source.time_range(), options);
   Stopwatch total;
   total.time([&] {
     if (options.mode == "sequential") {
@@ -104,7 +104,7 @@ RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackE
   reset_peak_memory();
   TrackBatch tracks;
   FeedbackLine feedback(options.latency, options.mode == "free");
-  FrontSide front(frontend, source, options, feedback, keep_tracks ? &tracks : nullptr);
+  FrontEndRunner front(frontend, source, options, feedback, keep_tracks ? &tracks : nullptr);
   const Progress tell = [&](RunProgress now) {
     now.realtime_factor = realtime_factor(front.data_s(), front.frontend_s() + now.backend_s);
     progress(now);

@@ -9,7 +9,7 @@
 #include "bench/pipeline/batch_stream.hpp"
 #include "bench/pipeline/options.hpp"
 #include "bench/pipeline/trajectory_segment.hpp"
-#include "bench/pipeline/standstill.hpp"
+#include "bench/pipeline/stationary_detector.hpp"
 #include "core/plugin/backend.hpp"
 #include "core/plugin/frontend.hpp"
 #include "core/plugin/source.hpp"
@@ -35,7 +35,7 @@ struct RunResult {
   Status status;              ///< of the whole run
   std::vector<TrajectorySegment> segments;  ///< in the order of their beginnings; none when the run failed
   std::size_t longest = 0;    ///< of the segments, by the time that it covers: the one that is scored
-  std::vector<StillSpan> still;
+  std::vector<StationaryPeriod> stationary;
   std::vector<UpdateRecord> updates;
   std::vector<std::string> learnt;  ///< names of the updates' `learnt`
   RunTimes times;

@@ -304,10 +304,10 @@ TEST_CASE("A camera that stands still for ten seconds is not lost, and its stand
     Listener frontend(before, {true, false, false});
     const RunResult result = run(frontend, 13.0, options);
     CHECK(result.status.state != RunState::lost);
-    REQUIRE(result.still.size() == 1);
-    CHECK(result.still[0].from == Approx(2.0).margin(0.01));
-    CHECK(result.still[0].to == Approx(12.0).margin(0.1));
-    CHECK(std::ranges::count(frontend.states, TrackingState::standing_still) > 900);
+    REQUIRE(result.stationary.size() == 1);
+    CHECK(result.stationary[0].from == Approx(2.0).margin(0.01));
+    CHECK(result.stationary[0].to == Approx(12.0).margin(0.1));
+    CHECK(std::ranges::count(frontend.states, TrackingState::stationary) > 900);
   }
 }
 
@@ -319,8 +319,8 @@ TEST_CASE("A stand just before the end of the data remains one, though all track
   Listener frontend(before, {true, false, false});
   const RunResult result = run(frontend, 5.0);
   CHECK(result.status.state != RunState::lost);
-  REQUIRE(result.still.size() >= 1);
-  CHECK(result.still[0].from == Approx(2.0).margin(0.01));
+  REQUIRE(result.stationary.size() >= 1);
+  CHECK(result.stationary[0].from == Approx(2.0).margin(0.01));
   CHECK(result.segments.size() == 1);
 }
 

@@ -45,7 +45,7 @@ void in_time_order(std::span<const TrackObservation> observations, std::span<con
 enum class TrackingState {
   no_map,          ///< not enough has been seen for a first map; or one was wrong, of which no causal pose was told
   tracking,        ///< observations determine the motion
-  standing_still,  ///< tracks are alive and nothing moves: an event camera at rest sees nothing
+  stationary,  ///< tracks are alive and nothing moves: an event camera at rest sees nothing
   degraded,        ///< too little is seen: a motion model carries the estimate
   lost,            ///< it was carried for longer than the patience, or can't go on; observations are no longer used
 };

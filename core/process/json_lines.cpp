@@ -42,7 +42,7 @@ using Names = std::vector<std::pair<std::string, Value>>;
 
 const Names<TrackingState> kTrackingStates = {{"no_map", TrackingState::no_map},
                                               {"tracking", TrackingState::tracking},
-                                              {"standing_still", TrackingState::standing_still},
+                                              {"stationary", TrackingState::stationary},
                                               {"degraded", TrackingState::degraded},
                                               {"lost", TrackingState::lost}};
 

@@ -9,7 +9,7 @@
 namespace evbench::haste {
 
 void Guidance::receive(const Feedback& feedback) {
-  reliable_ = feedback.state == TrackingState::tracking || feedback.state == TrackingState::standing_still;
+  reliable_ = feedback.state == TrackingState::tracking || feedback.state == TrackingState::stationary;
   world_ = feedback.world;
   const bool usable = reliable_ || (degraded_ && feedback.state == TrackingState::degraded);
   correction_ = {};

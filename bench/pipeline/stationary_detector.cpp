@@ -1,4 +1,4 @@
-#include "bench/pipeline/standstill.hpp"
+#include "bench/pipeline/stationary_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,8 @@ constexpr double kMemory = 1.0;  ///< [s] in which what is usual is forgotten
 
 }  // namespace
 
-void Standstill::apply(TrackBatch& batch) {
-  if (refuted_) std::erase_if(spans_, [&](const StillSpan& span) { return span.from == refuted_->span.from; });
+void StationaryDetector::apply(TrackBatch& batch) {
+  if (refuted_) std::erase_if(spans_, [&](const StationaryPeriod& span) { return span.from == refuted_->span.from; });
   refuted_.reset();
   if (after_ == 0.0) return;
   const std::vector<TrackObservation> seen = std::move(batch.observations);
@@ -37,7 +37,7 @@ void Standstill::apply(TrackBatch& batch) {
   hold(batch.until, batch.observations);
 }
 
-void Standstill::remember(const TrackObservation& z) {
+void StationaryDetector::remember(const TrackObservation& z) {
   const double gap = z.t - last_;
   const auto known = live_.find(z.track);
   const bool jumped = known != live_.end() && (z.pixel - known->second.pixel).norm() > kStep;
@@ -53,7 +53,7 @@ void Standstill::remember(const TrackObservation& z) {
   doubt();
 }
 
-void Standstill::forget(const TrackEnd& ended) {
+void StationaryDetector::forget(const TrackEnd& ended) {
   live_.erase(ended.track);
   if (held_tracks_.erase(ended.track) == 0 || (seen_again_ && ended.t > *seen_again_ + kSoon)) return;
   gone_at_.push_back(ended.t);
@@ -61,14 +61,14 @@ void Standstill::forget(const TrackEnd& ended) {
 }
 
 /// Has the camera moved while nothing was told?
-void Standstill::doubt() {
+void StationaryDetector::doubt() {
   if (2 * gone_at_.size() <= stood_ || !seen_again_) return;
   refuted_ = {refuted_ ? refuted_->span : spans_.back(), std::exchange(held_tracks_, {})};
   stood_ = 0;
   gone_at_.clear();
 }
 
-void Standstill::begin_stand(double t) {
+void StationaryDetector::begin_stand(double t) {
   spans_.push_back({last_, t});
   still_ = true;
   seen_again_.reset();
@@ -79,7 +79,7 @@ void Standstill::begin_stand(double t) {
 }
 
 /// Adds what the silence from the last observation up to `until` says.
-void Standstill::hold(double until, std::vector<TrackObservation>& observations) {
+void StationaryDetector::hold(double until, std::vector<TrackObservation>& observations) {
   if (live_.size() < kEnough) {
     still_ = false;
     return;

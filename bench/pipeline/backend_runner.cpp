@@ -1,4 +1,4 @@
-#include "bench/pipeline/back_side.hpp"
+#include "bench/pipeline/backend_runner.hpp"
 
 #include <fmt/format.h>
 
@@ -43,13 +43,13 @@ void carry(Feedback& feedback, const Similarity& transform) {
 
 }  // namespace
 
-BackSide::BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera, const TimeRange& range,
+BackEndRunner::BackEndRunner(const MakeBackEnd& make, BackEndContext context, const Camera& camera, const TimeRange& range,
                    const PipelineOptions& options)
     : make_(make),
       context_(std::move(context)),
       camera_(camera),
       range_(range),
-      standstill_(options.still_after),
+      stationary_(options.stationary_after),
       relocalises_(options.relocalise),
       until_(range.from),
       seen_(range.from) {
@@ -58,7 +58,7 @@ BackSide::BackSide(const MakeBackEnd& make, BackEndContext context, const Camera
   begin();
 }
 
-void BackSide::begin() {
+void BackEndRunner::begin() {
   auto estimator = std::make_unique<Estimator>(estimators_.size());
   BackEndContext context = context_;
   context.publish = [this, &heard = *estimator](const CausalPose& pose) { heard.hear(pose, until_, seen_); };
@@ -69,11 +69,11 @@ void BackSide::begin() {
   estimators_.push_back(std::move(estimator));
 }
 
-void BackSide::take(TrackBatch batch) {
-  if (standstill_.refuted()) take_back(*standstill_.refuted());
+void BackEndRunner::take(TrackBatch batch) {
+  if (stationary_.refuted()) take_back(*stationary_.refuted());
   observations_ += batch.observations.size();
   undistort(batch);
-  standstill_.apply(batch);
+  stationary_.apply(batch);
   digest(batch);
   if (estimators_.back()->status().state == RunState::lost) {
     context_.log(fmt::format("{:.3f} s: another back-end starts, in a world frame of its own", until_));
@@ -90,7 +90,7 @@ void BackSide::take(TrackBatch batch) {
 }
 
 /// What it was told of a stand was wrong: its estimate ends where that began.
-void BackSide::take_back(const Standstill::Refuted& stand) {
+void BackEndRunner::take_back(const StationaryDetector::Rejected& stand) {
   Estimator& estimator = *estimators_.back();
   Status status = estimator.status();
   context_.log(fmt::format("{:.3f} s: from {:.3f} s on the camera did not stand still", until_, stand.span.from));
@@ -104,7 +104,7 @@ void BackSide::take_back(const Standstill::Refuted& stand) {
 }
 
 /// What ends in time has not been followed to something else, and may be recognised.
-void BackSide::resolve_doubts(const std::vector<TrackEnd>& ended) {
+void BackEndRunner::resolve_doubts(const std::vector<TrackEnd>& ended) {
   constexpr double kSoon = 0.1;  // [s], before it is a landmark of the new map
   if (until_ - begun_ > kSoon) return;
   for (const auto& estimator : estimators_) {
@@ -114,7 +114,7 @@ void BackSide::resolve_doubts(const std::vector<TrackEnd>& ended) {
 
 /// Often while its map is young; then now and then, by landmarks that have joined. It counts when it is found in the
 /// same place twice in succession: a young map may still change.
-void BackSide::relocalise() {
+void BackEndRunner::relocalise() {
   constexpr double kPause = 0.1;    // [s] at least
   constexpr double kGrowth = 0.05;  // of the time since it began
   Estimator& estimator = *estimators_.back();
@@ -135,7 +135,7 @@ void BackSide::relocalise() {
   next_relocalisation_ = until_ + std::max(kPause, kGrowth * (until_ - begun_));
 }
 
-void BackSide::remember_landmarks() {
+void BackEndRunner::remember_landmarks() {
   remembered_.clear();
   for (const auto& estimator : estimators_) {
     if (estimator->world != estimators_.back()->world) continue;
@@ -150,7 +150,7 @@ void BackSide::remember_landmarks() {
 }
 
 /// Those that may be in the image, and that the back-end has not told itself.
-void BackSide::expect_remembered(Feedback& feedback) const {
+void BackEndRunner::expect_remembered(Feedback& feedback) const {
   constexpr double kSigma = 1.5;  // [px], of worlds that were found in one another
   if (!feedback.newest) return;
   const SE3 T = extrapolate(*feedback.newest, until_ - feedback.newest->t).T.inverse();
@@ -165,14 +165,14 @@ void BackSide::expect_remembered(Feedback& feedback) const {
   }
 }
 
-Feedback BackSide::feedback(const FeedbackNeeds& needs) {
+Feedback BackEndRunner::feedback(const FeedbackNeeds& needs) {
   Feedback feedback = watch_.time([&] { return estimators_.back()->backend->feedback(needs); });
   feedback.t = until_;
   const Estimator& estimator = *estimators_.back();
   feedback.world = estimator.world;
   carry(feedback, estimator.to_world);
   if (needs.expected) expect_remembered(feedback);
-  if (standstill_.holds() && feedback.state == TrackingState::tracking) feedback.state = TrackingState::standing_still;
+  if (stationary_.holds() && feedback.state == TrackingState::tracking) feedback.state = TrackingState::stationary;
   for (ExpectedFeature& feature : feedback.expected) {
     feature.pixel = camera_.project(camera_.pinhole.ray(feature.pixel));
   }
@@ -181,7 +181,7 @@ Feedback BackSide::feedback(const FeedbackNeeds& needs) {
 }
 
 /// Pixels of the ideal pinhole; observations that have none are left out and counted.
-void BackSide::undistort(TrackBatch& batch) {
+void BackEndRunner::undistort(TrackBatch& batch) {
   left_out_ += std::erase_if(batch.observations, [&](TrackObservation& z) {
     const std::optional<Vector2> pixel = camera_.undistort(z.pixel);
     if (pixel) z.pixel = *pixel;
@@ -190,7 +190,7 @@ void BackSide::undistort(TrackBatch& batch) {
 }
 
 /// All of a batch at once: a call of the hash for each value would cost more than the rest of an exchange.
-void BackSide::digest(const TrackBatch& batch) {
+void BackEndRunner::digest(const TrackBatch& batch) {
   struct Seen {
     TrackId track;
     double t, u, v, sigma;
@@ -207,8 +207,8 @@ void BackSide::digest(const TrackBatch& batch) {
   digested_.clear();
 }
 
-RunProgress BackSide::progress() const {
-  RunProgress result{until_, range_.to, standstill_.tracks()};
+RunProgress BackEndRunner::progress() const {
+  RunProgress result{until_, range_.to, stationary_.tracks()};
   const Estimator& estimator = *estimators_.back();
   if (const auto updates = estimator.backend->updates(); !updates.empty()) {
     result.states = updates.back().states;
@@ -219,12 +219,12 @@ RunProgress BackSide::progress() const {
   return result;
 }
 
-void BackSide::finish(double rate, RunResult& result) {
+void BackEndRunner::finish(double rate, RunResult& result) {
   add_segments(rate, result);
   for (std::size_t i = 1; i < result.segments.size(); ++i) {
     if (result.segments[i].covered > result.segments[result.longest].covered) result.longest = i;
   }
-  result.still = standstill_.spans();
+  result.stationary = stationary_.spans();
   result.observations = observations_;
   result.tracks_sha256 = hash_.hex();
   if (left_out_ > 0) {
@@ -234,7 +234,7 @@ void BackSide::finish(double rate, RunResult& result) {
 
 /// Of each world that an estimator has made: by final estimates, worlds lie otherwise in one another than while data
 /// came in.
-void BackSide::add_segments(double rate, RunResult& result) {
+void BackEndRunner::add_segments(double rate, RunResult& result) {
   std::map<std::size_t, std::size_t> segment_of;  // by world
   std::vector<bool> has_segment;
   for (const auto& estimator : estimators_) {
@@ -268,7 +268,7 @@ void BackSide::add_segments(double rate, RunResult& result) {
 
 /// One back-end's status is the run's. With several the run was lost when the first was, and parts are missing; but
 /// where all that followed were found in the world of the first, it went on.
-Status BackSide::merged_status(const std::vector<bool>& has_segment) const {
+Status BackEndRunner::merged_status(const std::vector<bool>& has_segment) const {
   constexpr const char* kFound = "then found in the same world";
   Status merged = estimators_.front()->status();
   bool went_on = estimators_.size() > 1;

@@ -9,7 +9,7 @@
 
 #include "bench/pipeline/estimator.hpp"
 #include "bench/pipeline/pipeline.hpp"
-#include "bench/pipeline/standstill.hpp"
+#include "bench/pipeline/stationary_detector.hpp"
 #include "bench/pipeline/stopwatch.hpp"
 #include "core/io/sha256.hpp"
 
@@ -18,9 +18,9 @@ namespace evbench {
 /// The back-end's side of a run: undistorts what the front-end saw, holds tracks while the camera stands still,
 /// gives a back-end that is lost a successor, and finds that one's world in the world of those before it. Pixels are
 /// raw on the front-end's side of it, undistorted on the other.
-class BackSide {
+class BackEndRunner {
  public:
-  BackSide(const MakeBackEnd& make, BackEndContext context, const Camera& camera, const TimeRange& range,
+  BackEndRunner(const MakeBackEnd& make, BackEndContext context, const Camera& camera, const TimeRange& range,
            const PipelineOptions& options);
 
   /// Brings the estimate up to the batch's end.
@@ -44,7 +44,7 @@ class BackSide {
   void begin();
   void undistort(TrackBatch& batch);
   void digest(const TrackBatch& batch);
-  void take_back(const Standstill::Refuted& stand);
+  void take_back(const StationaryDetector::Rejected& stand);
   void resolve_doubts(const std::vector<TrackEnd>& ended);
   void relocalise();
   void remember_landmarks();
@@ -56,7 +56,7 @@ class BackSide {
   BackEndContext context_;
   const Camera& camera_;
   TimeRange range_;
-  Standstill standstill_;
+  StationaryDetector stationary_;
   bool relocalises_;
   std::vector<std::unique_ptr<Estimator>> estimators_;  ///< the last one is at work
   double begun_ = 0.0, next_relocalisation_ = 0.0;      ///< [s] when it began; when its world is next looked for

@@ -10,7 +10,7 @@
 namespace evbench {
 
 /// A span of sequence time [s].
-struct StillSpan {
+struct StationaryPeriod {
   double from = 0.0, to = 0.0;
 };
 
@@ -22,10 +22,10 @@ struct StillSpan {
 ///
 /// A sensor that told nothing while the camera moved looks the same, until it tells again: then most tracks end at
 /// once, as what they were on is elsewhere. Such a stand is taken back.
-class Standstill {
+class StationaryDetector {
  public:
   /// `after` [s] without any observation; 0: never.
-  explicit Standstill(double after) : after_(after) {}
+  explicit StationaryDetector(double after) : after_(after) {}
 
   /// Takes a batch in undistorted pixels, and adds the observations that silence stands for.
   void apply(TrackBatch& batch);
@@ -34,11 +34,11 @@ class Standstill {
 
   /// The camera stands still at the last batch's end.
   bool holds() const { return still_; }
-  const std::vector<StillSpan>& spans() const { return spans_; }
+  const std::vector<StationaryPeriod>& spans() const { return spans_; }
 
   /// A stand that was none, and the tracks that were held in it and have not ended: they may be on something else.
   struct Refuted {
-    StillSpan span;
+    StationaryPeriod span;
     std::set<TrackId> survivors;
   };
   /// Shown by the last batch; of several the first. It is one of `spans` until the next batch comes: at the end of the
@@ -58,7 +58,7 @@ class Standstill {
   double usual_ = 0.0;                        ///< [s], longest time between two observations of late
   std::int64_t held_ = 0;                     ///< times that the tracks were held since
   bool still_ = false;
-  std::vector<StillSpan> spans_;
+  std::vector<StationaryPeriod> spans_;
 
   std::set<TrackId> held_tracks_;     ///< in the last stand, that have not ended since
   std::size_t stood_ = 0;             ///< how many were held

@@ -1,4 +1,4 @@
-#include "bench/pipeline/front_side.hpp"
+#include "bench/pipeline/frontend_runner.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 namespace evbench {
 
-FrontSide::FrontSide(FrontEnd& frontend, const Source& source, const PipelineOptions& options, FeedbackLine& feedback,
+FrontEndRunner::FrontEndRunner(FrontEnd& frontend, const Source& source, const PipelineOptions& options, FeedbackLine& feedback,
                      TrackBatch* kept)
     : frontend_(frontend),
       source_(source),
@@ -21,7 +21,7 @@ FrontSide::FrontSide(FrontEnd& frontend, const Source& source, const PipelineOpt
       clock_(range_.from),
       until_(range_.from) {}
 
-std::optional<TrackBatch> FrontSide::next() {
+std::optional<TrackBatch> FrontEndRunner::next() {
   while (!begun_ || until_ < frontend_.data_end().value_or(range_.to)) {
     check_interruption();
     TrackBatch batch = exchange();
@@ -36,14 +36,14 @@ std::optional<TrackBatch> FrontSide::next() {
   return std::nullopt;
 }
 
-FrontFacts FrontSide::facts() const {
+FrontFacts FrontEndRunner::facts() const {
   FrontFacts facts{frontend_.waited(), seconds(), work_, data_s_, {}};
   for (const std::string& remark : source_.remarks()) facts.log.push_back("source: " + remark);
   for (const std::string& remark : frontend_.remarks()) facts.log.push_back("frontend: " + remark);
   return facts;
 }
 
-TrackBatch FrontSide::exchange() {
+TrackBatch FrontEndRunner::exchange() {
   const double before = seconds();
   if (needs_.any) {
     for (const Feedback& feedback : feedback_.due(clock_)) watch_.time([&] { frontend_.receive(feedback); });
@@ -64,13 +64,13 @@ TrackBatch FrontSide::exchange() {
 }
 
 /// The end of the interval that is being gone through.
-double FrontSide::next_time() {
+double FrontEndRunner::next_time() {
   const auto end = [&] { return range_.from + static_cast<double>(exchanges_) * options_.interval; };
   while (exchanges_ == 0 || end() <= clock_) ++exchanges_;
   return std::min(end(), range_.to);
 }
 
-void FrontSide::check(const TrackBatch& batch, double horizon) const {
+void FrontEndRunner::check(const TrackBatch& batch, double horizon) const {
   const auto fail = [&](const std::string& what) {
     throw std::runtime_error(
         fmt::format("the front-end's batch from {:.6f} s to {:.6f} s (up to {:.6f} s were asked for) {}", until_,
@@ -97,7 +97,7 @@ void FrontSide::check(const TrackBatch& batch, double horizon) const {
 }
 
 /// What was given, and, when nothing more comes, that all tracks have ended.
-void FrontSide::count(TrackBatch& batch) {
+void FrontEndRunner::count(TrackBatch& batch) {
   in_time_order(
       batch.observations, batch.ended, [&](const TrackObservation& z) { live_.insert(z.track); },
       [&](const TrackEnd& ended) { live_.erase(ended.track); });

@@ -1,4 +1,4 @@
-#include "bench/pipeline/standstill.hpp"
+#include "bench/pipeline/stationary_detector.hpp"
 
 #include <cmath>
 
@@ -30,7 +30,7 @@ TrackBatch silent(double until) {
 }  // namespace
 
 TEST_CASE("While a camera moves, nothing is added to what is seen of it") {
-  Standstill standstill(0.1);
+  StationaryDetector standstill(0.1);
   for (int i = 1; i <= 100; ++i) {
     TrackBatch batch = moving(0.01 * i);
     const std::size_t seen = batch.observations.size();
@@ -42,7 +42,7 @@ TEST_CASE("While a camera moves, nothing is added to what is seen of it") {
 }
 
 TEST_CASE("When live tracks fall silent they are held where they were, until they move again") {
-  Standstill standstill(0.1);
+  StationaryDetector standstill(0.1);
   TrackBatch batch;
   for (int i = 1; i <= 100; ++i) standstill.apply(batch = moving(0.01 * i));
   std::size_t held = 0;
@@ -68,7 +68,7 @@ TEST_CASE("When live tracks fall silent they are held where they were, until the
 }
 
 TEST_CASE("Tracks that have ended are not held, and few tracks say nothing of the camera") {
-  Standstill standstill(0.1);
+  StationaryDetector standstill(0.1);
   TrackBatch batch;
   for (int i = 1; i <= 100; ++i) standstill.apply(batch = moving(0.01 * i));
   batch = silent(1.005);
@@ -82,7 +82,7 @@ TEST_CASE("Tracks that have ended are not held, and few tracks say nothing of th
 }
 
 TEST_CASE("The time between the frames of a slow tracker is no standstill") {
-  Standstill standstill(0.1);
+  StationaryDetector standstill(0.1);
   for (int i = 1; i <= 500; ++i) {
     TrackBatch batch = silent(0.01 * i);
     if (i % 25 == 0) {
@@ -97,7 +97,7 @@ TEST_CASE("The time between the frames of a slow tracker is no standstill") {
 
 TEST_CASE("One long batch is held like many short ones") {
   TrackBatch whole;
-  Standstill once(0.1), often(0.1);
+  StationaryDetector once(0.1), often(0.1);
   std::vector<TrackObservation> parts;
   for (int i = 1; i <= 300; ++i) {
     TrackBatch batch = i <= 100 || i > 200 ? moving(0.01 * i) : silent(0.01 * i);
@@ -120,8 +120,8 @@ namespace {
 
 /// After a second of motion and a silence: some tracks end, and from some other time on the others and ten new ones are
 /// seen.
-Standstill after_silence(TrackId ending, double ends_at, double seen_again_at) {
-  Standstill standstill(0.1);
+StationaryDetector after_silence(TrackId ending, double ends_at, double seen_again_at) {
+  StationaryDetector standstill(0.1);
   TrackBatch batch;
   for (int i = 1; i <= 100; ++i) standstill.apply(batch = moving(0.01 * i));
   for (int i = 101; i <= 600; ++i) {
@@ -143,13 +143,13 @@ Standstill after_silence(TrackId ending, double ends_at, double seen_again_at) {
 }  // namespace
 
 TEST_CASE("A stand after which most tracks end unseen was none") {
-  const Standstill refuted = after_silence(8, 3.02, 3.0);
+  const StationaryDetector refuted = after_silence(8, 3.02, 3.0);
   REQUIRE(refuted.refuted());
   CHECK(refuted.refuted()->span.from == Approx(1.0).margin(0.01));
   CHECK(refuted.refuted()->span.to == Approx(3.0).margin(0.06));
   CHECK(refuted.refuted()->survivors.size() == 4);  // when more than half are gone
   CHECK(refuted.spans().size() == 1);
-  Standstill later = refuted;
+  StationaryDetector later = refuted;
   TrackBatch batch = moving(3.1);
   later.apply(batch);
   CHECK(later.spans().empty());
@@ -157,7 +157,7 @@ TEST_CASE("A stand after which most tracks end unseen was none") {
 }
 
 TEST_CASE("A stand is one where most tracks go on, or end while nothing else is seen") {
-  for (const Standstill& standstill :
+  for (const StationaryDetector& standstill :
        {after_silence(4, 3.02, 3.0), after_silence(8, 2.0, 4.0), after_silence(8, 3.3, 3.0)}) {
     CHECK_FALSE(standstill.refuted());
     REQUIRE_FALSE(standstill.spans().empty());

@@ -17,10 +17,10 @@ namespace evbench {
 
 /// The front-end's side of a run: makes a batch an exchange, from the beginning of the time range to its end, also
 /// where the front-end has nothing more to give: time passes all the same.
-class FrontSide : public BatchStream {
+class FrontEndRunner : public BatchStream {
  public:
   /// `kept`: where all observations and ends are to be appended; may be none.
-  FrontSide(FrontEnd& frontend, const Source& source, const PipelineOptions& options, FeedbackLine& feedback,
+  FrontEndRunner(FrontEnd& frontend, const Source& source, const PipelineOptions& options, FeedbackLine& feedback,
             TrackBatch* kept = nullptr);
 
   /// Hands over what feedback is due before. Throws std::runtime_error for a front-end that breaks its contract
