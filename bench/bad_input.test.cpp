@@ -117,8 +117,8 @@ TEST_CASE("An unknown key or plugin and a value out of range end the program wit
           "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
-  check_refused(folder, "run c.json --set backend.frame_duratoin=1",
-                "c.json: backend: unknown key \"frame_duratoin\"; did you mean \"frame_duration\"?");
+  check_refused(folder, "run c.json --set backend.batch_duratoin=1",
+                "c.json: backend: unknown key \"batch_duratoin\"; did you mean \"batch_duration\"?");
   check_refused(folder, "run c.json --set backend.type=gp_mop", "did you mean \"gp_map\"?");
   check_refused(folder, "run c.json --set source.duration=0", "c.json: source.duration: 0 is out of range");
   check_refused(folder, "run c.json --set source.duration=long", "expected number, found \"long\"");

@@ -105,7 +105,7 @@ TEST_CASE("A back-end that is added to a comparison is the only one that is run"
   REQUIRE(comparison.run("--quiet").exit_code == 0);
   const std::string timing = comparison.content("asynchronous", "timing.csv");
   comparison.config["backends"].push_back(
-      {{"type", "bundle_adjustment"}, {"frame_duration", 0.1}, {"label", "100 ms"}});
+      {{"type", "bundle_adjustment"}, {"batch_duration", 0.1}, {"label", "100 ms"}});
   comparison.write();
   const Outcome more = comparison.run("");
   CHECK_THAT(more.out, ContainsSubstring("complete already: 2 of 3") && ContainsSubstring("100 ms"));
@@ -166,13 +166,13 @@ TEST_CASE("Runs of several options and seeds are told apart in their table", "[s
   for (const std::string duration : {"0.1", "0.05"}) {
     for (const std::string seed : {"2", "1"}) {
       REQUIRE(testing::evbench(folder,
-                               "run c.json --quiet --set seed=" + seed + " --set backend.frame_duration=" + duration)
+                               "run c.json --quiet --set seed=" + seed + " --set backend.batch_duration=" + duration)
                   .exit_code == 0);
     }
   }
   const std::string text = testing::evbench(folder, "table results").out;
   CHECK_THAT(text.substr(0, text.find('\n')),
-             ContainsSubstring("backend.frame_duration  seed") && !ContainsSubstring("key"));
+             ContainsSubstring("backend.batch_duration  seed") && !ContainsSubstring("key"));
   const Outcome csv = testing::evbench(folder, "table results --format csv --metrics scale");
   std::vector<std::string> rows;
   std::istringstream lines(csv.out);
@@ -271,7 +271,7 @@ TEST_CASE("A run that is ended leaves what is complete, prints its table, and go
   const TemporaryFolder folder;
   Json config = short_comparison();
   config["source"]["duration"] = 60;
-  config["backends"][0] = {{"type", "bundle_adjustment"}, {"label", "quick"}, {"frame_duration", 0.4}};
+  config["backends"][0] = {{"type", "bundle_adjustment"}, {"label", "quick"}, {"batch_duration", 0.4}};
   config["backends"][1] = {{"type", "gp_map"}, {"label", "slow"}, {"placement", {{"rule", "rate"}, {"rate", 400}}}};
   folder.write("c.json", dump_json(config));
   const Outcome outcome = testing::shell(folder, R"(

@@ -55,7 +55,7 @@ class ConfigFile {
 };
 
 /// Reads a config file. `overrides` are "key=value" with the key a path of names and list positions
-/// ("backends.0.frame_duration=0.1") and the value JSON, or text where it is not JSON.
+/// ("backends.0.batch_duration=0.1") and the value JSON, or text where it is not JSON.
 /// Throws InputError with the place for anything that is not as expected; nothing has been run or written then.
 Experiment read_experiment(const std::string& path, const std::vector<std::string>& overrides, const Plugins& plugins);
 

@@ -53,7 +53,7 @@ TEST_CASE("A run's key depends on what determines the result and not on how it i
   same["source"]["duration"] = 3.0;
   CHECK(key_of(read(same).runs[0]) == key);
   for (const char* other : {"seed=2", "trajectory_rate=50", "pipeline.interval=0.02", "source.duration=2.5",
-                            "backend.frame_duration=0.07"}) {
+                            "backend.batch_duration=0.07"}) {
     INFO(other);
     CHECK(key_of(read(short_config(), {other}).runs[0]) != key);
   }
@@ -88,11 +88,11 @@ TEST_CASE("Relative paths are taken from the config's folder, variables stay for
 
 TEST_CASE("Overrides reach values, list items and whole objects") {
   const Experiment experiment =
-      read(short_comparison(), {"seed=7", "backends.1.frame_duration=0.2", "backends.1.label=200 ms",
+      read(short_comparison(), {"seed=7", "backends.1.batch_duration=0.2", "backends.1.label=200 ms",
                                 "evaluation.time_range=[0, 1]", "source.motion={\"kind\": \"robot_arm\"}"});
   CHECK(experiment.runs[0].job.seed == 7);
   CHECK(experiment.runs[1].label == "200 ms");
-  CHECK(experiment.runs[1].job.backend.options["frame_duration"] == 0.2);
+  CHECK(experiment.runs[1].job.backend.options["batch_duration"] == 0.2);
   CHECK(experiment.runs[0].evaluation.time_range == std::vector<double>{0.0, 1.0});
   CHECK(experiment.runs[0].job.source.options["motion"]["kind"] == "robot_arm");
 }

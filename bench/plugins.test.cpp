@@ -45,7 +45,7 @@ TEST_CASE("Plugins are checked in words, a line a check", "[slow]") {
 TEST_CASE("A plugin that fails a check ends check-plugin with exit code 3 and says why", "[slow]") {
   const TemporaryFolder folder;
   const Outcome outcome =
-      testing::evbench(folder, "check-plugin bundle_adjustment --options '{\"frame_duration\": 3}'");
+      testing::evbench(folder, "check-plugin bundle_adjustment --options '{\"batch_duration\": 3}'");
   CHECK(outcome.exit_code == 3);
   CHECK_THAT(outcome.out, ContainsSubstring("  FAILS follows a good sequence in time order and shows a map: "));
 }

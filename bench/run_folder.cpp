@@ -76,7 +76,7 @@ std::string timing_csv(const std::vector<UpdateRecord>& updates) {
   return text;
 }
 
-std::string learnt_csv(const RunResult& result) {
+std::string parameters_csv(const RunResult& result) {
   std::string text = fmt::format("t_s,{}\n", fmt::join(result.learnt, ","));
   for (const UpdateRecord& u : result.updates) {
     if (!u.learnt.empty()) text += fmt::format("{:.6f},{:.6g}\n", u.t, fmt::join(u.learnt, ","));
@@ -171,7 +171,7 @@ RunRecord RunFolder::write(const RunConfig& config, const JobIdentity& identity,
   const RunResult& result = execution.result;
   write_files(config, identity, result);
   if (!ground_truth.empty()) folder_.write("groundtruth.tum", ground_truth);
-  if (!result.learnt.empty()) folder_.write("learnt.csv", learnt_csv(result));
+  if (!result.learnt.empty()) folder_.write("estimated_parameters.csv", parameters_csv(result));
   if (problem && !result.segments.empty() && result.segments[result.longest].problem) {
     folder_.write("problem.txt", format_problem(*result.segments[result.longest].problem));
   }

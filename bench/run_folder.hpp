@@ -35,7 +35,7 @@ class EmptyFolders {
 ///   metrics.json, status.json        eval/metrics.md
 ///   timing.csv       a line an update
 ///   tracks.txt, track_ends.txt       what the front-end told, raw pixels, where it was asked for
-///   learnt.csv       what the back-end has learnt of its parameters by then, where it does
+///   estimated_parameters.csv       what the back-end has learnt of its parameters by then, where it does
 ///   log.txt
 ///
 /// Where the estimate is in segments, these are of the longest one; the others are final.segment2.tum, causal.segment2.tum,

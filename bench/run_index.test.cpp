@@ -21,7 +21,7 @@ TEST_CASE("The index of an experiment has a line a run, sorted, with what runs o
   write_run_index(results.folder.path());
   const std::string index = read_file(results.folder.file("index.csv"));
   CHECK(index.starts_with(
-      "experiment,label,backend.frame_duration,seed,key,folder,ate.trans_m.rmse,ate.rot_deg.rmse,rpe.trans_m.rmse,"
+      "experiment,label,backend.batch_duration,seed,key,folder,ate.trans_m.rmse,ate.rot_deg.rmse,rpe.trans_m.rmse,"
       "rpe.rot_deg.rmse,pairs,coverage,scale,status,reason,trajectory,protocol\n"
       "arm,bundle,0.05,1,bundle1-0.050000,bundle1-0.050000,,,,,,,,failed,"));
   CHECK_THAT(index, ContainsSubstring("\narm,bundle,0.1,1,bundle1-0.100000,bundle1-0.100000,0.1,") &&

@@ -85,10 +85,10 @@ TEST_CASE("Settings that differ on the same data are part of a method's name") {
   const std::vector<RunRecord> runs = results.find();
   const auto methods = methods_of(numbers_of(runs, false), run_columns(runs));
   REQUIRE(methods.size() == 2);
-  CHECK(methods[0].name == "bundle, backend.frame_duration 0.1");
+  CHECK(methods[0].name == "bundle, backend.batch_duration 0.1");
   CHECK(methods[1].runs.size() == 3);
   CHECK_THAT(make_comparison_table(runs, {}),
-             ContainsSubstring("bundle, backend.frame_duration 0.2") && ContainsSubstring("2 [2, 2]"));
+             ContainsSubstring("bundle, backend.batch_duration 0.2") && ContainsSubstring("2 [2, 2]"));
 }
 
 TEST_CASE("What can't be compared is refused with what was expected") {

@@ -16,7 +16,7 @@ struct Method {
 
 /// The methods among runs: what runs of the same data (data_of() in run_columns.hpp) differ in. A name is the label
 /// and, where runs of one label differ on the same data, the columns in which they do: "bundle adjustment,
-/// backend.frame_duration 0.1". A column of the name `without` is none of these, one of the name `apart` is, where it
+/// backend.batch_duration 0.1". A column of the name `without` is none of these, one of the name `apart` is, where it
 /// varies, whatever the data. Runs that were not run are left out.
 /// Each method has one run for each data (and value of `without`); throws InputError where two are not the same job.
 std::vector<Method> methods_of(const std::vector<RunNumbers>& runs, const std::vector<RunColumn>& columns,

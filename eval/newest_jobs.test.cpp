@@ -17,7 +17,7 @@ void add_job(const Results& results, const std::string& key, const std::string& 
   json["seed"] = seed;
   json["key"] = key;
   results.add(key, json,
-              {{"seed", seed}, {"source", {{"type", "simulation"}}}, {"backend", {{"frame_duration", frame}}}});
+              {{"seed", seed}, {"source", {{"type", "simulation"}}}, {"backend", {{"batch_duration", frame}}}});
   if (!finished.empty()) results.folder.write(key + "/manifest.json", dump_json({{"finished", finished}}));
 }
 

@@ -19,7 +19,7 @@ struct RunColumn {
 };
 
 /// All that tells runs apart, in this order: "experiment"; "label"; the settings in which runs of one experiment and
-/// label differ, named as in a config ("backend.frame_duration"), or, of runs of a sweep, its axes; "seed".
+/// label differ, named as in a config ("backend.batch_duration"), or, of runs of a sweep, its axes; "seed".
 std::vector<RunColumn> run_columns(std::span<const RunRecord> runs);
 
 /// The column of that name; throws InputError, with the nearest name, where there is none.

@@ -9,7 +9,7 @@
 
 namespace evbench {
 
-/// Values by their paths in a config ("backend.frame_duration"), in its order.
+/// Values by their paths in a config ("backend.batch_duration"), in its order.
 using RunSettings = std::vector<std::pair<std::string, Json>>;
 
 /// A run's place in a sweep: the names of its axes, and its values on them as text.

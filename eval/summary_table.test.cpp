@@ -87,9 +87,9 @@ TEST_CASE("Settings that vary, and those asked for, set rows apart or are summar
   }
   const auto runs = results.find();
   const std::string text = table(results);
-  CHECK_THAT(line_with(text, "ATE [m]"), ContainsSubstring("backend.frame_duration"));
+  CHECK_THAT(line_with(text, "ATE [m]"), ContainsSubstring("backend.batch_duration"));
   CHECK_THAT(text, ContainsSubstring("0.200 [0.150, 0.250]") && ContainsSubstring("0.400 [0.300, 0.500]"));
-  TableOptions options{.metrics = {"ate.trans_m.rmse"}, .over = {"seed", "backend.frame_duration"}};
+  TableOptions options{.metrics = {"ate.trans_m.rmse"}, .over = {"seed", "backend.batch_duration"}};
   CHECK_THAT(make_table(runs, options), ContainsSubstring("6 of 6") && ContainsSubstring("0.250 [0.200, 0.375]"));
   options.over = {"seeds"};
   CHECK_THROWS_WITH(make_table(runs, options),
@@ -105,7 +105,7 @@ TEST_CASE("The same job found twice counts once, two jobs that should be one are
   const Json config = {{"seed", 1},
                        {"source", {{"type", "simulation"}, {"motion", "arm"}}},
                        {"frontend", {{"type", "oracle"}}},
-                       {"backend", {{"type", "good"}, {"frame_duration", 0.1}}}};
+                       {"backend", {{"type", "good"}, {"batch_duration", 0.1}}}};
   results.add("copy", copy, config);
   CHECK_THAT(line_with(table(results), "good "), ContainsSubstring("3 of 3"));
   copy["key"] = "another";
@@ -121,7 +121,7 @@ TEST_CASE("The long format has a line a run and metric, with the settings as col
   const std::string csv =
       make_table(results.find(), {.format = TableFormat::long_csv, .metrics = {"ate.trans_m.rmse", "runtime_s"}});
   CHECK(csv.substr(0, csv.find('\n')) ==
-        "experiment,label,backend.frame_duration,seed,key,folder,status,reason,trajectory,protocol,metric,value");
+        "experiment,label,backend.batch_duration,seed,key,folder,status,reason,trajectory,protocol,metric,value");
   CHECK(std::ranges::count(csv, '\n') == 5);
   CHECK_THAT(csv, ContainsSubstring("arm,bundle,0.1,1,") && ContainsSubstring(",ate.trans_m.rmse,0.5\n"));
   CHECK_THAT(csv, ContainsSubstring(",failed,,final,,ate.trans_m.rmse,\n") && ContainsSubstring(",runtime_s,2\n"));

@@ -127,28 +127,28 @@ TEST_CASE("Runs of one label have as columns the settings in which they differ, 
       results.add(std::to_string(folders--), json,
                   {{"seed", seed},
                    {"source", {{"type", "simulation"}}},
-                   {"backend", {{"type", "bundle_adjustment"}, {"frame_duration", duration}, {"label", "x"}}}});
+                   {"backend", {{"type", "bundle_adjustment"}, {"batch_duration", duration}, {"label", "x"}}}});
     }
   }
   const std::string text = text_of(results, {});
   CHECK_THAT(line_with(text, "ATE [m]"),
-             ContainsSubstring("backend.frame_duration") && ContainsSubstring("seed") && !ContainsSubstring("key"));
+             ContainsSubstring("backend.batch_duration") && ContainsSubstring("seed") && !ContainsSubstring("key"));
   CHECK_THAT(text, !ContainsSubstring("source.type") && !ContainsSubstring("backend.label"));
   const auto runs = results.find();
   CHECK(runs[0].seed == 1);
   CHECK(runs[1].seed == 2);
-  CHECK(*find_setting(runs[1].settings, "backend.frame_duration") == 0.05);
-  CHECK(*find_setting(runs[2].settings, "backend.frame_duration") == 0.1);
+  CHECK(*find_setting(runs[1].settings, "backend.batch_duration") == 0.05);
+  CHECK(*find_setting(runs[2].settings, "backend.batch_duration") == 0.1);
   CHECK_THAT(text_of(results, {.format = TableFormat::csv}),
-             ContainsSubstring("experiment,label,backend.frame_duration,seed,key,folder,") &&
+             ContainsSubstring("experiment,label,backend.batch_duration,seed,key,folder,") &&
                  ContainsSubstring("\narm,bundle_adjustment,0.05,1,"));
 }
 
 TEST_CASE("Labels that tell runs apart need no settings beside them") {
   Results results;
-  results.add("a", run("arm", "25 ms", scores_with(0.02)), {{"backend", {{"frame_duration", 0.025}}}});
-  results.add("b", run("arm", "50 ms", scores_with(0.03)), {{"backend", {{"frame_duration", 0.05}}}});
-  CHECK_THAT(text_of(results, {}), !ContainsSubstring("frame_duration"));
+  results.add("a", run("arm", "25 ms", scores_with(0.02)), {{"backend", {{"batch_duration", 0.025}}}});
+  results.add("b", run("arm", "50 ms", scores_with(0.03)), {{"backend", {{"batch_duration", 0.05}}}});
+  CHECK_THAT(text_of(results, {}), !ContainsSubstring("batch_duration"));
 }
 
 TEST_CASE("Rows stand in the order of their config") {

@@ -44,7 +44,7 @@ struct BundleAdjustment::Trial {
 BundleAdjustment::BundleAdjustment(const Options& options, const BackEndContext& context)
     : options_(options),
       context_(context),
-      frames_({options.frame_duration, options.frame_observations, options.frame_motion, options.shortest_frame,
+      frames_({options.batch_duration, options.batch_observations, options.batch_motion, options.min_batch_duration,
                options.common_noise_px}),
       initialiser_(initialiser_options(), context.camera),
       waiting_for_("no observations"),
@@ -201,7 +201,7 @@ void BundleAdjustment::accept(Trial trial, int view) {
                   trial.parallax_deg, trial.good, trial.error));
   failing_ = false;
   remove_outliers(trial.segment.first);
-  map_.triangulate_new(context_.camera, triangulation_options(), {options_.min_track_frames, options_.min_track_time});
+  map_.triangulate_new(context_.camera, triangulation_options(), {options_.min_track_batches, options_.min_track_time});
   update_motion(view);
 }
 
@@ -220,7 +220,7 @@ SolveReport BundleAdjustment::track(int view) {
     failing_ = false;
     monitor_.observe(before, t, TrackingMonitor::Support::full);
     map_.triangulate_new(context_.camera, triangulation_options(),
-                         {options_.min_track_frames, options_.min_track_time});
+                         {options_.min_track_batches, options_.min_track_time});
     report = solve_window(view);
     remove_outliers(view - options_.window);
     update_motion(view);

@@ -143,7 +143,7 @@ TEST_CASE("outlier tracks are found and do no harm") {
 
 TEST_CASE("frames by count give about the same as frames by duration") {
   Options options;
-  options.frame_observations = 250;
+  options.batch_observations = 250;
   const Simulation simulation;
   BundleAdjustment backend = make(davis(), options);
   feed(backend, simulate(simulation));
@@ -153,8 +153,8 @@ TEST_CASE("frames by count give about the same as frames by duration") {
 
 TEST_CASE("frames by motion give about the same as frames by duration") {
   Options options;
-  options.frame_motion = 3.0;
-  options.frame_duration = 0.4;
+  options.batch_motion = 3.0;
+  options.batch_duration = 0.4;
   const Simulation simulation;
   BundleAdjustment backend = make(davis(), options);
   feed(backend, simulate(simulation));
@@ -186,7 +186,7 @@ TEST_CASE("a frame's pose is told when the frame ends, and the window's poses ar
   std::vector<CausalPose> told;
   context.publish = [&](const CausalPose& pose) { told.push_back(pose); };
   Options options;
-  options.frame_duration = 0.1;
+  options.batch_duration = 0.1;
   options.window = 5;
   BundleAdjustment backend(options, context);
   feed(backend, simulate({}));
@@ -314,7 +314,7 @@ TEST_CASE("on the real tracks of poster_translation frames of 50 and 100 ms stay
   }
   for (const double duration : {0.05, 0.1}) {
     Options options;
-    options.frame_duration = duration;
+    options.batch_duration = duration;
     BundleAdjustment backend = make(camera.pinhole, options);
     feed(backend, observations);
     CHECK(backend.status().state == RunState::ok);

@@ -3,14 +3,14 @@
 namespace evbench::bundle_adjustment {
 
 void Options::declare(OptionSet& set) {
-  set.add("frame_duration", frame_duration, "time that a frame gathers observations [s]").above(0.0);
-  set.add("frame_observations", frame_observations, "observations that a frame gathers; 0: frames by duration")
+  set.add("batch_duration", batch_duration, "time that a frame gathers observations [s]").above(0.0);
+  set.add("batch_observations", batch_observations, "observations that a frame gathers; 0: frames by duration")
       .range(0);
-  set.add("frame_motion", frame_motion,
+  set.add("batch_motion", batch_motion,
           "median motion of a frame's tracks over the image, at which it ends [px]; 0: frames by duration")
       .range(0.0);
-  set.add("shortest_frame", shortest_frame,
-          "time that a frame by motion gathers observations, at least [s]; frame_duration is the longest then")
+  set.add("min_batch_duration", min_batch_duration,
+          "time that a frame by motion gathers observations, at least [s]; batch_duration is the longest then")
       .range(0.0);
   set.add("common_noise_px", common_noise_px,
           "part of an observation's noise that all of a track's observations in a frame share, so that their mean "
@@ -18,7 +18,7 @@ void Options::declare(OptionSet& set) {
       .range(0.0);
   set.group("initialiser", initialiser, "initialisation from two frames");
   set.add("min_parallax_deg", min_parallax_deg, "parallax of a new landmark, at least [deg]").range(0.0, 90.0);
-  set.add("min_track_frames", min_track_frames, "frames that a new landmark must be seen in").range(2);
+  set.add("min_track_batches", min_track_batches, "frames that a new landmark must be seen in").range(2);
   set.add("min_track_time", min_track_time,
           "time that these frames must span: over a short time, an outlier fits any motion [s]")
       .range(0.0);

@@ -8,15 +8,15 @@ namespace evbench::bundle_adjustment {
 
 struct Options {
   // Frames.
-  double frame_duration = 0.05;  ///< [s]
-  int frame_observations = 0;    ///< observations in a frame; 0: frames by duration
-  double frame_motion = 0.0;     ///< [px] median motion of the tracks in a frame; 0: frames by duration
-  double shortest_frame = 0.02;  ///< [s], of frames by motion; frame_duration is the longest then
+  double batch_duration = 0.05;  ///< [s]
+  int batch_observations = 0;    ///< observations in a frame; 0: frames by duration
+  double batch_motion = 0.0;     ///< [px] median motion of the tracks in a frame; 0: frames by duration
+  double min_batch_duration = 0.02;  ///< [s], of frames by motion; batch_duration is the longest then
   double common_noise_px = 0.3;  ///< part of an observation's noise that all observations in a frame share
   // Map.
   InitialiserOptions initialiser;  ///< its window is as long as a frame: it sees frame means
   double min_parallax_deg = 1.0;   ///< of a new landmark
-  int min_track_frames = 3;        ///< frames that a new landmark must be seen in
+  int min_track_batches = 3;        ///< frames that a new landmark must be seen in
   double min_track_time = 0.3;     ///< [s] that these must span: over a short time, an outlier fits any motion
   double outlier_px = 2.0;         ///< a track with a larger mean reprojection error is removed
   // Solver.

@@ -86,7 +86,7 @@ std::vector<Landmark> GpMap::map() const {
   return result;
 }
 
-std::vector<std::string> GpMap::learnt() const {
+std::vector<std::string> GpMap::estimated_parameters() const {
   std::vector<std::string> names = {"noise_scale", "noise_share"};
   for (const char* when : {"", "final_"}) {
     for (const char* axis :

@@ -44,7 +44,7 @@ class GpMap : public BackEnd {
   std::vector<Landmark> map() const override;
   std::optional<Problem> problem() const override;
   std::span<const UpdateRecord> updates() const override { return updates_; }
-  std::vector<std::string> learnt() const override;
+  std::vector<std::string> estimated_parameters() const override;
 
   /// The problem with its present estimate; only where there is a map.
   const FactorGraph& graph() const { return world_->engine.graph(); }

@@ -265,7 +265,7 @@ TEST_CASE("What has been learnt by each update is told, and what is learnt in th
        {"{}", R"({"final_iterations": 0})", R"({"lag": 2})", R"({"learn": {"prior": "never"}})"}) {
     INFO(options);
     const auto result = run(scene, {.backend = options.c_str()});
-    const std::vector<std::string> names = result.backend->learnt();
+    const std::vector<std::string> names = result.backend->estimated_parameters();
     const auto learnt = [&](const char* name, double t) {
       const auto updates = result.backend->updates();
       const auto update = std::ranges::find_if(updates, [&](const UpdateRecord& u) { return u.t >= t; });

@@ -111,7 +111,7 @@ void add_figure(CLI::App& app) {
   add_run_selection(*command, arguments->runs);
   command->add_option("--out", arguments->out, "The file: .svg, .pdf or .png")->required()->type_name("FILE");
   add_list_option(*command, "--metrics", arguments->options.metrics, "What is shown, a panel each; else ATE, RPE");
-  command->add_option("--axis", arguments->options.axis, "What a sweep is drawn against, e.g. backend.frame_duration")
+  command->add_option("--axis", arguments->options.axis, "What a sweep is drawn against, e.g. backend.batch_duration")
       ->type_name("NAME");
   command
       ->add_option("--axis-label", arguments->options.axis_label, "What is written there, e.g. \"frame duration [s]\"")

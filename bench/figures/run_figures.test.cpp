@@ -67,7 +67,7 @@ TEST_CASE("A sweep is a curve of medians with bands, and a level for what does n
 TEST_CASE("A map has the median ratio to the base on the same data, by two axes") {
   const Swept results;
   const FigureOptions options{
-      .metrics = {"ate.trans_m.rmse"}, .axis = "backend.frame_duration", .across = "seed", .base = "asynchronous"};
+      .metrics = {"ate.trans_m.rmse"}, .axis = "backend.batch_duration", .across = "seed", .base = "asynchronous"};
   const Figure figure = map_figure(results.find(), options);
   const Mark& cells = mark_of(figure.panels.at(0), Mark::Kind::cells, 0);
   REQUIRE(cells.low.size() == 9);  // three frames, three seeds
@@ -94,7 +94,7 @@ TEST_CASE("What failed is told above a sweep, behind a box's name, and by a prof
   CHECK_THAT(sweep.caption, ContainsSubstring("of 3 to 4 runs each (seed). Above: how many of the runs failed"));
   const Figure boxes = box_figure(runs, {});
   CHECK(boxes.panels.at(0).names.at(2) ==
-        "bundle, backend.frame_duration 0.1 (1\u00a0of\u00a04\u00a0fail)");  // not to be broken
+        "bundle, backend.batch_duration 0.1 (1\u00a0of\u00a04\u00a0fail)");  // not to be broken
   CHECK(boxes.panels.at(1).names.at(2).empty());                             // the first panel has said it
   CHECK_THAT(boxes.caption, ContainsSubstring("Those that failed are in no box."));
   CHECK(mark_of(boxes.panels.at(0), Mark::Kind::box, 2).y.size() == 3);
@@ -145,13 +145,13 @@ TEST_CASE("A sweep over a setting in which labels differ, too, is drawn and says
   for (const double frame : {0.05, 0.1, 0.2}) {
     const std::string label = fmt::format("bundle {}", frame);
     results.add(label, run("arm", label, scores_with(frame)),
-                {{"source", {{"type", "simulation"}}}, {"backend", {{"frame_duration", frame}}}});
+                {{"source", {{"type", "simulation"}}}, {"backend", {{"batch_duration", frame}}}});
   }
-  const Figure figure = sweep_figure(results.find(), {.axis = "backend.frame_duration"});
+  const Figure figure = sweep_figure(results.find(), {.axis = "backend.batch_duration"});
   REQUIRE(figure.series.size() == 3);
   CHECK(mark_of(figure.panels.at(0), Mark::Kind::points, 0).x == std::vector{0.1});
   REQUIRE(figure.remarks.size() == 1);
-  CHECK_THAT(figure.remarks[0], ContainsSubstring("Labels differ wherever backend.frame_duration does"));
+  CHECK_THAT(figure.remarks[0], ContainsSubstring("Labels differ wherever backend.batch_duration does"));
   CHECK_THAT(figure.caption, ContainsSubstring(figure.remarks[0]));
   std::vector<RunRecord> one = results.find();
   for (RunRecord& run : one) run.label = "bundle";
@@ -164,7 +164,7 @@ TEST_CASE("A sweep over a setting in which labels differ, too, is drawn and says
 
 TEST_CASE("Panels of one figure are scaled alike, and an axis has ticks at both of its ends") {
   const Swept results;  // ATE from 0.05 to 0.6, RPE the same everywhere
-  const Figure sweep = sweep_figure(results.find(), {.axis = "backend.frame_duration"});
+  const Figure sweep = sweep_figure(results.find(), {.axis = "backend.batch_duration"});
   REQUIRE(sweep.panels.size() == 2);
   for (const Panel& panel : sweep.panels) {
     CHECK(panel.y.log);
@@ -197,7 +197,7 @@ TEST_CASE("What runs that are drawn together differ in is said") {
     slow.settings.emplace_back("source.speed", 0.5);
     slow.key += "-slow";
   }
-  CHECK_THAT(sweep_figure(runs, {.axis = "backend.frame_duration"}).caption,
+  CHECK_THAT(sweep_figure(runs, {.axis = "backend.batch_duration"}).caption,
              ContainsSubstring("Medians, and bands between quartiles, of 6 runs each (source.speed, seed)."));
   CHECK_THAT(sweep_figure(runs, {.axis = "seed"}).caption,
              ContainsSubstring("quartiles, of 2 runs each (source.speed)."));
@@ -237,7 +237,7 @@ TEST_CASE("What can't be drawn is refused with what was expected") {
   const std::vector<RunRecord> runs = results.find();
   CHECK_THROWS_WITH(sweep_figure(runs, {.axis = "label"}),
                     ContainsSubstring("has the value \"asynchronous\"; expected numbers"));
-  CHECK_THROWS_WITH(sweep_figure(runs, {.axis = "backend.frame"}), ContainsSubstring("backend.frame_duration"));
+  CHECK_THROWS_WITH(sweep_figure(runs, {.axis = "backend.frame"}), ContainsSubstring("backend.batch_duration"));
   CHECK_THROWS_WITH(profile_figure(runs, {.metrics = {"coverage"}}),
                     ContainsSubstring("neither lower nor higher is better"));
   Results one;
@@ -272,7 +272,7 @@ TEST_CASE("A figure of one sequence names it, and it and what is exported tell w
   Json config = short_comparison();
   config["source"]["duration"] = 1;
   config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "a"}},
-                        {{"type", "bundle_adjustment"}, {"label", "b"}, {"frame_duration", 0.1}}};
+                        {{"type", "bundle_adjustment"}, {"label", "b"}, {"batch_duration", 0.1}}};
   folder.write("c.json", dump_json(config));
   for (const std::string alive : {"40", "50"}) {
     REQUIRE(testing::evbench(folder, "run c.json --quiet --set source.tracks.alive=" + alive).exit_code == 0);
@@ -374,7 +374,7 @@ TEST_CASE("An option that says nothing of a kind of figure is refused") {
     CHECK(outcome.exit_code == 2);
     CHECK_THAT(outcome.err, ContainsSubstring(message));
   };
-  refused("box . --axis backend.frame_duration", "--axis says nothing of a figure of the kind box");
+  refused("box . --axis backend.batch_duration", "--axis says nothing of a figure of the kind box");
   refused("sweep . --across seed", "it takes --metrics, --axis, --axis-label, --causal");
   refused("times . --causal", "it takes none");
   CHECK(names_in(results.folder.path()).count("f.svg") == 0);

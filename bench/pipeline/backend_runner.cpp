@@ -240,7 +240,7 @@ void BackEndRunner::add_segments(double rate, RunResult& result) {
   for (const auto& estimator : estimators_) {
     BackEnd& backend = *estimator->backend;
     watch_.time([&] { backend.finish(); });
-    result.learnt = backend.learnt();
+    result.learnt = backend.estimated_parameters();
     result.updates.insert(result.updates.end(), backend.updates().begin(), backend.updates().end());
     const std::size_t stood_in = estimator->world;
     std::vector<CausalPose> told_there = std::move(estimator->told_there);

@@ -130,7 +130,7 @@ TEST_CASE("A plugin that crashes, hangs or eats memory takes its own run down, w
   const TemporaryFolder folder;
   Json config = tiny_config();
   config.erase("backend");
-  config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "fine"}, {"frame_duration", 0.1}}};
+  config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "fine"}, {"batch_duration", 0.1}}};
   for (const char* const what : {"crash", "hang", "eat", "exit", "throw", "die"}) {
     config["backends"].push_back({{"type", "troublemaker"}, {"label", what}, {"what", what}});
   }

@@ -42,7 +42,7 @@ TEST_CASE("Slurm does a sweep with the same bytes, though a task is killed and a
   }
   const TemporaryFolder folder;
   Json config = short_config();
-  config["backend"]["frame_duration"] = 0.05;
+  config["backend"]["batch_duration"] = 0.05;
   folder.write("c.json", dump_json(config));
   const std::string sweep = "\"$evbench\" sweep c.json --vary seed=1..8 ";
   REQUIRE(testing::shell(folder, sweep + "--quiet --out here").exit_code == 0);

@@ -30,7 +30,7 @@ const char* const kSweepFile = R"({
   "grids": [
     {"axes": [{"name": "back-end", "overlays": {"asynchronous": {"backend": {"type": "gp_map"}}}}]},
     {"axes": [{"name": "back-end", "overlays": {"frames": {"backend": {"type": "bundle_adjustment", "label": "BA"}}}},
-              {"zip": [{"key": "backend.frame_duration", "name": "frame", "values": [0.1, 0.2]},
+              {"zip": [{"key": "backend.batch_duration", "name": "frame", "values": [0.1, 0.2]},
                        {"key": "backend.window", "values": [10, 5]}]}]}
   ]})";
 
@@ -75,7 +75,7 @@ TEST_CASE("The same config has the same key in a sweep as alone, and points of o
   CHECK(made.name == "tiny");
   CHECK(made.runs.at(0).identity.key == key_of(read_experiment(path, {}, known_plugins()).runs[0]));
   CHECK(made.runs.at(1).identity.key == key_of(read_experiment(path, {"seed=2"}, known_plugins()).runs[0]));
-  const SweepPlan same = plan(folder, "c.json", {"backend.frame_duration=0.1,0.10"});
+  const SweepPlan same = plan(folder, "c.json", {"backend.batch_duration=0.1,0.10"});
   CHECK(same.runs.at(0).identity.key == same.runs.at(1).identity.key);
   CHECK_THROWS_WITH(plan(folder, "c.json", {"evaluation.alignment=se3,sim3"}),
                     ContainsSubstring("evaluation.alignment=se3") && ContainsSubstring("differ in their protocol"));
@@ -91,18 +91,18 @@ TEST_CASE("A sweep that can't be is refused before anything is written, with pla
   };
   refused(R"({"config": "c.json", "axis": []})", "unknown key \"axis\"; did you mean \"axes\"?");
   refused(R"({"config": "d.json"})", "d.json: no such file");
-  refused(R"({"config": "c.json", "axes": [{"key": "backend.frame_durations", "values": [1]}]})",
-          "unknown key \"frame_durations\"; did you mean \"frame_duration\"? (from the sweep's "
-          "backend.frame_durations=1)");
+  refused(R"({"config": "c.json", "axes": [{"key": "backend.batch_durations", "values": [1]}]})",
+          "unknown key \"batch_durations\"; did you mean \"batch_duration\"? (from the sweep's "
+          "backend.batch_durations=1)");
   refused(R"({"config": "c.json", "axes": [{"key": "seed", "values": []}]})",
           "axes.0: the axis \"seed\" has no values");
   refused(R"({"config": "c.json", "axes": [{"key": "seed", "values": [1]}, {"key": "seed", "values": [1]}]})",
           "expected one axis for a key");
   refused(R"({"config": "c.json", "axes": [{"key": "seed", "values": [1]}, {"name": "seed", "overlays": {"a": {}}}]})",
           "two axes are called \"seed\"");
-  refused(R"({"config": "c.json", "axes": [{"key": "backend.frame_duration", "values": [0.1]}],
+  refused(R"({"config": "c.json", "axes": [{"key": "backend.batch_duration", "values": [0.1]}],
               "grids": [{"axes": [{"name": "which", "overlays": {"a": {"backend": {"type": "gp_map"}}}}]}]})",
-          "the axis \"which\" sets \"backend\", and with it \"backend.frame_duration\"");
+          "the axis \"which\" sets \"backend\", and with it \"backend.batch_duration\"");
   refused(R"({"axes": [{"key": "seed", "values": [1]}]})", "\"config\" is missing");
   refused(R"({"config": "c.json", "grids": [{"axes": [{"key": "seed"}]}]})", "grids.0.axes.0: expected one of");
   refused(R"({"config": "c.json", "plugins": ["no.so"]})", "plugins: ");
@@ -215,8 +215,8 @@ TEST_CASE(
   config.erase("backend");
   config["source"] = {{"type", "event_simulation"}, {"duration", 0.5}};
   config["frontend"] = {{"type", "haste"}, {"guidance", {{"outliers", false}, {"veto", false}, {"reacquire", false}}}};
-  config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "a"}, {"frame_duration", 0.1}},
-                        {{"type", "bundle_adjustment"}, {"label", "b"}, {"frame_duration", 0.05}},
+  config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "a"}, {"batch_duration", 0.1}},
+                        {{"type", "bundle_adjustment"}, {"label", "b"}, {"batch_duration", 0.05}},
                         {{"type", "gp_map"}, {"label", "c"}}};
   folder.write("c.json", dump_json(config));
   testing::evbench(folder, "run c.json --quiet --out alone");  // whether or not so short a run has an estimate
@@ -247,16 +247,16 @@ TEST_CASE("Simulated events are made once for runs that share them, change nothi
   config["source"] = {{"type", "event_simulation"}, {"duration", 0.3}};
   config["frontend"] = {{"type", "haste"}};  // guided
   folder.write("c.json", dump_json(config));
-  const std::string sweep = "sweep c.json --quiet --vary backend.frame_duration=0.1,0.05 --vary frontend.tracks=40,60 ";
+  const std::string sweep = "sweep c.json --quiet --vary backend.batch_duration=0.1,0.05 --vary frontend.tracks=40,60 ";
   const std::vector<PlannedRun> runs =
-      plan(folder, "c.json", {"backend.frame_duration=0.1,0.05", "frontend.tracks=40,60"}).runs;
+      plan(folder, "c.json", {"backend.batch_duration=0.1,0.05", "frontend.tracks=40,60"}).runs;
   for (const PlannedRun& run : runs) CHECK((!run.events.empty() && run.events == runs[0].events));
   CHECK(plan(folder, "c.json", {"seed=1,2"}).runs.at(0).events.empty());
 
   for (const char* const tracks : {"40", "60"}) {
     for (const char* const duration : {"0.1", "0.05"}) {
       testing::evbench(folder, fmt::format("run c.json --quiet --out own --set frontend.tracks={} "
-                                           "--set backend.frame_duration={}",
+                                           "--set backend.batch_duration={}",
                                            tracks, duration));
     }
   }

@@ -16,7 +16,7 @@ inline Json tiny_config() {
   Json config = short_config();
   config["name"] = "tiny";
   config["source"]["duration"] = 1;
-  config["backend"]["frame_duration"] = 0.1;
+  config["backend"]["batch_duration"] = 0.1;
   return config;
 }
 

@@ -44,7 +44,7 @@ struct UpdateRecord {
   int observations = 0;  ///< in the problem
   int iterations = 0;
   std::optional<double> cost;  ///< ½ Σ ρ(‖whitened residual‖²) of the whole problem, where the update computed it
-  std::vector<double> learnt = {};  ///< values of what BackEnd::learnt() names; empty: nothing yet
+  std::vector<double> learnt = {};  ///< values of what BackEnd::estimated_parameters() names; empty: nothing yet
 };
 
 /// A back-end of visual odometry: track observations in, trajectory and map out.
@@ -95,8 +95,8 @@ class BackEnd {
 
   virtual std::span<const UpdateRecord> updates() const { return {}; }
 
-  /// Names of the parameters that it learns from the data (`noise_scale`, ...): columns of learnt.csv, by update.
-  virtual std::vector<std::string> learnt() const { return {}; }
+  /// Names of the parameters that it learns from the data (`noise_scale`, ...): columns of estimated_parameters.csv, by update.
+  virtual std::vector<std::string> estimated_parameters() const { return {}; }
 };
 
 }  // namespace evbench

@@ -63,7 +63,7 @@ struct Results {
         {{"seed", seed},
          {"source", {{"type", "simulation"}, {"motion", motion}}},
          {"frontend", {{"type", "oracle"}}},
-         {"backend", {{"type", label}, {"frame_duration", frame}}}});
+         {"backend", {{"type", label}, {"batch_duration", frame}}}});
   }
   std::vector<RunRecord> find() const { return find_runs(std::vector{folder.path()}); }
 };
