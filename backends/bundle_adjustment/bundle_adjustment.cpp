@@ -112,7 +112,7 @@ void BundleAdjustment::process(Frame frame) {
       {frame.t, elapsed.count(), report.poses, report.landmarks, report.observations, report.iterations, report.cost});
 }
 
-/// The newest view first: the others are better estimates of times of which poses were told before, or, of a first map,
+/// The newest view first: the others are better estimates of times of which poses were told before, or, of an initial map,
 /// of times for which it comes late.
 void BundleAdjustment::publish_newest(int view, int oldest, double known_at) const {
   const View& newest = map_.views[at(view)];

@@ -6,7 +6,7 @@
 #include "backends/gp_map/gp_map.hpp"
 #include "backends/gp_map/problem_graph.hpp"
 
-// What the back-end tells of its estimate: poses as they are made, and answers afterwards. While the first map is in
+// What the back-end tells of its estimate: poses as they are made, and answers afterwards. While the initial map is in
 // doubt, until another explanation has been looked for in vain on both planes and most tracks fit it, no causal pose
 // and no covariance is told.
 namespace evbench::gp_map {

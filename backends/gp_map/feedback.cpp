@@ -9,7 +9,7 @@
 #include "core/motion/wnoa.hpp"
 #include "core/support/index.hpp"
 
-// What the front-end is told: how things stand, and where landmarks are expected in the image. A first map that is in
+// What the front-end is told: how things stand, and where landmarks are expected in the image. An initial map that is in
 // doubt guides it, too: tracks go on either way.
 namespace evbench::gp_map {
 

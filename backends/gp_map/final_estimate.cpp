@@ -15,11 +15,11 @@ namespace evbench::gp_map {
 
 void GpMap::finish() {
   const bool had_map = world_.has_value();
-  const std::string reason = first_map_.reason();  // while there were data: the last state stands after their end
+  const std::string reason = initial_map_.reason();  // while there were data: the last state stands after their end
   if (const std::optional<double> last = placement_.last()) step(*last);
   if (!world_) {
-    monitor_.fail(std::min(first_map_.newest(), until_),
-                  "no first map: " + (had_map ? first_map_.reason() : reason));
+    monitor_.fail(std::min(initial_map_.newest(), until_),
+                  "no initial map: " + (had_map ? initial_map_.reason() : reason));
     return;
   }
   world_->trusted = true;  // nothing more will tell whether the map is right

@@ -28,7 +28,7 @@ GpMap::GpMap(const Options& options, const BackEndContext& context)
     : options_(options),
       context_(context),
       placement_(options.placement),
-      first_map_(options, context.camera),
+      initial_map_(options, context.camera),
       information_told_(RobustLoss(options.loss, options.loss_width).information_told()),
       monitor_(context.patience) {}
 
@@ -141,13 +141,13 @@ void GpMap::split(TrackId id) {
 }
 
 bool GpMap::initialise(double t) {
-  auto map = first_map_.attempt(waiting_, t);
+  auto map = initial_map_.attempt(waiting_, t);
   if (!map) return false;
   young_ = waiting_;
   world_.emplace(std::move(map->graph), options_);
   for (const TrackId track : map->tracks) become_landmark(track, static_cast<int>(world_->known.size()));
   context_.log(
-      fmt::format("{:.3f} s: first map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s",
+      fmt::format("{:.3f} s: initial map: {} landmarks, {} observations, median parallax {:.1f} deg, from {:.3f} s",
                   graph().states.back().t, graph().landmarks.size(), graph().observation_count(), map->parallax_deg,
                   graph().states.front().t));
   return true;
@@ -241,7 +241,7 @@ void GpMap::check_support() {
   }
 }
 
-/// They had their last chance to become landmarks in the step that saw their end; before the first map, in the one that
+/// They had their last chance to become landmarks in the step that saw their end; before the initial map, in the one that
 /// makes it, unless that is long after.
 void GpMap::forget_ended_tracks(double t) {
   if (!world_) waiting_.forget_ended_before(t - kMemory);

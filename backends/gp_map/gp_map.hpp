@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "backends/gp_map/first_map.hpp"
+#include "backends/gp_map/initial_map.hpp"
 #include "backends/gp_map/options.hpp"
 #include "backends/gp_map/recent_explanation.hpp"
 #include "backends/gp_map/state_placement.hpp"
@@ -24,7 +24,7 @@ namespace evbench::gp_map {
 /// Asynchronous continuous-time structure from motion by MAP inference under a Gaussian-process prior: Algorithm 1 of
 /// Liu et al., ICRA 2022. Every observation counts at its own time.
 ///
-/// World frame and scale: first_map.hpp. The WNOA prior alone would shrink the world to a point.
+/// World frame and scale: initial_map.hpp. The WNOA prior alone would shrink the world to a point.
 class GpMap : public BackEnd {
  public:
   using Options = gp_map::Options;
@@ -131,8 +131,8 @@ class GpMap : public BackEnd {
   Options options_;
   BackEndContext context_;
   StatePlacement placement_;
-  FirstMapFinder first_map_;
-  std::optional<World> world_;  ///< from the first map on, unless that is refuted
+  InitialMapFinder initial_map_;
+  std::optional<World> world_;  ///< from the initial map on, unless that is refuted
   std::map<TrackId, Track> tracks_;
   TrackBuffer waiting_;                    ///< observations of waiting tracks
   TrackBuffer young_;                      ///< of all tracks, while the map is young
@@ -140,7 +140,7 @@ class GpMap : public BackEnd {
   std::vector<TrackObservation> pending_;  ///< later than the newest state
   std::vector<TrackEnd> ending_;           ///< likewise
   const double information_told_;          ///< share of the estimate's information that the loss's weights tell
-  int times_refuted_ = 0;                  ///< of first maps
+  int times_refuted_ = 0;                  ///< of initial maps
   bool begun_anew_ = false;                ///< since the last feedback
   double seconds_since_step_ = 0.0;        ///< spent on single observations
   TrackingMonitor monitor_;

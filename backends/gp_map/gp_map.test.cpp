@@ -69,7 +69,7 @@ TEST_CASE("A prior that is too strong for violent motion yields to it", "[long]"
 }
 
 TEST_CASE("Tracks that show no parallax tell rotation, and a guess of their depth helps", "[long]") {
-  // After the first map the camera only turns: all that comes into view has no depth.
+  // After the initial map the camera only turns: all that comes into view has no depth.
   const char* scene = R"({"motion": {"rotation_only": [2.0, 3.5]}, "tracks": {"lifetime": [0.3, 0.8]}})";
   std::vector<double> patient, guessing;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
@@ -170,7 +170,7 @@ TEST_CASE("Slow motion starts as soon as the noise allows, and the trajectory be
   CHECK(result.scores.ate.trans_percent < 2.0);
 }
 
-TEST_CASE("Tracks that end before the first map lengthen the trajectory all the same", "[slow]") {
+TEST_CASE("Tracks that end before the initial map lengthen the trajectory all the same", "[slow]") {
   // The camera turns first: none of the tracks of its beginning is left when parallax shows.
   const TrackedScene scene(6.0, R"({"motion": {"amplitude": 0.3}, "tracks": {"lifetime": [0.3, 0.6]}})", 2);
   const auto result = run(scene);
@@ -183,17 +183,17 @@ TEST_CASE("A camera at rest gives no map and says so") {
                            R"({"motion": {"kind": "smooth_random", "amplitude": 1e-9, "rotation_amplitude": 1e-9}})");
   const auto result = run(scene);
   CHECK(result.backend->status().state == RunState::failed);
-  CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("no first map"));
+  CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("no initial map"));
   CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("the tracks have moved by"));
   CHECK(result.backend->trajectory().empty());
 }
 
-TEST_CASE("Observations of a time that is too short for a first map are told as such, not as none") {
+TEST_CASE("Observations of a time that is too short for an initial map are told as such, not as none") {
   for (const double duration : {0.05, 0.13, 0.18}) {
     INFO(duration);
     const auto result = run(TrackedScene(duration));
     CHECK(result.backend->status().state == RunState::failed);
-    CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("no first map: "));
+    CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("no initial map: "));
     CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring(duration < 0.1 ? "track" : "needed"));
     CHECK_THAT(result.backend->status().reason, !Catch::Matchers::ContainsSubstring("no observations"));
   }
@@ -204,7 +204,7 @@ TEST_CASE("Nothing, one track, and two observations are no reason to crash") {
   empty.advance({{}, {}, 1.0});
   empty.finish();
   CHECK(empty.status().state == RunState::failed);
-  CHECK(empty.status().reason == "no first map: no observations");
+  CHECK(empty.status().reason == "no initial map: no observations");
   CHECK_FALSE(empty.pose(0.5));
 
   GpMap one({}, {});

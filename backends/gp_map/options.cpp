@@ -73,7 +73,7 @@ void Options::declare(OptionSet& set) {
   set.group("placement", placement, "control states");
   set.add("qc", qc,
           "diagonal of the WNOA prior's power spectral density: rotation x y z [rad^2/s^3], translation x y z "
-          "[units^2/s^3]; a unit is the median depth of the first map")
+          "[units^2/s^3]; a unit is the median depth of the initial map")
       .size(6)
       .above(0.0);
   set.add("qc_scale", qc_scale, "multiplies qc: above 1 is a weaker prior").range(1e-12, 1e12);
@@ -83,10 +83,10 @@ void Options::declare(OptionSet& set) {
   set.add("sigma_scale", sigma_scale, "multiplies the observations' sigmas").range(1e-6, 1e6);
   set.group("learn", learn, "prior and noise");
   set.group("initialiser", initialiser, "two-view initialisation");
-  set.add("max_initial_error", max_initial_error, "a first map with a larger reprojection error is tried again [px]")
+  set.add("max_initial_error", max_initial_error, "an initial map with a larger reprojection error is tried again [px]")
       .above(0.0);
   set.add("max_initial_uncertainty", max_initial_uncertainty,
-          "standard deviation of a first map's distances that noise may leave, as a share: the parallax that is "
+          "standard deviation of an initial map's distances that noise may leave, as a share: the parallax that is "
           "needed follows from the noise")
       .above(0.0);
   set.group("map", map, "landmarks");

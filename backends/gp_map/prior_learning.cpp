@@ -120,7 +120,7 @@ void PriorLearner::follow(Engine& engine) {
 void PriorLearner::take_evidence(Engine& engine) {
   const FactorGraph& graph = engine.graph();
   const int newest = static_cast<int>(graph.states.size()) - 1;
-  int first = 1;  // all of the first map's
+  int first = 1;  // all of the initial map's
   if (!prior_->recent().empty()) {
     first = newest;
     const double from = graph.states.back().t - kLookedBack;

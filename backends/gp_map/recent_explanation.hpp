@@ -43,7 +43,7 @@ struct RecentExplanation {
 ///
 /// So the newest part of the problem, over a time in which most of what is in view has come into it and what was before
 /// has gone, is gone through once more on its own, what was known before being held, with new landmarks beginning on
-/// another plane; then both explanations are solved. Of a young map's problem, whose first map is what explained a few
+/// another plane; then both explanations are solved. Of a young map's problem, whose initial map is what explained a few
 /// tenths of a second best, all is gone through, held by the first pose, the scale and the landmarks' priors. That
 /// takes as long as many updates, so it is done in shares.
 ///

@@ -8,7 +8,7 @@
 #include "backends/gp_map/gp_map.hpp"
 
 // A map may be wrong: what is explained better otherwise goes on so, a camera that landmarks of before see elsewhere
-// goes on there, and a first map that most tracks do not fit makes way for another one, unless they fitted it once.
+// goes on there, and an initial map that most tracks do not fit makes way for another one, unless they fitted it once.
 namespace evbench::gp_map {
 namespace {
 
@@ -138,7 +138,7 @@ void GpMap::trust_what_fits() {
   if (world_->doubts == 0 && misfits() <= landmarks_in_view()) world_->trusted = true;
 }
 
-/// A first map can be wrong altogether. One that most tracks have fitted is not: what they do later has other reasons.
+/// An initial map can be wrong altogether. One that most tracks have fitted is not: what they do later has other reasons.
 /// Where most tracks follow nothing, none is better: that is found out soon.
 bool GpMap::is_refuted() const {
   constexpr int kMost = 2;   // times as many as are landmarks
@@ -153,12 +153,12 @@ bool GpMap::is_refuted() const {
 /// States that stood close together, as predictions from a wrong map are far off, would slow down its looks.
 void GpMap::begin_anew() {
   constexpr double kApart = 0.02;  // [s]
-  context_.log(fmt::format("{:.3f} s: the first map has no place for most tracks: another one is looked for",
+  context_.log(fmt::format("{:.3f} s: the initial map has no place for most tracks: another one is looked for",
                            graph().states.back().t));
   for (const ControlState& state : graph().states) {
-    if (state.t >= first_map_.newest() + kApart) first_map_.pass(state.t);
+    if (state.t >= initial_map_.newest() + kApart) initial_map_.pass(state.t);
   }
-  first_map_.begin_anew();
+  initial_map_.begin_anew();
   ++times_refuted_;
   begun_anew_ = true;
   world_.reset();

@@ -1,4 +1,4 @@
-// The scale that a first map gives is held as long as the map lasts.
+// The scale that an initial map gives is held as long as the map lasts.
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +79,7 @@ TEST_CASE("Landmarks that are near, whose distances are known best, hold the sca
 }
 
 TEST_CASE("When most landmarks that hold the scale turn out to be outliers, others hold it too", "[slow]") {
-  // Only 25 tracks make the first map; 40 others come at 0.6 s; from 0.9 s on the first ones jump away in turn.
+  // Only 25 tracks make the initial map; 40 others come at 0.6 s; from 0.9 s on the first ones jump away in turn.
   const TrackedScene scene(6.0,
                            R"({"motion": {"max_frequency": 0.3}, "tracks": {"lifetime": [7.0, 8.0], "alive": 65}})");
   constexpr TrackId kFirst = 25;

@@ -21,14 +21,14 @@
 namespace evbench::gp_map {
 
 /// All that is known by one map: the problem with its present estimate, which tracks its landmarks are, and what has
-/// been learnt with it. It begins with a first map, and goes with that should it be refuted.
+/// been learnt with it. It begins with an initial map, and goes with that should it be refuted.
 struct World {
   static constexpr double kYoung = 5.0;      ///< [s] in which all may be explained otherwise, and no track is judged
   static constexpr double kFirstLook = 0.7;  ///< [s] of data that the first look for another explanation takes
   static constexpr double kHindsight = 1.0;  ///< [s] that learning with hindsight reaches back while running
   static constexpr int kPlanes = 2;          ///< on which another explanation is looked for, in turn
 
-  /// `first`: the problem of a first map.
+  /// `first`: the problem of an initial map.
   World(FactorGraph first, const Options& options)
       : engine(std::move(first), EngineOptions{.lag = options.lag}),
         returns(options.map.returns),

@@ -101,7 +101,7 @@ FactorGraph final_graph(const Job& job, const Camera& camera, const std::vector<
   }
   backend->finish();
   if (backend->trajectory().empty()) {
-    throw InputError(fmt::format("{}: gp_map finds no first map in these tracks, seed {}: {}", job.backend.place,
+    throw InputError(fmt::format("{}: gp_map finds no initial map in these tracks, seed {}: {}", job.backend.place,
                                  job.seed, backend->status().reason));
   }
   return gp_map->graph();

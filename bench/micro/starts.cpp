@@ -1,13 +1,13 @@
 // How gp_map starts: 20 simulated beginnings of each of ten kinds, 240 x 180 pixels, f = 200, one track in ten an
 // outlier.
 //
-//   first_map_starts [--first SEED] [--seeds N] [KIND...]
+//   initial_map_starts [--first SEED] [--seeds N] [KIND...]
 //
 // One row a kind. "right" is a share of all starts: the estimated motion goes the true way, to within 30 degrees, and
-// half of the landmarks' depths are, up to scale, within 30 %; at the first map, when the first pose is told, 2.5 s
-// after the first map, and in the final estimate of what has been seen by then. "first map" and "first pose" are times
+// half of the landmarks' depths are, up to scale, within 30 %; at the initial map, when the first pose is told, 2.5 s
+// after the initial map, and in the final estimate of what has been seen by then. "initial map" and "first pose" are times
 // from the first observation, median and 90 % quantile; "reaches back" is how much of the time to the map the
-// trajectory covers. "attempt" is what a step costs before there is a first map, "first" the step that finds it, with
+// trajectory covers. "attempt" is what a step costs before there is an initial map, "first" the step that finds it, with
 // the engine's first update; wall time.
 
 #include <fmt/format.h>
@@ -134,7 +134,7 @@ bool is_right(const gp_map::GpMap& backend, const Beginning& beginning) {
 
 struct Start {
   bool right = false, right_told = false, right_later = false, right_final = false;
-  double seconds = kDuration;    ///< until the first map
+  double seconds = kDuration;    ///< until the initial map
   double told = kDuration;       ///< [s] until the first pose is told
   double reach = 0.0;            ///< share of that time that the trajectory covers
   std::vector<double> attempts;  ///< [ms]
@@ -217,7 +217,7 @@ bool take_number(std::vector<std::string_view>& arguments, std::string_view name
 }
 
 int usage() {
-  fmt::print(stderr, "usage: first_map_starts [--first SEED] [--seeds N] [KIND...]; kinds:\n");
+  fmt::print(stderr, "usage: initial_map_starts [--first SEED] [--seeds N] [KIND...]; kinds:\n");
   for (const Kind& kind : all_kinds()) fmt::print(stderr, "  \"{}\"\n", kind.name);
   return 2;
 }
@@ -233,7 +233,7 @@ int main(int argc, char** argv) {
     if (std::ranges::find(kinds, name, &Kind::name) == kinds.end()) return usage();
   }
   fmt::print(
-      "| kind | right [%] | told [%] | later [%] | final [%] | first map [s] | 90 % [s] | first pose [s] | 90 % [s] | "
+      "| kind | right [%] | told [%] | later [%] | final [%] | initial map [s] | 90 % [s] | first pose [s] | 90 % [s] | "
       "reaches back [%] | attempt, median [ms] | max | first, median [ms] | max |\n"
       "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   std::vector<Start> all;

@@ -43,7 +43,7 @@ void in_time_order(std::span<const TrackObservation> observations, std::span<con
 
 /// Where the estimate stands at an exchange. Worse is larger.
 enum class TrackingState {
-  no_map,          ///< not enough has been seen for a first map; or one was wrong, of which no causal pose was told
+  no_map,          ///< not enough has been seen for an initial map; or one was wrong, of which no causal pose was told
   tracking,        ///< observations determine the motion
   stationary,  ///< tracks are alive and nothing moves: an event camera at rest sees nothing
   degraded,        ///< too little is seen: a motion model carries the estimate

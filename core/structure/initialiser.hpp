@@ -18,7 +18,7 @@ struct InitialiserOptions {
   void declare(OptionSet& set);
 };
 
-/// A first map and motion, up to scale.
+/// An initial map and motion, up to scale.
 struct InitialGuess {
   double t0 = 0.0, t1 = 0.0;        ///< [s]
   SE3 T1;                           ///< T_world_camera at t1; the world is the camera at t0

@@ -67,7 +67,7 @@ def refine(rounds):  # points and poses in turn
         for k in list(points): locate(k)
         poses[:] = [resect(frame, pose) or pose for frame, pose in zip(frames, poses)]
 
-def start():  # a first map from the oldest frame and the newest, once their images are far enough apart
+def start():  # an initial map from the oldest frame and the newest, once their images are far enough apart
     both = sorted(frames[0].keys() & frames[-1].keys())
     if len(both) < 15: del frames[:-1], times[:-1]
     a, b = (np.array([frame[k] for k in both]).reshape(-1, 2) for frame in (frames[0], frames[-1]))

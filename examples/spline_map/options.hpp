@@ -49,7 +49,7 @@ struct Options {
             "smaller is smoother [rad^2/s^3]")
         .above(0.0);
     set.add("translation_density", translation_density,
-            "the same of linear accelerations; a unit is the median depth of the first map [units^2/s^3]")
+            "the same of linear accelerations; a unit is the median depth of the initial map [units^2/s^3]")
         .above(0.0);
     set.add("density_weight", density_weight,
             "the densities are learnt from the estimated motion; those expected count like this many knots")
@@ -66,10 +66,10 @@ struct Options {
     set.add("loss_width", loss_width, "reprojection error where the loss turns from quadratic [sigmas]").above(0.0);
     set.add("outlier_px", outlier_px, "tracks with a larger mean reprojection error are removed [px]").above(0.0);
     set.group("initialiser", initialiser, "two-view initialisation");
-    set.add("max_initial_error", max_initial_error, "a first map with a larger median error is not taken [px]")
+    set.add("max_initial_error", max_initial_error, "an initial map with a larger median error is not taken [px]")
         .above(0.0);
     set.add("ambiguity_ratio", ambiguity_ratio,
-            "when the second-best first map costs less than this times the best one's, wait for more data")
+            "when the second-best initial map costs less than this times the best one's, wait for more data")
         .range(1.0);
     set.group("triangulation", triangulation, "when a track becomes a landmark");
     set.add("min_observations", min_observations, "observations that a track needs to become a landmark").range(2);

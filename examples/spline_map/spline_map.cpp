@@ -31,7 +31,7 @@ constexpr double kSmallestStep = 1e-6;   // [s]
 }  // namespace
 
 SplineMap::SplineMap(const Options& options, const evbench::BackEndContext& context)
-    : options_(options), context_(context), first_map_(options, context_.camera), monitor_(context.patience) {
+    : options_(options), context_(context), initial_map_(options, context_.camera), monitor_(context.patience) {
   FLAGS_minloglevel = google::GLOG_ERROR;  // what Ceres warns of is in its summaries, and no news for a console
 }
 
@@ -87,7 +87,7 @@ void SplineMap::take_observations(double t) {
 }
 
 void SplineMap::initialise(double t) {
-  std::optional<FirstMap> first = first_map_.attempt(tracks_, t);
+  std::optional<InitialMap> first = initial_map_.attempt(tracks_, t);
   if (!first) return;
   mapped_ = true;
   spline_ = std::move(first->spline);
@@ -98,7 +98,7 @@ void SplineMap::initialise(double t) {
     landmark.observations = observations_of(track);
     tracks_.forget(track);
   }
-  context_.log(fmt::format("{:.3f} s: first map: {} landmarks, median parallax {:.1f} deg, from {:.3f} s", t,
+  context_.log(fmt::format("{:.3f} s: initial map: {} landmarks, median parallax {:.1f} deg, from {:.3f} s", t,
                            landmarks_.size(), first->parallax_deg, spline_.start()));
   spline_.extend_to(t);
   remove_outliers(spline_.start());
@@ -202,7 +202,7 @@ void SplineMap::finish() {
   const bool more = !pending_.empty() && pending_.back().t > newest_;
   if (more && !monitor_.lost()) update(pending_.back().t);
   if (!mapped_) {
-    monitor_.fail(until_, "no first map: " + first_map_.reason());
+    monitor_.fail(until_, "no initial map: " + initial_map_.reason());
     return;
   }
   if (options_.final_iterations > 0) solve_everything();

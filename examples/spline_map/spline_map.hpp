@@ -9,7 +9,7 @@
 #include "core/plugin/backend.hpp"
 #include "core/plugin/tracking_monitor.hpp"
 #include "core/structure/track_buffer.hpp"
-#include "first_map.hpp"
+#include "initial_map.hpp"
 #include "options.hpp"
 
 namespace spline_map {
@@ -19,7 +19,7 @@ namespace spline_map {
 ///
 /// While running, an estimate is made every update period: the spline is extended at constant velocity, the knots of
 /// the newest seconds and the landmarks that they see are optimised, older knots are held; then tracks become landmarks
-/// or are removed. finish() optimises everything. World frame and unit of length: first_map.hpp.
+/// or are removed. finish() optimises everything. World frame and unit of length: initial_map.hpp.
 class SplineMap : public evbench::BackEnd {
  public:
   using Options = spline_map::Options;
@@ -55,7 +55,7 @@ class SplineMap : public evbench::BackEnd {
 
   Options options_;
   evbench::BackEndContext context_;
-  FirstMapFinder first_map_;
+  InitialMapFinder initial_map_;
   evbench::TrackingMonitor monitor_;
 
   std::deque<evbench::TrackObservation> pending_;  ///< later than the newest estimate

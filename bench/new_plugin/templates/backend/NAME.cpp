@@ -1,5 +1,5 @@
 // The back-end NAME for evbench, all of it: a small one to start from. Every `period` it makes a pose out of the
-// landmarks in sight, then new landmarks out of the poses; the first map is evbench's Initialiser's.
+// landmarks in sight, then new landmarks out of the poses; the initial map is evbench's Initialiser's.
 #include <algorithm>
 #include <chrono>
 #include <deque>
@@ -37,11 +37,11 @@ class ClassName : public evbench::BackEnd {
       set.add("huber_px", huber_px, "error from which on an observation counts less [px]").above(0.0);
       set.add("outlier_px", outlier_px, "error from which on a track is dropped [px]").above(0.0);
       set.add("clear_parallax_deg", clear_parallax_deg,
-              "parallax with which the better of two first maps is taken [deg]")
+              "parallax with which the better of two initial maps is taken [deg]")
           .range(0.0);
       set.add("views", views, "views that landmarks are triangulated from").range(2);
       set.add("min_landmarks", min_landmarks, "landmarks in sight that a pose needs").range(4);
-      set.group("initialiser", initialiser, "the first map");
+      set.group("initialiser", initialiser, "the initial map");
     }
   };
 
@@ -119,7 +119,7 @@ class ClassName : public evbench::BackEnd {
     for (const TrackId track : tracks_.alive(t, 0.5 * options_.window)) {
       if (const auto pixel = tracks_.position(track, t, options_.window)) view.pixels[track] = *pixel;
     }
-    const bool known = trajectory_.empty() ? find_first_map(std::move(view)) : follow(std::move(view));
+    const bool known = trajectory_.empty() ? find_initial_map(std::move(view)) : follow(std::move(view));
     if (known) {
       trajectory_.push_back({t, views_.back().T});
       context_.publish({trajectory_.back(), t, velocity_});
@@ -201,7 +201,7 @@ class ClassName : public evbench::BackEnd {
     return trial;
   }
 
-  bool find_first_map(View view) {
+  bool find_initial_map(View view) {
     const double t = view.t;
     views_.push_back(std::move(view));
     const Initialiser::Attempt attempt = initialiser_.attempt(tracks_, t);
@@ -231,7 +231,7 @@ class ClassName : public evbench::BackEnd {
     trajectory_.pop_back();  // the newest one follows in step()
     monitor_.observe(t, t, TrackingMonitor::Support::full);
     update_map();
-    context_.log("first map at " + std::to_string(t) + " s, landmarks: " + std::to_string(points_.size()));
+    context_.log("initial map at " + std::to_string(t) + " s, landmarks: " + std::to_string(points_.size()));
     return true;
   }
 

@@ -1,4 +1,4 @@
-#include "backends/gp_map/first_map.hpp"
+#include "backends/gp_map/initial_map.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "backends/gp_map/first_trajectory.hpp"
+#include "backends/gp_map/initial_trajectory.hpp"
 #include "backends/gp_map/problem_graph.hpp"
 #include "core/support/median.hpp"
 
@@ -17,12 +17,12 @@ constexpr int kViews = 6;
 constexpr std::size_t kTracks = 60;  ///< in the views, at most
 constexpr int kFirstIterations = 3;  ///< after which explanations that cost far more than the best one are given up
 constexpr double kFarMore = 1.5;
-constexpr double kFirstMapLossWidth = 3.0;  ///< of the loss, in median errors
-constexpr int kFirstMapIterations = 10;
+constexpr double kInitialMapLossWidth = 3.0;  ///< of the loss, in median errors
+constexpr int kInitialMapIterations = 10;
 constexpr double kMotionGrowth = 1.15;  ///< a new attempt has to see this many times the motion of the last one ...
 constexpr double kTimeGrowth = 1.5;     ///< ... or time
 constexpr double kFarOff = 2.0;         ///< times the allowed error: an outlier
-constexpr double kFarthest = 10.0;      ///< [units] where landmarks of the first map may be
+constexpr double kFarthest = 10.0;      ///< [units] where landmarks of the initial map may be
 constexpr double kNext = 0.15;          ///< [s] from a state of a stand: what is seen there counts
 constexpr double kAnchorSigma = 1e-4;   ///< [rad, units] of the gauge: far below what data tell, well conditioned
 
@@ -46,10 +46,10 @@ std::vector<double> view_times(double from, double to, double apart) {
 
 }  // namespace
 
-FirstMapFinder::FirstMapFinder(const Options& options, const PinholeCamera& camera)
+InitialMapFinder::InitialMapFinder(const Options& options, const PinholeCamera& camera)
     : options_(options), camera_(camera), initialiser_(options.initialiser, camera) {}
 
-std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, double t) {
+std::optional<InitialMap> InitialMapFinder::attempt(const TrackBuffer& tracks, double t) {
   const auto look = look_at(tracks, t);
   if (!look) return std::nullopt;
   const auto found = explanation(*look);
@@ -61,20 +61,20 @@ std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, doubl
   return map_of(tracks, *look, *found);
 }
 
-void FirstMapFinder::begin_anew() {
+void InitialMapFinder::begin_anew() {
   initialiser_ = Initialiser(options_.initialiser, camera_);
   last_.reset();
   refused_.clear();
   waiting_ = "the last one had no place for most tracks";
 }
 
-std::string FirstMapFinder::reason() const {
+std::string InitialMapFinder::reason() const {
   if (refused_.empty() || waiting_.empty()) return refused_ + waiting_;
   return fmt::format("{}; the last attempt, from {:.3f} to {:.3f} s: {}", waiting_, last_->t0, last_->t1, refused_);
 }
 
 /// None where there is nothing new to see.
-std::optional<FirstMapFinder::Look> FirstMapFinder::look_at(const TrackBuffer& tracks, double t) {
+std::optional<InitialMapFinder::Look> InitialMapFinder::look_at(const TrackBuffer& tracks, double t) {
   state_times_.push_back(t);
   const TrackMatches matches = initialiser_.match(tracks, t);
   waiting_ = matches.reason;
@@ -94,7 +94,7 @@ std::optional<FirstMapFinder::Look> FirstMapFinder::look_at(const TrackBuffer& t
 }
 
 /// Have the tracks moved, and farther or for longer than at the last attempt from this first view?
-bool FirstMapFinder::worthwhile(const TrackMatches& matches) {
+bool InitialMapFinder::worthwhile(const TrackMatches& matches) {
   const double motion = matches.median_motion();
   const double enough = 2.0 * options_.initialiser.two_view.threshold_px;
   if (motion < enough) {
@@ -107,7 +107,7 @@ bool FirstMapFinder::worthwhile(const TrackMatches& matches) {
 }
 
 /// The best one. The loss gets as wide as the noise of what is best at first asks for.
-std::optional<ViewsExplained> FirstMapFinder::explanation(const Look& look) const {
+std::optional<ViewsExplained> InitialMapFinder::explanation(const Look& look) const {
   const double wide = 2.0 * options_.initialiser.two_view.threshold_px;
   std::vector<ViewsExplained> trials;
   for (const InitialGuess& guess : look.guesses) {
@@ -118,21 +118,21 @@ std::optional<ViewsExplained> FirstMapFinder::explanation(const Look& look) cons
   }
   if (trials.empty()) return std::nullopt;
   std::ranges::sort(trials, {}, &ViewsExplained::cost);
-  const double width = kFirstMapLossWidth * median(look.views.errors(trials.front())),
+  const double width = kInitialMapLossWidth * median(look.views.errors(trials.front())),
                enough = kFarMore * trials.front().cost;
   std::erase_if(trials, [&](const ViewsExplained& trial) { return trial.cost > enough; });
-  for (ViewsExplained& trial : trials) look.views.refine(trial, width, kFirstMapIterations);
+  for (ViewsExplained& trial : trials) look.views.refine(trial, width, kInitialMapIterations);
   return *std::ranges::min_element(trials, {}, &ViewsExplained::cost);
 }
 
 /// Do the errors that are left, and the uncertainty of the structure, allow a map? In slow motion views share
 /// observations, and errors hang together for as long as it takes to show parallax: less is allowed then.
-bool FirstMapFinder::is_sound(const Look& look, const ViewsExplained& explained) {
+bool InitialMapFinder::is_sound(const Look& look, const ViewsExplained& explained) {
   constexpr double kSlow = 0.5;
   const double error = median(look.views.errors(explained)), sigma = median(look.views.distance_sigmas(explained));
   const double allowed = (look.window.or_nearest ? kSlow : 1.0) * options_.max_initial_uncertainty;
   if (!(error <= options_.max_initial_error)) {
-    refused_ = fmt::format("the best first map leaves {:.2f} px, {:.2g} allowed", error, options_.max_initial_error);
+    refused_ = fmt::format("the best initial map leaves {:.2f} px, {:.2g} allowed", error, options_.max_initial_error);
   } else if (!(sigma <= allowed)) {
     refused_ = fmt::format("the structure is uncertain by {:.0f} %, {:.0f} % allowed", 100.0 * sigma, 100.0 * allowed);
   } else {
@@ -141,9 +141,9 @@ bool FirstMapFinder::is_sound(const Look& look, const ViewsExplained& explained)
   return false;
 }
 
-FirstMap FirstMapFinder::map_of(const TrackBuffer& tracks, const Look& look, const ViewsExplained& explained) const {
+InitialMap InitialMapFinder::map_of(const TrackBuffer& tracks, const Look& look, const ViewsExplained& explained) const {
   const MultiView& views = look.views;
-  FirstTrajectory path(tracks, camera_, options_, look.window);
+  InitialTrajectory path(tracks, camera_, options_, look.window);
   const std::vector<double> errors = views.errors(explained), sigmas = views.distance_sigmas(explained);
   const double certain = median(sigmas);
   std::set<TrackId> anchored;
@@ -154,7 +154,7 @@ FirstMap FirstMapFinder::map_of(const TrackBuffer& tracks, const Look& look, con
   }
   path.go_along(explained.poses, views.views().times, state_times_);
 
-  FirstMap map;
+  InitialMap map;
   FactorGraph& graph = map.graph;
   graph.camera = camera_;
   graph.qc = options_.qc_scale * Eigen::Map<const Vector6>(options_.qc.data());

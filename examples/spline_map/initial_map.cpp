@@ -1,4 +1,4 @@
-#include "first_map.hpp"
+#include "initial_map.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ namespace {
 using evbench::InitialGuess;
 using evbench::TrackBuffer;
 
-/// With this many times the parallax that is needed, the cheaper of two first maps is taken, however little cheaper.
+/// With this many times the parallax that is needed, the cheaper of two initial maps is taken, however little cheaper.
 constexpr double kDecisiveParallax = 2.0;
 constexpr int kRefineIterations = 30;
 
@@ -40,7 +40,7 @@ std::vector<evbench::TrackObservation> sample(std::span<const evbench::TrackObse
   return result;
 }
 
-double parallax_deg(const FirstMap& map, double t1) {
+double parallax_deg(const InitialMap& map, double t1) {
   const Vector3 first = map.spline.pose(map.spline.start()).p, last = map.spline.pose(t1).p;
   std::vector<double> angles;
   for (const auto& [id, landmark] : map.landmarks) {
@@ -52,23 +52,23 @@ double parallax_deg(const FirstMap& map, double t1) {
 
 }  // namespace
 
-std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, double t) {
+std::optional<InitialMap> InitialMapFinder::attempt(const TrackBuffer& tracks, double t) {
   const evbench::Initialiser::Attempt attempt = initialiser_.attempt(tracks, t);
   reason_ = attempt.reason;
-  std::vector<FirstMap> refined;
+  std::vector<InitialMap> refined;
   for (const InitialGuess& guess : attempt.candidates) {
-    std::optional<FirstMap> map = refine(tracks, guess);
+    std::optional<InitialMap> map = refine(tracks, guess);
     if (!map) continue;
-    const auto same = [&](const FirstMap& other) {  // two guesses that end in one solution are no ambiguity
+    const auto same = [&](const InitialMap& other) {  // two guesses that end in one solution are no ambiguity
       return evbench::same_motion(other.spline.pose(t), map->spline.pose(t));
     };
     if (std::ranges::none_of(refined, same)) refined.push_back(std::move(*map));
   }
   if (refined.empty()) {
-    if (!attempt.candidates.empty()) reason_ = "the first map does not explain the observations";
+    if (!attempt.candidates.empty()) reason_ = "the initial map does not explain the observations";
     return std::nullopt;
   }
-  std::ranges::sort(refined, {}, &FirstMap::cost);
+  std::ranges::sort(refined, {}, &InitialMap::cost);
   // What two views showed may have been noise; the refined map has seen every observation.
   const double needed = options_.initialiser.two_view.min_parallax_deg;
   if (refined[0].parallax_deg < needed) {
@@ -77,15 +77,15 @@ std::optional<FirstMap> FirstMapFinder::attempt(const TrackBuffer& tracks, doubl
   }
   if (refined.size() > 1 && refined[1].cost < options_.ambiguity_ratio * refined[0].cost &&
       refined[0].parallax_deg < kDecisiveParallax * needed) {
-    reason_ = "two first maps explain the observations equally well";
+    reason_ = "two initial maps explain the observations equally well";
     return std::nullopt;
   }
   return std::move(refined[0]);
 }
 
 /// None when the solved guess doesn't explain the data.
-std::optional<FirstMap> FirstMapFinder::refine(const TrackBuffer& tracks, const InitialGuess& guess) const {
-  FirstMap map;
+std::optional<InitialMap> InitialMapFinder::refine(const TrackBuffer& tracks, const InitialGuess& guess) const {
+  InitialMap map;
   map.spline = straight_motion(guess, start_time(tracks, guess), options_.knot_spacing);
   const SE3 world = map.spline.pose(map.spline.start()).inverse();
   for (Knot& knot : map.spline.knots()) knot = Knot(world * SE3{knot.rotation(), knot.position()});
@@ -110,7 +110,7 @@ std::optional<FirstMap> FirstMapFinder::refine(const TrackBuffer& tracks, const 
 
 /// The time from which on the guess's landmarks suffice, at most as long before its first view as the second one is
 /// after it.
-double FirstMapFinder::start_time(const TrackBuffer& tracks, const InitialGuess& guess) const {
+double InitialMapFinder::start_time(const TrackBuffer& tracks, const InitialGuess& guess) const {
   std::vector<double> seen_from;
   for (const evbench::Landmark& landmark : guess.landmarks) {
     const auto observations = tracks.observations(landmark.track);

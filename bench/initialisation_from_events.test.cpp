@@ -9,7 +9,7 @@
 using namespace evbench;
 using namespace evbench::testing;
 
-TEST_CASE("A first map from a camera that hardly goes on is wrong at first, and right in the end", "[long]") {
+TEST_CASE("An initial map from a camera that hardly goes on is wrong at first, and right in the end", "[long]") {
   const auto motion = data_file("dynamic_6dof/motion.txt");
   if (!motion) return;
   struct Start {
@@ -26,7 +26,7 @@ TEST_CASE("A first map from a camera that hardly goes on is wrong at first, and 
                                   {"boxes", 53, {{"per_observation", true}}},
                                   {"plane", 52, {{"lag", 1}}},
                                   {"boxes", 53, {{"lag", 1}}}};
-  std::set<std::string> redone;  // options with which a first map made way
+  std::set<std::string> redone;  // options with which an initial map made way
   for (const auto& [scene, seed, options] : starts) {
     CAPTURE(scene, seed, dump_json(options));
     Json config{{"name", "start"},

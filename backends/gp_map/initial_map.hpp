@@ -12,13 +12,13 @@
 namespace evbench::gp_map {
 
 /// The problem that the back-end starts from, with every observation of its landmarks; its estimates are good guesses.
-struct FirstMap {
+struct InitialMap {
   FactorGraph graph;            ///< its last state stands at the newest state time
   std::vector<TrackId> tracks;  ///< of its landmarks
   double parallax_deg = 0.0;    ///< median over the landmarks, between the first and the last state
 };
 
-/// Finds the first map: guesses from two views (core/structure/initialiser), each refined over some views more
+/// Finds the initial map: guesses from two views (core/structure/initialiser), each refined over some views more
 /// (core/structure/multi_view). The best one is taken when the noise that is left allows its structure, even where
 /// another one is nearly as good: what is seen later tells (recent_explanation.hpp). Attempts are rare, as the tracks
 /// must have moved farther, and look at few places of a track. From the first view's landmarks the trajectory reaches
@@ -27,12 +27,12 @@ struct FirstMap {
 /// World frame: the camera at the first view. Unit of length: the landmarks' median distance from there. Gauge and
 /// scale are anchored by a tight prior on the first pose and the mean nearness to it of those landmarks, half of them,
 /// whose distance is known best.
-class FirstMapFinder {
+class InitialMapFinder {
  public:
-  FirstMapFinder(const Options& options, const PinholeCamera& camera);
+  InitialMapFinder(const Options& options, const PinholeCamera& camera);
 
   /// A control state stands at t, later than those before; `tracks` hold the observations up to there.
-  std::optional<FirstMap> attempt(const TrackBuffer& tracks, double t);
+  std::optional<InitialMap> attempt(const TrackBuffer& tracks, double t);
 
   /// A control state stands at t, likewise, where no map is looked for.
   void pass(double t) { state_times_.push_back(t); }
@@ -43,7 +43,7 @@ class FirstMapFinder {
   /// Why there is none: what it would have taken to make another attempt, and why the last one was vain.
   std::string reason() const;
 
-  /// Of the last state before the first map; 0 before any.
+  /// Of the last state before the initial map; 0 before any.
   double newest() const { return state_times_.empty() ? 0.0 : state_times_.back(); }
 
  private:
@@ -64,7 +64,7 @@ class FirstMapFinder {
   bool worthwhile(const TrackMatches& matches);
   std::optional<ViewsExplained> explanation(const Look& look) const;
   bool is_sound(const Look& look, const ViewsExplained& explained);
-  FirstMap map_of(const TrackBuffer& tracks, const Look& look, const ViewsExplained& explained) const;
+  InitialMap map_of(const TrackBuffer& tracks, const Look& look, const ViewsExplained& explained) const;
 
   Options options_;
   PinholeCamera camera_;

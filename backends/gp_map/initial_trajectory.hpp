@@ -11,11 +11,11 @@
 
 namespace evbench::gp_map {
 
-/// The control states of a first map, each by resection: along the views that it was found from, then back in time as
+/// The control states of an initial map, each by resection: along the views that it was found from, then back in time as
 /// far as tracks that are landmarks, or that can be triangulated on the way, reach.
-class FirstTrajectory {
+class InitialTrajectory {
  public:
-  FirstTrajectory(const TrackBuffer& tracks, const PinholeCamera& camera, const Options& options,
+  InitialTrajectory(const TrackBuffer& tracks, const PinholeCamera& camera, const Options& options,
                   const PlaceWindow& window)
       : tracks_(tracks), camera_(camera), options_(options), window_(window) {}
 

@@ -9,7 +9,7 @@
 namespace spline_map {
 
 /// What the back-end starts from: a spline and landmarks, solved over every observation of these landmarks.
-struct FirstMap {
+struct InitialMap {
   Spline spline;
   Landmarks landmarks;
   Gauge gauge;
@@ -17,23 +17,23 @@ struct FirstMap {
   double parallax_deg = 0.0;  ///< median over the landmarks, between the spline's start and the newest observations
 };
 
-/// Finds the first map: guesses from two views (core/structure/initialiser), each refined as a spline over all
+/// Finds the initial map: guesses from two views (core/structure/initialiser), each refined as a spline over all
 /// observations, the cheapest of them when the data decide between them.
 ///
 /// World frame: the camera at the spline's start. Unit of length: the median depth that the guess has.
-class FirstMapFinder {
+class InitialMapFinder {
  public:
-  FirstMapFinder(const Options& options, const evbench::PinholeCamera& camera)
+  InitialMapFinder(const Options& options, const evbench::PinholeCamera& camera)
       : options_(options), camera_(camera), initialiser_(options.initialiser, camera) {}
 
   /// `tracks` hold the observations up to t, later than at the attempts before.
-  std::optional<FirstMap> attempt(const evbench::TrackBuffer& tracks, double t);
+  std::optional<InitialMap> attempt(const evbench::TrackBuffer& tracks, double t);
 
   /// Why the last attempt was vain.
   const std::string& reason() const { return reason_; }
 
  private:
-  std::optional<FirstMap> refine(const evbench::TrackBuffer& tracks, const evbench::InitialGuess& guess) const;
+  std::optional<InitialMap> refine(const evbench::TrackBuffer& tracks, const evbench::InitialGuess& guess) const;
   double start_time(const evbench::TrackBuffer& tracks, const evbench::InitialGuess& guess) const;
 
   Options options_;

@@ -1,4 +1,4 @@
-#include "backends/gp_map/first_trajectory.hpp"
+#include "backends/gp_map/initial_trajectory.hpp"
 
 #include <algorithm>
 
@@ -25,7 +25,7 @@ SE3 pose_between(std::span<const SE3> views, std::span<const double> times, doub
 
 }  // namespace
 
-void FirstTrajectory::go_along(std::span<const SE3> views, std::span<const double> view_times,
+void InitialTrajectory::go_along(std::span<const SE3> views, std::span<const double> view_times,
                                std::span<const double> state_times) {
   first_view_ = view_times.front();
   begins_with_stand_ = is_still(first_view_ - kStand);
@@ -44,7 +44,7 @@ void FirstTrajectory::go_along(std::span<const SE3> views, std::span<const doubl
 
 /// No state stands there where too little is seen, or where the camera stands still and the next state is near. False
 /// where what is seen can't be explained.
-bool FirstTrajectory::go_back_to(double t) {
+bool InitialTrajectory::go_back_to(double t) {
   if (begins_with_stand_ && states_.back().t - t < kStill && is_still(t)) {
     passed_over_.push_back(t);
     return true;
@@ -63,14 +63,14 @@ bool FirstTrajectory::go_back_to(double t) {
 }
 
 /// Is all still where it is in the first view?
-bool FirstTrajectory::is_still(double t) const {
+bool InitialTrajectory::is_still(double t) const {
   const TrackMatches since = matches_between(tracks_, first_view_, t, window_);
   if (std::ssize(since.tracks) < options_.health.min_landmarks) return false;
   return since.median_motion() < options_.initialiser.two_view.threshold_px;
 }
 
 /// The landmarks of tracks that are alive at t, from where the states so far saw them.
-void FirstTrajectory::triangulate_at(double t) {
+void InitialTrajectory::triangulate_at(double t) {
   for (const TrackId track : tracks_.alive(t, 0.5 * window_.length)) {
     if (landmarks_.contains(track)) continue;
     std::vector<SE3> poses;
@@ -86,7 +86,7 @@ void FirstTrajectory::triangulate_at(double t) {
   }
 }
 
-FirstTrajectory::Sightings FirstTrajectory::sightings(double t) const {
+InitialTrajectory::Sightings InitialTrajectory::sightings(double t) const {
   Sightings result;
   for (const auto& [track, point] : landmarks_) {
     const auto place = tracks_.position(track, t, window_);
@@ -98,7 +98,7 @@ FirstTrajectory::Sightings FirstTrajectory::sightings(double t) const {
 }
 
 /// From the states before and after.
-void FirstTrajectory::take_velocities() {
+void InitialTrajectory::take_velocities() {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const ControlState& a = states_[i > 0 ? i - 1 : i];
     const ControlState& b = states_[i + 1 < states_.size() ? i + 1 : i];
