@@ -18,6 +18,7 @@
 #include "core/support/interruption.hpp"
 #include "core/support/json.hpp"
 #include "core/support/json_reason.hpp"
+#include "eval/old_names.hpp"
 
 namespace evbench {
 namespace {
@@ -141,6 +142,7 @@ auto naming_overrides(const std::string& path, const std::vector<std::string>& o
 Json parse_config(const std::string& path, const std::vector<std::string>& overrides, const Json& schema) {
   Json json = read_json(path);
   for (const std::string& assignment : overrides) set_value(json, assignment, schema);
+  rename_old_keys(json);
   return json;
 }
 
@@ -336,8 +338,11 @@ ConfigFile::ConfigFile(std::string path, Json config, const Plugins& plugins)
 Experiment ConfigFile::experiment(const std::vector<std::string>& overrides, const std::string& origin) const {
   Json config = config_;
   for (const std::string& assignment : overrides) set_value(config, assignment, schema_, origin);
-  return naming_overrides(
+  std::vector<std::string> remarks = rename_old_keys(config);
+  Experiment experiment = naming_overrides(
       path_, overrides, [&] { return read_config(config, path_, plugins_); }, origin);
+  experiment.remarks = std::move(remarks);
+  return experiment;
 }
 
 Experiment read_experiment(const std::string& path, const std::vector<std::string>& overrides, const Plugins& plugins) {

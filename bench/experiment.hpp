@@ -32,6 +32,7 @@ struct Experiment {
   std::string name;
   std::string description;
   std::vector<RunConfig> runs;
+  std::vector<std::string> remarks = {};  ///< on the file, for who wrote it: names that are old
 };
 
 /// A file of JSON, with comments if need be. Throws InputError when it can't be read or is none.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "eval/old_names.hpp"
+
 namespace evbench {
 namespace {
 
@@ -66,7 +68,8 @@ const std::vector<Metric>& known_metrics() {
   return metrics;
 }
 
-Metric metric_of(const std::string& key) {
+Metric metric_of(const std::string& name) {
+  const std::string key = present_metric(name);
   for (const std::string of : {"final", "causal"}) {  // the scores of the trajectory that the table isn't of
     if (!key.starts_with(of + ".")) continue;
     Metric metric = metric_of(key.substr(of.size() + 1));

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "eval/json_file.hpp"
+#include "eval/old_names.hpp"
 #include "eval/quantile.hpp"
 #include "eval/record_reader.hpp"
 
@@ -146,7 +147,9 @@ Json to_json_without_scores(const RunRecord& record) { return metrics_json(recor
 
 Json to_json(const RunRecord& record) { return metrics_json(record, true); }
 
-RunRecord read_record(const Json& metrics, const std::string& place) {
+RunRecord read_record(const Json& written, const std::string& place) {
+  Json metrics = written;
+  rename_old_metrics(metrics);
   const RecordReader json(metrics, place);
   RunRecord record;
   for (const auto& [key, scores] : {std::pair{"final", &record.final_scores}, {"causal", &record.causal_scores}}) {
@@ -182,7 +185,11 @@ RunRecord read_record(const std::string& folder) {
   RunRecord record = read_record(read_json_file(path), path);
   record.folder = folder;
   const std::string config = folder + "/config.json";
-  if (std::filesystem::exists(config)) record.settings = settings_of(read_json_file(config));
+  if (std::filesystem::exists(config)) {
+    Json settings = read_json_file(config);
+    rename_old_keys(settings);
+    record.settings = settings_of(settings);
+  }
   return record;
 }
 

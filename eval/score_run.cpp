@@ -9,6 +9,7 @@
 #include "core/data/tum.hpp"
 #include "eval/covariance_scores.hpp"
 #include "eval/latency.hpp"
+#include "eval/old_names.hpp"
 
 namespace evbench {
 namespace {
@@ -32,7 +33,7 @@ struct RunTrajectories {
 RunTrajectories read_trajectories(const std::string& folder, bool causal) {
   const std::string truth = folder + "/groundtruth.tum";
   return {std::filesystem::exists(truth) ? read_tum(truth) : PoseTrajectory(),
-          read_estimate(folder + (causal ? "/causal.tum" : "/final.tum"))};
+          read_estimate(file_of_run(folder, causal ? "causal.tum" : "final.tum"))};
 }
 
 /// Throws InputError with the reason where there are no scores.
@@ -69,7 +70,7 @@ Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<Cau
 /// To the scores of the causal estimate those at zero and at equal latency, where it was told what was known when.
 void add_latencies(const std::string& folder, const PoseTrajectory& ground_truth, const ScoreOptions& options,
                    const RunRecord& record, Json& scores) {
-  const std::string path = folder + "/causal_poses.txt";
+  const std::string path = file_of_run(folder, "causal_poses.txt");
   if (!exists(path)) return;
   const std::vector<CausalPose> told = read_causal_poses(path);
   if (const std::optional<Delay> delay = delay_of(told)) {

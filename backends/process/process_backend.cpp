@@ -45,7 +45,7 @@ void ProcessBackEnd::advance(const TrackBatch& batch) {
   left_out_ += write_batch(line, batch);
   line.push_back('}');
   dialogue_.ask(line, fmt::format("the batch until {} s", batch.until), [&](const Json& answer) {
-    check_keys(answer, {"state", "reason", "causal", "newest", "covariance", "outliers", "expected"});
+    check_keys(answer, {"state", "reason", "causal_poses", "online", "newest", "covariance", "outliers", "expected"});
     take_state(answer, batch.until);
     take_published(answer, batch.until);
     take_newest(answer, batch.until);
@@ -65,8 +65,8 @@ void ProcessBackEnd::take_state(const Json& answer, double until) {
   const std::string reason = told != nullptr ? text(*told, {"reason"}) : "the process says so";
   const double from = updates_.empty() ? until : updates_.back().t;
   if (now == no_map && before != no_map) {
-    if (told_ || before == lost) {
-      throw MessageError("state: expected \"lost\", as poses were told or it was said before, found \"no_map\"");
+    if (has_published_ || before == lost) {
+      throw MessageError("state: expected \"lost\", as poses were published or it was reported before, found \"no_map\"");
     }
     monitor_ = TrackingMonitor(context_.patience);  // what it said was of a map that was wrong
   }
@@ -82,13 +82,14 @@ void ProcessBackEnd::take_state(const Json& answer, double until) {
 }
 
 void ProcessBackEnd::take_published(const Json& answer, double until) {
-  const Json* const found = find(answer, "causal");
+  const char* const key = find(answer, "causal_poses") != nullptr ? "causal_poses" : "online";  // before version 1.0
+  const Json* const found = find(answer, key);
   if (found == nullptr) return;
-  for (std::size_t i = 0; i < list(*found, {"causal"}).size(); ++i) {
-    const auto [pose, velocity] = moving_pose((*found)[i], {"causal", i});
-    check_not_later(pose.t, until, {"causal", i});
+  for (std::size_t i = 0; i < list(*found, {key}).size(); ++i) {
+    const auto [pose, velocity] = moving_pose((*found)[i], {key, i});
+    check_not_later(pose.t, until, {key, i});
     context_.publish({pose, until, velocity});
-    told_ = true;
+    has_published_ = true;
   }
 }
 

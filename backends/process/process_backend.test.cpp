@@ -31,7 +31,7 @@ last = 0.0
 while "finish" not in (m := hear()):
   print(json.dumps(m), file=sys.stderr)
   last = m["until"]
-  say({"state": "tracking", "causal": [pose(last, last)], "newest": pose(last, last), "outliers": [len(m["observations"])]})
+  say({"state": "tracking", "causal_poses": [pose(last, last)], "newest": pose(last, last), "outliers": [len(m["observations"])]})
 say({"trajectory": [pose(0, 0), pose(last, last)], "map": [[7, 1, 2, 3]]})
 )";
 
@@ -120,7 +120,7 @@ TEST_CASE(
 say({"evbench": 1})
 while "finish" not in (m := hear()):
   t = m["until"]
-  say({"state": "tracking", "causal": [pose(t - 0.05, 1) + [0, 0, 0.5, 2, 0, 0], pose(0, t)]})
+  say({"state": "tracking", "causal_poses": [pose(t - 0.05, 1) + [0, 0, 0.5, 2, 0, 0], pose(0, t)]})
 say({"trajectory": [pose(0, 0)]})
 )");
   session.go();
@@ -205,11 +205,11 @@ TEST_CASE("A back-end process that is lost says so before the end") {
 }
 
 TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence") {
-  CHECK(failure("{'state': 'tracking', 'causal': [pose(t, 0)]}").empty());
-  CHECK_THAT(failure("{'state': 'tracking', 'causal': [pose(float('nan'), 0)]}"),
+  CHECK(failure("{'state': 'tracking', 'causal_poses': [pose(t, 0)]}").empty());
+  CHECK_THAT(failure("{'state': 'tracking', 'causal_poses': [pose(float('nan'), 0)]}"),
              ContainsSubstring(
                  "config.json: backend: the process \"/usr/bin/python3 backend.py\" answered wrongly: expected one "
-                 "JSON object a line, found {\"state\": \"tracking\", \"causal\": [[NaN") &&
+                 "JSON object a line, found {\"state\": \"tracking\", \"causal_poses\": [[NaN") &&
                  ContainsSubstring("JSON has no NaN") && ContainsSubstring("it had been told the batch until 0.1 s") &&
                  ContainsSubstring("it wrote nothing to its standard error"));
   CHECK_THAT(failure("{}"), ContainsSubstring("\"state\" is missing"));
@@ -217,15 +217,15 @@ TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence
   CHECK_THAT(failure("{'state': 'fine'}"), ContainsSubstring("unknown state \"fine\""));
   CHECK_THAT(failure("{'state': 'tracking', 'outlier': []}"),
              ContainsSubstring("unknown key \"outlier\"; did you mean"));
-  CHECK_THAT(failure("{'state': 'tracking', 'causal': [pose(t + 0.1, 0)]}"),
+  CHECK_THAT(failure("{'state': 'tracking', 'causal_poses': [pose(t + 0.1, 0)]}"),
              ContainsSubstring("later than what has been seen"));
-  CHECK_THAT(failure("{'state': 'tracking', 'causal': [[t, 0, 0, 0, 0, 0, 0, 2]]}"),
+  CHECK_THAT(failure("{'state': 'tracking', 'causal_poses': [[t, 0, 0, 0, 0, 0, 0, 2]]}"),
              ContainsSubstring("quaternion's norm is 2"));
-  CHECK_THAT(failure("{'state': 'tracking', 'causal': [[t, 0, 0, 0, 0, 0, 1]]}"),
+  CHECK_THAT(failure("{'state': 'tracking', 'causal_poses': [[t, 0, 0, 0, 0, 0, 1]]}"),
              ContainsSubstring("expected 8 numbers"));
   CHECK_THAT(failure("{'state': 'tracking', 'covariance': [0] * 144}"),
              ContainsSubstring("expected \"newest\" with it"));
-  CHECK_THAT(failure("{'state': 'tracking' if t < 0.15 else 'no_map', 'causal': [pose(0.1, 0)]}"),
+  CHECK_THAT(failure("{'state': 'tracking' if t < 0.15 else 'no_map', 'causal_poses': [pose(0.1, 0)]}"),
              ContainsSubstring("expected \"lost\", as poses were told"));
   CHECK_THAT(failure("{'state': 'lost' if t < 0.15 else 'no_map', 'reason': 'fog'}"),
              ContainsSubstring("expected \"lost\""));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/causal_flag.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/commands/run_selection.hpp"
@@ -41,7 +42,7 @@ void add_compare(CLI::App& app) {
       ->type_name("NAME");
   add_list_option(*command, "--metrics", arguments->options.metrics,
                   "What is compared, e.g. ate.trans_m.rmse,common.rpe.trans_m.rmse,times.backend_ms.p99");
-  command->add_flag("--causal", arguments->options.causal, "Scores of the poses as estimated when they were made");
+  add_causal_flag(*command, arguments->options.causal, "Scores of the poses as estimated when they were made");
   command->add_option("--format", arguments->format, "Format")
       ->check(one_of({"text", "markdown", "csv", "latex"}))
       ->capture_default_str();

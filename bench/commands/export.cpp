@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/causal_flag.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/experiment.hpp"
 #include "bench/plugins.hpp"
@@ -152,7 +153,7 @@ void add_export(CLI::App& app, const Plugins& plugins) {
       ->add_option("--rpg", arguments->rpg,
                    "A folder as rpg_trajectory_evaluation reads it: the estimate, the ground truth, the alignment")
       ->type_name("DIR");
-  command->add_flag("--causal", arguments->causal, "The poses as estimated when they were made, not the final ones");
+  add_causal_flag(*command, arguments->causal, "The poses as estimated when they were made, not the final ones");
   add_overrides(*command, arguments->overrides, "Override a value of the config: KEY=VALUE, e.g. seed=3");
   command->add_flag("--force", arguments->force, "Replace files that exist");
   command->footer(

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/causal_flag.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/number_check.hpp"
 #include "bench/commands/run_outputs.hpp"
@@ -119,7 +120,7 @@ void add_figure(CLI::App& app) {
   command->add_option("--across", arguments->options.across, "The other axis of a map")->type_name("NAME");
   command->add_option("--base", arguments->options.base, "What a map compares with; else the method without the axis")
       ->type_name("METHOD");
-  command->add_flag("--causal", arguments->options.causal, "The poses as estimated when they were made");
+  add_causal_flag(*command, arguments->options.causal, "The poses as estimated when they were made");
   command->add_option("--width", arguments->width_mm, "Width [mm]; else 174, a page's")->check(in_range(20.0, 2000.0));
   command->add_option("--height", arguments->height_mm, "Height of the panels, without legend and caption [mm]")
       ->check(in_range(20.0, 2000.0));

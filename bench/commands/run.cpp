@@ -210,6 +210,7 @@ void check(const RunArguments& arguments, const Plugins& plugins) {
       if (std::ranges::find(unchecked, text) == unchecked.end()) unchecked.push_back(std::move(text));
     }
   }
+  for (const std::string& remark : experiment.remarks) fmt::print("{}\n", remark);
   fmt::print("{}: fine, {} run{}\n", arguments.config, experiment.runs.size(), experiment.runs.size() == 1 ? "" : "s");
   if (!missing.empty()) unchecked.push_back(missing);
   for (const std::string& text : unchecked) fmt::print("not checked: {}\n", text);
@@ -227,6 +228,7 @@ int run_config(const RunArguments& arguments, Plugins& plugins, std::vector<RunR
   const Announce announce = announcement(arguments.quiet);
   load_plugins_of(plugins, arguments.config, arguments.overrides, {.announce = announce});
   const Experiment experiment = read_experiment(arguments.config, arguments.overrides, plugins);
+  for (const std::string& remark : experiment.remarks) announce(fmt::format("{}: {}", arguments.config, remark));
   std::vector<const Job*> jobs;
   for (const RunConfig& run : experiment.runs) jobs.push_back(&run.job);
   announce_commands(jobs, plugins, announce);

@@ -146,6 +146,7 @@ int execute(SweepArguments& arguments, Plugins& plugins) {
     line.update("planning: sources are made, for the files that they read");
     return plan_sweep(sweep, plugins);
   }();
+  for (const std::string& remark : plan.remarks) announce(fmt::format("{}: {}", sweep.config, remark));
   const std::vector<PlannedRun> runs = select_runs(plan, arguments.only);
   if (runs.empty()) throw InputError(fmt::format("{}: no run has all the values of --only", sweep.place));
   if (arguments.dry_run) {

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "bench/commands/commands.hpp"
+#include "bench/commands/causal_flag.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/commands/run_selection.hpp"
@@ -57,7 +58,7 @@ void add_table(CLI::App& app) {
                   "NAME,...");
   command->add_flag("--list-metrics", arguments->list_metrics,
                     "List the keys that --metrics knows: all numbers that these runs have, and what tables call them");
-  command->add_flag("--causal", arguments->options.causal, "Scores of the poses as estimated when they were made");
+  add_causal_flag(*command, arguments->options.causal, "Scores of the poses as estimated when they were made");
   command->callback([arguments] { execute(*arguments); });
 }
 

@@ -84,6 +84,7 @@ class Planner {
     with_place([&] {
       const Experiment experiment = config_.experiment(overrides, "the sweep's");
       plan_.name = experiment.name;
+      if (plan_.remarks.empty()) plan_.remarks = experiment.remarks;
       for (const RunConfig& config : experiment.runs) gathered_.emplace_back(config, point.axes);
     });
     for (const auto& [axis, value] : point.axes) note(axis, value);

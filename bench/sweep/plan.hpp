@@ -35,6 +35,7 @@ struct SweepPlan {
   std::string name;                                                    ///< of the experiment
   std::vector<std::pair<std::string, std::vector<std::string>>> axes;  ///< and all of their values
   std::vector<PlannedRun> runs;
+  std::vector<std::string> remarks;  ///< on its config, for who wrote it
 
   /// The sweep as JSON, {"name", "axes": [{"name", "values"}], "runs": [{"key", "label", "axes": {AXIS: VALUE}}]}: what
   /// is written as sweep.json, so that tables know the axes, and that nothing is missing.

@@ -43,6 +43,7 @@ using Names = std::vector<std::pair<std::string, Value>>;
 const Names<TrackingState> kTrackingStates = {{"no_map", TrackingState::no_map},
                                               {"tracking", TrackingState::tracking},
                                               {"stationary", TrackingState::stationary},
+                                              {"standing_still", TrackingState::stationary},  // before version 1.0
                                               {"degraded", TrackingState::degraded},
                                               {"lost", TrackingState::lost}};
 

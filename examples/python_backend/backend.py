@@ -105,7 +105,7 @@ def take(message):
         step(centre, {k: np.polyfit(x[:, 0], x[:, 1:], 1)[1] for k, x in lines.items() if x[0, 0] < 0 < x[-1, 0]})
         causal += [stamped(times[-1], poses[-1])] if poses else []
     newest = {"newest": causal[-1]} if causal else {}
-    return {"state": state(), "causal": causal, "outliers": outliers[dropped:], **newest}
+    return {"state": state(), "causal_poses": causal, "outliers": outliers[dropped:], **newest}
 
 def finish():
     refine(3)
