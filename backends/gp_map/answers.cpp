@@ -13,7 +13,7 @@ namespace evbench::gp_map {
 
 void GpMap::publish_newest(double t) {
   const std::optional<SE3> T = pose(t);  // none where the state has been taken back
-  if (!T || t <= published_ || is_in_doubt()) return;
+  if (!T || t <= published_ || is_pending()) return;
   context_.publish({{t, *T}, t, velocity(t)});
   published_ = t;
 }
@@ -21,9 +21,9 @@ void GpMap::publish_newest(double t) {
 /// The newest state, and those of late anew: what is seen now tells of them, too.
 void GpMap::publish_recent(double t) {
   if (graph().states.back().t != t) return;  // it has been taken back
-  world_->recent.follow(graph(), world_->engine.first_state());
-  if (is_in_doubt()) return;
-  const auto states = world_->recent.states();
+  map_->recent.follow(graph(), map_->engine.first_state());
+  if (is_pending()) return;
+  const auto states = map_->recent.states();
   if (options_.per_observation) {
     publish_newest(t);  // as between the states
   } else {
@@ -37,39 +37,39 @@ void GpMap::publish_recent(double t) {
 
 PoseTrajectory GpMap::trajectory() const {
   std::vector<StampedPose> poses;
-  if (!world_) return {};
+  if (!map_) return {};
   for (const ControlState& state : graph().states) poses.push_back({state.t, state.T});
   return PoseTrajectory(std::move(poses));
 }
 
 std::optional<SE3> GpMap::pose(double t) const {
-  const int k = world_ ? graph().interval_of(t) : -1;
+  const int k = map_ ? graph().interval_of(t) : -1;
   if (k < 0) return std::nullopt;
   return GpInterval(graph().states[index(k - 1)], graph().states[index(k)]).pose(t);
 }
 
 std::optional<Vector6> GpMap::velocity(double t) const {
-  const int k = world_ ? graph().interval_of(t) : -1;
+  const int k = map_ ? graph().interval_of(t) : -1;
   if (k < 0) return std::nullopt;
   return GpInterval(graph().states[index(k - 1)], graph().states[index(k)]).velocity(t);
 }
 
 /// None while the map is in doubt: it may be wrong altogether, of which its covariance would tell nothing.
 std::optional<Matrix12> GpMap::covariance(double t) {
-  if (!world_ || is_in_doubt()) return std::nullopt;
-  auto result = world_->engine.covariance(t);
+  if (!map_ || is_pending()) return std::nullopt;
+  auto result = map_->engine.covariance(t);
   if (result) *result *= information_told_;
   return result;
 }
 
 std::optional<Matrix6> GpMap::relative_covariance(double t0, double t1) {
-  if (!world_) return std::nullopt;
+  if (!map_) return std::nullopt;
   const auto state_at = [&](double t) {
     const auto found = std::ranges::lower_bound(graph().states, t, {}, &ControlState::t);
     return static_cast<int>(found - graph().states.begin());
   };
   const int i = state_at(t0), j = state_at(t1);
-  const std::optional<Matrix12> joint = world_->engine.poses(i, j);
+  const std::optional<Matrix12> joint = map_->engine.poses(i, j);
   if (!joint) return std::nullopt;
   const SE3 inverse = graph().states[index(j)].T.inverse() * graph().states[index(i)].T;
   Eigen::Matrix<double, 6, 12> J;  // (T_i Exp δ_i)⁻¹ T_j Exp δ_j = T_i⁻¹ T_j Exp(δ_j − Ad(T_j⁻¹ T_i) δ_i)
@@ -98,7 +98,7 @@ std::vector<std::string> GpMap::estimated_parameters() const {
 }
 
 std::optional<Problem> GpMap::problem() const {
-  if (!world_ || options_.lag > 0.0) return std::nullopt;
+  if (!map_ || options_.lag > 0.0) return std::nullopt;
   return to_problem(graph());
 }
 

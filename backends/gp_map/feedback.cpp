@@ -16,10 +16,10 @@ namespace evbench::gp_map {
 Feedback GpMap::feedback(const FeedbackNeeds& needs) {
   Feedback feedback;
   feedback.t = until_;
-  if (std::exchange(begun_anew_, false)) return feedback;  // no map, even where there is another one already
+  if (std::exchange(reinitialised_, false)) return feedback;  // no map, even where there is another one already
   feedback.state = monitor_.state();
-  if (!world_) return feedback;
-  feedback.outliers = std::exchange(world_->outliers, {});
+  if (!map_) return feedback;
+  feedback.outliers = std::exchange(map_->outliers, {});
   if (monitor_.lost()) return feedback;
   feedback.newest = newest_seen();
   if (needs.covariance) feedback.covariance = covariance(feedback.newest->t);
@@ -39,7 +39,7 @@ ControlState GpMap::newest_seen() const {
 std::vector<ExpectedFeature> GpMap::expected_features() {
   constexpr double kNear = 1e-3;  // [units] before the camera: nearer has no image
   // While it is near the newest state: later, finding it takes a long walk back.
-  for (const TrackId id : std::exchange(world_->ended_landmarks, {})) {
+  for (const TrackId id : std::exchange(map_->ended_landmarks, {})) {
     const auto track = tracks_.find(id);
     if (track != tracks_.end() && track->second.role == Track::Role::landmark) covariance_of_ended(track->second);
   }
@@ -72,8 +72,8 @@ std::vector<ExpectedFeature> GpMap::expected_features() {
 const std::vector<TrackId>& GpMap::nearly_in_view() {
   constexpr double kMargin = 0.2;  // [rad] beyond what the newest velocity asks for
   constexpr double kClose = 5.0;   // so many times as far as the camera goes: what is nearer may come in from any side
-  if (world_->nearly_in_view) return *world_->nearly_in_view;
-  std::vector<TrackId>& tracks = world_->nearly_in_view.emplace();
+  if (map_->nearly_in_view) return *map_->nearly_in_view;
+  std::vector<TrackId>& tracks = map_->nearly_in_view.emplace();
   const PinholeCamera& camera = context_.camera;
   const ControlState& newest = graph().states.back();
   const double longest = std::max(placement_.upcoming() - newest.t, std::abs(until_ - newest.t));
@@ -82,12 +82,12 @@ const std::vector<TrackId>& GpMap::nearly_in_view() {
   const double least = std::cos(std::min(corner + increment.head<3>().norm() + kMargin, std::numbers::pi));
   const double close = kClose * increment.tail<3>().norm();
   const Vector3 axis = newest.T.R().col(2);
-  for (std::size_t j = 0; j < world_->known.size(); ++j) {
+  for (std::size_t j = 0; j < map_->known.size(); ++j) {
     const FactorGraph::Landmark& landmark = graph().landmarks[j];
     const Vector3 ray = landmark.position - newest.T.p;
     const double distance = ray.norm();
     if (!landmark.alive || (distance > close && axis.dot(ray) < least * distance)) continue;
-    const auto track = tracks_.find(world_->known[j].track);
+    const auto track = tracks_.find(map_->known[j].track);
     if (track == tracks_.end() || track->second.role != Track::Role::landmark) continue;
     if (index(track->second.landmark) == j) tracks.push_back(track->first);
   }
@@ -104,7 +104,7 @@ const std::optional<Matrix2>& GpMap::image_covariance(Track& track, const Eigen:
   track.image_covariance.reset();
   if (!track.ended) {
     track.covariance.reset();
-    track.image_covariance = world_->engine.predicted_covariance(track.landmark, J_state, J_landmark);
+    track.image_covariance = map_->engine.predicted_covariance(track.landmark, J_state, J_landmark);
   } else {
     const std::optional<Matrix12>& state = newest_covariance();
     const std::optional<Matrix3> own = covariance_of_ended(track);
@@ -116,15 +116,15 @@ const std::optional<Matrix2>& GpMap::image_covariance(Track& track, const Eigen:
 }
 
 const std::optional<Matrix12>& GpMap::newest_covariance() {
-  if (world_->newest_covariance.first != graph().states.size()) {
-    world_->newest_covariance = {graph().states.size(), world_->engine.covariance(graph().states.back().t)};
+  if (map_->newest_covariance.first != graph().states.size()) {
+    map_->newest_covariance = {graph().states.size(), map_->engine.covariance(graph().states.back().t)};
   }
-  return world_->newest_covariance.second;
+  return map_->newest_covariance.second;
 }
 
 /// As it was when the track had ended: what is learnt of it afterwards is little.
 std::optional<Matrix3> GpMap::covariance_of_ended(Track& track) {
-  if (!track.covariance) track.covariance = world_->engine.landmark_covariance(track.landmark);
+  if (!track.covariance) track.covariance = map_->engine.landmark_covariance(track.landmark);
   return track.covariance;
 }
 

@@ -11,10 +11,10 @@
 
 #include "backends/gp_map/initial_map.hpp"
 #include "backends/gp_map/options.hpp"
-#include "backends/gp_map/recent_explanation.hpp"
+#include "backends/gp_map/recent_hypothesis.hpp"
 #include "backends/gp_map/state_placement.hpp"
 #include "backends/gp_map/time_span.hpp"
-#include "backends/gp_map/world.hpp"
+#include "backends/gp_map/map_estimate.hpp"
 #include "core/plugin/backend.hpp"
 #include "core/plugin/tracking_monitor.hpp"
 #include "core/structure/track_buffer.hpp"
@@ -47,7 +47,7 @@ class GpMap : public BackEnd {
   std::vector<std::string> estimated_parameters() const override;
 
   /// The problem with its present estimate; only where there is a map.
-  const FactorGraph& graph() const { return world_->engine.graph(); }
+  const FactorGraph& graph() const { return map_->engine.graph(); }
 
  private:
   /// A track that waits until its landmark can be located, is a landmark, slid off one, or was an outlier.
@@ -82,18 +82,18 @@ class GpMap : public BackEnd {
   void optimise();
   void check_reappeared();
   void learn();
-  void learn_with_hindsight(const TimeSpan& span, std::span<const double> surplus = {});
+  void learn_from_smoothed(const TimeSpan& span, std::span<const double> surplus = {});
   void reconsider_recent();
   void trust_what_fits();
-  bool is_refuted() const;
-  void begin_anew();
+  bool is_rejected() const;
+  void reinitialise();
   void check_support();
   void forget_ended_tracks(double t);
   void predict_tracks();
 
-  std::optional<ExplanationSearch> begin_search(Supposed supposed, bool young) const;
-  void go_on_with(const RecentExplanation& other);
-  void recall_condemned();
+  std::optional<HypothesisSearch> begin_search(StructureHypothesis supposed, bool young) const;
+  void go_on_with(const RecentHypothesis& other);
+  void recall_rejected();
   void send_back(TrackId id, const Reappearance& seen);
   int misfits() const;
   void follow_observations(double t, double ahead);
@@ -116,14 +116,14 @@ class GpMap : public BackEnd {
   const std::optional<Matrix2>& image_covariance(Track& track, const Eigen::Matrix<double, 2, 12>& J_state,
                                                  const Matrix23& J_landmark);
   int landmarks_in_view() const;
-  bool is_young() const { return !(graph().states.back().t > world_->young_until); }
-  bool is_in_doubt() const { return is_young() && !world_->trusted; }
+  bool is_tentative() const { return !(graph().states.back().t > map_->tentative_until); }
+  bool is_pending() const { return is_tentative() && !map_->confirmed; }
   void publish_newest(double t);
   void publish_recent(double t);
   Engine::OptimiseSummary estimate_everything();
   void reconsider_beginning();
-  void judge_tracks(const NoiseLearner& noise, const TimeSpan& span);
-  void slid_off(int landmark, double from);
+  void reject_outliers(const NoiseLearner& noise, const TimeSpan& span);
+  void has_drifted(int landmark, double from);
   void weigh_tracks(const NoiseLearner& noise, const TimeSpan& span);
   void record_final_prior();
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
@@ -132,16 +132,16 @@ class GpMap : public BackEnd {
   BackEndContext context_;
   StatePlacement placement_;
   InitialMapFinder initial_map_;
-  std::optional<World> world_;  ///< from the initial map on, unless that is refuted
+  std::optional<World> map_;  ///< from the initial map on, unless that is refuted
   std::map<TrackId, Track> tracks_;
   TrackBuffer waiting_;                    ///< observations of waiting tracks
-  TrackBuffer young_;                      ///< of all tracks, while the map is young
+  TrackBuffer tentative_;                      ///< of all tracks, while the map is young
   std::set<TrackId> live_;                 ///< tracks that are alive, or have ended since the last step
   std::vector<TrackObservation> pending_;  ///< later than the newest state
   std::vector<TrackEnd> ending_;           ///< likewise
   const double information_told_;          ///< share of the estimate's information that the loss's weights tell
-  int times_refuted_ = 0;                  ///< of initial maps
-  bool begun_anew_ = false;                ///< since the last feedback
+  int times_rejected_ = 0;                  ///< of initial maps
+  bool reinitialised_ = false;                ///< since the last feedback
   double seconds_since_step_ = 0.0;        ///< spent on single observations
   TrackingMonitor monitor_;
   double until_ = 0.0;                                        ///< [s] of the last batch

@@ -61,7 +61,7 @@ std::optional<InitialMap> InitialMapFinder::attempt(const TrackBuffer& tracks, d
   return map_of(tracks, *look, *found);
 }
 
-void InitialMapFinder::begin_anew() {
+void InitialMapFinder::reinitialise() {
   initialiser_ = Initialiser(options_.initialiser, camera_);
   last_.reset();
   refused_.clear();

@@ -20,7 +20,7 @@ struct InitialMap {
 
 /// Finds the initial map: guesses from two views (core/structure/initialiser), each refined over some views more
 /// (core/structure/multi_view). The best one is taken when the noise that is left allows its structure, even where
-/// another one is nearly as good: what is seen later tells (recent_explanation.hpp). Attempts are rare, as the tracks
+/// another one is nearly as good: what is seen later tells (recent_hypothesis.hpp). Attempts are rare, as the tracks
 /// must have moved farther, and look at few places of a track. From the first view's landmarks the trajectory reaches
 /// back as far as there are tracks.
 ///
@@ -38,7 +38,7 @@ class InitialMapFinder {
   void pass(double t) { state_times_.push_back(t); }
 
   /// The last map was none: another one is looked for from the next view on.
-  void begin_anew();
+  void reinitialise();
 
   /// Why there is none: what it would have taken to make another attempt, and why the last one was vain.
   std::string reason() const;

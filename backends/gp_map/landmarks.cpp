@@ -38,8 +38,8 @@ bool GpMap::is_outlier(int landmark) {
   if (l.intervals.empty()) return false;
   const Observation& last = graph().intervals[index(l.intervals.back())].of(landmark).back();
   const double inverse_sigma = l.sigma_scale * last.inverse_sigma;  // as given
-  const double far = options_.map.outlier_threshold * world_->noise.scale_of_means();
-  return inverse_sigma * world_->engine.reprojection_mean(landmark) > far;
+  const double far = options_.map.outlier_threshold * map_->noise.scale_of_means();
+  return inverse_sigma * map_->engine.reprojection_mean(landmark) > far;
 }
 
 void GpMap::add_landmarks() {
@@ -53,11 +53,11 @@ void GpMap::add_landmarks() {
     const auto [place, misfit] = locate(id);
     track.misfit = misfit;
     if (!place) continue;
-    const int landmark = world_->engine.add_landmark(place->first, place->second);
+    const int landmark = map_->engine.add_landmark(place->first, place->second);
     for (const TrackObservation& z : observations) {
-      world_->engine.add_observation(landmark, to_observation(z, options_.sigma_scale));
+      map_->engine.add_observation(landmark, to_observation(z, options_.sigma_scale));
     }
-    if (std::isfinite(place->second.sigma)) world_->guessed.push_back(landmark);
+    if (std::isfinite(place->second.sigma)) map_->guessed.push_back(landmark);
     become_landmark(id, landmark);
   }
 }
@@ -67,13 +67,13 @@ void GpMap::add_landmarks() {
 void GpMap::trust_parallax() {
   const double least = std::sin(options_.map.triangulation.min_parallax_deg / kDegrees);
   const std::vector<ControlState>& states = graph().states;
-  std::erase_if(world_->guessed, [&](int j) {
+  std::erase_if(map_->guessed, [&](int j) {
     const FactorGraph::Landmark& landmark = graph().landmarks[index(j)];
     const std::vector<int>& seen = landmark.intervals;
     if (!landmark.alive || seen.empty() || states.back().t > states[index(seen.back())].t + kFoundAgain) return true;
     const auto ray = [&](int k) { return (landmark.position - states[index(k)].T.p).normalized().eval(); };
     if (ray(seen.front()).cross(ray(seen.back())).norm() < least) return false;
-    world_->engine.drop_prior(j);
+    map_->engine.drop_prior(j);
     return true;
   });
 }
@@ -84,7 +84,7 @@ GpMap::Location GpMap::locate(TrackId id) const {
   constexpr std::size_t kViews = 16;  // evenly from all observations: enough for a start
   std::span<const TrackObservation> usable = waiting_.observations(id);  // none later than the newest state
   const auto settled = [&](const TrackObservation& z) {
-    return graph().interval_of(z.t) <= world_->engine.first_state();
+    return graph().interval_of(z.t) <= map_->engine.first_state();
   };
   usable = usable.subspan(index(std::ranges::partition_point(usable, settled) - usable.begin()));
   if (usable.size() < 2) return {};
@@ -97,7 +97,7 @@ GpMap::Location GpMap::locate(TrackId id) const {
     pixels.push_back(z.pixel);
   }
   const Triangulation result = triangulate(poses, pixels, context_.camera, options_.map.triangulation);
-  const double noise = options_.sigma_scale * usable.back().sigma * world_->noise.scale_of_means();
+  const double noise = options_.sigma_scale * usable.back().sigma * map_->noise.scale_of_means();
   if (result.ok() && result.rms_px <= kWellSeen * std::numbers::sqrt2 * noise) {
     return {.place = std::pair{result.point, LandmarkPrior{}}};
   }
@@ -125,23 +125,23 @@ void GpMap::become_landmark(TrackId id, int landmark) {
   Track& track = tracks_.at(id);
   track.role = Track::Role::landmark;
   track.landmark = landmark;
-  world_->known.push_back({.track = id});
-  ++world_->tracks;
+  map_->known.push_back({.track = id});
+  ++map_->tracks;
   waiting_.forget(id);
 }
 
 void GpMap::become_outlier(int landmark) {
   hold_scale_without(landmark);
-  world_->engine.remove_landmark(landmark);
-  if (end_track_of(landmark, Track::Role::outlier)) --world_->tracks;
+  map_->engine.remove_landmark(landmark);
+  if (end_track_of(landmark, Track::Role::outlier)) --map_->tracks;
 }
 
 /// What it will show is not of this landmark. False where it came back as another one.
 bool GpMap::end_track_of(int landmark, Track::Role role) {
-  const auto track = tracks_.find(world_->known[index(landmark)].track);
+  const auto track = tracks_.find(map_->known[index(landmark)].track);
   if (track == tracks_.end() || track->second.landmark != landmark) return false;
   track->second.role = role;
-  world_->outliers.push_back(track->first);
+  map_->outliers.push_back(track->first);
   return true;
 }
 
@@ -154,7 +154,7 @@ void GpMap::hold_scale_without(int leaving) {
   }
   context_.log(fmt::format("{:.3f} s: most landmarks that held the scale were outliers; {} hold it now",
                            graph().states.back().t, anchors.size()));
-  world_->engine.anchor_scale(graph().anchor.origin, {anchors.begin(), anchors.end()});
+  map_->engine.anchor_scale(graph().anchor.origin, {anchors.begin(), anchors.end()});
 }
 
 }  // namespace evbench::gp_map

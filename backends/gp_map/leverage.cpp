@@ -27,12 +27,12 @@ void GpMap::bound_leverage() {
     if (!(depth > 0.0)) continue;
     const double nearness = std::max(1.0, median / (kNear * depth));
     const double bound = std::min(kLargest, nearness * nearness);
-    double& present = world_->known[index(group.landmark)].leverage;
+    double& present = map_->known[index(group.landmark)].leverage;
     if (bound < kBoundChange * present && bound > present / kBoundChange) continue;
     present = bound;
     changed.push_back(group.landmark);
   }
-  for (const int j : changed) world_->engine.scale_sigmas(j, world_->known[index(j)].sigma_scale());
+  for (const int j : changed) map_->engine.scale_sigmas(j, map_->known[index(j)].sigma_scale());
 }
 
 }  // namespace evbench::gp_map

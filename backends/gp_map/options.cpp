@@ -43,7 +43,7 @@ void MapOptions::declare(OptionSet& set) {
 }
 
 void LearningOptions::declare(OptionSet& set) {
-  set.add("prior", prior, {"never", "hindsight", "always"},
+  set.add("prior", prior, {"never", "smoothed", "always"},
           "when the prior's power spectral density is learnt from the data, beginning with qc: never; with hindsight, "
           "where motion is known from both sides: while running, of all but the newest 0.1 s, and for the final "
           "estimate, from everything; always, so also of the newest motion, which can lose the scale where landmarks "

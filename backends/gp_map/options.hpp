@@ -34,11 +34,11 @@ struct MapOptions {
 };
 
 /// When the prior's power spectral density is learnt from the data.
-enum class LearnPrior { never, hindsight, always };
+enum class LearnPrior { never, smoothed, always };
 
 /// What is learnt from the data.
 struct LearningOptions {
-  LearnPrior prior = LearnPrior::hindsight;
+  LearnPrior prior = LearnPrior::smoothed;
   bool noise = true;
   double window = 0.3, memory = 3.0;
   int rounds = 6;

@@ -16,7 +16,7 @@ constexpr double kHistoryWindow = 0.5;  ///< [s], to both sides
 constexpr double kPace = 0.1;           ///< [s] between two looks
 constexpr double kLookedBack = 0.4;     ///< [s]
 constexpr int kMostLookedBack = 16;     ///< intervals
-constexpr int kSetAnew = 8;             ///< of the newest intervals
+constexpr int kReset = 8;             ///< of the newest intervals
 constexpr double kForce = 1.0;          ///< by which an expansion must change
 constexpr double kDensityChange = 1.5;  ///< by which a density must change to be set anew
 
@@ -106,7 +106,7 @@ void PriorLearner::follow(Engine& engine) {
   if (prior_->recent().empty()) return;
   const int newest = static_cast<int>(graph.states.size()) - 1;
   for (const auto& [k, evidence] : prior_->recent()) {
-    if (k <= newest - kSetAnew) continue;
+    if (k <= newest - kReset) continue;
     const Vector6 qc = prior_->at(evidence.t), change = qc.cwiseQuotient(graph.qcs[index(k)]);
     const double expansion = evidence.expansion(qc);
     if (change.maxCoeff() > kDensityChange || change.minCoeff() < 1.0 / kDensityChange ||

@@ -49,7 +49,7 @@ bool TrackErrors::is_outlier(double threshold) const {
   return 2 * far > std::ssize(blocks_);
 }
 
-std::optional<double> TrackErrors::slides_from(double threshold) const {
+std::optional<double> TrackErrors::drifts_from(double threshold) const {
   std::size_t good = blocks_.size();
   while (good > 0 && blocks_[good - 1].square > threshold * threshold) --good;
   if (good == 0 || good == blocks_.size()) return std::nullopt;

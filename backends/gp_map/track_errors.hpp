@@ -28,7 +28,7 @@ class TrackErrors {
 
   /// The time from which all that follows is farther off than that [s]; none where the end is as good as the rest, nor
   /// where none was good before.
-  std::optional<double> slides_from(double threshold) const;
+  std::optional<double> drifts_from(double threshold) const;
 
  private:
   struct Block {

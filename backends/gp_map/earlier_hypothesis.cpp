@@ -1,10 +1,10 @@
-#include "backends/gp_map/earlier_explanation.hpp"
+#include "backends/gp_map/earlier_hypothesis.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "backends/gp_map/factors.hpp"
-#include "backends/gp_map/recent_explanation.hpp"
+#include "backends/gp_map/recent_hypothesis.hpp"
 
 namespace evbench::gp_map {
 namespace {
@@ -54,12 +54,12 @@ FactorGraph forwards(const FactorGraph& back, FactorGraph graph) {
 }
 
 /// Of the newest part until time t, by the better beginning.
-std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, double t, int enough) {
-  std::optional<RecentExplanation> best;
+std::optional<RecentHypothesis> try_alternatives(const FactorGraph& graph, double t, int enough) {
+  std::optional<RecentHypothesis> best;
   const int last = graph.first_state_after(t);
   if (last == std::ssize(graph.states)) return best;
-  for (const Supposed supposed : {Supposed::frontal_plane, Supposed::dual_plane}) {
-    auto search = ExplanationSearch::begin(graph, {0, last}, enough, supposed);
+  for (const StructureHypothesis supposed : {StructureHypothesis::frontal_plane, StructureHypothesis::dual_plane}) {
+    auto search = HypothesisSearch::begin(graph, {0, last}, enough, supposed);
     if (!search) continue;
     while (search->go_on()) {
     }
@@ -75,7 +75,7 @@ struct Passage {
   double until;            ///< [s] the last such part's end, backwards
   double advantage = 0.0;  ///< of all parts together
 
-  void take(const RecentExplanation& other, double t) {
+  void take(const RecentHypothesis& other, double t) {
     other.place_in(back);
     until = t;
     advantage += other.advantage;
@@ -84,14 +84,14 @@ struct Passage {
   /// Until nothing more is explained better.
   void go_on(int enough, double quiet) {
     for (double t = until + kStep; t < until + quiet; t += kStep) {
-      if (const auto other = explain_otherwise(back.graph(), t, enough)) take(*other, t);
+      if (const auto other = try_alternatives(back.graph(), t, enough)) take(*other, t);
     }
   }
 };
 
 }  // namespace
 
-std::optional<Engine> explain_earlier(const Engine& engine, int enough) {
+std::optional<Engine> try_earlier_hypotheses(const Engine& engine, int enough) {
   int solutions = kWork / kEarlierIterations / std::max(1, engine.graph().observation_count());
   if (solutions < 2) return std::nullopt;  // of the present explanation and of another one
   std::optional<Engine> best;
@@ -99,7 +99,7 @@ std::optional<Engine> explain_earlier(const Engine& engine, int enough) {
   FactorGraph back = backwards(engine.graph());
   const double end = back.states.back().t;
   for (double t = back.states.front().t + kLook; t < end && solutions > 0; t += kLook) {
-    const auto other = explain_otherwise(back, t, enough);
+    const auto other = try_alternatives(back, t, enough);
     if (!other) continue;
     Passage passage{Engine(back, {}), t};
     passage.take(*other, t);

@@ -1,4 +1,4 @@
-#include "backends/gp_map/relocation.hpp"
+#include "backends/gp_map/pose_jump.hpp"
 
 #include <functional>
 #include <utility>
@@ -116,7 +116,7 @@ TEST_CASE("A camera that turned unnoticed is found where most landmarks of befor
   for (int i = 0; i < 5; ++i) engine.update();
   REQUIRE(scene.error(engine) > 0.05);  // its steps don't lead back
   const auto states = engine.graph().states.size();
-  CHECK(relocate(engine, scene.seen));
+  CHECK(correct_pose_jump(engine, scene.seen));
   CHECK(engine.graph().states.size() == states);
   for (const Reappearance& seen : scene.seen) CHECK(reappearance_error(engine.graph(), seen) < 2.0);
   Engine knowing(scene.truth, {});
@@ -126,7 +126,7 @@ TEST_CASE("A camera that turned unnoticed is found where most landmarks of befor
   }
   const SE3 T = engine.graph().states.back().T.inverse() * knowing.graph().states.back().T;
   CHECK(se3::log(T).norm() < 0.05 * kUnnoticed.norm());  // nearly as if it had been noticed
-  CHECK_FALSE(relocate(engine, scene.seen));             // nothing is wrong any more
+  CHECK_FALSE(correct_pose_jump(engine, scene.seen));             // nothing is wrong any more
 }
 
 TEST_CASE("Landmarks that came back beside their places before tell of the motion since they were in them") {
@@ -134,7 +134,7 @@ TEST_CASE("Landmarks that came back beside their places before tell of the motio
   Engine engine = scene.misled();
   for (int i = 0; i < 5; ++i) engine.update();
   REQUIRE(scene.error(engine, kTurn + 5) > 0.05);
-  CHECK(relocate(engine, scene.seen));
+  CHECK(correct_pose_jump(engine, scene.seen));
   for (int i = 0; i < 5; ++i) engine.update();
   CHECK(scene.error(engine) < 0.02);
   CHECK(scene.error(engine, kTurn + 5) < 0.05);
@@ -146,7 +146,7 @@ TEST_CASE("What few landmarks say, or each says otherwise, moves nothing") {
     Engine engine = scene.misled();
     engine.update();
     const ControlState before = engine.graph().states.back();
-    CHECK_FALSE(relocate(engine, std::span(scene.seen).first(few ? 4 : scene.seen.size())));
+    CHECK_FALSE(correct_pose_jump(engine, std::span(scene.seen).first(few ? 4 : scene.seen.size())));
     CHECK(engine.graph().states.back().T.p == before.T.p);
   }
 }
@@ -161,7 +161,7 @@ TEST_CASE("Landmarks that are a little aside, each another way, tell of no motio
   for (const Reappearance& seen : scene.seen) errors.push_back(reappearance_error(engine.graph(), seen));
   REQUIRE(median(std::move(errors)) > 1.0);
   const ControlState before = engine.graph().states.back();
-  CHECK_FALSE(relocate(engine, scene.seen));
+  CHECK_FALSE(correct_pose_jump(engine, scene.seen));
   CHECK(engine.graph().states.back().T.p == before.T.p);
 }
 
@@ -170,7 +170,7 @@ TEST_CASE("Landmarks that most others contradict leave the estimate as it was") 
   Engine engine(scene.truth, {});
   for (int i = 0; i < 5; ++i) engine.update();
   REQUIRE(scene.error(engine) < 0.005);
-  CHECK_FALSE(relocate(engine, scene.seen));
+  CHECK_FALSE(correct_pose_jump(engine, scene.seen));
   CHECK(scene.error(engine) < 0.005);
   for (int i = 0; i < 5; ++i) engine.update();
   CHECK(scene.error(engine) < 0.005);
@@ -183,7 +183,7 @@ TEST_CASE("With a lag, too, a camera is found or left where it is") {
     Engine engine = scene.misled(lag);
     for (int i = 0; i < 5; ++i) engine.update();
     const double before = scene.error(engine);
-    const bool found = relocate(engine, scene.seen);
+    const bool found = correct_pose_jump(engine, scene.seen);
     for (int i = 0; i < 5; ++i) CHECK_FALSE(engine.update().unsolvable);
     CHECK(scene.error(engine) < (found ? 0.2 : 1.05) * before);
     if (lag == 10.0) CHECK(found);

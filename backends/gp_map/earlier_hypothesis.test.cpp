@@ -1,15 +1,15 @@
-#include "backends/gp_map/earlier_explanation.hpp"
+#include "backends/gp_map/earlier_hypothesis.hpp"
 
 #include <cstdint>
 #include <utility>
 
-#include "backends/gp_map/testing/ambiguous_flight.hpp"
+#include "backends/gp_map/testing/ambiguous_sequence.hpp"
 #include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {
 
-using namespace ambiguous_flight;
+using namespace ambiguous_sequence;
 
 constexpr int kLong = 2 * kStates;
 
@@ -39,17 +39,17 @@ FactorGraph misled_at_first(const FactorGraph& truth) {
 TEST_CASE("What was seen before gives way to the true explanation once what came after is explained by it", "[slow]") {
   int found = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
-    const FactorGraph truth = solved(flight({0.0, 0.3}, seed, false, kLong)), wrong = misled_at_first(truth);
+    const FactorGraph truth = solved(simulate_problem({0.0, 0.3}, seed, false, kLong)), wrong = misled_at_first(truth);
     const auto error = [&truth](const FactorGraph& graph) {
       return (graph.states.back().T.p - truth.states.back().T.p).norm();
     };
     REQUIRE(cost(wrong) > cost(truth) + 100.0);
     REQUIRE(error(wrong) > 0.3);
-    const auto other = explain_earlier(Engine(wrong, {}), kEnough);
+    const auto other = try_earlier_hypotheses(Engine(wrong, {}), kEnough);
     if (!other) continue;
     CHECK(cost(other->graph()) < cost(wrong) - 10.0);
     if (error(other->graph()) < 0.01) ++found;
-    CHECK_FALSE(explain_earlier(Engine(truth, {}), kEnough));
+    CHECK_FALSE(try_earlier_hypotheses(Engine(truth, {}), kEnough));
   }
   CHECK(found >= 2);  // of 6: looks are 0.6 s apart, and miss some
 }

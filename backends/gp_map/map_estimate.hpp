@@ -12,36 +12,36 @@
 #include "backends/gp_map/observation_follower.hpp"
 #include "backends/gp_map/options.hpp"
 #include "backends/gp_map/prior_learning.hpp"
-#include "backends/gp_map/recent_explanation.hpp"
+#include "backends/gp_map/recent_hypothesis.hpp"
 #include "backends/gp_map/recent_motion.hpp"
-#include "backends/gp_map/relocation.hpp"
+#include "backends/gp_map/pose_jump.hpp"
 #include "backends/gp_map/return_budget.hpp"
-#include "backends/gp_map/violent_motion.hpp"
+#include "backends/gp_map/aggressive_motion.hpp"
 
 namespace evbench::gp_map {
 
 /// All that is known by one map: the problem with its present estimate, which tracks its landmarks are, and what has
 /// been learnt with it. It begins with an initial map, and goes with that should it be refuted.
-struct World {
-  static constexpr double kYoung = 5.0;      ///< [s] in which all may be explained otherwise, and no track is judged
+struct MapEstimate {
+  static constexpr double kTentative = 5.0;      ///< [s] in which all may be explained otherwise, and no track is judged
   static constexpr double kFirstLook = 0.7;  ///< [s] of data that the first look for another explanation takes
-  static constexpr double kHindsight = 1.0;  ///< [s] that learning with hindsight reaches back while running
+  static constexpr double kSmoothedReach = 1.0;  ///< [s] that learning with hindsight reaches back while running
   static constexpr int kPlanes = 2;          ///< on which another explanation is looked for, in turn
 
   /// `first`: the problem of an initial map.
-  World(FactorGraph first, const Options& options)
+  MapEstimate(FactorGraph first, const Options& options)
       : engine(std::move(first), EngineOptions{.lag = options.lag}),
         returns(options.map.returns),
-        violent_motion(options.health.min_landmarks, options.learn.window, engine.graph().qc),
+        aggressive_motion(options.health.min_landmarks, options.learn.window, engine.graph().qc),
         prior(options.learn.window, options.learn.memory),
         recent(options.learn.prior == LearnPrior::never
                    ? std::nullopt
                    : std::optional<RecentPrior>(std::in_place, options.learn.window, options.learn.memory,
                                                 engine.graph().qc)),
-        next_hindsight(engine.graph().states.front().t + kHindsight),
-        young_until(engine.graph().states.back().t + kYoung),
+        next_smoothed_learning(engine.graph().states.front().t + kSmoothedReach),
+        tentative_until(engine.graph().states.back().t + kTentative),
         next_look(engine.graph().states.front().t + kFirstLook),
-        next_relocation(engine.graph().states.back().t) {}
+        next_jump_search(engine.graph().states.back().t) {}
 
   /// Of a landmark: its track, and what its sigmas are multiplied by.
   struct Known {
@@ -66,23 +66,23 @@ struct World {
   std::vector<TrackId> outliers;  ///< tracks that the front-end has not been told of
 
   // What is learnt.
-  ViolentMotion violent_motion;
+  AggressiveMotion aggressive_motion;
   PriorLearner prior;
   NoiseLearner noise;
   RecentMotion recent;                  ///< as it is told causal
-  std::optional<Vector6> hindsight_qc;  ///< the newest density that has been learnt with hindsight
-  double next_hindsight;                ///< [s]
+  std::optional<Vector6> smoothed_qc;  ///< the newest density that has been learnt with hindsight
+  double next_smoothed_learning;                ///< [s]
 
   // Whether it is right: reconsideration.cpp.
-  double young_until;                       ///< [s]
+  double tentative_until;                       ///< [s]
   double next_look;                         ///< [s], for another explanation
-  int looks = 0;                            ///< that were begun
-  std::optional<ExplanationSearch> search;  ///< the look that is under way
-  int doubts = kPlanes;                     ///< vain looks that are missing until it is trusted
-  bool trusted = false;  ///< those were made, and most tracks fitted it then, or nothing more will tell
+  int searches = 0;                            ///< that were begun
+  std::optional<HypothesisSearch> search;  ///< the look that is under way
+  int pending_checks = kPlanes;                     ///< vain looks that are missing until it is trusted
+  bool confirmed = false;  ///< those were made, and most tracks fitted it then, or nothing more will tell
 
   std::map<TrackId, Reappearance> reappeared;  ///< of late
-  double next_relocation;                      ///< [s] when these may tell that the camera is elsewhere
+  double next_jump_search;                      ///< [s] when these may tell that the camera is elsewhere
 
   // For the front-end: feedback.cpp.
   std::pair<std::size_t, std::optional<Matrix12>> newest_covariance;  ///< as of so many states

@@ -18,12 +18,12 @@ namespace {
 constexpr double kHasty = 2.0;             ///< times farther off than in the end is what goes
 constexpr double kTrackNoiseChange = 1.5;  ///< by which a track's noise must change to be set anew
 
-using Judged = std::vector<std::pair<int, TrackErrors>>;  ///< by landmark
+using JudgedTrack = std::vector<std::pair<int, TrackErrors>>;  ///< by landmark
 
 /// In `span`, of the landmarks that have been seen after `seen` and were not before `begun`.
-Judged errors_in(const FactorGraph& graph, const NoiseLearner& noise, const TimeSpan& span, double seen, double begun) {
+JudgedTrack errors_in(const FactorGraph& graph, const NoiseLearner& noise, const TimeSpan& span, double seen, double begun) {
   const double usual = noise.scale_of_means();
-  Judged errors;
+  JudgedTrack errors;
   for (int j = 0; j < static_cast<int>(graph.landmarks.size()); ++j) {
     const std::vector<int>& intervals = graph.landmarks[index(j)].intervals;
     if (intervals.empty() || graph.states[index(intervals.back())].t <= seen) continue;
@@ -36,7 +36,7 @@ Judged errors_in(const FactorGraph& graph, const NoiseLearner& noise, const Time
 /// How much farther the means of all tracks reach than normally distributed ones of their scale: the errors of trackers
 /// have longer tails, and what would be far off otherwise is not for them. By a quantile beyond which all outliers are,
 /// as they are few; where they are many, it must not hide them.
-double tail_of(const Judged& errors) {
+double tail_of(const JudgedTrack& errors) {
   constexpr double kShare = 0.7, kLongest = 2.0;
   std::vector<double> squares;
   for (const auto& [j, error] : errors) {
@@ -52,7 +52,7 @@ double tail_of(const Judged& errors) {
 /// Landmarks of which the track says something else in this span. One that was good before it slid off is none, however
 /// long ago that was: without what follows its landmark will fit, or it goes the next time. Where most of the tracks
 /// that are seen together are far off, it is the motion that is wrong, and none of them.
-std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double threshold, const TimeSpan& span) {
+std::vector<int> outliers(const FactorGraph& graph, const JudgedTrack& errors, double threshold, const TimeSpan& span) {
   const auto seen = [&](int j) {
     std::vector<int> intervals;
     std::ranges::copy_if(graph.landmarks[index(j)].intervals, std::back_inserter(intervals),
@@ -63,7 +63,7 @@ std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double
   std::map<int, std::pair<int, int>> far_of;  // by interval: of so many that are seen in it so many are far off
   for (const auto& [j, error] : errors) {
     const bool is_far = error.is_outlier(threshold);
-    if (is_far && !error.slides_from(threshold)) far.push_back(j);
+    if (is_far && !error.drifts_from(threshold)) far.push_back(j);
     for (const int k : seen(j)) {
       ++far_of[k].second;
       if (is_far) ++far_of[k].first;
@@ -83,8 +83,8 @@ std::vector<int> outliers(const FactorGraph& graph, const Judged& errors, double
 }  // namespace
 
 /// By what they show in this span: outliers go, and a track that slid keeps its landmark up to there.
-void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span) {
-  const Judged errors = errors_in(graph(), noise, span, span.from, TimeSpan().from);
+void GpMap::reject_outliers(const NoiseLearner& noise, const TimeSpan& span) {
+  const JudgedTrack errors = errors_in(graph(), noise, span, span.from, TimeSpan().from);
   const double far = tail_of(errors) * options_.map.outlier_threshold;
   const double threshold = span.is_everything() ? far : kHasty * far;
   for (const int outlier : outliers(graph(), errors, threshold, span)) {
@@ -92,17 +92,17 @@ void GpMap::judge_tracks(const NoiseLearner& noise, const TimeSpan& span) {
     if (graph().states[index(first_seen)].t > span.from) {
       become_outlier(outlier);
     } else {
-      slid_off(outlier, span.from);  // what it was before has been judged already
+      has_drifted(outlier, span.from);  // what it was before has been judged already
     }
   }
   for (const auto& [j, error] : errors) {
-    const std::optional<double> from = error.slides_from(threshold);
-    if (from && graph().landmarks[index(j)].alive) slid_off(j, *from);
+    const std::optional<double> from = error.drifts_from(threshold);
+    if (from && graph().landmarks[index(j)].alive) has_drifted(j, *from);
   }
 }
 
-void GpMap::slid_off(int landmark, double from) {
-  world_->engine.remove_observations(landmark, from);
+void GpMap::has_drifted(int landmark, double from) {
+  map_->engine.remove_observations(landmark, from);
   end_track_of(landmark, Track::Role::slid);
 }
 
@@ -122,11 +122,11 @@ void GpMap::weigh_tracks(const NoiseLearner& noise, const TimeSpan& span) {
   if (own.empty() || (running && median(std::move(scales)) > kTrackNoiseChange)) return;
   const double change = running ? kTrackNoiseChange : 1.0;
   for (const auto& [j, scale] : own) {
-    World::Known& known = world_->known[index(j)];
+    World::Known& known = map_->known[index(j)];
     if (scale < change * known.noise && scale > known.noise / change) continue;
     known.noise = scale;
     if (known.sigma_scale() != graph().landmarks[index(j)].sigma_scale)
-      world_->engine.scale_sigmas(j, known.sigma_scale());
+      map_->engine.scale_sigmas(j, known.sigma_scale());
   }
 }
 

@@ -1,4 +1,4 @@
-#include "backends/gp_map/recent_explanation.hpp"
+#include "backends/gp_map/recent_hypothesis.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -121,25 +121,25 @@ int work_of(const FactorGraph& problem) {
 
 }  // namespace
 
-std::optional<ExplanationSearch> ExplanationSearch::begin(const FactorGraph& graph, const StateRange& states,
-                                                          int enough, Supposed supposed, bool young) {
+std::optional<HypothesisSearch> HypothesisSearch::begin(const FactorGraph& graph, const StateRange& states,
+                                                          int enough, StructureHypothesis supposed, bool young) {
   auto part = newest_part(graph, states, index(enough), young);
   if (!part) return std::nullopt;
   FactorGraph problem = problem_of(graph, *part);
   auto beginning = suppose(supposed, problem, part->fresh.size());
   if (!beginning) return std::nullopt;
-  return ExplanationSearch(part->first, static_cast<int>(graph.landmarks.size()), std::move(part->fresh),
+  return HypothesisSearch(part->first, static_cast<int>(graph.landmarks.size()), std::move(part->fresh),
                            std::move(problem), std::move(*beginning));
 }
 
-Vector3 ExplanationSearch::Beginning::place(int landmark, const Vector3& p, const Vector3& ray) const {
+Vector3 HypothesisSearch::Beginning::place(int landmark, const Vector3& p, const Vector3& ray) const {
   const double nearest = usual / kMostOblique, farthest = usual * kMostOblique;
   if (!depths.empty()) return p + std::clamp(depths[index(landmark)], nearest, farthest) * ray;
   const double toward = normal.dot(ray), away = normal.dot(point - p);
   return p + (toward * away > 0.0 ? std::clamp(away / toward, nearest, farthest) : farthest) * ray;
 }
 
-std::optional<ExplanationSearch::Beginning> ExplanationSearch::suppose(Supposed supposed, const FactorGraph& problem,
+std::optional<HypothesisSearch::Beginning> HypothesisSearch::suppose(StructureHypothesis supposed, const FactorGraph& problem,
                                                                        std::size_t fresh) {
   struct Sight {
     Vector3 p, ray;  // of depth 1
@@ -163,13 +163,13 @@ std::optional<ExplanationSearch::Beginning> ExplanationSearch::suppose(Supposed 
   if (!middle.allFinite()) return std::nullopt;
   const SE3 &begin = problem.states.front().T, &end = problem.states.back().T;
   const Vector3 normal =
-      supposed == Supposed::dual_plane ? Vector3(end.p - begin.p) : Vector3(begin.R().col(2) + end.R().col(2));
-  if (supposed != Supposed::reversal) return Beginning{normal.normalized(), middle, usual, {}};
+      supposed == StructureHypothesis::dual_plane ? Vector3(end.p - begin.p) : Vector3(begin.R().col(2) + end.R().col(2));
+  if (supposed != StructureHypothesis::reversal) return Beginning{normal.normalized(), middle, usual, {}};
   for (double& depth : of_each) depth = depth > 0.0 ? usual * usual / depth : usual;
   return Beginning{normal.normalized(), middle, usual, std::move(of_each)};
 }
 
-ExplanationSearch::ExplanationSearch(int first, int landmarks_then, std::vector<int> fresh, FactorGraph problem,
+HypothesisSearch::HypothesisSearch(int first, int landmarks_then, std::vector<int> fresh, FactorGraph problem,
                                      Beginning beginning)
     : first_(first),
       landmarks_then_(landmarks_then),
@@ -183,7 +183,7 @@ ExplanationSearch::ExplanationSearch(int first, int landmarks_then, std::vector<
   through_.add_pose_prior(problem_.pose_priors.front());
 }
 
-bool ExplanationSearch::go_on() {
+bool HypothesisSearch::go_on() {
   for (int i = 0; i < passes_; ++i) {
     if (!pass()) return false;
   }
@@ -191,7 +191,7 @@ bool ExplanationSearch::go_on() {
 }
 
 /// Linearises the observations about once. False when there is nothing left to do.
-bool ExplanationSearch::pass() {
+bool HypothesisSearch::pass() {
   const int states = static_cast<int>(problem_.states.size());
   if (!other_) {
     const int until = std::min(states, gone_through_ + 1 + kStatesAPass);
@@ -203,7 +203,7 @@ bool ExplanationSearch::pass() {
     if (solve(*other_)) return true;
     if (!(cost_ + kAdvantage < evaluate(problem_).total())) return false;
     const int held = std::min(1, first_);
-    found_ = RecentExplanation{
+    found_ = RecentHypothesis{
         first_, {other_->graph().states.begin() + held, other_->graph().states.end()}, {}, -cost_, landmarks_then_};
     for (std::size_t j = 0; j < fresh_.size(); ++j) {
       found_->landmarks.emplace_back(fresh_[j], other_->graph().landmarks[j].position);
@@ -218,7 +218,7 @@ bool ExplanationSearch::pass() {
 }
 
 /// What comes into view with it begins where it is supposed to.
-void ExplanationSearch::add_state(int k) {
+void HypothesisSearch::add_state(int k) {
   through_.set_next_qc(problem_.qcs[index(k)]);
   add_extrapolated_state(through_, problem_.states[index(k)].t);
   for (const auto& group : problem_.intervals[index(k)].groups()) {
@@ -239,7 +239,7 @@ void ExplanationSearch::add_state(int k) {
 }
 
 /// The problem itself, with its expansions and without what held new landmarks to their beginnings.
-void ExplanationSearch::begin_solving() {
+void HypothesisSearch::begin_solving() {
   through_.settle();
   FactorGraph other = problem_;
   other.states = through_.graph().states;
@@ -251,7 +251,7 @@ void ExplanationSearch::begin_solving() {
 }
 
 /// One iteration. False, and its cost known, after the last one.
-bool ExplanationSearch::solve(Engine& engine) {
+bool HypothesisSearch::solve(Engine& engine) {
   const auto summary = engine.optimise(1, kRecentTolerance);
   cost_ = summary.final_cost;
   const bool vain = summary.final_cost == summary.initial_cost;
@@ -261,7 +261,7 @@ bool ExplanationSearch::solve(Engine& engine) {
   return !last;
 }
 
-void RecentExplanation::place_in(Engine& engine) const {
+void RecentHypothesis::place_in(Engine& engine) const {
   const FactorGraph& graph = engine.graph();
   const int end = first + static_cast<int>(states.size());
   const auto before = [&](int k) { return graph.states[index(k)].T; };

@@ -1,4 +1,4 @@
-#include "backends/gp_map/recent_explanation.hpp"
+#include "backends/gp_map/recent_hypothesis.hpp"
 
 #include <cstdint>
 #include <iterator>
@@ -8,18 +8,18 @@
 
 #include "backends/gp_map/engine/engine.hpp"
 #include "backends/gp_map/observation_follower.hpp"
-#include "backends/gp_map/testing/ambiguous_flight.hpp"
+#include "backends/gp_map/testing/ambiguous_sequence.hpp"
 #include "core/testing/catch2.hpp"
 
 namespace evbench::gp_map {
 namespace {
 
-using namespace ambiguous_flight;
+using namespace ambiguous_sequence;
 
 /// By a search that is gone through at once.
-std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, int first_state, int enough,
-                                                   Supposed supposed, bool young = false) {
-  auto search = ExplanationSearch::begin(graph, {first_state, static_cast<int>(graph.states.size()) - 1}, enough,
+std::optional<RecentHypothesis> try_alternatives(const FactorGraph& graph, int first_state, int enough,
+                                                   StructureHypothesis supposed, bool young = false) {
+  auto search = HypothesisSearch::begin(graph, {first_state, static_cast<int>(graph.states.size()) - 1}, enough,
                                          supposed, young);
   if (!search) return std::nullopt;
   while (search->go_on()) {
@@ -32,15 +32,15 @@ std::optional<RecentExplanation> explain_otherwise(const FactorGraph& graph, int
 TEST_CASE(
     "A local minimum, in which a plane and the way past it have changed places, gives way to the true explanation",
     "[slow]") {
-  for (const auto& [way, plane, young] : {std::tuple{Way{-0.4, 0.0}, Supposed::frontal_plane, false},
-                                          {Way{0.0, 0.4}, Supposed::dual_plane, false},
-                                          {Way{-0.4, 0.0}, Supposed::frontal_plane, true}}) {
+  for (const auto& [way, plane, young] : {std::tuple{Way{-0.4, 0.0}, StructureHypothesis::frontal_plane, false},
+                                          {Way{0.0, 0.4}, StructureHypothesis::dual_plane, false},
+                                          {Way{-0.4, 0.0}, StructureHypothesis::frontal_plane, true}}) {
     int found = 0;
     for (const std::uint64_t seed : {1, 2, 3}) {
       const Vector3 real = flight(way, seed, young).states.back().T.p;
       const FactorGraph wrong = misled(flight(way, seed, young));
       REQUIRE(cost(wrong) > cost(solved(flight(way, seed, young))) + 15.0);
-      const auto other = explain_otherwise(wrong, 0, kEnough, plane, young);
+      const auto other = try_alternatives(wrong, 0, kEnough, plane, young);
       if (!other) continue;
       CHECK((other->first == 0) == young);
       CHECK(other->first + std::ssize(other->states) == std::ssize(wrong.states));
@@ -66,8 +66,8 @@ TEST_CASE("A young map in which near and far have changed places can be turned o
     };
     REQUIRE(cost(reversed) > cost(truth) + 100.0);
     REQUIRE(error(reversed) > 0.3);
-    CHECK_FALSE(explain_otherwise(truth, 0, kEnough, Supposed::reversal, true));
-    const auto other = explain_otherwise(reversed, 0, kEnough, Supposed::reversal, true);
+    CHECK_FALSE(try_alternatives(truth, 0, kEnough, StructureHypothesis::reversal, true));
+    const auto other = try_alternatives(reversed, 0, kEnough, StructureHypothesis::reversal, true);
     if (!other) continue;
     Engine engine(reversed, {});
     other->place_in(engine);
@@ -82,7 +82,7 @@ TEST_CASE("A young map in which near and far have changed places can be turned o
 
 TEST_CASE("What has been added since another explanation was looked for goes along with it") {
   const FactorGraph wrong = misled(flight({-0.4, 0.0}, 1));
-  const auto other = explain_otherwise(wrong, 0, kEnough, Supposed::frontal_plane);
+  const auto other = try_alternatives(wrong, 0, kEnough, StructureHypothesis::frontal_plane);
   REQUIRE(other);
   Engine engine(wrong, {});
   add_extrapolated_state(engine, kStep * kStates);
@@ -118,13 +118,13 @@ TEST_CASE("The true explanation has no better one, and without known landmarks n
   for (const Way& way : {Way{-0.4, 0.0}, Way{0.0, 0.4}}) {
     const FactorGraph truth = solved(flight(way, 1)), wrong = misled(flight(way, 1));
     const bool turning = way.turn != 0.0;
-    REQUIRE(explain_otherwise(wrong, 0, kEnough, turning ? Supposed::frontal_plane : Supposed::dual_plane));
-    for (const Supposed plane : {Supposed::frontal_plane, Supposed::dual_plane}) {
-      CHECK_FALSE(explain_otherwise(truth, 0, kEnough, plane));
-      CHECK_FALSE(explain_otherwise(solved(flight(way, 1, true)), 0, kEnough, plane, true));
-      CHECK_FALSE(explain_otherwise(wrong, 1, kOld + 1, plane, true));  // marginalised: of a part alone
-      CHECK_FALSE(explain_otherwise(wrong, 0, kOld + 1, plane));
-      CHECK_FALSE(explain_otherwise(wrong, kStates - 20, kEnough, plane));  // too little of it may change
+    REQUIRE(try_alternatives(wrong, 0, kEnough, turning ? StructureHypothesis::frontal_plane : StructureHypothesis::dual_plane));
+    for (const StructureHypothesis plane : {StructureHypothesis::frontal_plane, StructureHypothesis::dual_plane}) {
+      CHECK_FALSE(try_alternatives(truth, 0, kEnough, plane));
+      CHECK_FALSE(try_alternatives(solved(flight(way, 1, true)), 0, kEnough, plane, true));
+      CHECK_FALSE(try_alternatives(wrong, 1, kOld + 1, plane, true));  // marginalised: of a part alone
+      CHECK_FALSE(try_alternatives(wrong, 0, kOld + 1, plane));
+      CHECK_FALSE(try_alternatives(wrong, kStates - 20, kEnough, plane));  // too little of it may change
     }
   }
 }

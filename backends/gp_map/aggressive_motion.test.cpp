@@ -1,4 +1,4 @@
-#include "backends/gp_map/violent_motion.hpp"
+#include "backends/gp_map/aggressive_motion.hpp"
 
 #include <cmath>
 #include <vector>
@@ -20,7 +20,7 @@ constexpr int kEnough = 6;         // landmarks
 /// seen so far aside of where they are expected [px], the i-th of them by i `turn` from the image's x axis on.
 double yields_to(int seen, double aside, double turn) {
   Engine engine = DrawnProblem({.qc = kDensity}, 1).solve_incrementally();
-  ViolentMotion motion(kEnough, 0.3, engine.graph().qc);
+  AggressiveMotion motion(kEnough, 0.3, engine.graph().qc);
   const double t = engine.graph().states.back().t + 0.005;
   std::vector<int> in_view;
   for (const auto& group : engine.graph().intervals.back().groups()) in_view.push_back(group.landmark);

@@ -23,10 +23,10 @@ double reappearance_error(const FactorGraph& graph, const Reappearance& seen);
 /// of those would be displaced by the same motion.
 ///
 /// If one motion of the camera explains most of them, and enough, it is supposed to have come about since most of them
-/// were seen in their places, in each of some ways (onset.hpp), and the problem is solved from there, at first with the
+/// were seen in their places, in each of some ways (jump_profile.hpp), and the problem is solved from there, at first with the
 /// newest pose held. The cheapest stays, if the landmarks do and its cost is not higher by more than these are worth:
 /// tracks that were followed wrongly fit the wrong motion. Else the estimate goes back to what it was, but for a
 /// Gauss-Newton step, and for landmarks that the engine can't place. Returns whether it stays.
-bool relocate(Engine& engine, std::span<const Reappearance> seen);
+bool correct_pose_jump(Engine& engine, std::span<const Reappearance> seen);
 
 }  // namespace evbench::gp_map

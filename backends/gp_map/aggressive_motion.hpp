@@ -15,11 +15,11 @@ double worth_weakening(double error, double most, const std::function<double(dou
 /// Keeps hold of a camera that moves more violently than the prior expects: brings the newest state to where its
 /// observations ask for it, by more Gauss-Newton steps where one has not arrived, and by a weaker prior where that one
 /// holds it back. The robust loss would else take good tracks for outliers.
-class ViolentMotion {
+class AggressiveMotion {
  public:
   /// `min_landmarks`: in view, with fewer nothing is concluded; `window`: in which a prior that has yielded is as it
   /// was again [s]; `qc`: the prior's density where nothing has yielded.
-  ViolentMotion(int min_landmarks, double window, const Vector6& qc)
+  AggressiveMotion(int min_landmarks, double window, const Vector6& qc)
       : min_landmarks_(min_landmarks), window_(window), qc_(qc) {}
 
   /// Once an update of the engine is done and may have left most tracks far from where they should be: what is needed

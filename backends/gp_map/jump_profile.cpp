@@ -1,4 +1,4 @@
-#include "backends/gp_map/onset.hpp"
+#include "backends/gp_map/jump_profile.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,8 +25,8 @@ std::vector<int> ties(const FactorGraph& graph, int first, const std::set<int>& 
   return result;
 }
 
-Onset spread(const FactorGraph& graph, int first, std::span<const int> ties) {
-  Onset result;
+JumpProfile spread(const FactorGraph& graph, int first, std::span<const int> ties) {
+  JumpProfile result;
   double sum = 0.0;
   for (std::size_t i = 0; i + 1 < ties.size(); ++i) {
     const std::size_t k = index(first) + i;
@@ -54,9 +54,9 @@ std::vector<int> loosest(const FactorGraph& graph, int first, std::span<const in
 
 }  // namespace
 
-std::vector<Onset> onsets(const FactorGraph& graph, int first, const std::set<int>& left_out) {
+std::vector<JumpProfile> jump_profiles(const FactorGraph& graph, int first, const std::set<int>& left_out) {
   const std::vector<int> tied = ties(graph, first, left_out);
-  std::vector<Onset> result;
+  std::vector<JumpProfile> result;
   for (const int i : loosest(graph, first, tied)) {
     std::fill_n(result.emplace_back(tied.size(), 1.0).begin(), i, 0.0);
   }

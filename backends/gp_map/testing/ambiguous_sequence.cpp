@@ -1,4 +1,4 @@
-#include "backends/gp_map/testing/ambiguous_flight.hpp"
+#include "backends/gp_map/testing/ambiguous_sequence.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -10,9 +10,9 @@
 #include "backends/gp_map/factors.hpp"
 #include "core/simulation/random.hpp"
 
-namespace evbench::gp_map::ambiguous_flight {
+namespace evbench::gp_map::ambiguous_sequence {
 
-FactorGraph flight(const Way& way, std::uint64_t seed, bool young, int states) {
+FactorGraph simulate_problem(const Way& way, std::uint64_t seed, bool young, int states) {
   Random random(seed);
   FactorGraph graph;
   graph.camera = {200.0, 200.0, 120.0, 90.0};
@@ -102,4 +102,4 @@ FactorGraph solved(FactorGraph graph) {
 
 double cost(const FactorGraph& graph) { return evaluate(graph).total(); }
 
-}  // namespace evbench::gp_map::ambiguous_flight
+}  // namespace evbench::gp_map::ambiguous_sequence

@@ -10,7 +10,7 @@
 namespace evbench::gp_map {
 
 /// Where all that came into view of late is supposed to lie, as a beginning.
-enum class Supposed {
+enum class StructureHypothesis {
   frontal_plane,  ///< parallel to the image: nothing is supposed about what is near and what is far
   dual_plane,     ///< normal to how the camera seems to have moved: where the other explanation of a plane has it
   reversal,       ///< what seems near is far, and what seems far near, as when Necker's cube turns over
@@ -22,7 +22,7 @@ struct StateRange {
 };
 
 /// Another explanation of what was seen of late.
-struct RecentExplanation {
+struct RecentHypothesis {
   int first = 0;                                   ///< state from which on it says something else
   std::vector<ControlState> states;                ///< from there on, the newest it was looked for in last
   std::vector<std::pair<int, Vector3>> landmarks;  ///< those that came into view since, world frame [units]
@@ -50,21 +50,21 @@ struct RecentExplanation {
 /// What has depth has another explanation, too, where little of it is in view and the camera has hardly moved: near and
 /// far change places, and so do the ways to the left and to the right (Necker's reversal; Szeliski and Kang, "Shape
 /// ambiguities in structure from motion", 1997).
-class ExplanationSearch {
+class HypothesisSearch {
  public:
   /// Of the newest part of these states, the oldest of which is the oldest one that is being estimated, or, when the
   /// map is young, nothing has been marginalised and states are few, of everything. None where fewer than `enough`
   /// landmarks are new, and where what is new lies behind the camera; of a part none either where it reaches back to
   /// the oldest state, where fewer than `enough` landmarks were known before, and where most of those seen in its
   /// newest interval were.
-  static std::optional<ExplanationSearch> begin(const FactorGraph& graph, const StateRange& states, int enough,
-                                                Supposed supposed, bool young = false);
+  static std::optional<HypothesisSearch> begin(const FactorGraph& graph, const StateRange& states, int enough,
+                                                StructureHypothesis supposed, bool young = false);
 
   /// Does a bounded share of the work. False when it has come to its end.
   bool go_on();
 
   /// At its end: nothing unless the other explanation's cost is clearly lower.
-  const std::optional<RecentExplanation>& found() const { return found_; }
+  const std::optional<RecentHypothesis>& found() const { return found_; }
 
  private:
   /// On a plane through the middle of what is new, or at a depth of its own.
@@ -76,9 +76,9 @@ class ExplanationSearch {
     /// Of a landmark, where a ray from p, of depth 1, meets it, within bounds.
     Vector3 place(int landmark, const Vector3& p, const Vector3& ray) const;
   };
-  static std::optional<Beginning> suppose(Supposed supposed, const FactorGraph& problem, std::size_t fresh);
+  static std::optional<Beginning> suppose(StructureHypothesis supposed, const FactorGraph& problem, std::size_t fresh);
 
-  ExplanationSearch(int first, int landmarks_then, std::vector<int> fresh, FactorGraph problem, Beginning beginning);
+  HypothesisSearch(int first, int landmarks_then, std::vector<int> fresh, FactorGraph problem, Beginning beginning);
   bool pass();
   void add_state(int k);
   void begin_solving();
@@ -97,7 +97,7 @@ class ExplanationSearch {
   std::optional<Engine> present_;  ///< solved from the present estimate
   int iterations_ = 0;
   double cost_ = 0.0;
-  std::optional<RecentExplanation> found_;
+  std::optional<RecentHypothesis> found_;
 };
 
 }  // namespace evbench::gp_map

@@ -1,4 +1,4 @@
-#include "backends/gp_map/onset.hpp"
+#include "backends/gp_map/jump_profile.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -27,9 +27,9 @@ struct Seen {
 };
 
 /// The state by which half of it has come about.
-int half(const Onset& onset, int first) {
+int half(const JumpProfile& jump_profile, int first) {
   return first +
-         static_cast<int>(std::ranges::find_if(onset, [](double share) { return share >= 0.5; }) - onset.begin());
+         static_cast<int>(std::ranges::find_if(jump_profile, [](double share) { return share >= 0.5; }) - jump_profile.begin());
 }
 
 }  // namespace
@@ -41,20 +41,20 @@ TEST_CASE("An unnoticed motion may have come about at once where few landmarks a
   seen.add(4, 1, 44);
   seen.add(30, 46, 60);
   const int first = 10;
-  const std::vector<Onset> all = onsets(seen.graph, first, {});
+  const std::vector<JumpProfile> all = jump_profiles(seen.graph, first, {});
   REQUIRE(all.size() == 4);
   CHECK(half(all[0], first) == 30);
-  for (const Onset& onset : all) {
-    REQUIRE(onset.size() == Seen::kStates - first);
-    CHECK(std::ranges::is_sorted(onset));
-    CHECK(onset.front() >= 0.0);
-    CHECK(onset[onset.size() - 2] == Approx(1.0));
-    CHECK(onset.back() == Approx(1.0));
+  for (const JumpProfile& jump_profile : all) {
+    REQUIRE(jump_profile.size() == Seen::kStates - first);
+    CHECK(std::ranges::is_sorted(jump_profile));
+    CHECK(jump_profile.front() >= 0.0);
+    CHECK(jump_profile[jump_profile.size() - 2] == Approx(1.0));
+    CHECK(jump_profile.back() == Approx(1.0));
   }
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < i; ++j) CHECK(std::abs(half(all[i], first) - half(all[j], first)) >= 10);  // 0.1 s
   }
-  const Onset& spread = all.back();
+  const JumpProfile& spread = all.back();
   CHECK(half(spread, first) == 30);  // most of it where least holds
   CHECK(spread[5] > 0.0);
   CHECK(spread[index(40 - first)] < 1.0);
@@ -65,7 +65,7 @@ TEST_CASE("Landmarks that are left out do not hide where the motion came about")
   seen.add(20, 1, 29);
   seen.add(20, 30, 60);
   seen.add(50, 20, 35);
-  const auto moment = [&](const std::set<int>& left_out) { return half(onsets(seen.graph, 10, left_out)[0], 10); };
+  const auto moment = [&](const std::set<int>& left_out) { return half(jump_profiles(seen.graph, 10, left_out)[0], 10); };
   CHECK(moment({}) != 30);
   std::set<int> hiding;
   for (int j = 40; j < 90; ++j) hiding.insert(j);
@@ -76,7 +76,7 @@ TEST_CASE("A motion since a moment ago came about at once, whichever interval it
   Seen seen;
   seen.add(10, 1, 60);
   const int first = Seen::kStates - 2;
-  for (const Onset& onset : onsets(seen.graph, first, {})) CHECK(onset == Onset{1.0, 1.0});
+  for (const JumpProfile& jump_profile : jump_profiles(seen.graph, first, {})) CHECK(jump_profile == JumpProfile{1.0, 1.0});
 }
 
 }  // namespace evbench::gp_map

@@ -1,4 +1,4 @@
-#include "backends/gp_map/relocation.hpp"
+#include "backends/gp_map/pose_jump.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "backends/gp_map/factors.hpp"
 #include "backends/gp_map/observation_follower.hpp"
-#include "backends/gp_map/onset.hpp"
+#include "backends/gp_map/jump_profile.hpp"
 #include "core/geometry/seen_point.hpp"
 #include "core/structure/point_image.hpp"
 #include "core/support/median.hpp"
@@ -156,7 +156,7 @@ class Estimate {
 
 /// Each state, and what was mostly seen since, by its share of a motion; what is seen again stays where it is.
 void displace(Engine& engine, const Estimate& estimate, int first, const SE3& motion, const std::set<int>& seen_again,
-              const Onset& share) {
+              const JumpProfile& share) {
   const FactorGraph& graph = engine.graph();
   const Vector6 increment = se3::log(motion);
   const auto motion_at = [&](int k) { return se3::exp(share[index(k - first)] * increment); };
@@ -203,7 +203,7 @@ double reappearance_error(const FactorGraph& graph, const Reappearance& seen) {
   return reprojection_error(interval_at(graph, seen.t), position, {seen.t, seen.pixel, 1.0}, graph.camera);
 }
 
-bool relocate(Engine& engine, std::span<const Reappearance> seen) {
+bool correct_pose_jump(Engine& engine, std::span<const Reappearance> seen) {
   const FactorGraph& graph = engine.graph();
   const auto found = unnoticed_motion(graph, seen);
   if (!found) return false;
@@ -221,9 +221,9 @@ bool relocate(Engine& engine, std::span<const Reappearance> seen) {
   const auto beyond_enough = static_cast<double>(found->explained.size() - kEnough);
   double most = cost_since(graph, dragged) + kDearerAnyway + kDearer * beyond_enough;
   std::optional<Estimate> other;
-  for (const Onset& onset : onsets(graph, first, seen_again)) {
+  for (const JumpProfile& jump_profile : jump_profiles(graph, first, seen_again)) {
     before.place_in(engine);
-    displace(engine, before, first, found->motion, seen_again, onset);
+    displace(engine, before, first, found->motion, seen_again, jump_profile);
     settle_held(engine);
     for (int step = 0; step < kSettlingSteps; ++step) engine.update();
     if (engine.first_state() >= dragged) {  // what it began from is settled by now

@@ -1,4 +1,4 @@
-#include "backends/gp_map/violent_motion.hpp"
+#include "backends/gp_map/aggressive_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +74,7 @@ double worth_weakening(double error, double most, const std::function<double(dou
   return kept;
 }
 
-UpdateSummary ViolentMotion::follow(Engine& engine, const NoiseLearner& noise, const UpdateSummary& update) const {
+UpdateSummary AggressiveMotion::follow(Engine& engine, const NoiseLearner& noise, const UpdateSummary& update) const {
   UpdateSummary last = update;
   const auto error = [&] { return newest_error(engine.graph(), noise); };
   settle(engine, last, error);
@@ -82,12 +82,12 @@ UpdateSummary ViolentMotion::follow(Engine& engine, const NoiseLearner& noise, c
   return last;
 }
 
-bool ViolentMotion::is_yielding(const FactorGraph& graph) const {
+bool AggressiveMotion::is_yielding(const FactorGraph& graph) const {
   constexpr double kRecovered = 1.5;
   return graph.qc.cwiseQuotient(qc_).maxCoeff() > kRecovered;
 }
 
-void ViolentMotion::recover(Engine& engine) const {
+void AggressiveMotion::recover(Engine& engine) const {
   const FactorGraph& graph = engine.graph();
   const double dt = graph.states.back().t - graph.states[graph.states.size() - 2].t;
   engine.set_next_qc((std::exp(-dt / window_) * graph.qc).cwiseMax(qc_));
@@ -96,7 +96,7 @@ void ViolentMotion::recover(Engine& engine) const {
 /// Median error of the tracks seen in the newest interval, each at its last observation [sigmas of what averages of the
 /// errors would be, as outliers are told by: trackers drift, and that is no motion; of a few sigmas at most, as many
 /// that drift together are no accident]; 0: too few.
-double ViolentMotion::newest_error(const FactorGraph& graph, const NoiseLearner& noise) const {
+double AggressiveMotion::newest_error(const FactorGraph& graph, const NoiseLearner& noise) const {
   constexpr double kMostDrift = 3.0;
   const std::size_t k = graph.states.size() - 1;
   const GpInterval interval(graph.states[k - 1], graph.states[k]);
