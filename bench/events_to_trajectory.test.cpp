@@ -141,8 +141,8 @@ TEST_CASE("The trajectory has seen an event within a tenth of a second, as long 
   for (const char* backend : {"gp_map", "bundle_adjustment"}) {
     const Execution execution = run(scene, Json::object(), "sequential", backend);
     REQUIRE(execution.result.segments.size() == 1);
-    const auto& told = execution.result.segments[0].told;
-    const std::optional<Delay> delay = delay_of(told);
+    const auto& published = execution.result.segments[0].published;
+    const std::optional<Delay> delay = delay_of(published);
     CAPTURE(backend);
     REQUIRE(delay);
     CHECK(delay->median >= kDelay - 1e-6);
@@ -150,8 +150,8 @@ TEST_CASE("The trajectory has seen an event within a tenth of a second, as long 
     CHECK(delay->p99 <= 0.1);
     CHECK(delay->max <= 0.1);
     // Nor does it wait with what it tells: from the first pose on there is a newer one at all times.
-    double before = told.front().t;
-    for (const CausalPose& pose : told) {
+    double before = published.front().t;
+    for (const CausalPose& pose : published) {
       if (pose.t <= before) continue;
       CHECK(pose.t - before < 0.1);
       before = pose.t;

@@ -134,7 +134,7 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
 void write_segment(const AtomicFolder& folder, const TrajectorySegment& segment, const std::string& suffix) {
   folder.write("final" + suffix + ".tum", format_tum(segment.final_trajectory));
   folder.write("causal" + suffix + ".tum", format_tum(segment.causal_trajectory));
-  folder.write("causal_poses" + suffix + ".txt", format_causal_poses(segment.told));
+  folder.write("causal_poses" + suffix + ".txt", format_causal_poses(segment.published));
   if (!segment.relative.empty()) folder.write("covariance" + suffix + ".txt", format_relative_poses(segment.relative));
   folder.write("map" + suffix + ".ply", format_map(segment.map));
 }

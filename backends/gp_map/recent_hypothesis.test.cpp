@@ -37,9 +37,9 @@ TEST_CASE(
                                           {Way{-0.4, 0.0}, StructureHypothesis::frontal_plane, true}}) {
     int found = 0;
     for (const std::uint64_t seed : {1, 2, 3}) {
-      const Vector3 real = flight(way, seed, young).states.back().T.p;
-      const FactorGraph wrong = misled(flight(way, seed, young));
-      REQUIRE(cost(wrong) > cost(solved(flight(way, seed, young))) + 15.0);
+      const Vector3 real = simulate_problem(way, seed, young).states.back().T.p;
+      const FactorGraph wrong = misled(simulate_problem(way, seed, young));
+      REQUIRE(cost(wrong) > cost(solved(simulate_problem(way, seed, young))) + 15.0);
       const auto other = try_alternatives(wrong, 0, kEnough, plane, young);
       if (!other) continue;
       CHECK((other->first == 0) == young);
@@ -60,7 +60,7 @@ TEST_CASE(
 TEST_CASE("A young map in which near and far have changed places can be turned over once more", "[slow]") {
   int better = 0, right = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
-    const FactorGraph truth = solved(flight({}, seed, true)), reversed = turned_over(truth);
+    const FactorGraph truth = solved(simulate_problem({}, seed, true)), reversed = turned_over(truth);
     const auto error = [&truth](const FactorGraph& graph) {
       return (graph.states.back().T.p - truth.states.back().T.p).norm();
     };
@@ -81,7 +81,7 @@ TEST_CASE("A young map in which near and far have changed places can be turned o
 }
 
 TEST_CASE("What has been added since another explanation was looked for goes along with it") {
-  const FactorGraph wrong = misled(flight({-0.4, 0.0}, 1));
+  const FactorGraph wrong = misled(simulate_problem({-0.4, 0.0}, 1));
   const auto other = try_alternatives(wrong, 0, kEnough, StructureHypothesis::frontal_plane);
   REQUIRE(other);
   Engine engine(wrong, {});
@@ -116,12 +116,12 @@ TEST_CASE("What has been added since another explanation was looked for goes alo
 
 TEST_CASE("The true explanation has no better one, and without known landmarks none is looked for but in a young map") {
   for (const Way& way : {Way{-0.4, 0.0}, Way{0.0, 0.4}}) {
-    const FactorGraph truth = solved(flight(way, 1)), wrong = misled(flight(way, 1));
+    const FactorGraph truth = solved(simulate_problem(way, 1)), wrong = misled(simulate_problem(way, 1));
     const bool turning = way.turn != 0.0;
     REQUIRE(try_alternatives(wrong, 0, kEnough, turning ? StructureHypothesis::frontal_plane : StructureHypothesis::dual_plane));
     for (const StructureHypothesis plane : {StructureHypothesis::frontal_plane, StructureHypothesis::dual_plane}) {
       CHECK_FALSE(try_alternatives(truth, 0, kEnough, plane));
-      CHECK_FALSE(try_alternatives(solved(flight(way, 1, true)), 0, kEnough, plane, true));
+      CHECK_FALSE(try_alternatives(solved(simulate_problem(way, 1, true)), 0, kEnough, plane, true));
       CHECK_FALSE(try_alternatives(wrong, 1, kOld + 1, plane, true));  // marginalised: of a part alone
       CHECK_FALSE(try_alternatives(wrong, 0, kOld + 1, plane));
       CHECK_FALSE(try_alternatives(wrong, kStates - 20, kEnough, plane));  // too little of it may change

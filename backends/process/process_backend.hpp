@@ -44,7 +44,7 @@ class ProcessBackEnd : public BackEnd {
   PoseTrajectory trajectory_;
   std::vector<Landmark> map_;
   std::vector<UpdateRecord> updates_;
-  bool has_published_ = false;  ///< an causal pose
+  bool has_published_ = false;  ///< a causal pose
   int left_out_ = 0;   ///< observations that are not finite
 };
 

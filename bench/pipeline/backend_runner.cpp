@@ -61,7 +61,7 @@ BackEndRunner::BackEndRunner(const MakeBackEnd& make, BackEndContext context, co
 void BackEndRunner::begin() {
   auto estimator = std::make_unique<Estimator>(estimators_.size());
   BackEndContext context = context_;
-  context.publish = [this, &heard = *estimator](const CausalPose& pose) { heard.hear(pose, until_, seen_); };
+  context.publish = [this, &received = *estimator](const CausalPose& pose) { received.on_pose(pose, until_, seen_); };
   remembered_.clear();
   begun_ = next_relocalisation_ = until_;
   found_.reset();
@@ -154,11 +154,11 @@ void BackEndRunner::expect_remembered(Feedback& feedback) const {
   constexpr double kSigma = 1.5;  // [px], of worlds that were found in one another
   if (!feedback.newest) return;
   const SE3 T = extrapolate(*feedback.newest, until_ - feedback.newest->t).T.inverse();
-  std::set<TrackId> told;
-  for (const ExpectedFeature& feature : feedback.expected) told.insert(feature.track);
+  std::set<TrackId> published;
+  for (const ExpectedFeature& feature : feedback.expected) published.insert(feature.track);
   for (const auto& [track, position] : remembered_) {
     const Vector3 seen = T * position;
-    if (!(seen.z() > 0.0) || told.contains(track)) continue;
+    if (!(seen.z() > 0.0) || published.contains(track)) continue;
     const Vector2 pixel = context_.camera.project(seen);
     const Matrix2 covariance = kSigma * kSigma * Matrix2::Identity();
     if (in_view(context_.camera, pixel, kLensReach)) feedback.expected.push_back({track, position, pixel, covariance});
@@ -243,7 +243,7 @@ void BackEndRunner::add_segments(double rate, RunResult& result) {
     result.learnt = backend.estimated_parameters();
     result.updates.insert(result.updates.end(), backend.updates().begin(), backend.updates().end());
     const std::size_t stood_in = estimator->world;
-    std::vector<CausalPose> told_there = std::move(estimator->told_there);
+    std::vector<CausalPose> published_in_world = std::move(estimator->published_in_world);
     estimator->stand_alone();
     for (std::size_t i = estimator->number; relocalises_ && i-- > 0 && !estimator->is_elsewhere();) {
       if (!has_segment[i]) continue;
@@ -257,10 +257,10 @@ void BackEndRunner::add_segments(double rate, RunResult& result) {
       result.segments.push_back(std::move(*segment));
     } else {
       const Status status = estimator->status();
-      std::erase_if(told_there, [&](const CausalPose& pose) {
+      std::erase_if(published_in_world, [&](const CausalPose& pose) {
         return stood_in != estimator->world || (status.state == RunState::lost && pose.t > status.time);
       });
-      go_on(result.segments[entry->second], std::move(*segment), estimator->to_world, std::move(told_there));
+      go_on(result.segments[entry->second], std::move(*segment), estimator->to_world, std::move(published_in_world));
     }
   }
   result.status = merged_status(has_segment);

@@ -12,7 +12,7 @@ namespace evbench {
 /// takes is the harness'.
 class CovarianceSamples {
  public:
-  /// After an update: of the newest pose told, unless another one was asked for less than 0.1 s before.
+  /// After an update: of the newest pose published, unless another one was asked for less than 0.1 s before.
   void take(const StampedPose& newest, BackEnd& backend);
 
   /// After the end: the newest poses that were taken, relative to the first pose of the final estimate, which holds the

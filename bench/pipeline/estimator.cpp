@@ -45,23 +45,23 @@ std::vector<SE3> views_of(const PoseTrajectory& trajectory) {
 
 /// A pose ahead of the data counts as known when its time has come. A back-end knows the times of the observations that
 /// it makes poses from; where a front-end tells those late, the poses are known as much later.
-void Estimator::hear(CausalPose pose, double until, double seen) {
+void Estimator::on_pose(CausalPose pose, double until, double seen) {
   if (!std::isfinite(pose.t) || !is_finite(pose) || (pose.velocity && !pose.velocity->allFinite())) {
     throw std::runtime_error(fmt::format("the back-end's pose at {:.6f} s is not finite", pose.t));
   }
   const double now = std::max(pose.t, pose.known_at.value_or(seen));
-  if (!told.empty() && !(now >= said)) {
+  if (!published.empty() && !(now >= last_known_at)) {
     throw std::runtime_error(
-        fmt::format("the back-end told an causal pose as known at {:.6f} s after one known at {:.6f} s", now, said));
+        fmt::format("the back-end told a causal pose as known at {:.6f} s after one known at {:.6f} s", now, last_known_at));
   }
-  said = now;
+  last_known_at = now;
   const double complete = pose.known_at.value_or(seen), late = seen - until;
   pose.known_at = std::max(pose.t, complete < seen ? std::min(complete + late, seen) : complete);
   // What comes less late than what was told before it has waited for that.
-  if (!told.empty()) pose.known_at = std::max(*pose.known_at, *told.back().known_at);
-  told.push_back(pose);
+  if (!published.empty()) pose.known_at = std::max(*pose.known_at, *published.back().known_at);
+  published.push_back(pose);
   if (!newest || pose.t >= newest->t) newest = pose;
-  if (is_elsewhere()) told_there.push_back(carried(pose, to_world));
+  if (is_elsewhere()) published_in_world.push_back(carried(pose, to_world));
 }
 
 std::vector<Landmark> Estimator::trusted_map() const {
@@ -78,7 +78,7 @@ std::optional<Estimator::Found> Estimator::find_in(const Estimator& other, const
 }
 
 void Estimator::stand_in(const Found& found) {
-  if (world != found.world) told_there.clear();
+  if (world != found.world) published_in_world.clear();
   world = found.world;
   to_world = found.to_world;
 }
@@ -97,10 +97,10 @@ std::optional<TrajectorySegment> Estimator::segment(double rate) {
   // What was told after the data had ended is no estimate from data.
   if (its_status.state == RunState::lost) {
     const auto late = [&](const CausalPose& pose) { return pose.t > its_status.time; };
-    std::erase_if(told, late);
+    std::erase_if(published, late);
   }
-  result.told = std::move(told);
-  result.causal_trajectory = newest_poses(result.told);
+  result.published = std::move(published);
+  result.causal_trajectory = newest_poses(result.published);
   result.map = trusted_map();
   result.problem = backend->problem();
   result.relative = covariances.finish(*backend);

@@ -12,15 +12,15 @@
 
 namespace evbench {
 
-/// One of a run's back-ends, what it told, and in whose world it stands: in its own, until landmarks that both have
+/// One of a run's back-ends, what it published, and in whose world it stands: in its own, until landmarks that both have
 /// show where that lies in the world of one before it.
 struct Estimator {
   explicit Estimator(std::size_t its_number) : number(its_number), world(its_number) {}
 
   std::size_t number;  ///< from 0, in the order in which they are made
   std::unique_ptr<BackEnd> backend;
-  std::vector<CausalPose> told;       ///< in its own world
-  double said = 0.0;                  ///< [s], when the last of these was known, in the back-end's words
+  std::vector<CausalPose> published;       ///< in its own world
+  double last_known_at = 0.0;                  ///< [s], when the last of these was known, in the back-end's words
   std::optional<StampedPose> newest;  ///< of these
   CovarianceSamples covariances;
 
@@ -29,7 +29,7 @@ struct Estimator {
 
   std::size_t world;                     ///< number of the estimator whose world it is
   Similarity to_world;                   ///< carries its own world to that one
-  std::vector<CausalPose> told_there{};  ///< what it told since it was found there, in that world
+  std::vector<CausalPose> published_in_world{};  ///< what it told since it was found there, in that world
 
   void stand_alone() {
     world = number;
@@ -42,7 +42,7 @@ struct Estimator {
 
   /// Takes a pose that was told while data up to `seen` were looked at, of which a batch up to `until` was made [s].
   /// Throws std::runtime_error for one that is not finite or known before what was told already.
-  void hear(CausalPose pose, double until, double seen);
+  void on_pose(CausalPose pose, double until, double seen);
 
   /// But for landmarks of doubtful tracks.
   std::vector<Landmark> trusted_map() const;

@@ -43,7 +43,7 @@ struct RunResult {
   double peak_rss_mib = 0.0;  ///< of the process during the run, source and tracks included
   std::string tracks_sha256;  ///< of all that the back-end was given: equal for runs that can be compared
   std::size_t observations = 0;
-  std::optional<TrackBatch> tracks;  ///< all that the front-end told, raw pixels; where it is to be kept
+  std::optional<TrackBatch> tracks;  ///< all that the front-end published, raw pixels; where it is to be kept
   std::vector<std::string> log;
 };
 

@@ -61,13 +61,13 @@ class Listener : public FrontEnd {
   }
   FeedbackNeeds needs() const override { return needs_; }
   void receive(const Feedback& feedback) override {
-    heard.push_back({feedback.t, until_});
+    received.push_back({feedback.t, until_});
     states.push_back(feedback.state);
     if (feedback.newest) shift_ = 0.1 * std::sin(1000.0 * feedback.newest->T.p.x());
   }
 
   int exchanges = 0;
-  std::vector<std::pair<double, double>> heard;  ///< time of the feedback, data time at which it came
+  std::vector<std::pair<double, double>> received;  ///< time of the feedback, data time at which it came
   std::vector<TrackingState> states;
 
  private:
@@ -163,8 +163,8 @@ TEST_CASE("Sequential and concurrent runs give the same bytes, whatever the feed
       CHECK(sequential.tracks_sha256 == concurrent.tracks_sha256);
       CHECK(same(sequential.segments.at(0).final_trajectory, concurrent.segments.at(0).final_trajectory));
       CHECK(same(sequential.segments.at(0).causal_trajectory, concurrent.segments.at(0).causal_trajectory));
-      CHECK(one.heard == two.heard);
-      CHECK(one.heard.size() > 100);
+      CHECK(one.received == two.received);
+      CHECK(one.received.size() > 100);
     }
   }
 }
@@ -195,14 +195,14 @@ TEST_CASE("What a front-end tells late is known late, and feedback waits for it,
   options.mode = "concurrent";
   const RunResult concurrent = run(two, 1.0, options);
   CHECK(sequential.tracks_sha256 == concurrent.tracks_sha256);
-  CHECK(one.heard == two.heard);
+  CHECK(one.received == two.received);
   REQUIRE(sequential.segments.size() == 1);
-  const auto& told = sequential.segments[0].told;
-  REQUIRE(told.size() > 50);
-  for (std::size_t i = 1; i + 4 < told.size(); ++i) {                                     // but for those at the ends
+  const auto& published = sequential.segments[0].published;
+  REQUIRE(published.size() > 50);
+  for (std::size_t i = 1; i + 4 < published.size(); ++i) {                                     // but for those at the ends
     CHECK(*told[i].known_at == Approx(told[i].t + LateListener::kDelay).margin(0.0011));  // a millisecond a pose
   }
-  CHECK(told.back().t == Approx(1.0));
+  CHECK(published.back().t == Approx(1.0));
   CHECK(sequential.observations == tracks({{0.0, 1.0}}).size());
 }
 
@@ -232,18 +232,18 @@ TEST_CASE("A back-end that says itself when it knew a pose knows it as late, whe
   LateListener late(tracks({{0.0, 1.0}}), {});
   const RunResult result = run(late, 1.0, {}, make);
   REQUIRE(result.segments.size() == 1);
-  const auto& told = result.segments[0].told;
-  REQUIRE(told.size() > 500);
-  for (const CausalPose& pose : told) {
+  const auto& published = result.segments[0].published;
+  REQUIRE(published.size() > 500);
+  for (const CausalPose& pose : published) {
     if (pose.t < 0.05 || pose.t > 0.9) continue;
     CHECK(*pose.known_at == Approx(pose.t + LateListener::kDelay).margin(1e-9));
   }
-  CHECK(std::ranges::is_sorted(told, {}, [](const CausalPose& pose) { return *pose.known_at; }));
+  CHECK(std::ranges::is_sorted(published, {}, [](const CausalPose& pose) { return *pose.known_at; }));
 
   Listener prompt(tracks({{0.0, 1.0}}), {});
   const RunResult at_once = run(prompt, 1.0, {}, make);
   REQUIRE(at_once.segments.size() == 1);
-  for (const CausalPose& pose : at_once.segments[0].told) CHECK(*pose.known_at == pose.t);
+  for (const CausalPose& pose : at_once.segments[0].published) CHECK(*pose.known_at == pose.t);
 }
 
 TEST_CASE("Feedback reaches the front-end after the latency in data time, in order, each once") {
@@ -252,19 +252,19 @@ TEST_CASE("Feedback reaches the front-end after the latency in data time, in ord
   Listener frontend(tracks({{0.0, 1.0}}), {true, false, false});
   run(frontend, 1.0, options);
   double before = 0.0;
-  for (const auto& [t, now] : frontend.heard) {
+  for (const auto& [t, now] : frontend.received) {
     CHECK(t > before);
     CHECK(now >= t + 0.025 - 1e-9);
     CHECK(now < t + 0.025 + 0.01 + 1e-9);
     before = t;
   }
-  CHECK(frontend.heard.size() == 96);  // the last exchange begins at 0.99 s: what was known up to 0.96 s
+  CHECK(frontend.received.size() == 96);  // the last exchange begins at 0.99 s: what was known up to 0.96 s
 }
 
 TEST_CASE("A front-end that needs no feedback is told nothing, and gives every back-end the same tracks") {
   Listener frontend(tracks({{0.0, 1.0}}), {});
   run(frontend, 1.0);
-  CHECK(frontend.heard.empty());
+  CHECK(frontend.received.empty());
 }
 
 TEST_CASE("Feedback is of raw pixels, and says where the estimate stands") {
@@ -481,13 +481,13 @@ TEST_CASE("What a back-end tells of an older time again is kept beside the causa
   Listener frontend(tracks({{0.0, 1.0}}), {});
   const RunResult result =
       run(frontend, 1.0, {}, [](const BackEndContext& context) { return std::make_unique<Smooths>(context); });
-  const std::vector<CausalPose>& told = result.segments.at(0).told;
+  const std::vector<CausalPose>& published = result.segments.at(0).published;
   const PoseTrajectory& causal = result.segments.at(0).causal_trajectory;
   CHECK(causal.size() == 100);
-  CHECK(told.size() == 150);
-  CHECK(told.back().t == Approx(0.795));
-  CHECK(told.back().known_at == Approx(1.0));
-  CHECK(told[told.size() - 2].known_at == Approx(0.998));
+  CHECK(published.size() == 150);
+  CHECK(published.back().t == Approx(0.795));
+  CHECK(published.back().known_at == Approx(1.0));
+  CHECK(told[published.size() - 2].known_at == Approx(0.998));
 }
 
 TEST_CASE("Free-running, feedback comes as soon as it is there, and the log says that the run can't be repeated") {
@@ -496,6 +496,6 @@ TEST_CASE("Free-running, feedback comes as soon as it is there, and the log says
   options.latency = 5.0;
   Listener frontend(tracks({{0.0, 2.0}}), {true, false, false});
   const RunResult result = run(frontend, 2.0, options);
-  CHECK_FALSE(frontend.heard.empty());
+  CHECK_FALSE(frontend.received.empty());
   CHECK_THAT(result.log.back(), ContainsSubstring("not reproducible"));
 }

@@ -38,15 +38,15 @@ class View : public Source {
   PoseTrajectory truth_;
 };
 
-/// Twenty tracks before the gap, and twenty after it of which `common` are the same. Keeps what it is told.
+/// Twenty tracks before the gap, and twenty after it of which `common` are the same. Keeps what it is published.
 class Tracks : public FrontEnd {
  public:
   explicit Tracks(TrackId common) : observations_(made(common)), player_(observations_, ends_at_gap()) {}
   bool advance(const Horizon& horizon, TrackBatch& batch) override { return player_.advance(horizon, batch); }
   FeedbackNeeds needs() const override { return {true, true, true}; }
-  void receive(const Feedback& feedback) override { heard.push_back(feedback); }
+  void receive(const Feedback& feedback) override { received.push_back(feedback); }
 
-  std::vector<Feedback> heard;
+  std::vector<Feedback> received;
 
  private:
   static std::vector<TrackEnd> ends_at_gap() {
@@ -160,7 +160,7 @@ TEST_CASE("After a loss the run goes on in the same world where landmarks of bef
   CHECK(std::ranges::none_of(segment.final_trajectory.poses(), in_gap));
   CHECK(segment.map.size() == 28);
   for (const Landmark& landmark : segment.map) CHECK((landmark.position - point_of(landmark.track)).norm() < 1e-4);
-  for (const CausalPose& pose : segment.told) CHECK(pose.velocity->tail<3>().norm() == Approx(0.1).epsilon(1e-3));
+  for (const CausalPose& pose : segment.published) CHECK(pose.velocity->tail<3>().norm() == Approx(0.1).epsilon(1e-3));
   CHECK(std::ranges::any_of(result.log, [](const std::string& line) {
     return line.find("found in the world of before, by ") != std::string::npos;
   }));
@@ -170,11 +170,11 @@ TEST_CASE("Once the camera is found in the world of before, the front-end is tol
   Tracks tracks(12);
   run(tracks);
   const auto in = [&](std::size_t world) {
-    return std::ranges::count_if(tracks.heard, [&](const Feedback& f) { return f.newest && f.world == world; });
+    return std::ranges::count_if(tracks.received, [&](const Feedback& f) { return f.newest && f.world == world; });
   };
   CHECK(in(0) > 100);
   CHECK(in(1) > 0);  // until it is found
-  const Feedback& last = tracks.heard.back();
+  const Feedback& last = tracks.received.back();
   CHECK(last.world == 0);
   REQUIRE(last.newest);
   CHECK((last.newest->T.p - truth(last.newest->t).p).norm() < 1e-4);
@@ -203,5 +203,5 @@ TEST_CASE("After a loss the trajectory is in segments where too little of before
     CHECK(result.segments[1].final_trajectory.start() >= kAgain);
     CHECK(result.segments[1].map.size() == 20);
   }
-  CHECK(strangers.heard.back().world == 1);
+  CHECK(strangers.received.back().world == 1);
 }

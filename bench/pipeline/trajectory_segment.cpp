@@ -21,7 +21,7 @@ CausalPose carried(CausalPose pose, const Similarity& transform) {
   return pose;
 }
 
-void go_on(TrajectorySegment& segment, TrajectorySegment later, const Similarity& transform, std::vector<CausalPose> told) {
+void go_on(TrajectorySegment& segment, TrajectorySegment later, const Similarity& transform, std::vector<CausalPose> published) {
   segment.covered += later.covered;
   std::vector<StampedPose> poses = std::move(segment.final_trajectory).poses();
   const double end = poses.back().t;
@@ -29,8 +29,8 @@ void go_on(TrajectorySegment& segment, TrajectorySegment later, const Similarity
     if (pose.t > end) poses.push_back({pose.t, transform * pose.T});
   }
   segment.final_trajectory = PoseTrajectory(std::move(poses), "the back-ends' trajectory");
-  segment.told.insert(segment.told.end(), told.begin(), told.end());
-  segment.causal_trajectory = newest_poses(segment.told);
+  segment.published.insert(segment.published.end(), published.begin(), published.end());
+  segment.causal_trajectory = newest_poses(segment.published);
   std::map<TrackId, Vector3> map;
   for (const Landmark& landmark : segment.map) map[landmark.track] = landmark.position;
   for (const Landmark& landmark : later.map) map[landmark.track] = transform * landmark.position;
@@ -41,9 +41,9 @@ void go_on(TrajectorySegment& segment, TrajectorySegment later, const Similarity
   }
 }
 
-PoseTrajectory newest_poses(const std::vector<CausalPose>& told) {
+PoseTrajectory newest_poses(const std::vector<CausalPose>& published) {
   std::vector<StampedPose> poses;
-  for (const CausalPose& pose : told) {
+  for (const CausalPose& pose : published) {
     if (poses.empty() || pose.t > poses.back().t) poses.push_back(pose);
   }
   return PoseTrajectory(std::move(poses), "the causal trajectory");

@@ -17,7 +17,7 @@ namespace evbench {
 struct TrajectorySegment {
   PoseTrajectory final_trajectory;   ///< after the fact, at the rate asked for; no poses while lost
   PoseTrajectory causal_trajectory;  ///< causal, the back-end's own times: each pose as it was first told
-  std::vector<CausalPose> told;      ///< all that was told while the data came in, known_at set
+  std::vector<CausalPose> published;      ///< all that was told while the data came in, known_at set
   std::vector<Landmark> map;
   /// That the back-end ended with, where it has one: of several, the first one's.
   std::optional<Problem> problem;
@@ -33,9 +33,9 @@ CausalPose carried(CausalPose pose, const Similarity& transform);
 
 /// A later segment goes on in the world of an earlier one, to which `transform` carries its own. What it told then,
 /// `told`, is in that world already. Landmarks that both have are where the later one saw them.
-void go_on(TrajectorySegment& segment, TrajectorySegment later, const Similarity& transform, std::vector<CausalPose> told);
+void go_on(TrajectorySegment& segment, TrajectorySegment later, const Similarity& transform, std::vector<CausalPose> published);
 
-/// Each pose that was the newest when it was told.
-PoseTrajectory newest_poses(const std::vector<CausalPose>& told);
+/// Each pose that was the newest when it was published.
+PoseTrajectory newest_poses(const std::vector<CausalPose>& published);
 
 }  // namespace evbench
