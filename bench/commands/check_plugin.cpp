@@ -94,7 +94,7 @@ void choose(std::vector<Kind>& kinds, const std::vector<std::string>& names) {
   }
   for (const std::string& name : names) {
     if (std::ranges::find(known, name) != known.end()) continue;
-    throw InputError(fmt::format("check-plugin: no plugin is called \"{}\"{}", name, suggestion(name, known)));
+    throw InputError(fmt::format("no plugin is called \"{}\"{}", name, suggestion(name, known)));
   }
   for (Kind& kind : kinds) {
     std::erase_if(kind.plugins, [&](const auto& item) {

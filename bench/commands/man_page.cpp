@@ -45,7 +45,9 @@ std::string item(const CLI::Option& option) {
     if (!(option.get_positional() && type == "TEXT")) text += " \\fI" + escaped(type) + "\\fR";
     if (!option.get_default_str().empty()) text += escaped(" (" + option.get_default_str() + ")");
   }
-  return text + "\n" + escaped(option.get_description()) + "\n";
+  text += "\n" + escaped(option.get_description());
+  if (!option.get_envname().empty()) text += escaped("; also set by the environment variable " + option.get_envname());
+  return text + "\n";
 }
 
 std::string items(const CLI::App& command) {

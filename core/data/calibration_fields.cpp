@@ -117,7 +117,7 @@ Camera checked_camera(const std::string& place, const std::vector<double>& intri
 }
 
 std::vector<double> matrix_intrinsics(const std::string& place, std::span<const double> K) {
-  if (K.size() != 9 || K[1] != 0.0) {
+  if (K.size() != 9 || K[1] != 0.0 || K[3] != 0.0 || K[6] != 0.0 || K[7] != 0.0 || K[8] != 1.0) {
     throw InputError(fmt::format("{}: is no camera matrix; expected fx 0 cx 0 fy cy 0 0 1", place));
   }
   return {K[0], K[4], K[2], K[5]};

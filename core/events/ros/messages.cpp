@@ -122,6 +122,13 @@ std::optional<CameraInfo> parse_camera_info(std::span<const std::byte> data, Wir
   for (double& value : info.D) value = fields.get<double>();
   for (double& value : info.K) value = fields.get<double>();
   if (!fields.ok()) return std::nullopt;
+  constexpr int kRectification = 9 + 12;  // R, P
+  for (int i = 0; i < kRectification; ++i) fields.get<double>();
+  const auto binning_x = fields.get<std::uint32_t>(), binning_y = fields.get<std::uint32_t>();
+  const auto x = fields.get<std::uint32_t>(), y = fields.get<std::uint32_t>();
+  const auto height = fields.get<std::uint32_t>(), width = fields.get<std::uint32_t>();
+  const bool is_region = x > 0 || y > 0 || (height > 0 && height < info.height) || (width > 0 && width < info.width);
+  info.is_partial = fields.ok() && (binning_x > 1 || binning_y > 1 || is_region);
   return info;
 }
 

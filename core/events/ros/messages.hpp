@@ -38,6 +38,8 @@ struct CameraInfo {
   std::string distortion_model;
   std::vector<double> D;
   std::array<double, 9> K{};
+  /// The image is a part of the sensor or has fewer pixels than it (region of interest, binning), of which K is not.
+  bool is_partial = false;
 };
 
 // Each returns nothing when the message is broken.

@@ -131,6 +131,15 @@ TEST_CASE("A camera info is checked as a calibration file is") {
     CHECK_THROWS_AS(read("plumb_bob", {}, {wrong, 0, 120, 0, 198, 90, 0, 0, 1}), InputError);
     CHECK_THROWS_AS(read("plumb_bob", {}, {199, 0, wrong, 0, 198, 90, 0, 0, 1}), InputError);
   }
+  CHECK_THROWS_WITH(read("plumb_bob", {}, {199, 0, 120, 0, 198, 90, 0, 0, 2}), ContainsSubstring("is no camera matrix"));
+  const std::string whole = camera_info(240, 180);
+  const std::size_t binning = whole.size() - 200 + 21 * sizeof(double);  // behind R and P; then the region of interest
+  for (const std::size_t field : {binning, binning + 4, binning + 8, binning + 12, binning + 16, binning + 20}) {
+    std::string partial = whole;
+    partial[field] = 2;
+    CHECK_THROWS_WITH(open_bag(folder, {{"/davis/left/camera_info", partial}}, {})->calibration(),
+                      ContainsSubstring("/davis/left/camera_info: is of a binned image or of a region of interest"));
+  }
   CHECK_THROWS_WITH(read("plumb_bob", {}, {0, 0, 120, 0, 0, 90, 0, 0, 1}), ContainsSubstring("fx fy cx cy 0 0 120 90"));
   CHECK_THROWS_WITH(read("plumb_bob", {}, {199, 0, 300, 0, 198, 90, 0, 0, 1}), ContainsSubstring("240x180"));
   CHECK_FALSE(read("plumb_bob", {}, {}));  // ROS's sign for a camera that is not calibrated

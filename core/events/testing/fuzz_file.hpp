@@ -39,9 +39,14 @@ inline int fuzz_file(const std::uint8_t* data, std::size_t size, const EventForm
   const auto head = std::as_bytes(std::span(data, std::min(size, kHead)));
   if (head.empty() || !format.recognises("fuzz", head)) return 0;
   const FuzzFile file(data, size);
-  try {
-    exercise(*format.open(file.path(), {}));
-  } catch (const InputError&) {
+  for (const char* const columns : {"", "x,y,t_us,p"}) {
+    if (*columns != '\0' && !format.has_columns) continue;
+    ReadOptions options;
+    options.columns = columns;
+    try {
+      exercise(*format.open(file.path(), options));
+    } catch (const InputError&) {
+    }
   }
   return 0;
 }
