@@ -129,8 +129,8 @@ TEST_CASE("From events to a trajectory: a swinging camera before a wall, in one 
   CHECK(concurrent.result.tracks_sha256 == sequential.result.tracks_sha256);
   REQUIRE(concurrent.result.segments.size() == 1);
   CHECK(std::ranges::equal(
-      concurrent.result.segments[0].final_trajectory.poses(), sequential.result.segments[0].final_trajectory.poses(), {},
-      [](const StampedPose& pose) { return std::pair(pose.t, pose.T.p); },
+      concurrent.result.segments[0].final_trajectory.poses(), sequential.result.segments[0].final_trajectory.poses(),
+      {}, [](const StampedPose& pose) { return std::pair(pose.t, pose.T.p); },
       [](const StampedPose& pose) { return std::pair(pose.t, pose.T.p); }));
 }
 
@@ -220,7 +220,8 @@ TEST_CASE("A sensor that tells nothing while the camera moves on: said, and then
       CAPTURE(silence, seed, result.status.reason);
       CHECK(result.stationary.empty());
       CHECK(result.status.state == RunState::degraded);
-      CHECK(result.status.reason == "lost: the camera moved while nothing was seen; then found in the same world");
+      CHECK(result.status.reason ==
+            "lost: the camera moved while nothing was seen; then relocalised in the same world");
       REQUIRE(result.segments.size() == 1);
       check_recovered(scene, execution, gap.to + 1.0);
       CHECK(error(scene, execution, 0.0, 1e9, gap) < 0.015);

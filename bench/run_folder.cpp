@@ -77,7 +77,7 @@ std::string timing_csv(const std::vector<UpdateRecord>& updates) {
 }
 
 std::string parameters_csv(const RunResult& result) {
-  std::string text = fmt::format("t_s,{}\n", fmt::join(result.learnt, ","));
+  std::string text = fmt::format("t_s,{}\n", fmt::join(result.estimated_parameters, ","));
   for (const UpdateRecord& u : result.updates) {
     if (!u.learnt.empty()) text += fmt::format("{:.6f},{:.6g}\n", u.t, fmt::join(u.learnt, ","));
   }
@@ -97,9 +97,10 @@ RunStatus status_of(const Execution& execution) {
   status.complete = execution.complete;
   for (const StationaryPeriod& span : result.stationary) status.stationary.push_back({span.from, span.to});
   for (const TrajectorySegment& segment : result.segments) {
-    const PoseTrajectory& poses = segment.final_trajectory.empty() ? segment.causal_trajectory : segment.final_trajectory;
+    const PoseTrajectory& poses =
+        segment.final_trajectory.empty() ? segment.causal_trajectory : segment.final_trajectory;
     status.segments.push_back({poses.empty() ? 0.0 : poses.start(), poses.empty() ? 0.0 : poses.end(),
-                             segment.final_trajectory.size(), segment.map.size()});
+                               segment.final_trajectory.size(), segment.map.size()});
   }
   if (!result.segments.empty()) status.scored = result.longest + 1;
   return status;
@@ -171,7 +172,7 @@ RunRecord RunFolder::write(const RunConfig& config, const JobIdentity& identity,
   const RunResult& result = execution.result;
   write_files(config, identity, result);
   if (!ground_truth.empty()) folder_.write("groundtruth.tum", ground_truth);
-  if (!result.learnt.empty()) folder_.write("estimated_parameters.csv", parameters_csv(result));
+  if (!result.estimated_parameters.empty()) folder_.write("estimated_parameters.csv", parameters_csv(result));
   if (problem && !result.segments.empty() && result.segments[result.longest].problem) {
     folder_.write("problem.txt", format_problem(*result.segments[result.longest].problem));
   }

@@ -32,7 +32,7 @@ class EmptyFolders {
 ///   causal_poses.txt         every pose told while the data came in, with the time at which it was known
 ///   covariance.txt   relative poses with the covariances that the back-end gave, where it has them
 ///   groundtruth.tum  the source's, in the time range of the run (and 1 s around it), where there is one
-///   metrics.json, status.json        eval/metrics.md
+///   metrics.json, status.json        docs/reference/metrics.md
 ///   timing.csv       a line an update
 ///   tracks.txt, track_ends.txt       what the front-end told, raw pixels, where it was asked for
 ///   estimated_parameters.csv       what the back-end has learnt of its parameters by then, where it does

@@ -130,7 +130,7 @@ Association associate(const PoseTrajectory& ground_truth, const PoseTrajectory& 
   std::size_t used = 0;
   double last = -std::numeric_limits<double>::infinity();  // a pose in several pairs stands in them one after the other
   for (const PosePair& pair : result.pairs) used += std::exchange(last, pair.t) != pair.t ? 1 : 0;
-  result.left_aside = estimate.size() - used;
+  result.unmatched = estimate.size() - used;
   std::vector<double> truth_times, pair_times;
   for (const StampedPose& pose : truth.poses()) truth_times.push_back(pose.t);
   for (const PosePair& pair : result.pairs) pair_times.push_back(pair.t);

@@ -34,7 +34,7 @@ struct PosePair {
 struct Association {
   std::vector<PosePair> pairs;  ///< in time order
   double coverage = 0.0;        ///< see below; 0 to 1
-  std::size_t left_aside = 0;   ///< poses of the estimate that are in no pair
+  std::size_t unmatched = 0;    ///< poses of the estimate that are in no pair
 };
 
 /// Pairs the poses of two trajectories.

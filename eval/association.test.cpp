@@ -159,13 +159,13 @@ TEST_CASE("Poses of the estimate in no pair are counted, each once") {
   const PoseTrajectory truth = sample(wavy_pose, 11, 0.1), dense = sample(wavy_pose, 101, 0.01);
   const Association sparse = associate(truth, dense, {});
   CHECK(sparse.pairs.size() == 11);
-  CHECK(sparse.left_aside == 90);
-  CHECK(associate(dense, truth, {}).left_aside == 0);
-  CHECK(associate(truth, dense, {.mode = AssociationMode::interpolated, .tolerance = 0.1}).left_aside == 0);
+  CHECK(sparse.unmatched == 90);
+  CHECK(associate(dense, truth, {}).unmatched == 0);
+  CHECK(associate(truth, dense, {.mode = AssociationMode::interpolated, .tolerance = 0.1}).unmatched == 0);
   // Two poses of the ground truth share one of the estimate.
   const PoseTrajectory late = sample(wavy_pose, 12, 0.0625, 0.03125);
   const Association shared = associate(sample(wavy_pose, 11, 0.0625), late, {.tolerance = 0.04});
-  CHECK(shared.left_aside == late.size() - 10);
+  CHECK(shared.unmatched == late.size() - 10);
 }
 
 }  // namespace evbench

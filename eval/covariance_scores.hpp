@@ -24,7 +24,7 @@ struct CovarianceScores {
 CovarianceScores score_covariances(std::span<const RelativePose> poses, const PoseTrajectory& ground_truth,
                                    double scale, double time_offset);
 
-/// The structure that metrics.md documents.
+/// The structure that docs/reference/metrics.md documents.
 Json to_json(const CovarianceScores& scores);
 
 }  // namespace evbench

@@ -53,7 +53,7 @@ struct RecordedTimes {
 /// Why a run of a sequence without ground truth has no scores.
 inline constexpr const char* kNoGroundTruth = "no ground truth";
 
-/// What is known of a run that was done: metrics.json (metrics.md) and where it was found. `evbench eval` fills in the
+/// What is known of a run that was done: metrics.json (docs/reference/metrics.md) and where it was found. `evbench eval` fills in the
 /// scores alone; what it doesn't know is empty, and null in the file.
 struct RunRecord {
   std::string experiment;  ///< runs of one experiment are compared with one another

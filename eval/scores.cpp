@@ -118,7 +118,7 @@ Scores score(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate,
   Scores scores;
   scores.options = options;
   scores.pairs = pairs.size();
-  scores.left_aside = association.left_aside;
+  scores.unmatched = association.unmatched;
   scores.coverage = association.coverage;
   scores.path_m = path_length(pairs);
 

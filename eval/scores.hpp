@@ -59,7 +59,7 @@ struct Scores {
   std::vector<SegmentScores> by_length;  ///< none where they are not asked for
   std::vector<PosePair> compared;        ///< the poses, those of the estimate aligned
   std::size_t pairs = 0;                 ///< poses compared
-  std::size_t left_aside = 0;            ///< poses of the estimate that are not
+  std::size_t unmatched = 0;             ///< poses of the estimate that are not
   double coverage = 0.0;                 ///< share of the ground truth's time that they cover (association.hpp)
   double path_m = 0.0;                   ///< length of the ground truth through the compared poses
   Alignment alignment;                   ///< what was applied to the estimate
@@ -75,7 +75,7 @@ RelativeOptions relative_options(const ScoreOptions& options);
 /// digits.
 Scores score(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, const ScoreOptions& options = {});
 
-/// The structure that metrics.md documents.
+/// The structure that docs/reference/metrics.md documents.
 Json to_json(const Scores& scores);
 
 }  // namespace evbench

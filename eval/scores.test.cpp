@@ -72,8 +72,8 @@ TEST_CASE("Of orientations beside a path that is nearly a line, what all have in
 }
 
 TEST_CASE("The error in percent is of the ground truth's path through the compared poses") {
-  const auto straight = [](double t) { return SE3{{}, {t, 0.0, 0.0}}; };
-  const auto beside = [](double t) { return SE3{{}, {t, 0.05, 0.0}}; };
+  const auto straight = [](double t) { return SE3{Eigen::Quaterniond::Identity(), {t, 0.0, 0.0}}; };
+  const auto beside = [](double t) { return SE3{Eigen::Quaterniond::Identity(), {t, 0.05, 0.0}}; };
   const Scores scores = score(sample(straight, 501), sample(beside, 201), with({{"alignment", "none"}}));
   CHECK(scores.path_m == Approx(2.0));
   CHECK(scores.ate.trans_percent == Approx(2.5));

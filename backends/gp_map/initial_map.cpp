@@ -86,7 +86,7 @@ std::optional<InitialMapFinder::Look> InitialMapFinder::look_at(const TrackBuffe
     return std::nullopt;
   }
   last_ = Progress{matches.t0, matches.t1, matches.median_motion()};
-  Initialiser::Attempt attempt = initialiser_.explain(matches);
+  Initialiser::Attempt attempt = initialiser_.solve(matches);
   refused_ = attempt.reason;
   const PlaceWindow window(options_.initialiser.window, matches.or_nearest);
   TrackViews views = TrackViews::of(tracks, std::move(times), window, kTracks);
@@ -107,9 +107,9 @@ bool InitialMapFinder::worthwhile(const TrackMatches& matches) {
 }
 
 /// The best one. The loss gets as wide as the noise of what is best at first asks for.
-std::optional<ViewsExplained> InitialMapFinder::explanation(const Look& look) const {
+std::optional<ViewsEstimate> InitialMapFinder::explanation(const Look& look) const {
   const double wide = 2.0 * options_.initialiser.two_view.threshold_px;
-  std::vector<ViewsExplained> trials;
+  std::vector<ViewsEstimate> trials;
   for (const InitialGuess& guess : look.guesses) {
     auto trial = look.views.start(guess, wide);
     if (!trial) continue;
@@ -117,17 +117,17 @@ std::optional<ViewsExplained> InitialMapFinder::explanation(const Look& look) co
     trials.push_back(std::move(*trial));
   }
   if (trials.empty()) return std::nullopt;
-  std::ranges::sort(trials, {}, &ViewsExplained::cost);
+  std::ranges::sort(trials, {}, &ViewsEstimate::cost);
   const double width = kInitialMapLossWidth * median(look.views.errors(trials.front())),
                enough = kFarMore * trials.front().cost;
-  std::erase_if(trials, [&](const ViewsExplained& trial) { return trial.cost > enough; });
-  for (ViewsExplained& trial : trials) look.views.refine(trial, width, kInitialMapIterations);
-  return *std::ranges::min_element(trials, {}, &ViewsExplained::cost);
+  std::erase_if(trials, [&](const ViewsEstimate& trial) { return trial.cost > enough; });
+  for (ViewsEstimate& trial : trials) look.views.refine(trial, width, kInitialMapIterations);
+  return *std::ranges::min_element(trials, {}, &ViewsEstimate::cost);
 }
 
 /// Do the errors that are left, and the uncertainty of the structure, allow a map? In slow motion views share
 /// observations, and errors hang together for as long as it takes to show parallax: less is allowed then.
-bool InitialMapFinder::is_sound(const Look& look, const ViewsExplained& explained) {
+bool InitialMapFinder::is_sound(const Look& look, const ViewsEstimate& explained) {
   constexpr double kSlow = 0.5;
   const double error = median(look.views.errors(explained)), sigma = median(look.views.distance_sigmas(explained));
   const double allowed = (look.window.or_nearest ? kSlow : 1.0) * options_.max_initial_uncertainty;
@@ -141,7 +141,7 @@ bool InitialMapFinder::is_sound(const Look& look, const ViewsExplained& explaine
   return false;
 }
 
-InitialMap InitialMapFinder::map_of(const TrackBuffer& tracks, const Look& look, const ViewsExplained& explained) const {
+InitialMap InitialMapFinder::map_of(const TrackBuffer& tracks, const Look& look, const ViewsEstimate& explained) const {
   const MultiView& views = look.views;
   InitialTrajectory path(tracks, camera_, options_, look.window);
   const std::vector<double> errors = views.errors(explained), sigmas = views.distance_sigmas(explained);

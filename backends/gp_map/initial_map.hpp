@@ -62,9 +62,9 @@ class InitialMapFinder {
 
   std::optional<Look> look_at(const TrackBuffer& tracks, double t);
   bool worthwhile(const TrackMatches& matches);
-  std::optional<ViewsExplained> explanation(const Look& look) const;
-  bool is_sound(const Look& look, const ViewsExplained& explained);
-  InitialMap map_of(const TrackBuffer& tracks, const Look& look, const ViewsExplained& explained) const;
+  std::optional<ViewsEstimate> explanation(const Look& look) const;
+  bool is_sound(const Look& look, const ViewsEstimate& explained);
+  InitialMap map_of(const TrackBuffer& tracks, const Look& look, const ViewsEstimate& explained) const;
 
   Options options_;
   PinholeCamera camera_;

@@ -12,7 +12,7 @@ namespace evbench::process {
 namespace {
 
 const Registration<BackEnd, ProcessBackEnd> registration("process",
-                                                         "a command in any language (core/process/protocol.md)");
+                                                         "a command in any language (docs/reference/process_protocol.md)");
 
 Json greeting(const ProcessOptions& options, const BackEndContext& context) {
   const PinholeCamera& camera = context.camera;

@@ -10,7 +10,7 @@
 namespace evbench::process {
 
 /// A back-end in any language: a command that is given observations on its standard input and answers with poses on its
-/// standard output (core/process/protocol.md). Throws ProcessError, from its construction or any call, when the command
+/// standard output (docs/reference/process_protocol.md). Throws ProcessError, from its construction or any call, when the command
 /// can't be started, ends, is silent for too long or answers wrongly.
 class ProcessBackEnd : public BackEnd {
  public:

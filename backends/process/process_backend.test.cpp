@@ -210,7 +210,8 @@ TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence
              ContainsSubstring(
                  "config.json: backend: the process \"/usr/bin/python3 backend.py\" answered wrongly: expected one "
                  "JSON object a line, found {\"state\": \"tracking\", \"causal_poses\": [[NaN") &&
-                 ContainsSubstring("JSON has no NaN") && ContainsSubstring("it had been told the batch until 0.1 s") &&
+                 ContainsSubstring("JSON has no NaN") &&
+                 ContainsSubstring("last message to it: the batch until 0.1 s") &&
                  ContainsSubstring("it wrote nothing to its standard error"));
   CHECK_THAT(failure("{}"), ContainsSubstring("\"state\" is missing"));
   CHECK_THAT(failure("7"), ContainsSubstring("expected a JSON object, found 7"));
@@ -230,10 +231,10 @@ TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence
   CHECK_THAT(failure("{'state': 'lost' if t < 0.15 else 'no_map', 'reason': 'fog'}"),
              ContainsSubstring("expected \"lost\""));
   CHECK_THAT(failure("{'error': 'I can not see'}"),
-             ContainsSubstring("says: I can not see; it had been told the batch"));
+             ContainsSubstring("reports an error: I can not see; last message to it: the batch"));
   const std::string good = "{'state': 'tracking'}";
-  CHECK_THAT(failure(good, "{}"),
-             ContainsSubstring("\"trajectory\" is missing") && ContainsSubstring("had been told that this is the end"));
+  CHECK_THAT(failure(good, "{}"), ContainsSubstring("\"trajectory\" is missing") &&
+                                      ContainsSubstring("last message to it: the finish message"));
   CHECK_THAT(failure(good, "{'trajectory': [pose(1, 0), pose(1, 0)]}"), ContainsSubstring("strictly increasing"));
   CHECK_THAT(failure(good, "{'trajectory': [], 'map': [[1, 2]]}"),
              ContainsSubstring("map[0]: expected 4 numbers (track x y z)"));
@@ -243,8 +244,8 @@ TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence
 
 TEST_CASE("A back-end process of another version, or of none, is refused") {
   CHECK_THAT(failure_of("say({'evbench': 2})"), ContainsSubstring("it speaks version 2 of the protocol; expected 1"));
-  CHECK_THAT(failure_of("say({'name': 'x'})"),
-             ContainsSubstring("\"evbench\" is missing") && ContainsSubstring("had been told what it"));
+  CHECK_THAT(failure_of("say({'name': 'x'})"), ContainsSubstring("\"evbench\" is missing") &&
+                                                   ContainsSubstring("last message to it: the opening message"));
   CHECK_THAT(failure_of("print('Welcome!', flush=True)"), ContainsSubstring("found Welcome!"));
 }
 
@@ -252,7 +253,7 @@ TEST_CASE("A back-end process that crashes, ends or keeps silent fails with the 
           "[slow]") {
   CHECK_THAT(failure_of("say({'evbench': 1})\nhear()\nraise ValueError('an odd track')"),
              ContainsSubstring(
-                 "ended with exit code 1; it had been told the batch until 0.1 s; the last lines of its standard "
+                 "ended with exit code 1; last message to it: the batch until 0.1 s; the last lines of its standard "
                  "error:\n  Traceback") &&
                  ContainsSubstring("\n  ValueError: an odd track"));
   CHECK_THAT(failure_of("say({'evbench': 1})\nhear()\nimport os; os.kill(os.getpid(), 11)"),

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <memory>
 
-#include "bench/commands/commands.hpp"
 #include "bench/commands/causal_flag.hpp"
+#include "bench/commands/commands.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/experiment.hpp"
 #include "bench/plugins.hpp"
@@ -64,11 +64,11 @@ void check(const ExportArguments& arguments) {
   }
   check_outputs(arguments.outputs(), read, arguments.force);
   if (folder && !arguments.overrides.empty()) {
-    throw InputError(fmt::format("{}: --set changes configs, not what a run has done", arguments.from));
+    throw InputError(fmt::format("{}: --set changes configs, not finished runs", arguments.from));
   }
 }
 
-/// Loads no library that only the config names; where its source is of one, that is told.
+/// Loads no library that only the config names; if its source needs one, the error says so.
 std::unique_ptr<Source> make_source_of(const std::string& config, const ExportArguments& arguments,
                                        const Plugins& plugins) {
   try {
@@ -84,7 +84,7 @@ void export_source(const std::string& config, const ExportArguments& arguments, 
   const std::unique_ptr<Source> source = make_source_of(config, arguments, plugins);
   std::vector<std::string> read = source->files();
   std::ranges::move(source->event_files(), std::back_inserter(read));
-  check_outputs(arguments.outputs(), read, true);  // what exists has been asked before, and may be written by now
+  check_outputs(arguments.outputs(), read, true);  // existing files were checked before any were written
   const auto tracks = source->true_tracks();
   if (!arguments.ground_truth.empty() && source->ground_truth().empty()) {
     throw InputError(fmt::format("{}: its source has no ground truth", config));
@@ -146,20 +146,21 @@ void add_export(CLI::App& app, const Plugins& plugins) {
   command->add_option("--evo", arguments->evo, "Its errors as evo's result archive, for evo_res")
       ->type_name("FILE.zip");
   command
-      ->add_option("--evo-error", arguments->evo_error, "Which errors: absolute or relative, translation or rotation")
+      ->add_option("--evo-error", arguments->evo_error,
+                   "Errors to export: absolute or relative, translation or rotation")
       ->check(one_of(to_strings(kEvoErrorNames)))
       ->capture_default_str();
   command
       ->add_option("--rpg", arguments->rpg,
-                   "A folder as rpg_trajectory_evaluation reads it: the estimate, the ground truth, the alignment")
+                   "A folder for rpg_trajectory_evaluation: the estimate, the ground truth, the alignment")
       ->type_name("DIR");
-  add_causal_flag(*command, arguments->causal, "The poses as estimated when they were made, not the final ones");
+  add_causal_flag(*command, arguments->causal, "The causal poses, as first published, not the final ones");
   add_overrides(*command, arguments->overrides, "Override a value of the config: KEY=VALUE, e.g. seed=3");
   command->add_flag("--force", arguments->force, "Replace files that exist");
   command->footer(
-      "A config's source is made as evbench run makes it: the same seed gives the same tracks. Written as\n"
-      "groundtruth.txt, calib.txt and tracks.txt, it can be run by the source recording and the front-end recorded.\n"
-      "A run's folder stands for its config; its estimate is scored by its own protocol.");
+      "A config's source is made as by evbench run: the same seed gives the same tracks. Exported as groundtruth.txt,\n"
+      "calib.txt and tracks.txt, it can be run with the source recording and the front-end recorded. The folder of a\n"
+      "run can be given instead of its config; its estimate is scored by its own protocol.");
   command->callback([arguments, &plugins] { execute(*arguments, plugins); });
 }
 

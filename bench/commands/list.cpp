@@ -23,7 +23,7 @@ void list(const Plugins& plugins) {
   }
 }
 
-/// False where there is no such plugin of this kind. An empty kind: any.
+/// False if there is no such plugin of this kind. An empty kind matches any.
 template <class Interface>
 bool describe(const Plugins& plugins, const std::string& kind, const std::string& name, bool schema) {
   const std::string own = PluginKind<Interface>::name;

@@ -20,14 +20,14 @@ void append_value(std::string& bytes, const Value& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// By scale and rotation: one that is right in both has its landmarks elsewhere where the translation is wrong.
+/// Compares scale and rotation only: if both are right, a wrong translation would leave no common landmarks.
 bool agree(const Similarity& a, const Similarity& b) {
   constexpr double kScale = 0.03, kAngle = 0.02;  // relative; [rad]
   return std::abs(std::log(a.scale / b.scale)) < kScale && a.T.q.angularDistance(b.T.q) < kAngle;
 }
 
-/// In the world to which `transform` carries that of the feedback.
-void carry(Feedback& feedback, const Similarity& transform) {
+/// Transforms the feedback to another world.
+void transform_feedback(Feedback& feedback, const Similarity& transform) {
   if (feedback.newest) {
     feedback.newest->T = transform * feedback.newest->T;
     feedback.newest->velocity.tail<3>() *= transform.scale;
@@ -43,8 +43,8 @@ void carry(Feedback& feedback, const Similarity& transform) {
 
 }  // namespace
 
-BackEndRunner::BackEndRunner(const MakeBackEnd& make, BackEndContext context, const Camera& camera, const TimeRange& range,
-                   const PipelineOptions& options)
+BackEndRunner::BackEndRunner(const MakeBackEnd& make, BackEndContext context, const Camera& camera,
+                             const TimeRange& range, const PipelineOptions& options)
     : make_(make),
       context_(std::move(context)),
       camera_(camera),
@@ -55,33 +55,33 @@ BackEndRunner::BackEndRunner(const MakeBackEnd& make, BackEndContext context, co
       seen_(range.from) {
   context_.camera = camera.pinhole;
   context_.patience = options.patience;
-  begin();
+  start_estimator();
 }
 
-void BackEndRunner::begin() {
+void BackEndRunner::start_estimator() {
   auto estimator = std::make_unique<Estimator>(estimators_.size());
   BackEndContext context = context_;
   context.publish = [this, &received = *estimator](const CausalPose& pose) { received.on_pose(pose, until_, seen_); };
   remembered_.clear();
-  begun_ = next_relocalisation_ = until_;
-  found_.reset();
+  started_ = next_relocalisation_ = until_;
+  last_found_.reset();
   estimator->backend = watch_.time([&] { return make_(context); });
   estimators_.push_back(std::move(estimator));
 }
 
 void BackEndRunner::take(TrackBatch batch) {
-  if (stationary_.refuted()) take_back(*stationary_.refuted());
+  if (stationary_.rejected()) end_estimator(*stationary_.rejected());
   observations_ += batch.observations.size();
   undistort(batch);
   stationary_.apply(batch);
   digest(batch);
   if (estimators_.back()->status().state == RunState::lost) {
-    context_.log(fmt::format("{:.3f} s: another back-end starts, in a world frame of its own", until_));
-    begin();
+    context_.log(fmt::format("{:.3f} s: re-initialising with a new back-end, in a world frame of its own", until_));
+    start_estimator();
   }
   until_ = batch.until;
   seen_ = batch.known_at();
-  resolve_doubts(batch.ended);
+  confirm_landmarks(batch.ended);
   Estimator& estimator = *estimators_.back();
   watch_.time([&] { estimator.backend->advance(batch); });
   relocalise();
@@ -89,57 +89,61 @@ void BackEndRunner::take(TrackBatch batch) {
   work_.push_back({seen_, watch_.seconds() - std::exchange(counted_, watch_.seconds())});
 }
 
-/// What it was told of a stand was wrong: its estimate ends where that began.
-void BackEndRunner::take_back(const StationaryDetector::Rejected& stand) {
+/// The repeated observations of a rejected stationary period were wrong: the estimate ends where the period began.
+void BackEndRunner::end_estimator(const StationaryDetector::Rejected& stationary) {
   Estimator& estimator = *estimators_.back();
   Status status = estimator.status();
-  context_.log(fmt::format("{:.3f} s: from {:.3f} s on the camera did not stand still", until_, stand.span.from));
+  const double from = stationary.period.from;
+  context_.log(
+      fmt::format("{:.3f} s: the stationary period from {:.3f} s on is rejected: the camera moved", until_, from));
   if (!estimator.newest || status.state >= RunState::lost) return;
   status.state = RunState::lost;
   status.reason = "the camera moved while nothing was seen";
-  status.time = stand.span.from;
-  std::erase_if(status.degraded, [&](const DegradedSpan& span) { return span.from >= stand.span.from; });
+  status.time = from;
+  std::erase_if(status.degraded, [&](const DegradedSpan& span) { return span.from >= from; });
   estimator.ended = status;
-  estimator.doubtful = stand.survivors;
+  estimator.unconfirmed = stationary.surviving_tracks;
 }
 
-/// What ends in time has not been followed to something else, and may be recognised.
-void BackEndRunner::resolve_doubts(const std::vector<TrackEnd>& ended) {
+/// A track that ends soon after the re-initialisation has not drifted to another scene point: its landmark in the
+/// earlier map is confirmed, and can be used for relocalisation.
+void BackEndRunner::confirm_landmarks(const std::vector<TrackEnd>& ended) {
   constexpr double kSoon = 0.1;  // [s], before it is a landmark of the new map
-  if (until_ - begun_ > kSoon) return;
+  if (until_ - started_ > kSoon) return;
   for (const auto& estimator : estimators_) {
-    for (const TrackEnd& end : ended) estimator->doubtful.erase(end.track);
+    for (const TrackEnd& end : ended) estimator->unconfirmed.erase(end.track);
   }
 }
 
-/// Often while its map is young; then now and then, by landmarks that have joined. It counts when it is found in the
-/// same place twice in succession: a young map may still change.
+/// Attempts are frequent while the map is recent and become rarer as it ages. A result counts if two successive
+/// attempts agree, because a recent map may still change.
 void BackEndRunner::relocalise() {
   constexpr double kPause = 0.1;    // [s] at least
-  constexpr double kGrowth = 0.05;  // of the time since it began
+  constexpr double kGrowth = 0.05;  // of the time since it started
   Estimator& estimator = *estimators_.back();
   if (!relocalises_ || estimators_.size() < 2 || !estimator.newest || until_ < next_relocalisation_) return;
-  std::optional<Estimator::Found> found;
+  std::optional<Estimator::Relocalisation> found;
   for (std::size_t i = estimators_.size() - 1; i-- > 0 && !found;) {
-    if (estimator.is_elsewhere() && estimators_[i]->world != estimator.world) continue;
+    if (estimator.is_relocalised() && estimators_[i]->world != estimator.world) continue;
     found = estimator.find_in(*estimators_[i], context_.camera);
   }
-  if (found && found_ && found->world == found_->world && agree(found->to_world, found_->to_world)) {
-    if (!estimator.is_elsewhere()) {
-      context_.log(fmt::format("{:.3f} s: found in the world of before, by {} landmarks", until_, found->landmarks));
+  if (found && last_found_ && found->world == last_found_->world && agree(found->to_world, last_found_->to_world)) {
+    if (!estimator.is_relocalised()) {
+      context_.log(
+          fmt::format("{:.3f} s: relocalised in the earlier world, by {} landmarks", until_, found->landmarks));
     }
-    estimator.stand_in(*found);
+    estimator.relocalise(*found);
     remember_landmarks();
   }
-  found_ = found;
-  next_relocalisation_ = until_ + std::max(kPause, kGrowth * (until_ - begun_));
+  last_found_ = found;
+  next_relocalisation_ = until_ + std::max(kPause, kGrowth * (until_ - started_));
 }
 
 void BackEndRunner::remember_landmarks() {
   remembered_.clear();
   for (const auto& estimator : estimators_) {
     if (estimator->world != estimators_.back()->world) continue;
-    for (const Landmark& landmark : estimator->trusted_map()) {
+    for (const Landmark& landmark : estimator->confirmed_map()) {
       if (estimator == estimators_.back()) {
         remembered_.erase(landmark.track);
       } else {
@@ -149,16 +153,16 @@ void BackEndRunner::remember_landmarks() {
   }
 }
 
-/// Those that may be in the image, and that the back-end has not told itself.
+/// Adds the remembered landmarks that are in view, unless the back-end predicts them itself.
 void BackEndRunner::expect_remembered(Feedback& feedback) const {
-  constexpr double kSigma = 1.5;  // [px], of worlds that were found in one another
+  constexpr double kSigma = 1.5;  // [px], of predictions from an aligned earlier map
   if (!feedback.newest) return;
   const SE3 T = extrapolate(*feedback.newest, until_ - feedback.newest->t).T.inverse();
-  std::set<TrackId> published;
-  for (const ExpectedFeature& feature : feedback.expected) published.insert(feature.track);
+  std::set<TrackId> predicted;
+  for (const ExpectedFeature& feature : feedback.expected) predicted.insert(feature.track);
   for (const auto& [track, position] : remembered_) {
     const Vector3 seen = T * position;
-    if (!(seen.z() > 0.0) || published.contains(track)) continue;
+    if (!(seen.z() > 0.0) || predicted.contains(track)) continue;
     const Vector2 pixel = context_.camera.project(seen);
     const Matrix2 covariance = kSigma * kSigma * Matrix2::Identity();
     if (in_view(context_.camera, pixel, kLensReach)) feedback.expected.push_back({track, position, pixel, covariance});
@@ -170,9 +174,10 @@ Feedback BackEndRunner::feedback(const FeedbackNeeds& needs) {
   feedback.t = until_;
   const Estimator& estimator = *estimators_.back();
   feedback.world = estimator.world;
-  carry(feedback, estimator.to_world);
+  transform_feedback(feedback, estimator.to_world);
   if (needs.expected) expect_remembered(feedback);
-  if (stationary_.holds() && feedback.state == TrackingState::tracking) feedback.state = TrackingState::stationary;
+  if (stationary_.is_stationary() && feedback.state == TrackingState::tracking)
+    feedback.state = TrackingState::stationary;
   for (ExpectedFeature& feature : feedback.expected) {
     feature.pixel = camera_.project(camera_.pinhole.ray(feature.pixel));
   }
@@ -180,7 +185,7 @@ Feedback BackEndRunner::feedback(const FeedbackNeeds& needs) {
   return feedback;
 }
 
-/// Pixels of the ideal pinhole; observations that have none are left out and counted.
+/// Replaces raw pixels by those of the ideal pinhole. Observations without one are dropped and counted.
 void BackEndRunner::undistort(TrackBatch& batch) {
   left_out_ += std::erase_if(batch.observations, [&](TrackObservation& z) {
     const std::optional<Vector2> pixel = camera_.undistort(z.pixel);
@@ -189,7 +194,7 @@ void BackEndRunner::undistort(TrackBatch& batch) {
   });
 }
 
-/// All of a batch at once: a call of the hash for each value would cost more than the rest of an exchange.
+/// Hashes all of a batch at once: a call of the hash for each value would cost more than the rest of an exchange.
 void BackEndRunner::digest(const TrackBatch& batch) {
   struct Seen {
     TrackId track;
@@ -224,30 +229,30 @@ void BackEndRunner::finish(double rate, RunResult& result) {
   for (std::size_t i = 1; i < result.segments.size(); ++i) {
     if (result.segments[i].covered > result.segments[result.longest].covered) result.longest = i;
   }
-  result.stationary = stationary_.spans();
+  result.stationary = stationary_.periods();
   result.observations = observations_;
   result.tracks_sha256 = hash_.hex();
   if (left_out_ > 0) {
-    result.log.push_back(fmt::format("{} observations left out: the lens model has no inverse there", left_out_));
+    result.log.push_back(fmt::format("{} observations dropped: the lens model has no inverse there", left_out_));
   }
 }
 
-/// Of each world that an estimator has made: by final estimates, worlds lie otherwise in one another than while data
-/// came in.
+/// Makes one segment for each world. Each estimator is relocalised once more, by the final estimates: these determine
+/// the transform between two worlds better than the maps during the run.
 void BackEndRunner::add_segments(double rate, RunResult& result) {
   std::map<std::size_t, std::size_t> segment_of;  // by world
   std::vector<bool> has_segment;
   for (const auto& estimator : estimators_) {
     BackEnd& backend = *estimator->backend;
     watch_.time([&] { backend.finish(); });
-    result.learnt = backend.estimated_parameters();
+    result.estimated_parameters = backend.estimated_parameters();
     result.updates.insert(result.updates.end(), backend.updates().begin(), backend.updates().end());
-    const std::size_t stood_in = estimator->world;
+    const std::size_t causal_world = estimator->world;
     std::vector<CausalPose> published_in_world = std::move(estimator->published_in_world);
-    estimator->stand_alone();
-    for (std::size_t i = estimator->number; relocalises_ && i-- > 0 && !estimator->is_elsewhere();) {
+    estimator->use_own_world();
+    for (std::size_t i = estimator->number; relocalises_ && i-- > 0 && !estimator->is_relocalised();) {
       if (!has_segment[i]) continue;
-      if (const auto found = estimator->find_in(*estimators_[i], context_.camera)) estimator->stand_in(*found);
+      if (const auto found = estimator->find_in(*estimators_[i], context_.camera)) estimator->relocalise(*found);
     }
     auto segment = estimator->segment(rate);
     has_segment.push_back(segment.has_value());
@@ -258,33 +263,34 @@ void BackEndRunner::add_segments(double rate, RunResult& result) {
     } else {
       const Status status = estimator->status();
       std::erase_if(published_in_world, [&](const CausalPose& pose) {
-        return stood_in != estimator->world || (status.state == RunState::lost && pose.t > status.time);
+        return causal_world != estimator->world || (status.state == RunState::lost && pose.t > status.time);
       });
-      go_on(result.segments[entry->second], std::move(*segment), estimator->to_world, std::move(published_in_world));
+      append(result.segments[entry->second], std::move(*segment), estimator->to_world, std::move(published_in_world));
     }
   }
   result.status = merged_status(has_segment);
 }
 
-/// One back-end's status is the run's. With several the run was lost when the first was, and parts are missing; but
-/// where all that followed were found in the world of the first, it went on.
+/// The status of a single back-end is the run's. With several, the run was lost when the first was, and the gaps are
+/// degraded spans. If all later ones were relocalised in the world of the first, the run is degraded, not lost.
 Status BackEndRunner::merged_status(const std::vector<bool>& has_segment) const {
-  constexpr const char* kFound = "then found in the same world";
+  constexpr const char* kRelocalised = "then relocalised in the same world";
   Status merged = estimators_.front()->status();
-  bool went_on = estimators_.size() > 1;
+  bool all_relocalised = estimators_.size() > 1;
   for (std::size_t i = 0; i + 1 < estimators_.size(); ++i) {
     const Status lost = estimators_[i]->status();
     const Estimator& next = *estimators_[i + 1];
     const Status status = next.status();
-    const bool anew = has_segment[i + 1], found = anew && next.world == estimators_.front()->world;
-    merged.degraded.push_back({lost.time, anew ? next.backend->trajectory().start() : range_.to,
-                               fmt::format("lost: {}{}", lost.reason, found ? fmt::format("; {}", kFound) : "")});
+    const bool started = has_segment[i + 1], relocalised = started && next.world == estimators_.front()->world;
+    const std::string suffix = relocalised ? fmt::format("; {}", kRelocalised) : "";
+    merged.degraded.push_back({lost.time, started ? next.backend->trajectory().start() : range_.to,
+                               fmt::format("lost: {}{}", lost.reason, suffix)});
     merged.degraded.insert(merged.degraded.end(), status.degraded.begin(), status.degraded.end());
-    went_on = went_on && found && (i + 2 < estimators_.size() || status.state != RunState::lost);
+    all_relocalised = all_relocalised && relocalised && (i + 2 < estimators_.size() || status.state != RunState::lost);
   }
-  if (went_on && merged.state == RunState::lost) {
+  if (all_relocalised && merged.state == RunState::lost) {
     merged.state = RunState::degraded;
-    merged.reason = fmt::format("lost: {}; {}", merged.reason, kFound);
+    merged.reason = fmt::format("lost: {}; {}", merged.reason, kRelocalised);
   }
   if (std::ranges::none_of(has_segment, std::identity{})) {
     merged.state = RunState::failed;

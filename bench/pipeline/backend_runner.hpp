@@ -15,37 +15,37 @@
 
 namespace evbench {
 
-/// The back-end's side of a run: undistorts what the front-end saw, holds tracks while the camera stands still,
-/// gives a back-end that is lost a successor, and finds that one's world in the world of those before it. Pixels are
-/// raw on the front-end's side of it, undistorted on the other.
+/// The back-end half of a run. It undistorts the observations of the front-end, repeats the tracks' last positions
+/// during stationary periods, re-initialises with a new back-end after tracking was lost, and relocalises the new
+/// back-end in the world of an earlier one. Pixels are raw towards the front-end and undistorted towards the back-end.
 class BackEndRunner {
  public:
   BackEndRunner(const MakeBackEnd& make, BackEndContext context, const Camera& camera, const TimeRange& range,
-           const PipelineOptions& options);
+                const PipelineOptions& options);
 
-  /// Brings the estimate up to the batch's end.
+  /// Updates the estimate up to the batch's end.
   void take(TrackBatch batch);
 
-  /// What it then knows.
+  /// Of the estimate at the last batch's end, raw pixels.
   Feedback feedback(const FeedbackNeeds& needs);
 
   RunProgress progress() const;
 
-  /// Makes the final estimates and writes all of it into the result, but for what the front-end's side knows. `rate`:
-  /// of the final trajectories [Hz]; 0: the back-end's own poses.
+  /// Computes the final estimates and fills in the result, except for the facts of the front-end. `rate`: of the final
+  /// trajectories [Hz]; 0: the back-end's own poses.
   void finish(double rate, RunResult& result);
 
-  double seconds() const { return watch_.seconds(); }  ///< in the back-ends
-  const std::vector<Work>& work() const {
-    return work_;
-  }  ///< of that, until each batch was taken, since the one before
+  double seconds() const { return watch_.seconds(); }  ///< [s] spent in the back-ends
+
+  /// The same, batch by batch.
+  const std::vector<Work>& work() const { return work_; }
 
  private:
-  void begin();
+  void start_estimator();
   void undistort(TrackBatch& batch);
   void digest(const TrackBatch& batch);
-  void take_back(const StationaryDetector::Rejected& stand);
-  void resolve_doubts(const std::vector<TrackEnd>& ended);
+  void end_estimator(const StationaryDetector::Rejected& stationary);
+  void confirm_landmarks(const std::vector<TrackEnd>& ended);
   void relocalise();
   void remember_landmarks();
   void expect_remembered(Feedback& feedback) const;
@@ -58,18 +58,18 @@ class BackEndRunner {
   TimeRange range_;
   StationaryDetector stationary_;
   bool relocalises_;
-  std::vector<std::unique_ptr<Estimator>> estimators_;  ///< the last one is at work
-  double begun_ = 0.0, next_relocalisation_ = 0.0;      ///< [s] when it began; when its world is next looked for
-  std::optional<Estimator::Found> found_;               ///< where it was last found
-  /// Of estimators that were lost, in whose world the present one stands; it doesn't know them itself. In that world.
+  std::vector<std::unique_ptr<Estimator>> estimators_;   ///< the last one is active
+  double started_ = 0.0, next_relocalisation_ = 0.0;     ///< [s] of the active one; next attempt to relocalise it
+  std::optional<Estimator::Relocalisation> last_found_;  ///< result of the last attempt
+  /// Landmarks of lost estimators that the active one does not have, in the world that it shares with them.
   std::map<TrackId, Vector3> remembered_;
   double until_, seen_;  ///< [s] of the last batch
   Sha256 hash_;
-  std::string digested_;  ///< what is to be hashed
+  std::string digested_;  ///< buffer of digest()
   std::size_t observations_ = 0, left_out_ = 0;
   Stopwatch watch_;
   std::vector<Work> work_;
-  double counted_ = 0.0;  ///< [s] of the stopwatch
+  double counted_ = 0.0;  ///< [s] of the stopwatch that are in work_
 };
 
 }  // namespace evbench

@@ -9,8 +9,8 @@
 
 namespace evbench {
 
-FrontEndRunner::FrontEndRunner(FrontEnd& frontend, const Source& source, const PipelineOptions& options, FeedbackLine& feedback,
-                     TrackBatch* kept)
+FrontEndRunner::FrontEndRunner(FrontEnd& frontend, const Source& source, const PipelineOptions& options,
+                               FeedbackLine& feedback, TrackBatch* kept)
     : frontend_(frontend),
       source_(source),
       range_(source.time_range()),
@@ -25,11 +25,11 @@ std::optional<TrackBatch> FrontEndRunner::next() {
   while (!begun_ || until_ < frontend_.data_end().value_or(range_.to)) {
     check_interruption();
     TrackBatch batch = exchange();
-    const bool tells = !begun_ || batch.until > until_ || !batch.ended.empty();
+    const bool is_new = !begun_ || batch.until > until_ || !batch.ended.empty();
     begun_ = true;
     clock_ = *batch.seen;
     until_ = batch.until;
-    if (!tells) continue;
+    if (!is_new) continue;
     if (needs_.any) feedback_.expect(clock_);
     return batch;
   }
@@ -63,7 +63,7 @@ TrackBatch FrontEndRunner::exchange() {
   return batch;
 }
 
-/// The end of the interval that is being gone through.
+/// The end of the current interval.
 double FrontEndRunner::next_time() {
   const auto end = [&] { return range_.from + static_cast<double>(exchanges_) * options_.interval; };
   while (exchanges_ == 0 || end() <= clock_) ++exchanges_;
@@ -73,30 +73,30 @@ double FrontEndRunner::next_time() {
 void FrontEndRunner::check(const TrackBatch& batch, double horizon) const {
   const auto fail = [&](const std::string& what) {
     throw std::runtime_error(
-        fmt::format("the front-end's batch from {:.6f} s to {:.6f} s (up to {:.6f} s were asked for) {}", until_,
+        fmt::format("the front-end's batch from {:.6f} s to {:.6f} s (requested up to {:.6f} s) {}", until_,
                     batch.until, horizon, what));
   };
   const double seen = batch.known_at();
   if (!(batch.until <= seen && seen <= horizon) || batch.until < until_ || seen < clock_ ||
       (begun_ && batch.until == until_ && seen == clock_)) {
-    fail("ends at a wrong time; expected one after the last batch's end and not after what was asked for");
+    fail("ends at a wrong time; expected one after the last batch's end and not after the requested one");
   }
   if (!std::ranges::is_sorted(batch.observations, {}, &TrackObservation::t)) {
-    fail("has observations out of time order; expected each not before the one in front of it");
+    fail("has observations out of time order; expected none before its predecessor");
   }
   for (const TrackObservation& z : batch.observations) {
     if (z.t <= batch.until && (z.t > until_ || (!begun_ && z.t >= until_))) continue;
     fail(fmt::format("has an observation at {:.6f} s; expected times within the batch", z.t));
   }
   if (!std::ranges::is_sorted(batch.ended, {}, &TrackEnd::t)) {
-    fail("ends tracks out of time order; expected each not before the one in front of it");
+    fail("ends tracks out of time order; expected none before its predecessor");
   }
   for (const TrackEnd& ended : batch.ended) {
-    if (ended.t > batch.until) fail(fmt::format("ends a track at {:.6f} s, after itself", ended.t));
+    if (ended.t > batch.until) fail(fmt::format("ends a track at {:.6f} s; expected a time within the batch", ended.t));
   }
 }
 
-/// What was given, and, when nothing more comes, that all tracks have ended.
+/// Counts the batch's data, and ends all tracks after the front-end's last observation.
 void FrontEndRunner::count(TrackBatch& batch) {
   in_time_order(
       batch.observations, batch.ended, [&](const TrackObservation& z) { live_.insert(z.track); },

@@ -15,28 +15,28 @@
 
 namespace evbench {
 
-/// The front-end's side of a run: makes a batch an exchange, from the beginning of the time range to its end, also
-/// where the front-end has nothing more to give: time passes all the same.
+/// The front-end half of a run. It makes one batch per exchange, from the beginning of the time range to its end. After
+/// the front-end's last observation the batches are empty.
 class FrontEndRunner : public BatchStream {
  public:
-  /// `kept`: where all observations and ends are to be appended; may be none.
+  /// `kept`: all observations and ends are appended to it; may be null.
   FrontEndRunner(FrontEnd& frontend, const Source& source, const PipelineOptions& options, FeedbackLine& feedback,
-            TrackBatch* kept = nullptr);
+                 TrackBatch* kept = nullptr);
 
-  /// Hands over what feedback is due before. Throws std::runtime_error for a front-end that breaks its contract
-  /// (frontend.hpp), saying how.
+  /// Delivers the feedback that is due, then advances the front-end. Throws std::runtime_error for a front-end that
+  /// breaks its contract (frontend.hpp).
   std::optional<TrackBatch> next() override;
 
   FrontFacts facts() const override;
 
-  /// Of what has been handed over so far, as FrontFacts; may be asked from another thread.
+  /// As in FrontFacts, of the batches so far. May be called from another thread.
   double data_s() const { return data_s_; }
   double frontend_s() const { return frontend_s_; }
 
   double spent() const override { return watch_.seconds(); }
 
  private:
-  double seconds() const { return watch_.seconds() - frontend_.waited(); }  ///< in the front-end
+  double seconds() const { return watch_.seconds() - frontend_.waited(); }  ///< [s] processing in the front-end
   TrackBatch exchange();
   double next_time();
   void check(const TrackBatch& batch, double horizon) const;
@@ -50,12 +50,12 @@ class FrontEndRunner : public BatchStream {
   TrackBatch* kept_;
   FeedbackNeeds needs_;
   bool more_ = true;
-  double clock_;  ///< [s] the front-end has looked at the data up to here
+  double clock_;  ///< [s] the front-end has processed the data up to here
   double until_;  ///< [s] of the last batch
   bool begun_ = false;
   std::int64_t exchanges_ = 0;  ///< whole intervals since the beginning of the range
   std::set<TrackId> live_;
-  std::optional<double> first_;  ///< [s] observation
+  std::optional<double> first_;  ///< [s] time of the first observation
   std::atomic<double> data_s_ = 0.0, frontend_s_ = 0.0;
   Stopwatch watch_;
   std::vector<Work> work_;

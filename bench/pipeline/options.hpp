@@ -6,7 +6,7 @@
 
 namespace evbench {
 
-/// How front-end and back-end work together: the key "pipeline" of a config.
+/// How front-end and back-end are coupled: the key "pipeline" of a config. `declare` documents each option.
 struct PipelineOptions {
   double interval = 0.01;
   int observations = 0;

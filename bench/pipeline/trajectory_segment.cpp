@@ -6,7 +6,7 @@
 namespace evbench {
 namespace {
 
-RelativePose carried(RelativePose relative, double scale) {
+RelativePose scaled(RelativePose relative, double scale) {
   relative.T.p *= scale;
   relative.covariance.bottomRows<3>() *= scale;
   relative.covariance.rightCols<3>() *= scale;
@@ -15,13 +15,14 @@ RelativePose carried(RelativePose relative, double scale) {
 
 }  // namespace
 
-CausalPose carried(CausalPose pose, const Similarity& transform) {
+CausalPose transformed(CausalPose pose, const Similarity& transform) {
   pose.T = transform * pose.T;
   if (pose.velocity) pose.velocity->tail<3>() *= transform.scale;
   return pose;
 }
 
-void go_on(TrajectorySegment& segment, TrajectorySegment later, const Similarity& transform, std::vector<CausalPose> published) {
+void append(TrajectorySegment& segment, TrajectorySegment later, const Similarity& transform,
+            std::vector<CausalPose> published) {
   segment.covered += later.covered;
   std::vector<StampedPose> poses = std::move(segment.final_trajectory).poses();
   const double end = poses.back().t;
@@ -37,7 +38,7 @@ void go_on(TrajectorySegment& segment, TrajectorySegment later, const Similarity
   segment.map.clear();
   for (const auto& [track, position] : map) segment.map.push_back({track, position});
   for (RelativePose& relative : later.relative) {
-    segment.relative.push_back(carried(std::move(relative), transform.scale));
+    segment.relative.push_back(scaled(std::move(relative), transform.scale));
   }
 }
 

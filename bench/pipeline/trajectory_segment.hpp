@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/data/landmark.hpp"
 #include "core/data/causal_poses.hpp"
+#include "core/data/landmark.hpp"
 #include "core/data/problem.hpp"
 #include "core/data/relative_poses.hpp"
 #include "core/geometry/similarity.hpp"
@@ -12,30 +12,31 @@
 
 namespace evbench {
 
-/// A part of the estimate in one world frame and scale: by one back-end, until it was lost or the run ended, and by
-/// those after it that were found in its world.
+/// Part of the estimate in one world frame and scale: the estimate of one back-end until it was lost or the run ended,
+/// followed by those of later back-ends that were relocalised in its world.
 struct TrajectorySegment {
-  PoseTrajectory final_trajectory;   ///< after the fact, at the rate asked for; no poses while lost
-  PoseTrajectory causal_trajectory;  ///< causal, the back-end's own times: each pose as it was first told
-  std::vector<CausalPose> published;      ///< all that was told while the data came in, known_at set
+  PoseTrajectory final_trajectory;    ///< smoothed estimate at the rate of the run; no poses while lost
+  PoseTrajectory causal_trajectory;   ///< poses as first published, at the back-end's own times
+  std::vector<CausalPose> published;  ///< all published poses, known_at set
   std::vector<Landmark> map;
-  /// That the back-end ended with, where it has one: of several, the first one's.
+  /// The final problem of the back-end, if it has that form; of several back-ends, that of the first.
   std::optional<Problem> problem;
-  /// With covariances, where the back-end has them: "newest", poses told while the data came in, since the first pose;
+  /// Relative poses with covariances, if the back-end has them: "newest", published poses relative to the first pose;
   /// "over_100ms" and "over_1s", of the final estimate.
   std::vector<RelativePose> relative;
 
-  double covered = 0.0;  ///< [s], of the final trajectory, without the time while lost
+  double covered = 0.0;  ///< [s] duration of the final trajectory, without the time while lost
 };
 
-/// In the world to which `transform` carries that of the pose: body velocities scale with it.
-CausalPose carried(CausalPose pose, const Similarity& transform);
+/// Transforms a pose to another world; the linear body velocity scales with the transform.
+CausalPose transformed(CausalPose pose, const Similarity& transform);
 
-/// A later segment goes on in the world of an earlier one, to which `transform` carries its own. What it told then,
-/// `told`, is in that world already. Landmarks that both have are where the later one saw them.
-void go_on(TrajectorySegment& segment, TrajectorySegment later, const Similarity& transform, std::vector<CausalPose> published);
+/// Appends the segment of a later, relocalised back-end. `transform` maps its world to that of `segment`. `published`:
+/// its published poses, already in the world of `segment`. A landmark of both has the position of the later one.
+void append(TrajectorySegment& segment, TrajectorySegment later, const Similarity& transform,
+            std::vector<CausalPose> published);
 
-/// Each pose that was the newest when it was published.
+/// The poses that were the newest when they were published.
 PoseTrajectory newest_poses(const std::vector<CausalPose>& published);
 
 }  // namespace evbench

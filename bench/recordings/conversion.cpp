@@ -153,7 +153,7 @@ ConversionReport convert(const std::string& in, const std::string& out, const Co
   const WritableFormat& format = find_format(out, options.format);
   EventStream stream(in, options.stream);
   RecordingHeader header = make_header(stream, in, options.stream);
-  std::vector<std::string> inputs = stream.reader().files_beside();
+  std::vector<std::string> inputs = stream.reader().companion_files();
   std::ranges::move(files_of_events(in), std::back_inserter(inputs));
   inputs.push_back(options.undistort);
   check_outputs({out}, inputs, options.force);

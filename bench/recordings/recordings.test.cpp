@@ -283,7 +283,7 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
   refused("mistaken.json b.evb --undistort own", "a sensor of 320x240 pixels, the recording one of 240x180");
   refused("a.evb no/b.evb", "no/b.evb: can't be written", kExitNotWritten);
   refused("unknown.evb ok.txt", "ok.txt: exists already; --force replaces it");
-  refused("a.evb a.evb --force --to 3", "a.evb: is what is read");
+  refused("a.evb a.evb --force --to 3", "a.evb: is also an input");
   refused("a.evb ok.txt --force --from 100", "has no events in the time range");
   refused("corner.evb ok.txt --force --undistort lens.txt", "all events lie outside the undistorted image");
   refused("none.evb ok.txt --force", "has no events; nothing was written");

@@ -71,7 +71,7 @@ RecordingSummary summarise(const std::string& path, const StreamOptions& options
   if (own.ground_truth) s.ground_truth = std::move(*own.ground_truth);
   s.info = stream.info();  // with remarks on what was read just now
   if (s.info.guessed_time_unit) {
-    const auto doubt = doubtful_rate(s.events, static_cast<double>(s.end - s.start), *s.info.guessed_time_unit);
+    const auto doubt = implausible_rate(s.events, static_cast<double>(s.end - s.start), *s.info.guessed_time_unit);
     if (doubt) s.info.metadata.emplace_back("remark", *doubt);
   }
   s.info.metadata.insert(s.info.metadata.end(), own.unusable.begin(), own.unusable.end());

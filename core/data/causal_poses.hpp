@@ -9,20 +9,20 @@
 
 namespace evbench {
 
-/// A pose of the causal estimate, and when it was known.
+/// A published pose of the causal estimate, with the time at which it was known.
 struct CausalPose : StampedPose {
-  /// [s] The time of the data from which it was made: what was observed up to then is in it, nothing later. None: the
-  /// end of the batch that was being taken.
+  /// [s] Data time at which the pose was known: it includes all observations up to this time and nothing later. None:
+  /// the end of the current batch.
   std::optional<double> known_at = {};
-  /// Body velocity (ω, ν), with which the back-end would predict. None: that between its newest poses.
+  /// Body velocity (ω, ν) for predicting later poses. None: the velocity between the newest poses is used.
   std::optional<Vector6> velocity = {};
 };
 
-/// A file of them, a line each in the order in which they were told: known_at t x y z qx qy qz qw, then the velocity
-/// where there is one. Numbers read back as the same.
+/// The content of causal_poses.txt, a line per pose in the order of publication: known_at t x y z qx qy qz qw, then the
+/// velocity if there is one. Numbers are read back unchanged.
 std::string format_causal_poses(std::span<const CausalPose> poses);
 
-/// Throws InputError, with file and line, for a damaged file and for times known_at that decrease.
+/// Reads such a file. Throws InputError with file and line for a damaged file and for decreasing known_at.
 std::vector<CausalPose> read_causal_poses(const std::string& path);
 
 }  // namespace evbench

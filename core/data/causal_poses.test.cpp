@@ -9,7 +9,7 @@
 using namespace evbench;
 using Catch::Matchers::ContainsSubstring;
 
-TEST_CASE("Causal poses are read as they were written, with and without a velocity, an older time again") {
+TEST_CASE("Causal poses are read back as written, with and without velocity, also of an older time again") {
   const SE3 T{so3::exp({0.1, -0.2, 1.0 / 3.0}), {1.0 / 7.0, -2.0, 3e-9}};
   const std::vector<CausalPose> poses = {
       {{1.0, T}, 1.1, {}}, {{1.05, T}, 1.1 + 1e-9, Vector6(Vector6::LinSpaced(0.1, 0.7))}, {{1.0, T}, 1.2, {}}};

@@ -26,7 +26,7 @@ std::string refusal(const std::string& json, Read read) {
 
 }  // namespace
 
-TEST_CASE("Observations read as the same numbers that were written") {
+TEST_CASE("Observations are read back as the numbers that were written") {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   TrackBatch batch;
@@ -78,7 +78,7 @@ TEST_CASE("Events are written in seconds that are exact to the microsecond") {
   CHECK(text_of(none) == "[]");
 }
 
-TEST_CASE("Feedback that is written reads as what it was") {
+TEST_CASE("Feedback is read back as it was written") {
   Feedback feedback;
   feedback.t = 0.25;
   feedback.state = TrackingState::degraded;
@@ -112,7 +112,7 @@ TEST_CASE("Feedback that is written reads as what it was") {
   CHECK_FALSE(parse_object(text_of(without)).contains("newest"));
 }
 
-TEST_CASE("A message that is not what it should be is refused by a sentence that says where") {
+TEST_CASE("An invalid message is refused by a sentence that names the place") {
   CHECK_THROWS_WITH(parse_object("Hello"), ContainsSubstring("expected one JSON object a line, found Hello"));
   CHECK_THROWS_WITH(parse_object("{\"a\": NaN}"), ContainsSubstring("JSON has no NaN"));
   CHECK_THROWS_WITH(parse_object("[1]"), ContainsSubstring("expected a JSON object, found [1]"));

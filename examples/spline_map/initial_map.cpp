@@ -14,11 +14,12 @@ namespace {
 using evbench::InitialGuess;
 using evbench::TrackBuffer;
 
-/// With this many times the parallax that is needed, the cheaper of two initial maps is taken, however little cheaper.
+/// With this multiple of the needed parallax, the initial map with the lower cost is accepted even if the costs are
+/// close.
 constexpr double kDecisiveParallax = 2.0;
 constexpr int kRefineIterations = 30;
 
-/// The guess's motion, its velocity constant before, between and after its two views.
+/// The motion of the guess at constant velocity, before, between and after its two views.
 Spline straight_motion(const InitialGuess& guess, double start, double spacing) {
   const Vector6 velocity = evbench::se3::log(guess.T1) / (guess.t1 - guess.t0);
   Spline spline(start, spacing, SE3{});
@@ -29,7 +30,7 @@ Spline straight_motion(const InitialGuess& guess, double start, double spacing) 
   return spline;
 }
 
-/// Observations from a time on; of many, some at even distances: for a start they are enough.
+/// Observations from a time on, subsampled evenly if there are many: enough for the initial map.
 std::vector<evbench::TrackObservation> sample(std::span<const evbench::TrackObservation> all, double from) {
   constexpr std::size_t kMost = 100;
   const auto first = std::ranges::lower_bound(all, from, {}, &evbench::TrackObservation::t);
@@ -59,7 +60,7 @@ std::optional<InitialMap> InitialMapFinder::attempt(const TrackBuffer& tracks, d
   for (const InitialGuess& guess : attempt.candidates) {
     std::optional<InitialMap> map = refine(tracks, guess);
     if (!map) continue;
-    const auto same = [&](const InitialMap& other) {  // two guesses that end in one solution are no ambiguity
+    const auto same = [&](const InitialMap& other) {  // guesses that converge to the same solution are not ambiguous
       return evbench::same_motion(other.spline.pose(t), map->spline.pose(t));
     };
     if (std::ranges::none_of(refined, same)) refined.push_back(std::move(*map));
@@ -69,7 +70,7 @@ std::optional<InitialMap> InitialMapFinder::attempt(const TrackBuffer& tracks, d
     return std::nullopt;
   }
   std::ranges::sort(refined, {}, &InitialMap::cost);
-  // What two views showed may have been noise; the refined map has seen every observation.
+  // The parallax of two views may be noise; the refined map uses every observation.
   const double needed = options_.initialiser.two_view.min_parallax_deg;
   if (refined[0].parallax_deg < needed) {
     reason_ = fmt::format("median parallax {:.2f} deg, {:.2f} needed", refined[0].parallax_deg, needed);
@@ -83,7 +84,7 @@ std::optional<InitialMap> InitialMapFinder::attempt(const TrackBuffer& tracks, d
   return std::move(refined[0]);
 }
 
-/// None when the solved guess doesn't explain the data.
+/// None if the refined guess doesn't fit the data.
 std::optional<InitialMap> InitialMapFinder::refine(const TrackBuffer& tracks, const InitialGuess& guess) const {
   InitialMap map;
   map.spline = straight_motion(guess, start_time(tracks, guess), options_.knot_spacing);
@@ -108,8 +109,8 @@ std::optional<InitialMap> InitialMapFinder::refine(const TrackBuffer& tracks, co
   return map;
 }
 
-/// The time from which on the guess's landmarks suffice, at most as long before its first view as the second one is
-/// after it.
+/// Start time of the spline: the time from which enough landmarks of the guess are observed, limited to as long before
+/// its first view as its second view is after it.
 double InitialMapFinder::start_time(const TrackBuffer& tracks, const InitialGuess& guess) const {
   std::vector<double> seen_from;
   for (const evbench::Landmark& landmark : guess.landmarks) {

@@ -8,7 +8,7 @@
 
 namespace spline_map {
 
-/// What the back-end starts from: a spline and landmarks, solved over every observation of these landmarks.
+/// The initial map: a spline and landmarks, optimised over every observation of these landmarks.
 struct InitialMap {
   Spline spline;
   Landmarks landmarks;
@@ -17,19 +17,19 @@ struct InitialMap {
   double parallax_deg = 0.0;  ///< median over the landmarks, between the spline's start and the newest observations
 };
 
-/// Finds the initial map: guesses from two views (core/structure/initialiser), each refined as a spline over all
-/// observations, the cheapest of them when the data decide between them.
+/// Finds the initial map: refines two-view guesses (core/structure/initialiser) as splines over all observations, and
+/// takes the one with the lowest cost once the data decide between them.
 ///
-/// World frame: the camera at the spline's start. Unit of length: the median depth that the guess has.
+/// World frame: the camera at the spline's start. Unit of length: the median depth of the guess.
 class InitialMapFinder {
  public:
   InitialMapFinder(const Options& options, const evbench::PinholeCamera& camera)
       : options_(options), camera_(camera), initialiser_(options.initialiser, camera) {}
 
-  /// `tracks` hold the observations up to t, later than at the attempts before.
+  /// `tracks` contains the observations up to t, which increases from attempt to attempt.
   std::optional<InitialMap> attempt(const evbench::TrackBuffer& tracks, double t);
 
-  /// Why the last attempt was vain.
+  /// Why the last attempt failed.
   const std::string& reason() const { return reason_; }
 
  private:

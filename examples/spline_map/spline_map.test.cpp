@@ -20,7 +20,7 @@ SE3 circling(double t) {
 }
 SE3 resting(double) { return {}; }
 
-/// 50 points, each observed at about 70 Hz at times of its own, 0.5 px noise.
+/// 50 points, each observed at about 70 Hz at individual times, 0.5 px noise.
 std::vector<TrackObservation> observe(SE3 (*motion)(double), double duration) {
   std::mt19937_64 generator(9);
   std::normal_distribution<double> noise(0.0, 0.5);
@@ -81,7 +81,7 @@ void check_finite_and_ordered(const Run& run) {
 
 }  // namespace
 
-TEST_CASE("A moving camera's trajectory is found up to scale") {
+TEST_CASE("The trajectory of a moving camera is estimated up to scale") {
   const Run result = run(observe(circling, 2.0), 2.0);
   REQUIRE(result.backend->status().state == RunState::ok);
   check_finite_and_ordered(result);
@@ -110,7 +110,7 @@ TEST_CASE("Without a map there is a reason: nothing observed, one track, a camer
   }
 }
 
-TEST_CASE("A gap is told as degraded, and the end of all observations as lost") {
+TEST_CASE("A gap is reported as degraded, and the end of all observations as lost") {
   auto observations = observe(circling, 3.0);
   std::erase_if(observations, [](const TrackObservation& z) { return z.t > 1.5 && z.t < 1.9; });
   const Run gap = run(observations, 3.0);
@@ -124,7 +124,7 @@ TEST_CASE("A gap is told as degraded, and the end of all observations as lost") 
   CHECK(ended.backend->trajectory().end() < 1.7);
 }
 
-TEST_CASE("Wild tracks are removed, and nothing becomes infinite") {
+TEST_CASE("Outlier tracks are removed, and the estimate stays finite") {
   auto observations = observe(circling, 2.0);
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const auto x = static_cast<double>(i);
@@ -136,7 +136,7 @@ TEST_CASE("Wild tracks are removed, and nothing becomes infinite") {
   for (const evbench::Landmark& landmark : result.backend->map()) CHECK(landmark.track % 4 != 0);
 }
 
-TEST_CASE("The pieces in which observations come don't matter, to the last bit") {
+TEST_CASE("The size of the batches does not change the result, to the last bit") {
   const auto observations = observe(circling, 1.5);
   const Run a = run(observations, 1.5, 0.01), b = run(observations, 1.5, 0.01), c = run(observations, 1.5, 0.3);
   for (const Run* other : {&b, &c}) {

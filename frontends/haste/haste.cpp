@@ -90,7 +90,7 @@ void Haste::observe(const Change& change) {
     lost_.forget(track.id);
   }
   track.told = z.t;
-  told_.add(z);
+  delayed_.add(z);
 }
 
 bool Haste::is_as_expected(TrackId track, const Vector2& pixel, double t) const {
@@ -98,7 +98,7 @@ bool Haste::is_as_expected(TrackId track, const Vector2& pixel, double t) const 
   return expected && (pixel - expected->pixel).norm() < options_.guidance.tolerance;
 }
 
-void Haste::look() {
+void Haste::on_tick() {
   end_wanderers();
   end_strangers();
   end_trackers();

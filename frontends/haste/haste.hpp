@@ -55,7 +55,7 @@ class Haste : public EventFrontEnd {
   enum class End { border, spread, edge, starvation, crowding, veto, outlier, wandering, silence, recognised };
 
   void take(std::span<const Event> events) override;
-  void look() override;
+  void on_tick() override;
   double complete() const override { return clock_ - options_.delay; }
   void observe(const Change& change);
   bool is_as_expected(TrackId track, const Vector2& pixel, double t) const;

@@ -6,11 +6,11 @@
 #include "core/support/error.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
-#include "core/testing/told_tracks.hpp"
+#include "core/testing/collect_tracks.hpp"
 
 using namespace evbench;
 using namespace evbench::haste;
-using evbench::testing::all_told;
+using evbench::testing::collect_tracks;
 using evbench::testing::EventScene;
 using evbench::testing::same;
 using evbench::testing::swing;
@@ -25,7 +25,7 @@ const EventScene& scene() {
 /// All that it tells, asked every `interval` [s].
 TrackBatch track(const Source& source, const Options& options = {}, double interval = 0.01, std::size_t most = 0) {
   Haste haste(options, {source, 0, ""});
-  return all_told(haste, source, interval, most);
+  return collect_tracks(haste, source, interval, most);
 }
 
 /// Median distance of the observations from where the track's first observation, a point of the wall, is by then [px].

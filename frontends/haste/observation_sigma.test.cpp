@@ -4,12 +4,12 @@
 #include "core/support/median.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
-#include "core/testing/told_tracks.hpp"
+#include "core/testing/collect_tracks.hpp"
 #include "frontends/haste/haste.hpp"
 
 using namespace evbench;
 using namespace evbench::haste;
-using evbench::testing::all_told;
+using evbench::testing::collect_tracks;
 using evbench::testing::EventScene;
 using evbench::testing::swing;
 
@@ -22,7 +22,7 @@ const EventScene& sigma_scene() {
 
 std::vector<TrackObservation> observations(const Options& options) {
   Haste haste(options, {sigma_scene(), 0, ""});
-  return all_told(haste, sigma_scene()).observations;
+  return collect_tracks(haste, sigma_scene()).observations;
 }
 
 }  // namespace

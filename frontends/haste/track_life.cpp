@@ -134,9 +134,9 @@ void Haste::end(std::int64_t tracker, End why) {
     // Nothing of this has been told that is younger than the delay, however the run exchanges.
     const bool doubted = track.doubted >= 0;  // it ends before it could be looked at
     if (why == End::wandering || why == End::silence || doubted) {
-      told_.take_back(track.id, std::max(track.found, clock_ - options_.delay));
+      delayed_.take_back(track.id, std::max(track.found, clock_ - options_.delay));
     }
-    told_.end({track.id, clock_});
+    delayed_.end({track.id, clock_});
     if (track.displaced && why == End::outlier) lost_.disappoint(track.id, clock_);
     const bool itself = !doubted && (why == End::border || why == End::starvation);
     if (itself) remember(track, trackers_.tracker(tracker));

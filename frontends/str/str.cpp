@@ -45,7 +45,7 @@ Str::Str(const Options& options, const FrontEndContext& context)
   check_border(options.patch.border, camera_, context.place + ".patch.border");
 }
 
-void Str::look() {
+void Str::on_tick() {
   while (const auto batch = batches_.next(microseconds(clock_))) process(*batch);
 }
 
@@ -83,7 +83,7 @@ void Str::go_on(const Batch& batch, const Registration& registration) {
     if (!crowded && go_on(track, batch, registration)) {
       alive.push_back(track);
     } else {
-      told_.end({track.id, seconds(batch.to - 1)});
+      delayed_.end({track.id, seconds(batch.to - 1)});
     }
   }
   tracks_ = std::move(alive);
@@ -180,7 +180,7 @@ void Str::observe_between(const Track& track, const Batch& batch, const Eigen::V
                          [&](const Event& e) { return (Vector2(e.x, e.y) - there).norm() < options_.patch.radius; });
     if (event == last || event->t <= told || event->t >= until) continue;
     told = event->t;
-    told_.add({track.id, seconds(told), pixel_of(moved(place, A, 1e-6 * static_cast<double>(told - reference))),
+    delayed_.add({track.id, seconds(told), pixel_of(moved(place, A, 1e-6 * static_cast<double>(told - reference))),
                options_.sigma});
   }
 }
@@ -189,7 +189,7 @@ void Str::observe(Track& track, const Eigen::Vector2f& ray, std::int64_t t) {
   track.ray = ray;
   track.t = t;
   track.pixel = pixel_of(ray);
-  told_.add({track.id, seconds(t), track.pixel, options_.sigma});
+  delayed_.add({track.id, seconds(t), track.pixel, options_.sigma});
 }
 
 Vector2 Str::pixel_of(const Eigen::Vector2f& ray) const {

@@ -35,7 +35,7 @@ class Str : public EventFrontEnd {
   };
 
   void take(std::span<const Event> events) override { batches_.add(events); }
-  void look() override;
+  void on_tick() override;
   double complete() const override { return complete_; }
   void process(const Batch& batch);
   void go_on(const Batch& batch, const Registration& registration);

@@ -6,12 +6,12 @@
 #include "core/geometry/so3.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
-#include "core/testing/told_tracks.hpp"
+#include "core/testing/collect_tracks.hpp"
 #include "frontends/str/expected_motion.hpp"
 
 using namespace evbench;
 using namespace evbench::str;
-using evbench::testing::all_told;
+using evbench::testing::collect_tracks;
 using evbench::testing::EventScene;
 using evbench::testing::same;
 using evbench::testing::swing;
@@ -34,7 +34,7 @@ struct Tracked {
 /// All that it tells, asked every `interval` [s].
 Tracked track(const Source& source, const Options& options = {}, double interval = 0.01, std::size_t most = 0) {
   Str str(options, {source, 0, ""});
-  return {all_told(str, source, interval, most), str.remarks()};
+  return {collect_tracks(str, source, interval, most), str.remarks()};
 }
 
 /// How far the observations are from where their track's first one, a point of the wall, is by then [px]; sorted.

@@ -5,7 +5,7 @@
 
 #include "backends/gp_map/engine/factorisation.hpp"
 
-// Landmarks that come back into the root after they were eliminated: the mathematics is in returns.hpp and engine.md.
+// Landmarks that come back into the root after they were eliminated: the mathematics is in returns.hpp and docs/algorithms/smoother.md.
 namespace evbench::gp_map {
 
 int Factorisation::oldest_redone(int first, const FactorGraph& graph) const {

@@ -52,7 +52,7 @@ struct UpdateSummary {
 };
 
 /// Incremental maximum-a-posteriori inference over a chain of control states with landmarks that live for a while:
-/// an incremental block Cholesky factorisation in the order of time (factorisation.hpp; engine.md has the design).
+/// an incremental block Cholesky factorisation in the order of time (factorisation.hpp; docs/algorithms/smoother.md has the design).
 /// The cost of an update depends on the landmarks alive and on how far back it reaches, not on the length of history.
 ///
 ///   engine.add_state(x0); engine.add_pose_prior(...); engine.update();

@@ -7,10 +7,10 @@
 namespace evbench::ros {
 namespace {
 
-/// What says that it is little-endian, and options, as that of padding; alignment counts from behind it.
+/// Header of CDR: that it is little-endian, and options, e.g. of padding. Alignment counts from behind it.
 constexpr std::size_t kCdrHeader = 4;
 
-/// The fields of a message.
+/// Reads the fields of a message.
 class Fields {
  public:
   Fields(std::span<const std::byte> data, Wire wire) : cursor_(data), wire_(wire) {
@@ -47,7 +47,7 @@ class Fields {
   bool little_endian_ = true;
 };
 
-/// Events of ROS 1: 13 bytes each, x y seconds nanoseconds polarity.
+/// Parses events of ROS 1: 13 bytes each, x y seconds nanoseconds polarity.
 void load_events(std::span<const std::byte> bytes, std::vector<Event>& events) {
   constexpr std::size_t kSize = 13;
   for (std::size_t i = 0; i < events.size(); ++i) {

@@ -38,7 +38,8 @@ struct CameraInfo {
   std::string distortion_model;
   std::vector<double> D;
   std::array<double, 9> K{};
-  /// The image is a part of the sensor or has fewer pixels than it (region of interest, binning), of which K is not.
+  /// The image is only a part of the sensor or has fewer pixels (region of interest, binning); K is of the whole
+  /// sensor.
   bool is_partial = false;
 };
 
@@ -46,7 +47,7 @@ struct CameraInfo {
 std::optional<EventPacket> parse_event_packet(std::span<const std::byte> data, Wire wire);
 bool parse_event_array(std::span<const std::byte> data, Wire wire, EventArray& array);
 
-/// geometry_msgs/PoseStamped; none, too, for NaN and quaternions that are no rotation.
+/// geometry_msgs/PoseStamped; none also for NaN and quaternions that are no rotation.
 std::optional<StampedPose> parse_pose_stamped(std::span<const std::byte> data, Wire wire);
 
 std::optional<CameraInfo> parse_camera_info(std::span<const std::byte> data, Wire wire);

@@ -14,7 +14,7 @@
 
 namespace evbench {
 
-/// A file of a new identity for each input: libraries keep what they know of a file that they have open.
+/// A new file for each input: libraries keep the state of files that they have open.
 class FuzzFile {
  public:
   FuzzFile(const std::uint8_t* data, std::size_t size)
@@ -33,7 +33,7 @@ class FuzzFile {
   std::string path_;
 };
 
-/// Any bytes as a file of a format that a library reads by its path: passed over unless the format recognises it.
+/// Reads any bytes as a file of a format that a library reads by its path; skipped unless the format recognises them.
 inline int fuzz_file(const std::uint8_t* data, std::size_t size, const EventFormat& format) {
   constexpr std::size_t kHead = 1 << 16;
   const auto head = std::as_bytes(std::span(data, std::min(size, kHead)));

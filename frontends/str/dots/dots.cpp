@@ -46,7 +46,7 @@ void Dots::take(std::span<const Event> events) {
   for (const Event& event : events) take(event);
 }
 
-void Dots::look() {
+void Dots::on_tick() {
   while (const auto batch = batches_.next(microseconds(clock_))) process(*batch);
 }
 
@@ -88,7 +88,7 @@ void Dots::observe(Track& track) {
   if (z.t <= told) ++late_;
   z.t = std::max({z.t, told, track.told + kApart});
   track.told = z.t;
-  told_.add(z);
+  delayed_.add(z);
 }
 
 bool Dots::leaves(const Dot& dot, double t) const { return !camera_.contains(dot.centre(t), dot.radius() + kBorder); }
@@ -140,7 +140,7 @@ void Dots::give_up(const Batch& batch, const Registration& registration) {
   }
   for (const Track& track : tracks_) {
     if (!track.lost) continue;
-    told_.end({track.id, clock_});
+    delayed_.end({track.id, clock_});
     if (options_.life.find_again) out_of_view_.insert(track.id);
   }
   std::erase_if(tracks_, [](const Track& track) { return track.lost; });

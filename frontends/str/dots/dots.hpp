@@ -34,7 +34,7 @@ class Dots : public EventFrontEnd {
   };
 
   void take(std::span<const Event> events) override;
-  void look() override;
+  void on_tick() override;
   double complete() const override { return clock_ - options_.delay; }
   void take(const Event& event);
   void observe(Track& track);

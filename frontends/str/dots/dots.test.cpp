@@ -5,11 +5,11 @@
 #include "core/geometry/so3.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
-#include "core/testing/told_tracks.hpp"
+#include "core/testing/collect_tracks.hpp"
 
 using namespace evbench;
 using namespace evbench::str;
-using evbench::testing::all_told;
+using evbench::testing::collect_tracks;
 using evbench::testing::EventScene;
 using evbench::testing::same;
 
@@ -60,7 +60,7 @@ struct ToldDots {
 ToldDots follow_dots(const Source& source, const DotsOptions& options = {}, double interval = 0.01,
                      std::size_t most = 0) {
   Dots dots(options, {source, 0, ""});
-  return {all_told(dots, source, interval, most), dots.remarks()};
+  return {collect_tracks(dots, source, interval, most), dots.remarks()};
 }
 
 /// Which disc an observation is of, and how far from its centre [px].

@@ -32,7 +32,7 @@ MotionTracks::MotionTracks(const Options& options, const FrontEndContext& contex
       registrar_(camera_, options.registration),
       complete_(range_.from) {}
 
-void MotionTracks::look() {
+void MotionTracks::on_tick() {
   while (const auto batch = batches_.next(microseconds(clock_))) process(*batch);
 }
 
@@ -86,7 +86,7 @@ void MotionTracks::carry_on(const Motion& motion) {
       alive.push_back({point.id, ray / ray.z()});
       observe(alive.back(), motion.span.to);
     } else {
-      told_.end({point.id, motion.span.to});
+      delayed_.end({point.id, motion.span.to});
     }
   }
   points_ = std::move(alive);
@@ -95,7 +95,7 @@ void MotionTracks::carry_on(const Motion& motion) {
 /// The motion has been unknown for too long.
 void MotionTracks::interrupt(double t) {
   interrupted_ += points_.empty() ? 0 : 1;
-  for (const Point& point : points_) told_.end({point.id, t});
+  for (const Point& point : points_) delayed_.end({point.id, t});
   points_.clear();
   unknown_.clear();
   last_.reset();
@@ -120,7 +120,7 @@ void MotionTracks::replenish() {
 }
 
 void MotionTracks::observe(const Point& point, double t) {
-  told_.add({point.id, t, camera_.project(point.ray), options_.sigma});
+  delayed_.add({point.id, t, camera_.project(point.ray), options_.sigma});
 }
 
 std::vector<std::string> MotionTracks::counts() const {

@@ -41,7 +41,7 @@ class MotionTracks : public EventFrontEnd {
   };
 
   void take(std::span<const Event> events) override { batches_.add(events); }
-  void look() override;
+  void on_tick() override;
   double complete() const override { return complete_; }
   void process(const Batch& batch);
   void move(const Motion& motion);

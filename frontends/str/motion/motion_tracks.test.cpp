@@ -5,11 +5,11 @@
 #include "core/geometry/so3.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/event_scene.hpp"
-#include "core/testing/told_tracks.hpp"
+#include "core/testing/collect_tracks.hpp"
 
 using namespace evbench;
 using namespace evbench::str;
-using evbench::testing::all_told;
+using evbench::testing::collect_tracks;
 using evbench::testing::EventScene;
 using evbench::testing::same;
 
@@ -31,7 +31,7 @@ struct ToldMotion {
 ToldMotion follow_motion(const Source& source, const MotionTracksOptions& options = {}, double interval = 0.01,
                          std::size_t most = 0) {
   MotionTracks motion(options, {source, 0, ""});
-  return {all_told(motion, source, interval, most), motion.remarks()};
+  return {collect_tracks(motion, source, interval, most), motion.remarks()};
 }
 
 /// How far each observation is from where the rotation since the track's beginning takes it [px].

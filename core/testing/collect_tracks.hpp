@@ -8,9 +8,10 @@
 
 namespace evbench::testing {
 
-/// All that a front-end tells of its source, asked every `interval` [s], for at most so many observations at a time
-/// where `most` is above 0. Observations are checked to lie within their batch.
-inline TrackBatch all_told(FrontEnd& frontend, const Source& source, double interval = 0.01, std::size_t most = 0) {
+/// Collects all tracks of a front-end, with an exchange every `interval` [s]; with `most` > 0, at most that many
+/// observations per exchange. Checks that the observations are within their batch.
+inline TrackBatch collect_tracks(FrontEnd& frontend, const Source& source, double interval = 0.01,
+                                 std::size_t most = 0) {
   const double to = source.time_range().to;
   TrackBatch all, batch;
   all.until = 0.0;

@@ -1,7 +1,7 @@
-# For the checks of what is installed: WORK/prefix gets an installation of BUILD, and `evbench` is its program.
+# Set-up of the installation checks: installs BUILD into WORK/prefix and sets `evbench` to the installed program.
 
-# run(COMMAND ... [OUTPUT REGEX] [REFUSED REGEX]): in WORK. Fails unless the command succeeds and shows OUTPUT, or, with
-# REFUSED, ends with exit code 2 and such a message.
+# run(COMMAND ... [OUTPUT REGEX] [REFUSED REGEX]): runs a command in WORK. Fails unless the command succeeds and prints
+# OUTPUT or, with REFUSED, ends with exit code 2 and a message that matches REFUSED.
 function(run)
   cmake_parse_arguments(ARG "" "OUTPUT;REFUSED" "COMMAND" ${ARGN})
   execute_process(COMMAND ${ARG_COMMAND} WORKING_DIRECTORY ${WORK} RESULT_VARIABLE result
@@ -18,7 +18,7 @@ function(run)
   endif()
 endfunction()
 
-set(ENV{CXX} ${CXX})  # a plugin is built by the program's compiler
+set(ENV{CXX} ${CXX})  # plugins need the program's compiler
 set(evbench ${WORK}/prefix/bin/evbench)
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
