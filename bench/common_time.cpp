@@ -18,10 +18,10 @@ namespace {
 
 const Json& own_scores(const RunRecord& run, bool causal) { return causal ? run.causal_scores : run.final_scores; }
 
-/// From the first pose compared to the last one.
+/// From the first to the last compared pose.
 std::optional<TimeRange> span_of(const Json& scores) {
   const Json span = scores.value("span_s", Json());
-  if (!span.is_array() || span.size() != 2) return std::nullopt;  // scored before this was written down
+  if (!span.is_array() || span.size() != 2) return std::nullopt;  // scored by an older version
   return TimeRange{span[0].get<double>(), span[1].get<double>()};
 }
 
@@ -46,7 +46,7 @@ Json score_within(const TimeRange& range, const RunRecord& run, bool causal) {
     const TimeRange time = both(asked, range);
     options.time_range = {time.from, time.to};
     return scores_of(run.folder, causal, options, run);
-  } catch (const InputError&) {  // too few poses, or files that are gone: the run's own scores stand all the same
+  } catch (const InputError&) {  // too few poses, or missing files: the run's own scores remain
     return nullptr;
   }
 }

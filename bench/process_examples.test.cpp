@@ -11,7 +11,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-/// Runs examples/NAME/config.json with Debian's Python, which has Debian's numpy.
+/// Runs examples/NAME/config.json with the system's Python, which has numpy.
 Outcome run_example(const TemporaryFolder& folder, const std::string& name, const std::string& more = "") {
   const std::string config = std::string(EVBENCH_CONFIGS) + "/../examples/" + name + "/config.json";
   return shell(folder, "PATH=/usr/bin:$PATH \"$evbench\" run '" + config + "' --quiet --out results " + more);
@@ -32,7 +32,7 @@ double ate_percent(const Json& run) { return run.at("final").at("ate").at("trans
 
 }  // namespace
 
-TEST_CASE("The example back-end in Python estimates the motion, and the same bytes with two threads", "[long]") {
+TEST_CASE("The example back-end in Python estimates the motion, with identical results in two threads", "[long]") {
   const TemporaryFolder folder, again;
   const std::string shorter =
       "--set source.duration=5 --set 'backends=[{\"type\": \"process\", \"label\": \"Python\", "
@@ -70,7 +70,7 @@ TEST_CASE("The example front-end in Python makes tracks that a back-end can use"
              ContainsSubstring("front-end process: centres of dots") && ContainsSubstring(" tracks"));
 }
 
-TEST_CASE("A back-end process that crashes is a failed run with its last words, and the others go on", "[slow]") {
+TEST_CASE("A back-end process that crashes is a failed run with its last output, and the others are run", "[slow]") {
   const TemporaryFolder folder;
   Json config = short_config();
   config.erase("backend");

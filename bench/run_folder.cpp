@@ -24,7 +24,7 @@ namespace evbench {
 namespace fs = std::filesystem;
 namespace {
 
-/// Ground truth is kept beyond the time range, for a protocol with another offset of time [s].
+/// Ground truth is kept beyond the time range, for a protocol with another time offset [s].
 constexpr double kGroundTruthMargin = 1.0;
 
 constexpr const char* kRewritten[] = {"config.json", "manifest.json", "metrics.json", "log.txt"};
@@ -37,9 +37,9 @@ std::string processor() {
   return "unknown";
 }
 
-/// Of a folder's files, but for those that are written again when a run is renamed or scored, and what was measured.
+/// Sizes of a folder's files, except those that are rewritten when a run is relabelled or scored, and measured times.
 Json sizes_json(const std::string& folder) {
-  std::map<std::string, std::uintmax_t> sizes;  // by name: folders have an order of their own
+  std::map<std::string, std::uintmax_t> sizes;  // by name: the order of a folder's entries is undefined
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     const auto is_other = [&](const char* other) { return name == other; };
@@ -106,7 +106,7 @@ RunStatus status_of(const Execution& execution) {
   return status;
 }
 
-/// All but the scores and the sequence's time range.
+/// The record without the scores and the sequence's time range.
 RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const Execution& execution) {
   const RunResult& result = execution.result;
   const RunTimes& times = result.times;
@@ -196,7 +196,7 @@ RunRecord RunFolder::write_broken_off(const RunConfig& config, const JobIdentity
   return finish(config, identity, execution, record_of(config, identity, execution));
 }
 
-/// What every run has, but for its scores.
+/// Writes the files of every run, without its scores.
 void RunFolder::write_files(const RunConfig& config, const JobIdentity& identity, const RunResult& result) const {
   folder_.write("config.json", json_file_text(config.resolved()));
   folder_.write("job.json", identity.text);

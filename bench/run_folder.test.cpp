@@ -19,9 +19,9 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-const std::set<std::string> kFiles = {"config.json",  "job.json",   "manifest.json",   "final.tum",
-                                      "causal.tum",   "causal_poses.txt",   "groundtruth.tum", "map.ply",
-                                      "metrics.json", "timing.csv", "log.txt",         "status.json"};
+const std::set<std::string> kFiles = {"config.json",  "job.json",         "manifest.json",   "final.tum",
+                                      "causal.tum",   "causal_poses.txt", "groundtruth.tum", "map.ply",
+                                      "metrics.json", "timing.csv",       "log.txt",         "status.json"};
 
 /// The runs of a config by label.
 std::map<std::string, std::string> run_folders(const TemporaryFolder& folder, const std::string& out) {
@@ -79,7 +79,7 @@ TEST_CASE("A run's folder holds the documented files", "[slow]") {
   REQUIRE(runs.first.size() == 2);
   for (const auto& [label, path] : runs.first) {
     std::set<std::string> files = kFiles;
-    if (label == "asynchronous") files.insert({"covariance.txt", "estimated_parameters.csv"});  // frames have neither
+    if (label == "asynchronous") files.insert({"covariance.txt", "estimated_parameters.csv"});  // only gp_map has them
     CHECK(names_in(path) == files);
     CHECK(json_file(path, "status.json").at("state").is_string());
     const Json manifest = json_file(path, "manifest.json");
@@ -92,14 +92,14 @@ TEST_CASE("A run's folder holds the documented files", "[slow]") {
   CHECK(runs_of(runs.folder.file("first/short")).size() == 2);
 }
 
-TEST_CASE("The same config twice gives the same bytes, but for measured times", "[slow]") {
+TEST_CASE("The same config twice gives identical files, except measured times", "[slow]") {
   const TwoRuns& runs = two_runs();
   for (const auto& [label, path] : runs.first) {
     INFO(label);
     const std::string& other = runs.second.at(label);
     CHECK(std::filesystem::path(path).filename() == std::filesystem::path(other).filename());
-    for (const char* name : {"config.json", "job.json", "final.tum", "causal.tum", "causal_poses.txt", "groundtruth.tum",
-                             "map.ply", "status.json"}) {
+    for (const char* name : {"config.json", "job.json", "final.tum", "causal.tum", "causal_poses.txt",
+                             "groundtruth.tum", "map.ply", "status.json"}) {
       CHECK(read_file(path + "/" + name) == read_file(other + "/" + name));
     }
     Json manifest = json_file(path, "manifest.json"), other_manifest = json_file(other, "manifest.json");
@@ -112,7 +112,7 @@ TEST_CASE("The same config twice gives the same bytes, but for measured times", 
   }
 }
 
-TEST_CASE("A run is scored for what was known at once and after the same wait, and by its covariances", "[slow]") {
+TEST_CASE("A run is scored at zero latency and at equal latency, and by its covariances", "[slow]") {
   const TwoRuns& runs = two_runs();
   for (const auto& [label, path] : runs.first) {
     INFO(label);
@@ -144,15 +144,15 @@ TEST_CASE("A run is scored for what was known at once and after the same wait, a
                  ContainsSubstring("causal ATE at zero latency [m]"));
 }
 
-TEST_CASE("A table scores its runs over the time that all of them cover, too", "[slow]") {
+TEST_CASE("A table also scores its runs over their common time", "[slow]") {
   const TwoRuns& runs = two_runs();
   const std::string folder = "'" + runs.folder.file("first") + "'";
   const Outcome table = testing::evbench(
       runs.folder, "table --format csv --metrics common.span_s,common.coverage,common.ate.trans_m.rmse " + folder);
-  CHECK(table.exit_code == 2);  // a span is no number
+  CHECK(table.exit_code == 2);  // a span is not a number
   const Outcome text = testing::evbench(runs.folder, "table " + folder);
   CHECK_THAT(text.out, ContainsSubstring("ATE, common time [m]") && ContainsSubstring("Common time: ") &&
-                           ContainsSubstring("which every run covers that was not lost"));
+                           ContainsSubstring("covered by all runs that were not lost"));
   std::vector<RunRecord> records = find_runs(std::vector{runs.folder.file("first")});
   score_common_time(records, false);
   const auto span = [](const Json& scores) {
@@ -186,7 +186,7 @@ TEST_CASE("All back-ends of a comparison get the identical observations", "[slow
         json_file(runs.first.at("frames of 50 ms"), "manifest.json").at("tracks_sha256"));
 }
 
-TEST_CASE("The config that a run wrote makes the same run again, from anywhere", "[slow]") {
+TEST_CASE("The config in a run's folder gives the same run again, from any folder", "[slow]") {
   const std::string& path = two_runs().first.at("frames of 50 ms");
   const TemporaryFolder folder;
   REQUIRE(testing::evbench(folder, "run '" + path + "/config.json' --out again --quiet").exit_code == 0);
@@ -229,7 +229,7 @@ TEST_CASE("Metrics of a run have the documented keys, the same as those of evben
   for (const auto& [key, value] : metrics.items()) CHECK(eval.contains(key));
 }
 
-TEST_CASE("A run writes the problem that it ended with, in the format that evbench solve reads", "[slow]") {
+TEST_CASE("A run writes its final problem in the format that evbench solve reads", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config("gp_map")));
   REQUIRE(testing::evbench(folder, "run c.json --out out --problem --quiet").exit_code == 0);
@@ -246,7 +246,7 @@ TEST_CASE("Relative paths of a config refer to its folder, and inputs are hashed
   const TemporaryFolder elsewhere;
   write_recording(folder);
   const Outcome run = testing::evbench(elsewhere, "run '" + folder.file("recording.json") + "' --quiet");
-  CHECK(run.exit_code <= 3);  // points at rest make no map
+  CHECK(run.exit_code <= 3);  // fixed points give no map
   CHECK(run.err.empty());
   const auto folders = run_folders(elsewhere, "results");
   REQUIRE(folders.size() == 1);
@@ -270,7 +270,7 @@ TEST_CASE("A run without an estimate fails with exit code 3, a status with the r
   CHECK(json_file(folders.begin()->second, "metrics.json").at("final").is_null());
 }
 
-TEST_CASE("Of an estimate in segments the longest one is scored, and the others lie beside it") {
+TEST_CASE("The longest trajectory segment is scored, and the others are written next to it") {
   const TemporaryFolder folder;
   const std::string path = folder.write("c.json", dump_json(short_config()));
   const RunConfig config = read_experiment(path, {}, known_plugins()).runs[0];
@@ -291,8 +291,9 @@ TEST_CASE("Of an estimate in segments the longest one is scored, and the others 
     record = run.write(config, identity_of(config), *source, ground_truth_tum(*source), execution);
   }
   std::set<std::string> expected = kFiles;
-  for (const char* name : {"final.segment1.tum", "causal.segment1.tum", "told.segment1.txt", "map.segment1.ply",
-                           "final.segment3.tum", "causal.segment3.tum", "told.segment3.txt", "map.segment3.ply"}) {
+  for (const char* name :
+       {"final.segment1.tum", "causal.segment1.tum", "causal_poses.segment1.txt", "map.segment1.ply",
+        "final.segment3.tum", "causal.segment3.tum", "causal_poses.segment3.txt", "map.segment3.ply"}) {
     expected.insert(name);
   }
   const std::string made = folder.file("out/short/mine");
@@ -334,7 +335,7 @@ TEST_CASE("Two runs do not write to the same folder at the same time", "[slow]")
   CHECK(names_in(folder.file("results/short")) == std::set<std::string>{key, "index.csv"});
 }
 
-TEST_CASE("Of many processes that run the same config at once, each is done or refused, and one result is whole",
+TEST_CASE("Of many processes that run the same config at once, each succeeds or is refused, and the result is whole",
           "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));

@@ -70,7 +70,7 @@ const std::vector<Metric>& known_metrics() {
 
 Metric metric_of(const std::string& name) {
   const std::string key = present_metric(name);
-  for (const std::string of : {"final", "causal"}) {  // the scores of the trajectory that the table isn't of
+  for (const std::string of : {"final", "causal"}) {  // the scores of the other trajectory
     if (!key.starts_with(of + ".")) continue;
     Metric metric = metric_of(key.substr(of.size() + 1));
     metric.header = metric.header == metric.key ? key : of + " " + metric.header;

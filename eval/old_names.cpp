@@ -52,8 +52,10 @@ void rename_keys(Json& part, const char* name, std::vector<std::string>& remarks
   Json* const learn = part.contains("learn") ? &part["learn"] : nullptr;
   if (type == "gp_map" && learn != nullptr && learn->is_object() && learn->value("prior", Json()) == "hindsight") {
     (*learn)["prior"] = "smoothed";
-    remarks.push_back(fmt::format("{}.learn.prior: \"hindsight\" is called \"smoothed\" now; the old name is read until "
-                                  "the next version", name));
+    remarks.push_back(
+        fmt::format("{}.learn.prior: \"hindsight\" is called \"smoothed\" now; the old name is read until "
+                    "the next version",
+                    name));
   }
 }
 

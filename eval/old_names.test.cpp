@@ -24,7 +24,7 @@ TEST_CASE("Old names of options are read, each with a remark, in one back-end an
   CHECK(rename_old_keys(list).empty());
 }
 
-TEST_CASE("Another plugin's option of an old name, and one beside its present name, stay as they are") {
+TEST_CASE("An old name is not renamed for another plugin, nor if the present name also exists") {
   const Json other = parse_json(R"({"backend": {"type": "mine", "frame_duration": 0.1}})");
   const Json both =
       parse_json(R"({"backend": {"type": "bundle_adjustment", "frame_duration": 0.1, "batch_duration": 0.2}})");

@@ -76,7 +76,7 @@ RunStatus read_status(const RecordReader& json) {
   }
   for (const RecordReader& segment : json.list("segments")) {
     result.segments.push_back({segment.number("from"), segment.number("to"), segment.count_or_null("poses").value_or(0),
-                             segment.count_or_null("landmarks").value_or(0)});
+                               segment.count_or_null("landmarks").value_or(0)});
   }
   result.scored = json.count_or_null("scored_segment").value_or(0);
   result.complete = json.flag_or("complete", true);
@@ -127,7 +127,7 @@ Json to_json(const RunStatus& run) {
     json["degraded"].push_back({{"from", span.from}, {"to", span.to}, {"reason", span.reason}});
   }
   json["stationary"] = Json::array();
-  for (const TimeRange& span : run.still) json["stationary"].push_back(to_json(span));
+  for (const TimeRange& span : run.stationary) json["stationary"].push_back(to_json(span));
   json["segments"] = Json::array();
   for (const RunSegment& segment : run.segments) {
     json["segments"].push_back(

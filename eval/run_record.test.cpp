@@ -7,11 +7,11 @@
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 #include "eval/score_run.hpp"
 #include "eval/testing/trajectories.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 using namespace testing;
 using Catch::Matchers::ContainsSubstring;
 
-/// With everything that a record can have.
+/// A record with all fields set.
 RunRecord full_record() {
   RunRecord record;
   record.experiment = "arm";
@@ -55,7 +55,7 @@ std::string message_of(const Json& metrics) {
 
 }  // namespace
 
-TEST_CASE("A record that was read is written again with the same bytes") {
+TEST_CASE("A record is identical after reading and writing") {
   for (const RunRecord& record : {full_record(), RunRecord{}}) {
     const std::string text = dump_json(to_json(record), 2);
     CHECK(dump_json(to_json(read_record(parse_json(text), "m.json")), 2) == text);
@@ -74,7 +74,7 @@ TEST_CASE("A record that was read is written again with the same bytes") {
   CHECK_FALSE(read.status->complete);
 }
 
-TEST_CASE("Times of steps are told in milliseconds, by median, 99th percentile and maximum") {
+TEST_CASE("Times of steps are in milliseconds: median, 99th percentile and maximum") {
   std::vector<double> seconds(100, 0.002);
   seconds[7] = 0.05;
   seconds[8] = 0.01;
@@ -85,7 +85,7 @@ TEST_CASE("Times of steps are told in milliseconds, by median, 99th percentile a
   CHECK_FALSE(step_times({}));
 }
 
-TEST_CASE("What an older version did not write yet is not known, and keys of a newer one are passed over") {
+TEST_CASE("Keys that an older version did not write are unknown, and those of a newer version are skipped") {
   const RunRecord read = read_record(
       {{"experiment", "e"}, {"label", "l"}, {"final", nullptr}, {"causal", nullptr}, {"brand_new", 1}}, "m.json");
   CHECK_FALSE(read.seed);
@@ -94,7 +94,7 @@ TEST_CASE("What an older version did not write yet is not known, and keys of a n
   CHECK_FALSE(read.status);
 }
 
-TEST_CASE("A damaged metrics.json is refused with the file and the key") {
+TEST_CASE("A damaged metrics.json is an error with the file and the key") {
   const auto with = [](const char* pointer, const Json& value) {
     Json json = to_json(full_record());
     json[Json::json_pointer(pointer)] = value;
@@ -112,13 +112,14 @@ TEST_CASE("A damaged metrics.json is refused with the file and the key") {
   CHECK_THAT(message_of(with("/status", 3)), ContainsSubstring("m.json: status: expected a JSON object"));
   CHECK_THAT(message_of(with("/status/state", "fine")),
              ContainsSubstring("\"state\" is \"fine\"; expected ok, degraded"));
-  CHECK_THAT(message_of(with("/status/segments/1/from", "x")), ContainsSubstring("m.json: status: segments.1: \"from\""));
+  CHECK_THAT(message_of(with("/status/segments/1/from", "x")),
+             ContainsSubstring("m.json: status: segments.1: \"from\""));
   CHECK_THAT(message_of(with("/status/complete", "yes")),
              ContainsSubstring("\"complete\" is \"yes\"; expected true or false"));
   CHECK_THAT(message_of(with("/final", 3)), ContainsSubstring("\"final\" is missing; expected scores or null"));
 }
 
-TEST_CASE("A run's folder is scored from its files, within the run's range, and says why where it can't be") {
+TEST_CASE("A run's folder is scored from its files within the run's range, or has a reason why it can't be") {
   const TemporaryFolder folder;
   const PoseTrajectory truth = sample(wavy_pose, 400, 0.01);
   folder.write("causal.tum", "");
@@ -148,7 +149,7 @@ TEST_CASE("A run's folder is scored from its files, within the run's range, and 
   CHECK_THROWS_WITH(score_run(folder.path(), {}, record), ContainsSubstring("final.tum: no such file"));
 }
 
-TEST_CASE("A run is scored at a latency by what it told, and by its covariances, where there are such files") {
+TEST_CASE("A run is scored at a latency by its published poses, and by its covariances, if there are such files") {
   const TemporaryFolder folder;
   const PoseTrajectory truth = sample(wavy_pose, 400, 0.01);
   write_file(folder.file("groundtruth.tum"), format_tum(truth));
@@ -160,9 +161,9 @@ TEST_CASE("A run is scored at a latency by what it told, and by its covariances,
   CHECK_FALSE(record.causal_scores.contains("zero_latency"));
   CHECK(record.covariance.is_null());
 
-  std::vector<CausalPose> told;  // frames of 0.1 s, known when they end
-  for (int i = 0; i < 39; ++i) told.push_back({{0.05 + 0.1 * i, wavy_pose(0.05 + 0.1 * i)}, 0.1 + 0.1 * i});
-  write_file(folder.file("causal_poses.txt"), format_causal_poses(told));
+  std::vector<CausalPose> published;  // batches of 0.1 s, known when they end
+  for (int i = 0; i < 39; ++i) published.push_back({{0.05 + 0.1 * i, wavy_pose(0.05 + 0.1 * i)}, 0.1 + 0.1 * i});
+  write_file(folder.file("causal_poses.txt"), format_causal_poses(published));
   write_file(folder.file("covariance.txt"),
              format_relative_poses(std::vector<RelativePose>{
                  {"over_1s", 1.0, 2.0, wavy_pose(1.0).inverse() * wavy_pose(2.0), Matrix6::Identity()}}));

@@ -14,7 +14,7 @@
 namespace evbench {
 namespace {
 
-/// The protocol's time range, as far as the run goes.
+/// The protocol's time range, limited to that of the run.
 OptionSet::List clip(const OptionSet::List& range, const std::optional<TimeRange>& run) {
   if (!run) return range;
   if (range.size() != 2) return {run->from, run->to};
@@ -27,7 +27,7 @@ bool exists(const std::string& path) {
 }
 
 struct RunTrajectories {
-  PoseTrajectory ground_truth, estimate;  ///< each empty where there is none
+  PoseTrajectory ground_truth, estimate;  ///< empty if missing
 };
 
 RunTrajectories read_trajectories(const std::string& folder, bool causal) {
@@ -36,10 +36,10 @@ RunTrajectories read_trajectories(const std::string& folder, bool causal) {
           read_estimate(file_of_run(folder, causal ? "causal.tum" : "final.tum"))};
 }
 
-/// Throws InputError with the reason where there are no scores.
+/// Throws InputError with the reason if there are no scores.
 Scores compare(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, ScoreOptions options,
                const RunRecord& record) {
-  if (estimate.empty()) {  // a run that broke off left no ground truth either
+  if (estimate.empty()) {  // a run that broke off has no ground truth either
     const std::string reason = record.status ? record.status->status.reason : "";
     throw InputError(reason.empty() ? "no trajectory" : "no trajectory: " + reason);
   }
@@ -53,13 +53,13 @@ Scores compare(const PoseTrajectory& ground_truth, const PoseTrajectory& estimat
   return score(ground_truth, estimate, options);
 }
 
-/// The scores of what the back-end would have given for each ground-truth pose's time, `latency` later.
-Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<CausalPose>& told, double latency,
+/// Scores the estimates that were available `latency` [s] after the time of each ground-truth pose.
+Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<CausalPose>& published, double latency,
                        const ScoreOptions& options, const RunRecord& record) {
   std::vector<double> times;
   for (const StampedPose& pose : ground_truth.poses()) times.push_back(pose.t - options.time_offset);
   try {
-    Json json = to_json(compare(ground_truth, estimates_at_latency(told, times, latency), options, record));
+    Json json = to_json(compare(ground_truth, estimates_at_latency(published, times, latency), options, record));
     json["latency_s"] = latency;
     return json;
   } catch (const InputError&) {
@@ -67,20 +67,20 @@ Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<Cau
   }
 }
 
-/// To the scores of the causal estimate those at zero and at equal latency, where it was told what was known when.
+/// Adds to the scores of the causal estimate those at zero and at equal latency, if there are published poses.
 void add_latencies(const std::string& folder, const PoseTrajectory& ground_truth, const ScoreOptions& options,
                    const RunRecord& record, Json& scores) {
   const std::string path = file_of_run(folder, "causal_poses.txt");
   if (!exists(path)) return;
-  const std::vector<CausalPose> told = read_causal_poses(path);
-  if (const std::optional<Delay> delay = delay_of(told)) {
+  const std::vector<CausalPose> published = read_causal_poses(path);
+  if (const std::optional<Delay> delay = delay_of(published)) {
     scores["delay_s"] = {{"median", delay->median}, {"p99", delay->p99}, {"max", delay->max}};
   }
-  scores["zero_latency"] = scores_at_latency(ground_truth, told, 0.0, options, record);
-  scores["equal_latency"] = scores_at_latency(ground_truth, told, options.latency, options, record);
+  scores["zero_latency"] = scores_at_latency(ground_truth, published, 0.0, options, record);
+  scores["equal_latency"] = scores_at_latency(ground_truth, published, options.latency, options, record);
 }
 
-/// By kind.
+/// Covariance scores by kind.
 Json covariance_scores(const std::vector<RelativePose>& poses, const PoseTrajectory& ground_truth, double scale,
                        double time_offset) {
   std::map<std::string, std::vector<RelativePose>> kinds;

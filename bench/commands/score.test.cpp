@@ -83,7 +83,7 @@ TEST_CASE("A run that can't be scored is an error, and no run is changed", "[slo
   refused("results --set evaluation.alignment=sim4", "did you mean \"sim3\"");
   refused("results --set evaluation.algnment=sim3", "unknown key \"algnment\"");
   refused("results --config no.json", "no.json: no such file");
-  refused("results --set 'evaluation.time_range=[100,200]'", "has scores, of which this protocol leaves none: ");
+  refused("results --set 'evaluation.time_range=[100,200]'", "has scores, but would have none by this protocol: ");
   std::filesystem::remove(runs.runs[1] + "/config.json");
   const Outcome outcome = runs.score("results");
   CHECK(outcome.exit_code == 2);

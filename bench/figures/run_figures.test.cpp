@@ -374,7 +374,7 @@ TEST_CASE("An option that says nothing of a kind of figure is refused") {
     CHECK(outcome.exit_code == 2);
     CHECK_THAT(outcome.err, ContainsSubstring(message));
   };
-  refused("box . --axis backend.batch_duration", "--axis says nothing of a figure of the kind box");
+  refused("box . --axis backend.batch_duration", "--axis has no effect on a figure of the kind box");
   refused("sweep . --across seed", "it takes --metrics, --axis, --axis-label, --causal");
   refused("times . --causal", "it takes none");
   CHECK(names_in(results.folder.path()).count("f.svg") == 0);

@@ -105,7 +105,7 @@ void BackEndRunner::end_estimator(const StationaryDetector::Rejected& stationary
   estimator.unconfirmed = stationary.surviving_tracks;
 }
 
-/// A track that ends soon after the re-initialisation has not drifted to another scene point: its landmark in the
+/// A track that ends soon after the re-initialisation is not in the new map as another scene point: its landmark in the
 /// earlier map is confirmed, and can be used for relocalisation.
 void BackEndRunner::confirm_landmarks(const std::vector<TrackEnd>& ended) {
   constexpr double kSoon = 0.1;  // [s], before it is a landmark of the new map
@@ -237,7 +237,7 @@ void BackEndRunner::finish(double rate, RunResult& result) {
   }
 }
 
-/// Makes one segment for each world. Each estimator is relocalised once more, by the final estimates: these determine
+/// Makes one segment for each world. Each estimator is relocalised again by the final estimates: these determine
 /// the transform between two worlds better than the maps during the run.
 void BackEndRunner::add_segments(double rate, RunResult& result) {
   std::map<std::size_t, std::size_t> segment_of;  // by world

@@ -25,7 +25,7 @@ struct Estimator {
   CovarianceSamples covariances;
 
   std::optional<Status> ended;    ///< set if the harness ended the back-end: overrides its own status
-  std::set<TrackId> unconfirmed;  ///< tracks that may have drifted to other scene points before it ended
+  std::set<TrackId> unconfirmed;  ///< tracks that may observe other scene points since it ended
 
   std::size_t world;                             ///< number of the estimator whose world is used
   Similarity to_world;                           ///< from its own world to that one
