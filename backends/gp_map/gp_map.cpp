@@ -183,7 +183,7 @@ void GpMap::learn() {
   const double now = graph().states.back().t;
   if (now < map_->next_smoothed_learning) return;
   map_->next_smoothed_learning = now + kEvery;
-  learn_from_smoothed({now - World::kSmoothedReach, now - kOneSided});
+  learn_from_smoothed({now - MapEstimate::kSmoothedReach, now - kOneSided});
   map_->last_update = map_->engine.update();
 }
 

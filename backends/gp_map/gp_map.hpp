@@ -132,7 +132,7 @@ class GpMap : public BackEnd {
   BackEndContext context_;
   StatePlacement placement_;
   InitialMapFinder initial_map_;
-  std::optional<World> map_;  ///< from the initial map on, unless that is refuted
+  std::optional<MapEstimate> map_;  ///< from the initial map on, unless that is refuted
   std::map<TrackId, Track> tracks_;
   TrackBuffer waiting_;                    ///< observations of waiting tracks
   TrackBuffer tentative_;                      ///< of all tracks, while the map is young

@@ -24,8 +24,8 @@ void GpMap::reconsider_recent() {
   const double now = graph().states.back().t;
   if (!map_->search && !(now < map_->next_look)) {
     map_->next_look = now + kReconsidering;
-    const auto supposed = map_->searches % World::kPlanes == 0 ? StructureHypothesis::frontal_plane : StructureHypothesis::dual_plane;
-    map_->search = begin_search(supposed, is_tentative() && map_->searches % (2 * World::kPlanes) < World::kPlanes);
+    const auto supposed = map_->searches % MapEstimate::kPlanes == 0 ? StructureHypothesis::frontal_plane : StructureHypothesis::dual_plane;
+    map_->search = begin_search(supposed, is_tentative() && map_->searches % (2 * MapEstimate::kPlanes) < MapEstimate::kPlanes);
     if (!map_->search && is_tentative()) map_->search = begin_search(supposed, true);
     if (!map_->search && map_->pending_checks > 0) --map_->pending_checks;  // there is nothing that could be explained otherwise
     ++map_->searches;
@@ -35,7 +35,7 @@ void GpMap::reconsider_recent() {
   map_->search.reset();
   const int oldest = map_->engine.first_state();
   if (other && oldest > 0 && other->first <= oldest + 1) other.reset();  // a lag has marginalised it since
-  if (map_->pending_checks > 0) map_->pending_checks = other ? World::kPlanes : map_->pending_checks - 1;
+  if (map_->pending_checks > 0) map_->pending_checks = other ? MapEstimate::kPlanes : map_->pending_checks - 1;
   if (other) go_on_with(*other);
 }
 

@@ -122,7 +122,7 @@ void GpMap::weigh_tracks(const NoiseLearner& noise, const TimeSpan& span) {
   if (own.empty() || (running && median(std::move(scales)) > kTrackNoiseChange)) return;
   const double change = running ? kTrackNoiseChange : 1.0;
   for (const auto& [j, scale] : own) {
-    World::Known& known = map_->known[index(j)];
+    MapEstimate::Known& known = map_->known[index(j)];
     if (scale < change * known.noise && scale > known.noise / change) continue;
     known.noise = scale;
     if (known.sigma_scale() != graph().landmarks[index(j)].sigma_scale)
