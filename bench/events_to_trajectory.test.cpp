@@ -332,7 +332,7 @@ TEST_CASE("A camera that is stationary for the first ten seconds is initialised 
   CHECK(error(scene, execution, 10.0) < 0.02);
 }
 
-TEST_CASE("Pure rotation gives no map, with a reason; once the camera translates, there is one", "[slow]") {
+TEST_CASE("Pure rotation gives no map, with a reason, and once the camera translates, there is one", "[slow]") {
   const auto turn = [](double t) {
     Vector6 twist = Vector6::Zero();
     twist.head<3>() = Vector3(0.1 * std::sin(2.0 * t), 0.15 * std::sin(1.5 * t), 0.2 * std::sin(t));
@@ -351,7 +351,7 @@ TEST_CASE("Pure rotation gives no map, with a reason; once the camera translates
   CHECK(error(translating, execution, 2.5) < 0.02);
 }
 
-TEST_CASE("An empty scene ends with a reason; once there is texture, there is a trajectory", "[slow]") {
+TEST_CASE("An empty scene ends with a reason, and once there is texture, there is a trajectory", "[slow]") {
   const EventScene empty(swing, 1.0, {});
   const Execution nothing = run(empty);
   REQUIRE(nothing.complete);
@@ -363,7 +363,7 @@ TEST_CASE("An empty scene ends with a reason; once there is texture, there is a 
   check_recovered(later, run(later), 2.5);
 }
 
-TEST_CASE("A single straight edge ends with a reason; once there is more texture, there is a trajectory", "[slow]") {
+TEST_CASE("A single straight edge ends with a reason, and once there is more texture, there is a trajectory", "[slow]") {
   const std::vector<EventScene::Outline> line{{{-4.0, -0.2}, {4.0, 0.3}}};
   const EventScene edge(swing, 3.0, line);
   const Execution nothing = run(edge);

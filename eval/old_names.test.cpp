@@ -10,7 +10,7 @@ TEST_CASE("Old names of options are read, each with a remark, in one back-end an
   Json one = parse_json(R"({"backend": {"type": "bundle_adjustment", "frame_duration": 0.1, "window": 5},
                             "pipeline": {"still_after": 0.2}})");
   const std::vector<std::string> remarks = rename_old_keys(one);
-  CHECK(one == parse_json(R"({"backend": {"type": "bundle_adjustment", "batch_duration": 0.1, "window": 5},
+  CHECK(one == parse_json(R"({"backend": {"type": "bundle_adjustment", "window": 5, "batch_duration": 0.1},
                               "pipeline": {"stationary_after": 0.2}})"));
   REQUIRE(remarks.size() == 2);
   CHECK(remarks[0] ==
@@ -39,8 +39,8 @@ TEST_CASE("Metrics and files of a run of an older version are found by their pre
   Json metrics = parse_json(R"({"final": {}, "online": {"pairs": 3}, "status": {"still": [1], "pieces": [2],
                                 "scored_piece": 1}})");
   rename_old_metrics(metrics);
-  CHECK(metrics == parse_json(R"({"final": {}, "causal": {"pairs": 3}, "status": {"stationary": [1], "segments": [2],
-                                  "scored_segment": 1}})"));
+  CHECK(metrics == parse_json(R"({"final": {}, "status": {"stationary": [1], "segments": [2], "scored_segment": 1},
+                                  "causal": {"pairs": 3}})"));
   CHECK(present_metric("online.ate.trans_m.rmse") == "causal.ate.trans_m.rmse");
   CHECK(present_metric("final.ate.trans_m.rmse") == "final.ate.trans_m.rmse");
 

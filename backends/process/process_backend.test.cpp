@@ -227,7 +227,7 @@ TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence
   CHECK_THAT(failure("{'state': 'tracking', 'covariance': [0] * 144}"),
              ContainsSubstring("expected \"newest\" with it"));
   CHECK_THAT(failure("{'state': 'tracking' if t < 0.15 else 'no_map', 'causal_poses': [pose(0.1, 0)]}"),
-             ContainsSubstring("expected \"lost\", as poses were told"));
+             ContainsSubstring("expected \"lost\", as poses were published"));
   CHECK_THAT(failure("{'state': 'lost' if t < 0.15 else 'no_map', 'reason': 'fog'}"),
              ContainsSubstring("expected \"lost\""));
   CHECK_THAT(failure("{'error': 'I can not see'}"),

@@ -208,7 +208,7 @@ TEST_CASE("Every wrong answer of a front-end process is reported by a sentence")
              ContainsSubstring("expected a time from its last observation on"));
   CHECK_THAT(failure("{'observations': [[1, t, float('inf'), 5, 1]]}"),
              ContainsSubstring("JSON has no NaN and no Infinity"));
-  CHECK_THAT(failure("{'error': 'too dark'}"), ContainsSubstring("says: too dark"));
+  CHECK_THAT(failure("{'error': 'too dark'}"), ContainsSubstring("reports an error: too dark"));
   CHECK_THAT(failure("exit(5)"), ContainsSubstring("ended with exit code 5"));
   CHECK_THROWS_WITH(Session("send({'evbench': 1, 'needs': ['all']})"),
                     ContainsSubstring("needs[0]: expected \"feedback\""));

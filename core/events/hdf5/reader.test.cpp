@@ -191,7 +191,7 @@ TEST_CASE("M3ED's cameras are chosen by name and bring their calibration") {
   check_recording(read_all(*right));
 }
 
-TEST_CASE("Events with an unusable calibration are read; the calibration is refused when it is requested") {
+TEST_CASE("Events with an unusable calibration are read, and the calibration is refused when it is requested") {
   const testing::TemporaryFolder folder;
   const std::string path = folder.file("spot.h5");
   {
