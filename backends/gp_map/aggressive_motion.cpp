@@ -12,11 +12,11 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kFar = 3.0;  ///< median error of the tracks seen last that no optimum should leave: newest_error()
+constexpr double kFar = 3.0;  ///< [sigmas] newest_error() above this means that the estimate has not converged
 
-/// More steps, where one was damped, and so has not arrived, and leaves most tracks far from where they should be: the
-/// next state, extrapolated from this one, would be farther off still, where the robust loss hardly pulls.
-void settle(Engine& engine, UpdateSummary& update, const std::function<double()>& newest_error) {
+/// Takes more steps after a damped one, which has not converged, while most tracks have large errors. The next state,
+/// extrapolated from this one, would be farther off still, where the robust loss gives little gradient.
+void converge(Engine& engine, UpdateSummary& update, const std::function<double()>& newest_error) {
   constexpr double kHelp = 0.95;
   constexpr int kSteps = 6;
   double error = newest_error();
@@ -28,36 +28,38 @@ void settle(Engine& engine, UpdateSummary& update, const std::function<double()>
   }
 }
 
-/// Where most tracks are still far from where they should be, the prior over the newest intervals is weakened as far as
-/// that is worth it. `qc`: where nothing has yielded.
-void yield(Engine& engine, UpdateSummary& update, const std::function<double()>& newest_error, const Vector6& qc) {
-  constexpr double kWeakest = 1e4;  // over the prior that was given
+/// Relaxes the prior over the newest intervals as far as it is worthwhile while most tracks have large errors. `qc`:
+/// the unrelaxed density.
+void relax_prior(Engine& engine, UpdateSummary& update, const std::function<double()>& newest_error,
+                 const Vector6& qc) {
+  constexpr double kWeakest = 1e4;  // relative to the given prior
   constexpr int kIntervals = 3;
   const FactorGraph& graph = engine.graph();
   const int newest = static_cast<int>(graph.states.size()) - 1;
   const int first = std::max(engine.first_state() + 1, newest - kIntervals + 1);
-  const std::vector<Vector6> learnt(graph.qcs.begin() + first, graph.qcs.end());
+  const std::vector<Vector6> densities(graph.qcs.begin() + first, graph.qcs.end());
   const std::vector<double> expansions(graph.expansions.begin() + first, graph.expansions.end());
   double tried = 1.0;
   const auto weaken = [&](double factor) {
     tried = factor;
-    for (std::size_t i = 0; i < learnt.size(); ++i) {
-      engine.set_qc(first + static_cast<int>(i), factor * learnt[i], expansions[i] / factor);
+    for (std::size_t i = 0; i < densities.size(); ++i) {
+      engine.set_qc(first + static_cast<int>(i), factor * densities[i], expansions[i] / factor);
     }
     update = engine.update();
     return newest_error();
   };
   const double most = kWeakest / graph.qc.cwiseQuotient(qc).maxCoeff();
-  const double kept = worth_weakening(newest_error(), most, weaken);
+  const double kept = worthwhile_relaxation(newest_error(), most, weaken);
   if (kept != tried) weaken(kept);
   if (kept > 1.0) engine.set_next_qc(graph.qcs.back());
 }
 
 }  // namespace
 
-double worth_weakening(double error, double most, const std::function<double(double)>& error_at) {
-  constexpr double kWeaker = 10.0, kHelp = 0.95;         // at a time; while so much is left
-  constexpr double kWorthInAll = 0.8, kWorthEach = 0.9;  // may be left; each time, in the mean since the last one kept
+double worthwhile_relaxation(double error, double most, const std::function<double(double)>& error_at) {
+  constexpr double kWeaker = 10.0;  // per attempt
+  constexpr double kHelp = 0.95;    // attempts go on while the error falls below this share of the last one
+  constexpr double kWorthInAll = 0.8, kWorthEach = 0.9;  // remaining share: in all; per attempt since the last one kept
   const double before = error;
   double worth = error, kept = 1.0;
   for (double tried = 1.0; error > kFar && tried < most;) {
@@ -77,12 +79,12 @@ double worth_weakening(double error, double most, const std::function<double(dou
 UpdateSummary AggressiveMotion::follow(Engine& engine, const NoiseLearner& noise, const UpdateSummary& update) const {
   UpdateSummary last = update;
   const auto error = [&] { return newest_error(engine.graph(), noise); };
-  settle(engine, last, error);
-  yield(engine, last, error, qc_);
+  converge(engine, last, error);
+  relax_prior(engine, last, error, qc_);
   return last;
 }
 
-bool AggressiveMotion::is_yielding(const FactorGraph& graph) const {
+bool AggressiveMotion::is_prior_relaxed(const FactorGraph& graph) const {
   constexpr double kRecovered = 1.5;
   return graph.qc.cwiseQuotient(qc_).maxCoeff() > kRecovered;
 }
@@ -93,9 +95,9 @@ void AggressiveMotion::recover(Engine& engine) const {
   engine.set_next_qc((std::exp(-dt / window_) * graph.qc).cwiseMax(qc_));
 }
 
-/// Median error of the tracks seen in the newest interval, each at its last observation [sigmas of what averages of the
-/// errors would be, as outliers are told by: trackers drift, and that is no motion; of a few sigmas at most, as many
-/// that drift together are no accident]; 0: too few.
+/// Median error of the tracks seen in the newest interval, each at its last observation; 0: too few tracks. Unit: the
+/// sigma of a track's mean error, as for the rejection of outliers, because trackers drift and this is no motion; but
+/// at most a few pixel sigmas, because many tracks do not drift in common by chance.
 double AggressiveMotion::newest_error(const FactorGraph& graph, const NoiseLearner& noise) const {
   constexpr double kMostDrift = 3.0;
   const std::size_t k = graph.states.size() - 1;

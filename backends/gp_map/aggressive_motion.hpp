@@ -7,29 +7,30 @@
 
 namespace evbench::gp_map {
 
-/// How many times as weak the prior should be, by factors of ten up to `most`, to bring most tracks near that are
-/// `error` off [sigmas]; `error_at(f)` is what they are off when it is f times as weak. As far as that was worth it: a
-/// motion that the prior held back comes near, a few tracks that err together by chance come a little nearer each time.
-double worth_weakening(double error, double most, const std::function<double(double)>& error_at);
+/// How many times weaker the prior should be, in factors of ten up to `most`, if most tracks have an error of `error`
+/// [sigmas]. `error_at(f)` is their error with a prior f times weaker. The prior is relaxed only as far as it is
+/// worthwhile: tracks of a motion that the prior suppresses gain much, a few tracks with a common error by chance gain
+/// a little each time.
+double worthwhile_relaxation(double error, double most, const std::function<double(double)>& error_at);
 
-/// Keeps hold of a camera that moves more violently than the prior expects: brings the newest state to where its
-/// observations ask for it, by more Gauss-Newton steps where one has not arrived, and by a weaker prior where that one
-/// holds it back. The robust loss would else take good tracks for outliers.
+/// Keeps track of a camera that moves more aggressively than the prior expects. It moves the newest state to where its
+/// observations require it: by more Gauss-Newton steps if one has not converged, and by prior relaxation if the prior
+/// suppresses the motion. Otherwise the robust loss would treat good tracks as outliers.
 class AggressiveMotion {
  public:
-  /// `min_landmarks`: in view, with fewer nothing is concluded; `window`: in which a prior that has yielded is as it
-  /// was again [s]; `qc`: the prior's density where nothing has yielded.
+  /// `min_landmarks`: with fewer in view nothing is done; `window`: time in which a relaxed prior recovers [s]; `qc`:
+  /// density of the unrelaxed prior.
   AggressiveMotion(int min_landmarks, double window, const Vector6& qc)
       : min_landmarks_(min_landmarks), window_(window), qc_(qc) {}
 
-  /// Once an update of the engine is done and may have left most tracks far from where they should be: what is needed
-  /// beyond it. Returns the last update's summary. `noise`: of the tracks.
+  /// Call after an update of the engine, which may have left most tracks with large errors: makes the further updates
+  /// that are needed. Returns the summary of the last update. `noise`: of the tracks.
   UpdateSummary follow(Engine& engine, const NoiseLearner& noise, const UpdateSummary& update) const;
 
-  /// Whether the prior yields now: the tracks' errors tell of the motion then.
-  bool is_yielding(const FactorGraph& graph) const;
+  /// Is the prior relaxed now? The errors of the tracks are then those of the motion.
+  bool is_prior_relaxed(const FactorGraph& graph) const;
 
-  /// The density of the intervals to come goes back to what it was, as far as time has passed.
+  /// Moves the density of future intervals back towards the unrelaxed one, according to the time that has passed.
   void recover(Engine& engine) const;
 
  private:

@@ -6,21 +6,20 @@
 #include "backends/gp_map/gp_map.hpp"
 #include "backends/gp_map/problem_graph.hpp"
 
-// What the back-end tells of its estimate: poses as they are made, and answers afterwards. While the initial map is in
-// doubt, until another explanation has been looked for in vain on both planes and most tracks fit it, no causal pose
-// and no covariance is told.
+// What the back-end publishes and answers. While the initial map is not confirmed, no causal pose and no covariance is
+// published: not before the search for an alternative estimate on both planes has failed and most tracks fit the map.
 namespace evbench::gp_map {
 
 void GpMap::publish_newest(double t) {
-  const std::optional<SE3> T = pose(t);  // none where the state has been taken back
+  const std::optional<SE3> T = pose(t);  // none if the state has been removed
   if (!T || t <= published_ || is_pending()) return;
   context_.publish({{t, *T}, t, velocity(t)});
   published_ = t;
 }
 
-/// The newest state, and those of late anew: what is seen now tells of them, too.
+/// Publishes the newest state, and the recent ones again: new observations improve them, too.
 void GpMap::publish_recent(double t) {
-  if (graph().states.back().t != t) return;  // it has been taken back
+  if (graph().states.back().t != t) return;  // it has been removed
   map_->recent.follow(graph(), map_->engine.first_state());
   if (is_pending()) return;
   const auto states = map_->recent.states();
@@ -54,11 +53,11 @@ std::optional<Vector6> GpMap::velocity(double t) const {
   return GpInterval(graph().states[index(k - 1)], graph().states[index(k)]).velocity(t);
 }
 
-/// None while the map is in doubt: it may be wrong altogether, of which its covariance would tell nothing.
+/// None while the initial map is not confirmed: it may be wrong altogether, which its covariance would not show.
 std::optional<Matrix12> GpMap::covariance(double t) {
   if (!map_ || is_pending()) return std::nullopt;
   auto result = map_->engine.covariance(t);
-  if (result) *result *= information_told_;
+  if (result) *result *= information_share_;
   return result;
 }
 
@@ -74,13 +73,13 @@ std::optional<Matrix6> GpMap::relative_covariance(double t0, double t1) {
   const SE3 inverse = graph().states[index(j)].T.inverse() * graph().states[index(i)].T;
   Eigen::Matrix<double, 6, 12> J;  // (T_i Exp δ_i)⁻¹ T_j Exp δ_j = T_i⁻¹ T_j Exp(δ_j − Ad(T_j⁻¹ T_i) δ_i)
   J << -se3::adjoint(inverse), Matrix6::Identity();
-  return Matrix6(information_told_ * J * *joint * J.transpose());
+  return Matrix6(information_share_ * J * *joint * J.transpose());
 }
 
 std::vector<Landmark> GpMap::map() const {
   std::vector<Landmark> result;
   for (const auto& [id, track] : tracks_) {
-    if (track.role != Track::Role::landmark && track.role != Track::Role::slid) continue;
+    if (track.role != Track::Role::landmark && track.role != Track::Role::drifted) continue;
     result.push_back({id, graph().landmarks[index(track.landmark)].position});
   }
   return result;

@@ -11,7 +11,7 @@
 namespace evbench::gp_map {
 namespace {
 
-/// A camera that flies past a few points, started away from the truth.
+/// A camera that moves past a few points; the initial estimate has errors of this size.
 FactorGraph simulated_problem(int states, double error) {
   evbench::testing::RandomTangents random;
   FactorGraph graph;
@@ -111,7 +111,7 @@ TEST_CASE("Marginal covariances equal those of the dense inverse") {
   CHECK_FALSE(covariance.at(-1.0));
 }
 
-TEST_CASE("A problem without gauge is reported, not solved into nothing") {
+TEST_CASE("A problem without gauge leaves the estimate finite") {
   FactorGraph graph = simulated_problem(5, 0.0);
   graph.pose_priors.clear();
   for (auto& landmark : graph.landmarks) landmark.prior = {};

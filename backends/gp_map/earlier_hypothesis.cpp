@@ -9,19 +9,19 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kLook = 0.6;         ///< [s] between looks
-constexpr double kStep = 0.3;         ///< [s] from one part's end to the next one's, once one is explained better
-constexpr double kQuiet = 0.7;        ///< [s] without another one: here the explanations meet
-constexpr double kPatience = 1.5;     ///< [s] the same once everything has been solved in vain
-constexpr double kWorthwhile = 50.0;  ///< advantages together for which everything is solved
-constexpr int kAttempts = 3;          ///< to solve it from one passage
-constexpr int kWork = 10'000'000;     ///< linearised observations that solving everything may take, all in all
+constexpr double kBetween = 0.6;      ///< [s] between attempts
+constexpr double kStep = 0.3;         ///< [s] between the ends of parts, once one has a better alternative
+constexpr double kQuiet = 0.7;        ///< [s] without a better alternative, after which both estimates agree
+constexpr double kPatience = 1.5;     ///< [s] the same once a full solution was not better
+constexpr double kWorthwhile = 50.0;  ///< sum of the advantages from which everything is solved
+constexpr int kAttempts = 3;          ///< full solutions from one passage
+constexpr int kWork = 10'000'000;     ///< linearised observations that all full solutions together may take
 constexpr int kEarlierIterations = 25;
 constexpr double kEarlierTolerance = 1e-4;
-constexpr double kClearly = 1e-3;  ///< share by which the cost must be lower: ten times what the tolerance leaves open
+constexpr double kClearly = 1e-3;  ///< share by which the cost must be lower: ten times the tolerance
 
-/// The motion, and how it is observed, with time running backwards; landmarks keep their numbers. Without priors of
-/// poses: it is solved by parts alone.
+/// The problem with time running backwards; landmarks keep their indices. It has no pose priors, because only parts of
+/// it are solved.
 FactorGraph backwards(const FactorGraph& graph) {
   FactorGraph back;
   back.camera = graph.camera;
@@ -43,25 +43,25 @@ FactorGraph backwards(const FactorGraph& graph) {
   return back;
 }
 
-/// The problem with the estimate of the one backwards, where the oldest pose and the scale are held.
+/// The problem with the estimate of the backward one, with its own oldest pose and scale.
 FactorGraph forwards(const FactorGraph& back, FactorGraph graph) {
   const SE3 G = graph.states.front().T * back.states.back().T.inverse();
   auto state = graph.states.rbegin();
   for (const ControlState& other : back.states) *state++ = {-other.t, G * other.T, -other.velocity};
   for (std::size_t j = 0; j < graph.landmarks.size(); ++j) graph.landmarks[j].position = G * back.landmarks[j].position;
-  to_held_scale(graph);
+  to_anchored_scale(graph);
   return graph;
 }
 
-/// Of the newest part until time t, by the better beginning.
+/// The better alternative estimate of the newest part until time t, of both plane hypotheses.
 std::optional<RecentHypothesis> try_alternatives(const FactorGraph& graph, double t, int enough) {
   std::optional<RecentHypothesis> best;
   const int last = graph.first_state_after(t);
   if (last == std::ssize(graph.states)) return best;
-  for (const StructureHypothesis supposed : {StructureHypothesis::frontal_plane, StructureHypothesis::dual_plane}) {
-    auto search = HypothesisSearch::begin(graph, {0, last}, enough, supposed);
+  for (const StructureHypothesis hypothesis : {StructureHypothesis::frontal_plane, StructureHypothesis::dual_plane}) {
+    auto search = HypothesisSearch::begin(graph, {0, last}, enough, hypothesis);
     if (!search) continue;
-    while (search->go_on()) {
+    while (search->run_share()) {
     }
     const auto& found = search->found();
     if (found && (!best || found->advantage > best->advantage)) best = found;
@@ -69,11 +69,11 @@ std::optional<RecentHypothesis> try_alternatives(const FactorGraph& graph, doubl
   return best;
 }
 
-/// What is gone through backwards from a part that is explained better otherwise on.
+/// A passage backwards through the problem, from a part with a better alternative estimate on.
 struct Passage {
   Engine back;
-  double until;            ///< [s] the last such part's end, backwards
-  double advantage = 0.0;  ///< of all parts together
+  double until;            ///< [s] end of the last such part, in backward time
+  double advantage = 0.0;  ///< sum over all parts
 
   void take(const RecentHypothesis& other, double t) {
     other.place_in(back);
@@ -81,8 +81,8 @@ struct Passage {
     advantage += other.advantage;
   }
 
-  /// Until nothing more is explained better.
-  void go_on(int enough, double quiet) {
+  /// Continues until no part has a better alternative.
+  void extend(int enough, double quiet) {
     for (double t = until + kStep; t < until + quiet; t += kStep) {
       if (const auto other = try_alternatives(back.graph(), t, enough)) take(*other, t);
     }
@@ -93,17 +93,17 @@ struct Passage {
 
 std::optional<Engine> try_earlier_hypotheses(const Engine& engine, int enough) {
   int solutions = kWork / kEarlierIterations / std::max(1, engine.graph().observation_count());
-  if (solutions < 2) return std::nullopt;  // of the present explanation and of another one
+  if (solutions < 2) return std::nullopt;  // one of the present estimate and one of an alternative
   std::optional<Engine> best;
-  std::optional<double> cost;  // to be undercut, as far down as the present explanation leads
+  std::optional<double> cost;  // the lowest so far, at first that of the present estimate
   FactorGraph back = backwards(engine.graph());
   const double end = back.states.back().t;
-  for (double t = back.states.front().t + kLook; t < end && solutions > 0; t += kLook) {
+  for (double t = back.states.front().t + kBetween; t < end && solutions > 0; t += kBetween) {
     const auto other = try_alternatives(back, t, enough);
     if (!other) continue;
     Passage passage{Engine(back, {}), t};
     passage.take(*other, t);
-    passage.go_on(enough, kQuiet);
+    passage.extend(enough, kQuiet);
     if (passage.advantage > kWorthwhile && !cost) {
       cost = Engine(FactorGraph(engine.graph()), {}).optimise(kEarlierIterations, kEarlierTolerance).final_cost;
       --solutions;
@@ -125,9 +125,9 @@ std::optional<Engine> try_earlier_hypotheses(const Engine& engine, int enough) {
       }
       if (attempt + 1 == kAttempts) break;
       passage = {Engine(std::move(solved), {}), until};
-      passage.go_on(enough, kPatience);
+      passage.extend(enough, kPatience);
     }
-    if (!lower) t = until;  // else what has been gone through is looked at once more
+    if (!lower) t = until;  // otherwise the same parts are tried again
   }
   return best;
 }

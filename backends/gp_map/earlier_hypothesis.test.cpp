@@ -13,7 +13,7 @@ using namespace ambiguous_sequence;
 
 constexpr int kLong = 2 * kStates;
 
-/// Misled until the turn, after which all is as it was.
+/// A wrong estimate until the turn, followed by the true motion.
 FactorGraph misled_at_first(const FactorGraph& truth) {
   FactorGraph beginning = truth;
   while (beginning.states.size() > kStates) beginning.remove_newest_state();
@@ -36,7 +36,7 @@ FactorGraph misled_at_first(const FactorGraph& truth) {
 
 }  // namespace
 
-TEST_CASE("What was seen before gives way to the true explanation once what came after is explained by it", "[slow]") {
+TEST_CASE("A wrong estimate of the past is replaced by the true one with the data after it", "[slow]") {
   int found = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     const FactorGraph truth = solved(simulate_problem({0.0, 0.3}, seed, false, kLong)), wrong = misled_at_first(truth);
@@ -51,7 +51,7 @@ TEST_CASE("What was seen before gives way to the true explanation once what came
     if (error(other->graph()) < 0.01) ++found;
     CHECK_FALSE(try_earlier_hypotheses(Engine(truth, {}), kEnough));
   }
-  CHECK(found >= 2);  // of 6: looks are 0.6 s apart, and miss some
+  CHECK(found >= 2);  // of 6: attempts are 0.6 s apart, and miss some
 }
 
 }  // namespace evbench::gp_map

@@ -9,14 +9,14 @@
 #include "core/motion/wnoa.hpp"
 #include "core/support/index.hpp"
 
-// What the front-end is told: how things stand, and where landmarks are expected in the image. An initial map that is in
-// doubt guides it, too: tracks go on either way.
+// Feedback for the front-end: the state of the tracking, and where landmarks are expected in the image. An initial map
+// that is not confirmed is used for it, too, because its tracks continue in any case.
 namespace evbench::gp_map {
 
 Feedback GpMap::feedback(const FeedbackNeeds& needs) {
   Feedback feedback;
   feedback.t = until_;
-  if (std::exchange(reinitialised_, false)) return feedback;  // no map, even where there is another one already
+  if (std::exchange(reinitialised_, false)) return feedback;  // no map, even if there is a new one already
   feedback.state = monitor_.state();
   if (!map_) return feedback;
   feedback.outliers = std::exchange(map_->outliers, {});
@@ -27,7 +27,7 @@ Feedback GpMap::feedback(const FeedbackNeeds& needs) {
   return feedback;
 }
 
-/// The newest state, or, where that stands ahead of the data (per-observation mode), the estimate at their end.
+/// The newest state or, if it is ahead of the data (per-observation mode), the estimate at their end.
 ControlState GpMap::newest_seen() const {
   const ControlState& newest = graph().states.back();
   if (newest.t <= until_) return newest;
@@ -37,8 +37,8 @@ ControlState GpMap::newest_seen() const {
 /// All landmarks in view, predicted with constant velocity. One whose track has ended counts as independent of the
 /// newest state.
 std::vector<ExpectedFeature> GpMap::expected_features() {
-  constexpr double kNear = 1e-3;  // [units] before the camera: nearer has no image
-  // While it is near the newest state: later, finding it takes a long walk back.
+  constexpr double kNear = 1e-3;  // [units] before the camera: nearer points have no image
+  // Computed while it is near the newest state: later this takes a long walk back.
   for (const TrackId id : std::exchange(map_->ended_landmarks, {})) {
     const auto track = tracks_.find(id);
     if (track != tracks_.end() && track->second.role == Track::Role::landmark) covariance_of_ended(track->second);
@@ -67,11 +67,11 @@ std::vector<ExpectedFeature> GpMap::expected_features() {
   return result;
 }
 
-/// Tracks whose landmarks are in view or may come into it before the next state. Found once a state: a long recording
-/// has seen many more.
+/// Tracks whose landmarks are in view or may come into view before the next state. Computed once a state: a long
+/// recording has many more landmarks.
 const std::vector<TrackId>& GpMap::nearly_in_view() {
-  constexpr double kMargin = 0.2;  // [rad] beyond what the newest velocity asks for
-  constexpr double kClose = 5.0;   // so many times as far as the camera goes: what is nearer may come in from any side
+  constexpr double kMargin = 0.2;  // [rad] beyond the rotation by the newest velocity
+  constexpr double kClose = 5.0;   // times the camera's displacement: nearer points may come in from any side
   if (map_->nearly_in_view) return *map_->nearly_in_view;
   std::vector<TrackId>& tracks = map_->nearly_in_view.emplace();
   const PinholeCamera& camera = context_.camera;
@@ -95,8 +95,8 @@ const std::vector<TrackId>& GpMap::nearly_in_view() {
   return tracks;
 }
 
-/// How well a landmark's image is known but for the motion since the newest state. Found once a state: it is dear, and
-/// hardly changes before the next.
+/// Covariance of a landmark's image, without the motion since the newest state. Computed once a state: it is expensive,
+/// and hardly changes before the next.
 const std::optional<Matrix2>& GpMap::image_covariance(Track& track, const Eigen::Matrix<double, 2, 12>& J_state,
                                                       const Matrix23& J_landmark) {
   if (track.expected_at == graph().states.size()) return track.image_covariance;
@@ -122,7 +122,7 @@ const std::optional<Matrix12>& GpMap::newest_covariance() {
   return map_->newest_covariance.second;
 }
 
-/// As it was when the track had ended: what is learnt of it afterwards is little.
+/// The covariance at the end of the track; it changes little afterwards.
 std::optional<Matrix3> GpMap::covariance_of_ended(Track& track) {
   if (!track.covariance) track.covariance = map_->engine.landmark_covariance(track.landmark);
   return track.covariance;

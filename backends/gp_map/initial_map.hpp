@@ -11,67 +11,68 @@
 
 namespace evbench::gp_map {
 
-/// The problem that the back-end starts from, with every observation of its landmarks; its estimates are good guesses.
+/// The initial problem of the back-end, with every observation of its landmarks. Its estimates are good initial values.
 struct InitialMap {
-  FactorGraph graph;            ///< its last state stands at the newest state time
+  FactorGraph graph;            ///< its last state is at the newest state time
   std::vector<TrackId> tracks;  ///< of its landmarks
   double parallax_deg = 0.0;    ///< median over the landmarks, between the first and the last state
 };
 
-/// Finds the initial map: guesses from two views (core/structure/initialiser), each refined over some views more
-/// (core/structure/multi_view). The best one is taken when the noise that is left allows its structure, even where
-/// another one is nearly as good: what is seen later tells (recent_hypothesis.hpp). Attempts are rare, as the tracks
-/// must have moved farther, and look at few places of a track. From the first view's landmarks the trajectory reaches
-/// back as far as there are tracks.
+/// Finds the initial map: candidates from two views (core/structure/initialiser), each refined over some more views
+/// (core/structure/multi_view). The best one is taken if the remaining noise allows its structure, even if another one
+/// is nearly as good: later data decide (recent_hypothesis.hpp). Attempts are rare, because the tracks must have moved
+/// farther, and use few points of a track. From the first view's landmarks the trajectory is extended back as far as
+/// there are tracks.
 ///
 /// World frame: the camera at the first view. Unit of length: the landmarks' median distance from there. Gauge and
-/// scale are anchored by a tight prior on the first pose and the mean nearness to it of those landmarks, half of them,
+/// scale are anchored by a tight prior on the first pose, and by the mean nearness to it of that half of the landmarks
 /// whose distance is known best.
 class InitialMapFinder {
  public:
   InitialMapFinder(const Options& options, const PinholeCamera& camera);
 
-  /// A control state stands at t, later than those before; `tracks` hold the observations up to there.
+  /// Attempts an initial map with a control state at t, later than those before. `tracks` contain the observations
+  /// until t.
   std::optional<InitialMap> attempt(const TrackBuffer& tracks, double t);
 
-  /// A control state stands at t, likewise, where no map is looked for.
-  void pass(double t) { state_times_.push_back(t); }
+  /// Adds a control state at t without an attempt.
+  void add_state_time(double t) { state_times_.push_back(t); }
 
-  /// The last map was none: another one is looked for from the next view on.
+  /// The last map was rejected: another one is searched from the next view on.
   void reinitialise();
 
-  /// Why there is none: what it would have taken to make another attempt, and why the last one was vain.
+  /// Why there is no map: what another attempt needs, and why the last one failed.
   std::string reason() const;
 
-  /// Of the last state before the initial map; 0 before any.
+  /// Time of the last state before the initial map; 0 before any.
   double newest() const { return state_times_.empty() ? 0.0 : state_times_.back(); }
 
  private:
-  /// What tracks had shown at an attempt.
+  /// The tracks at an attempt.
   struct Progress {
     double t0 = 0.0, t1 = 0.0;  ///< [s], views
     double motion = 0.0;        ///< [px]
   };
 
-  /// Views of the tracks, and what two of them may mean.
-  struct Look {
+  /// Views of the tracks, and the possible motions between two of them.
+  struct Candidates {
     MultiView views;
     std::vector<InitialGuess> guesses;
     PlaceWindow window;  ///< of the views
   };
 
-  std::optional<Look> look_at(const TrackBuffer& tracks, double t);
+  std::optional<Candidates> find_candidates(const TrackBuffer& tracks, double t);
   bool worthwhile(const TrackMatches& matches);
-  std::optional<ViewsEstimate> explanation(const Look& look) const;
-  bool is_sound(const Look& look, const ViewsEstimate& explained);
-  InitialMap map_of(const TrackBuffer& tracks, const Look& look, const ViewsEstimate& explained) const;
+  std::optional<ViewsEstimate> best_estimate(const Candidates& candidates) const;
+  bool is_sound(const Candidates& candidates, const ViewsEstimate& estimate);
+  InitialMap map_of(const TrackBuffer& tracks, const Candidates& candidates, const ViewsEstimate& estimate) const;
 
   Options options_;
   PinholeCamera camera_;
   Initialiser initialiser_;
   std::optional<Progress> last_;
   std::vector<double> state_times_;
-  std::string refused_;  ///< by the last attempt
+  std::string refused_;  ///< reason of the last attempt
   std::string waiting_ = "no observations";
 };
 

@@ -10,11 +10,11 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kLongestGap = 1.0;  ///< [s] that the motion is continued over, back to where enough is seen again
-constexpr double kStand = 5.0;       ///< [s] before the first view in which nothing moved: a stand
-constexpr double kStill = 0.9;       ///< [s] between the states of one, at most
+constexpr double kLongestGap = 1.0;  ///< [s] over which the motion is extrapolated, back to where enough is seen again
+constexpr double kStationary = 5.0;  ///< [s] without motion before the first view: a stationary period
+constexpr double kStationaryGap = 0.9;  ///< [s] between the states of a stationary period, at most
 
-/// The pose at t on the way from view to view.
+/// The pose at t, interpolated between views.
 SE3 pose_between(std::span<const SE3> views, std::span<const double> times, double t) {
   const auto later = std::ranges::upper_bound(times, t);
   const auto k = std::clamp<std::ptrdiff_t>(later - times.begin(), 1, std::ssize(times) - 1);
@@ -25,10 +25,10 @@ SE3 pose_between(std::span<const SE3> views, std::span<const double> times, doub
 
 }  // namespace
 
-void InitialTrajectory::go_along(std::span<const SE3> views, std::span<const double> view_times,
-                               std::span<const double> state_times) {
+void InitialTrajectory::follow_views(std::span<const SE3> views, std::span<const double> view_times,
+                                     std::span<const double> state_times) {
   first_view_ = view_times.front();
-  begins_with_stand_ = is_still(first_view_ - kStand);
+  begins_stationary_ = is_stationary(first_view_ - kStationary);
   const auto first = std::ranges::lower_bound(state_times, first_view_);
   for (auto t = state_times.end(); t != first;) {
     const SE3 guess = pose_between(views, view_times, *--t);
@@ -36,17 +36,17 @@ void InitialTrajectory::go_along(std::span<const SE3> views, std::span<const dou
     const auto found = resect(guess, seen.points, seen.pixels, camera_, options_.initialiser.two_view.threshold_px);
     states_.push_back({*t, found && found->median_px <= options_.max_initial_error ? found->T : guess});
   }
-  for (auto t = first; t != state_times.begin() && states_.back().t - *--t < kLongestGap && go_back_to(*t);) {
+  for (auto t = first; t != state_times.begin() && states_.back().t - *--t < kLongestGap && extend_back_to(*t);) {
   }
   std::ranges::reverse(states_);
   take_velocities();
 }
 
-/// No state stands there where too little is seen, or where the camera stands still and the next state is near. False
-/// where what is seen can't be explained.
-bool InitialTrajectory::go_back_to(double t) {
-  if (begins_with_stand_ && states_.back().t - t < kStill && is_still(t)) {
-    passed_over_.push_back(t);
+/// Extends the trajectory back to t. There is no state at t if too little is seen, or if the camera is stationary and
+/// the next state is near. False if no pose fits the observations.
+bool InitialTrajectory::extend_back_to(double t) {
+  if (begins_stationary_ && states_.back().t - t < kStationaryGap && is_stationary(t)) {
+    skipped_.push_back(t);
     return true;
   }
   const auto enough = index(options_.health.min_landmarks);
@@ -62,14 +62,14 @@ bool InitialTrajectory::go_back_to(double t) {
   return true;
 }
 
-/// Is all still where it is in the first view?
-bool InitialTrajectory::is_still(double t) const {
+/// Is everything in the same place as in the first view?
+bool InitialTrajectory::is_stationary(double t) const {
   const TrackMatches since = matches_between(tracks_, first_view_, t, window_);
   if (std::ssize(since.tracks) < options_.health.min_landmarks) return false;
   return since.median_motion() < options_.initialiser.two_view.threshold_px;
 }
 
-/// The landmarks of tracks that are alive at t, from where the states so far saw them.
+/// Triangulates the landmarks of tracks that are alive at t, from the states so far.
 void InitialTrajectory::triangulate_at(double t) {
   for (const TrackId track : tracks_.alive(t, 0.5 * window_.length)) {
     if (landmarks_.contains(track)) continue;
@@ -97,7 +97,7 @@ InitialTrajectory::Sightings InitialTrajectory::sightings(double t) const {
   return result;
 }
 
-/// From the states before and after.
+/// Velocities from the states before and after.
 void InitialTrajectory::take_velocities() {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const ControlState& a = states_[i > 0 ? i - 1 : i];

@@ -10,10 +10,10 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr std::size_t kMoments = 3;  ///< at which it may have come about at once,
-constexpr double kApart = 0.1;       ///< [s]
+constexpr std::size_t kMoments = 3;  ///< candidate times of a sudden jump,
+constexpr double kApart = 0.1;       ///< [s] apart
 
-/// How many landmarks are seen before each interval from `first` on, and in it or after it.
+/// The number of landmarks that are seen both before each interval from `first` on, and in it or after it.
 std::vector<int> ties(const FactorGraph& graph, int first, const std::set<int>& left_out) {
   std::vector<int> result(graph.states.size() - index(first), 0);
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
@@ -39,7 +39,7 @@ JumpProfile spread(const FactorGraph& graph, int first, std::span<const int> tie
   return result;
 }
 
-/// The loosest intervals, as many after `first`.
+/// The intervals with the fewest ties, counted from `first`.
 std::vector<int> loosest(const FactorGraph& graph, int first, std::span<const int> ties) {
   std::vector<int> order(ties.size() - 1), result;
   std::iota(order.begin(), order.end(), 0);

@@ -26,18 +26,18 @@ struct Seen {
   }
 };
 
-/// The state by which half of it has come about.
+/// The state at which half of the motion is complete.
 int half(const JumpProfile& jump_profile, int first) {
-  return first +
-         static_cast<int>(std::ranges::find_if(jump_profile, [](double share) { return share >= 0.5; }) - jump_profile.begin());
+  return first + static_cast<int>(std::ranges::find_if(jump_profile, [](double share) { return share >= 0.5; }) -
+                                  jump_profile.begin());
 }
 
 }  // namespace
 
-TEST_CASE("An unnoticed motion may have come about at once where few landmarks are seen before and after, or spread") {
+TEST_CASE("Profiles of a pose jump are sudden where few landmarks are seen before and after, or spread") {
   Seen seen;
   seen.add(20, 1, 29);
-  seen.add(20, 30, 60);  // nothing holds interval 30
+  seen.add(20, 30, 60);  // no landmark spans interval 30
   seen.add(4, 1, 44);
   seen.add(30, 46, 60);
   const int first = 10;
@@ -55,28 +55,31 @@ TEST_CASE("An unnoticed motion may have come about at once where few landmarks a
     for (std::size_t j = 0; j < i; ++j) CHECK(std::abs(half(all[i], first) - half(all[j], first)) >= 10);  // 0.1 s
   }
   const JumpProfile& spread = all.back();
-  CHECK(half(spread, first) == 30);  // most of it where least holds
+  CHECK(half(spread, first) == 30);  // most of it where the fewest landmarks are
   CHECK(spread[5] > 0.0);
   CHECK(spread[index(40 - first)] < 1.0);
 }
 
-TEST_CASE("Landmarks that are left out do not hide where the motion came about") {
+TEST_CASE("Landmarks that are left out do not hide the time of a pose jump") {
   Seen seen;
   seen.add(20, 1, 29);
   seen.add(20, 30, 60);
   seen.add(50, 20, 35);
-  const auto moment = [&](const std::set<int>& left_out) { return half(jump_profiles(seen.graph, 10, left_out)[0], 10); };
+  const auto moment = [&](const std::set<int>& left_out) {
+    return half(jump_profiles(seen.graph, 10, left_out)[0], 10);
+  };
   CHECK(moment({}) != 30);
   std::set<int> hiding;
   for (int j = 40; j < 90; ++j) hiding.insert(j);
   CHECK(moment(hiding) == 30);
 }
 
-TEST_CASE("A motion since a moment ago came about at once, whichever interval it was") {
+TEST_CASE("A pose jump since the last state but one is sudden in each profile") {
   Seen seen;
   seen.add(10, 1, 60);
   const int first = Seen::kStates - 2;
-  for (const JumpProfile& jump_profile : jump_profiles(seen.graph, first, {})) CHECK(jump_profile == JumpProfile{1.0, 1.0});
+  for (const JumpProfile& jump_profile : jump_profiles(seen.graph, first, {}))
+    CHECK(jump_profile == JumpProfile{1.0, 1.0});
 }
 
 }  // namespace evbench::gp_map

@@ -10,20 +10,21 @@
 #include "backends/gp_map/track_errors.hpp"
 #include "core/support/median.hpp"
 
-// What tracks turn out to be worth, once it is known from both sides where the camera was.
+// Outlier rejection and estimation of track noise, where the motion is known from both sides.
 namespace evbench::gp_map {
 namespace {
 
-// While running, when less is known than in the end:
-constexpr double kHasty = 2.0;             ///< times farther off than in the end is what goes
-constexpr double kTrackNoiseChange = 1.5;  ///< by which a track's noise must change to be set anew
+// While running, when less is known than at the end:
+constexpr double kHasty = 2.0;             ///< factor of the final threshold
+constexpr double kTrackNoiseChange = 1.5;  ///< factor by which a track's noise must change to be updated
 
-using JudgedTrack = std::vector<std::pair<int, TrackErrors>>;  ///< by landmark
+using LandmarkErrors = std::vector<std::pair<int, TrackErrors>>;  ///< by landmark
 
-/// In `span`, of the landmarks that have been seen after `seen` and were not before `begun`.
-JudgedTrack errors_in(const FactorGraph& graph, const NoiseLearner& noise, const TimeSpan& span, double seen, double begun) {
+/// Errors in `span` of the landmarks that have been seen after `seen` and not before `begun`.
+LandmarkErrors errors_in(const FactorGraph& graph, const NoiseLearner& noise, const TimeSpan& span, double seen,
+                         double begun) {
   const double usual = noise.scale_of_means();
-  JudgedTrack errors;
+  LandmarkErrors errors;
   for (int j = 0; j < static_cast<int>(graph.landmarks.size()); ++j) {
     const std::vector<int>& intervals = graph.landmarks[index(j)].intervals;
     if (intervals.empty() || graph.states[index(intervals.back())].t <= seen) continue;
@@ -33,10 +34,10 @@ JudgedTrack errors_in(const FactorGraph& graph, const NoiseLearner& noise, const
   return errors;
 }
 
-/// How much farther the means of all tracks reach than normally distributed ones of their scale: the errors of trackers
-/// have longer tails, and what would be far off otherwise is not for them. By a quantile beyond which all outliers are,
-/// as they are few; where they are many, it must not hide them.
-double tail_of(const JudgedTrack& errors) {
+/// How much longer the tail of all tracks' means is than that of a normal distribution of the same scale. Errors of
+/// trackers have longer tails, and the threshold follows them. The tail is measured at a quantile below all outliers as
+/// long as these are few, and it is limited, so that many outliers are not hidden.
+double tail_of(const LandmarkErrors& errors) {
   constexpr double kShare = 0.7, kLongest = 2.0;
   std::vector<double> squares;
   for (const auto& [j, error] : errors) {
@@ -49,18 +50,19 @@ double tail_of(const JudgedTrack& errors) {
   return std::clamp(std::sqrt(order_statistic(std::move(squares), kShare) / normal), 1.0, kLongest);
 }
 
-/// Landmarks of which the track says something else in this span. One that was good before it slid off is none, however
-/// long ago that was: without what follows its landmark will fit, or it goes the next time. Where most of the tracks
-/// that are seen together are far off, it is the motion that is wrong, and none of them.
-std::vector<int> outliers(const FactorGraph& graph, const JudgedTrack& errors, double threshold, const TimeSpan& span) {
+/// Landmarks whose tracks show something else in this span. A track that was good before it drifted is no outlier,
+/// however long ago that was: without the drifted part its landmark will fit, or it is rejected the next time. If most
+/// tracks that are seen together have large errors, the motion is wrong, and none of them is an outlier.
+std::vector<int> outliers(const FactorGraph& graph, const LandmarkErrors& errors, double threshold,
+                          const TimeSpan& span) {
   const auto seen = [&](int j) {
     std::vector<int> intervals;
     std::ranges::copy_if(graph.landmarks[index(j)].intervals, std::back_inserter(intervals),
-                         [&](int k) { return span.meets(graph.states[index(k - 1)].t, graph.states[index(k)].t); });
+                         [&](int k) { return span.overlaps(graph.states[index(k - 1)].t, graph.states[index(k)].t); });
     return intervals;
   };
   std::vector<int> far;
-  std::map<int, std::pair<int, int>> far_of;  // by interval: of so many that are seen in it so many are far off
+  std::map<int, std::pair<int, int>> far_of;  // by interval: tracks with large errors, and all tracks
   for (const auto& [j, error] : errors) {
     const bool is_far = error.is_outlier(threshold);
     if (is_far && !error.drifts_from(threshold)) far.push_back(j);
@@ -82,9 +84,9 @@ std::vector<int> outliers(const FactorGraph& graph, const JudgedTrack& errors, d
 
 }  // namespace
 
-/// By what they show in this span: outliers go, and a track that slid keeps its landmark up to there.
+/// By the errors in this span: outliers are removed, and a drifted track keeps its landmark until it drifted.
 void GpMap::reject_outliers(const NoiseLearner& noise, const TimeSpan& span) {
-  const JudgedTrack errors = errors_in(graph(), noise, span, span.from, TimeSpan().from);
+  const LandmarkErrors errors = errors_in(graph(), noise, span, span.from, TimeSpan().from);
   const double far = tail_of(errors) * options_.map.outlier_threshold;
   const double threshold = span.is_everything() ? far : kHasty * far;
   for (const int outlier : outliers(graph(), errors, threshold, span)) {
@@ -92,25 +94,25 @@ void GpMap::reject_outliers(const NoiseLearner& noise, const TimeSpan& span) {
     if (graph().states[index(first_seen)].t > span.from) {
       become_outlier(outlier);
     } else {
-      has_drifted(outlier, span.from);  // what it was before has been judged already
+      truncate_track(outlier, span.from);  // its earlier observations were accepted already
     }
   }
   for (const auto& [j, error] : errors) {
     const std::optional<double> from = error.drifts_from(threshold);
-    if (from && graph().landmarks[index(j)].alive) has_drifted(j, *from);
+    if (from && graph().landmarks[index(j)].alive) truncate_track(j, *from);
   }
 }
 
-void GpMap::has_drifted(int landmark, double from) {
+void GpMap::truncate_track(int landmark, double from) {
   map_->engine.remove_observations(landmark, from);
-  end_track_of(landmark, Track::Role::slid);
+  end_track_of(landmark, Track::Role::drifted);
 }
 
-/// Each track that has been seen since this span began counts with its own noise, within the bounds of its leverage:
-/// whether it is an outlier is not a question of yes or no. All that it has shown tells, the newest too, as a sliding
-/// track must soon count less. While running only young tracks are weighed, which bounds how far back stages are
-/// redone; and where most would count for less, it is the motion that is wrong, and all keep what they have.
-void GpMap::weigh_tracks(const NoiseLearner& noise, const TimeSpan& span) {
+/// Gives each track seen since the beginning of this span its own noise, within the bounds of its leverage: tracks
+/// differ by degrees, not only as outliers and inliers. All observations count, the newest too, because a drifting
+/// track must soon count less. While running only recent tracks get new factors, which bounds how far back stages are
+/// redone. If most would get a larger noise, the motion is wrong, and all keep theirs.
+void GpMap::estimate_track_noise(const NoiseLearner& noise, const TimeSpan& span) {
   const bool running = !span.is_everything();
   const double begun = running ? graph().states.back().t - options_.learn.memory : TimeSpan().from;
   std::vector<std::pair<int, double>> own;

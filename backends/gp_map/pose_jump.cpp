@@ -9,49 +9,48 @@
 #include <vector>
 
 #include "backends/gp_map/factors.hpp"
-#include "backends/gp_map/observation_follower.hpp"
 #include "backends/gp_map/jump_profile.hpp"
+#include "backends/gp_map/observation_follower.hpp"
 #include "core/geometry/seen_point.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 #include "core/structure/point_image.hpp"
 #include "core/support/median.hpp"
-#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kAside = 0.8;      ///< [px] by which most are beside where they are expected, else nothing is wrong
-constexpr double kLeft = 0.5;       ///< share of that which one motion leaves, or it explains nothing
-constexpr std::size_t kEnough = 5;  ///< landmarks that one motion explains,
-constexpr double kMajority = 2.0 / 3.0;  ///< as a share of all,
-constexpr double kExplained = 2.0;       ///< to so many pixels,
-constexpr double kStillThere = 3.0;  ///< and so many where nothing holds the pose; beyond that one isn't in its place
-constexpr double kNewestPoseHeld = 1e-3;  ///< [rad, units] of the newest pose,
-constexpr double kAhead = 1e-3;           ///< at a state so much later [s]
-constexpr double kInPlace = 0.75;  ///< share of which this was the last time: where a turn and a way hide one another,
-                                   ///< some are in their places, though the camera is not
-constexpr int kDragged = 50;       ///< states before it that may be moved a little, too
+constexpr double kDisplaced = 0.8;        ///< [px] below this median displacement nothing is wrong
+constexpr double kRemaining = 0.5;        ///< largest share of it that remains after the displacement is undone
+constexpr std::size_t kEnough = 5;        ///< landmarks that one motion must explain,
+constexpr double kMajority = 2.0 / 3.0;   ///< and their share of all,
+constexpr double kExplained = 2.0;        ///< within this many pixels
+constexpr double kStillInPlace = 3.0;     ///< [px] with a larger error, a landmark is not in its place
+constexpr double kNewestPoseHeld = 1e-3;  ///< [rad, units] sigma of the held newest pose,
+constexpr double kAhead = 1e-3;           ///< [s] at a state this much later
+constexpr double kInPlace = 0.75;  ///< quantile of the last times in place: where rotation and translation cancel, some
+                                   ///< landmarks are in their places though the camera is not
+constexpr int kDragged = 50;       ///< states before the jump that may move a little, too
 constexpr int kHoldingSteps = 8, kSettlingSteps = 4;
-/// By which the cost may be higher, and by which for each landmark that one motion explains beyond those that may be
-/// chance: what contradicted the present estimate has been taken out of the problem, so its cost is lower than it
-/// should be.
-constexpr double kDearerAnyway = 10.0, kDearer = 60.0;
+/// Allowed increase of the cost: in all cases, and for each landmark that one motion explains beyond those that may be
+/// chance. Observations that contradicted the present estimate were removed from the problem, so its cost is too low.
+constexpr double kIncrease = 10.0, kIncreasePerLandmark = 60.0;
 
-/// Between the states around a time.
+/// The interval at a time.
 GpInterval interval_at(const FactorGraph& graph, double t) {
   const std::size_t k = index(graph.interval_of(t));
   return {graph.states[k - 1], graph.states[k]};
 }
 
-/// A motion of the world frame, T ← D T, and the landmarks that are where they were seen by it.
+/// A displacement of the world frame, T ← D T, and the landmarks that are in their places with it.
 struct Displacement {
   SE3 motion;
-  double median_error = 0.0;  ///< of all, by it [px]
+  double median_error = 0.0;  ///< of all landmarks with it [px]
   std::vector<Reappearance> explained;
 };
 
-/// By robust least squares, the smallest of those that explain it. No resection, as each was seen from a pose of its
-/// own, which turns while they come back; but steps are taken as if it did not: with exact derivatives more motions are
-/// found, and estimates end worse.
+/// Finds the smallest displacement that explains the landmarks, by robust least squares. It is no resection, because
+/// each landmark was seen from its own pose, and the camera turns while they are re-acquired. The steps ignore this
+/// rotation: with exact derivatives more displacements are found, and estimates end worse.
 std::optional<Displacement> find_displacement(const FactorGraph& graph, std::span<const Reappearance> seen) {
   constexpr int kIterations = 12, kWideIterations = 4;
   constexpr double kWide = 8.0;   // [px], the loss's width in the first ones
@@ -100,27 +99,27 @@ bool are_most(std::ptrdiff_t some, std::size_t all) {
   return static_cast<double>(some) >= kMajority * static_cast<double>(all);
 }
 
-/// One that explains most of what is beside where it is expected, and enough.
-std::optional<Displacement> unnoticed_motion(const FactorGraph& graph, std::span<const Reappearance> seen) {
+/// A displacement that explains most landmarks that are off their expected places, and enough of them.
+std::optional<Displacement> find_jump(const FactorGraph& graph, std::span<const Reappearance> seen) {
   if (seen.size() < kEnough) return std::nullopt;
   std::vector<double> errors;
   for (const Reappearance& z : seen) errors.push_back(reappearance_error(graph, z));
-  const double aside = median(std::move(errors));
-  if (aside < kAside) return std::nullopt;
+  const double offset = median(std::move(errors));
+  if (offset < kDisplaced) return std::nullopt;
   auto found = find_displacement(graph, seen);
-  if (!found || !(found->median_error < kLeft * aside)) return std::nullopt;
+  if (!found || !(found->median_error < kRemaining * offset)) return std::nullopt;
   if (found->explained.size() < kEnough || !are_most(std::ssize(found->explained), seen.size())) return std::nullopt;
   return found;
 }
 
-/// Of the intervals from `first` on.
+/// Cost of the intervals from `first` on.
 double cost_since(const FactorGraph& graph, int first) {
   double cost = 0.0;
   for (int k = first; k < std::ssize(graph.intervals); ++k) cost += interval_cost(graph, k);
   return cost;
 }
 
-/// The newest part of an estimate, to go back to.
+/// The newest part of an estimate, to restore it.
 class Estimate {
  public:
   /// States from `first` on, and the landmarks that are seen there.
@@ -141,10 +140,10 @@ class Estimate {
       const int k = first_ + static_cast<int>(i);
       const ControlState& now = graph.states[index(k)];
       const bool moved = now.T.p != states_[i].T.p || now.T.q.coeffs() != states_[i].T.q.coeffs();
-      if (moved || now.velocity != states_[i].velocity) engine.place_state(k, states_[i]);
+      if (moved || now.velocity != states_[i].velocity) engine.set_state(k, states_[i]);
     }
     for (const auto& [j, position] : landmarks_) {
-      if (graph.landmarks[index(j)].position != position) engine.place_landmark(j, position);
+      if (graph.landmarks[index(j)].position != position) engine.set_landmark(j, position);
     }
   }
 
@@ -154,7 +153,8 @@ class Estimate {
   std::vector<std::pair<int, Vector3>> landmarks_;
 };
 
-/// Each state, and what was mostly seen since, by its share of a motion; what is seen again stays where it is.
+/// Moves each state, and the landmarks mostly seen since, by its share of a motion. Re-acquired landmarks stay in
+/// place.
 void displace(Engine& engine, const Estimate& estimate, int first, const SE3& motion, const std::set<int>& seen_again,
               const JumpProfile& share) {
   const FactorGraph& graph = engine.graph();
@@ -165,33 +165,34 @@ void displace(Engine& engine, const Estimate& estimate, int first, const SE3& mo
     const std::vector<int>& intervals = graph.landmarks[index(j)].intervals;
     if (intervals.empty()) continue;  // marginalised meanwhile
     const int middle = intervals[intervals.size() / 2];
-    if (middle >= first) engine.place_landmark(j, motion_at(middle) * position);
+    if (middle >= first) engine.set_landmark(j, motion_at(middle) * position);
   }
   for (int k = first; k < std::ssize(graph.states); ++k) {
     ControlState state = graph.states[index(k)];
     state.T = motion_at(k) * state.T;
-    engine.place_state(k, state);
+    engine.set_state(k, state);
   }
 }
 
-/// Gauss-Newton steps with the newest pose held where it is.
-void settle_held(Engine& engine) {
+/// Gauss-Newton steps with the newest pose held.
+void converge_with_held_pose(Engine& engine) {
   add_extrapolated_state(engine, engine.graph().states.back().t + kAhead);
   const int ahead = static_cast<int>(engine.graph().states.size()) - 1;
   engine.add_pose_prior({ahead, engine.graph().states.back().T, Vector6::Constant(kNewestPoseHeld)});
   for (int step = 0; step < kHoldingSteps; ++step) engine.update();
   engine.remove_newest_state();
-  engine.place_state(ahead - 1, engine.graph().states.back());  // its stage is redone: the one ahead took its landmarks
+  engine.set_state(ahead - 1,
+                   engine.graph().states.back());  // redoes its stage, whose landmarks were in the removed one
 }
 
-/// The newest interval in which it was seen where the estimate has it, before it came back: what came back beside it a
-/// moment ago, and went again, was not. None before the oldest one.
+/// The newest interval before the re-acquisition in which the landmark was seen in its place; `oldest` if none is
+/// newer. A short re-acquisition off its place before does not count.
 int last_in_place(const FactorGraph& graph, const Reappearance& seen, int oldest) {
   const FactorGraph::Landmark& landmark = graph.landmarks[index(seen.landmark)];
   for (auto k = landmark.intervals.rbegin(); k != landmark.intervals.rend() && *k > oldest; ++k) {
     if (*k > seen.last) continue;
     const Observation& z = graph.intervals[index(*k)].of(seen.landmark).back();
-    if (reprojection_error(interval_at(graph, z.t), landmark.position, z, graph.camera) < kStillThere) return *k;
+    if (reprojection_error(interval_at(graph, z.t), landmark.position, z, graph.camera) < kStillInPlace) return *k;
   }
   return oldest;
 }
@@ -205,9 +206,9 @@ double reappearance_error(const FactorGraph& graph, const Reappearance& seen) {
 
 bool correct_pose_jump(Engine& engine, std::span<const Reappearance> seen) {
   const FactorGraph& graph = engine.graph();
-  const auto found = unnoticed_motion(graph, seen);
+  const auto found = find_jump(graph, seen);
   if (!found) return false;
-  constexpr int kSettling = 64;  // states that may be marginalised while it is tried
+  constexpr int kSettling = 64;  // states that may be marginalised during the test
   const int oldest = engine.first_state() > 0 ? engine.first_state() + kSettling : 1;
   std::vector<double> last;
   for (const Reappearance& z : found->explained) last.push_back(last_in_place(graph, z, oldest));
@@ -219,19 +220,19 @@ bool correct_pose_jump(Engine& engine, std::span<const Reappearance> seen) {
   const int dragged = std::max(oldest, first - kDragged);
   const Estimate before(graph, dragged);
   const auto beyond_enough = static_cast<double>(found->explained.size() - kEnough);
-  double most = cost_since(graph, dragged) + kDearerAnyway + kDearer * beyond_enough;
+  double most = cost_since(graph, dragged) + kIncrease + kIncreasePerLandmark * beyond_enough;
   std::optional<Estimate> other;
   for (const JumpProfile& jump_profile : jump_profiles(graph, first, seen_again)) {
     before.place_in(engine);
     displace(engine, before, first, found->motion, seen_again, jump_profile);
-    settle_held(engine);
+    converge_with_held_pose(engine);
     for (int step = 0; step < kSettlingSteps; ++step) engine.update();
-    if (engine.first_state() >= dragged) {  // what it began from is settled by now
+    if (engine.first_state() >= dragged) {  // its beginning is marginalised by now
       other.reset();
       break;
     }
     const auto there = std::ranges::count_if(
-        found->explained, [&](const Reappearance& z) { return reappearance_error(graph, z) < kStillThere; });
+        found->explained, [&](const Reappearance& z) { return reappearance_error(graph, z) < kStillInPlace; });
     const double cost = cost_since(graph, dragged);
     if (!are_most(there, found->explained.size()) || !(cost < most)) continue;
     most = cost;

@@ -11,20 +11,22 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr int kStates = 80, kTurn = 40;  // it turns violently in the interval that ends in this state
+constexpr int kStates = 80, kTurn = 40;  // an aggressive turn in the interval that ends in state kTurn
 constexpr int kGlimpse = kTurn + 15;
 constexpr double kStep = 0.01, kSigma = 0.3;
 constexpr int kOld = 12, kNew = 30;
-const Vector6 kUnnoticed = (Vector6() << 0.0, 0.2, 0.0, -0.3, 0.0, 0.0).finished();  // of the camera, there
+const Vector6 kUnnoticed = (Vector6() << 0.0, 0.2, 0.0, -0.3, 0.0, 0.0).finished();  // missed there
 
-/// Past landmarks that are seen until the turn and, for the last 0.05 s, again, and others that come into view after
-/// it. `spanning` ones are seen all the time, and tell of the turn; the tracks of `slid` ones go on for a moment as if
-/// it had not been. If `glimpsed`, those of the past were seen for a moment some time after the turn, too.
+/// A camera that moves past landmarks that are seen until the turn and again for the last 0.05 s, and others that come
+/// into view after it. `spanning` landmarks are seen all the time, and show the turn. The tracks of `drifted` landmarks
+/// continue for a moment as if there were no turn. If `glimpsed`, the old landmarks were also seen for a moment some
+/// time after the turn.
 struct Scene {
   FactorGraph truth;
   std::vector<Reappearance> seen;
 
-  Scene(int spanning, int slid, const std::function<Vector2(const Vector2&, Random&)>& seen_at, bool glimpsed = false) {
+  Scene(int spanning, int drifted, const std::function<Vector2(const Vector2&, Random&)>& seen_at,
+        bool glimpsed = false) {
     Random random(3);
     truth.camera = {200.0, 200.0, 120.0, 90.0};
     truth.qc = Vector6::Constant(1e3);
@@ -57,7 +59,7 @@ struct Scene {
     }
     for (int i = 0; i < kNew; ++i) add(kTurn, kStates - 1);
     for (int i = 0; i < spanning; ++i) add(1, kStates - 1);
-    for (int i = 0; i < slid; ++i) {
+    for (int i = 0; i < drifted; ++i) {
       const int j = add(1, kTurn - 1);
       for (int k = kTurn; k < kTurn + 5; ++k) {
         const Vector3 q = (unnoticed() * truth.states[index(k)].T).inverse() * truth.landmarks[index(j)].position;
@@ -66,7 +68,7 @@ struct Scene {
     }
   }
 
-  /// Solved from where the turn was not noticed.
+  /// An engine whose estimate misses the turn.
   Engine misled(double lag = 0.0) const {
     FactorGraph wrong = truth;
     const SE3 motion = unnoticed();
@@ -84,7 +86,7 @@ struct Scene {
   }
 
  private:
-  /// Of the world frame, by which all since the turn is wrong.
+  /// Displacement of the world frame in everything since the turn.
   SE3 unnoticed() const {
     const SE3& T = truth.states[kTurn].T;
     return T * se3::exp(kUnnoticed) * T.inverse();
@@ -102,35 +104,35 @@ struct Scene {
   }
 };
 
-Vector2 where_it_is(const Vector2& pixel, Random& random) { return pixel + kSigma * random.normal2(); }
+Vector2 in_place(const Vector2& pixel, Random& random) { return pixel + kSigma * random.normal2(); }
 
 Vector2 anywhere(const Vector2& pixel, Random& random) { return pixel + random.uniform2({-20.0, -20.0}, {20.0, 20.0}); }
 
-Vector2 all_aside(const Vector2& pixel, Random& random) { return where_it_is(pixel, random) + Vector2(12.0, 3.0); }
+Vector2 all_displaced(const Vector2& pixel, Random& random) { return in_place(pixel, random) + Vector2(12.0, 3.0); }
 
 }  // namespace
 
-TEST_CASE("A camera that turned unnoticed is found where most landmarks of before see it") {
-  const Scene scene(0, 10, where_it_is);
+TEST_CASE("An unnoticed turn of the camera is corrected by most of the old landmarks that are re-acquired") {
+  const Scene scene(0, 10, in_place);
   Engine engine = scene.misled();
   for (int i = 0; i < 5; ++i) engine.update();
-  REQUIRE(scene.error(engine) > 0.05);  // its steps don't lead back
+  REQUIRE(scene.error(engine) > 0.05);  // Gauss-Newton steps don't lead back
   const auto states = engine.graph().states.size();
   CHECK(correct_pose_jump(engine, scene.seen));
   CHECK(engine.graph().states.size() == states);
   for (const Reappearance& seen : scene.seen) CHECK(reappearance_error(engine.graph(), seen) < 2.0);
-  Engine knowing(scene.truth, {});
+  Engine reference(scene.truth, {});
   for (int i = 0; i < 5; ++i) {
     engine.update();
-    knowing.update();
+    reference.update();
   }
-  const SE3 T = engine.graph().states.back().T.inverse() * knowing.graph().states.back().T;
+  const SE3 T = engine.graph().states.back().T.inverse() * reference.graph().states.back().T;
   CHECK(se3::log(T).norm() < 0.05 * kUnnoticed.norm());  // nearly as if it had been noticed
-  CHECK_FALSE(correct_pose_jump(engine, scene.seen));             // nothing is wrong any more
+  CHECK_FALSE(correct_pose_jump(engine, scene.seen));    // nothing is wrong any more
 }
 
-TEST_CASE("Landmarks that came back beside their places before tell of the motion since they were in them") {
-  const Scene scene(0, 10, where_it_is, true);
+TEST_CASE("Landmarks that were re-acquired off their places before do not hide when the jump happened") {
+  const Scene scene(0, 10, in_place, true);
   Engine engine = scene.misled();
   for (int i = 0; i < 5; ++i) engine.update();
   REQUIRE(scene.error(engine, kTurn + 5) > 0.05);
@@ -140,9 +142,9 @@ TEST_CASE("Landmarks that came back beside their places before tell of the motio
   CHECK(scene.error(engine, kTurn + 5) < 0.05);
 }
 
-TEST_CASE("What few landmarks say, or each says otherwise, moves nothing") {
+TEST_CASE("Few landmarks, or landmarks with independent displacements, correct nothing") {
   for (const bool few : {true, false}) {
-    const Scene scene(0, 10, few ? where_it_is : anywhere);
+    const Scene scene(0, 10, few ? in_place : anywhere);
     Engine engine = scene.misled();
     engine.update();
     const ControlState before = engine.graph().states.back();
@@ -151,7 +153,7 @@ TEST_CASE("What few landmarks say, or each says otherwise, moves nothing") {
   }
 }
 
-TEST_CASE("Landmarks that are a little aside, each another way, tell of no motion") {
+TEST_CASE("Landmarks with small independent displacements show no pose jump") {
   const Scene scene(40, 0, [](const Vector2& pixel, Random& random) -> Vector2 {
     return pixel + random.uniform2({-2.0, -2.0}, {2.0, 2.0});
   });
@@ -165,8 +167,8 @@ TEST_CASE("Landmarks that are a little aside, each another way, tell of no motio
   CHECK(engine.graph().states.back().T.p == before.T.p);
 }
 
-TEST_CASE("Landmarks that most others contradict leave the estimate as it was") {
-  const Scene scene(40, 0, all_aside);
+TEST_CASE("Landmarks that most others contradict leave the estimate unchanged") {
+  const Scene scene(40, 0, all_displaced);
   Engine engine(scene.truth, {});
   for (int i = 0; i < 5; ++i) engine.update();
   REQUIRE(scene.error(engine) < 0.005);
@@ -176,10 +178,10 @@ TEST_CASE("Landmarks that most others contradict leave the estimate as it was") 
   CHECK(scene.error(engine) < 0.005);
 }
 
-TEST_CASE("With a lag, too, a camera is found or left where it is") {
+TEST_CASE("With a lag, too, a pose jump is corrected or the estimate is left unchanged") {
   for (const double lag : {0.05, 0.3, 0.5, 0.75, 10.0}) {
     CAPTURE(lag);
-    const Scene scene(0, 10, where_it_is);
+    const Scene scene(0, 10, in_place);
     Engine engine = scene.misled(lag);
     for (int i = 0; i < 5; ++i) engine.update();
     const double before = scene.error(engine);

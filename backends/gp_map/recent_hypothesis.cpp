@@ -13,30 +13,31 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kShareInView = 0.75;  ///< of what is in view ...
-constexpr double kLongAgo = 2.3;       ///< times as long ago as they came into view: there the newest part begins
-constexpr double kLongest = 2.5;       ///< [s] of it
-constexpr int kFewestStates = 8, kMostStates = 256;  ///< of it
-constexpr int kEnoughObservations = 8000;            ///< of about so many at most, each track's are thinned evenly
-constexpr double kKnown = 0.03;            ///< to which landmarks of before are known, as a share of their distance
-constexpr double kFirstPoseHeld = 1e-4;    ///< [rad, units] of the pose from which it begins
-constexpr double kThere = 0.05;            ///< to which new ones are where they begin, as a share of the usual depth
-constexpr double kMostOblique = 4.0;       ///< times nearer or farther than usual: not where the plane is seen edge-on
-constexpr double kAdvantage = 10.0;        ///< by which the other explanation's cost must be lower
-constexpr int kRecentIterations = 6;       ///< of each explanation, at most ...
-constexpr int kReversedIterations = 15;    ///< and of a reversed one, which begins farther from where it leads
-constexpr double kRecentTolerance = 3e-3;  ///< relative change of cost with which they end: 10 of some thousands
-constexpr int kShare = 34000;  ///< of work at a time: an observation's linearisation is one, a state's elimination ...
-constexpr int kStateWork = 100;  ///< so much
-constexpr int kStatesAPass = 6;  ///< through the problem, which take as long as an iteration
+constexpr double kShareInView = 0.75;  ///< of the landmarks in view ...
+constexpr double kLongAgo = 2.3;       ///< times as long ago as they came into view, the newest part begins
+constexpr double kLongest = 2.5;       ///< [s] its length
+constexpr int kFewestStates = 8, kMostStates = 256;  ///< its states
+constexpr int kEnoughObservations = 8000;  ///< beyond about so many, each track's observations are thinned evenly
+constexpr double kKnown = 0.03;            ///< sigma of older landmarks, as a share of their distance
+constexpr double kFirstPoseHeld = 1e-4;    ///< [rad, units] sigma of the pose from which it begins
+constexpr double kInitialSigma = 0.05;   ///< sigma of new landmarks' initial positions, as a share of the median depth
+constexpr double kMostOblique = 4.0;     ///< largest factor from the median depth, where the plane is edge-on
+constexpr double kAdvantage = 10.0;      ///< by which the cost of the alternative must be lower
+constexpr int kRecentIterations = 6;     ///< of each estimate, at most ...
+constexpr int kReversedIterations = 15;  ///< and of a reversed one, which begins farther from its optimum
+constexpr double kRecentTolerance = 3e-3;  ///< relative change of the cost at which they end: 10 of some thousands
+constexpr int kShare = 34000;    ///< work of one share: linearising an observation is one, eliminating a state ...
+constexpr int kStateWork = 100;  ///< this much
+constexpr int kStatesAPass = 6;  ///< states added in one pass, which takes as long as an iteration
 
-/// The newest part of some states and the intervals that end in them, or all of it.
+/// The newest part of a range of states, with the intervals that end in them, or all of it.
 struct Part {
   int first = 0, last = 0;       ///< its states and intervals
-  std::vector<int> fresh, held;  ///< landmarks seen in it, which came into view in it or before
+  std::vector<int> fresh, held;  ///< landmarks seen in it: new ones, and older ones
 };
 
-/// So long ago that what came into view since has been replaced once more: a time, however densely states stand.
+/// The first state of the newest part. The part is so long that the landmarks that came into view in it have been
+/// replaced once more; it is measured in time, for any density of states.
 int newest_parts_first(const FactorGraph& graph, int last) {
   const double now = graph.states[index(last)].t;
   std::vector<double> ages;
@@ -48,10 +49,11 @@ int newest_parts_first(const FactorGraph& graph, int last) {
   return std::clamp(graph.first_state_after(now - length), last + 1 - kMostStates, last + 1 - kFewestStates);
 }
 
-std::optional<Part> newest_part(const FactorGraph& graph, const StateRange& states, std::size_t enough, bool young) {
+std::optional<Part> newest_part(const FactorGraph& graph, const StateRange& states, std::size_t enough,
+                                bool tentative) {
   Part part;
   part.last = states.newest;
-  const bool everything = young && states.oldest == 0 && states.newest < kMostStates;
+  const bool everything = tentative && states.oldest == 0 && states.newest < kMostStates;
   if (!everything) part.first = newest_parts_first(graph, part.last);
   if (!everything && part.first <= states.oldest + 1) return std::nullopt;
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
@@ -66,12 +68,12 @@ std::optional<Part> newest_part(const FactorGraph& graph, const StateRange& stat
   const auto& now = graph.intervals[index(part.last)].groups();
   const auto known = std::ranges::count_if(
       now, [&](const auto& group) { return graph.landmarks[index(group.landmark)].intervals.front() < part.first; });
-  if (2 * known > std::ssize(now)) return std::nullopt;  // what is known holds the rest
+  if (2 * known > std::ssize(now)) return std::nullopt;  // the older landmarks fix the rest
   return part;
 }
 
-/// As a problem of its own, its landmarks in this order. The pose before it is held; where there is none, the first
-/// pose and the scale.
+/// The part as a problem of its own, with its landmarks in this order. The pose before it is held; if there is none,
+/// the first pose and the scale.
 FactorGraph problem_of(const FactorGraph& graph, const Part& part) {
   FactorGraph problem;
   problem.camera = graph.camera;
@@ -121,31 +123,32 @@ int work_of(const FactorGraph& problem) {
 
 }  // namespace
 
-std::optional<HypothesisSearch> HypothesisSearch::begin(const FactorGraph& graph, const StateRange& states,
-                                                          int enough, StructureHypothesis supposed, bool young) {
-  auto part = newest_part(graph, states, index(enough), young);
+std::optional<HypothesisSearch> HypothesisSearch::begin(const FactorGraph& graph, const StateRange& states, int enough,
+                                                        StructureHypothesis hypothesis, bool tentative) {
+  auto part = newest_part(graph, states, index(enough), tentative);
   if (!part) return std::nullopt;
   FactorGraph problem = problem_of(graph, *part);
-  auto beginning = suppose(supposed, problem, part->fresh.size());
-  if (!beginning) return std::nullopt;
+  auto initial_structure = assume_structure(hypothesis, problem, part->fresh.size());
+  if (!initial_structure) return std::nullopt;
   return HypothesisSearch(part->first, static_cast<int>(graph.landmarks.size()), std::move(part->fresh),
-                           std::move(problem), std::move(*beginning));
+                          std::move(problem), std::move(*initial_structure));
 }
 
-Vector3 HypothesisSearch::Beginning::place(int landmark, const Vector3& p, const Vector3& ray) const {
-  const double nearest = usual / kMostOblique, farthest = usual * kMostOblique;
+Vector3 HypothesisSearch::InitialStructure::place(int landmark, const Vector3& p, const Vector3& ray) const {
+  const double nearest = median_depth / kMostOblique, farthest = median_depth * kMostOblique;
   if (!depths.empty()) return p + std::clamp(depths[index(landmark)], nearest, farthest) * ray;
   const double toward = normal.dot(ray), away = normal.dot(point - p);
   return p + (toward * away > 0.0 ? std::clamp(away / toward, nearest, farthest) : farthest) * ray;
 }
 
-std::optional<HypothesisSearch::Beginning> HypothesisSearch::suppose(StructureHypothesis supposed, const FactorGraph& problem,
-                                                                       std::size_t fresh) {
+std::optional<HypothesisSearch::InitialStructure> HypothesisSearch::assume_structure(StructureHypothesis hypothesis,
+                                                                                     const FactorGraph& problem,
+                                                                                     std::size_t fresh) {
   struct Sight {
     Vector3 p, ray;  // of depth 1
   };
   std::vector<Sight> sights;
-  std::vector<double> depths;  // of those that lie before the camera, and of all
+  std::vector<double> depths;  // of landmarks before the camera, and of all
   std::vector<double> of_each;
   for (std::size_t j = 0; j < fresh; ++j) {
     const FactorGraph::Landmark& landmark = problem.landmarks[j];
@@ -157,56 +160,60 @@ std::optional<HypothesisSearch::Beginning> HypothesisSearch::suppose(StructureHy
     sights.push_back({T.p, (landmark.position - T.p) / depth});
   }
   if (depths.empty()) return std::nullopt;
-  const double usual = median(std::move(depths));
+  const double median_depth = median(std::move(depths));
   Vector3 middle = Vector3::Zero();
-  for (const Sight& sight : sights) middle += (sight.p + usual * sight.ray) / static_cast<double>(sights.size());
+  for (const Sight& sight : sights) middle += (sight.p + median_depth * sight.ray) / static_cast<double>(sights.size());
   if (!middle.allFinite()) return std::nullopt;
   const SE3 &begin = problem.states.front().T, &end = problem.states.back().T;
-  const Vector3 normal =
-      supposed == StructureHypothesis::dual_plane ? Vector3(end.p - begin.p) : Vector3(begin.R().col(2) + end.R().col(2));
-  if (supposed != StructureHypothesis::reversal) return Beginning{normal.normalized(), middle, usual, {}};
-  for (double& depth : of_each) depth = depth > 0.0 ? usual * usual / depth : usual;
-  return Beginning{normal.normalized(), middle, usual, std::move(of_each)};
+  const Vector3 normal = hypothesis == StructureHypothesis::dual_plane ? Vector3(end.p - begin.p)
+                                                                       : Vector3(begin.R().col(2) + end.R().col(2));
+  if (hypothesis != StructureHypothesis::reversal)
+    return InitialStructure{normal.normalized(), middle, median_depth, {}};
+  for (double& depth : of_each) depth = depth > 0.0 ? median_depth * median_depth / depth : median_depth;
+  return InitialStructure{normal.normalized(), middle, median_depth, std::move(of_each)};
 }
 
-HypothesisSearch::HypothesisSearch(int first, int landmarks_then, std::vector<int> fresh, FactorGraph problem,
-                                     Beginning beginning)
+HypothesisSearch::HypothesisSearch(int first, int landmark_count, std::vector<int> fresh, FactorGraph problem,
+                                   InitialStructure initial_structure)
     : first_(first),
-      landmarks_then_(landmarks_then),
+      landmark_count_(landmark_count),
       fresh_(std::move(fresh)),
       problem_(std::move(problem)),
-      beginning_(std::move(beginning)),
+      initial_structure_(std::move(initial_structure)),
       passes_(std::max(1, kShare / work_of(problem_))),
-      through_(problem_.camera, problem_.qc, problem_.loss),
+      forward_(problem_.camera, problem_.qc, problem_.loss),
       in_engine_(problem_.landmarks.size(), -1) {
-  through_.add_state(problem_.states.front());
-  through_.add_pose_prior(problem_.pose_priors.front());
+  forward_.add_state(problem_.states.front());
+  forward_.add_pose_prior(problem_.pose_priors.front());
 }
 
-bool HypothesisSearch::go_on() {
+bool HypothesisSearch::run_share() {
   for (int i = 0; i < passes_; ++i) {
     if (!pass()) return false;
   }
   return true;
 }
 
-/// Linearises the observations about once. False when there is nothing left to do.
+/// Processes the observations about once. False when the search has ended.
 bool HypothesisSearch::pass() {
   const int states = static_cast<int>(problem_.states.size());
-  if (!other_) {
-    const int until = std::min(states, gone_through_ + 1 + kStatesAPass);
-    while (gone_through_ + 1 < until) add_state(++gone_through_);
+  if (!alternative_) {
+    const int until = std::min(states, newest_added_ + 1 + kStatesAPass);
+    while (newest_added_ + 1 < until) add_state(++newest_added_);
     if (until == states) begin_solving();
     return true;
   }
   if (!present_) {
-    if (solve(*other_)) return true;
+    if (solve(*alternative_)) return true;
     if (!(cost_ + kAdvantage < evaluate(problem_).total())) return false;
     const int held = std::min(1, first_);
-    found_ = RecentHypothesis{
-        first_, {other_->graph().states.begin() + held, other_->graph().states.end()}, {}, -cost_, landmarks_then_};
+    found_ = RecentHypothesis{first_,
+                              {alternative_->graph().states.begin() + held, alternative_->graph().states.end()},
+                              {},
+                              -cost_,
+                              landmark_count_};
     for (std::size_t j = 0; j < fresh_.size(); ++j) {
-      found_->landmarks.emplace_back(fresh_[j], other_->graph().landmarks[j].position);
+      found_->landmarks.emplace_back(fresh_[j], alternative_->graph().landmarks[j].position);
     }
     present_.emplace(std::move(problem_), EngineOptions{});
     return true;
@@ -217,46 +224,47 @@ bool HypothesisSearch::pass() {
   return false;
 }
 
-/// What comes into view with it begins where it is supposed to.
+/// Adds a state. New landmarks begin on the initial structure.
 void HypothesisSearch::add_state(int k) {
-  through_.set_next_qc(problem_.qcs[index(k)]);
-  add_extrapolated_state(through_, problem_.states[index(k)].t);
+  forward_.set_next_qc(problem_.qcs[index(k)]);
+  add_extrapolated_state(forward_, problem_.states[index(k)].t);
   for (const auto& group : problem_.intervals[index(k)].groups()) {
     const auto observations = problem_.intervals[index(k)].of(group);
     int& j = in_engine_[index(group.landmark)];
     if (j < 0 && index(group.landmark) < fresh_.size()) {
-      const SE3& T = through_.graph().states.back().T;
+      const SE3& T = forward_.graph().states.back().T;
       const Vector3 place =
-          beginning_.place(group.landmark, T.p, T.R() * problem_.camera.ray(observations.front().pixel));
-      j = through_.add_landmark(place, {place, kThere * beginning_.usual});
+          initial_structure_.place(group.landmark, T.p, T.R() * problem_.camera.ray(observations.front().pixel));
+      j = forward_.add_landmark(place, {place, kInitialSigma * initial_structure_.median_depth});
     } else if (j < 0) {
       const FactorGraph::Landmark& landmark = problem_.landmarks[index(group.landmark)];
-      j = through_.add_landmark(landmark.position, landmark.prior);
+      j = forward_.add_landmark(landmark.position, landmark.prior);
     }
-    for (const Observation& z : observations) through_.add_observation(j, z);
+    for (const Observation& z : observations) forward_.add_observation(j, z);
   }
-  through_.update();
+  forward_.update();
 }
 
-/// The problem itself, with its expansions and without what held new landmarks to their beginnings.
+/// Begins to solve the problem itself, with its expansions and without the priors that held new landmarks on the
+/// initial structure.
 void HypothesisSearch::begin_solving() {
-  through_.settle();
+  forward_.settle();
   FactorGraph other = problem_;
-  other.states = through_.graph().states;
+  other.states = forward_.graph().states;
   for (std::size_t j = 0; j < in_engine_.size(); ++j) {
-    if (in_engine_[j] >= 0) other.landmarks[j].position = through_.graph().landmarks[index(in_engine_[j])].position;
+    if (in_engine_[j] >= 0) other.landmarks[j].position = forward_.graph().landmarks[index(in_engine_[j])].position;
   }
-  to_held_scale(other);
-  other_.emplace(std::move(other), EngineOptions{});
+  to_anchored_scale(other);
+  alternative_.emplace(std::move(other), EngineOptions{});
 }
 
-/// One iteration. False, and its cost known, after the last one.
+/// One iteration. False after the last one; the cost is then known.
 bool HypothesisSearch::solve(Engine& engine) {
   const auto summary = engine.optimise(1, kRecentTolerance);
   cost_ = summary.final_cost;
-  const bool vain = summary.final_cost == summary.initial_cost;
-  const int most = beginning_.depths.empty() ? kRecentIterations : kReversedIterations;
-  const bool last = summary.converged || vain || ++iterations_ == most;
+  const bool unchanged = summary.final_cost == summary.initial_cost;
+  const int most = initial_structure_.depths.empty() ? kRecentIterations : kReversedIterations;
+  const bool last = summary.converged || unchanged || ++iterations_ == most;
   if (last) iterations_ = 0;
   return !last;
 }
@@ -269,18 +277,18 @@ void RecentHypothesis::place_in(Engine& engine) const {
   for (int j = 0; j < std::ssize(graph.landmarks); ++j) {
     const FactorGraph::Landmark& landmark = graph.landmarks[index(j)];
     if (landmark.intervals.empty() || landmark.intervals.back() < first) continue;
-    if (j < landmarks_then && landmark.intervals.front() < end) continue;  // those of since may have been seen before
+    if (j < landmark_count && landmark.intervals.front() < end) continue;  // newer ones may have been seen before
     const int k = landmark.intervals.back();
     const SE3 motion = k < end ? states[index(k - first)].T * before(k).inverse() : along;
-    engine.place_landmark(j, motion * landmark.position);
+    engine.set_landmark(j, motion * landmark.position);
   }
   for (int k = end; k < std::ssize(graph.states); ++k) {
     ControlState state = graph.states[index(k)];
     state.T = along * state.T;
-    engine.place_state(k, state);
+    engine.set_state(k, state);
   }
-  for (int k = first; k < end; ++k) engine.place_state(k, states[index(k - first)]);
-  for (const auto& [j, position] : landmarks) engine.place_landmark(j, position);
+  for (int k = first; k < end; ++k) engine.set_state(k, states[index(k - first)]);
+  for (const auto& [j, position] : landmarks) engine.set_landmark(j, position);
 }
 
 }  // namespace evbench::gp_map

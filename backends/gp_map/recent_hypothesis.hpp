@@ -9,92 +9,96 @@
 
 namespace evbench::gp_map {
 
-/// Where all that came into view of late is supposed to lie, as a beginning.
+/// Initial structure of the landmarks that came into view recently.
 enum class StructureHypothesis {
-  frontal_plane,  ///< parallel to the image: nothing is supposed about what is near and what is far
-  dual_plane,     ///< normal to how the camera seems to have moved: where the other explanation of a plane has it
-  reversal,       ///< what seems near is far, and what seems far near, as when Necker's cube turns over
+  frontal_plane,  ///< parallel to the image: no assumption about near and far
+  dual_plane,     ///< normal to the estimated motion: the structure in the other solution of a moving plane
+  reversal,       ///< near and far are swapped, as with Necker's cube
 };
 
-/// From an oldest to a newest one, both included.
+/// States from an oldest to a newest one, both included.
 struct StateRange {
   int oldest = 0, newest = 0;
 };
 
-/// Another explanation of what was seen of late.
+/// An alternative estimate of the recent part.
 struct RecentHypothesis {
-  int first = 0;                                   ///< state from which on it says something else
-  std::vector<ControlState> states;                ///< from there on, the newest it was looked for in last
-  std::vector<std::pair<int, Vector3>> landmarks;  ///< those that came into view since, world frame [units]
+  int first = 0;                                   ///< first state that it changes
+  std::vector<ControlState> states;                ///< from there on, up to the newest one of the search
+  std::vector<std::pair<int, Vector3>> landmarks;  ///< landmarks that came into view there, world frame [units]
   double advantage = 0.0;                          ///< by which its cost, ½ Σ ρ, is lower
-  int landmarks_then = 0;                          ///< of the problem, as it was looked for
+  int landmark_count = 0;                          ///< number of landmarks of the searched problem
 
-  /// Makes it the estimate; later states and the landmarks that came into view after it, or have been added to the
-  /// engine since it was looked for, go along. Not for an engine in which the state before the first one has been
+  /// Makes it the engine's estimate. Later states are moved along, and so are landmarks that came into view after it or
+  /// were added to the engine since the search. Not for an engine in which the state before the first one has been
   /// marginalised.
   void place_in(Engine& engine) const;
 };
 
-/// The motion of a plane's image has two explanations, in which the plane's normal and the direction of translation
-/// change places (Longuet-Higgins, "The visual ambiguity of a moving plane", 1984); only how the direction changes
-/// tells which is true. Where most of what is in view is replaced within a second, new landmarks can hold each other
-/// and the motion in the wrong one: it may have had the lower cost when they were few, Gauss-Newton steps don't lead
-/// out of it, and within another second the scale is lost.
+/// Searches a better alternative estimate of the recent part of a problem.
 ///
-/// So the newest part of the problem, over a time in which most of what is in view has come into it and what was before
-/// has gone, is gone through once more on its own, what was known before being held, with new landmarks beginning on
-/// another plane; then both explanations are solved. Of a young map's problem, whose initial map is what explained a few
-/// tenths of a second best, all is gone through, held by the first pose, the scale and the landmarks' priors. That
-/// takes as long as many updates, so it is done in shares.
+/// The image of a moving plane has two solutions, in which the plane's normal and the direction of translation are
+/// exchanged (Longuet-Higgins, "The visual ambiguity of a moving plane", 1984). Only a change of the direction shows
+/// which one is true. If most of the view is replaced within a second, new landmarks can support each other and the
+/// motion in the wrong solution: it may have had the lower cost when they were few, Gauss-Newton steps do not lead out
+/// of it, and within another second the scale is lost.
 ///
-/// What has depth has another explanation, too, where little of it is in view and the camera has hardly moved: near and
-/// far change places, and so do the ways to the left and to the right (Necker's reversal; Szeliski and Kang, "Shape
+/// So the newest part of the problem, over a time in which most of the view has been replaced, is estimated once more
+/// by itself, with older landmarks held and new landmarks beginning on another plane. Then both estimates are solved.
+/// The problem of a tentative map is estimated again as a whole, held by the first pose, the scale and the landmarks'
+/// priors, because its initial map was the best one for a few tenths of a second only. The search takes as long as many
+/// updates, so it is done in shares.
+///
+/// Structure with depth has an alternative, too, if little of it is in view and the camera has hardly moved: near and
+/// far are swapped, and so are motions to the left and to the right (Necker's reversal; Szeliski and Kang, "Shape
 /// ambiguities in structure from motion", 1997).
 class HypothesisSearch {
  public:
-  /// Of the newest part of these states, the oldest of which is the oldest one that is being estimated, or, when the
-  /// map is young, nothing has been marginalised and states are few, of everything. None where fewer than `enough`
-  /// landmarks are new, and where what is new lies behind the camera; of a part none either where it reaches back to
-  /// the oldest state, where fewer than `enough` landmarks were known before, and where most of those seen in its
-  /// newest interval were.
+  /// Begins a search in the newest part of these states, the oldest of which must be the oldest one that is not
+  /// marginalised; or in everything, if the map is tentative, nothing has been marginalised and states are few. None if
+  /// fewer than `enough` landmarks are new, or if the new ones lie behind the camera. For a part also none if it
+  /// reaches back to the oldest state, if fewer than `enough` landmarks are older, or if most landmarks of its newest
+  /// interval are older.
   static std::optional<HypothesisSearch> begin(const FactorGraph& graph, const StateRange& states, int enough,
-                                                StructureHypothesis supposed, bool young = false);
+                                               StructureHypothesis hypothesis, bool tentative = false);
 
-  /// Does a bounded share of the work. False when it has come to its end.
-  bool go_on();
+  /// Does a bounded share of the work. False when the search has ended.
+  bool run_share();
 
-  /// At its end: nothing unless the other explanation's cost is clearly lower.
+  /// The result at the end: none unless the cost of the alternative is clearly lower.
   const std::optional<RecentHypothesis>& found() const { return found_; }
 
  private:
-  /// On a plane through the middle of what is new, or at a depth of its own.
-  struct Beginning {
+  /// Initial structure: a plane through the middle of the new landmarks, or a depth for each of them.
+  struct InitialStructure {
     Vector3 normal, point;
-    double usual;                ///< depth
-    std::vector<double> depths;  ///< of each landmark that is new, at its first sight; none: on the plane
+    double median_depth;         ///< of the new landmarks
+    std::vector<double> depths;  ///< of each new landmark at its first observation; empty: on the plane
 
-    /// Of a landmark, where a ray from p, of depth 1, meets it, within bounds.
+    /// Initial position of a landmark: where a ray from p, of depth 1, meets the structure, within bounds.
     Vector3 place(int landmark, const Vector3& p, const Vector3& ray) const;
   };
-  static std::optional<Beginning> suppose(StructureHypothesis supposed, const FactorGraph& problem, std::size_t fresh);
+  static std::optional<InitialStructure> assume_structure(StructureHypothesis hypothesis, const FactorGraph& problem,
+                                                          std::size_t fresh);
 
-  HypothesisSearch(int first, int landmarks_then, std::vector<int> fresh, FactorGraph problem, Beginning beginning);
+  HypothesisSearch(int first, int landmark_count, std::vector<int> fresh, FactorGraph problem,
+                   InitialStructure initial_structure);
   bool pass();
   void add_state(int k);
   void begin_solving();
   bool solve(Engine& engine);
 
   int first_;
-  int landmarks_then_;
-  std::vector<int> fresh_;  ///< landmarks of the whole problem: the first ones of this
-  FactorGraph problem_;     ///< the state before the part first, if there is one, which is held
-  Beginning beginning_;
-  int passes_;                     ///< a share
-  Engine through_;                 ///< goes through the problem from that beginning
-  int gone_through_ = 0;           ///< its newest state
-  std::vector<int> in_engine_;     ///< its landmarks, by those of the problem
-  std::optional<Engine> other_;    ///< solved from where that ended
-  std::optional<Engine> present_;  ///< solved from the present estimate
+  int landmark_count_;
+  std::vector<int> fresh_;  ///< the new landmarks, which are the first ones here, by index in the whole problem
+  FactorGraph problem_;     ///< begins with the state before the part, if there is one, which is held
+  InitialStructure initial_structure_;
+  int passes_;                         ///< in a share
+  Engine forward_;                     ///< passes through the problem, state by state, from the initial structure
+  int newest_added_ = 0;               ///< its newest state
+  std::vector<int> in_engine_;         ///< its landmarks, by those of the problem
+  std::optional<Engine> alternative_;  ///< solved from the result of this pass
+  std::optional<Engine> present_;      ///< solved from the present estimate
   int iterations_ = 0;
   double cost_ = 0.0;
   std::optional<RecentHypothesis> found_;

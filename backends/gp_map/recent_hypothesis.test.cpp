@@ -16,33 +16,33 @@ namespace {
 
 using namespace ambiguous_sequence;
 
-/// By a search that is gone through at once.
+/// Runs a search to its end.
 std::optional<RecentHypothesis> try_alternatives(const FactorGraph& graph, int first_state, int enough,
-                                                   StructureHypothesis supposed, bool young = false) {
+                                                 StructureHypothesis hypothesis, bool tentative = false) {
   auto search = HypothesisSearch::begin(graph, {first_state, static_cast<int>(graph.states.size()) - 1}, enough,
-                                         supposed, young);
+                                        hypothesis, tentative);
   if (!search) return std::nullopt;
-  while (search->go_on()) {
+  while (search->run_share()) {
   }
   return search->found();
 }
 
 }  // namespace
 
-TEST_CASE(
-    "A local minimum, in which a plane and the way past it have changed places, gives way to the true explanation",
-    "[slow]") {
-  for (const auto& [way, plane, young] : {std::tuple{Way{-0.4, 0.0}, StructureHypothesis::frontal_plane, false},
-                                          {Way{0.0, 0.4}, StructureHypothesis::dual_plane, false},
-                                          {Way{-0.4, 0.0}, StructureHypothesis::frontal_plane, true}}) {
+TEST_CASE("A local minimum that exchanges a plane's normal and the translation is replaced by the true estimate",
+          "[slow]") {
+  for (const auto& [motion, plane, tentative] :
+       {std::tuple{CameraMotion{-0.4, 0.0}, StructureHypothesis::frontal_plane, false},
+        {CameraMotion{0.0, 0.4}, StructureHypothesis::dual_plane, false},
+        {CameraMotion{-0.4, 0.0}, StructureHypothesis::frontal_plane, true}}) {
     int found = 0;
     for (const std::uint64_t seed : {1, 2, 3}) {
-      const Vector3 real = simulate_problem(way, seed, young).states.back().T.p;
-      const FactorGraph wrong = misled(simulate_problem(way, seed, young));
-      REQUIRE(cost(wrong) > cost(solved(simulate_problem(way, seed, young))) + 15.0);
-      const auto other = try_alternatives(wrong, 0, kEnough, plane, young);
+      const Vector3 real = simulate_problem(motion, seed, tentative).states.back().T.p;
+      const FactorGraph wrong = misled(simulate_problem(motion, seed, tentative));
+      REQUIRE(cost(wrong) > cost(solved(simulate_problem(motion, seed, tentative))) + 15.0);
+      const auto other = try_alternatives(wrong, 0, kEnough, plane, tentative);
       if (!other) continue;
-      CHECK((other->first == 0) == young);
+      CHECK((other->first == 0) == tentative);
       CHECK(other->first + std::ssize(other->states) == std::ssize(wrong.states));
       Engine engine(wrong, {});
       other->place_in(engine);
@@ -53,14 +53,14 @@ TEST_CASE(
       if (error < 0.3 * before) ++found;
       CHECK(other->advantage > 10.0);
     }
-    CHECK(found >= 2);  // of 3: one may be too hard to tell yet
+    CHECK(found >= 2);  // of 3: one may be too hard to distinguish yet
   }
 }
 
-TEST_CASE("A young map in which near and far have changed places can be turned over once more", "[slow]") {
+TEST_CASE("A tentative map in which near and far are swapped can be reversed again", "[slow]") {
   int better = 0, right = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
-    const FactorGraph truth = solved(simulate_problem({}, seed, true)), reversed = turned_over(truth);
+    const FactorGraph truth = solved(simulate_problem({}, seed, true)), reversed = depth_reversed(truth);
     const auto error = [&truth](const FactorGraph& graph) {
       return (graph.states.back().T.p - truth.states.back().T.p).norm();
     };
@@ -76,18 +76,18 @@ TEST_CASE("A young map in which near and far have changed places can be turned o
     if (error(engine.graph()) < 0.6 * error(reversed)) ++better;
     if (error(engine.graph()) < 0.01) ++right;
   }
-  CHECK(better >= 3);  // of 6: a plane that is turned over leads to its dual as well
+  CHECK(better >= 3);  // of 6: a reversed plane also leads to its dual
   CHECK(right >= 1);
 }
 
-TEST_CASE("What has been added since another explanation was looked for goes along with it") {
+TEST_CASE("States and landmarks that were added since the search are moved along with the alternative") {
   const FactorGraph wrong = misled(simulate_problem({-0.4, 0.0}, 1));
   const auto other = try_alternatives(wrong, 0, kEnough, StructureHypothesis::frontal_plane);
   REQUIRE(other);
   Engine engine(wrong, {});
   add_extrapolated_state(engine, kStep * kStates);
   const Vector3 in_camera(0.1, 0.2, 2.0);
-  // A landmark is added with all that its track has seen: one is seen by the new state, one by an earlier one alone.
+  // A landmark is added with all observations of its track: one is seen by the new state, one only by an earlier one.
   for (const int k : {kStates, kStates - 3}) {
     const int landmark = engine.add_landmark(engine.graph().states[index(k)].T * in_camera);
     engine.add_observation(landmark, {kStep * k, wrong.camera.project(in_camera), 1.0 / kSigma});
@@ -114,15 +114,16 @@ TEST_CASE("What has been added since another explanation was looked for goes alo
   CHECK(cost(engine.graph()) < cost(before) - 10.0);
 }
 
-TEST_CASE("The true explanation has no better one, and without known landmarks none is looked for but in a young map") {
-  for (const Way& way : {Way{-0.4, 0.0}, Way{0.0, 0.4}}) {
-    const FactorGraph truth = solved(simulate_problem(way, 1)), wrong = misled(simulate_problem(way, 1));
-    const bool turning = way.turn != 0.0;
-    REQUIRE(try_alternatives(wrong, 0, kEnough, turning ? StructureHypothesis::frontal_plane : StructureHypothesis::dual_plane));
+TEST_CASE("The true estimate has no better alternative, and without older landmarks only a tentative map is searched") {
+  for (const CameraMotion& motion : {CameraMotion{-0.4, 0.0}, CameraMotion{0.0, 0.4}}) {
+    const FactorGraph truth = solved(simulate_problem(motion, 1)), wrong = misled(simulate_problem(motion, 1));
+    const bool turning = motion.turn != 0.0;
+    REQUIRE(try_alternatives(wrong, 0, kEnough,
+                             turning ? StructureHypothesis::frontal_plane : StructureHypothesis::dual_plane));
     for (const StructureHypothesis plane : {StructureHypothesis::frontal_plane, StructureHypothesis::dual_plane}) {
       CHECK_FALSE(try_alternatives(truth, 0, kEnough, plane));
-      CHECK_FALSE(try_alternatives(solved(simulate_problem(way, 1, true)), 0, kEnough, plane, true));
-      CHECK_FALSE(try_alternatives(wrong, 1, kOld + 1, plane, true));  // marginalised: of a part alone
+      CHECK_FALSE(try_alternatives(solved(simulate_problem(motion, 1, true)), 0, kEnough, plane, true));
+      CHECK_FALSE(try_alternatives(wrong, 1, kOld + 1, plane, true));  // marginalised: only a part is searched
       CHECK_FALSE(try_alternatives(wrong, 0, kOld + 1, plane));
       CHECK_FALSE(try_alternatives(wrong, kStates - 20, kEnough, plane));  // too little of it may change
     }

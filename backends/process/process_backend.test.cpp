@@ -14,7 +14,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-/// What each of the processes below begins with.
+/// The beginning of each of the processes below.
 const char* const kBegin = R"(
 import json, sys
 def hear(): return json.loads(sys.stdin.readline())
@@ -23,7 +23,7 @@ def pose(t, x): return [t, x, 0, 0, 0, 0, 0, 1]
 hello = hear()
 )";
 
-/// Moves along x by a metre a second; tells what it was told on its standard error.
+/// Moves along x by a metre a second; writes what it receives to its standard error.
 const char* const kStraight = R"(
 say({"evbench": 1, "name": "straight on"})
 print(json.dumps(hello), file=sys.stderr)
@@ -31,7 +31,8 @@ last = 0.0
 while "finish" not in (m := hear()):
   print(json.dumps(m), file=sys.stderr)
   last = m["until"]
-  say({"state": "tracking", "causal_poses": [pose(last, last)], "newest": pose(last, last), "outliers": [len(m["observations"])]})
+  say({"state": "tracking", "causal_poses": [pose(last, last)], "newest": pose(last, last),
+       "outliers": [len(m["observations"])]})
 say({"trajectory": [pose(0, 0), pose(last, last)], "map": [[7, 1, 2, 3]]})
 )";
 
@@ -52,7 +53,7 @@ class Session {
     backend = std::make_unique<ProcessBackEnd>(options, context);
   }
 
-  /// Three batches of 0.1 s, and the end.
+  /// Sends three batches of 0.1 s, and the end.
   Session& go() {
     for (int i = 1; i <= 3; ++i) {
       const double t = 0.1 * i;
@@ -70,7 +71,7 @@ class Session {
   testing::TemporaryFolder folder_;
 };
 
-/// Of a process that answers `answer`, Python, to its batches, and `final` to the end.
+/// The error of a process that answers `answer`, Python, to its batches, and `final` to the end.
 std::string failure(const std::string& answer, const std::string& final = R"({"trajectory": [pose(0, 0)]})") {
   try {
     Session("say({'evbench': 1})\nwhile 'finish' not in (m := hear()):\n  t = m['until']\n  say(" + answer + ")\nsay(" +
@@ -82,7 +83,7 @@ std::string failure(const std::string& answer, const std::string& final = R"({"t
   return "";
 }
 
-/// Of a process that is this script.
+/// The error of a process with this script.
 std::string failure_of(const std::string& script, const std::string& more = "") {
   try {
     Session(script, more).go();
@@ -94,7 +95,7 @@ std::string failure_of(const std::string& script, const std::string& more = "") 
 
 }  // namespace
 
-TEST_CASE("A back-end process is told camera, observations and ended tracks, and answers with poses") {
+TEST_CASE("A back-end process receives camera, observations and ended tracks, and answers with poses") {
   Session session(kStraight);
   session.go();
   CHECK_THAT(session.log, ContainsSubstring("back-end process: straight on"));
@@ -114,8 +115,7 @@ TEST_CASE("A back-end process is told camera, observations and ended tracks, and
   CHECK(session.backend->updates().size() == 3);
 }
 
-TEST_CASE(
-    "A back-end process may tell a velocity, and an older time again, what it tells is known at the batch's end") {
+TEST_CASE("A back-end process may publish a velocity, and an older time again, known at the batch's end") {
   Session session(R"(
 say({"evbench": 1})
 while "finish" not in (m := hear()):
@@ -131,7 +131,7 @@ say({"trajectory": [pose(0, 0)]})
   CHECK_FALSE(session.causal[5].velocity);
 }
 
-TEST_CASE("Feedback of a back-end process has outliers since the last one, and a velocity also where none was told") {
+TEST_CASE("Feedback of a back-end process has outliers since the last one, and a velocity even if none was sent") {
   Session session(kStraight);
   session.backend->advance({{}, {}, 0.5});
   session.backend->advance({{{3, 0.6, {1, 1}, 1.0}}, {}, 1.0});
@@ -146,7 +146,7 @@ TEST_CASE("Feedback of a back-end process has outliers since the last one, and a
   CHECK(session.backend->feedback({true, false, false}).outliers.empty());
 }
 
-TEST_CASE("The covariance that a back-end process tells is that of its newest pose") {
+TEST_CASE("The covariance that a back-end process sends is that of its newest pose") {
   Session session(R"(
 say({"evbench": 1})
 while "finish" not in (m := hear()):
@@ -181,22 +181,23 @@ TEST_CASE("The status of a run follows from the states that a process answers") 
   CHECK(lost.state == RunState::lost);
   CHECK(lost.time == 0.1);
   CHECK(status("['tracking', 'tracking', 'lost']", one_pose).time == 0.2);
-  // A map that was wrong, of which no pose was told:
+  // A wrong map, of which no pose was published:
   CHECK(status("['degraded', 'no_map', 'tracking']", one_pose).state == RunState::ok);
   const Status none = status("['no_map'] * 3", "{'trajectory': []}");
   CHECK(none.state == RunState::failed);
   CHECK_THAT(none.reason, ContainsSubstring("no trajectory"));
-  const Status told = status("['tracking'] * 3",
-                             "{'trajectory': [pose(0, 0)], 'status': {'state': 'lost', 'reason': 'dark', 'time': 0.25, "
-                             "'degraded': [[0.1, 0.2, 'dusk']]}}");
-  CHECK(told.state == RunState::lost);
-  CHECK(told.time == 0.25);
-  CHECK(told.degraded.at(0).reason == "dusk");
-  CHECK_THROWS_WITH(status("['tracking', 'lost', 'lost']", "{'trajectory': [pose(0, 0)], 'status': {'state': 'ok'}}"),
-                    ContainsSubstring("expected \"lost\" or \"failed\" of a process that has said that it is lost"));
+  const Status own = status("['tracking'] * 3",
+                            "{'trajectory': [pose(0, 0)], 'status': {'state': 'lost', 'reason': 'dark', 'time': 0.25, "
+                            "'degraded': [[0.1, 0.2, 'dusk']]}}");
+  CHECK(own.state == RunState::lost);
+  CHECK(own.time == 0.25);
+  CHECK(own.degraded.at(0).reason == "dusk");
+  CHECK_THROWS_WITH(
+      status("['tracking', 'lost', 'lost']", "{'trajectory': [pose(0, 0)], 'status': {'state': 'ok'}}"),
+      ContainsSubstring("expected \"lost\" or \"failed\" of a process that has reported that it is lost"));
 }
 
-TEST_CASE("A back-end process that is lost says so before the end") {
+TEST_CASE("A back-end process that is lost reports it before the end") {
   Session session(
       "say({'evbench': 1})\nhear()\nsay({'state': 'lost', 'reason': 'fog'})\nhear()\nsay({'trajectory': []})");
   session.backend->advance({{}, {}, 0.1});
@@ -204,7 +205,7 @@ TEST_CASE("A back-end process that is lost says so before the end") {
   CHECK(session.backend->status().reason == "fog");
 }
 
-TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence") {
+TEST_CASE("Each wrong answer of a back-end process gives an error that explains it") {
   CHECK(failure("{'state': 'tracking', 'causal_poses': [pose(t, 0)]}").empty());
   CHECK_THAT(failure("{'state': 'tracking', 'causal_poses': [pose(float('nan'), 0)]}"),
              ContainsSubstring(
@@ -227,7 +228,7 @@ TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence
   CHECK_THAT(failure("{'state': 'tracking', 'covariance': [0] * 144}"),
              ContainsSubstring("expected \"newest\" with it"));
   CHECK_THAT(failure("{'state': 'tracking' if t < 0.15 else 'no_map', 'causal_poses': [pose(0.1, 0)]}"),
-             ContainsSubstring("expected \"lost\", as poses were published"));
+             ContainsSubstring("expected \"lost\", because poses were published"));
   CHECK_THAT(failure("{'state': 'lost' if t < 0.15 else 'no_map', 'reason': 'fog'}"),
              ContainsSubstring("expected \"lost\""));
   CHECK_THAT(failure("{'error': 'I can not see'}"),
@@ -284,7 +285,7 @@ TEST_CASE("A back-end process that has failed stays failed") {
   CHECK(first == second);
 }
 
-TEST_CASE("A command that makes no sense is said where it stands") {
+TEST_CASE("A command that makes no sense is reported with its place") {
   BackEndContext context;
   context.place = "config.json: backend";
   const auto make = [&](const std::string& options) {
@@ -303,7 +304,7 @@ TEST_CASE("A command that makes no sense is said where it stands") {
                     ContainsSubstring("in the folder /no/folder"));
 }
 
-TEST_CASE("The files that a command names are part of a run's identity, where they lie is not") {
+TEST_CASE("The files that a command names are part of a run's identity, but not their location") {
   const testing::TemporaryFolder folder;
   folder.write("backend.py", "");
   folder.write("weights", "");
@@ -321,7 +322,7 @@ TEST_CASE("The files that a command names are part of a run's identity, where th
                     ContainsSubstring("/none: no such file; the option \"files\" names it"));
 }
 
-TEST_CASE("The time that an exchange takes besides the process' own") {
+TEST_CASE("The time that an exchange takes in addition to the process' own") {
   Session session(R"(
 say({"evbench": 1})
 for line in sys.stdin:

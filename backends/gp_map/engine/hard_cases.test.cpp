@@ -12,7 +12,7 @@ constexpr double kStep = 0.1;  ///< [s] between states
 /// A camera that moves sideways at 0.5 m/s past landmarks without priors; exact observations, guesses 10 % too far.
 class Session {
  public:
-  /// The scale anchor is held loosely, so that the covariance shows how often it counts.
+  /// The scale anchor has a large sigma, so that the covariance shows how often it counts.
   explicit Session(const EngineOptions& options = {}) : engine(empty_graph(), options) {
     ControlState first;
     first.velocity = motion();
@@ -45,8 +45,8 @@ class Session {
     next.T = next.T * se3::exp(dt * next.velocity);
     engine.add_state(next);
   }
-  /// A state more, with two observations of each of the first `count` landmarks.
-  void fly(int count = kSeen) {
+  /// Adds a state with two observations of each of the first `count` landmarks.
+  void advance(int count = kSeen) {
     add_state();
     for (int j = 0; j < count; ++j) {
       for (const double back : {0.05, 0.0}) REQUIRE(engine.add_observation(j, observation(j, newest() - back)));
@@ -57,7 +57,7 @@ class Session {
   Engine engine;
 };
 
-/// That the engine's stages are those of its factors: redoing all of them changes nothing.
+/// The engine's stages match its factors: redoing all of them changes nothing.
 void check_nothing_is_stale(Engine& engine) {
   const FactorGraph before = engine.graph();
   const auto now = engine.neighbours(static_cast<int>(before.states.size()) - 2);
@@ -70,20 +70,20 @@ void check_nothing_is_stale(Engine& engine) {
 
 }  // namespace
 
-TEST_CASE("The scale anchor counts once, whenever its landmarks come in or go") {
+TEST_CASE("The scale anchor counts once, in whatever order its landmarks enter and leave") {
   Session session(testing::linear_options());
-  for (int k = 0; k < 3; ++k) session.fly();
+  for (int k = 0; k < 3; ++k) session.advance();
   session.engine.anchor_scale({0.0, 0.0, -1.0}, {0, 1, 11});
   session.engine.update();
   check_nothing_is_stale(session.engine);
-  for (int k = 0; k < 6; ++k) session.fly(k < 3 ? 10 : 5);
+  for (int k = 0; k < 6; ++k) session.advance(k < 3 ? 10 : 5);
   session.engine.update();
-  session.fly();
+  session.advance();
   const double first_seen = session.newest();
   REQUIRE(session.engine.add_observation(11, Session::observation(11, first_seen)));
   session.engine.update();
   check_nothing_is_stale(session.engine);
-  session.fly();
+  session.advance();
   session.engine.update();
   session.engine.remove_landmark(11);
   session.engine.update();
@@ -95,14 +95,14 @@ TEST_CASE("A scale anchor that has been marginalised is not added again") {
   lagged.lag = 0.3;
   Session session(lagged), full(testing::linear_options());
   for (Session* f : {&session, &full}) {
-    f->fly();
-    f->fly();
+    f->advance();
+    f->advance();
     f->engine.update();
     f->engine.anchor_scale({0.0, 0.0, -1.0}, {0, 1, 2});
   }
   for (int k = 0; k < 12; ++k) {
     for (Session* f : {&session, &full}) {
-      f->fly();
+      f->advance();
       f->engine.update();
     }
   }
@@ -112,9 +112,9 @@ TEST_CASE("A scale anchor that has been marginalised is not added again") {
   CHECK((*session.engine.neighbours(newest - 1) - expected).norm() < 1e-3 * expected.norm());
 }
 
-TEST_CASE("Without its last landmark there is no scale anchor, and what held the scale otherwise goes on holding it") {
+TEST_CASE("The scale anchor ends with its last landmark, and the other factors on the scale remain") {
   Session session;
-  for (int k = 0; k < 5; ++k) session.fly();
+  for (int k = 0; k < 5; ++k) session.advance();
   session.engine.anchor_scale({0.0, 0.0, -1.0}, {0, 1});
   session.engine.update();
   session.engine.remove_landmark(0);
@@ -126,12 +126,12 @@ TEST_CASE("Without its last landmark there is no scale anchor, and what held the
   check_nothing_is_stale(session.engine);
 }
 
-TEST_CASE("A gap longer than the lag leaves the newest interval to be estimated, however often it is updated") {
+TEST_CASE("After a gap longer than the lag the newest interval is still estimated, however often it is updated") {
   EngineOptions lagged;
   lagged.lag = 0.3;
   Session session(lagged);
   for (int k = 0; k < 6; ++k) {
-    session.fly();
+    session.advance();
     session.engine.update();
   }
   for (int k = 0; k < 3; ++k) {
@@ -147,26 +147,26 @@ TEST_CASE("A gap longer than the lag leaves the newest interval to be estimated,
   CHECK_FALSE(session.engine.update().rejected);
 }
 
-TEST_CASE("A covariance asked for between a change and its update doesn't keep the update from being complete") {
+TEST_CASE("A covariance query between a change and its update does not make the update incomplete") {
   Session session;
   for (int k = 0; k < 20; ++k) {
-    session.fly(k < 3 ? Session::kLandmarks : Session::kSeen);
+    session.advance(k < 3 ? Session::kLandmarks : Session::kSeen);
     session.engine.update();
   }
-  Observation wrong = Session::observation(11, 0.25);  // of a landmark that says little about the newest state
+  Observation wrong = Session::observation(11, 0.25);  // of a landmark that affects the newest state little
   wrong.pixel += Vector2(3.0, -2.0);
   REQUIRE(session.engine.add_observation(11, wrong));
-  Engine asked = session.engine;
-  REQUIRE(asked.neighbours(19));
-  const Vector3 before = asked.graph().landmarks[11].position;
-  asked.update();
+  Engine queried = session.engine;
+  REQUIRE(queried.neighbours(19));
+  const Vector3 before = queried.graph().landmarks[11].position;
+  queried.update();
   session.engine.update();
-  const Vector3 &a = asked.graph().landmarks[11].position, &b = session.engine.graph().landmarks[11].position;
+  const Vector3 &a = queried.graph().landmarks[11].position, &b = session.engine.graph().landmarks[11].position;
   CHECK((b - before).norm() > 1e-3);
   CHECK((a - b).norm() < 1e-4);
 }
 
-TEST_CASE("A covariance asked for after states were taken back is of those that are left") {
+TEST_CASE("A covariance query after the removal of states covers the remaining ones") {
   Engine engine = testing::DrawnProblem({.qc = 0.01, .pixel_sigma = 0.5}, 1).solve_incrementally();
   for (int taken = 0; taken < 3; ++taken) engine.remove_newest_state();
   const std::vector<Matrix24> chain = engine.chain_covariances(1);
@@ -177,7 +177,7 @@ TEST_CASE("A covariance asked for after states were taken back is of those that 
   for (std::size_t k = 0; k < chain.size(); ++k) CHECK((chain[k] - after[k]).norm() < 0.1 * after[k].norm());
 }
 
-TEST_CASE("What the newest states learnt one observation at a time reaches the older ones with the update") {
+TEST_CASE("Updates of the newest states by single observations reach the older ones with the next update") {
   EngineOptions options;
   options.grace = 10;
   Session session(options);
@@ -188,7 +188,7 @@ TEST_CASE("What the newest states learnt one observation at a time reaches the o
     return z;
   };
   for (int k = 0; k < 10; ++k) {
-    session.fly(0);
+    session.advance(0);
     if (k < 4) REQUIRE(session.engine.add_observation(known, see_known(session.newest())));
     session.engine.update();
   }
@@ -207,7 +207,7 @@ TEST_CASE("What the newest states learnt one observation at a time reaches the o
   }
 }
 
-TEST_CASE("A singular system has no covariance, the first time and the second") {
+TEST_CASE("A singular system has no covariance, neither in the first query nor in the second") {
   Engine engine({200.0, 200.0, 120.0, 90.0}, Vector6::Ones(), {});
   ControlState state;
   engine.add_state(state);
@@ -216,8 +216,8 @@ TEST_CASE("A singular system has no covariance, the first time and the second") 
   for (int i = 0; i < 3; ++i) CHECK_FALSE(engine.neighbours(0));
   engine.update();
   for (int i = 0; i < 2; ++i) {
-    const auto held = engine.neighbours(0);
-    if (held) CHECK(held->allFinite());
+    const auto regularised = engine.neighbours(0);
+    if (regularised) CHECK(regularised->allFinite());
   }
 }
 

@@ -12,7 +12,7 @@
 
 namespace evbench::gp_map::ambiguous_sequence {
 
-FactorGraph simulate_problem(const Way& way, std::uint64_t seed, bool young, int states) {
+FactorGraph simulate_problem(const CameraMotion& motion, std::uint64_t seed, bool tentative, int states) {
   Random random(seed);
   FactorGraph graph;
   graph.camera = {200.0, 200.0, 120.0, 90.0};
@@ -22,7 +22,7 @@ FactorGraph simulate_problem(const Way& way, std::uint64_t seed, bool young, int
   for (int i = 0; i < states; ++i) {
     const double t = kStep * i;
     state.t = t;
-    state.velocity << 0.0, t < 2.0 ? way.turn : -way.turn, 0.0, 0.4 - 0.2 * t, 0.1 * t, way.ahead;
+    state.velocity << 0.0, t < 2.0 ? motion.turn : -motion.turn, 0.0, 0.4 - 0.2 * t, 0.1 * t, motion.ahead;
     graph.add_state(state);
     state.T = state.T * se3::exp(kStep * state.velocity);
   }
@@ -46,7 +46,7 @@ FactorGraph simulate_problem(const Way& way, std::uint64_t seed, bool young, int
     }
   }
   graph.pose_priors.push_back({0, graph.states.front().T, Vector6::Constant(1e-4)});
-  if (young) {
+  if (tentative) {
     std::vector<int> first(kOld);
     std::iota(first.begin(), first.end(), 0);
     graph.anchor_scale(graph.states.front().T.p, first);
@@ -58,7 +58,7 @@ FactorGraph simulate_problem(const Way& way, std::uint64_t seed, bool young, int
 
 namespace {
 
-/// Solved from where the landmarks from this one on are held at first.
+/// Solved from an estimate at which the landmarks from index `held` on are held at first.
 FactorGraph solved_from(FactorGraph graph, int held) {
   Engine engine(std::move(graph), {});
   engine.optimise(20, 1e-6);
@@ -82,13 +82,13 @@ FactorGraph misled(FactorGraph graph) {
   return solved_from(std::move(graph), kOld);
 }
 
-FactorGraph turned_over(FactorGraph graph) {
-  constexpr double kUsual = 2.0;  // depth
+FactorGraph depth_reversed(FactorGraph graph) {
+  constexpr double kMedianDepth = 2.0;
   for (FactorGraph::Landmark& landmark : graph.landmarks) {
     if (landmark.intervals.empty()) continue;
     const Vector3& p = graph.states[index(landmark.intervals.front())].T.p;
     const double depth = (landmark.position - p).z();
-    landmark.position = p + kUsual * kUsual / (depth * depth) * (landmark.position - p);
+    landmark.position = p + kMedianDepth * kMedianDepth / (depth * depth) * (landmark.position - p);
     landmark.prior = {landmark.position, 0.02};
   }
   return solved_from(std::move(graph), 0);

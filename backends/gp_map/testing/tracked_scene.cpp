@@ -37,7 +37,7 @@ Run run(const TrackedScene& scene, const RunOptions& options) {
   BackEndContext context;
   context.camera = scene.camera();
   std::vector<StampedPose> causal;
-  context.publish = [&](const StampedPose& pose) {  // not those that are told anew
+  context.publish = [&](const StampedPose& pose) {  // not those that are published again
     if (causal.empty() || pose.t > causal.back().t) causal.push_back(pose);
   };
   Run result;
