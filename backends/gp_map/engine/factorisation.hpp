@@ -25,7 +25,7 @@ struct Variable {
 /// seemed known to 3.4 m, and moved the newest state by 4 standard deviations. At 1e-9 rounding can outweigh it: an
 /// undetermined depth moved from 3 to 2.3 m in one build of two. At 1e-8 a landmark that is determined later moves the
 /// newest state by 0.05 standard deviations.
-inline constexpr double kRegularisingDamping = 3e-9;
+inline constexpr double kRegularisingDamping = 2e-9;
 
 /// Block Cholesky factorisation of the normal equations in time order. Stage k adds interval k (k−1 → k) and the priors
 /// on state k to the root, then eliminates the landmarks that are seen for the last time in k or before, then state
