@@ -125,7 +125,7 @@ TEST_CASE("With another label or protocol, runs are relabelled and scored again 
   CHECK(comparison.path("mine") == path);
   CHECK(read_file(path + "/timing.csv") == timing);
   CHECK(read_file(path + "/final.tum") == trajectory);
-  CHECK_THAT(read_file(path + "/log.txt"), ContainsSubstring("called short: mine"));
+  CHECK_THAT(read_file(path + "/log.txt"), ContainsSubstring("relabelled short: mine"));
   const Json manifest = parse_json(read_file(path + "/manifest.json"));
   CHECK(manifest.at("config_sha256") == sha256_file(path + "/config.json"));
   // The same as a fresh run of that config.

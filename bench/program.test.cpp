@@ -126,7 +126,7 @@ TEST_CASE("A run prints the table and the folder, and nothing with --quiet", "[s
   }
 }
 
-TEST_CASE("--watch prints the progress of a run on the standard error", "[slow]") {
+TEST_CASE("A watched run prints its progress on the standard error", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   const Outcome watched = testing::evbench(folder, "run c.json --watch");

@@ -78,7 +78,7 @@ TEST_CASE("Of a rebuilt plugin only the newest runs are used, with a remark, and
   const Outcome table = use("table . --metrics ate.trans_m.rmse");
   CHECK_THAT(table.out, ContainsSubstring("0.250") && !ContainsSubstring("0.500"));
   CHECK_THAT(table.err,
-             ContainsSubstring("remark: 2 older runs are left out") && ContainsSubstring("--all takes them"));
+             ContainsSubstring("remark: 2 older runs are left out") && ContainsSubstring("--all includes them"));
   CHECK_THAT(use("table . --metrics ate.trans_m.rmse --all").out,
              ContainsSubstring("0.500") && ContainsSubstring("old1"));
   CHECK(use("table . --over seed").exit_code == 0);

@@ -27,7 +27,7 @@ std::vector<TrackObservation> observations(const Options& options) {
 
 }  // namespace
 
-TEST_CASE("Observations that are said to be known less well are farther from where their points are") {
+TEST_CASE("Observations with a larger sigma have larger errors") {
   Options options;
   options.score_sigma = true;
   std::map<TrackId, Vector3> points;
@@ -53,7 +53,7 @@ TEST_CASE("Observations that are said to be known less well are farther from whe
   CHECK(median(vague) > 1.4 * median(sharp));
 }
 
-TEST_CASE("All observations are said to be known as well where scores are not asked") {
+TEST_CASE("All observations have the same sigma where scores are not used") {
   Options options;
   options.score_sigma = false;
   const auto all = observations(options);

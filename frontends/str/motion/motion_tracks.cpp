@@ -64,7 +64,7 @@ void MotionTracks::process(const Batch& batch) {
   }
 }
 
-/// The points go on to the end of a span of which the motion is known, and through those before of which it is not.
+/// Moves the points through the spans of unknown motion and then to the end of a span of known motion.
 void MotionTracks::move(const Motion& motion) {
   for (const Span& span : unknown_) {
     const double share = (span.middle() - last_->span.middle()) / (motion.span.middle() - last_->span.middle());
@@ -92,7 +92,7 @@ void MotionTracks::carry_on(const Motion& motion) {
   points_ = std::move(alive);
 }
 
-/// The motion has been unknown for too long.
+/// Ends all points: the motion has been unknown for too long.
 void MotionTracks::interrupt(double t) {
   interrupted_ += points_.empty() ? 0 : 1;
   for (const Point& point : points_) delayed_.end({point.id, t});
@@ -102,7 +102,7 @@ void MotionTracks::interrupt(double t) {
   complete_ = t;
 }
 
-/// New points at the places of a grid that none is near to.
+/// Adds points at the grid positions that no point is near to.
 void MotionTracks::replenish() {
   std::vector<Vector2> taken;
   for (const Point& point : points_) taken.push_back(camera_.project(point.ray));
