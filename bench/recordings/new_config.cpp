@@ -87,7 +87,7 @@ std::string text_of(const Lines& source, const std::string& recording, const std
       "  \"source\": {{\n{}\n  }},\n"
       "  // What tracks features in the events; evbench list names others.\n"
       "  \"frontend\": {{\"type\": \"haste\"}},\n"
-      "  // Compared on the same tracks.\n"
+      "  // The back-ends to compare; haste follows the feedback of each, on tracks of its own.\n"
       "  \"backends\": [{{\"type\": \"gp_map\"}}, {{\"type\": \"bundle_adjustment\"}}],\n"
       "  // {}\n"
       "  \"evaluation\": {{}}\n"

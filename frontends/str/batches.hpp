@@ -21,8 +21,8 @@ struct BatchOptions {
 };
 
 /// Divides events into batches. Each batch begins with the last slice of the previous one, so that tracks go on from
-/// there; a much shorter batch begins with the end of that slice. Each batch ends after the previous one. Batches follow
-/// one another in time, whether there are events or not.
+/// there; a much shorter batch begins with the end of that slice. Each batch ends after the previous one. Batches
+/// follow one another in time, whether there are events or not.
 class Batches {
  public:
   /// `from` [µs]: where the first one begins. `slice`: the share that two batches have in common.

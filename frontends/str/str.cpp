@@ -133,8 +133,8 @@ bool Str::go_on(Track& track, const Batch& batch, const Registration& registrati
   return true;
 }
 
-/// The track's position at the reference time, corrected by aligning its anchor with the last slice: a chain alone would
-/// accumulate the errors of its links. Where the anchor no longer fits, a new one is made of the aligned events.
+/// The track's position at the reference time, corrected by aligning its anchor with the last slice: a chain alone
+/// would accumulate the errors of its links. Where the anchor no longer fits, a new one is made of the aligned events.
 Eigen::Vector2f Str::anchored(Track& track, const Matrix3& A, const Eigen::Vector2f& place, double duration) {
   Aligner& aligner = registrar_.aligner();
   const double gate = options_.registration.alignment.last_gate;

@@ -21,8 +21,8 @@ struct DotOptions {
   void declare(OptionSet& set);
 };
 
-/// A round spot that is tracked by the events of its rim. Its centre comes from a circle through the newest events, each
-/// moved by the dot's velocity from its own time to the middle of their times, which is the time of the estimate.
+/// A round spot that is tracked by the events of its rim. Its centre comes from a circle through the newest events,
+/// each moved by the dot's velocity from its own time to the middle of their times, which is the time of the estimate.
 /// Velocity and radius are estimated as well.
 class Dot {
  public:

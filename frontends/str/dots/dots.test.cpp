@@ -103,7 +103,7 @@ TEST_CASE("The centres of identical dots are observed, and a dot that comes back
   CHECK(disc_of.size() < track_of.size() + track_of.size() / 5);  // few dots have a second track
 }
 
-TEST_CASE("By default a dot that comes back gets a new track, and a track that has ended is not observed any more", "[slow]") {
+TEST_CASE("By default a dot that comes back gets a new track, and an ended track is not observed any more", "[slow]") {
   const TrackBatch all = follow_dots(dots_scene()).all;
   std::map<TrackId, double> ended;
   for (const TrackEnd& end : all.ended) CHECK(ended.emplace(end.track, end.t).second);

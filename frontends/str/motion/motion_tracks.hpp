@@ -11,8 +11,8 @@
 
 namespace evbench::str {
 
-/// Registers batches of events to one motion of the whole image, and publishes it as tracks of virtual points: a grid of
-/// rays that each batch's motion carries on. So any back-end can use a registered motion through the interface for
+/// Registers batches of events to one motion of the whole image, and publishes it as tracks of virtual points: a grid
+/// of rays that each batch's motion carries on. So any back-end can use a registered motion through the interface for
 /// tracks. All observations at one time share one error, which their sigmas do not express.
 ///
 /// Each batch begins where the previous one ends. A batch without a single motion is divided into halves, repeatedly.

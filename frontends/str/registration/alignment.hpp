@@ -49,8 +49,8 @@ struct Alignment {
 /// Finds the motion that aligns two clouds of events, each event moved by its own time to the reference time. Trimmed
 /// iterative closest points (Chetverikov et al. 2005): the nearest target of each query, then least squares over the
 /// smallest distances, repeatedly. Matches have a robust weight (Cauchy). For line distances they also have a weight by
-/// the local shape of the targets, which lets an event slide along an edge. Where there are many queries, the iterations
-/// converge with `first_queries` of them first, and then take a step or two with all.
+/// the local shape of the targets, which lets an event slide along an edge. Where there are many queries, the
+/// iterations converge with `first_queries` of them first, and then take a step or two with all.
 ///
 /// Targets are searched in a grid that is built for a motion, and rebuilt when the motion has moved a target by more
 /// than `stale` since. Distances are always those under the current motion.

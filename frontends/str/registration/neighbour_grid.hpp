@@ -9,8 +9,8 @@
 
 namespace evbench::str {
 
-/// Points of two kinds (polarities) in cells, to find the nearest point of a kind and the local shape of the points. The
-/// cost of building and searching depends on the number of points, not on the area: empty cells are not touched.
+/// Points of two kinds (polarities) in cells, to find the nearest point of a kind and the local shape of the points.
+/// The cost of building and searching depends on the number of points, not on the area: empty cells are not touched.
 class NeighbourGrid {
  public:
   /// Takes points; those that are not finite are left out. `cell`: a cell's side, in the points' unit. The last

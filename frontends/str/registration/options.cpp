@@ -41,7 +41,7 @@ void RegistrationOptions::declare(OptionSet& set) {
          "where the start fails, the last part of the batch is tried, halved so many times, then parts that double in "
          "length")
       .range(0, 20);
-  set.add("trusted_motion", trusted_motion, "the motion of a part that moved by less than this does not start the next one [px, mean]")
+  set.add("trusted_motion", trusted_motion, "a part that moved by less than this starts no other [px, mean]")
       .range(0.0);
   set.group("alignment", alignment, "how two slices are aligned");
 }
