@@ -15,7 +15,7 @@ bool has_axis(const Method& method, const RunColumn& axis) {
   return std::ranges::any_of(method.runs, [&](std::size_t run) { return !axis.values[run].empty(); });
 }
 
-/// The only one of the methods that has the axis, or has it not.
+/// The only method with the axis, or the only one without it.
 const Method& only_method(const FigureRuns& all, const RunColumn& axis, bool with) {
   const Method* found = nullptr;
   for (const Method& method : all.methods) {

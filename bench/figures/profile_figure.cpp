@@ -12,10 +12,10 @@
 namespace evbench {
 namespace {
 
-/// costs[method][problem], of the data of which all methods have a run.
+/// costs[method][problem], for the data that all methods have a run on.
 std::vector<std::vector<double>> costs_by_problem(const FigureRuns& all, const Metric& metric) {
   const std::vector<std::size_t> data = number_data(all.runs);
-  std::map<std::size_t, std::map<std::size_t, double>> by_data;  // a cost a method
+  std::map<std::size_t, std::map<std::size_t, double>> by_data;  // one cost a method
   for (std::size_t m = 0; m < all.methods.size(); ++m) {
     for (const std::size_t run : all.methods[m].runs) {
       if (const std::optional<double> cost = all.runs[run].cost(metric)) by_data[data[run]][m] = *cost;

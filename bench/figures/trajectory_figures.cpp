@@ -14,7 +14,7 @@
 namespace evbench {
 namespace {
 
-/// Is a column the same for all runs of one sequence? Then it tells which one it is.
+/// Whether a column is the same for all runs of one sequence: it then identifies the sequence.
 bool tells_sequence(const RunColumn& column, const std::vector<std::string>& sequences) {
   std::map<std::string, std::string> values;
   for (std::size_t i = 0; i < sequences.size(); ++i) {
@@ -23,7 +23,7 @@ bool tells_sequence(const RunColumn& column, const std::vector<std::string>& seq
   return true;
 }
 
-/// "sequence fast, seed 1": what a run's sequence is called, by these columns. `sequences`: of all runs.
+/// The name of a run's sequence by these columns, such as "sequence fast, seed 1". `sequences`: of all runs.
 std::string name_of_sequence(const std::vector<RunColumn>& columns, const std::vector<std::string>& sequences,
                              std::size_t run) {
   std::string name;

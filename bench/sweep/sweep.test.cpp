@@ -81,7 +81,7 @@ TEST_CASE("The same config has the same key in a sweep as alone, and points of o
                     ContainsSubstring("evaluation.alignment=se3") && ContainsSubstring("differ in their protocol"));
 }
 
-TEST_CASE("A sweep that can't be is refused before anything is written, with place and nearest name", "[slow]") {
+TEST_CASE("An invalid sweep is refused before anything is written, with place and nearest name", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   const auto refused = [&](const std::string& sweep, const std::string& message) {
@@ -127,7 +127,7 @@ TEST_CASE("A sweep that can't be is refused before anything is written, with pla
   }
 }
 
-TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on request, and renaming runs nothing",
+TEST_CASE("A sweep does missing runs: those of a new value, damaged ones on request, and none for a new name",
           "[long]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
@@ -157,7 +157,7 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
   REQUIRE(testing::evbench(folder, "run c.json --quiet --out alone").exit_code == 0);
   for (const auto& [path, content] : results_of(folder.file("alone/tiny"))) CHECK(before.at(path) == content);
 
-  // Both see the same damage, and say so.
+  // Both report the same damage.
   REQUIRE(testing::shell(folder, "rm -r results/other; rm results/tiny/*/final.tum").exit_code == 0);
   const Outcome damaged = sweep("--vary seed=1..2");
   CHECK(damaged.exit_code == 3);
@@ -178,7 +178,7 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
   auto after = results_of(folder.file("results/tiny"));
   for (const auto& [path, content] : before) {
     INFO(path);
-    CHECK(after.at(path).size() == content.size());  // a log tells that a protocol or name was another one
+    CHECK(after.at(path).size() == content.size());  // the log notes a change of protocol or name
   }
 }
 
@@ -208,7 +208,7 @@ TEST_CASE("Two processes share a sweep, and lines of its manifest, done one by o
 }
 
 TEST_CASE(
-    "Tracks from events are made once for back-ends that share them, and change nothing, but not those with feedback",
+    "Tracks from events are made once for back-ends that share them, with the same results, but not with feedback",
     "[slow]") {
   const TemporaryFolder folder;
   Json config = tiny_config();
@@ -228,7 +228,7 @@ TEST_CASE(
   CHECK(difference(expected, shared) == "");
   CHECK(names_in(folder.file("shared/.tracks")).size() == 1);
 
-  // A damaged recording is not believed, and feedback makes tracks a back-end's own.
+  // A damaged recording is not used, and tracks with feedback are not shared.
   REQUIRE(testing::shell(folder, "rm -r shared/tiny; f=$(ls shared/.tracks/*/*); head -c 50000 $f > x; mv x $f")
               .exit_code == 0);
   testing::evbench(folder, "sweep c.json --quiet --out shared");
@@ -240,7 +240,7 @@ TEST_CASE(
   CHECK(names_in(folder.file("guided/.tracks")).empty());
 }
 
-TEST_CASE("Simulated events are made once for runs that share them, change nothing, and are gone at the end",
+TEST_CASE("Simulated events are made once for runs that share them, with the same results, and removed at the end",
           "[slow]") {
   const TemporaryFolder folder;
   Json config = tiny_config();
@@ -271,7 +271,7 @@ TEST_CASE("Simulated events are made once for runs that share them, change nothi
   testing::evbench(folder, sweep + "--out shared");
   is_expected("shared");
 
-  // Tasks share them as well: those that come later find what the first one has made.
+  // Tasks share them as well: later ones use those that the first one has made.
   REQUIRE(testing::evbench(folder, sweep + "--out tasks --executor none").exit_code == 0);
   const std::string task = "\"$evbench\" task tasks/tiny/manifest.jsonl ";
   testing::shell(folder, task + "1");
@@ -283,7 +283,7 @@ TEST_CASE("Simulated events are made once for runs that share them, change nothi
   testing::shell(folder, task + "4");
   is_expected("tasks");
 
-  // One that is damaged is not believed.
+  // A damaged one is not used.
   REQUIRE(testing::shell(folder, "mkdir -p bad/.events/" + runs[0].events + " && echo no > bad/.events/" +
                                      runs[0].events + "/events.evb")
               .exit_code == 0);
@@ -291,7 +291,7 @@ TEST_CASE("Simulated events are made once for runs that share them, change nothi
   is_expected("bad");
 }
 
-TEST_CASE("A job that has two labels in a sweep is run once, and stands in its table under both", "[slow]") {
+TEST_CASE("A job that has two labels in a sweep is run once, and is in its table under both", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   folder.write("s.json", R"({"config": "c.json", "axes": [{"name": "which", "overlays": {
@@ -304,7 +304,7 @@ TEST_CASE("A job that has two labels in a sweep is run once, and stands in its t
 TEST_CASE("The sweeps that come with evbench can be planned", "[slow]") {
   const TemporaryFolder folder;
   Json sweep = read_json(EVBENCH_SOURCE "/configs/sweeps/batching.json");
-  sweep.erase("plugins");  // built by whoever wants it
+  sweep.erase("plugins");  // built on request
   sweep["grids"][0]["axes"][0]["overlays"].erase("B-spline");
   sweep["config"] = EVBENCH_SOURCE "/configs/paper/table1_simulated.json";
   folder.write("batching.json", dump_json(sweep));
