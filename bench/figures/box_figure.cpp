@@ -40,7 +40,7 @@ Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options)
   }
   bool some_failed = false;
   std::vector<std::vector<double>> drawn;  // in each panel
-  std::vector<std::string> told;  // failures that the first panel of a row shows with its names
+  std::vector<std::string> told;           // failures that the first panel of a row shows with its names
   for (const Metric& metric : metrics) {
     const bool begins_row = figure.panels.size() % figure.columns == 0;
     if (begins_row) told.clear();

@@ -25,8 +25,8 @@ struct FigureRuns {
   /// has.
   std::vector<Metric> metrics(const FigureOptions& options) const;
 
-  /// A sentence that begins with `what`: the number of runs in each of these groups of run indices, and what the runs of
-  /// a group differ in. Empty for groups of one run each.
+  /// A sentence that begins with `what`: the number of runs in each of these groups of run indices, and what the runs
+  /// of a group differ in. Empty for groups of one run each.
   std::string pooled(const std::string& what, const std::vector<std::vector<std::size_t>>& groups) const;
 
   /// A sentence: the experiments, and what is drawn.

@@ -16,8 +16,8 @@ struct FigureOptions {
   std::string axis = "";                  ///< of sweeps: a name of run_columns(); empty: the one that has numbers alone
   std::string axis_label = "";            ///< what is written there; empty: the axis' name
   std::string across = "";                ///< of maps: the column that is the other axis
-  std::string base = "";  ///< of maps: the method to compare with; empty: the one without axis
-  bool causal = false;    ///< the scores of the causal trajectories, instead of the final ones
+  std::string base = "";                  ///< of maps: the method to compare with; empty: the one without axis
+  bool causal = false;                    ///< the scores of the causal trajectories, instead of the final ones
 };
 
 /// Scored trajectories of one sequence, from any source.
@@ -33,15 +33,15 @@ Figure error_figure(const ScoredTrajectories& scored);
 Figure position_figure(const ScoredTrajectories& scored);
 Figure trajectory_figure(const ScoredTrajectories& scored);
 
-// All throw InputError where there is nothing to draw, saying what was expected. Failed runs are shown: as a number above
-// a sweep's panel or behind a box's name, as a share that is not reached in a profile, in the caption elsewhere.
+// All throw InputError where there is nothing to draw, saying what was expected. Failed runs are shown: as a number
+// above a sweep's panel or behind a box's name, as a share that is not reached in a profile, in the caption elsewhere.
 
 /// Metrics against an axis: a curve for each method (eval/methods.hpp) through the medians of its other runs, a band
 /// between their quartiles. A method that does not have the axis is a level across.
 Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& options);
 
-/// A map of ratios against two axes of numbers: the median over the runs at a point of the metric of the method that has
-/// the axis, divided by the metric of the base on the same data.
+/// A map of ratios against two axes of numbers: the median over the runs at a point of the metric of the method that
+/// has the axis, divided by the metric of the base on the same data.
 Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options);
 
 /// A box for each method: quartiles, median, and each run.

@@ -1,8 +1,8 @@
 #include "bench/sweep/axis.hpp"
 
 #include "core/support/error.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using Catch::Matchers::ContainsSubstring;

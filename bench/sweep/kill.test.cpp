@@ -82,8 +82,7 @@ TEST_CASE("A sweep that is killed at any moment, or whose runs are, has the same
   CHECK(of_sweeps > 0);
 }
 
-TEST_CASE("A complete run is taken once its writer has ended, and no lock stays",
-          "[slow]") {
+TEST_CASE("A complete run is taken once its writer has ended, and no lock stays", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   REQUIRE(testing::evbench(folder, kKilledSweep + "out").exit_code == 0);

@@ -192,8 +192,8 @@ class Executor {
     std::ranges::stable_sort(waiting_, {}, place);
   }
 
-  /// Takes an existing result, if it may be taken. Not while a process writes to it, such as a killed sweep's run in its
-  /// last moment: that result is checked later.
+  /// Takes an existing result, if it may be taken. Not while a process writes to it, such as a killed sweep's run in
+  /// its last moment: that result is checked later.
   bool take_result(Job& job) {
     if (AtomicFolder::is_taken(folder_of(job))) return false;
     AtomicFolder::clear_leftovers(folder_of(job));

@@ -57,8 +57,8 @@ struct SweepProgress {
 /// "3 of 8 done, 1 failed, 2 running, about 5 min left".
 std::string describe(const SweepProgress& progress);
 
-/// Takes the runs that are complete below `out`, with the plan's names and scores, and returns the runs that are left to
-/// do, each job once. These include interrupted and damaged runs where `retry_failed` is set.
+/// Takes the runs that are complete below `out`, with the plan's names and scores, and returns the runs that are left
+/// to do, each job once. These include interrupted and damaged runs where `retry_failed` is set.
 std::vector<PlannedRun> runs_to_do(const std::vector<PlannedRun>& runs, const Plugins& plugins,
                                    const ExecutorOptions& options);
 
@@ -69,9 +69,9 @@ std::vector<PlannedRun> runs_to_do(const std::vector<PlannedRun>& runs, const Pl
 /// without a result. So any number of processes on machines that share the folder can do one sweep.
 ///
 /// The tracks of a front-end that begins with events and takes no feedback are made once for the runs that share them
-/// (PlannedRun::tracks), in a process of its own, and kept in `out`/.tracks/NAME. Results are the same byte by byte, and
-/// their times are the front-end's own. Simulated events that several runs need (PlannedRun::events) are likewise made
-/// once, in `out`/.events/NAME. They are removed when the last of these runs is done, by any process
+/// (PlannedRun::tracks), in a process of its own, and kept in `out`/.tracks/NAME. Results are the same byte by byte,
+/// and their times are the front-end's own. Simulated events that several runs need (PlannedRun::events) are likewise
+/// made once, in `out`/.events/NAME. They are removed when the last of these runs is done, by any process
 /// (PlannedRun::events_for). Runs of the same events follow one another, so that there are at most about as many
 /// recordings as processes.
 ///

@@ -100,8 +100,8 @@ class Planner {
     if (places_.insert(place).second) plan_.runs.push_back(std::move(run));  // grids may overlap
   }
 
-  /// A job with several places in the sweep has one run, which is in tables at each place, under its label there. It can
-  /// have only one protocol.
+  /// A job with several places in the sweep has one run, which is in tables at each place, under its label there. It
+  /// can have only one protocol.
   static void check_twin(const PlannedRun& a, const PlannedRun& b) {
     if (write_options(a.config.evaluation) == write_options(b.config.evaluation)) return;
     throw InputError(fmt::format(
@@ -114,9 +114,9 @@ class Planner {
     return fmt::format("{} {}", job.seed, dump_json(job.source.with_type()));
   }
 
-  /// Makes each source once, to learn the files that it reads. This is done in a separate process, so that a source that
-  /// crashes or hangs does not end the sweep without a message. If that happens, each source gets its own process, to
-  /// find which one it was.
+  /// Makes each source once, to learn the files that it reads. This is done in a separate process, so that a source
+  /// that crashes or hangs does not end the sweep without a message. If that happens, each source gets its own process,
+  /// to find which one it was.
   void look_at_sources() {
     std::map<std::string, const Job*> jobs;
     std::vector<const Job*> all;

@@ -48,8 +48,8 @@ struct SweepPlan {
 /// differ in protocol: it is one run.
 SweepPlan plan_sweep(const Sweep& sweep, const Plugins& plugins);
 
-/// Sets PlannedRun::tracks and PlannedRun::events of runs that need the same. `events_in_files`: whether the job's source
-/// reads its events from files.
+/// Sets PlannedRun::tracks and PlannedRun::events of runs that need the same. `events_in_files`: whether the job's
+/// source reads its events from files.
 void share_what_is_made_of_events(std::vector<PlannedRun>& runs, const Plugins& plugins,
                                   const std::function<bool(const Job&)>& events_in_files);
 

@@ -21,7 +21,7 @@ void stay_without_threads();
 struct Ending {
   std::size_t id = 0;            ///< that start() was given
   std::string report;            ///< return value of the work; empty: it did not finish
-  std::string reason;            ///< why it did not finish: "timeout after 60 s", "killed: 4.1 GiB", "killed by SIGSEGV"
+  std::string reason;            ///< why, then: "timeout after 60 s", "killed: 4.1 GiB", "killed by SIGSEGV"
   bool from_outside = false;     ///< it was killed, but not by this pool
   std::vector<std::string> log;  ///< last lines of its and its children's standard output and error
   double seconds = 0.0;          ///< duration

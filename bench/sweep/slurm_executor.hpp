@@ -10,7 +10,7 @@ namespace evbench {
 /// How a sweep is handed to Slurm.
 struct SlurmOptions {
   std::string partition;  ///< empty: the cluster's default
-  std::string time;       ///< of a task, in sbatch's format (minutes, hours:minutes:seconds); empty: from the runs' timeout
+  std::string time;       ///< of a task, in sbatch's format (minutes, hours:minutes:seconds); empty: from the timeout
   std::string setup;      ///< a line of shell before the program, or around it: {} is the command
   int width = 0;          ///< tasks at a time; 0: as many as the cluster allows
   bool wait = false;      ///< wait until the table is made

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "core/geometry/seen_point.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 #include "core/support/median.hpp"
 #include "frontends/haste/tracking/alignment.hpp"
-#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench::haste {
 namespace {

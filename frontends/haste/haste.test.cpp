@@ -5,8 +5,8 @@
 
 #include "core/support/error.hpp"
 #include "core/testing/catch2.hpp"
-#include "core/testing/event_scene.hpp"
 #include "core/testing/collect_tracks.hpp"
+#include "core/testing/event_scene.hpp"
 
 using namespace evbench;
 using namespace evbench::haste;

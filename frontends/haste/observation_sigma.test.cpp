@@ -3,8 +3,8 @@
 
 #include "core/support/median.hpp"
 #include "core/testing/catch2.hpp"
-#include "core/testing/event_scene.hpp"
 #include "core/testing/collect_tracks.hpp"
+#include "core/testing/event_scene.hpp"
 #include "frontends/haste/haste.hpp"
 
 using namespace evbench;

@@ -182,8 +182,7 @@ TEST_CASE("Trackers far from where landmarks are expected end, but not while a m
              Catch::Matchers::ContainsSubstring(" 0 far from where they were expected"));
 }
 
-TEST_CASE("Lost landmarks that are displaced together are re-associated, unless that is switched off",
-          "[slow]") {
+TEST_CASE("Lost landmarks that are displaced together are re-associated, unless that is switched off", "[slow]") {
   Landmarks landmarks = beginnings();
   for (auto& [id, position] : landmarks) {
     if (id % 2 != 0) position.x() += 0.1;  // 10 px; the others determine the camera's pose

@@ -166,9 +166,7 @@ TEST_CASE("Nothing is vetoed where that is switched off or the back-end has lost
   }
 }
 
-TEST_CASE(
-    "Few trackers that step to and fro under noise and fast motion are taken for erratic ones",
-    "[slow]") {
+TEST_CASE("Few trackers that step to and fro under noise and fast motion are taken for erratic ones", "[slow]") {
   constexpr double kNoise = 6e6;  // [events/s]
   const auto fast = [](double t) { return swing(6.0 * t); };
   EventScene source(fast, 0.6, EventScene::quadrangles(150, 1));

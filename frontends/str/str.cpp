@@ -180,7 +180,7 @@ void Str::observe_between(const Track& track, const Batch& batch, const Eigen::V
     if (event == last || event->t <= told || event->t >= until) continue;
     told = event->t;
     delayed_.add({track.id, seconds(told), pixel_of(moved(place, A, 1e-6 * static_cast<double>(told - reference))),
-               options_.sigma});
+                  options_.sigma});
   }
 }
 

@@ -5,8 +5,8 @@
 
 #include "core/geometry/so3.hpp"
 #include "core/testing/catch2.hpp"
-#include "core/testing/event_scene.hpp"
 #include "core/testing/collect_tracks.hpp"
+#include "core/testing/event_scene.hpp"
 #include "frontends/str/expected_motion.hpp"
 
 using namespace evbench;
@@ -144,8 +144,7 @@ TEST_CASE("Tracks of a stationary camera go on when it moves", "[slow]") {
             lives, [](const auto& life) { return life.second.first < 0.4 && life.second.second > 1.2; }) > 10);
 }
 
-TEST_CASE("Under fast motion that reverses, with few or many edges, tracks are right or there are none",
-          "[slow]") {
+TEST_CASE("Under fast motion that reverses, with few or many edges, tracks are right or there are none", "[slow]") {
   const auto motion = [](double t) {
     return SE3{so3::exp({0.0, 0.5 * std::sin(6.0 * t), 0.1 * std::sin(6.0 * t)}), Vector3::Zero()};
   };

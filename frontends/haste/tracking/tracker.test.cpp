@@ -132,8 +132,7 @@ TEST_CASE("An event 15 px away is out of range, one nearer is not") {
   CHECK(tracker.event_count() == 2);
 }
 
-TEST_CASE("At the image's border and beyond every variant equals the plain transcription and goes on",
-          "[slow]") {
+TEST_CASE("At the image's border and beyond every variant equals the plain transcription and goes on", "[slow]") {
   for (const Variant variant : kVariants) {
     EventPattern pattern = moving([](double t) { return PatternPose{{12 - 60 * t, 8 - 20 * t}, 0.0}; });
     compare(options_of(variant), {12, 8, 0}, pattern.events(0.25, 5));

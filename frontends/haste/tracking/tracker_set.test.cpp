@@ -60,8 +60,7 @@ class BruteForce {
 
 }  // namespace
 
-TEST_CASE(
-    "A set has each tracker's changes on all events, however events are divided, in one thread or in three") {
+TEST_CASE("A set has each tracker's changes on all events, however events are divided, in one thread or in three") {
   const tbb::global_control four(tbb::global_control::max_allowed_parallelism, 4);
   for (const double speed : {50.0, 2000.0}) {
     for (const auto& [cut, threads] : {std::pair(1UL, 1), {777UL, 1}, {777UL, 3}, {100'000UL, 1}, {100'000UL, 3}}) {

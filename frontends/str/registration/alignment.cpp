@@ -1,9 +1,9 @@
 #include "frontends/str/registration/alignment.hpp"
 
-#include "core/geometry/solve_symmetric.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench::str {
 

@@ -29,17 +29,15 @@ void RegistrationOptions::declare(OptionSet& set) {
           "how the image moves: as the camera rotates; image translation; and rotation about the axis and zoom; any "
           "homography");
   set.add("slice", slice, "the first and the last part of a batch that are aligned, as a share of it").range(0.01, 0.5);
-  set.add("queries", queries, "events of the first slice that are matched with the last one, at most; 0: all")
-      .range(0);
+  set.add("queries", queries, "events of the first slice that are matched with the last one, at most; 0: all").range(0);
   set.add("least_events", least_events, "with fewer events in a slice no motion is estimated").range(10);
   set.add("least_fit", least_fit,
           "how well the slices must match for a motion to be accepted: mean weight of the queries, 0 for those without "
           "a match, from 0 for chance to 1")
       .range(0.0, 1.0);
-  set.add(
-         "halvings", halvings,
-         "where the start fails, the last part of the batch is tried, halved so many times, then parts that double in "
-         "length")
+  set.add("halvings", halvings,
+          "where the start fails, the last part of the batch is tried, halved so many times, then parts that double in "
+          "length")
       .range(0, 20);
   set.add("trusted_motion", trusted_motion, "a part that moved by less than this starts no other [px, mean]")
       .range(0.0);
