@@ -80,7 +80,7 @@ class Surveyor : public BackEnd {
     if (!batch.observations.empty()) {
       newest_ = batch.observations.back().t;
       poses_.push_back({newest_, to_own_ * truth(newest_)});
-      context_.publish({poses_.back(), {}, velocity()});
+      context_.publish({poses_.back(), {}, body_velocity()});
     }
     using Support = TrackingMonitor::Support;
     const bool sees = batch.until - newest_ < 0.05;
@@ -112,7 +112,7 @@ class Surveyor : public BackEnd {
   }
 
  private:
-  Vector6 velocity() const { return (Vector6() << 0, 0, 0, 0.1 * to_own_.scale, 0, 0).finished(); }
+  Vector6 body_velocity() const { return (Vector6() << 0, 0, 0, 0.1 * to_own_.scale, 0, 0).finished(); }
 
   BackEndContext context_;
   TrackingMonitor monitor_;
