@@ -14,8 +14,8 @@ using namespace evbench;
 using namespace evbench::testing;
 using Catch::Matchers::ContainsSubstring;
 
-// Each kind of bad input once through the program: exit code 2, a sentence with the place on stderr, and nothing left
-// under a final name. The readers' own tests go through the kinds one by one.
+// Passes each kind of bad input once to the program: exit code 2, a message with the place on stderr, and no file left
+// under a final name. The readers' own tests cover the kinds in detail.
 
 namespace {
 
@@ -30,7 +30,7 @@ void check_refused(const TemporaryFolder& folder, const std::string& arguments, 
   CHECK(outcome.out.empty());
 }
 
-/// A recording with one file replaced.
+/// Writes a recording with one file replaced.
 void check_file_refused(const std::string& name, const std::string& content, const std::string& message) {
   const TemporaryFolder folder;
   write_recording(folder);
@@ -65,7 +65,7 @@ TEST_CASE("A file that is empty, truncated or damaged ends the program with the 
   check_file_refused("calib.txt", "200 200 120\n", "calib.txt:1: has 3 columns; expected 9");
 }
 
-TEST_CASE("A gzip file that ends too early is told as truncated", "[slow]") {
+TEST_CASE("A gzip file that ends too early is reported as truncated", "[slow]") {
   const TemporaryFolder folder;
   write_recording(folder);
   const std::string text = read_file(folder.file("tracks.txt"));
@@ -101,7 +101,7 @@ TEST_CASE("Tracks that are unsorted, repeated, of one observation or outside the
                               ContainsSubstring("1 observations outside 0 to 1 s (left out)"));
 }
 
-TEST_CASE("Observations outside the ground truth's time are refused when none is inside", "[slow]") {
+TEST_CASE("Observations that all lie outside the ground truth's time are an error", "[slow]") {
   check_file_refused("tracks.txt", "1 50 5 5\n1 51 5 5\n", "tracks.txt: no observation is left between 0 and 1 s");
   const TemporaryFolder folder;
   write_recording(folder);
@@ -117,8 +117,8 @@ TEST_CASE("An unknown key or plugin and a value out of range end the program wit
           "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
-  check_refused(folder, "run c.json --set backend.frame_duratoin=1",
-                "c.json: backend: unknown key \"frame_duratoin\"; did you mean \"frame_duration\"?");
+  check_refused(folder, "run c.json --set backend.batch_duratoin=1",
+                "c.json: backend: unknown key \"batch_duratoin\"; did you mean \"batch_duration\"?");
   check_refused(folder, "run c.json --set backend.type=gp_mop", "did you mean \"gp_map\"?");
   check_refused(folder, "run c.json --set source.duration=0", "c.json: source.duration: 0 is out of range");
   check_refused(folder, "run c.json --set source.duration=long", "expected number, found \"long\"");
@@ -127,7 +127,7 @@ TEST_CASE("An unknown key or plugin and a value out of range end the program wit
   CHECK(names_in(folder.path()) == std::set<std::string>{"c.json"});
 }
 
-TEST_CASE("A front-end that does not suit the source is refused with its place") {
+TEST_CASE("A front-end that does not suit the source is an error with its place") {
   const TemporaryFolder folder;
   write_recording(folder);
   check_refused(folder, "run recording.json --set 'frontend={\"type\": \"oracle\"}'",
@@ -155,11 +155,11 @@ TEST_CASE("A full disk is an error wherever the program writes", "[slow]") {
   }
 }
 
-TEST_CASE("A file that can't be written whole leaves the one before as it was", "[slow]") {
+TEST_CASE("A file that can't be written whole leaves the old one unchanged", "[slow]") {
   const TemporaryFolder folder;
   write_recording(folder);
   folder.write("scores.json", "before");
-  // A limit on the size of files stands for a disk that is full.
+  // A limit on the size of files has the same effect as a full disk.
   const Outcome outcome = testing::shell(
       folder,
       "trap '' XFSZ; ulimit -f 1; \"$evbench\" eval groundtruth.txt groundtruth.txt --json scores.json --force");
@@ -171,7 +171,7 @@ TEST_CASE("A file that can't be written whole leaves the one before as it was", 
              ContainsSubstring("no/x.json: can't be written: No such file") && !ContainsSubstring(".part"));
 }
 
-TEST_CASE("A run that can't be written whole leaves the run before as it was", "[slow]") {
+TEST_CASE("A run that can't be written whole leaves the old run unchanged", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
@@ -184,7 +184,7 @@ TEST_CASE("A run that can't be written whole leaves the run before as it was", "
   CHECK(runs_of(folder.file("results/short")).size() == 1);
 }
 
-TEST_CASE("A run on a disk that is full leaves nothing there", "[slow]") {
+TEST_CASE("A run on a full disk leaves no files", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   std::filesystem::create_directory(folder.file("small"));

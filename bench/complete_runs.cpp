@@ -12,13 +12,13 @@
 #include "eval/json_file.hpp"
 #include "eval/score_run.hpp"
 
-// Runs that lie there already: found, copied, renamed, scored again.
+// Existing runs: finding, copying, relabelling, scoring again.
 
 namespace evbench {
 namespace fs = std::filesystem;
 namespace {
 
-/// A file's content; nothing when it can't be read.
+/// A file's content; none if it can't be read.
 std::optional<std::string> content_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return std::nullopt;
@@ -40,15 +40,15 @@ Json parse(const std::string& path) {
   return json;
 }
 
-/// What is wrong with a run's files, as far as can be seen without reading the estimate; empty where nothing is. Runs
-/// of older versions have no list of their sizes.
+/// The damage of a run's files that is visible without reading the estimate; empty if there is none. Runs of older
+/// versions have no list of sizes.
 std::string damage_of(const std::string& folder, const std::string& key) {
   std::error_code error;
   if (!key.ends_with("-" + digits_of_key(content_of(folder + "/job.json").value_or("")))) {
-    return fmt::format("{}/job.json: is not that of the job; expected what {} stands for", folder, key);
+    return fmt::format("{}/job.json: belongs to another job; expected that of {}", folder, key);
   }
   for (const char* name :
-       {"config.json", "manifest.json", "final.tum", "online.tum", "told.txt", "map.ply", "log.txt"}) {
+       {"config.json", "manifest.json", "final.tum", "causal.tum", "causal_poses.txt", "map.ply", "log.txt"}) {
     if (!fs::is_regular_file(folder + "/" + name, error)) return fmt::format("{}/{}: is missing", folder, name);
   }
   try {
@@ -66,7 +66,7 @@ std::string damage_of(const std::string& folder, const std::string& key) {
   return "";
 }
 
-/// Writes the run in `from` to `to` with this config and record (but for its scores), scored by `options`.
+/// Writes the run in `from` to `to` with this config and record, scored again by `options`.
 RunRecord rewrite(const std::string& from, const std::string& to, const Json& config, RunRecord record,
                   const ScoreOptions& options, const std::string& log) {
   Json manifest = parse(from + "/manifest.json");
@@ -132,7 +132,7 @@ RunRecord adopt_run(const std::string& from, const std::string& to, const RunCon
   if (same_place && content_of(from + "/config.json") == json_file_text(resolved)) return record;
   std::string log;
   if (record.experiment != config.experiment || record.label != config.label) {
-    log = fmt::format("not run again, but called {}: {}\n", config.experiment, config.label);
+    log = fmt::format("not run again, but relabelled {}: {}\n", config.experiment, config.label);
   }
   record.experiment = config.experiment;
   record.label = config.label;
@@ -155,7 +155,7 @@ void require_scores(const std::string& folder, const ScoreOptions& options) {
   score_run(folder, options, record);
   const bool lost = !before.final_scores.is_null() && record.final_scores.is_null();
   if (!lost || record.final_unscored == kNoGroundTruth) return;
-  throw InputError(fmt::format("{}: has scores, of which this protocol leaves none: {}; nothing was changed", folder,
+  throw InputError(fmt::format("{}: has scores, but would have none by this protocol: {}; nothing was changed", folder,
                                record.final_unscored));
 }
 

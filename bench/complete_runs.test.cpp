@@ -17,7 +17,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-/// A folder with the config c.json of the short comparison, and what became of running it.
+/// A folder with the config c.json of the short comparison, and its runs.
 struct Comparison {
   TemporaryFolder folder;
   Json config = short_comparison();
@@ -46,7 +46,7 @@ struct Comparison {
   }
 };
 
-/// Throws when it is given its first observations.
+/// Throws at its first observations.
 class Breaking : public BackEnd {
  public:
   void advance(const TrackBatch& batch) override {
@@ -59,7 +59,7 @@ class Breaking : public BackEnd {
   std::vector<Landmark> map() const override { return {}; }
 };
 
-/// The built-in plugins and one that breaks off as long as `breaks` says so, and is bundle adjustment afterwards.
+/// The built-in plugins and one that throws as long as `breaks` is set, and is bundle adjustment afterwards.
 Plugins plugins_with_breaking(const bool& breaks) {
   Plugins plugins = registered_plugins();
   Registry<BackEnd>::Entry entry = plugins.of<BackEnd>().find("bundle_adjustment", "test");
@@ -82,8 +82,7 @@ int run_here(Plugins& plugins, const std::string& arguments) {
 
 }  // namespace
 
-TEST_CASE("Runs that are complete are not done again, unless that is asked for, and stand in the table all the same",
-          "[slow]") {
+TEST_CASE("Complete runs are not repeated except by --force, and are in the table all the same", "[slow]") {
   const Comparison comparison;
   const Outcome first = comparison.run("");
   REQUIRE(first.exit_code == 0);
@@ -100,19 +99,19 @@ TEST_CASE("Runs that are complete are not done again, unless that is asked for, 
   CHECK(comparison.sums() != before);  // measured times
 }
 
-TEST_CASE("A back-end that is added to a comparison is the only one that is run", "[slow]") {
+TEST_CASE("Only the back-end that is added to a comparison is run", "[slow]") {
   Comparison comparison;
   REQUIRE(comparison.run("--quiet").exit_code == 0);
   const std::string timing = comparison.content("asynchronous", "timing.csv");
   comparison.config["backends"].push_back(
-      {{"type", "bundle_adjustment"}, {"frame_duration", 0.1}, {"label", "100 ms"}});
+      {{"type", "bundle_adjustment"}, {"batch_duration", 0.1}, {"label", "100 ms"}});
   comparison.write();
   const Outcome more = comparison.run("");
   CHECK_THAT(more.out, ContainsSubstring("complete already: 2 of 3") && ContainsSubstring("100 ms"));
   CHECK(comparison.content("asynchronous", "timing.csv") == timing);
 }
 
-TEST_CASE("Another label or protocol is a matter of names and scores: nothing is run", "[slow]") {
+TEST_CASE("With another label or protocol, runs are relabelled and scored again without running", "[slow]") {
   Comparison comparison;
   REQUIRE(comparison.run("--quiet").exit_code == 0);
   const std::string path = comparison.path("asynchronous");
@@ -126,10 +125,10 @@ TEST_CASE("Another label or protocol is a matter of names and scores: nothing is
   CHECK(comparison.path("mine") == path);
   CHECK(read_file(path + "/timing.csv") == timing);
   CHECK(read_file(path + "/final.tum") == trajectory);
-  CHECK_THAT(read_file(path + "/log.txt"), ContainsSubstring("called short: mine"));
+  CHECK_THAT(read_file(path + "/log.txt"), ContainsSubstring("relabelled short: mine"));
   const Json manifest = parse_json(read_file(path + "/manifest.json"));
   CHECK(manifest.at("config_sha256") == sha256_file(path + "/config.json"));
-  // As if it had been run that way at once.
+  // The same as a fresh run of that config.
   REQUIRE(comparison.run("--force --quiet").exit_code == 0);
   const Json fresh = comparison.metrics("mine");
   REQUIRE(comparison.run("--quiet --set evaluation.alignment=sim3").exit_code == 0);
@@ -137,7 +136,7 @@ TEST_CASE("Another label or protocol is a matter of names and scores: nothing is
   CHECK(dump_json(comparison.metrics("mine")) == dump_json(fresh));
 }
 
-TEST_CASE("Tables have the rows in the order of the config that was run last, whatever was run before", "[slow]") {
+TEST_CASE("The rows of a table are in the order of the config that was run last", "[slow]") {
   Comparison comparison;
   const auto rows = [&] {
     std::vector<std::string> labels;
@@ -160,19 +159,19 @@ TEST_CASE("Tables have the rows in the order of the config that was run last, wh
   CHECK(rows().back() == "asynchronous");
 }
 
-TEST_CASE("Runs of several options and seeds are told apart in their table", "[slow]") {
+TEST_CASE("Runs of several options and seeds are distinguished in their table", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   for (const std::string duration : {"0.1", "0.05"}) {
     for (const std::string seed : {"2", "1"}) {
       REQUIRE(testing::evbench(folder,
-                               "run c.json --quiet --set seed=" + seed + " --set backend.frame_duration=" + duration)
+                               "run c.json --quiet --set seed=" + seed + " --set backend.batch_duration=" + duration)
                   .exit_code == 0);
     }
   }
   const std::string text = testing::evbench(folder, "table results").out;
   CHECK_THAT(text.substr(0, text.find('\n')),
-             ContainsSubstring("backend.frame_duration  seed") && !ContainsSubstring("key"));
+             ContainsSubstring("backend.batch_duration  seed") && !ContainsSubstring("key"));
   const Outcome csv = testing::evbench(folder, "table results --format csv --metrics scale");
   std::vector<std::string> rows;
   std::istringstream lines(csv.out);
@@ -196,7 +195,7 @@ TEST_CASE("A job that is complete in another experiment below the same folder is
   CHECK(comparison.content("asynchronous", "metrics.json") == before);
 }
 
-TEST_CASE("A run whose folder is damaged or of other data is done again", "[long]") {
+TEST_CASE("A run whose folder is damaged or of other data is repeated", "[long]") {
   const Comparison comparison;
   REQUIRE(comparison.run("--quiet").exit_code == 0);
   const std::string path = comparison.path("asynchronous");
@@ -208,14 +207,14 @@ TEST_CASE("A run whose folder is damaged or of other data is done again", "[long
   }
 }
 
-TEST_CASE("The problem that is asked for afterwards is written, by running again", "[slow]") {
+TEST_CASE("A run is repeated if its problem is requested afterwards", "[slow]") {
   const Comparison comparison;
   REQUIRE(comparison.run("--quiet").exit_code == 0);
   REQUIRE(comparison.run("--quiet --problem").exit_code == 0);
   CHECK(std::filesystem::exists(comparison.path("asynchronous") + "/problem.txt"));
 }
 
-TEST_CASE("Two back-ends that are the same job are refused with both labels, before anything is run") {
+TEST_CASE("Two back-ends with the same job are an error with both labels, before anything is run") {
   Comparison comparison;
   comparison.config["backends"].push_back({{"type", "gp_map"}, {"label", "the same again"}});
   comparison.write();
@@ -226,7 +225,7 @@ TEST_CASE("Two back-ends that are the same job are refused with both labels, bef
   CHECK(names_in(comparison.folder.path()) == std::set<std::string>{"c.json"});
 }
 
-TEST_CASE("A back-end that throws makes its run failed with the reason, the others go on, and it is tried again",
+TEST_CASE("A back-end that throws makes its run failed with the reason, the others are run, and it is repeated",
           "[slow]") {
   const TemporaryFolder folder;
   Json config = short_comparison();
@@ -267,11 +266,11 @@ TEST_CASE("Ctrl-C leaves nothing of a run that is not complete", "[long]") {
   CHECK(names_in(folder.path()) == std::set<std::string>{"c.json"});
 }
 
-TEST_CASE("A run that is ended leaves what is complete, prints its table, and goes on from there", "[slow]") {
+TEST_CASE("An ended run keeps complete runs, prints their table, and continues from there", "[slow]") {
   const TemporaryFolder folder;
   Json config = short_comparison();
   config["source"]["duration"] = 60;
-  config["backends"][0] = {{"type", "bundle_adjustment"}, {"label", "quick"}, {"frame_duration", 0.4}};
+  config["backends"][0] = {{"type", "bundle_adjustment"}, {"label", "quick"}, {"batch_duration", 0.4}};
   config["backends"][1] = {{"type", "gp_map"}, {"label", "slow"}, {"placement", {{"rule", "rate"}, {"rate", 400}}}};
   folder.write("c.json", dump_json(config));
   const Outcome outcome = testing::shell(folder, R"(

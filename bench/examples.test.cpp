@@ -13,7 +13,7 @@ using namespace evbench::testing;
 
 namespace {
 
-/// Configs of examples: those of built-in plugins alone, and those that need a program beside them.
+/// Configs of examples: those with built-in plugins only, and those that need another program.
 std::vector<std::string> example_configs() {
   std::vector<std::string> paths;
   const std::filesystem::path configs = EVBENCH_CONFIGS;
@@ -38,7 +38,7 @@ std::set<std::string> built_in() {
 
 }  // namespace
 
-TEST_CASE("Each built-in front-end and back-end is in an example, and each pair of them that makes sense") {
+TEST_CASE("Each built-in front-end and back-end, and each sensible pair of them, is in an example") {
   std::set<std::string> frontends, backends;
   std::set<std::pair<std::string, std::string>> pairs;
   for (const std::string& path : example_configs()) {
@@ -59,20 +59,19 @@ TEST_CASE("Each built-in front-end and back-end is in an example, and each pair 
     CHECK(pairs.contains({frontend, "gp_map"}));
     CHECK(pairs.contains({frontend, "bundle_adjustment"}));
   }
-  // Of a camera that only turns there is no map to be made.
+  // Pure rotation gives no map.
   for (const char* frontend : {"haste", "str_motion", "oracle"}) {
     CAPTURE(frontend);
     CHECK(pairs.contains({frontend, "rotation_averaging"}));
   }
 }
 
-TEST_CASE("Examples that need no data of one's own are fine as they are, and one runs with tracks from its file",
-          "[slow]") {
+TEST_CASE("Examples without external data pass --check, and the one with tracks from a file runs", "[slow]") {
   const TemporaryFolder folder;
   int without_data = 0;
   for (const std::string& path : example_configs()) {
     const std::string text = read_file(path);
-    // What needs Python is run elsewhere (process_examples.test.cpp).
+    // process_examples.test.cpp runs those that need Python.
     if (text.find("${EVBENCH_DATA}") != std::string::npos || text.find("\"process\"") != std::string::npos) continue;
     ++without_data;
     const Outcome checked = testing::evbench(folder, "run --check '" + path + "'");

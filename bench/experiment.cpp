@@ -18,6 +18,7 @@
 #include "core/support/interruption.hpp"
 #include "core/support/json.hpp"
 #include "core/support/json_reason.hpp"
+#include "eval/old_names.hpp"
 
 namespace evbench {
 namespace {
@@ -36,23 +37,23 @@ struct ExperimentOptions {
 
   void declare(OptionSet& set) {
     set.add("name", name, "name of the experiment: its folder below --out; by default the config's file name");
-    set.add("description", description, "what it is for");
-    set.add("seed", seed, "seed of everything that is drawn").range(0);
+    set.add("description", description, "purpose of the experiment");
+    set.add("seed", seed, "seed of all random numbers").range(0);
     set.add("trajectory_rate", trajectory_rate,
             "rate at which final trajectories are sampled for scoring and writing [Hz]; 0: the back-end's own poses")
         .range(0.0, 1e5);
-    set.add("plugins", plugins, "libraries that plugins come from: a list of paths");
+    set.add("plugins", plugins, "libraries with plugins: a list of paths");
     set.add("source", source, "the sequence: {\"type\": NAME, options}; see evbench list").required();
-    set.add("frontend", frontend, "what makes the tracks: {\"type\": NAME, options}").required();
+    set.add("frontend", frontend, "the front-end: {\"type\": NAME, options}").required();
     set.add("backend", backend, "one run: {\"type\": NAME, \"label\": TEXT, options}");
     set.add("backends", backends, "a comparison on identical observations: a list of back-ends");
-    set.group("pipeline", pipeline, "how front-end and back-end work together");
-    set.group("evaluation", evaluation, "how trajectories are scored");
-    set.add("$schema", schema, "where an editor finds this file's JSON Schema (evbench describe config --schema)");
+    set.group("pipeline", pipeline, "how front-end and back-end are coupled");
+    set.group("evaluation", evaluation, "evaluation protocol: how trajectories are scored");
+    set.add("$schema", schema, "path of the JSON Schema for editors (evbench describe config --schema)");
   }
 };
 
-/// What a schema says of the key `part` of `value`; nullptr: nothing.
+/// The schema of the key `part` of `value`; null if there is none.
 const Json* schema_below(const Json* schema, const Json& value, const std::string& part) {
   if (schema == nullptr) return nullptr;
   if (const auto choices = schema->find("anyOf"); choices != schema->end() && value.contains("type")) {  // a plugin
@@ -67,8 +68,7 @@ const Json* schema_below(const Json* schema, const Json& value, const std::strin
   return properties != schema->end() && properties->contains(part) ? &properties->at(part) : nullptr;
 }
 
-/// Does KEY=VALUE. The schema tells what is text, whatever it looks like, and a list's default, of which a position may
-/// be set.
+/// Applies KEY=VALUE. The schema determines which values are text, and the default of a list of which one item is set.
 void set_value(Json& config, const std::string& assignment, const Json& of_config,
                const std::string& origin = "--set") {
   const std::size_t equals = assignment.find('=');
@@ -95,8 +95,7 @@ void set_value(Json& config, const std::string& assignment, const Json& of_confi
     } else if (target->is_object() || target->is_null()) {
       target = &(*target)[part];
     } else {
-      throw InputError(
-          fmt::format("{} {}: what stands before \"{}\" is a value, not an object", origin, assignment, part));
+      throw InputError(fmt::format("{} {}: the key before \"{}\" is a value, not an object", origin, assignment, part));
     }
   }
   const std::string text = assignment.substr(equals + 1);
@@ -105,8 +104,8 @@ void set_value(Json& config, const std::string& assignment, const Json& of_confi
   *target = is_text || value.is_discarded() ? Json(text) : value;
 }
 
-/// Is the error of what an override gave: its place or one below, the list that it is in, or a key that nobody knows
-/// there?
+/// Whether an error is caused by an override: it names its place or one below, the list around it, or an unknown key
+/// there.
 bool is_about(const std::string& error, const std::string& path, const std::string& assignment) {
   const std::string key = assignment.substr(0, assignment.find('='));
   const std::size_t dot = key.rfind('.');
@@ -121,7 +120,7 @@ bool is_about(const std::string& error, const std::string& path, const std::stri
          error.starts_with(fmt::format("{}: unknown key \"{}\"", path, key.substr(0, key.find('.'))));
 }
 
-/// Calls `read`; an error in a value that an override gave says so.
+/// Calls `read`. An error caused by an override names it.
 template <class Read>
 auto naming_overrides(const std::string& path, const std::vector<std::string>& overrides, const Read& read,
                       const std::string& origin = "--set") {
@@ -141,17 +140,18 @@ auto naming_overrides(const std::string& path, const std::vector<std::string>& o
 Json parse_config(const std::string& path, const std::vector<std::string>& overrides, const Json& schema) {
   Json json = read_json(path);
   for (const std::string& assignment : overrides) set_value(json, assignment, schema);
+  rename_old_keys(json);
   return json;
 }
 
-/// What relative paths in a config refer to: its folder; of one from a pipe the working folder.
+/// The base of relative paths in a config: its folder; for one from a pipe the working folder.
 std::string folder_of(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return std::filesystem::current_path().string();
   return std::filesystem::absolute(path).parent_path().string();
 }
 
-/// The key "plugins", relative paths taken from the config's folder.
+/// The key "plugins", with relative paths resolved from the config's folder.
 std::vector<std::string> plugin_paths(const Json& list, const std::string& path) {
   const auto is_path = [](const Json& item) { return item.is_string() && !item.get<std::string>().empty(); };
   if (!list.is_array() || !std::ranges::all_of(list, is_path)) {
@@ -162,7 +162,7 @@ std::vector<std::string> plugin_paths(const Json& list, const std::string& path)
   return paths;
 }
 
-/// Takes "type" out of a plugin's object and checks the rest with the plugin's own options.
+/// Reads "type" from a plugin's object and checks the rest as the plugin's options.
 template <class Interface>
 PluginConfig plugin(Json json, const std::string& place, const std::string& folder, const Plugins& plugins) {
   if (!json.is_object() || !json.contains("type") || !json["type"].is_string()) {
@@ -177,20 +177,19 @@ PluginConfig plugin(Json json, const std::string& place, const std::string& fold
   return result;
 }
 
-/// The libraries that a job's plugins come from, however they were loaded: a run's config names them.
+/// The libraries of a job's plugins, however they were loaded. They are written to the run's config.
 std::vector<std::string> libraries_of(const Job& job, const Plugins& plugins) {
   return {plugins.of<Source>().find(job.source.type, job.source.place).origin,
           plugins.of<FrontEnd>().find(job.frontend.type, job.frontend.place).origin,
           plugins.of<BackEnd>().find(job.backend.type, job.backend.place).origin};
 }
 
-/// The back-ends with their labels taken out.
+/// The back-ends by label.
 std::vector<std::pair<std::string, PluginConfig>> backends(const ExperimentOptions& options, const std::string& path,
                                                            const Plugins& plugins) {
   if (options.backend.is_null() == options.backends.is_null()) {
     throw InputError(fmt::format(
-        "{}: {}; expected either \"backend\" (one run) or \"backends\" (a comparison), of which \"backends.0\" is the "
-        "first",
+        "{}: {}; expected either \"backend\" (one run) or \"backends\" (a comparison; \"backends.0\" is its first one)",
         path, options.backend.is_null() ? "there is no back-end" : "there are \"backend\" and \"backends\""));
   }
   const bool single = !options.backend.is_null();
@@ -230,7 +229,7 @@ void check_name(const std::string& name, const std::string& path) {
   }
 }
 
-/// Of a config that is parsed.
+/// Reads a parsed config.
 Experiment read_config(const Json& json, const std::string& path, const Plugins& plugins) {
   const auto options = read_options<ExperimentOptions>(json, path);
   Experiment experiment;
@@ -267,10 +266,10 @@ Experiment read_config(const Json& json, const std::string& path, const Plugins&
   return experiment;
 }
 
-/// A file or folder that is read as events, and not as JSON.
+/// Whether a file or folder is a recording of events, not JSON.
 bool is_recording(const std::string& path) {
   std::error_code none;
-  const bool is_file = std::filesystem::is_regular_file(path, none);  // what a pipe gives can be read once
+  const bool is_file = std::filesystem::is_regular_file(path, none);  // a pipe can be read only once
   if (!is_file && !std::filesystem::is_directory(path, none)) return false;
   const int first = is_file ? (std::ifstream(path) >> std::ws).peek() : 0;
   if (first == '{' || first == '/') return false;  // an object, or a comment before it
@@ -312,7 +311,7 @@ Json read_json(const std::string& path) {
   if (!file) throw InputError(fmt::format("{}: can't be read; expected a JSON config", path));
   std::ostringstream text;
   text << file.rdbuf();
-  std::vector<std::set<std::string>> keys;  // of the objects that are open: of two with one key the first would be lost
+  std::vector<std::set<std::string>> keys;  // of the open objects: of two equal keys the parser would drop the first
   const auto take = [&](int, Json::parse_event_t event, const Json& parsed) {
     if (event == Json::parse_event_t::object_start) keys.emplace_back();
     if (event == Json::parse_event_t::object_end) keys.pop_back();
@@ -336,8 +335,11 @@ ConfigFile::ConfigFile(std::string path, Json config, const Plugins& plugins)
 Experiment ConfigFile::experiment(const std::vector<std::string>& overrides, const std::string& origin) const {
   Json config = config_;
   for (const std::string& assignment : overrides) set_value(config, assignment, schema_, origin);
-  return naming_overrides(
+  std::vector<std::string> remarks = rename_old_keys(config);
+  Experiment experiment = naming_overrides(
       path_, overrides, [&] { return read_config(config, path_, plugins_); }, origin);
+  experiment.remarks = std::move(remarks);
+  return experiment;
 }
 
 Experiment read_experiment(const std::string& path, const std::vector<std::string>& overrides, const Plugins& plugins) {
@@ -345,7 +347,7 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
 }
 
 std::vector<std::string> read_plugin_paths(const std::string& path, const std::vector<std::string>& overrides) {
-  const Json json = parse_config(path, overrides, Json());  // no plugin is known yet
+  const Json json = parse_config(path, overrides, Json());  // plugins are not loaded yet
   if (!json.is_object() || !json.contains("plugins")) return {};
   std::vector<std::string> paths = plugin_paths(json["plugins"], path);
   for (std::string& library : paths) library = resolve_path(library, folder_of(path));
@@ -356,7 +358,7 @@ std::vector<std::string> unknown_plugins(const std::string& path, const std::vec
                                          const Plugins& plugins) {
   const Json json = parse_config(path, overrides, Json());
   std::vector<std::string> unknown;
-  const auto look = [&]<class Interface>(const Registry<Interface>& registry, const Json& part) {
+  const auto check_part = [&]<class Interface>(const Registry<Interface>& registry, const Json& part) {
     const Json type = part.is_object() ? part.value("type", Json()) : Json();
     const std::string name = type.is_string() ? type.get<std::string>() : "";
     if (!name.empty() && !registry.entries().contains(name)) {
@@ -364,10 +366,10 @@ std::vector<std::string> unknown_plugins(const std::string& path, const std::vec
     }
   };
   const auto part = [&](const char* key) { return json.is_object() ? json.value(key, Json()) : Json(); };
-  look(plugins.of<Source>(), part("source"));
-  look(plugins.of<FrontEnd>(), part("frontend"));
-  look(plugins.of<BackEnd>(), part("backend"));
-  for (const Json& backend : part("backends")) look(plugins.of<BackEnd>(), backend);
+  check_part(plugins.of<Source>(), part("source"));
+  check_part(plugins.of<FrontEnd>(), part("frontend"));
+  check_part(plugins.of<BackEnd>(), part("backend"));
+  for (const Json& backend : part("backends")) check_part(plugins.of<BackEnd>(), backend);
   return unknown;
 }
 
@@ -386,7 +388,7 @@ ScoreOptions read_evaluation(const std::string& path, const Json& otherwise, con
   for (const std::string& assignment : overrides) {
     if (!assignment.starts_with("evaluation.") && !assignment.starts_with("evaluation=")) {
       throw InputError(
-          fmt::format("--set {}: expected evaluation.KEY=VALUE: scoring again changes nothing else", assignment));
+          fmt::format("--set {}: expected evaluation.KEY=VALUE: scoring again uses only the protocol", assignment));
     }
     set_value(json, assignment, schema);
   }

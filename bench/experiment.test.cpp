@@ -6,8 +6,8 @@
 #include "bench/testing/keys.hpp"
 #include "bench/testing/program.hpp"
 #include "core/support/error.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -39,7 +39,7 @@ TEST_CASE("A config holds one run or a comparison whose runs share source, front
   CHECK(key_of(two.runs[0]) != key_of(two.runs[1]));
 }
 
-TEST_CASE("An experiment without a name is called as its file") {
+TEST_CASE("An experiment without a name has that of its file") {
   Json config = short_config();
   config.erase("name");
   CHECK(read(config).name == "c");
@@ -53,7 +53,7 @@ TEST_CASE("A run's key depends on what determines the result and not on how it i
   same["source"]["duration"] = 3.0;
   CHECK(key_of(read(same).runs[0]) == key);
   for (const char* other : {"seed=2", "trajectory_rate=50", "pipeline.interval=0.02", "source.duration=2.5",
-                            "backend.frame_duration=0.07"}) {
+                            "backend.batch_duration=0.07"}) {
     INFO(other);
     CHECK(key_of(read(short_config(), {other}).runs[0]) != key);
   }
@@ -88,16 +88,16 @@ TEST_CASE("Relative paths are taken from the config's folder, variables stay for
 
 TEST_CASE("Overrides reach values, list items and whole objects") {
   const Experiment experiment =
-      read(short_comparison(), {"seed=7", "backends.1.frame_duration=0.2", "backends.1.label=200 ms",
+      read(short_comparison(), {"seed=7", "backends.1.batch_duration=0.2", "backends.1.label=200 ms",
                                 "evaluation.time_range=[0, 1]", "source.motion={\"kind\": \"robot_arm\"}"});
   CHECK(experiment.runs[0].job.seed == 7);
   CHECK(experiment.runs[1].label == "200 ms");
-  CHECK(experiment.runs[1].job.backend.options["frame_duration"] == 0.2);
+  CHECK(experiment.runs[1].job.backend.options["batch_duration"] == 0.2);
   CHECK(experiment.runs[0].evaluation.time_range == std::vector<double>{0.0, 1.0});
   CHECK(experiment.runs[0].job.source.options["motion"]["kind"] == "robot_arm");
 }
 
-TEST_CASE("An override that can't be meant is refused") {
+TEST_CASE("An invalid override is an error") {
   CHECK_THROWS_WITH(read(short_config(), {"seed"}), ContainsSubstring("--set seed: expected KEY=VALUE"));
   CHECK_THROWS_WITH(read(short_config(), {"=3"}), ContainsSubstring("expected KEY=VALUE"));
   CHECK_THROWS_WITH(read(short_comparison(), {"backends.2.label=x"}),
@@ -143,7 +143,7 @@ TEST_CASE("A config may name its schema") {
   CHECK_FALSE(read(config).runs[0].resolved().contains("$schema"));
 }
 
-TEST_CASE("A config that is not as expected is refused with the place and the nearest name") {
+TEST_CASE("An invalid config is an error with the place and the nearest name") {
   CHECK_THROWS_WITH(read_experiment("/no/such.json", {}, known_plugins()),
                     ContainsSubstring("/no/such.json: no such file"));
   CHECK_THROWS_WITH(read_experiment("/", {}, known_plugins()),
@@ -183,7 +183,7 @@ TEST_CASE("A config that is not as expected is refused with the place and the ne
                     ContainsSubstring("has 256 characters; expected at most 255, as it names a folder"));
 }
 
-TEST_CASE("The libraries that a config names are taken from its folder, and are part of the config that a run writes") {
+TEST_CASE("Paths of libraries in a config are resolved from its folder, and are written to the run's config") {
   const TemporaryFolder folder;
   Json config = short_config();
   config["plugins"] = {"lib/libmine.so", "/opt/libother.so"};
@@ -197,7 +197,7 @@ TEST_CASE("The libraries that a config names are taken from its folder, and are 
   CHECK_THROWS_WITH(read_plugin_paths(path, {"plugins.0=3"}), ContainsSubstring("expected a list of paths"));
 }
 
-TEST_CASE("A library that the command line named is named in the config that a run writes") {
+TEST_CASE("A library of the command line is written to the run's config") {
   Plugins plugins = registered_plugins();
   Registry<BackEnd>::Entry entry = plugins.of<BackEnd>().find("gp_map", "test");
   entry.origin = "/opt/libmine.so";
@@ -209,7 +209,7 @@ TEST_CASE("A library that the command line named is named in the config that a r
   }
 }
 
-TEST_CASE("Runs of a comparison that would write to the same folder are refused") {
+TEST_CASE("Runs of a comparison that would write to the same folder are an error") {
   CHECK_THROWS_WITH(read(short_comparison(), {"backends.1.label=asynchronous"}),
                     ContainsSubstring("two back-ends are labelled \"asynchronous\""));
   Json config = short_comparison();

@@ -6,7 +6,7 @@ using namespace evbench;
 using namespace evbench::testing;
 using Catch::Matchers::ContainsSubstring;
 
-// What a config of a stranger may make the program run: commands of the plugins "process", libraries of the key
+// Code that a config from others may make the program run: commands of the plugins "process", libraries in the key
 // "plugins". A command that was started leaves a file.
 
 namespace {
@@ -26,7 +26,7 @@ Json config_with_library() {
 
 }  // namespace
 
-TEST_CASE("Looking at a config starts no command that it names", "[slow]") {
+TEST_CASE("Checking a config starts no command that it names", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(config_with_command()));
   const auto fine = [&](const std::string& command) {
@@ -45,7 +45,7 @@ TEST_CASE("Looking at a config starts no command that it names", "[slow]") {
   CHECK(testing::evbench(folder, "run c.json --check --set backend.command=[]").exit_code == 2);
 }
 
-TEST_CASE("run and sweep tell which commands they run, and refuse them where that is asked for", "[slow]") {
+TEST_CASE("run and sweep print the commands that they start, and refuse them with --no-external", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(config_with_command()));
   const std::string runs = GENERATE("run c.json", "sweep c.json -j 1");
@@ -62,10 +62,9 @@ TEST_CASE("run and sweep tell which commands they run, and refuse them where tha
   CHECK(names_in(folder.path()).contains("started"));
 }
 
-TEST_CASE("A library that only a config names is loaded by nothing that looks, and what is not checked is told",
-          "[slow]") {
+TEST_CASE("Commands that only check a config do not load its libraries, and list what is not checked", "[slow]") {
   const TemporaryFolder folder;
-  folder.write("a.so", "no library");  // whoever loads it says so
+  folder.write("a.so", "no library");  // loading it would be an error
   folder.write("c.json", dump_json(config_with_library()));
   const Outcome check = testing::evbench(folder, "run c.json --check");
   CHECK(check.exit_code == 0);

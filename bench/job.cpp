@@ -16,9 +16,8 @@ namespace evbench {
 namespace fs = std::filesystem;
 namespace {
 
-/// Raised when the pipeline itself comes to give other results for the same job (which exchanges there are, when
-/// feedback is handed over, how a run starts anew, how trajectories are sampled, what is written of them): older runs
-/// are then done again.
+/// Incremented when the pipeline itself gives other results for the same job (exchanges, delivery of feedback,
+/// re-initialisation, sampling and writing of trajectories). Older runs are then not reused.
 constexpr int kPipelineVersion = 4;
 
 std::string digest_of_folder(const std::string& path) {
@@ -26,7 +25,7 @@ std::string digest_of_folder(const std::string& path) {
   for (const auto& entry : fs::recursive_directory_iterator(path)) {
     if (entry.is_regular_file()) files.push_back(entry.path().string());
   }
-  std::ranges::sort(files);  // a folder has no order of its own
+  std::ranges::sort(files);  // the order of a folder's entries is undefined
   std::string list;
   for (const std::string& file : files) {
     list += fmt::format("{}  {}\n", sha256_file(file), fs::path(file).lexically_relative(path).generic_string());
@@ -34,7 +33,7 @@ std::string digest_of_folder(const std::string& path) {
   return sha256(list);
 }
 
-/// What a source reads: events only where the front-end does.
+/// The files that a source reads in this job: events only if the front-end reads them.
 std::vector<std::string> source_files(const Job& job, const SourceFiles& source, const Plugins& plugins) {
   std::vector<std::string> files = source.files;
   if (plugins.of<FrontEnd>().find(job.frontend.type, job.frontend.place + ".type").reads_events) {
@@ -43,13 +42,13 @@ std::vector<std::string> source_files(const Job& job, const SourceFiles& source,
   return files;
 }
 
-/// Gathers the parts of an identity, and the files on the way.
+/// Collects the parts of an identity, and the files that are read.
 class Identifier {
  public:
   Identifier(const Job& job, const Plugins& plugins, Digests& digests)
       : job_(job), plugins_(plugins), digests_(digests) {}
 
-  /// `files`: that the plugin reads.
+  /// `files`: those that the plugin reads.
   template <class Interface>
   Json part(const PluginConfig& config, const std::vector<std::string>& files) {
     const auto& entry = plugins_.of<Interface>().find(config.type, config.place + ".type");
@@ -60,7 +59,7 @@ class Identifier {
     return part;
   }
 
-  /// The files that a plugin's options name.
+  /// The files in a plugin's options.
   template <class Interface>
   std::vector<std::string> named_files(const PluginConfig& config) const {
     const auto& entry = plugins_.of<Interface>().find(config.type, config.place + ".type");

@@ -9,21 +9,21 @@
 
 #include "bench/pipeline/options.hpp"
 #include "core/plugin/options.hpp"
-#include "core/support/json.hpp"
 #include "core/plugin/registry.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 
-/// A plugin as a config names it: {"type": NAME, options...}.
+/// A plugin in a config: {"type": NAME, options...}.
 struct PluginConfig {
   std::string type;
   Json options = Json::object();  ///< complete, checked
-  std::string place;              ///< where it stands, for messages
+  std::string place;              ///< place in the config, for messages
 
   Json with_type() const;  ///< {"type": NAME, options...}
 };
 
-/// What a run computes, as its config says it: one back-end on one front-end's tracks of one source.
+/// The computation of a run: one back-end on one front-end's tracks of one source.
 struct Job {
   PluginConfig source, frontend, backend;
   std::uint64_t seed = 1;
@@ -32,42 +32,41 @@ struct Job {
   std::string folder;  ///< of the config: relative paths refer to it
 };
 
-/// SHA-256 of files, each read once. For as long as they do not change: of one call of the program.
+/// SHA-256 of files, each read only once. Files must not change during its lifetime, one call of the program.
 class Digests {
  public:
-  /// Of a file's bytes; of a folder: of the names and digests of all files in and below it. Throws InputError when
-  /// there is no such file or it can't be read.
+  /// The digest of a file's bytes; of a folder: of the names and digests of all files in and below it. Throws
+  /// InputError if there is no such file or it can't be read.
   const std::string& of(const std::string& path);
 
  private:
   std::map<std::string, std::string> known_;
 };
 
-/// All that determines a job's trajectory. Not part of it: name, label, how it is scored, and where files lie.
+/// All that determines a job's trajectory. Name, label, evaluation protocol and paths of files are not part of it.
 struct JobIdentity {
-  /// JSON: version of the pipeline, seed, rate, pipeline options, and of source, front-end and back-end the type, the
-  /// version that it registered with, the options without paths, the SHA-256 of every file that it reads, in order,
-  /// and, for plugins from outside, of their library. What is written as job.json: `sha256sum job.json` begins with the
-  /// key's digits.
+  /// The content of job.json: version of the pipeline, seed, rate, pipeline options, and of source, front-end and
+  /// back-end the type, registered version, options without paths, the SHA-256 of every file that it reads, in order,
+  /// and for plugins from outside that of their library. `sha256sum job.json` begins with the key's digits.
   std::string text;
   /// The name of the run's folder: the back-end's type and the first ten digits of the text's SHA-256.
   std::string key;
-  std::vector<std::pair<std::string, std::string>> files;  ///< path and SHA-256 of what is read, each once
+  std::vector<std::pair<std::string, std::string>> files;  ///< path and SHA-256 of the files read, each once
 };
 
 /// The digits of a key: the first ten of the SHA-256 of the job's text.
 std::string digits_of_key(const std::string& text);
 
-/// What a source reads.
+/// The files that a source reads.
 struct SourceFiles {
   SourceFiles() = default;
-  SourceFiles(const Source& source)  // NOLINT(google-explicit-constructor): a source stands for its files
+  SourceFiles(const Source& source)  // NOLINT(google-explicit-constructor): convenient for callers with a source
       : files(source.files()), events(source.event_files()) {}
 
   std::vector<std::string> files, events;  ///< as Source::files() and event_files()
 };
 
-/// Throws InputError for a file that is missing. `source` is the job's.
+/// Computes the identity of a job. `source` is the job's. Throws InputError for a missing file.
 JobIdentity identify(const Job& job, const SourceFiles& source, const Plugins& plugins, Digests& digests);
 
 /// Makes the source of a job; the jobs of an experiment share it.

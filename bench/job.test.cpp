@@ -7,8 +7,8 @@
 #include "bench/testing/program.hpp"
 #include "core/io/sha256.hpp"
 #include "core/support/error.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::testing;
@@ -39,7 +39,7 @@ TEST_CASE("A job's key is the beginning of the digest of its identity, which has
              !ContainsSubstring(folder.path()) && !ContainsSubstring("tracks.txt") && !ContainsSubstring("label"));
 }
 
-TEST_CASE("Data that move keep their job's key, and data that change under their path do not") {
+TEST_CASE("Moved data keep their job's key, and changed data at the same path do not") {
   const TemporaryFolder here, there;
   for (const TemporaryFolder* folder : {&here, &there}) write_recording(*folder);
   const auto key = [](const TemporaryFolder& folder) { return key_of(read_first(folder.file("recording.json"))); };
@@ -57,7 +57,7 @@ TEST_CASE("Data that move keep their job's key, and data that change under their
   }
 }
 
-TEST_CASE("A file that a plugin needs and that is missing is named before anything is run") {
+TEST_CASE("A missing file of a plugin is an error with its name before anything is run") {
   const TemporaryFolder folder;
   write_recording(folder);
   const RunConfig run = read_first(folder.file("recording.json"), {"frontend.tracks=no.txt"});

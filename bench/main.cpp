@@ -21,8 +21,8 @@
 
 namespace {
 
-/// Each of the messages begins with the command.
-int tell(const std::string& command, const std::string& message, int exit_code) {
+/// Prints an error message, which begins with the command. Returns the exit code.
+int report(const std::string& command, const std::string& message, int exit_code) {
   fmt::print(stderr, "{}: {}\n", command, message);
   return exit_code;
 }
@@ -34,7 +34,7 @@ int refuse(const CLI::App& app, const CLI::ParseError& error, int argc, char** a
   }
   const evbench::NamedCommand command = evbench::reached_command(app);
   const std::string text = evbench::explain(app, error, {argv + 1, argv + argc});
-  return tell(command.words, fmt::format("{}\n{}", text, evbench::usage_of(command)), evbench::kExitBadInput);
+  return report(command.words, fmt::format("{}\n{}", text, evbench::usage_of(command)), evbench::kExitBadInput);
 }
 
 int run_program(int argc, char** argv) {
@@ -43,7 +43,7 @@ int run_program(int argc, char** argv) {
   app.set_version_flag("--version", evbench::version_text());
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "Print this help and that of every command");
-  app.fallthrough();  // so that --plugin may stand after a command, too
+  app.fallthrough();  // --plugin may also come after a command
   evbench::Plugins plugins;
   evbench::add_registered_plugins(plugins, evbench::kBuiltIn);
   std::vector<std::string> libraries;
@@ -63,7 +63,7 @@ int run_program(int argc, char** argv) {
   int exit_code = evbench::kExitDone;
   evbench::add_commands(app, plugins, exit_code);
   const auto fail = [&](const std::string& message, int code) {
-    return tell(evbench::reached_command(app).words, message, code);
+    return report(evbench::reached_command(app).words, message, code);
   };
   try {
     app.parse(argc, argv);
@@ -83,7 +83,7 @@ int run_program(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail("the memory is not enough", evbench::kExitNotWritten);
   } catch (const std::exception& error) {
-    if (std::ferror(stdout) != 0) return evbench::kExitNotWritten;  // is told at the end
+    if (std::ferror(stdout) != 0) return evbench::kExitNotWritten;  // main() reports it
     return fail(error.what(), evbench::kExitBadInput);
   }
   return exit_code;
@@ -95,6 +95,6 @@ int main(int argc, char** argv) {
   const int exit_code = run_program(argc, argv);
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return exit_code;
-  fmt::print(stderr, "evbench: what was to be printed can't be written to the standard output (disk full?)\n");
+  fmt::print(stderr, "evbench: the output can't be written to the standard output (disk full?)\n");
   return exit_code == evbench::kExitDone ? evbench::kExitNotWritten : exit_code;
 }

@@ -17,7 +17,7 @@ namespace evbench {
 
 namespace {
 
-/// What is wrong with a library is told with the place that names it.
+/// Calls `use`. Errors about a library begin with the place that names it.
 void at_place(const std::string& place, const std::function<void()>& use) {
   try {
     use();

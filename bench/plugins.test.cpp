@@ -8,10 +8,9 @@ using namespace evbench;
 using namespace evbench::testing;
 using Catch::Matchers::ContainsSubstring;
 
-// Libraries that are plugins: core/plugin/library.test.cpp, and the test of the installation, check_install.cmake.
+// core/plugin/library.test.cpp and check_install.cmake test the loading of plugin libraries.
 
-TEST_CASE("Libraries are named by --plugin before or after a command, a variable, or a config, messages say by which",
-          "[slow]") {
+TEST_CASE("Libraries are named by --plugin, an environment variable or a config, and messages say by which", "[slow]") {
   const TemporaryFolder folder;
   folder.write("a.so", "no library");
   Json config = short_config();
@@ -33,7 +32,7 @@ TEST_CASE("Libraries are named by --plugin before or after a command, a variable
   CHECK_THAT(shell(folder, "\"$evbench\" list --plugin").err, ContainsSubstring("--plugin"));
 }
 
-TEST_CASE("Plugins are checked in words, a line a check", "[slow]") {
+TEST_CASE("check-plugin prints a line for each check", "[slow]") {
   const TemporaryFolder folder;
   const Outcome outcome = testing::evbench(folder, "check-plugin oracle --kind frontend");
   CHECK(outcome.exit_code == 0);
@@ -45,12 +44,12 @@ TEST_CASE("Plugins are checked in words, a line a check", "[slow]") {
 TEST_CASE("A plugin that fails a check ends check-plugin with exit code 3 and says why", "[slow]") {
   const TemporaryFolder folder;
   const Outcome outcome =
-      testing::evbench(folder, "check-plugin bundle_adjustment --options '{\"frame_duration\": 3}'");
+      testing::evbench(folder, "check-plugin bundle_adjustment --options '{\"batch_duration\": 3}'");
   CHECK(outcome.exit_code == 3);
   CHECK_THAT(outcome.out, ContainsSubstring("  FAILS follows a good sequence in time order and shows a map: "));
 }
 
-TEST_CASE("A plugin that can't be checked is refused with a sentence", "[slow]") {
+TEST_CASE("A plugin that can't be checked is an error with a message", "[slow]") {
   const TemporaryFolder folder;
   const auto refused = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = testing::evbench(folder, "check-plugin " + arguments);

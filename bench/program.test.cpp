@@ -73,7 +73,7 @@ TEST_CASE("All plugins are listed, and each is described for people and as a JSO
   CHECK(parse_json(testing::evbench(folder, "describe config --schema").out).contains("$schema"));
 }
 
-TEST_CASE("A command line that is not understood ends with exit code 2 and says what is wrong", "[slow]") {
+TEST_CASE("An invalid command line ends with exit code 2 and a message", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   const auto refused = [&](const std::string& arguments, const std::string& message) {
@@ -108,17 +108,17 @@ TEST_CASE("A command line that is not understood ends with exit code 2 and says 
   refused("run c.json --set seed=1 source.duration=2", "source.duration=2");
 }
 
-TEST_CASE("Nothing is printed by --quiet, the table and the folder without", "[slow]") {
+TEST_CASE("A run prints the table and the folder, and nothing with --quiet", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   const Outcome quiet = testing::evbench(folder, "run c.json --quiet");
   CHECK(quiet.out.empty());
   CHECK(quiet.err.empty());
-  const Outcome told = testing::evbench(folder, "run c.json");
-  CHECK(told.err.empty());  // progress is for terminals
-  CHECK_THAT(told.out, ContainsSubstring("ATE [m]") && ContainsSubstring("written: results/short"));
+  const Outcome usual = testing::evbench(folder, "run c.json");
+  CHECK_THAT(usual.err, !ContainsSubstring("evbench"));  // only progress, a line every 10 s on a slow machine
+  CHECK_THAT(usual.out, ContainsSubstring("ATE [m]") && ContainsSubstring("written: results/short"));
   const std::string text = testing::evbench(folder, "table results").out;
-  CHECK_THAT(told.out, ContainsSubstring(text));
+  CHECK_THAT(usual.out, ContainsSubstring(text));
   for (const char* format : {"markdown", "csv", "latex"}) {
     const Outcome table = testing::evbench(folder, std::string("table results --format ") + format);
     CHECK(table.exit_code == 0);
@@ -126,7 +126,7 @@ TEST_CASE("Nothing is printed by --quiet, the table and the folder without", "[s
   }
 }
 
-TEST_CASE("A run that is watched says how far it is, where its errors go", "[slow]") {
+TEST_CASE("A watched run prints its progress on the standard error", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   const Outcome watched = testing::evbench(folder, "run c.json --watch");
@@ -137,13 +137,13 @@ TEST_CASE("A run that is watched says how far it is, where its errors go", "[slo
   CHECK_THAT(watched.out, ContainsSubstring("written: results/short") && !ContainsSubstring("delay "));
 }
 
-TEST_CASE("Runs of a config that are done at a time are those that are done in turn", "[slow]") {
+TEST_CASE("Runs done in parallel are the same as those done in turn", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_comparison()));
   REQUIRE(testing::evbench(folder, "run c.json --quiet --problem --tracks --out one").exit_code == 0);
   const Outcome several = testing::evbench(folder, "run c.json --problem --tracks --out two -j 2");
   CHECK(several.exit_code == 0);
-  CHECK(several.err.empty());
+  CHECK_THAT(several.err, !ContainsSubstring("evbench"));  // only progress, as above
   CHECK(several.out.find("asynchronous") < several.out.find("frames of 50 ms"));
   CHECK_THAT(several.out, ContainsSubstring("ATE [m]") && ContainsSubstring("written: two/short"));
   REQUIRE(names_in(folder.file("one/short")) == names_in(folder.file("two/short")));
@@ -151,7 +151,8 @@ TEST_CASE("Runs of a config that are done at a time are those that are done in t
     INFO(key);
     const std::string one = folder.file("one/short/" + key), two = folder.file("two/short/" + key);
     CHECK(names_in(one) == names_in(two));
-    for (const char* file : {"/final.tum", "/online.tum", "/told.txt", "/map.ply", "/tracks.txt", "/job.json"}) {
+    for (const char* file :
+         {"/final.tum", "/causal.tum", "/causal_poses.txt", "/map.ply", "/tracks.txt", "/job.json"}) {
       CHECK(read_file(one + file) == read_file(two + file));
     }
   }
@@ -161,7 +162,7 @@ TEST_CASE("Runs of a config that are done at a time are those that are done in t
   CHECK(read_file(*runs_of(folder.file("two/short")).begin() + "/timing.csv") != before);
 }
 
-TEST_CASE("What a run's front-end told is told again by the front-end recorded", "[slow]") {
+TEST_CASE("The front-end recorded replays the tracks of a run", "[slow]") {
   const TemporaryFolder folder;
   Json config = short_config();
   config["source"]["tracks"]["dropout_rate"] = 2;
@@ -176,7 +177,7 @@ TEST_CASE("What a run's front-end told is told again by the front-end recorded",
   const std::string tracks = read_file(run("first") + "/tracks.txt");
   const std::string id = tracks.substr(0, tracks.find(' ')),
                     begin = tracks.substr(id.size() + 1, tracks.find(' ', id.size() + 1) - id.size() - 1);
-  const std::string early = id + " " + begin + "1\n";  // goes on later
+  const std::string early = id + " " + begin + "1\n";  // continues later
   folder.write("ends.txt", early + read_file(run("first") + "/track_ends.txt"));
   folder.write("again.json", dump_json(config));
   REQUIRE(testing::evbench(folder, "run again.json --tracks --quiet --out second").exit_code == 0);
@@ -184,13 +185,13 @@ TEST_CASE("What a run's front-end told is told again by the front-end recorded",
   CHECK(read_file(run("second") + "/track_ends.txt") == read_file(folder.file("ends.txt")));
 }
 
-TEST_CASE("An override is one value, so that the config may stand behind it") {
+TEST_CASE("An override takes one value, so that the config may follow it") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));
   CHECK(testing::evbench(folder, "run --check --set seed=2 c.json").exit_code == 0);
 }
 
-TEST_CASE("Checking a config finds what would fail at once", "[slow]") {
+TEST_CASE("Checking a config finds errors that would end a run at once", "[slow]") {
   const TemporaryFolder folder;
   write_recording(folder);
   CHECK(testing::evbench(folder, "run --check recording.json").exit_code == 0);
@@ -218,7 +219,8 @@ TEST_CASE("Checking a config finds events that share no time with the ground tru
   const TemporaryFolder folder;
   write_recording(folder);
   folder.write("events.txt", "1400000000.1 5 7 1\n1400000000.2 6 8 0\n");
-  const std::string events = R"( --set 'frontend={"type": "haste"}')", check = "\"$evbench\" run --check recording.json";
+  const std::string events = R"( --set 'frontend={"type": "haste"}')",
+                    check = "\"$evbench\" run --check recording.json";
   const Outcome apart = testing::shell(folder, check + events);
   CHECK(apart.exit_code == 2);
   CHECK_THAT(apart.err, ContainsSubstring("frontend: the recording has no events from") &&
@@ -228,7 +230,7 @@ TEST_CASE("Checking a config finds events that share no time with the ground tru
   CHECK(testing::shell(folder, check + events).exit_code == 0);
 }
 
-TEST_CASE("A folder for temporary files that is missing is named", "[slow]") {
+TEST_CASE("A missing folder for temporary files is an error with its name", "[slow]") {
   const TemporaryFolder folder;
   folder.write("events.txt", "0.1 5 7 1\n0.2 6 8 0\n");
   const Outcome outcome = testing::shell(folder, "TMPDIR=no/folder \"$evbench\" render events.txt out.mp4");
@@ -245,7 +247,7 @@ TEST_CASE("Checking a config runs and writes nothing") {
   CHECK(names_in(folder.path()) == std::set<std::string>{"c.json"});
 }
 
-TEST_CASE("A run that is interrupted leaves no half of it, and says what is complete with its table", "[slow]") {
+TEST_CASE("An interrupted run leaves no partial files, and prints the table of complete runs", "[slow]") {
   const TemporaryFolder folder;
   Json config = short_config();
   config.erase("backend");
@@ -258,13 +260,13 @@ TEST_CASE("A run that is interrupted leaves no half of it, and says what is comp
     sleep 0.5; kill -TERM $pid; kill -TERM $pid; wait $pid)");
   CHECK(outcome.exit_code == 143);
   CHECK(outcome.err ==
-        "evbench run: c.json: interrupted; 1 of 2 runs are complete, the same command goes on from there\n");
+        "evbench run: c.json: interrupted; 1 of 2 runs are complete, the same command continues from there\n");
   CHECK_THAT(outcome.out, ContainsSubstring("frames") && ContainsSubstring("ATE [m]") &&
                               ContainsSubstring("written: results/short"));
   CHECK(runs_of(folder.file("results/short")).size() == 1);
 }
 
-TEST_CASE("No command replaces what it reads, or writes two outputs to one file, forced or not", "[slow]") {
+TEST_CASE("No command replaces its input, or writes two outputs to one file, even by --force", "[slow]") {
   const TemporaryFolder folder;
   write_recording(folder);
   folder.write("c.json", dump_json(short_config()));
@@ -279,14 +281,14 @@ TEST_CASE("No command replaces what it reads, or writes two outputs to one file,
     INFO(command);
     const Outcome outcome = testing::evbench(folder, std::string(command) + " --force");
     CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, ContainsSubstring("is what is read; expected another name"));
+    CHECK_THAT(outcome.err, ContainsSubstring("is also an input; expected another name"));
   }
   for (const char* const command : {"export c.json --groundtruth same.txt --tracks ./same.txt",
                                     "eval groundtruth.txt groundtruth.txt --errors same.txt --json same.txt"}) {
     INFO(command);
     const Outcome outcome = testing::evbench(folder, std::string(command) + " --force");
     CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, ContainsSubstring("same.txt: is to be written twice"));
+    CHECK_THAT(outcome.err, ContainsSubstring("same.txt: is given as two outputs"));
   }
   CHECK(testing::shell(folder, "sha256sum * run/* 2> /dev/null").out == before);
 }
@@ -299,7 +301,7 @@ TEST_CASE("A config may come from a pipe, with paths relative to the working fol
   CHECK(outcome.exit_code == 0);
 }
 
-TEST_CASE("Runs that can't be read are told behind the table of the others", "[slow]") {
+TEST_CASE("Runs that can't be read are reported after the table of the others", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_comparison()));
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);

@@ -55,7 +55,7 @@ std::optional<double> number_of(const RunRecord* run, const std::string& metric)
   return run != nullptr && run->competes() ? RunNumbers(*run, false).at(metric) : std::nullopt;
 }
 
-/// Does what the paper says of a ratio, that it is below or above 1, hold here?
+/// "yes" if the ratio is on the same side of 1 as the paper's.
 std::string holds(const std::optional<double>& here, double paper, bool csv) {
   if (!here) return csv ? "" : "-";
   return (*here < 1.0) == (paper < 1.0) ? "yes" : "no";
@@ -106,14 +106,15 @@ std::string published_table(const Published& published, std::span<const RunRecor
   table.experiments = {"Here and in the paper"};
   table.notes.push_back(fmt::format("Paper: {}.", published.paper));
   table.notes.emplace_back(
-      "Where a row is of one back-end over another, its numbers are the ratio of their errors, here and in the paper: "
-      "metres of another recording, at another scale, can't be compared. A claim holds where both ratios are on the "
-      "same side of 1.");
-  std::vector<std::string> untold;
+      "A row of one back-end over another has the ratios of their errors, here and in the paper, because metres of "
+      "another recording, at another scale, can't be compared. A claim holds if both ratios are on the same side of "
+      "1.");
+  std::vector<std::string> unpublished;
   for (const RunRecord& run : runs) {
-    const bool told =
+    const bool is_published =
         std::ranges::find(published.results, run.experiment, &PublishedResult::config) != published.results.end();
-    if (!told && std::ranges::find(untold, run.experiment) == untold.end()) untold.push_back(run.experiment);
+    if (!is_published && std::ranges::find(unpublished, run.experiment) == unpublished.end())
+      unpublished.push_back(run.experiment);
   }
   for (const PublishedResult& result : published.results) {
     const auto ours = std::ranges::find(runs, result.config, &RunRecord::experiment);
@@ -128,7 +129,7 @@ std::string published_table(const Published& published, std::span<const RunRecor
     table.notes.push_back(fmt::format("{} ({}). Here: {}. Paper: {}. {}", result.config, result.what, here,
                                       result.protocol, result.not_equal));
   }
-  for (const std::string& name : untold) table.notes.push_back(fmt::format("{}: the paper has no number of it.", name));
+  for (const std::string& name : unpublished) table.notes.push_back(fmt::format("{}: no published numbers.", name));
   return format_table(table, format, layout);
 }
 

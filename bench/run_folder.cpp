@@ -24,7 +24,7 @@ namespace evbench {
 namespace fs = std::filesystem;
 namespace {
 
-/// Ground truth is kept beyond the time range, for a protocol with another offset of time [s].
+/// Ground truth is kept beyond the time range, for a protocol with another time offset [s].
 constexpr double kGroundTruthMargin = 1.0;
 
 constexpr const char* kRewritten[] = {"config.json", "manifest.json", "metrics.json", "log.txt"};
@@ -37,9 +37,9 @@ std::string processor() {
   return "unknown";
 }
 
-/// Of a folder's files, but for those that are written again when a run is renamed or scored, and what was measured.
+/// Sizes of a folder's files, except those that are rewritten when a run is relabelled or scored, and measured times.
 Json sizes_json(const std::string& folder) {
-  std::map<std::string, std::uintmax_t> sizes;  // by name: folders have an order of their own
+  std::map<std::string, std::uintmax_t> sizes;  // by name: the order of a folder's entries is undefined
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     const auto is_other = [&](const char* other) { return name == other; };
@@ -76,8 +76,8 @@ std::string timing_csv(const std::vector<UpdateRecord>& updates) {
   return text;
 }
 
-std::string learnt_csv(const RunResult& result) {
-  std::string text = fmt::format("t_s,{}\n", fmt::join(result.learnt, ","));
+std::string parameters_csv(const RunResult& result) {
+  std::string text = fmt::format("t_s,{}\n", fmt::join(result.estimated_parameters, ","));
   for (const UpdateRecord& u : result.updates) {
     if (!u.learnt.empty()) text += fmt::format("{:.6f},{:.6g}\n", u.t, fmt::join(u.learnt, ","));
   }
@@ -95,17 +95,18 @@ RunStatus status_of(const Execution& execution) {
   RunStatus status;
   status.status = result.status;
   status.complete = execution.complete;
-  for (const StillSpan& span : result.still) status.still.push_back({span.from, span.to});
-  for (const Piece& piece : result.pieces) {
-    const PoseTrajectory& poses = piece.final_trajectory.empty() ? piece.online_trajectory : piece.final_trajectory;
-    status.pieces.push_back({poses.empty() ? 0.0 : poses.start(), poses.empty() ? 0.0 : poses.end(),
-                             piece.final_trajectory.size(), piece.map.size()});
+  for (const StationaryPeriod& span : result.stationary) status.stationary.push_back({span.from, span.to});
+  for (const TrajectorySegment& segment : result.segments) {
+    const PoseTrajectory& poses =
+        segment.final_trajectory.empty() ? segment.causal_trajectory : segment.final_trajectory;
+    status.segments.push_back({poses.empty() ? 0.0 : poses.start(), poses.empty() ? 0.0 : poses.end(),
+                               segment.final_trajectory.size(), segment.map.size()});
   }
-  if (!result.pieces.empty()) status.scored = result.longest + 1;
+  if (!result.segments.empty()) status.scored = result.longest + 1;
   return status;
 }
 
-/// All but the scores and the sequence's time range.
+/// The record without the scores and the sequence's time range.
 RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const Execution& execution) {
   const RunResult& result = execution.result;
   const RunTimes& times = result.times;
@@ -131,19 +132,19 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
   return record;
 }
 
-void write_piece(const AtomicFolder& folder, const Piece& piece, const std::string& suffix) {
-  folder.write("final" + suffix + ".tum", format_tum(piece.final_trajectory));
-  folder.write("online" + suffix + ".tum", format_tum(piece.online_trajectory));
-  folder.write("told" + suffix + ".txt", format_online_poses(piece.told));
-  if (!piece.relative.empty()) folder.write("covariance" + suffix + ".txt", format_relative_poses(piece.relative));
-  folder.write("map" + suffix + ".ply", format_map(piece.map));
+void write_segment(const AtomicFolder& folder, const TrajectorySegment& segment, const std::string& suffix) {
+  folder.write("final" + suffix + ".tum", format_tum(segment.final_trajectory));
+  folder.write("causal" + suffix + ".tum", format_tum(segment.causal_trajectory));
+  folder.write("causal_poses" + suffix + ".txt", format_causal_poses(segment.published));
+  if (!segment.relative.empty()) folder.write("covariance" + suffix + ".txt", format_relative_poses(segment.relative));
+  folder.write("map" + suffix + ".ply", format_map(segment.map));
 }
 
-void write_pieces(const AtomicFolder& folder, const RunResult& result) {
-  for (std::size_t i = 0; i < result.pieces.size(); ++i) {
-    write_piece(folder, result.pieces[i], i == result.longest ? "" : fmt::format(".piece{}", i + 1));
+void write_segments(const AtomicFolder& folder, const RunResult& result) {
+  for (std::size_t i = 0; i < result.segments.size(); ++i) {
+    write_segment(folder, result.segments[i], i == result.longest ? "" : fmt::format(".segment{}", i + 1));
   }
-  if (result.pieces.empty()) write_piece(folder, {}, "");
+  if (result.segments.empty()) write_segment(folder, {}, "");
 }
 
 }  // namespace
@@ -171,9 +172,9 @@ RunRecord RunFolder::write(const RunConfig& config, const JobIdentity& identity,
   const RunResult& result = execution.result;
   write_files(config, identity, result);
   if (!ground_truth.empty()) folder_.write("groundtruth.tum", ground_truth);
-  if (!result.learnt.empty()) folder_.write("learnt.csv", learnt_csv(result));
-  if (problem && !result.pieces.empty() && result.pieces[result.longest].problem) {
-    folder_.write("problem.txt", format_problem(*result.pieces[result.longest].problem));
+  if (!result.estimated_parameters.empty()) folder_.write("estimated_parameters.csv", parameters_csv(result));
+  if (problem && !result.segments.empty() && result.segments[result.longest].problem) {
+    folder_.write("problem.txt", format_problem(*result.segments[result.longest].problem));
   }
   if (result.tracks) {
     folder_.write("tracks.txt", format_tracks(result.tracks->observations));
@@ -195,11 +196,11 @@ RunRecord RunFolder::write_broken_off(const RunConfig& config, const JobIdentity
   return finish(config, identity, execution, record_of(config, identity, execution));
 }
 
-/// What every run has, but for its scores.
+/// Writes the files of every run, without its scores.
 void RunFolder::write_files(const RunConfig& config, const JobIdentity& identity, const RunResult& result) const {
   folder_.write("config.json", json_file_text(config.resolved()));
   folder_.write("job.json", identity.text);
-  write_pieces(folder_, result);
+  write_segments(folder_, result);
   folder_.write("timing.csv", timing_csv(result.updates));
   folder_.write("log.txt", log_text(config, result));
 }

@@ -19,9 +19,9 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-const std::set<std::string> kFiles = {"config.json",  "job.json",   "manifest.json",   "final.tum",
-                                      "online.tum",   "told.txt",   "groundtruth.tum", "map.ply",
-                                      "metrics.json", "timing.csv", "log.txt",         "status.json"};
+const std::set<std::string> kFiles = {"config.json",  "job.json",         "manifest.json",   "final.tum",
+                                      "causal.tum",   "causal_poses.txt", "groundtruth.tum", "map.ply",
+                                      "metrics.json", "timing.csv",       "log.txt",         "status.json"};
 
 /// The runs of a config by label.
 std::map<std::string, std::string> run_folders(const TemporaryFolder& folder, const std::string& out) {
@@ -79,7 +79,7 @@ TEST_CASE("A run's folder holds the documented files", "[slow]") {
   REQUIRE(runs.first.size() == 2);
   for (const auto& [label, path] : runs.first) {
     std::set<std::string> files = kFiles;
-    if (label == "asynchronous") files.insert({"covariance.txt", "learnt.csv"});  // frames have neither
+    if (label == "asynchronous") files.insert({"covariance.txt", "estimated_parameters.csv"});  // only gp_map has them
     CHECK(names_in(path) == files);
     CHECK(json_file(path, "status.json").at("state").is_string());
     const Json manifest = json_file(path, "manifest.json");
@@ -92,14 +92,14 @@ TEST_CASE("A run's folder holds the documented files", "[slow]") {
   CHECK(runs_of(runs.folder.file("first/short")).size() == 2);
 }
 
-TEST_CASE("The same config twice gives the same bytes, but for measured times", "[slow]") {
+TEST_CASE("The same config twice gives identical files, except measured times", "[slow]") {
   const TwoRuns& runs = two_runs();
   for (const auto& [label, path] : runs.first) {
     INFO(label);
     const std::string& other = runs.second.at(label);
     CHECK(std::filesystem::path(path).filename() == std::filesystem::path(other).filename());
-    for (const char* name : {"config.json", "job.json", "final.tum", "online.tum", "told.txt", "groundtruth.tum",
-                             "map.ply", "status.json"}) {
+    for (const char* name : {"config.json", "job.json", "final.tum", "causal.tum", "causal_poses.txt",
+                             "groundtruth.tum", "map.ply", "status.json"}) {
       CHECK(read_file(path + "/" + name) == read_file(other + "/" + name));
     }
     Json manifest = json_file(path, "manifest.json"), other_manifest = json_file(other, "manifest.json");
@@ -108,20 +108,20 @@ TEST_CASE("The same config twice gives the same bytes, but for measured times", 
     const Json a = json_file(path, "metrics.json"), b = json_file(other, "metrics.json");
     CHECK(a.at("final").at("ate").at("trans_m").at("rmse").is_number());
     CHECK(dump_json(a.at("final")) == dump_json(b.at("final")));
-    CHECK(dump_json(a.at("online")) == dump_json(b.at("online")));
+    CHECK(dump_json(a.at("causal")) == dump_json(b.at("causal")));
   }
 }
 
-TEST_CASE("A run is scored for what was known at once and after the same wait, and by its covariances", "[slow]") {
+TEST_CASE("A run is scored at zero latency and at equal latency, and by its covariances", "[slow]") {
   const TwoRuns& runs = two_runs();
   for (const auto& [label, path] : runs.first) {
     INFO(label);
-    const Json metrics = json_file(path, "metrics.json"), online = metrics.at("online");
+    const Json metrics = json_file(path, "metrics.json"), causal = metrics.at("causal");
     const auto ate = [](const Json& scores) { return scores.at("ate").at("trans_m").at("rmse").get<double>(); };
-    CHECK(online.at("zero_latency").at("latency_s") == 0.0);
-    CHECK(online.at("equal_latency").at("latency_s") == 0.2);
-    CHECK(ate(online.at("equal_latency")) < ate(online.at("zero_latency")));
-    CHECK(online.at("zero_latency").at("pairs") > 300);  // of ground truth at 200 Hz
+    CHECK(causal.at("zero_latency").at("latency_s") == 0.0);
+    CHECK(causal.at("equal_latency").at("latency_s") == 0.2);
+    CHECK(ate(causal.at("equal_latency")) < ate(causal.at("zero_latency")));
+    CHECK(causal.at("zero_latency").at("pairs") > 300);  // of ground truth at 200 Hz
     CHECK(metrics.at("covariance").is_null() == (label != "asynchronous"));
   }
   const Json covariance = json_file(runs.first.at("asynchronous"), "metrics.json").at("covariance");
@@ -134,25 +134,25 @@ TEST_CASE("A run is scored for what was known at once and after the same wait, a
     CHECK(covariance.at(kind).at("within_3_sigma") > 0.8);
   }
   const std::string folder = "'" + runs.folder.file("first") + "'";
-  const Outcome table = testing::evbench(runs.folder, "table --online " + folder);
+  const Outcome table = testing::evbench(runs.folder, "table --causal " + folder);
   CHECK_THAT(table.out, ContainsSubstring("ATE at zero latency [m]") && ContainsSubstring("ATE at equal latency [m]") &&
                             ContainsSubstring("equal latency 0.2 s"));
   CHECK_THAT(testing::evbench(runs.folder, "table --metrics covariance.over_1s.nees,covariance.newest.within_2_sigma," +
-                                               std::string("online.zero_latency.ate.trans_m.rmse ") + folder)
+                                               std::string("causal.zero_latency.ate.trans_m.rmse ") + folder)
                  .out,
              ContainsSubstring("NEES over 1 s") && ContainsSubstring("covariance.newest.within_2_sigma") &&
-                 ContainsSubstring("online ATE at zero latency [m]"));
+                 ContainsSubstring("causal ATE at zero latency [m]"));
 }
 
-TEST_CASE("A table scores its runs over the time that all of them cover, too", "[slow]") {
+TEST_CASE("A table also scores its runs over their common time", "[slow]") {
   const TwoRuns& runs = two_runs();
   const std::string folder = "'" + runs.folder.file("first") + "'";
   const Outcome table = testing::evbench(
       runs.folder, "table --format csv --metrics common.span_s,common.coverage,common.ate.trans_m.rmse " + folder);
-  CHECK(table.exit_code == 2);  // a span is no number
+  CHECK(table.exit_code == 2);  // a span is not a number
   const Outcome text = testing::evbench(runs.folder, "table " + folder);
   CHECK_THAT(text.out, ContainsSubstring("ATE, common time [m]") && ContainsSubstring("Common time: ") &&
-                           ContainsSubstring("which every run covers that was not lost"));
+                           ContainsSubstring("covered by all runs that were not lost"));
   std::vector<RunRecord> records = find_runs(std::vector{runs.folder.file("first")});
   score_common_time(records, false);
   const auto span = [](const Json& scores) {
@@ -168,11 +168,11 @@ TEST_CASE("A table scores its runs over the time that all of them cover, too", "
     CHECK(record.common_scores.at("coverage") > 0.99);
   }
   score_common_time(records, true);
-  const double begin = std::max(span(records[0].online_scores).first, span(records[1].online_scores).first);
+  const double begin = std::max(span(records[0].causal_scores).first, span(records[1].causal_scores).first);
   for (const RunRecord& record : records) {
     const Json& at_latency = record.common_scores.at("equal_latency");
     CHECK(at_latency.at("latency_s") == 0.2);
-    CHECK(at_latency.at("pairs") < record.online_scores.at("equal_latency").at("pairs"));
+    CHECK(at_latency.at("pairs") < record.causal_scores.at("equal_latency").at("pairs"));
     CHECK(span(at_latency).first >= begin);
   }
   records[0].folder = "/nowhere";
@@ -186,7 +186,7 @@ TEST_CASE("All back-ends of a comparison get the identical observations", "[slow
         json_file(runs.first.at("frames of 50 ms"), "manifest.json").at("tracks_sha256"));
 }
 
-TEST_CASE("The config that a run wrote makes the same run again, from anywhere", "[slow]") {
+TEST_CASE("The config in a run's folder gives the same run again, from any folder", "[slow]") {
   const std::string& path = two_runs().first.at("frames of 50 ms");
   const TemporaryFolder folder;
   REQUIRE(testing::evbench(folder, "run '" + path + "/config.json' --out again --quiet").exit_code == 0);
@@ -215,21 +215,21 @@ TEST_CASE("Metrics of a run have the documented keys, the same as those of evben
     CHECK(times.at("max") > 0.0);
   }
   CHECK(metrics.at("status") == json_file(path, "status.json"));
-  for (const char* trajectory : {"final", "online"}) {
+  for (const char* trajectory : {"final", "causal"}) {
     for (const char* key : {"/ate/trans_m/rmse", "/ate/rot_deg/rmse", "/ate/trans_percent", "/rpe/trans_m/rmse",
                             "/rpe/rot_deg/median", "/rpe/pairs", "/coverage", "/pairs", "/scale", "/path_m"}) {
       INFO(trajectory << key);
       CHECK(metrics.at(trajectory).at(Json::json_pointer(key)).is_number());
     }
   }
-  const std::string files = "'" + path + "/final.tum' '" + path + "/online.tum'";
+  const std::string files = "'" + path + "/final.tum' '" + path + "/causal.tum'";
   REQUIRE(testing::evbench(runs.folder, "eval " + files + " --json eval.json -as").exit_code == 0);
   const Json eval = parse_json(read_file(runs.folder.file("eval.json")));
   CHECK(keys_of(eval.at("final")) == keys_of(metrics.at("final")));
   for (const auto& [key, value] : metrics.items()) CHECK(eval.contains(key));
 }
 
-TEST_CASE("A run writes the problem that it ended with, in the format that evbench solve reads", "[slow]") {
+TEST_CASE("A run writes its final problem in the format that evbench solve reads", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config("gp_map")));
   REQUIRE(testing::evbench(folder, "run c.json --out out --problem --quiet").exit_code == 0);
@@ -246,7 +246,7 @@ TEST_CASE("Relative paths of a config refer to its folder, and inputs are hashed
   const TemporaryFolder elsewhere;
   write_recording(folder);
   const Outcome run = testing::evbench(elsewhere, "run '" + folder.file("recording.json") + "' --quiet");
-  CHECK(run.exit_code <= 3);  // points at rest make no map
+  CHECK(run.exit_code <= 3);  // fixed points give no map
   CHECK(run.err.empty());
   const auto folders = run_folders(elsewhere, "results");
   REQUIRE(folders.size() == 1);
@@ -270,18 +270,18 @@ TEST_CASE("A run without an estimate fails with exit code 3, a status with the r
   CHECK(json_file(folders.begin()->second, "metrics.json").at("final").is_null());
 }
 
-TEST_CASE("Of an estimate in pieces the longest one is scored, and the others lie beside it") {
+TEST_CASE("The longest trajectory segment is scored, and the others are written next to it") {
   const TemporaryFolder folder;
   const std::string path = folder.write("c.json", dump_json(short_config()));
   const RunConfig config = read_experiment(path, {}, known_plugins()).runs[0];
   const auto source = make_source(config.job, known_plugins());
   Execution execution;
   for (const auto& [from, to] : {std::pair{0.1, 0.6}, {0.7, 2.9}, {2.95, 3.0}}) {
-    Piece piece;
-    piece.final_trajectory = source->ground_truth().cut(from, to);
-    piece.online_trajectory = source->ground_truth().cut(from + 0.01, to);
-    piece.map.resize(3);
-    execution.result.pieces.push_back(piece);
+    TrajectorySegment segment;
+    segment.final_trajectory = source->ground_truth().cut(from, to);
+    segment.causal_trajectory = source->ground_truth().cut(from + 0.01, to);
+    segment.map.resize(3);
+    execution.result.segments.push_back(segment);
   }
   execution.result.longest = 1;
   execution.result.status = {RunState::lost, "no observations", 0.6, {}};
@@ -291,21 +291,22 @@ TEST_CASE("Of an estimate in pieces the longest one is scored, and the others li
     record = run.write(config, identity_of(config), *source, ground_truth_tum(*source), execution);
   }
   std::set<std::string> expected = kFiles;
-  for (const char* name : {"final.piece1.tum", "online.piece1.tum", "told.piece1.txt", "map.piece1.ply",
-                           "final.piece3.tum", "online.piece3.tum", "told.piece3.txt", "map.piece3.ply"}) {
+  for (const char* name :
+       {"final.segment1.tum", "causal.segment1.tum", "causal_poses.segment1.txt", "map.segment1.ply",
+        "final.segment3.tum", "causal.segment3.tum", "causal_poses.segment3.txt", "map.segment3.ply"}) {
     expected.insert(name);
   }
   const std::string made = folder.file("out/short/mine");
   CHECK(names_in(made) == expected);
-  const PoseTrajectory scored = read_tum(made + "/final.tum"), first = read_tum(made + "/final.piece1.tum");
+  const PoseTrajectory scored = read_tum(made + "/final.tum"), first = read_tum(made + "/final.segment1.tum");
   CHECK(scored.start() == Approx(0.7).margin(0.01));
   CHECK(first.end() == Approx(0.6).margin(0.01));
   const Json status = json_file(made, "status.json");
-  CHECK(status.at("scored_piece") == 2);
-  REQUIRE(status.at("pieces").size() == 3);
-  CHECK(status.at("pieces")[1].at("poses") == scored.size());
-  CHECK(status.at("pieces")[1].at("landmarks") == 3);
-  CHECK(status.at("pieces")[0].at("to") == first.end());
+  CHECK(status.at("scored_segment") == 2);
+  REQUIRE(status.at("segments").size() == 3);
+  CHECK(status.at("segments")[1].at("poses") == scored.size());
+  CHECK(status.at("segments")[1].at("landmarks") == 3);
+  CHECK(status.at("segments")[0].at("to") == first.end());
   const Json metrics = json_file(made, "metrics.json");
   CHECK(metrics.at("final").at("pairs") == scored.size());
   CHECK(metrics.at("final").at("ate").at("trans_m").at("rmse").get<double>() < 1e-6);
@@ -334,7 +335,7 @@ TEST_CASE("Two runs do not write to the same folder at the same time", "[slow]")
   CHECK(names_in(folder.file("results/short")) == std::set<std::string>{key, "index.csv"});
 }
 
-TEST_CASE("Of many processes that run the same config at once, each is done or refused, and one result is whole",
+TEST_CASE("Of many processes that run the same config at once, each succeeds or is refused, and the result is whole",
           "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_config()));

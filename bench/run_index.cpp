@@ -18,8 +18,8 @@ namespace evbench {
 namespace fs = std::filesystem;
 namespace {
 
-/// Held by one process at a time, so that nobody writes what was read before another one's run came. File systems that
-/// can't lock a folder go without: the next run that comes puts it right.
+/// Lock of a folder, held by one process at a time, so that no process writes an index that misses another one's run.
+/// On file systems without folder locks an index may miss a run until the next run is added.
 class FolderLock {
  public:
   explicit FolderLock(const std::string& path) : folder_(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
@@ -35,7 +35,7 @@ class FolderLock {
   int folder_;
 };
 
-/// The runs that lie in the folder, with their folders as seen from it.
+/// The runs in the folder, with their folders relative to it.
 std::vector<RunRecord> runs_in(const std::string& experiment) {
   std::vector<RunRecord> runs;
   std::error_code error;
@@ -49,7 +49,7 @@ std::vector<RunRecord> runs_in(const std::string& experiment) {
       (void)collect_protocols(numbers_of({&run, 1}, false));
       run.folder = name;
       runs.push_back(std::move(run));
-    } catch (const InputError&) {  // damaged, which tables say
+    } catch (const InputError&) {  // damaged: tables report it
     }
   }
   const auto comes_first = [](const RunRecord& a, const RunRecord& b) {

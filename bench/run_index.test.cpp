@@ -11,7 +11,7 @@ using namespace evbench;
 using namespace evbench::testing;
 using Catch::Matchers::ContainsSubstring;
 
-TEST_CASE("The index of an experiment has a line a run, sorted, with what runs of a label differ in") {
+TEST_CASE("The index of an experiment has a sorted line for each run, with the settings that differ") {
   const Results results;
   results.add_seed("bundle", 2, 0.2, 0.1);
   results.add_seed("bundle", 1, 0.1, 0.1);
@@ -21,14 +21,14 @@ TEST_CASE("The index of an experiment has a line a run, sorted, with what runs o
   write_run_index(results.folder.path());
   const std::string index = read_file(results.folder.file("index.csv"));
   CHECK(index.starts_with(
-      "experiment,label,backend.frame_duration,seed,key,folder,ate.trans_m.rmse,ate.rot_deg.rmse,rpe.trans_m.rmse,"
+      "experiment,label,backend.batch_duration,seed,key,folder,ate.trans_m.rmse,ate.rot_deg.rmse,rpe.trans_m.rmse,"
       "rpe.rot_deg.rmse,pairs,coverage,scale,status,reason,trajectory,protocol\n"
       "arm,bundle,0.05,1,bundle1-0.050000,bundle1-0.050000,,,,,,,,failed,"));
   CHECK_THAT(index, ContainsSubstring("\narm,bundle,0.1,1,bundle1-0.100000,bundle1-0.100000,0.1,") &&
                         !ContainsSubstring("half") && !ContainsSubstring("broken"));
   CHECK(index.find(",0.1,1,") < index.find(",0.1,2,"));
   CHECK(std::ranges::count(index, '\n') == 4);
-  // The same runs, made in another order and elsewhere, give the same bytes.
+  // The same runs, made in another order and in another folder, give an identical file.
   const Results others;
   others.add_seed("bundle", 1, std::nullopt, 0.05);
   others.add_seed("bundle", 1, 0.1, 0.1);
@@ -42,7 +42,7 @@ TEST_CASE("The index of an experiment has a line a run, sorted, with what runs o
   CHECK_FALSE(std::filesystem::exists(others.folder.file("index.csv")));
 }
 
-TEST_CASE("Runs are in the index as they come, by whatever command, and scored again there, too", "[slow]") {
+TEST_CASE("Every command that makes or scores runs updates the index", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(short_comparison()));
   REQUIRE(testing::evbench(folder, "run c.json --quiet").exit_code == 0);
@@ -57,7 +57,7 @@ TEST_CASE("Runs are in the index as they come, by whatever command, and scored a
   CHECK_THAT(read_file(index), ContainsSubstring("SE(3) alignment") && !ContainsSubstring("Sim(3) alignment"));
 }
 
-TEST_CASE("Of a plugin that was rebuilt the newest runs count, which is said, and the others can be chosen", "[slow]") {
+TEST_CASE("Of a rebuilt plugin only the newest runs are used, with a remark, and --all includes the others", "[slow]") {
   const Results results;
   for (const char* name : {"old", "new"}) {
     for (int seed = 1; seed <= 2; ++seed) {
@@ -78,7 +78,7 @@ TEST_CASE("Of a plugin that was rebuilt the newest runs count, which is said, an
   const Outcome table = use("table . --metrics ate.trans_m.rmse");
   CHECK_THAT(table.out, ContainsSubstring("0.250") && !ContainsSubstring("0.500"));
   CHECK_THAT(table.err,
-             ContainsSubstring("remark: 2 older runs are left out") && ContainsSubstring("--all takes them"));
+             ContainsSubstring("remark: 2 older runs are left out") && ContainsSubstring("--all includes them"));
   CHECK_THAT(use("table . --metrics ate.trans_m.rmse --all").out,
              ContainsSubstring("0.500") && ContainsSubstring("old1"));
   CHECK(use("table . --over seed").exit_code == 0);
@@ -94,7 +94,7 @@ TEST_CASE("Of a plugin that was rebuilt the newest runs count, which is said, an
   CHECK_THAT(use("table . --labels mime=Ours").err, ContainsSubstring("did you mean \"mine\"?"));
 }
 
-TEST_CASE("A table of text is as wide as COLUMNS, or 120 characters, and --wide has all, with the folder") {
+TEST_CASE("A text table is as wide as COLUMNS, or 120 characters, and --wide has all columns, with the folder") {
   const Results results;
   results.add("a", run("arm", "mine", scores_with(0.02)));
   const auto header = [&](const std::string& before, const std::string& after) {

@@ -8,7 +8,7 @@
 
 #include "bench/pipeline/batch_recording.hpp"
 #include "bench/pipeline/feedback_line.hpp"
-#include "bench/pipeline/front_side.hpp"
+#include "bench/pipeline/frontend_runner.hpp"
 #include "core/events/event_front_end.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
@@ -16,7 +16,7 @@
 namespace evbench {
 namespace {
 
-/// Of one plugin of a job. Throws InputError for any where external code is refused.
+/// The commands of one plugin of a job. Throws InputError for any command with --no-external.
 std::vector<std::string> allowed_commands(const PluginEntry& entry, const PluginConfig& config,
                                           const Plugins& plugins) {
   std::vector<std::string> commands = entry.commands(config.options, config.place);
@@ -53,10 +53,10 @@ Execution broken_off(double t, const std::string& error) {
   return execution;
 }
 
-/// Lets `run(make, tell)` do the work: make a back-end, and tell how far it is.
+/// Calls `run(make, report)`, which makes back-ends by `make` and reports its progress.
 template <class Run>
 Execution run_job(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress, Run run) {
-  std::exception_ptr bad_input;  // of the first back-end: nothing has been done by then
+  std::exception_ptr bad_input;  // of the first back-end, before any work
   bool made = false;
   const MakeBackEnd make = [&](const BackEndContext& context) {
     try {
@@ -69,13 +69,13 @@ Execution run_job(const Job& job, const Source& source, const Plugins& plugins, 
     }
   };
   double reached = source.time_range().from;
-  const Progress tell = [&](const RunProgress& now) {
+  const Progress report = [&](const RunProgress& now) {
     check_interruption();
     reached = now.t;
     if (progress) progress(now);
   };
   try {
-    return {run(make, tell), true};
+    return {run(make, report), true};
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception& error) {
@@ -96,14 +96,15 @@ Execution execute(const Job& job, const Source& source, const Plugins& plugins, 
   } catch (const std::exception& error) {  // e.g. a process that ends at once
     return broken_off(source.time_range().from, error.what());
   }
-  return run_job(job, source, plugins, progress, [&](const MakeBackEnd& make, const Progress& tell) {
-    return run_pipeline(source, *frontend, make, context_of(job), job.pipeline, job.trajectory_rate, tell, keep_tracks);
+  return run_job(job, source, plugins, progress, [&](const MakeBackEnd& make, const Progress& report) {
+    return run_pipeline(source, *frontend, make, context_of(job), job.pipeline, job.trajectory_rate, report,
+                        keep_tracks);
   });
 }
 
 Execution execute(const Job& job, const Source& source, const Plugins& plugins, BatchStream& batches) {
-  return run_job(job, source, plugins, {}, [&](const MakeBackEnd& make, const Progress& tell) {
-    return run_pipeline(source, batches, make, context_of(job), job.pipeline, job.trajectory_rate, tell);
+  return run_job(job, source, plugins, {}, [&](const MakeBackEnd& make, const Progress& report) {
+    return run_pipeline(source, batches, make, context_of(job), job.pipeline, job.trajectory_rate, report);
   });
 }
 
@@ -111,7 +112,7 @@ std::optional<std::string> record_front_end(const Job& job, const Source& source
   const std::unique_ptr<FrontEnd> frontend = make_frontend(job, source, plugins);
   if (frontend->needs().any) return std::nullopt;
   FeedbackLine unused(job.pipeline.latency, false);
-  FrontSide front(*frontend, source, job.pipeline, unused);
+  FrontEndRunner front(*frontend, source, job.pipeline, unused);
   return record_batches(front);
 }
 

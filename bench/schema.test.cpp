@@ -9,12 +9,12 @@
 using namespace evbench;
 using namespace evbench::testing;
 
-// The JSON Schema that editors get, and the program itself, are asked about the same configs; the schema by a validator
-// that is nobody's here (Python's jsonschema).
+// Checks the same configs by the JSON Schema for editors and by the program itself; the schema with an independent
+// validator, Python's jsonschema.
 
 namespace {
 
-/// For each config of the list on the command line a line: "fine", or what is wrong with it.
+/// Prints a line for each config on the command line: "fine", or the error.
 constexpr const char* kValidator = R"(
 import json, sys
 from jsonschema import Draft202012Validator
@@ -34,7 +34,7 @@ class Schema {
     write_recording(folder_);
   }
 
-  /// Whether the schema and the program's --check find the configs, files or texts of JSON, fine.
+  /// Whether the schema and the program's --check accept the configs (files or JSON texts).
   void expect(const std::vector<Json>& configs, bool fine) const {
     std::string names;
     for (std::size_t i = 0; i < configs.size(); ++i) {
@@ -56,7 +56,7 @@ class Schema {
     }
   }
 
-  /// Those that need no file to be there.
+  /// Valid configs that need no files.
   void expect_fine_by_schema(const std::vector<std::string>& paths) const {
     std::string names;
     for (const std::string& path : paths) names += " '" + path + "'";
@@ -79,18 +79,18 @@ Json with(Json config, const char* pointer, const Json& value) {
 
 }  // namespace
 
-TEST_CASE("Every config that comes with evbench, and every one that a run writes, is valid by the schema", "[slow]") {
+TEST_CASE("Every shipped config, and every config that a run writes, is valid by the schema", "[slow]") {
   const Schema schema;
   std::vector<std::string> paths = shipped_configs();
   CHECK(paths.size() >= 2);
-  testing::evbench(schema.folder(), "run recording.json --quiet");  // fails, with still points; its config is written
+  testing::evbench(schema.folder(), "run recording.json --quiet");  // fails, with fixed points; its config is written
   const std::set<std::string> runs = runs_of(schema.folder().file("results/recording"));
   REQUIRE(runs.size() == 1);
   paths.push_back(*runs.begin() + "/config.json");
   schema.expect_fine_by_schema(paths);
 }
 
-TEST_CASE("Configs that are fine are so for the schema and for the program", "[slow]") {
+TEST_CASE("Valid configs are accepted by the schema and by the program", "[slow]") {
   const Json config = short_config();
   Schema().expect(
       {config, short_comparison(), with(config, "/$schema", "x.json"), with(config, "/backend/label", "a"),
@@ -99,7 +99,7 @@ TEST_CASE("Configs that are fine are so for the schema and for the program", "[s
       true);
 }
 
-TEST_CASE("Configs that are broken are so for the schema and for the program", "[slow]") {
+TEST_CASE("Invalid configs are rejected by the schema and by the program", "[slow]") {
   const Json config = short_config(), recording = with(config, "/source", {{"type", "recording"}});
   Json neither = config;
   neither.erase("backend");
@@ -118,7 +118,7 @@ TEST_CASE("Configs that are broken are so for the schema and for the program", "
                    with(config, "/backend/label", ""),
                    with(config, "/backend/label", 3),
                    with(config, "/source/duration", 0),
-                   with(config, "/source/motion/kind", "still"),
+                   with(config, "/source/motion/kind", "stationary"),
                    with(config, "/plugins", "a.so"),
                    Json::array(),
                    Json("text"),

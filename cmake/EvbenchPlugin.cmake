@@ -1,16 +1,16 @@
 # evbench_add_plugin(NAME SOURCES FILE... [LINKS LIBRARY...] [TESTS FILE...] [FOLDER DIR])
 #
-# Makes the target NAME, libNAME.so in the top build folder (or in DIR), from sources that register plugins
-# (core/plugin/registration.hpp), for `evbench --plugin libNAME.so`. LINKS: what the sources need besides evbench::core
-# and evbench::events.
+# Adds the target NAME: libNAME.so in the top build folder (or in DIR), built from sources that register plugins
+# (core/plugin/registration.hpp), for `evbench --plugin libNAME.so`. LINKS: libraries that the sources need in addition
+# to evbench::core and evbench::events.
 #
-# TESTS: sources for Catch2, built with the plugin's into the program NAME_tests, a test of ctest's; they may use the
-# conformance battery (bench/battery/). Left out, with a line that says so, where Catch2 is not there.
+# TESTS: Catch2 sources. With the plugin's sources they form the program NAME_tests, which ctest runs; they may use the
+# conformance battery (bench/battery/). Without Catch2 the tests are left out with a message.
 #
-# The plugin has a copy of its own of all of evbench that it uses, and shows nothing of it, so that it and the program
-# don't mix: state that the program keeps (further formats of events, a request to end) is not the copy's. It is built
-# with the flags on which the layout of exchanged objects depends: those that evbench was built with.
-enable_testing()  # here and not in a function, whose end would take it back
+# The plugin contains its own hidden copy of the evbench code that it uses. The copy does not share state with the
+# program (additional event formats, a request to end). The plugin is built with the flags that evbench was built with,
+# because the layout of exchanged objects depends on them.
+enable_testing()  # not in the function: its effect would end with it
 
 function(evbench_add_plugin name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "FOLDER" "SOURCES;LINKS;TESTS")
@@ -38,7 +38,7 @@ function(evbench_add_plugin name)
   evbench_plugin_flags(${name})
   target_link_options(${name} PRIVATE -Wl,--exclude-libs,ALL)
   if(NOT EVBENCH_SANITIZE AND NOT EVBENCH_FUZZ)
-    target_link_options(${name} PRIVATE -Wl,-z,defs)  # told when it is built, not when it is loaded
+    target_link_options(${name} PRIVATE -Wl,-z,defs)  # a missing symbol is an error when linking, not when loading
   endif()
   set_target_properties(${name} PROPERTIES PREFIX lib LIBRARY_OUTPUT_DIRECTORY ${ARG_FOLDER})
 
@@ -47,7 +47,7 @@ function(evbench_add_plugin name)
   endif()
 endfunction()
 
-# The flags of everything that goes into a plugin.
+# Compile flags of plugins.
 function(evbench_plugin_flags target)
   target_compile_features(${target} PRIVATE cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON

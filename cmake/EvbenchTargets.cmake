@@ -1,16 +1,16 @@
-# What every target of evbench shares: flags, include root, tests, installation.
+# What all targets of evbench share: flags, include root, tests, installation.
 
 add_library(evbench_flags INTERFACE)
 target_compile_features(evbench_flags INTERFACE cxx_std_20)
 target_compile_options(evbench_flags INTERFACE
   -Wall -Wextra -Wconversion -Wshadow
-  # GCC 12 sees ghosts in inlined Eigen code, in its own AVX-512 intrinsics and in std::string.
+  # GCC 12 warns falsely about inlined Eigen code, its own AVX-512 intrinsics and std::string.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
                            -Wno-stringop-overread>
-  # GCC's -Wconversion does not ask for it in C++.
+  # GCC's -Wconversion does not include it in C++.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>
-  # Position-independent, for plugins (and for tests, which read the same precompiled headers); but the program's
-  # functions are its own, and may be inlined.
+  # Position-independent for plugins (and for tests, which use the same precompiled headers). The program's functions
+  # are never interposed, so they may be inlined.
   -fPIC -fno-semantic-interposition
   $<$<BOOL:${EVBENCH_WERROR}>:-Werror>
   $<$<BOOL:${EVBENCH_NATIVE}>:-march=native>)
@@ -31,7 +31,8 @@ if(EVBENCH_SANITIZE)
   target_link_options(evbench_flags INTERFACE ${EVBENCH_SANITIZE_FLAGS})
 endif()
 
-# evbench_precompile(TARGET HEADER): with EVBENCH_PRECOMPILE, all targets of one header read it precompiled by the first.
+# evbench_precompile(TARGET HEADER): with EVBENCH_PRECOMPILE, the first target precompiles HEADER and all others reuse
+# it.
 function(evbench_precompile target header)
   get_property(first GLOBAL PROPERTY evbench_precompiled_${header})
   if(NOT EVBENCH_PRECOMPILE)
@@ -44,8 +45,8 @@ function(evbench_precompile target header)
   endif()
 endfunction()
 
-# evbench_group(TARGET SIZE): with EVBENCH_GROUP, its sources are compiled SIZE at a time, so that what they share is read
-# and instantiated once; what is local to one must then have a name that no other of the target has.
+# evbench_group(TARGET SIZE): with EVBENCH_GROUP, sources are compiled SIZE at a time (unity build), so that shared
+# headers and templates are compiled once. Names local to one source must then be unique within the target.
 function(evbench_group target size)
   if(NOT size)
     set(size 8)
@@ -53,7 +54,7 @@ function(evbench_group target size)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${EVBENCH_GROUP} UNITY_BUILD_BATCH_SIZE ${size})
 endfunction()
 
-# evbench_library(NAME [STATIC|OBJECT] SOURCES ... LINKS ... [PRECOMPILED HEADER] [GROUP SIZE]): a folder's target.
+# evbench_library(NAME [STATIC|OBJECT] SOURCES ... LINKS ... [PRECOMPILED HEADER] [GROUP SIZE]): the target of a folder.
 # Headers are included by their path from the repository's root ("core/geometry/se3.hpp").
 function(evbench_library name kind)
   cmake_parse_arguments(ARG "" "PRECOMPILED;GROUP" "SOURCES;LINKS" ${ARGN})
@@ -69,9 +70,9 @@ function(evbench_library name kind)
   evbench_group(${name} "${ARG_GROUP}")
 endfunction()
 
-# evbench_tests(NAME SOURCES ... LINKS ...): the *.test.cpp of a folder as one test program, each test case a ctest of its
-# own, which fails when it hangs: when it takes longer than EVBENCH_TEST_SECONDS. Tests of real data read EVBENCH_DATA and
-# EVBENCH_PROBLEMS.
+# evbench_tests(NAME SOURCES ... LINKS ...): the *.test.cpp of a folder as one test program. Each test case is one
+# ctest, which fails when it takes longer than EVBENCH_TEST_SECONDS. Tests on real data read the environment variables
+# EVBENCH_DATA and EVBENCH_PROBLEMS.
 function(evbench_tests name)
   if(NOT EVBENCH_TESTS)
     return()
@@ -83,15 +84,15 @@ function(evbench_tests name)
                                                                        SKIP_UNITY_BUILD_INCLUSION ON)
     evbench_library(evbench_test_support STATIC SOURCES ${testing}/data.cpp ${EVBENCH_PLUGIN_TEST_MAIN}
                     LINKS Catch2::Catch2 evbench::core PRECOMPILED precompiled_test)
-    # As the tests, which read its precompiled headers.
+    # The same level as the tests, which use its precompiled headers.
     target_compile_options(evbench_test_support PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINKS} evbench_test_support evbench_flags)
-  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # what is tested is optimised fully: its libraries
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # the tested libraries are fully optimised
   evbench_precompile(${name} precompiled_test)
   evbench_group(${name} "")
-  # Each label's tests, from the one that starts first. COST: ctest starts what costs most first.
+  # The tests of each label, slowest label first: ctest starts tests of the highest COST first.
   set(tags "")
   foreach(source IN LISTS ARG_SOURCES)
     file(STRINGS ${source} tagged REGEX "\\[(long|random|cluster|slow)\\]")
@@ -110,17 +111,17 @@ function(evbench_tests name)
     endif()
     catch_discover_tests(${name} TEST_SPEC "${spec}" TEST_PREFIX "${name}: " PROPERTIES LABELS ${label} COST ${cost}
                          SKIP_REGULAR_EXPRESSION "SKIPPED:" TIMEOUT ${EVBENCH_TEST_SECONDS}
-                         FAIL_REGULAR_EXPRESSION "No tests ran")  # of a name that ctest takes apart, at a semicolon
+                         FAIL_REGULAR_EXPRESSION "No tests ran")  # a test name that ctest splits at a semicolon
     string(APPEND others "~[${label}]")
   endforeach()
 endfunction()
 
-# evbench_fuzz_targets(CORPUS archive LINKS ... [CORPUS_ONLY ...]): each NAME.fuzz.cpp in and below a folder as a
-# libFuzzer program fuzz_NAME, built by the target fuzz_targets. Its test runs the archive's NAME/, then new inputs for
-# EVBENCH_FUZZ_SECONDS in bounded memory. In the build folder, fuzz/kept/NAME has what the archive has,
-# fuzz/corpus/NAME keeps the new inputs that reach more code, fuzz/findings/NAME-... those that fail. What is copied into
-# fuzz/kept/NAME goes into the archive by the target fuzz_corpus. The tests of CORPUS_ONLY try no new inputs: where a
-# library has bugs of its own, each finding would be one.
+# evbench_fuzz_targets(CORPUS archive LINKS ... [CORPUS_ONLY ...]): each NAME.fuzz.cpp in and below a folder becomes a
+# libFuzzer program fuzz_NAME, built by the target fuzz_targets. Its test runs the inputs in NAME/ of the archive, then
+# new inputs for EVBENCH_FUZZ_SECONDS in bounded memory. In the build folder, fuzz/kept/NAME is the unpacked archive,
+# fuzz/corpus/NAME keeps new inputs that reach more code, and fuzz/findings/NAME-... are the inputs that fail. The
+# target fuzz_corpus packs fuzz/kept into the archive again. The tests of CORPUS_ONLY try no new inputs, because
+# findings there would be known bugs of a third-party library.
 function(evbench_fuzz_targets)
   if(NOT EVBENCH_FUZZ)
     return()
@@ -160,8 +161,9 @@ function(evbench_fuzz_targets)
   endforeach()
 endfunction()
 
-# Headers, libraries and the package files that find_package(evbench) reads: all that a plugin of one's own may use.
-# In the build folder they stand where find_package() does not look: what they include exists only once installed.
+# Installs headers, libraries and the package files of find_package(evbench): everything that an external plugin may
+# use. In the build folder the package files are where find_package() does not search, because they include files that
+# exist only after the installation.
 function(evbench_install_package)
   include(CMakePackageConfigHelpers)
   set(libraries)
@@ -190,28 +192,26 @@ function(evbench_install_package)
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/evbench/core/testing)
 endfunction()
 
-# Documents, by the paths with which messages cite them; completion and the manual page, which the program itself writes
-# when it is installed.
+# Installs the documents under the paths that messages cite, and the shell completion and manual page, which the program
+# itself writes during the installation.
 function(evbench_install_documents)
-  file(GLOB_RECURSE documents CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/core/*.md
-       ${CMAKE_SOURCE_DIR}/eval/*.md ${CMAKE_SOURCE_DIR}/frontends/*.md ${CMAKE_SOURCE_DIR}/backends/*.md
-       ${CMAKE_SOURCE_DIR}/bench/*.md)
-  list(FILTER documents EXCLUDE REGEX "/templates/")
-  foreach(document IN LISTS documents ITEMS README.md LICENSE)
-    get_filename_component(folder ${document} DIRECTORY)
-    install(FILES ${CMAKE_SOURCE_DIR}/${document} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
-  endforeach()
+  install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
+          FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.png")
   if(CMAKE_CROSSCOMPILING)
     return()
   endif()
-  set(written ${CMAKE_BINARY_DIR}/written)
+  # A folder for each installation: two of them may run at a time.
   install(CODE "
-    file(MAKE_DIRECTORY \"${written}\")
+    string(MD5 id \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\")
+    set(written \"${CMAKE_BINARY_DIR}/written/\${id}\")
+    set(share \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\")
     set(evbench \"${CMAKE_COMMAND}\" -E env --unset=EVBENCH_PLUGINS \"$<TARGET_FILE:evbench>\")
-    execute_process(COMMAND \${evbench} completion bash OUTPUT_FILE \"${written}/evbench\" COMMAND_ERROR_IS_FATAL ANY)
-    execute_process(COMMAND \${evbench} completion zsh OUTPUT_FILE \"${written}/_evbench\" COMMAND_ERROR_IS_FATAL ANY)
-    execute_process(COMMAND \${evbench} man OUTPUT_FILE \"${written}/evbench.1\" COMMAND_ERROR_IS_FATAL ANY)")
-  install(FILES ${written}/evbench DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-  install(FILES ${written}/_evbench DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
-  install(FILES ${written}/evbench.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+    file(MAKE_DIRECTORY \"\${written}\")
+    execute_process(COMMAND \${evbench} completion bash OUTPUT_FILE \"\${written}/evbench\" COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND \${evbench} completion zsh OUTPUT_FILE \"\${written}/_evbench\" COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND \${evbench} man OUTPUT_FILE \"\${written}/evbench.1\" COMMAND_ERROR_IS_FATAL ANY)
+    file(INSTALL \"\${written}/evbench\" DESTINATION \"\${share}/bash-completion/completions\")
+    file(INSTALL \"\${written}/_evbench\" DESTINATION \"\${share}/zsh/site-functions\")
+    file(INSTALL \"\${written}/evbench.1\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1\")")
 endfunction()

@@ -1,5 +1,5 @@
-# cmake -DBUILD=... -DNINJA=... -P check_demo_build.cmake: what `cmake --install BUILD` installs of the build folder is there
-# once the program alone was built, as demo.sh does.
+# cmake -DBUILD=... -DNINJA=... -P check_demo_build.cmake: checks that building only the program, as demo.sh does,
+# builds all files of the build folder that `cmake --install BUILD` installs.
 cmake_minimum_required(VERSION 3.22)
 
 execute_process(COMMAND ${NINJA} -C ${BUILD} -t inputs evbench OUTPUT_VARIABLE inputs RESULT_VARIABLE result)
@@ -17,7 +17,7 @@ foreach(script IN LISTS scripts)
     string(REGEX REPLACE "\"${BUILD}/(.*)\"" "\\1" file "${file}")
     string(FIND "${inputs}" "${file}\n" place)
     if(place EQUAL -1)
-      message(SEND_ERROR "${file} is installed, and is not built with evbench; expected it to be")
+      message(SEND_ERROR "${file} is installed but not built with the target evbench; expected it to be built")
     endif()
     math(EXPR count "${count} + 1")
   endforeach()

@@ -1,9 +1,9 @@
-# cmake -DROOT=... -DBUILD=... -DWORK=... -DGENERATOR=... -DCXX=... [-DFLAGS=...] -P check_example.cmake: installs to a temporary
-# prefix and does with a copy of examples/spline_map what its README says, outside the source and the build tree: builds
-# it, passes its tests (the conformance battery among them), and compares it with the built-in back-ends, in one thread
-# and in two.
+# cmake -DROOT=... -DBUILD=... -DWORK=... -DGENERATOR=... -DCXX=... [-DFLAGS=...] -P check_example.cmake: installs
+# evbench to a temporary prefix and follows the README of examples/spline_map with a copy outside the source and build
+# trees. It builds the copy, runs its tests (with the conformance battery), and compares it with the built-in back-ends
+# in one thread and in two.
 cmake_minimum_required(VERSION 3.22)
-include(${CMAKE_CURRENT_LIST_DIR}/as_stranger.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/installed_evbench.cmake)
 
 file(COPY ${ROOT}/examples/spline_map DESTINATION ${WORK} PATTERN build EXCLUDE)
 set(example ${WORK}/spline_map)
@@ -18,6 +18,6 @@ foreach(mode sequential concurrent)
   file(SHA256 ${trajectory} ${mode})
 endforeach()
 if(NOT sequential STREQUAL concurrent)
-  message(FATAL_ERROR "spline_map's trajectory in one thread differs from that in two")
+  message(FATAL_ERROR "spline_map's trajectory with one thread differs from that with two")
 endif()
 file(REMOVE_RECURSE ${WORK})

@@ -1,12 +1,13 @@
-# cmake -DROOT=... -P check_includes.cmake: each folder includes only what it may use. core: core; eval: core; a
-# front-end or back-end: core and its own folder; bench: everything. Tests may use eval and all of testing/ besides.
+# cmake -DROOT=... -P check_includes.cmake: checks that each folder includes only the folders that it may use. core:
+# core; eval: core; a front-end or back-end: core and its own folder; bench: everything. Tests may also use eval and
+# testing/.
 cmake_minimum_required(VERSION 3.22)
 
 function(check_folder folder)
   set(allowed core ${ARGN} ${folder})
   file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.cpp)
   if(NOT files)
-    message(SEND_ERROR "${folder}: has no source; expected some to check")
+    message(SEND_ERROR "${folder}: has no source file; expected some to check")
   endif()
   foreach(file IN LISTS files)
     set(may ${allowed})

@@ -1,9 +1,10 @@
-# cmake -DBUILD=... -DWORK=... -DGENERATOR=... -DCXX=... [-DFLAGS=...] -P check_install.cmake: installs to a temporary prefix. As a
-# stranger would, outside the build tree, builds and runs a program that finds evbench there, and takes a new plugin of
-# each kind from `evbench new-plugin` to a table; looks for the documents that messages cite; then gives the program libraries that are no plugins of this evbench.
+# cmake -DBUILD=... -DWORK=... -DGENERATOR=... -DCXX=... [-DFLAGS=...] -P check_install.cmake: installs evbench to a
+# temporary prefix. Outside the build tree it builds and runs a program that uses the installed evbench, and takes a new
+# plugin of each kind from `evbench new-plugin` to a table. It checks that the documents that messages cite are
+# installed, and that the program refuses libraries that are not plugins of this evbench.
 cmake_minimum_required(VERSION 3.22)
 
-include(${CMAKE_CURRENT_LIST_DIR}/as_stranger.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/installed_evbench.cmake)
 set(kinds backend frontend source)
 
 run(COMMAND ${evbench} list)
@@ -13,10 +14,10 @@ endforeach()
 run(COMMAND ${evbench} new-plugin backend my_minimal --minimal --out ${WORK}/project/my_minimal
     OUTPUT "build/libmy_minimal.so")
 
-# All in one project, which is configured once.
+# One project for all, configured once.
 file(WRITE ${WORK}/project/CMakeLists.txt [[
 cmake_minimum_required(VERSION 3.22)
-project(stranger LANGUAGES CXX)
+project(installed_plugins LANGUAGES CXX)
 enable_testing()
 foreach(kind backend frontend source minimal)
   add_subdirectory(my_${kind})
@@ -67,12 +68,12 @@ run(COMMAND ${evbench} run ${WORK}/project/my_minimal/config.json --out ${WORK}/
 run(COMMAND ${evbench} table ${WORK}/results/my_backend OUTPUT "my_backend +[0-9]")
 run(COMMAND ${CMAKE_COMMAND} -E env EVBENCH_PLUGINS=${WORK}/build ${evbench} check-plugin my_source OUTPUT "ok")
 
-# Documents that help and descriptions cite; what shells and man read.
+# Documents that help texts and descriptions cite; shell completion and manual page.
 set(share ${WORK}/prefix/share)
 execute_process(COMMAND ${evbench} --help-all OUTPUT_VARIABLE texts COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${evbench} list OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "[a-z_]+/[a-z_/]+\\.md" cited "${texts}${list}")
-foreach(document IN LISTS cited ITEMS core/process/protocol.md bench/sweep/sweep.md eval/metrics.md README.md)
+foreach(document IN LISTS cited ITEMS docs/reference/process_protocol.md docs/guides/sweep.md docs/reference/metrics.md README.md)
   if(NOT EXISTS ${share}/doc/evbench/${document})
     message(SEND_ERROR "${document} is cited, and is not installed in ${share}/doc/evbench; expected it there")
   endif()

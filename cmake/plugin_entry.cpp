@@ -1,4 +1,4 @@
-// What makes a shared library a plugin of evbench: evbench_add_plugin compiles it into each.
+// The entry points that make a shared library an evbench plugin: evbench_add_plugin compiles them into each plugin.
 #include "core/plugin/abi.hpp"
 #include "core/plugin/registration.hpp"
 

@@ -1,4 +1,4 @@
-// The main function of test programs, a plugin's own and evbench's.
+// The main function of test programs, of plugins and of evbench.
 #define CATCH_CONFIG_RUNNER
 #include "core/testing/catch2.hpp"
 

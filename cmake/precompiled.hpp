@@ -1,5 +1,5 @@
-// What most sources of evbench read first, read by the compiler once (EVBENCH_PRECOMPILE). Every source includes what
-// it uses nonetheless: builds without this check that.
+// Precompiled header of most sources (EVBENCH_PRECOMPILE). Every source still includes what it uses; builds without
+// precompiled headers check that.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,4 +1,4 @@
-// The same for sources that read and write JSON.
+// Precompiled header of sources that read and write JSON.
 #include <nlohmann/json.hpp>
 
 #include "cmake/precompiled.hpp"

@@ -1,3 +1,3 @@
-// The same for tests.
+// Precompiled header of tests.
 #include "cmake/precompiled.hpp"
 #include "core/testing/catch2.hpp"

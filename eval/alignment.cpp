@@ -2,15 +2,15 @@
 
 #include <cmath>
 
-#include "core/support/index.hpp"
 #include "core/geometry/nearest_rotation.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench {
 namespace {
 
 constexpr double kDegenerate = 1e-12;  // relative to the product of the spreads: 1e-6 in each trajectory's size
 
-/// First and second moments of the positions; orientations for what positions leave open.
+/// First and second moments of the positions; orientations for what positions do not determine.
 struct Moments {
   Vector3 mean_truth = Vector3::Zero(), mean_estimate = Vector3::Zero();
   double variance_truth = 0.0, variance_estimate = 0.0;
@@ -36,7 +36,7 @@ Moments moments(std::span<const PosePair> pairs) {
   return m;
 }
 
-bool stands_still(double variance, const Vector3& mean) {
+bool is_stationary(double variance, const Vector3& mean) {
   const double rounding = 1e-9 * (1.0 + mean.norm());
   return variance <= rounding * rounding;
 }
@@ -58,13 +58,14 @@ Alignment align_yaw(const Moments& m) {
   const Matrix3& C = m.covariance;
   const double determined = std::hypot(C(1, 0) - C(0, 1), C(0, 0) + C(1, 1));
   const bool open = determined <= kDegenerate * std::sqrt(m.variance_truth * m.variance_estimate) ||
-                    stands_still(m.variance_truth, m.mean_truth) || stands_still(m.variance_estimate, m.mean_estimate);
+                    is_stationary(m.variance_truth, m.mean_truth) ||
+                    is_stationary(m.variance_estimate, m.mean_estimate);
   return {through_means(m, rotation_about(z, best_angle(z, open ? m.rotations : C)), 1.0),
           open ? "no horizontal motion: the yaw is from orientations" : ""};
 }
 
-Alignment align_standing(const Moments& m, AlignmentMethod method, const char* who) {
-  const std::string note = fmt::format("the {} stands still: ", who);
+Alignment align_stationary(const Moments& m, AlignmentMethod method, const char* who) {
+  const std::string note = fmt::format("the {} is stationary: ", who);
   if (method == AlignmentMethod::scale) return {{}, note + "the scale is not determined and left at 1"};
   const bool with_scale = method == AlignmentMethod::sim3;
   return {through_means(m, nearest_rotation(m.rotations).R, 1.0),
@@ -99,8 +100,8 @@ Alignment align(std::span<const PosePair> pairs, AlignmentMethod method) {
   }
   const Moments m = moments(pairs);
   if (method == AlignmentMethod::yaw) return align_yaw(m);
-  if (stands_still(m.variance_estimate, m.mean_estimate)) return align_standing(m, method, "estimate");
-  if (stands_still(m.variance_truth, m.mean_truth)) return align_standing(m, method, "ground truth");
+  if (is_stationary(m.variance_estimate, m.mean_estimate)) return align_stationary(m, method, "estimate");
+  if (is_stationary(m.variance_truth, m.mean_truth)) return align_stationary(m, method, "ground truth");
   return align_umeyama(m, method);
 }
 

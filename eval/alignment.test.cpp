@@ -18,7 +18,7 @@ void check_equal(const Similarity& found, const Similarity& expected) {
   CHECK((found.T.q.conjugate() * expected.T.q).vec().norm() < 1e-9);
 }
 
-/// Sums of squares of what is left after an alignment.
+/// Sums of squares of the errors after an alignment.
 struct Left {
   double trans = 0.0, rot = 0.0;
 };
@@ -75,7 +75,7 @@ TEST_CASE("No small change of an alignment gives less error") {
     const Similarity best = align(pairs, method).transform;
     const double least = left_after(pairs, best).trans;
     for (int k = 0; k < 6; ++k) {
-      if (method == AlignmentMethod::yaw && k < 2) continue;  // roll and pitch are not its to choose
+      if (method == AlignmentMethod::yaw && k < 2) continue;  // yaw alignment has no roll and pitch
       for (const double step : {-1e-3, 1e-3}) {
         Vector6 change = Vector6::Zero();
         change[k] = step;
@@ -103,18 +103,18 @@ TEST_CASE("On a straight line the rotation about it comes from the orientations"
   CHECK(found.note.find("on a line") != std::string::npos);
 }
 
-TEST_CASE("A trajectory that stands still keeps scale 1 and says so") {
+TEST_CASE("A stationary trajectory keeps scale 1, with a note") {
   const auto standing = [](double t) { return SE3{wavy_pose(t).q, {1.0, 2.0, 3.0}}; };
   const PoseTrajectory still = sample(standing, 50, 0.05);
   const PoseTrajectory moving = sample(wavy_pose, 50, 0.05);
   for (const AlignmentMethod method : {AlignmentMethod::se3, AlignmentMethod::sim3, AlignmentMethod::scale}) {
     const Alignment estimate_still = align(paired(moving, still), method);
     CHECK(estimate_still.transform.scale == 1.0);
-    CHECK(estimate_still.note.find("the estimate stands still") == 0);
-    // Umeyama's scale would be 0 here, and the error with it.
+    CHECK(estimate_still.note.find("the estimate is stationary") == 0);
+    // Umeyama's scale would be 0 here, and so would be the error.
     const Alignment truth_still = align(paired(still, moving), method);
     CHECK(truth_still.transform.scale == 1.0);
-    CHECK(truth_still.note.find("the ground truth stands still") == 0);
+    CHECK(truth_still.note.find("the ground truth is stationary") == 0);
   }
   const auto pairs = paired(still, seen_from(still, kRigid));
   const Left left = left_after(pairs, align(pairs, AlignmentMethod::se3).transform);

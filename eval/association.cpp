@@ -17,7 +17,7 @@ std::size_t nearest_index(const std::vector<StampedPose>& poses, double t) {
   return t - poses[index - 1].t <= right->t - t ? index - 1 : index;
 }
 
-constexpr double kFarthest = 1e50;  // [m]: beyond it, products of squares are no numbers any more
+constexpr double kFarthest = 1e50;  // [m]: beyond it, products of squares overflow
 
 void check(const PoseTrajectory& trajectory, const char* name) {
   if (trajectory.empty()) throw InputError(fmt::format("the {} has no poses", name));
@@ -62,9 +62,8 @@ std::vector<PosePair> interpolated_pairs(const PoseTrajectory& ground_truth, con
   return pairs;
 }
 
-/// The unit that the times of a trajectory, which has two poses or more, seem to have been written in, in place of
-/// seconds: nullptr where they may be seconds. Its span is compared with the other's, the distance of its poses with
-/// what cameras do.
+/// The probable unit of a trajectory's times if it is not seconds, else null. Compares its time span with the other's,
+/// and the interval of its poses with usual rates. It must have at least two poses.
 const char* other_unit(const PoseTrajectory& trajectory, double other_span) {
   const double span = trajectory.end() - trajectory.start();
   const double step = span / static_cast<double>(trajectory.size() - 1);
@@ -75,7 +74,7 @@ const char* other_unit(const PoseTrajectory& trajectory, double other_span) {
   return nullptr;
 }
 
-/// A guess why nothing matches.
+/// The probable reason why too few poses match.
 std::string hint(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate,
                  const AssociationOptions& options) {
   const double start = estimate.start() + options.time_offset;
@@ -128,9 +127,9 @@ Association associate(const PoseTrajectory& ground_truth, const PoseTrajectory& 
                                                           : interpolated_pairs(truth, estimate, options);
   if (result.pairs.size() < options.min_pairs) fail_too_few(truth, estimate, result.pairs.size(), options);
   std::size_t used = 0;
-  double last = -std::numeric_limits<double>::infinity();  // a pose in several pairs stands in them one after the other
+  double last = -std::numeric_limits<double>::infinity();  // pairs of the same pose are consecutive
   for (const PosePair& pair : result.pairs) used += std::exchange(last, pair.t) != pair.t ? 1 : 0;
-  result.left_aside = estimate.size() - used;
+  result.unmatched = estimate.size() - used;
   std::vector<double> truth_times, pair_times;
   for (const StampedPose& pose : truth.poses()) truth_times.push_back(pose.t);
   for (const PosePair& pair : result.pairs) pair_times.push_back(pair.t);

@@ -56,7 +56,7 @@ TEST_CASE("Interpolated ground truth is at the estimate's own times") {
   CHECK(found.pairs.size() == 26);  // those before the ground truth begins have none
 }
 
-TEST_CASE("Ground truth is not interpolated across a hole that is wider than the tolerance allows") {
+TEST_CASE("Ground truth is not interpolated across a gap that is longer than the tolerance allows") {
   std::vector<StampedPose> poses;
   for (int i = 0; i <= 200; ++i) {
     if (i <= 50 || i >= 150) poses.push_back({0.01 * i, wavy_pose(0.01 * i)});
@@ -79,7 +79,7 @@ TEST_CASE("A time offset and a time range select the pairs") {
   for (const PosePair& pair : found.pairs) CHECK((pair.ground_truth.p - pair.estimate.p).norm() == 0.0);
 }
 
-TEST_CASE("Too few pairs are an error that says why") {
+TEST_CASE("Too few pairs are an error with the probable reason") {
   const PoseTrajectory truth = sample(wavy_pose, 101, 0.01);
   const auto stretched = [&](double factor, double offset) {
     std::vector<StampedPose> poses;
@@ -100,7 +100,7 @@ TEST_CASE("Too few pairs are an error that says why") {
                     ContainsSubstring("no ground truth in the time range 5 to 6"));
 }
 
-TEST_CASE("What is wrong with an estimate of few poses, or of a short time, is not taken for a unit of time") {
+TEST_CASE("An estimate of few poses, or of a short time, is not reported as a wrong unit of time") {
   const PoseTrajectory truth = sample(wavy_pose, 1001, 0.01);
   const auto message = [&](const PoseTrajectory& ground_truth, const PoseTrajectory& estimate) -> std::string {
     try {
@@ -118,7 +118,7 @@ TEST_CASE("What is wrong with an estimate of few poses, or of a short time, is n
   CHECK_THAT(message(milliseconds, truth), ContainsSubstring("the ground truth's times look like milliseconds"));
 }
 
-TEST_CASE("Positions that no longer can be squared are refused by where they are") {
+TEST_CASE("Positions too far from the origin to be squared are an error with their place") {
   const PoseTrajectory truth = sample(wavy_pose, 10);
   const PoseTrajectory far = testing::seen_from(truth, {1e-200, {}});
   CHECK_THROWS_WITH(associate(truth, far, {}),
@@ -135,7 +135,7 @@ TEST_CASE("Empty trajectories and poses that are not finite are errors") {
   CHECK_THROWS_WITH(associate(truth, PoseTrajectory(poses), {}), ContainsSubstring("estimate's pose at 0.040000 s"));
 }
 
-TEST_CASE("Coverage is the share of the ground truth's time, without holes") {
+TEST_CASE("Coverage is the share of the ground truth's time, without gaps") {
   const std::vector<double> truth = times(0.0, 10.0, 0.005);
   CHECK(coverage(truth, truth) == Approx(1.0));
   CHECK(coverage(truth, times(0.0, 10.0, 0.4)) == Approx(1.0));
@@ -144,28 +144,28 @@ TEST_CASE("Coverage is the share of the ground truth's time, without holes") {
   CHECK(coverage(truth, joined(times(0.0, 2.0, 0.01), times(8.0, 10.0, 0.01))) == Approx(0.4));
 }
 
-TEST_CASE("A handful of poses far apart covers nothing") {
+TEST_CASE("A few poses far apart in time cover nothing") {
   CHECK(coverage(times(0.0, 20.0, 0.005), {{0.0, 10.0, 20.0}}) == 0.0);
 }
 
-TEST_CASE("Holes of the ground truth do not count against an estimate, nor for it") {
+TEST_CASE("Gaps of the ground truth do not change the coverage of an estimate") {
   const std::vector<double> truth = joined(times(0.0, 2.0, 0.005), times(4.0, 6.0, 0.005));
   CHECK(coverage(truth, truth) == Approx(1.0));
   CHECK(coverage(truth, times(0.0, 6.0, 0.5)) == Approx(1.0));
   CHECK(coverage(truth, times(0.0, 4.0, 0.5)) == Approx(0.5));
 }
 
-TEST_CASE("Poses of the estimate in no pair are counted, each once") {
+TEST_CASE("Unmatched poses of the estimate are counted, each once") {
   const PoseTrajectory truth = sample(wavy_pose, 11, 0.1), dense = sample(wavy_pose, 101, 0.01);
   const Association sparse = associate(truth, dense, {});
   CHECK(sparse.pairs.size() == 11);
-  CHECK(sparse.left_aside == 90);
-  CHECK(associate(dense, truth, {}).left_aside == 0);
-  CHECK(associate(truth, dense, {.mode = AssociationMode::interpolated, .tolerance = 0.1}).left_aside == 0);
+  CHECK(sparse.unmatched == 90);
+  CHECK(associate(dense, truth, {}).unmatched == 0);
+  CHECK(associate(truth, dense, {.mode = AssociationMode::interpolated, .tolerance = 0.1}).unmatched == 0);
   // Two poses of the ground truth share one of the estimate.
   const PoseTrajectory late = sample(wavy_pose, 12, 0.0625, 0.03125);
   const Association shared = associate(sample(wavy_pose, 11, 0.0625), late, {.tolerance = 0.04});
-  CHECK(shared.left_aside == late.size() - 10);
+  CHECK(shared.unmatched == late.size() - 10);
 }
 
 }  // namespace evbench

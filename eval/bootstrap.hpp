@@ -15,9 +15,9 @@ struct BootstrapOptions {
   std::uint64_t seed = 1;  ///< the same values and seed give the same digits
 };
 
-/// The interval in which the median of what the values were drawn from lies with the probability `level`: percentiles
-/// of the medians of `samples` draws with replacement (Efron 1979). Values may be infinite, none NaN. With fewer than
-/// two values nothing is known: −∞ to ∞.
+/// Confidence interval of the median of the values' distribution, with the probability `level`: percentiles of the
+/// medians of `samples` draws with replacement (Efron 1979). Values may be infinite, but not NaN. For fewer than two
+/// values it is −∞ to ∞.
 Interval bootstrap_median(std::span<const double> values, const BootstrapOptions& options = {});
 
 }  // namespace evbench

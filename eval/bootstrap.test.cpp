@@ -9,7 +9,7 @@
 
 namespace evbench {
 
-TEST_CASE("A bootstrap interval is the same each time, holds the median, and narrows with more values") {
+TEST_CASE("A bootstrap interval is reproducible, contains the median, and narrows with more values") {
   std::mt19937_64 random(3);
   std::vector<double> values;
   for (int i = 0; i < 400; ++i) values.push_back(static_cast<double>(random() % 1000));
@@ -23,7 +23,7 @@ TEST_CASE("A bootstrap interval is the same each time, holds the median, and nar
   CHECK(many.to - many.from < 0.5 * (few.to - few.from));
 }
 
-TEST_CASE("A bootstrap interval of the median is right in as many cases as it promises") {
+TEST_CASE("A bootstrap interval of the median contains it as often as its level states") {
   std::mt19937_64 random(7);
   int right = 0;
   for (int i = 0; i < 200; ++i) {
@@ -36,7 +36,7 @@ TEST_CASE("A bootstrap interval of the median is right in as many cases as it pr
   CHECK(right <= 192);
 }
 
-TEST_CASE("Of one value no interval is known, and failures reach into it") {
+TEST_CASE("One value has an infinite interval, and failures extend an interval") {
   const double inf = std::numeric_limits<double>::infinity();
   CHECK(bootstrap_median(std::vector<double>{1.0}).to == inf);
   CHECK(bootstrap_median(std::vector<double>{1.0}).from == -inf);

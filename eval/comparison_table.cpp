@@ -41,7 +41,7 @@ std::vector<Metric> compared_metrics(const ComparisonOptions& options, const std
   return metrics;
 }
 
-/// The SHA-256 of the observations that a run was given; empty where it is not known.
+/// The SHA-256 of a run's observations; empty if it is not known.
 std::string observations_of(const RunRecord& run) {
   std::ifstream file(run.folder + "/manifest.json");
   const Json manifest = try_parse_json(std::string(std::istreambuf_iterator<char>(file), {}));
@@ -61,7 +61,7 @@ class Comparison {
   Comparison(std::span<const RunRecord> runs, const ComparisonOptions& options)
       : options_(options),
         csv_(options.format == TableFormat::csv),
-        numbers_(numbers_of(runs, options.online)),
+        numbers_(numbers_of(runs, options.causal)),
         data_(number_data(numbers_)),
         protocols_(collect_protocols(numbers_)),
         methods_(methods_of(numbers_, run_columns(runs))) {
@@ -169,7 +169,7 @@ class Comparison {
   std::vector<Method> methods_;
   const Method* base_ = nullptr;
   std::vector<Metric> metrics_;
-  std::optional<std::string> too_few_;                    ///< to be said if it is so of all metrics; empty: it is not
+  std::optional<std::string> too_few_;                    ///< note if all metrics have too few pairs; empty: they don't
   std::set<std::pair<std::size_t, std::size_t>> paired_;  ///< own and base's run of each pair of any metric
   TextTable table_;
 };

@@ -3,10 +3,10 @@
 #include <fstream>
 
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "eval/methods.hpp"
 #include "eval/testing/runs.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -49,7 +49,7 @@ TEST_CASE("Back-ends are compared pair by pair: ratio, interval, p, correction, 
           ContainsSubstring("half,ate.trans_m.rmse,8,0,0,0.5"));
 }
 
-TEST_CASE("Where so few pairs can't tell anything, that is said, and how many it takes") {
+TEST_CASE("A note says that there are too few pairs for significance, and how many are needed") {
   Results results;
   for (int seed = 1; seed <= 5; ++seed) {
     for (const char* label : {"a", "b", "c"}) results.add_seed(label, seed, 0.01 * seed);
@@ -59,7 +59,7 @@ TEST_CASE("Where so few pairs can't tell anything, that is said, and how many it
   CHECK_THAT(Compared().table(), !ContainsSubstring("nothing can reach that"));
 }
 
-TEST_CASE("Observations that were identical are counted") {
+TEST_CASE("Pairs with identical observations are counted") {
   const Compared results;
   int n = 0;
   for (const RunRecord& run : results.find()) {
@@ -85,13 +85,13 @@ TEST_CASE("Settings that differ on the same data are part of a method's name") {
   const std::vector<RunRecord> runs = results.find();
   const auto methods = methods_of(numbers_of(runs, false), run_columns(runs));
   REQUIRE(methods.size() == 2);
-  CHECK(methods[0].name == "bundle, backend.frame_duration 0.1");
+  CHECK(methods[0].name == "bundle, backend.batch_duration 0.1");
   CHECK(methods[1].runs.size() == 3);
   CHECK_THAT(make_comparison_table(runs, {}),
-             ContainsSubstring("bundle, backend.frame_duration 0.2") && ContainsSubstring("2 [2, 2]"));
+             ContainsSubstring("bundle, backend.batch_duration 0.2") && ContainsSubstring("2 [2, 2]"));
 }
 
-TEST_CASE("What can't be compared is refused with what was expected") {
+TEST_CASE("Runs that can't be compared are an error that says what is expected") {
   const Compared results;
   CHECK_THROWS_WITH(results.table({.base = "bas"}), "there is no method \"bas\"; did you mean \"base\"?");
   CHECK_THROWS_WITH(results.table({.metrics = {"coverage"}}),

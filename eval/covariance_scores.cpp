@@ -14,7 +14,7 @@ CovarianceScores score_covariances(std::span<const RelativePose> poses, const Po
     const std::optional<SE3> from = ground_truth.pose(pose.t0 + time_offset);
     const std::optional<SE3> to = ground_truth.pose(pose.t1 + time_offset);
     if (!from || !to) continue;
-    // Sums of parts of a matrix begin where memory is aligned: in one and the same place the digits are the same.
+    // The order of Eigen's sums depends on the alignment of memory: a fixed place makes the digits reproducible.
     alignas(64) const Eigen::LLT<Matrix6> covariance(units.asDiagonal() * pose.covariance * units.asDiagonal());
     if (covariance.info() != Eigen::Success) {
       ++scores.singular;

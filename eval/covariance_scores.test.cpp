@@ -11,8 +11,9 @@ namespace {
 
 constexpr double kScale = 2.5;  // metres in the estimate's unit
 
-/// Relative poses over 0.1 s, in the estimate's unit, with errors drawn from a covariance; `promised` times it is told.
-std::vector<RelativePose> drawn(const PoseTrajectory& truth, double promised, int count = 2000) {
+/// Relative poses over 0.1 s, in the estimate's unit, with errors drawn from a covariance. The stated covariance is
+/// `factor` times as large.
+std::vector<RelativePose> drawn(const PoseTrajectory& truth, double factor, int count = 2000) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   std::vector<RelativePose> poses;
@@ -30,14 +31,14 @@ std::vector<RelativePose> drawn(const PoseTrajectory& truth, double promised, in
     Vector6 units = Vector6::Ones();
     units.tail<3>().setConstant(1.0 / kScale);
     poses.push_back(
-        {"over_100ms", t0, t1, metric, promised * (units.asDiagonal() * L * L.transpose() * units.asDiagonal())});
+        {"over_100ms", t0, t1, metric, factor * (units.asDiagonal() * L * L.transpose() * units.asDiagonal())});
   }
   return poses;
 }
 
 }  // namespace
 
-TEST_CASE("Errors that are as large as their covariances say score one, in whatever unit the estimate is") {
+TEST_CASE("Errors that agree with their covariances have NEES one, in any unit of the estimate") {
   const PoseTrajectory truth = testing::sample(testing::wavy_pose, 500);
   const CovarianceScores scores = score_covariances(drawn(truth, 1.0), truth, kScale, 0.0);
   CHECK(scores.n == 2000);
@@ -49,11 +50,11 @@ TEST_CASE("Errors that are as large as their covariances say score one, in whate
   CHECK(score_covariances(drawn(truth, 1.0), truth, 1.0, 0.0).nees > 1.5);  // the scale is missing
 }
 
-TEST_CASE("A covariance that promises too much is seen, and one that is none is counted") {
+TEST_CASE("Overconfident covariances have a larger NEES, and singular ones are counted") {
   const PoseTrajectory truth = testing::sample(testing::wavy_pose, 500);
-  const CovarianceScores proud = score_covariances(drawn(truth, 0.25), truth, kScale, 0.0);
-  CHECK(proud.nees == Approx(4.0).epsilon(0.05));
-  CHECK(proud.within[0] < 0.4);
+  const CovarianceScores overconfident = score_covariances(drawn(truth, 0.25), truth, kScale, 0.0);
+  CHECK(overconfident.nees == Approx(4.0).epsilon(0.05));
+  CHECK(overconfident.within[0] < 0.4);
   std::vector<RelativePose> poses = drawn(truth, 1.0, 10);
   poses[3].covariance.setZero();
   poses[4].t1 = 100.0;  // no ground truth there

@@ -7,23 +7,23 @@
 namespace evbench {
 namespace {
 
-constexpr double kShortestHole = 0.1;  // [s]
-constexpr double kLongestStep = 1.0;   // [s]
-constexpr double kHoleFactor = 3.0;    // times the median distance of stamps
+constexpr double kShortestGap = 0.1;  // [s]
+constexpr double kLongestStep = 1.0;  // [s]
+constexpr double kGapFactor = 3.0;    // times the median distance of stamps
 
 struct Span {
   double from = 0.0, to = 0.0;
 };
 
-/// The spans of time between holes.
+/// The time spans between gaps.
 std::vector<Span> without_holes(std::span<const double> times) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
   if (steps.empty()) return {};
-  const double hole = std::clamp(kHoleFactor * median(steps), kShortestHole, kLongestStep);
+  const double gap = std::clamp(kGapFactor * median(steps), kShortestGap, kLongestStep);
   std::vector<Span> spans = {{times.front(), times.front()}};
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    if (steps[i] > hole) spans.push_back({times[i + 1], times[i + 1]});
+    if (steps[i] > gap) spans.push_back({times[i + 1], times[i + 1]});
     spans.back().to = times[i + 1];
   }
   return spans;
@@ -35,7 +35,7 @@ double total(const std::vector<Span>& spans) {
   return sum;
 }
 
-/// Time that lies in both; each list in time order, without overlaps.
+/// Duration of the intersection; each list in time order, without overlaps.
 double common(const std::vector<Span>& a, const std::vector<Span>& b) {
   double sum = 0.0;
   for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {

@@ -28,8 +28,8 @@ IndexPairs pairs_by_frames(std::size_t count, std::size_t delta, Pairing pairing
   return result;
 }
 
-/// The index after `i` whose place is nearest to place[i] + delta, the first of equally near ones; none when that is
-/// farther from delta than the tolerance. `place` does not fall.
+/// The index after `i` whose place is nearest to place[i] + delta, the first of equally near ones; none if that is
+/// farther from delta than the tolerance. `place` does not decrease.
 std::optional<std::size_t> nearest_after(const std::vector<double>& place, std::size_t i, double delta,
                                          double tolerance) {
   const auto begin = place.begin() + static_cast<std::ptrdiff_t>(i) + 1;
@@ -54,7 +54,7 @@ IndexPairs pairs_by_place(const std::vector<double>& place, double delta, double
   return result;
 }
 
-/// Where the sum of steps (step i leads from i to i + 1) reaches delta, beginning anew each time.
+/// The indices at which the sum of steps (step i is from i to i + 1) reaches delta, restarting from zero each time.
 std::vector<std::size_t> cuts(const std::vector<double>& steps, double delta) {
   std::vector<std::size_t> result;
   double sum = 0.0;
@@ -111,7 +111,8 @@ std::vector<std::pair<std::size_t, std::size_t>> delta_pairs(std::span<const Pos
   check(options);
   if (pairs.empty()) return {};
   if (options.unit == DeltaUnit::frames) {
-    const double delta = std::min(options.delta, static_cast<double>(pairs.size()));  // more: no pairs either way
+    const double delta =
+        std::min(options.delta, static_cast<double>(pairs.size()));  // a larger delta has no pairs either
     return pairs_by_frames(pairs.size(), static_cast<std::size_t>(delta), options.pairing);
   }
   if (options.unit == DeltaUnit::seconds) {

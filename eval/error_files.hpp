@@ -6,11 +6,11 @@
 
 namespace evbench {
 
-/// The whole estimate as it was compared: aligned, on the ground truth's clock.
+/// The whole estimate, aligned and on the ground truth's clock.
 PoseTrajectory aligned_estimate(const PoseTrajectory& estimate, const Scores& scores);
 
-/// The absolute error of each pose compared, as CSV: `t_s,trans_m,rot_deg,x_m,y_m,z_m`; the last three are the aligned
-/// estimate's position minus the ground truth's. Numbers have the shortest digits that read back as the same.
+/// The absolute error of each compared pose, as CSV: `t_s,trans_m,rot_deg,x_m,y_m,z_m`; the last three are the aligned
+/// estimate's position minus the ground truth's. Numbers have the fewest digits that read back exactly.
 std::string errors_csv(const Scores& scores);
 
 }  // namespace evbench

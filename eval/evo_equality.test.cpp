@@ -1,10 +1,10 @@
 #include <fstream>
 
 #include "core/data/tum.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 #include "eval/scores.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {

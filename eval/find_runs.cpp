@@ -21,7 +21,7 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// The digits at `at` without leading zeros; `at` moves behind them.
+/// The digits at `at` without leading zeros; moves `at` past them.
 std::string take_number(const std::string& text, std::size_t& at) {
   while (at < text.size() && text[at] == '0') ++at;
   const std::size_t begin = at;
@@ -29,26 +29,26 @@ std::string take_number(const std::string& text, std::size_t& at) {
   return text.substr(begin, at - begin);
 }
 
-/// A folder as it was come by, and its one true name.
+/// A folder by the path on which it was found, and its canonical path.
 struct Place {
   std::string path, canonical;
 };
 
-/// What lies in and below the folders that are searched, each once.
+/// The runs and sweeps in and below the searched folders, each once.
 struct Places {
   std::vector<Place> runs;     ///< with a metrics.json
-  std::vector<Place> missing;  ///< of runs without
+  std::vector<Place> missing;  ///< of runs without metrics.json
   std::vector<Place> sweeps;   ///< with a sweep.json
 };
 
-/// In and below one folder.
+/// Searches in and below one folder.
 Places find_places(const std::string& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) throw InputError(fmt::format("{}: is not a folder", folder));
   const fs::path canonical = fs::canonical(folder);
   Places places;
   const auto options = fs::directory_options::skip_permission_denied;
-  // Sweeps write while tables are made: what vanishes in between is passed over.
+  // A sweep may be writing at the same time: files that vanish in between are skipped.
   for (auto entry = fs::recursive_directory_iterator(folder, options, error); entry != fs::end(entry);
        entry.increment(error)) {
     const std::string name = entry->path().filename().string();
@@ -85,14 +85,14 @@ Places find_places(std::span<const std::string> folders) {
   return all;
 }
 
-/// A run, and where it stands in its sweep's plan.
+/// A run, and its place in its sweep's plan.
 struct FoundRun {
   RunRecord record;
   std::size_t planned = 0;
 };
 
-/// Files are read by as many threads as there are processors. Runs that can't be read are left out, with a sentence
-/// each; by their canonical names.
+/// Reads records by canonical path, with as many threads as there are processors. Unreadable runs are left out, with a
+/// message each.
 std::map<std::string, RunRecord> read_records(const std::vector<Place>& places,
                                               std::map<std::string, std::string>& unreadable) {
   std::vector<RunRecord> records(places.size());
@@ -126,11 +126,11 @@ RunRecord not_run(const SweepRecordRun& run, const std::string& folder) {
   return record;
 }
 
-/// Moves the records of a sweep's runs out of `records`, in the order of its plan. `unreadable`: why, by folder.
+/// Moves the records of a sweep's runs out of `records`, in the order of its plan. `unreadable`: the reason by folder.
 void take_sweep(const Place& sweep, const std::map<std::string, std::string>& unreadable,
                 std::map<std::string, RunRecord>& records, std::vector<FoundRun>& runs) {
   const SweepRecord plan = read_sweep_record(sweep.path + "/sweep.json");
-  std::map<std::string, RunRecord> own;  // several places of a sweep may need the same run
+  std::map<std::string, RunRecord> own;  // several places of a sweep may have the same run
   const std::string prefix = sweep.canonical + "/";
   for (auto it = records.lower_bound(prefix); it != records.end() && it->first.starts_with(prefix);) {
     own.insert(records.extract(it++));
@@ -175,7 +175,7 @@ bool natural_less(const std::string& a, const std::string& b) {
     }
   }
   if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
-  return a < b;  // equal but for leading zeros
+  return a < b;  // equal except for leading zeros
 }
 
 std::vector<RunRecord> find_runs(std::span<const std::string> folders, std::vector<std::string>* unreadable) {

@@ -1,8 +1,8 @@
 #include "eval/find_runs.hpp"
 
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "eval/testing/runs.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -52,10 +52,10 @@ TEST_CASE("Folders without runs and damaged metrics are errors with the place") 
   CHECK_THAT(message("{\"final\": "), ContainsSubstring("key/metrics.json: is not JSON"));
   CHECK_THAT(message("[1, 2]"), ContainsSubstring("expected a JSON object"));
   CHECK_THAT(message("{\"label\": \"a\"}"), ContainsSubstring("\"final\" is missing"));
-  CHECK_THAT(message("{\"final\": null, \"online\": null}"), ContainsSubstring("\"experiment\" is missing"));
+  CHECK_THAT(message("{\"final\": null, \"causal\": null}"), ContainsSubstring("\"experiment\" is missing"));
 }
 
-TEST_CASE("Runs of a sweep stand in its order, with their places on its axes, those not run yet among them") {
+TEST_CASE("Runs of a sweep, also those not run yet, are in its order, with their places on its axes") {
   Results results;
   results.add("batching/a", run("x", "old name", scores_with(0.1)));
   results.add("batching/b", run("x", "bundle", scores_with(0.2)));

@@ -5,11 +5,11 @@
 
 namespace evbench {
 
-/// Below this p, corrected for the number of comparisons, a difference is called significant.
+/// A difference is significant if its p, corrected for the number of comparisons, is below this.
 inline constexpr double kSignificant = 0.05;
 
-/// p-values of several comparisons, each made as large as it must be so that together they are wrong about any one with
-/// no more than the probability that is tested for (Holm 1979). In the same order.
+/// Holm's correction (1979) of the p-values of several comparisons, in the same order: it bounds the probability that
+/// any of them is falsely significant.
 std::vector<double> holm(std::span<const double> p);
 
 }  // namespace evbench

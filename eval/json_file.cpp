@@ -6,8 +6,8 @@
 #include <iterator>
 
 #include "core/support/error.hpp"
-#include "core/support/json_reason.hpp"
 #include "core/support/json.hpp"
+#include "core/support/json_reason.hpp"
 
 namespace evbench {
 

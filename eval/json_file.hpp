@@ -6,10 +6,10 @@
 
 namespace evbench {
 
-/// The content of a file; throws InputError, naming it, when it can't be opened or is no JSON.
+/// Reads a JSON file. Throws InputError with its name if it can't be opened or is not JSON.
 Json read_json_file(const std::string& path);
 
-/// JSON as it stands in a file that people may read: indented, with a line break at its end.
+/// JSON as text for a file: indented, with a line break at its end.
 std::string json_file_text(const Json& json);
 
 }  // namespace evbench

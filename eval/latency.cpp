@@ -9,12 +9,12 @@ namespace evbench {
 namespace {
 
 constexpr double kLongestPrediction = 1.0;  // [s]
-constexpr double kVelocityBase = 0.02;      // [s]: the noise of poses nearer than this is no velocity
+constexpr double kVelocityBase = 0.02;      // [s]: for closer poses noise would dominate the velocity
 constexpr double kRounding = 1e-9;          // [s]
 
-using KnownPoses = std::map<double, const OnlinePose*>;  // by time, the last that was told of it
+using KnownPoses = std::map<double, const CausalPose*>;  // by time, the last one published
 
-Vector6 velocity_of(const OnlinePose& newest, const KnownPoses& known) {
+Vector6 velocity_of(const CausalPose& newest, const KnownPoses& known) {
   if (newest.velocity) return *newest.velocity;
   auto older = known.upper_bound(newest.t - kVelocityBase);
   if (older != known.begin()) --older;
@@ -26,7 +26,7 @@ std::optional<SE3> estimate(const KnownPoses& known, double t) {
   const auto right = known.lower_bound(t);
   if (right == known.end()) {
     if (known.empty() || t - known.rbegin()->first > kLongestPrediction) return std::nullopt;
-    const OnlinePose& newest = *known.rbegin()->second;
+    const CausalPose& newest = *known.rbegin()->second;
     return newest.T * se3::exp((t - newest.t) * velocity_of(newest, known));
   }
   if (right->first == t) return right->second->T;
@@ -36,10 +36,10 @@ std::optional<SE3> estimate(const KnownPoses& known, double t) {
 
 }  // namespace
 
-std::optional<Delay> delay_of(std::span<const OnlinePose> told) {
+std::optional<Delay> delay_of(std::span<const CausalPose> published) {
   std::vector<double> delays;
   double newest = -std::numeric_limits<double>::infinity();
-  for (const OnlinePose& pose : told) {
+  for (const CausalPose& pose : published) {
     if (pose.t <= newest) continue;
     newest = pose.t;
     delays.push_back(pose.known_at.value_or(pose.t) - pose.t);
@@ -49,12 +49,13 @@ std::optional<Delay> delay_of(std::span<const OnlinePose> told) {
   return Delay{delays[delays.size() / 2], delays[delays.size() * 99 / 100], delays.back()};
 }
 
-PoseTrajectory estimates_at_latency(std::span<const OnlinePose> told, std::span<const double> times, double latency) {
+PoseTrajectory estimates_at_latency(std::span<const CausalPose> published, std::span<const double> times,
+                                    double latency) {
   KnownPoses known;
   std::vector<StampedPose> poses;
-  auto next = told.begin();
+  auto next = published.begin();
   for (const double t : times) {
-    for (; next != told.end() && *next->known_at <= t + latency + kRounding; ++next) known[next->t] = &*next;
+    for (; next != published.end() && *next->known_at <= t + latency + kRounding; ++next) known[next->t] = &*next;
     if (const std::optional<SE3> T = estimate(known, t)) poses.push_back({t, *T});
   }
   return PoseTrajectory(std::move(poses), "the estimate at a latency");

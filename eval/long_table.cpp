@@ -18,7 +18,7 @@ std::string long_table(const TableRuns& runs, const TableOptions& options) {
     for (const RunColumn& column : runs.columns) names.push_back(column.values[i]);
     const int protocol = runs.protocols.of_run[i];
     for (const std::string& name :
-         {run.key, run.folder, status_word(run), status_reason(run), std::string(options.online ? "online" : "final"),
+         {run.key, run.folder, status_word(run), status_reason(run), std::string(options.causal ? "causal" : "final"),
           protocol < 0 ? std::string() : runs.protocols.texts[index(protocol)]}) {
       names.push_back(name);
     }

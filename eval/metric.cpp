@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "eval/old_names.hpp"
+
 namespace evbench {
 namespace {
 
@@ -66,8 +68,9 @@ const std::vector<Metric>& known_metrics() {
   return metrics;
 }
 
-Metric metric_of(const std::string& key) {
-  for (const std::string of : {"final", "online"}) {  // the scores of the trajectory that the table isn't of
+Metric metric_of(const std::string& name) {
+  const std::string key = present_metric(name);
+  for (const std::string of : {"final", "causal"}) {  // the scores of the other trajectory
     if (!key.starts_with(of + ".")) continue;
     Metric metric = metric_of(key.substr(of.size() + 1));
     metric.header = metric.header == metric.key ? key : of + " " + metric.header;

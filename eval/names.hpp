@@ -12,7 +12,7 @@
 
 namespace evbench {
 
-/// The names of an enumeration's values 0, 1, 2, ... as they stand in configs and results.
+/// The names of an enumeration's values 0, 1, 2, ... in configs and results.
 template <std::size_t N>
 using NameList = std::array<const char*, N>;
 
@@ -21,7 +21,7 @@ std::vector<std::string> to_strings(const NameList<N>& names) {
   return {names.begin(), names.end()};
 }
 
-/// The value of that name; throws InputError with the known names. `what` says what is named ("alignment").
+/// The value of that name. Throws InputError with the nearest name. `what`: what is named, e.g. "alignment".
 template <class Enum, std::size_t N>
 Enum parse_name(const NameList<N>& names, const std::string& name, const char* what) {
   const std::vector<std::string> known = to_strings(names);

@@ -16,7 +16,7 @@
 namespace evbench {
 namespace {
 
-/// All that a config says of a run, as text; empty where it is not known.
+/// A run's config as text; empty if it is not known.
 std::string config_of(const RunRecord& run) {
   if (!run.done || run.settings.empty() || run.key.empty()) return "";
   std::string text = fmt::format("{}\n{}\n{}\n", run.experiment, run.label, run.seed ? std::to_string(*run.seed) : "");
@@ -25,7 +25,7 @@ std::string config_of(const RunRecord& run) {
   return text;
 }
 
-/// UTC, so that texts compare as times do; empty where nothing is known.
+/// The time of the run as UTC text, which compares like a time; empty if it is not known.
 std::string finished_at(const std::string& folder) {
   std::ifstream file(folder + "/manifest.json");
   const Json manifest = try_parse_json(std::string(std::istreambuf_iterator<char>(file), {}));

@@ -7,11 +7,11 @@
 
 namespace evbench {
 
-/// Of runs that differ in nothing that their configs say (experiment, label, seed, settings, place in a sweep), and are
-/// not the same job, as where a plugin was rebuilt or a recording replaced, only those of the newest job stay. Returns
-/// how many were left out. Runs of which the config is not known all stay, and so do those that were not run.
+/// Keeps only the newest job of runs with equal configs (experiment, label, seed, settings, place in a sweep) that are
+/// different jobs, e.g. because a plugin was rebuilt or a recording replaced. Returns how many runs were left out. Runs
+/// without a known config, and those that were not run, are kept.
 ///
-/// Newest: by "finished" in manifest.json or, where an older version wrote the run, by when metrics.json was written.
+/// The newest is determined by "finished" in manifest.json or, for runs of older versions, by the time of metrics.json.
 std::size_t keep_newest_jobs(std::vector<RunRecord>& runs);
 
 }  // namespace evbench

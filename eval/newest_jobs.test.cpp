@@ -10,14 +10,14 @@ namespace {
 
 using namespace testing;
 
-/// A run of "mine", of a job of its own, that was finished then; "": nobody knows.
+/// A run of "mine" with its own job and this time of completion; "": not known.
 void add_job(const Results& results, const std::string& key, const std::string& finished, double frame = 0.1,
              int seed = 1) {
   Json json = run("arm", "mine", scores_with(0.02));
   json["seed"] = seed;
   json["key"] = key;
   results.add(key, json,
-              {{"seed", seed}, {"source", {{"type", "simulation"}}}, {"backend", {{"frame_duration", frame}}}});
+              {{"seed", seed}, {"source", {{"type", "simulation"}}}, {"backend", {{"batch_duration", frame}}}});
   if (!finished.empty()) results.folder.write(key + "/manifest.json", dump_json({{"finished", finished}}));
 }
 
@@ -32,7 +32,7 @@ std::vector<std::string> keys_left(const Results& results, std::size_t left_out)
 
 }  // namespace
 
-TEST_CASE("Of several jobs of one label and config the newest counts") {
+TEST_CASE("Of several jobs of one label and config only the newest is kept") {
   Results results;
   add_job(results, "a-old", "2024-05-01T10:00:00.000Z");
   add_job(results, "b-new", "2024-05-01T10:00:00.001Z");
@@ -43,14 +43,14 @@ TEST_CASE("Of several jobs of one label and config the newest counts") {
   CHECK(keys_left(results, 2) == std::vector<std::string>{"b-new", "d-other-setting", "e-other-seed"});
 }
 
-TEST_CASE("A run of an older version is as new as its file") {
+TEST_CASE("The time of a run of an older version is that of its file") {
   Results results;
   add_job(results, "a-now", "");
   add_job(results, "b-before", "2001-01-01T00:00:00.000Z");
   CHECK(keys_left(results, 1) == std::vector<std::string>{"a-now"});
 }
 
-TEST_CASE("The same job in two folders, and runs of which no config is known, all stay") {
+TEST_CASE("The same job in two folders, and runs without a known config, are all kept") {
   Results results;
   add_job(results, "a", "2024-05-01T10:00:00.000Z");
   std::filesystem::copy(results.folder.file("a"), results.folder.file("copy"));

@@ -11,7 +11,7 @@
 
 namespace evbench {
 
-/// What a run cost (RunNumbers::cost()), on which data and by which protocol.
+/// The cost of a run (RunNumbers::cost()), its data and its protocol.
 struct RunCost {
   std::size_t run;   ///< its index
   std::size_t data;  ///< a number for each distinct data_of()
@@ -19,27 +19,27 @@ struct RunCost {
   double cost;
 };
 
-/// What two methods cost on the same data.
+/// The costs of two methods on the same data.
 struct CostPair {
   double own, other;
   std::size_t own_run = 0, other_run = 0;  ///< indices
 };
 
-/// Numbers for the data of runs: equal where they can be compared pair by pair (data_of() in run_columns.hpp).
+/// Numbers the data of runs: equal numbers if runs can be compared pair by pair (data_of() in run_columns.hpp).
 std::vector<std::size_t> number_data(const std::vector<RunNumbers>& runs);
 
-/// The costs of some of the runs, by index; runs that have none (RunNumbers::cost()) are left out.
+/// The costs of some of the runs, by index; runs without a cost (RunNumbers::cost()) are left out.
 std::vector<RunCost> costs_of(std::span<const std::size_t> runs, const std::vector<RunNumbers>& numbers,
                               const Metric& metric, std::span<const std::size_t> data, std::span<const int> protocols);
 
-/// Pairs of the same data, by it; those that were scored by different protocols are none. Each method has one run for
-/// each data at most.
+/// Pairs of the same data, in its order; runs scored by different protocols make no pair. Each method has at most one
+/// run for each data.
 std::vector<CostPair> pair_up(std::vector<RunCost> own, std::vector<RunCost> other);
 
-/// Logarithms of own / other; 0 where both failed, infinite where one did.
+/// Logarithms of own / other; 0 if both failed, infinite if one did.
 std::vector<double> log_ratios(std::span<const CostPair> pairs);
 
-/// One method compared with another on the same data. Costs multiply: what is compared are ratios.
+/// Comparison of one method with another on the same data, by the ratios of their costs.
 struct PairedComparison {
   std::size_t pairs = 0;
   std::size_t own_failed = 0, other_failed = 0;  ///< of the pairs
@@ -51,8 +51,8 @@ struct PairedComparison {
 
 PairedComparison compare_pairs(std::span<const CostPair> pairs);
 
-/// What is to be said of comparisons that can't be significant (holm.hpp) whatever their numbers are, since they have
-/// so few pairs at the most: a sentence behind a blank; empty where they can be.
+/// A note, with a leading blank, that comparisons can't be significant (holm.hpp) because they have at most so few
+/// pairs; empty if they can be.
 std::string too_few_pairs(std::size_t pairs, std::size_t comparisons);
 
 }  // namespace evbench

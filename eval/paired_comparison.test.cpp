@@ -15,7 +15,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-TEST_CASE("Methods are compared by the ratios of what they cost on the same data") {
+TEST_CASE("Methods are compared by the ratios of their costs on the same data") {
   const std::vector<CostPair> pairs = {{1.0, 2.0}, {3.0, 4.0}, {2.0, 2.0}, {1.0, 4.0}, {9.0, 3.0}};
   const PairedComparison result = compare_pairs(pairs);
   CHECK(result.pairs == 5);
@@ -24,7 +24,7 @@ TEST_CASE("Methods are compared by the ratios of what they cost on the same data
   CHECK(result.ratio == Approx(0.75));
   CHECK(result.interval.from <= 0.75);
   CHECK(result.interval.to >= 0.75);
-  CHECK(result.test.pairs == 4);  // equal ones are none
+  CHECK(result.test.pairs == 4);  // differences of zero are left out
   CHECK(result.test.p == signed_rank_test(log_ratios(pairs)).p);
 }
 

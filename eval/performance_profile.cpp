@@ -20,7 +20,7 @@ std::vector<PerformanceProfile> performance_profiles(std::span<const std::vector
     for (const std::vector<double>& of_method : costs) least = std::min(least, of_method[problem]);
     for (std::size_t method = 0; method < costs.size(); ++method) {
       const double cost = costs[method][problem];
-      const double ratio = cost == least ? 1.0 : cost / least;  // 0 / 0, too
+      const double ratio = cost == least ? 1.0 : cost / least;  // also for 0 / 0
       if (std::isfinite(cost) && std::isfinite(ratio)) profiles[method].ratios.push_back(ratio);
     }
   }

@@ -5,18 +5,18 @@
 
 namespace evbench {
 
-/// The performance profile of one method among several (Dolan and Moré 2002): the share of problems that it solves at
-/// a cost of at most τ times that of the best of them.
+/// The performance profile of one of several methods (Dolan and Moré 2002): the share of problems that it solves at a
+/// cost of at most τ times that of the best method.
 struct PerformanceProfile {
   std::vector<double> ratios;  ///< own cost / least cost, ≥ 1, rising, of the problems that it solves
-  std::size_t problems = 0;    ///< solved or not, by whomever
+  std::size_t problems = 0;    ///< all problems, solved or not
 
   /// The share at τ, 0 to 1.
   double at(double tau) const;
 };
 
-/// costs[method][problem], as many problems for each method, each cost ≥ 0, infinite where it failed. A profile a
-/// method.
+/// Returns a profile for each method. costs[method][problem] is ≥ 0, infinite for a failure; all methods have the same
+/// problems.
 std::vector<PerformanceProfile> performance_profiles(std::span<const std::vector<double>> costs);
 
 }  // namespace evbench

@@ -17,11 +17,11 @@ TEST_CASE("A performance profile is the share of problems solved within a factor
   CHECK(profiles[0].at(1.99) == 0.25);
   CHECK(profiles[0].at(2.0) == 0.5);
   CHECK(profiles[1].at(1.0) == 0.5);
-  CHECK(profiles[1].at(100.0) == 0.75);  // what nobody solves counts for nobody
+  CHECK(profiles[1].at(100.0) == 0.75);  // a problem without a solution counts for no method
   CHECK(profiles[0].at(0.5) == 0.0);
 }
 
-TEST_CASE("A cost of nothing is the best, and infinitely better than any other") {
+TEST_CASE("A cost of zero is the best, and infinitely better than any other") {
   const auto profiles = performance_profiles(std::vector<std::vector<double>>{{0.0, 0.0}, {0.0, 1.0}});
   CHECK(profiles[0].at(1.0) == 1.0);
   CHECK(profiles[1].at(1e9) == 0.5);

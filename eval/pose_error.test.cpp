@@ -13,7 +13,7 @@ using IndexPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Along x at these places, one pose a second, turning by 1.001 degrees a pose.
+/// Along x at these places, one pose per second, rotating by 1.001 degrees per pose.
 std::vector<PosePair> at_places(const std::vector<double>& places) {
   std::vector<PosePair> pairs;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -50,7 +50,7 @@ TEST_CASE("Absolute errors are distances in metres and angles in degrees") {
   CHECK(errors.rot_deg[0] == Approx(170.0));
 }
 
-TEST_CASE("Relative errors do not depend on where the estimate's world is") {
+TEST_CASE("Relative errors do not depend on the estimate's world frame") {
   const PoseTrajectory truth = sample(wavy_pose, 100, 0.05);
   const PoseTrajectory estimate = disturbed(truth);
   const auto here = paired(truth, estimate);
@@ -73,7 +73,7 @@ TEST_CASE("Pairs a number of frames apart") {
   CHECK(delta_pairs(pairs, options).empty());
 }
 
-TEST_CASE("Pairs a number of seconds apart leave out what is not within the tolerance") {
+TEST_CASE("Pairs a number of seconds apart are within the tolerance") {
   auto pairs = at_places(steps(8, 1.0));
   for (std::size_t i = 4; i < 8; ++i) pairs[i].t += 0.5;  // 0 1 2 3 4.5 5.5 6.5 7.5
   RelativeOptions options = {.delta = 2.0};

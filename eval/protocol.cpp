@@ -103,7 +103,7 @@ std::string describe(const Scores& scores) {
   text += fmt::format("relative     {}\n", relative_text(json.at("rpe")));
   if (json.contains("segments")) text += fmt::format("segments     {}\n", segments_text(json.at("segments")));
   text += fmt::format("pairs        {} poses compared, {}{:.1f} % of the ground truth's time covered\n", scores.pairs,
-                      scores.left_aside > 0 ? fmt::format("{} of the estimate left aside, ", scores.left_aside) : "",
+                      scores.unmatched > 0 ? fmt::format("{} of the estimate unmatched, ", scores.unmatched) : "",
                       100.0 * scores.coverage);
   text += fmt::format("scale        {:.6f}\n", scores.alignment.transform.scale);
   text += fmt::format("path         {:.6f} m\n\n", scores.path_m);

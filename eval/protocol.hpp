@@ -6,16 +6,16 @@
 
 namespace evbench {
 
-/// What is told of a protocol beside alignment and association.
+/// Parts of a protocol to print in addition to alignment and association.
 struct ProtocolParts {
   bool relative = true, segments = true, latency = true;
 };
 
-/// How a set of scores came about, in one line: alignment, association and tolerance, delta and pairing of the relative
-/// errors. `scores` is what to_json(Scores) gives; throws InputError, beginning with `place`, when a part is missing.
+/// The protocol of scores, in one line: alignment, association and tolerance, delta and pairing of the relative errors.
+/// `scores`: from to_json(Scores). Throws InputError, beginning with `place`, if a part is missing.
 std::string protocol(const Json& scores, const std::string& place, const ProtocolParts& parts = {});
 
-/// The scores with their protocol as text for people: what `evbench eval` prints.
+/// The scores with their protocol as text: the output of `evbench eval`.
 std::string describe(const Scores& scores);
 
 }  // namespace evbench

@@ -7,7 +7,7 @@
 
 namespace evbench {
 
-TEST_CASE("Quartiles are numpy's") {
+TEST_CASE("Quartiles equal those of numpy") {
   const Quartiles q = quartiles({7.0, 1.0, 3.0, 15.0});  // numpy.percentile([1, 3, 7, 15], [25, 50, 75])
   CHECK(q.lower == 2.5);
   CHECK(q.median == 5.0);
@@ -21,7 +21,7 @@ TEST_CASE("Quartiles are numpy's") {
   CHECK(std::isnan(quantile({}, 0.5)));
 }
 
-TEST_CASE("Infinite values take part in quartiles, as those of failed runs do") {
+TEST_CASE("Infinite values, as of failed runs, are part of quartiles") {
   const double inf = std::numeric_limits<double>::infinity();
   const Quartiles q = quartiles({1.0, inf, 2.0, 3.0});
   CHECK(q.lower == 1.75);

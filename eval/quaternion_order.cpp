@@ -15,16 +15,16 @@ namespace evbench {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kLargestTurn = 30.0 * kDegree;  // far enough for the axis to be known, short against drift
+constexpr double kLargestTurn = 30.0 * kDegree;  // large enough to determine the axis, small enough to limit drift
 constexpr double kSmallestTurn = 2.0 * kDegree;
-constexpr double kBetter = 0.25;    // of the difference as it was read
-constexpr double kFitsWell = 0.33;  // of the turn
+constexpr double kBetter = 0.25;    // relative to the difference in the order as read
+constexpr double kFitsWell = 0.33;  // relative to the turn
 constexpr std::size_t kPoses = 500;
 constexpr std::size_t kOrders = 4;
 
 using Turn = std::pair<std::size_t, std::size_t>;
 
-/// Between poses that are as near to one another as a sufficient turn allows.
+/// Turns between poses that are as close in time as a sufficient turn allows.
 std::vector<Turn> find_turns(std::span<const PosePair> pairs, double& angle) {
   const auto turned = [&](std::size_t i, std::size_t j) {
     return pairs[i].ground_truth.q.angularDistance(pairs[j].ground_truth.q);
@@ -43,7 +43,7 @@ std::vector<Turn> find_turns(std::span<const PosePair> pairs, double& angle) {
   return turns;
 }
 
-/// As if its columns were in the order that is `shift` further in QuaternionOrder.
+/// The quaternion with its columns read in the order that is `shift` further in QuaternionOrder.
 Eigen::Quaterniond reordered(const Eigen::Quaterniond& q, std::size_t shift) {
   Eigen::Quaterniond result;
   std::ranges::rotate_copy(q.coeffs(), q.coeffs().begin() + static_cast<std::ptrdiff_t>(shift),
@@ -73,7 +73,7 @@ double difference(const std::vector<Vector3>& a, const std::vector<Vector3>& b, 
   return median(angles);
 }
 
-/// The rotation between the bodies' frames that fits best; none where all turns are about one axis.
+/// The best rotation between the body frames; none if all turns are about one axis.
 std::optional<Matrix3> frame_between(const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
   constexpr double kSecondAxis = 0.02;
   Matrix3 covariance = Matrix3::Zero();
@@ -111,7 +111,7 @@ std::optional<BetterOrder> same_frames(const Rotations& turns, const QuaternionO
   const std::optional<BetterOrder> truth = best_of(true), estimate = best_of(false);
   std::optional<BetterOrder> best = estimate ? estimate : truth;
   if (truth && estimate) {
-    // Both fit where the worlds are the same: then it is that of which less is known.
+    // Both fit if the world frames are equal: then the one whose order is assumed is reported.
     const bool truth_is_suspect = read.ground_truth_is_assumed && !read.estimate_is_assumed;
     constexpr double kRounding = 1e-9;  // [rad]: both are exact
     const bool is_truth = truth_is_suspect ? truth->reordered_deg < 2.0 * estimate->reordered_deg + kRounding
@@ -122,7 +122,7 @@ std::optional<BetterOrder> same_frames(const Rotations& turns, const QuaternionO
   return best;
 }
 
-/// Where the bodies' frames differ, an order can't be told from the one two further: the more usual one is given.
+/// If the body frames differ, an order can't be distinguished from the one two further: returns the more common one.
 std::optional<BetterOrder> other_frames(const Rotations& turns, const QuaternionOrders& read) {
   const auto difference_of = [&](std::size_t estimate) -> std::optional<double> {
     const auto frame = frame_between(turns.ground_truth[0], turns.estimate[estimate]);

@@ -14,7 +14,7 @@ using testing::wavy_pose;
 constexpr std::array kOrders{QuaternionOrder::xyzw, QuaternionOrder::wxyz, QuaternionOrder::zwxy,
                              QuaternionOrder::yzwx};
 
-/// What is read when columns in one order are taken to be in another.
+/// The result of reading columns in one order as another.
 Eigen::Quaterniond misread(const Eigen::Quaterniond& q, QuaternionOrder order, QuaternionOrder taken) {
   const auto component = [](char name) { return std::string("xyzw").find(name); };
   const std::string written = kQuaternionOrderNames[static_cast<std::size_t>(order)];
@@ -27,7 +27,7 @@ Eigen::Quaterniond misread(const Eigen::Quaterniond& q, QuaternionOrder order, Q
   return result;
 }
 
-/// An estimate with small errors in another world, and its body's frame turned.
+/// An estimate with small errors in another world frame, with a rotated body frame.
 std::vector<PosePair> pairs_of(const Eigen::Quaterniond& frame = Eigen::Quaterniond::Identity()) {
   const PoseTrajectory truth = sample(wavy_pose, 400, 0.05);
   const SE3 world{so3::exp({0.4, -1.1, 0.7}), {1.0, 2.0, 3.0}};
@@ -38,7 +38,7 @@ std::vector<PosePair> pairs_of(const Eigen::Quaterniond& frame = Eigen::Quaterni
 
 }  // namespace
 
-TEST_CASE("The order in which an estimate's quaternions fit the ground truth is found, whatever it was taken for") {
+TEST_CASE("The true order of an estimate's quaternions is found, in whatever order they were read") {
   for (const QuaternionOrder order : kOrders) {
     for (const QuaternionOrder taken : kOrders) {
       CAPTURE(kQuaternionOrderNames[static_cast<std::size_t>(order)],
@@ -57,7 +57,7 @@ TEST_CASE("The order in which an estimate's quaternions fit the ground truth is 
   }
 }
 
-TEST_CASE("It is the ground truth's order where that alone fits, or where less is known of it") {
+TEST_CASE("The ground truth's order is reported if only that fits, or if it was assumed") {
   std::vector<PosePair> pairs = pairs_of();
   for (PosePair& pair : pairs) {
     pair.ground_truth.q = misread(pair.ground_truth.q, QuaternionOrder::wxyz, QuaternionOrder::xyzw);
@@ -68,7 +68,7 @@ TEST_CASE("It is the ground truth's order where that alone fits, or where less i
   CHECK(better->of_ground_truth);
   CHECK(better->order == QuaternionOrder::wxyz);
 
-  // In one world either would do.
+  // In one world frame both fit.
   const PoseTrajectory truth = sample(wavy_pose, 400, 0.05);
   pairs = paired(truth, truth);
   for (PosePair& pair : pairs) {
@@ -88,7 +88,7 @@ TEST_CASE("It is the ground truth's order where that alone fits, or where less i
   CHECK_FALSE(better->of_ground_truth);
 }
 
-TEST_CASE("The order is found in another frame of the body, too") {
+TEST_CASE("The order is also found for another body frame") {
   std::vector<PosePair> pairs = pairs_of(so3::exp({0.3, 2.0, -0.8}));
   const QuaternionOrders read{.ground_truth = QuaternionOrder::xyzw, .estimate = QuaternionOrder::xyzw};
   CHECK_FALSE(better_quaternion_order(pairs, read));
@@ -99,7 +99,7 @@ TEST_CASE("The order is found in another frame of the body, too") {
   CHECK(better->order == QuaternionOrder::wxyz);
 }
 
-TEST_CASE("No order is proposed where nothing tells: without turns, with poor estimates, without quaternions") {
+TEST_CASE("No order is proposed without rotation, for poor estimates, and without quaternions") {
   const QuaternionOrders read{.ground_truth = QuaternionOrder::xyzw, .estimate = QuaternionOrder::xyzw};
   const PoseTrajectory straight = sample([](double t) { return SE3{so3::exp({0.0, 0.0, 1.0}), {t, 0.0, 0.0}}; }, 100);
   CHECK_FALSE(better_quaternion_order(paired(straight, straight), read));

@@ -13,7 +13,7 @@
 
 namespace evbench {
 
-/// An object of metrics.json or of sweep.json, read key by key. Errors name the place, the key and what was expected.
+/// Reads an object of metrics.json or sweep.json key by key. Errors name the place, the key and the expected value.
 class RecordReader {
  public:
   RecordReader(const Json& object, std::string place) : object_(object), place_(std::move(place)) {
@@ -22,14 +22,14 @@ class RecordReader {
 
   const std::string& place() const { return place_; }
 
-  /// Null where the key is missing.
+  /// Null if the key is missing.
   const Json& at(const char* key) const {
     static const Json null;
     const auto found = object_.find(key);
     return found == object_.end() ? null : *found;
   }
 
-  /// Text that must be there.
+  /// Required text.
   std::string text(const char* key) const {
     if (!at(key).is_string()) fail(key, "text");
     return at(key).get<std::string>();
@@ -38,7 +38,7 @@ class RecordReader {
     return at(key).is_null() ? otherwise : text(key);
   }
 
-  /// A number that must be there.
+  /// A required number.
   double number(const char* key) const {
     if (!at(key).is_number()) fail(key, "a number");
     return at(key).get<double>();
@@ -60,7 +60,7 @@ class RecordReader {
     return at(key).get<bool>();
   }
 
-  /// The items of a list of objects, none where it is missing.
+  /// The items of a list of objects; empty if it is missing.
   std::vector<RecordReader> list(const char* key) const {
     std::vector<RecordReader> items;
     if (at(key).is_null()) return items;

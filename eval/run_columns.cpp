@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "core/support/error.hpp"
-#include "core/support/nearest.hpp"
 #include "core/support/json.hpp"
+#include "core/support/nearest.hpp"
 
 namespace evbench {
 namespace {
@@ -34,7 +34,7 @@ void add_differences(const RunSettings& a, const RunSettings& b, std::vector<std
   }
 }
 
-/// Settings in which runs of one experiment and label differ. Runs of a sweep say it by their axes.
+/// Settings in which runs of one experiment and label differ. Runs of a sweep are distinguished by its axes instead.
 std::vector<std::string> varying_settings(std::span<const RunRecord> runs) {
   std::map<std::pair<std::string, std::string>, const RunRecord*> firsts;
   std::vector<std::string> paths;
@@ -122,7 +122,7 @@ std::vector<std::vector<std::size_t>> equal_runs(const std::vector<const RunColu
 }
 
 std::string sequence_of(const RunRecord& run) {
-  if (run.settings.empty()) return "folder=" + run.folder;  // nothing is known: a sequence of its own
+  if (run.settings.empty()) return "folder=" + run.folder;  // unknown: a sequence of its own
   return (run.seed ? fmt::format("seed={}\n", *run.seed) : "") + settings_below("source.", run.settings);
 }
 

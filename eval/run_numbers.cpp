@@ -13,7 +13,7 @@
 namespace evbench {
 namespace {
 
-/// The number at a path like "ate.trans_m.rmse", if there is one.
+/// The number at a path like "ate.trans_m.rmse"; none if it is missing.
 std::optional<double> number_at(const Json& root, std::string_view key) {
   const Json* node = &root;
   for (std::size_t at = 0; at <= key.size();) {
@@ -36,7 +36,7 @@ void list_numbers(const Json& node, const std::string& prefix, std::set<std::str
   }
 }
 
-/// Keys that runs have, those first that are columns of tables.
+/// Keys that runs have, first those that are columns of tables.
 std::vector<std::string> suggested_keys(const std::vector<RunNumbers>& runs) {
   std::vector<std::string> keys = keys_of(runs);
   const auto place = [](const std::string& key) { return std::ranges::find(known_metrics(), key, &Metric::key); };
@@ -44,16 +44,16 @@ std::vector<std::string> suggested_keys(const std::vector<RunNumbers>& runs) {
   return keys;
 }
 
-constexpr const char* kParts[] = {"final", "online", "covariance", "common"};
+constexpr const char* kParts[] = {"final", "causal", "covariance", "common"};
 
 }  // namespace
 
-RunNumbers::RunNumbers(const RunRecord& run, bool online)
-    : run_(&run), online_(online), others_(to_json_without_scores(run)) {}
+RunNumbers::RunNumbers(const RunRecord& run, bool causal)
+    : run_(&run), causal_(causal), others_(to_json_without_scores(run)) {}
 
 const Json* RunNumbers::part(const std::string& name) const {
   if (name == "final") return &run_->final_scores;
-  if (name == "online") return &run_->online_scores;
+  if (name == "causal") return &run_->causal_scores;
   if (name == "covariance") return &run_->covariance;
   return name == "common" ? &run_->common_scores : nullptr;
 }
@@ -68,7 +68,7 @@ std::optional<double> RunNumbers::at(const std::string& key) const {
 }
 
 bool RunNumbers::succeeded() const {
-  const std::string& unscored = online_ ? run_->online_unscored : run_->final_unscored;
+  const std::string& unscored = causal_ ? run_->causal_unscored : run_->final_unscored;
   return run_->competes() && (!scores().is_null() || unscored == kNoGroundTruth);
 }
 
@@ -91,9 +91,9 @@ std::set<std::string> RunNumbers::keys() const {
   return keys;
 }
 
-std::vector<RunNumbers> numbers_of(std::span<const RunRecord> runs, bool online) {
+std::vector<RunNumbers> numbers_of(std::span<const RunRecord> runs, bool causal) {
   std::vector<RunNumbers> numbers;
-  for (const RunRecord& run : runs) numbers.emplace_back(run, online);
+  for (const RunRecord& run : runs) numbers.emplace_back(run, causal);
   return numbers;
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "eval/json_file.hpp"
+#include "eval/old_names.hpp"
 #include "eval/quantile.hpp"
 #include "eval/record_reader.hpp"
 
@@ -70,14 +71,14 @@ RunStatus read_status(const RecordReader& json) {
   for (const RecordReader& span : json.list("degraded")) {
     result.status.degraded.push_back({span.number("from"), span.number("to"), span.text_or("reason", "")});
   }
-  for (const RecordReader& span : json.list("still")) {
-    result.still.push_back({span.number("from"), span.number("to")});
+  for (const RecordReader& span : json.list("stationary")) {
+    result.stationary.push_back({span.number("from"), span.number("to")});
   }
-  for (const RecordReader& piece : json.list("pieces")) {
-    result.pieces.push_back({piece.number("from"), piece.number("to"), piece.count_or_null("poses").value_or(0),
-                             piece.count_or_null("landmarks").value_or(0)});
+  for (const RecordReader& segment : json.list("segments")) {
+    result.segments.push_back({segment.number("from"), segment.number("to"), segment.count_or_null("poses").value_or(0),
+                               segment.count_or_null("landmarks").value_or(0)});
   }
-  result.scored = json.count_or_null("scored_piece").value_or(0);
+  result.scored = json.count_or_null("scored_segment").value_or(0);
   result.complete = json.flag_or("complete", true);
   return result;
 }
@@ -98,11 +99,11 @@ Json metrics_json(const RunRecord& record, bool scores) {
   json["position"] = record.position ? Json(*record.position) : Json();
   if (scores) {
     json["final"] = record.final_scores;
-    json["online"] = record.online_scores;
+    json["causal"] = record.causal_scores;
     json["covariance"] = record.covariance;
   }
   if (!record.final_unscored.empty()) json["final_unscored"] = record.final_unscored;
-  if (!record.online_unscored.empty()) json["online_unscored"] = record.online_unscored;
+  if (!record.causal_unscored.empty()) json["causal_unscored"] = record.causal_unscored;
   json["range_s"] = record.range ? Json{record.range->from, record.range->to} : Json();
   json["runtime_s"] = or_null(record.runtime_s);
   json["data_s"] = or_null(record.data_s);
@@ -125,14 +126,14 @@ Json to_json(const RunStatus& run) {
   for (const DegradedSpan& span : status.degraded) {
     json["degraded"].push_back({{"from", span.from}, {"to", span.to}, {"reason", span.reason}});
   }
-  json["still"] = Json::array();
-  for (const TimeRange& span : run.still) json["still"].push_back(to_json(span));
-  json["pieces"] = Json::array();
-  for (const RunPiece& piece : run.pieces) {
-    json["pieces"].push_back(
-        {{"from", piece.from}, {"to", piece.to}, {"poses", piece.poses}, {"landmarks", piece.landmarks}});
+  json["stationary"] = Json::array();
+  for (const TimeRange& span : run.stationary) json["stationary"].push_back(to_json(span));
+  json["segments"] = Json::array();
+  for (const RunSegment& segment : run.segments) {
+    json["segments"].push_back(
+        {{"from", segment.from}, {"to", segment.to}, {"poses", segment.poses}, {"landmarks", segment.landmarks}});
   }
-  json["scored_piece"] = run.scored > 0 ? Json(run.scored) : Json();
+  json["scored_segment"] = run.scored > 0 ? Json(run.scored) : Json();
   return json;
 }
 
@@ -146,10 +147,12 @@ Json to_json_without_scores(const RunRecord& record) { return metrics_json(recor
 
 Json to_json(const RunRecord& record) { return metrics_json(record, true); }
 
-RunRecord read_record(const Json& metrics, const std::string& place) {
+RunRecord read_record(const Json& written, const std::string& place) {
+  Json metrics = written;
+  rename_old_metrics(metrics);
   const RecordReader json(metrics, place);
   RunRecord record;
-  for (const auto& [key, scores] : {std::pair{"final", &record.final_scores}, {"online", &record.online_scores}}) {
+  for (const auto& [key, scores] : {std::pair{"final", &record.final_scores}, {"causal", &record.causal_scores}}) {
     if (!metrics.contains(key) || !(json.at(key).is_object() || json.at(key).is_null())) {
       throw InputError(fmt::format("{}: \"{}\" is missing; expected scores or null", place, key));
     }
@@ -162,7 +165,7 @@ RunRecord read_record(const Json& metrics, const std::string& place) {
   record.key = json.text_or("key", "");
   record.position = json.count_or_null("position");
   record.final_unscored = json.text_or("final_unscored", "");
-  record.online_unscored = json.text_or("online_unscored", "");
+  record.causal_unscored = json.text_or("causal_unscored", "");
   record.range = read_range(json);
   record.runtime_s = json.number_or_null("runtime_s");
   record.data_s = json.number_or_null("data_s");
@@ -182,7 +185,11 @@ RunRecord read_record(const std::string& folder) {
   RunRecord record = read_record(read_json_file(path), path);
   record.folder = folder;
   const std::string config = folder + "/config.json";
-  if (std::filesystem::exists(config)) record.settings = settings_of(read_json_file(config));
+  if (std::filesystem::exists(config)) {
+    Json settings = read_json_file(config);
+    rename_old_keys(settings);
+    record.settings = settings_of(settings);
+  }
   return record;
 }
 

@@ -14,8 +14,8 @@ namespace {
 using Cell = TextTable::Cell;
 using Values = std::vector<std::optional<double>>;
 
-/// Runs that can be compared with one another: of one experiment and sequence, scored by one protocol. Where nothing is
-/// known of the source, as of files that are compared, the seed alone tells sequences apart.
+/// Groups of runs that can be compared: of one experiment and sequence, scored by one protocol. If the source is not
+/// known, as for compared files, only the seed distinguishes sequences.
 std::vector<std::vector<std::size_t>> comparable_runs(const TableRuns& runs) {
   std::map<std::tuple<std::string, std::string, int>, std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < runs.runs.size(); ++i) {
@@ -30,7 +30,7 @@ std::vector<std::vector<std::size_t>> comparable_runs(const TableRuns& runs) {
   return result;
 }
 
-/// Marks the best cells of a column within a group, unless all say the same.
+/// Marks the best cells of a column within a group, unless all are equal.
 void mark_best(const TableRuns& runs, const std::vector<std::size_t>& group, const Values& values, Better better,
                std::vector<Cell>& cells) {
   std::vector<std::size_t> competing;
@@ -84,7 +84,7 @@ std::vector<Cell> cells_of(const TableRuns& runs, const Text& text) {
 
 std::string folder_of(const RunRecord& run) { return run.folder; }
 
-/// Are there rows that no cell tells apart?
+/// Whether any two rows have equal cells.
 bool ambiguous(const TextTable& table) {
   std::set<std::vector<std::string>> seen;
   return !std::ranges::all_of(table.rows, [&](const std::vector<Cell>& cells) {
@@ -94,7 +94,7 @@ bool ambiguous(const TextTable& table) {
   });
 }
 
-/// What tells the runs apart; in CSV all that does, else as much as is needed.
+/// Adds the columns that distinguish the runs: in CSV all of them, else as many as are needed.
 void add_names(TextTable& table, const TableRuns& runs, const TableOptions& options) {
   const bool csv = options.format == TableFormat::csv, print = options.format == TableFormat::latex;
   for (const RunColumn& column : runs.columns) {
@@ -108,7 +108,7 @@ void add_names(TextTable& table, const TableRuns& runs, const TableOptions& opti
   if (csv || (!print && ambiguous(table))) add_column(table, "folder", false, cells_of(runs, folder_of));
 }
 
-/// What the mark of the best values means, where there is one.
+/// The note that explains the mark of the best values, if there is one.
 std::string mark_note(const TextTable& table, const TableRuns& runs, TableFormat format) {
   const auto marked = [](const std::vector<Cell>& cells) { return std::ranges::any_of(cells, &Cell::best); };
   const bool any = std::ranges::any_of(table.rows, marked);
@@ -151,7 +151,7 @@ TextTable run_table(const TableRuns& runs, const TableOptions& options) {
     if (csv) add_column(table, "reason", false, cells_of(runs, status_reason));
   }
   if (csv) {
-    const char* trajectory = options.online ? "online" : "final";
+    const char* trajectory = options.causal ? "causal" : "final";
     add_column(table, "trajectory", false, std::vector<Cell>(runs.runs.size(), {trajectory}));
   }
   if (csv || runs.protocols.texts.size() > 1) {

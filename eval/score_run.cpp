@@ -5,15 +5,16 @@
 #include <optional>
 #include <vector>
 
-#include "core/data/online_poses.hpp"
+#include "core/data/causal_poses.hpp"
 #include "core/data/tum.hpp"
 #include "eval/covariance_scores.hpp"
 #include "eval/latency.hpp"
+#include "eval/old_names.hpp"
 
 namespace evbench {
 namespace {
 
-/// The protocol's time range, as far as the run goes.
+/// The protocol's time range, limited to that of the run.
 OptionSet::List clip(const OptionSet::List& range, const std::optional<TimeRange>& run) {
   if (!run) return range;
   if (range.size() != 2) return {run->from, run->to};
@@ -26,19 +27,19 @@ bool exists(const std::string& path) {
 }
 
 struct RunTrajectories {
-  PoseTrajectory ground_truth, estimate;  ///< each empty where there is none
+  PoseTrajectory ground_truth, estimate;  ///< empty if missing
 };
 
-RunTrajectories read_trajectories(const std::string& folder, bool online) {
+RunTrajectories read_trajectories(const std::string& folder, bool causal) {
   const std::string truth = folder + "/groundtruth.tum";
   return {std::filesystem::exists(truth) ? read_tum(truth) : PoseTrajectory(),
-          read_estimate(folder + (online ? "/online.tum" : "/final.tum"))};
+          read_estimate(file_of_run(folder, causal ? "causal.tum" : "final.tum"))};
 }
 
-/// Throws InputError with the reason where there are no scores.
+/// Throws InputError with the reason if there are no scores.
 Scores compare(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, ScoreOptions options,
                const RunRecord& record) {
-  if (estimate.empty()) {  // a run that broke off left no ground truth either
+  if (estimate.empty()) {  // a run that broke off has no ground truth either
     const std::string reason = record.status ? record.status->status.reason : "";
     throw InputError(reason.empty() ? "no trajectory" : "no trajectory: " + reason);
   }
@@ -52,13 +53,13 @@ Scores compare(const PoseTrajectory& ground_truth, const PoseTrajectory& estimat
   return score(ground_truth, estimate, options);
 }
 
-/// The scores of what the back-end would have given for each ground-truth pose's time, `latency` later.
-Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<OnlinePose>& told, double latency,
+/// Scores the estimates that were available `latency` [s] after the time of each ground-truth pose.
+Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<CausalPose>& published, double latency,
                        const ScoreOptions& options, const RunRecord& record) {
   std::vector<double> times;
   for (const StampedPose& pose : ground_truth.poses()) times.push_back(pose.t - options.time_offset);
   try {
-    Json json = to_json(compare(ground_truth, estimates_at_latency(told, times, latency), options, record));
+    Json json = to_json(compare(ground_truth, estimates_at_latency(published, times, latency), options, record));
     json["latency_s"] = latency;
     return json;
   } catch (const InputError&) {
@@ -66,20 +67,20 @@ Json scores_at_latency(const PoseTrajectory& ground_truth, const std::vector<Onl
   }
 }
 
-/// To the scores of the online estimate those at zero and at equal latency, where it was told what was known when.
+/// Adds to the scores of the causal estimate those at zero and at equal latency, if there are published poses.
 void add_latencies(const std::string& folder, const PoseTrajectory& ground_truth, const ScoreOptions& options,
                    const RunRecord& record, Json& scores) {
-  const std::string path = folder + "/told.txt";
+  const std::string path = file_of_run(folder, "causal_poses.txt");
   if (!exists(path)) return;
-  const std::vector<OnlinePose> told = read_online_poses(path);
-  if (const std::optional<Delay> delay = delay_of(told)) {
+  const std::vector<CausalPose> published = read_causal_poses(path);
+  if (const std::optional<Delay> delay = delay_of(published)) {
     scores["delay_s"] = {{"median", delay->median}, {"p99", delay->p99}, {"max", delay->max}};
   }
-  scores["zero_latency"] = scores_at_latency(ground_truth, told, 0.0, options, record);
-  scores["equal_latency"] = scores_at_latency(ground_truth, told, options.latency, options, record);
+  scores["zero_latency"] = scores_at_latency(ground_truth, published, 0.0, options, record);
+  scores["equal_latency"] = scores_at_latency(ground_truth, published, options.latency, options, record);
 }
 
-/// By kind.
+/// Covariance scores by kind.
 Json covariance_scores(const std::vector<RelativePose>& poses, const PoseTrajectory& ground_truth, double scale,
                        double time_offset) {
   std::map<std::string, std::vector<RelativePose>> kinds;
@@ -100,8 +101,8 @@ PoseTrajectory read_estimate(const std::string& path) {
 }
 
 void score_run(const std::string& folder, const ScoreOptions& options, RunRecord& record) {
-  const auto set = [&](bool online, Json& scores, std::string& unscored) {
-    const RunTrajectories trajectories = read_trajectories(folder, online);
+  const auto set = [&](bool causal, Json& scores, std::string& unscored) {
+    const RunTrajectories trajectories = read_trajectories(folder, causal);
     scores = nullptr;
     unscored.clear();
     try {
@@ -110,10 +111,10 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
       unscored = error.what();
       return;
     }
-    if (online) add_latencies(folder, trajectories.ground_truth, options, record, scores);
+    if (causal) add_latencies(folder, trajectories.ground_truth, options, record, scores);
   };
   set(false, record.final_scores, record.final_unscored);
-  set(true, record.online_scores, record.online_unscored);
+  set(true, record.causal_scores, record.causal_unscored);
   record.covariance = nullptr;
   if (const std::string path = folder + "/covariance.txt"; exists(path) && !record.final_scores.is_null()) {
     record.covariance = covariance_scores(read_relative_poses(path), read_tum(folder + "/groundtruth.tum"),
@@ -121,16 +122,16 @@ void score_run(const std::string& folder, const ScoreOptions& options, RunRecord
   }
 }
 
-Json scores_of(const std::string& folder, bool online, const ScoreOptions& options, const RunRecord& record) {
-  const RunTrajectories trajectories = read_trajectories(folder, online);
+Json scores_of(const std::string& folder, bool causal, const ScoreOptions& options, const RunRecord& record) {
+  const RunTrajectories trajectories = read_trajectories(folder, causal);
   Json scores = to_json(compare(trajectories.ground_truth, trajectories.estimate, options, record));
-  if (online) add_latencies(folder, trajectories.ground_truth, options, record, scores);
+  if (causal) add_latencies(folder, trajectories.ground_truth, options, record, scores);
   return scores;
 }
 
-ScoredEstimate score_estimate(const std::string& folder, bool online, const ScoreOptions& options,
+ScoredEstimate score_estimate(const std::string& folder, bool causal, const ScoreOptions& options,
                               const RunRecord& record) {
-  RunTrajectories trajectories = read_trajectories(folder, online);
+  RunTrajectories trajectories = read_trajectories(folder, causal);
   try {
     Scores scores = compare(trajectories.ground_truth, trajectories.estimate, options, record);
     return {std::move(trajectories.estimate), std::move(scores)};

@@ -29,7 +29,7 @@ SegmentOptions segment_options(const ScoreOptions& options) {
                            .unit = parse_name<LengthUnit>(kLengthUnitNames, options.segment_unit, "unit of segments")});
 }
 
-/// The pairs that the alignment is computed on.
+/// The pairs on which the alignment is computed.
 std::vector<PosePair> pairs_to_align(const std::vector<PosePair>& pairs, const ScoreOptions& options) {
   const TimeRange range = parse_range(options.align_range, "align_range");
   if (options.align_first > 0 && !options.align_range.empty()) {
@@ -52,7 +52,7 @@ void score_segments(const std::vector<SegmentErrors>& segments, Scores& scores) 
   scores.all_segments = {0.0, statistics(trans), statistics(rot)};
 }
 
-/// Absolute errors without the rotation that all poses have in common.
+/// Absolute rotation errors without the common rotation of all poses.
 PoseErrors centred(std::vector<PosePair> pairs) {
   const SE3 rotation{common_rotation(pairs), Vector3::Zero()};
   for (PosePair& pair : pairs) pair.estimate = rotation * pair.estimate;
@@ -70,34 +70,35 @@ double path_length(const std::vector<PosePair>& pairs) {
 }  // namespace
 
 void ScoreOptions::declare(OptionSet& set) {
-  set.add("alignment", alignment, "how the estimate is carried to the ground truth")
+  set.add("alignment", alignment, "how the estimate is aligned to the ground truth")
       .choices(to_strings(kAlignmentNames));
   set.add("align_first", align_first, "align on this many first poses only; 0: on all").range(0);
   set.add("align_range", align_range, "align on the poses in this time range only [s]; empty: on all").size(2).rising();
-  set.add("association", association, "which ground truth a pose is compared with")
+  set.add("association", association, "ground truth with which a pose is compared")
       .choices(to_strings(kAssociationNames));
-  set.add("tolerance", tolerance, "no ground truth this near in time to a pose: it is not compared [s]").range(0.0);
+  set.add("tolerance", tolerance, "largest time difference between a compared pose and its ground truth [s]")
+      .range(0.0);
   set.add("time_offset", time_offset, "added to the estimate's times [s]");
   set.add("time_range", time_range, "evaluate in this time range of the ground truth only [s]; empty: all")
       .size(2)
       .rising();
   set.add("min_pairs", min_pairs, "fewer compared poses are an error").range(3);
   set.add("latency", latency,
-          "how long one waits for each online pose, the same for all back-ends of a table: scores at equal latency "
+          "time after which each pose is taken for scores at equal latency, the same for all back-ends of a table "
           "[s]")
       .range(0.0, 10.0);
   set.add("rpe_delta", rpe_delta, "distance of the two poses of a relative error [rpe_unit]").above(0.0);
-  set.add("rpe_unit", rpe_unit, "what that distance is measured in").choices(to_strings(kDeltaUnitNames));
+  set.add("rpe_unit", rpe_unit, "unit of that distance").choices(to_strings(kDeltaUnitNames));
   set.add("rpe_pairing", rpe_pairing, "from every pose, or in one chain").choices(to_strings(kPairingNames));
-  set.add("rpe_tolerance", rpe_tolerance, "how far a pair may be from rpe_delta, relative to it").range(0.0);
-  set.add("rpe_pairs_from", rpe_pairs_from, "whose path and angles the distance is measured on, metres and degrees")
+  set.add("rpe_tolerance", rpe_tolerance, "largest deviation of a pair from rpe_delta, relative to it").range(0.0);
+  set.add("rpe_pairs_from", rpe_pairs_from, "trajectory on which metres and degrees are measured")
       .choices(to_strings(kPairSourceNames));
-  set.add("segments", segments, "whose definition of errors over sub-trajectories is added, in % and deg/m")
+  set.add("segments", segments, "also compute errors over sub-trajectories, in % and deg/m, by this definition")
       .choices(to_strings(kSegmentRuleNames));
   set.add("segment_lengths", segment_lengths,
           "lengths of sub-trajectories [segment_unit]; empty: 10 to 50 % (rpg), 100 to 800 m (kitti)")
       .above(0.0);
-  set.add("segment_unit", segment_unit, "what these lengths are in: metres, or percent of the ground truth's path")
+  set.add("segment_unit", segment_unit, "unit of these lengths: metres, or percent of the ground truth's path")
       .choices(to_strings(kLengthUnitNames));
 }
 
@@ -118,7 +119,7 @@ Scores score(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate,
   Scores scores;
   scores.options = options;
   scores.pairs = pairs.size();
-  scores.left_aside = association.left_aside;
+  scores.unmatched = association.unmatched;
   scores.coverage = association.coverage;
   scores.path_m = path_length(pairs);
 
@@ -146,7 +147,7 @@ Scores score(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate,
 
 namespace {
 
-/// [from, to], with null for an end that is open; null for all times.
+/// [from, to], with null for an open end; null for all times.
 Json range_json(const OptionSet::List& list) {
   if (list.empty()) return nullptr;
   Json range = Json::array();

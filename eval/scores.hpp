@@ -37,12 +37,12 @@ struct ScoreOptions {
 
 struct AbsoluteScores {
   Statistics trans_m, rot_deg;
-  Statistics rot_centred_deg;  ///< of rotation, without what is the same in all poses (common_rotation)
-  double trans_percent = Statistics::kUndefined;  ///< trans_m.rmse in percent of path_m; undefined when path_m is 0
+  Statistics rot_centred_deg;  ///< of rotation, without the common rotation error of all poses (common_rotation)
+  double trans_percent = Statistics::kUndefined;  ///< trans_m.rmse in percent of path_m; undefined if path_m is 0
 };
 
 struct RelativeScores {
-  Statistics trans_m, rot_deg;  ///< of an empty set when no two poses are delta apart
+  Statistics trans_m, rot_deg;  ///< of an empty set if no two poses are delta apart
 };
 
 /// Errors over sub-trajectories, relative to their length.
@@ -51,31 +51,30 @@ struct SegmentScores {
   Statistics trans_percent, rot_deg_per_m;
 };
 
-/// What is said of a trajectory, with all that a reader needs to judge it.
+/// Scores of a trajectory, with the protocol and counts that are needed to interpret them.
 struct Scores {
   AbsoluteScores ate;
   RelativeScores rpe;
   SegmentScores all_segments;            ///< of all lengths together
-  std::vector<SegmentScores> by_length;  ///< none where they are not asked for
-  std::vector<PosePair> compared;        ///< the poses, those of the estimate aligned
+  std::vector<SegmentScores> by_length;  ///< empty if not requested
+  std::vector<PosePair> compared;        ///< the compared poses; those of the estimate are aligned
   std::size_t pairs = 0;                 ///< poses compared
-  std::size_t left_aside = 0;            ///< poses of the estimate that are not
+  std::size_t unmatched = 0;             ///< poses of the estimate that are not compared
   double coverage = 0.0;                 ///< share of the ground truth's time that they cover (association.hpp)
   double path_m = 0.0;                   ///< length of the ground truth through the compared poses
-  Alignment alignment;                   ///< what was applied to the estimate
+  Alignment alignment;                   ///< applied to the estimate
   std::size_t aligned_pairs = 0;         ///< poses that it was computed on
   ScoreOptions options;                  ///< the protocol
 };
 
-/// How such a protocol takes relative errors. Throws InputError for names that are not known.
+/// The options of relative errors in a protocol. Throws InputError for unknown names.
 RelativeOptions relative_options(const ScoreOptions& options);
 
-/// Associates, aligns, and takes the errors. Throws InputError for options that contradict one another or are out of
-/// range, and for trajectories that can't be compared (association.hpp, alignment.hpp). The same input gives the same
-/// digits.
+/// Associates, aligns, and computes the errors. Throws InputError for contradictory options or options out of range,
+/// and for trajectories that can't be compared (association.hpp, alignment.hpp). The same input gives identical digits.
 Scores score(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, const ScoreOptions& options = {});
 
-/// The structure that metrics.md documents.
+/// The structure that docs/reference/metrics.md documents.
 Json to_json(const Scores& scores);
 
 }  // namespace evbench

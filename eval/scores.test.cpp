@@ -1,9 +1,9 @@
 #include "eval/scores.hpp"
 
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "eval/protocol.hpp"
 #include "eval/testing/trajectories.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -17,7 +17,7 @@ ScoreOptions with(const Json& json) { return read_options<ScoreOptions>(json, "e
 
 }  // namespace
 
-TEST_CASE("Scores do not change when the estimate is given in another world and scale") {
+TEST_CASE("Scores do not depend on the estimate's world frame and scale") {
   const PoseTrajectory truth = sample(wavy_pose, 300, 0.01);
   const PoseTrajectory estimate = disturbed(truth);
   const Scores here = score(truth, estimate);
@@ -30,7 +30,7 @@ TEST_CASE("Scores do not change when the estimate is given in another world and 
   CHECK(there.alignment.transform.scale == Approx(0.4 * here.alignment.transform.scale).epsilon(1e-9));
 }
 
-TEST_CASE("Each further freedom of the alignment makes the absolute error smaller") {
+TEST_CASE("Each additional degree of freedom of the alignment makes the absolute error smaller") {
   const PoseTrajectory truth = sample(wavy_pose, 300, 0.01);
   const PoseTrajectory estimate = disturbed(seen_from(truth, {0.9, {so3::exp({0.1, 0.2, 0.3}), {0.1, 0.2, 0.3}}}));
   const auto rmse = [&](const char* alignment) {
@@ -45,7 +45,7 @@ TEST_CASE("An alignment on a part is applied to all") {
   const PoseTrajectory truth = sample(wavy_pose, 300, 0.01);
   std::vector<StampedPose> poses = seen_from(truth, kSimilarity).poses();
   for (StampedPose& pose : poses) {
-    if (pose.t > 0.995) pose.T.p.x() += 1.0;  // the later part is off
+    if (pose.t > 0.995) pose.T.p.x() += 1.0;  // the later part is displaced
   }
   const PoseTrajectory estimate(poses);
   for (const Json& part : {Json{{"align_first", 100}}, Json{{"align_range", {0.0, 0.995}}}}) {
@@ -58,29 +58,29 @@ TEST_CASE("An alignment on a part is applied to all") {
   }
 }
 
-TEST_CASE("Of orientations beside a path that is nearly a line, what all have in common can be left out") {
+TEST_CASE("The common rotation error of orientations on a nearly straight path can be excluded") {
   const auto wound = [](double t, double towards, double turned) {
-    const double aside = 1e-3 * std::sin(20.0 * t);
-    return SE3{so3::exp({0.0, 0.0, turned}), {t, aside * std::cos(towards), aside * std::sin(towards)}};
+    const double offset = 1e-3 * std::sin(20.0 * t);
+    return SE3{so3::exp({0.0, 0.0, turned}), {t, offset * std::cos(towards), offset * std::sin(towards)}};
   };
   const auto truth = [&](double t) { return wound(t, 0.0, 0.0); };
   const auto estimate = [&](double t) { return wound(t, 0.5, t < 1.0 ? 0.01 : -0.01); };
   const Scores scores = score(sample(truth, 200), sample(estimate, 200));
   constexpr double kOneDegree = 3.14159265358979 / 180.0;
-  CHECK(scores.ate.rot_deg.rmse > 0.49 / kOneDegree);  // as the few positions aside ask for
+  CHECK(scores.ate.rot_deg.rmse > 0.49 / kOneDegree);  // determined by the small offsets of the positions
   CHECK(scores.ate.rot_centred_deg.rmse == Approx(0.01 / kOneDegree).epsilon(0.01));
 }
 
 TEST_CASE("The error in percent is of the ground truth's path through the compared poses") {
-  const auto straight = [](double t) { return SE3{{}, {t, 0.0, 0.0}}; };
-  const auto beside = [](double t) { return SE3{{}, {t, 0.05, 0.0}}; };
-  const Scores scores = score(sample(straight, 501), sample(beside, 201), with({{"alignment", "none"}}));
+  const auto straight = [](double t) { return SE3{Eigen::Quaterniond::Identity(), {t, 0.0, 0.0}}; };
+  const auto shifted = [](double t) { return SE3{Eigen::Quaterniond::Identity(), {t, 0.05, 0.0}}; };
+  const Scores scores = score(sample(straight, 501), sample(shifted, 201), with({{"alignment", "none"}}));
   CHECK(scores.path_m == Approx(2.0));
   CHECK(scores.ate.trans_percent == Approx(2.5));
   CHECK(scores.coverage == Approx(0.4));
 }
 
-TEST_CASE("Scores of the same input have the same digits") {
+TEST_CASE("The same input gives identical scores") {
   const PoseTrajectory truth = sample(wavy_pose, 300, 0.01);
   const PoseTrajectory estimate = disturbed(truth);
   CHECK(dump_json(to_json(score(truth, estimate))) == dump_json(to_json(score(truth, estimate))));
@@ -95,16 +95,16 @@ TEST_CASE("Relative errors without any pair are null, not an error") {
   CHECK_THAT(describe(scores), ContainsSubstring("no pairs: no two poses are that far apart"));
 }
 
-TEST_CASE("A camera that stands still is scored, with a note instead of a percentage") {
+TEST_CASE("A stationary camera is scored, with a note instead of a percentage") {
   const auto standing = [](double) { return SE3{}; };
   const Scores scores = score(sample(standing, 50), sample(standing, 50));
   CHECK(scores.ate.trans_m.rmse == 0.0);
   const Json json = to_json(scores);
   CHECK(json.at("ate").at("trans_percent").is_null());
-  CHECK(json.at("alignment").at("note").get<std::string>().find("stands still") != std::string::npos);
+  CHECK(json.at("alignment").at("note").get<std::string>().find("is stationary") != std::string::npos);
 }
 
-TEST_CASE("Scores are never shown without their protocol") {
+TEST_CASE("Scores are always printed with their protocol") {
   const PoseTrajectory truth = sample(wavy_pose, 300, 0.01);
   const Scores scores = score(truth, disturbed(truth), with({{"align_first", 50}, {"time_range", {0.5, 2.0}}}));
   CHECK(protocol(to_json(scores), "here") ==
@@ -118,7 +118,7 @@ TEST_CASE("Scores are never shown without their protocol") {
   CHECK_THROWS_WITH(protocol(Json::object(), "x/metrics.json"), ContainsSubstring("x/metrics.json: the protocol"));
 }
 
-TEST_CASE("Options of an evaluation that are out of range or contradict one another are errors") {
+TEST_CASE("Contradictory options of an evaluation, and options out of range, are errors") {
   const PoseTrajectory truth = sample(wavy_pose, 30);
   CHECK_THROWS_WITH(with({{"alignment", "sim4"}}),
                     ContainsSubstring("evaluation: alignment: ") && ContainsSubstring("sim3"));

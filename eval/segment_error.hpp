@@ -7,15 +7,15 @@
 
 namespace evbench {
 
-/// Whose definition of errors over sub-trajectories (segments of the path) is used.
+/// Definition of errors over sub-trajectories (segments of the path).
 enum class SegmentRule {
-  none,   ///< they are not taken
+  none,   ///< not computed
   rpg,    ///< rpg_trajectory_evaluation, Zhang and Scaramuzza 2018
   kitti,  ///< the KITTI odometry benchmark, Geiger et al. 2012
 };
 inline constexpr NameList<3> kSegmentRuleNames = {"none", "rpg", "kitti"};
 
-/// In what the lengths of segments are given.
+/// Unit of the lengths of segments.
 enum class LengthUnit { metres, percent };
 inline constexpr NameList<2> kLengthUnitNames = {"metres", "percent"};
 
@@ -25,21 +25,21 @@ struct SegmentOptions {
   LengthUnit unit = LengthUnit::metres;
 };
 
-/// With the rule's own lengths where none are given: rpg 10, 20, ..., 50 % of the path, KITTI 100, 200, ..., 800 m.
+/// Fills in the rule's own lengths if none are given: rpg 10, 20, ..., 50 % of the path, KITTI 100, 200, ..., 800 m.
 SegmentOptions with_own_lengths(const SegmentOptions& options);
 
-/// Errors over segments of one length, relative to it, one an item.
+/// Errors over segments of one length, relative to it, one per segment.
 struct SegmentErrors {
   double length_m = 0.0;
   std::vector<double> trans_percent;
   std::vector<double> rot_deg_per_m;
 };
 
-/// The relative pose errors (pose_error.hpp) over segments of the ground truth's path through the compared poses:
-/// - rpg: from every pose to the one at the distance that is nearest to the length, if it is within a fifth of it.
-///   Fewer than two such pairs are none. Lengths in percent are cut to whole centimetres; what is then 0 is left out;
-/// - kitti: from every tenth pose to the first one that is farther away than the length.
-/// `path_m`: length of the whole ground truth, which percentages are of. The estimates' scale is aligned. Throws
+/// Relative pose errors (pose_error.hpp) over segments of the ground truth's path through the compared poses:
+/// - rpg: from every pose to the one whose distance is nearest to the length, if it is within a fifth of it. Fewer than
+///   two such pairs count as none. Lengths in percent are truncated to whole centimetres; lengths of 0 are left out;
+/// - kitti: from every tenth pose to the first one whose distance is larger than the length.
+/// `path_m`: length of the whole ground truth, the base of percentages. The estimates' scale is aligned. Throws
 /// InputError for a length that is not above 0.
 std::vector<SegmentErrors> segment_errors(std::span<const PosePair> pairs, const SegmentOptions& options,
                                           double path_m);

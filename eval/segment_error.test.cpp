@@ -1,12 +1,12 @@
 #include "eval/segment_error.hpp"
 
 #include "core/data/tum.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
 #include "eval/protocol.hpp"
 #include "eval/scores.hpp"
 #include "eval/testing/trajectories.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
@@ -28,7 +28,7 @@ void compare(const SegmentScores& ours, const Json& theirs) {
   compare(ours.rot_deg_per_m, theirs.at("rot_deg_per_m"));
 }
 
-/// A camera that moves by 1 cm a pose along x, and an estimate of it that is a tenth too long.
+/// A camera that moves by 1 cm per pose along x, and an estimate that is a tenth too long.
 std::vector<PosePair> too_long(int count) {
   std::vector<PosePair> pairs;
   for (int i = 0; i < count; ++i) {
@@ -61,7 +61,7 @@ TEST_CASE("Errors over sub-trajectories equal the reference values of segment_re
   }
 }
 
-TEST_CASE("An estimate that is a tenth too long is wrong by 10 % of every sub-trajectory") {
+TEST_CASE("An estimate that is a tenth too long has an error of 10 % in every sub-trajectory") {
   const auto pairs = too_long(101);
   const auto rpg = segment_errors(pairs, {.rule = SegmentRule::rpg}, 1.0);
   REQUIRE(rpg.size() == 5);
@@ -77,7 +77,7 @@ TEST_CASE("An estimate that is a tenth too long is wrong by 10 % of every sub-tr
   CHECK(kitti[0].trans_percent.front() == Approx(10.0 * 0.2 / 0.195));
 }
 
-TEST_CASE("Sub-trajectories that are longer than the path are none") {
+TEST_CASE("There are no sub-trajectories longer than the path") {
   const auto kitti = segment_errors(too_long(11), {.rule = SegmentRule::kitti}, 0.1);
   REQUIRE(kitti.size() == 8);
   CHECK(kitti[0].trans_percent.empty());
@@ -87,7 +87,7 @@ TEST_CASE("Sub-trajectories that are longer than the path are none") {
                     ContainsSubstring("a segment's length is 0; expected a number above 0"));
 }
 
-TEST_CASE("Scores over sub-trajectories stand in the protocol, in JSON and in the text, where they are asked for") {
+TEST_CASE("Requested scores over sub-trajectories are in the protocol, in JSON and in the text") {
   const PoseTrajectory truth = sample(wavy_pose, 300, 0.01);
   ScoreOptions options;
   CHECK_FALSE(to_json(score(truth, disturbed(truth), options)).contains("segments"));

@@ -8,14 +8,13 @@
 
 namespace evbench {
 
-/// What is reported of a set of errors, in the errors' own unit. Of an empty set all but n and sse are NaN (null in
-/// JSON).
+/// Statistics of a set of errors, in their unit. For an empty set all but n and sse are NaN (null in JSON).
 struct Statistics {
   static constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
   double rmse = kUndefined;    ///< root of the mean square
   double mean = kUndefined;    ///<
-  double median = kUndefined;  ///< of an even number: the mean of the two in the middle
+  double median = kUndefined;  ///< for an even number the mean of the two in the middle
   double std = kUndefined;     ///< of the population: divided by n, not n − 1
   double min = kUndefined;     ///<
   double max = kUndefined;     ///<

@@ -8,7 +8,7 @@
 
 namespace evbench {
 
-TEST_CASE("Statistics of a few numbers are what one computes by hand") {
+TEST_CASE("Statistics of a few numbers equal those computed by hand") {
   const Statistics s = statistics(std::vector<double>{4.0, 1.0, 3.0, 2.0});
   CHECK(s.rmse == Approx(std::sqrt(7.5)));
   CHECK(s.mean == Approx(2.5));
@@ -21,7 +21,7 @@ TEST_CASE("Statistics of a few numbers are what one computes by hand") {
   CHECK(statistics(std::vector<double>{5.0, 1.0, 3.0}).median == 3.0);
 }
 
-TEST_CASE("Statistics of nothing are null in JSON") {
+TEST_CASE("Statistics of an empty set are null in JSON") {
   const Json json = to_json(statistics({}));
   CHECK(json.at("n") == 0);
   CHECK(json.at("sse") == 0.0);

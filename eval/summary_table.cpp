@@ -20,7 +20,7 @@ namespace {
 using Cell = TextTable::Cell;
 using Group = std::vector<std::size_t>;
 
-/// The columns that name rows, and those that they are summarised over.
+/// The columns that name rows, and those over which they are summarised.
 struct Columns {
   std::vector<const RunColumn*> rows, over;
 };
@@ -34,7 +34,7 @@ Columns split(const TableRuns& runs, const std::vector<std::string>& over) {
   return columns;
 }
 
-/// The row that is significantly better than every other one that it can be compared with, if there is one.
+/// The row that is significantly better than every comparable row, if there is one.
 std::optional<std::size_t> distinguished(const std::vector<Group>& rows, const TableRuns& runs, const Metric& metric,
                                          std::span<const std::size_t> data) {
   if (metric.better == Better::neither) return std::nullopt;
@@ -59,12 +59,11 @@ std::optional<std::size_t> distinguished(const std::vector<Group>& rows, const T
   return best - costs.begin();
 }
 
-/// Rows that can be compared with one another: of one experiment, and with data in common, directly or by way of
-/// others.
+/// Groups of comparable rows: of one experiment, and with common data, directly or through other rows.
 std::vector<std::vector<std::size_t>> comparable_rows(const std::vector<Group>& rows, const TableRuns& runs,
                                                       std::span<const std::size_t> data) {
   struct Comparable {
-    std::set<std::pair<std::string, std::size_t>> data;  // and of which experiment
+    std::set<std::pair<std::string, std::size_t>> data;  // and the experiment
     std::vector<std::size_t> rows;
   };
   std::vector<Comparable> all;
@@ -112,8 +111,8 @@ void add_metric(TextTable& table, const std::vector<Group>& rows, const TableRun
     cells.back().text = number_text(metric.factor * q->median, decimals);
     const bool all_fail = std::isinf(q->lower) && q->lower == q->upper;
     if (all_fail || rows[cells.size() - 1].size() == 1) continue;
-    cells.back().aside = fmt::format("[{}, {}]", number_text(metric.factor * q->lower, decimals),
-                                     number_text(metric.factor * q->upper, decimals));
+    cells.back().detail = fmt::format("[{}, {}]", number_text(metric.factor * q->lower, decimals),
+                                      number_text(metric.factor * q->upper, decimals));
   }
   for (const auto& of_one : comparable_rows(rows, runs, data)) {
     std::vector<Group> groups;
@@ -159,13 +158,13 @@ void add_success(TextTable& table, const std::vector<Group>& rows, const TableRu
   add_column(table, "succeeded", true, csv ? std::move(succeeded) : std::move(both));
 }
 
-/// How many values a column has: "seed (10 values)".
+/// A column and its number of values: "seed (10 values)".
 std::string extent(const RunColumn& column) {
   const std::set<std::string> values(column.values.begin(), column.values.end());
   return fmt::format("{} ({} value{})", column.name, values.size(), values.size() == 1 ? "" : "s");
 }
 
-/// What the cells are, and what bold means.
+/// Notes that explain the cells and bold type.
 std::vector<std::string> summary_notes(const std::vector<Group>& rows, const TableRuns& runs, const Columns& columns,
                                        std::span<const std::size_t> data, TableFormat format) {
   std::vector<std::string> over;
@@ -177,7 +176,7 @@ std::vector<std::string> summary_notes(const std::vector<Group>& rows, const Tab
     notes.back() += " Runs that were lost or failed count as worse than all others: fails.";
   }
   bool compared = false;
-  std::set<std::string> too_few;  // of the rows that are compared with one another; none where they are enough
+  std::set<std::string> too_few;  // notes on compared rows; none if they have enough pairs
   for (const auto& of_one : comparable_rows(rows, runs, data)) {
     if (of_one.size() < 2) continue;
     compared = true;
@@ -217,7 +216,7 @@ TextTable summary_table(const TableRuns& runs, const TableOptions& options) {
     if (!csv) add_metric(table, rows, runs, metric, data, options);
   }
   if (csv)
-    add_column(table, "trajectory", false, std::vector<Cell>(rows.size(), {options.online ? "online" : "final"}));
+    add_column(table, "trajectory", false, std::vector<Cell>(rows.size(), {options.causal ? "causal" : "final"}));
   table.notes = summary_notes(rows, runs, columns, data, options.format);
   std::ranges::move(table_notes(runs.runs, run_names(runs.columns), runs.metrics, runs.protocols, options),
                     std::back_inserter(table.notes));

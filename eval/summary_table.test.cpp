@@ -15,7 +15,7 @@ std::string table(const Results& results, TableOptions options = {}) {
   return make_table(results.find(), options);
 }
 
-/// So many seeds: of "good" 0.010, 0.011, ...; of "bad" twice that.
+/// Results over a number of seeds: of "good" 0.010, 0.011, ...; of "bad" twice that.
 void add_seeds(const Results& results, int seeds) {
   for (int seed = 1; seed <= seeds; ++seed) {
     results.add_seed("good", seed, 0.009 + 0.001 * seed);
@@ -25,7 +25,7 @@ void add_seeds(const Results& results, int seeds) {
 
 }  // namespace
 
-TEST_CASE("Over seeds a row has median and quartiles, and how many runs succeeded") {
+TEST_CASE("Over seeds a row has median and quartiles, and the number of successful runs") {
   Results results;
   add_seeds(results, 5);
   const std::string text = table(results);
@@ -36,7 +36,7 @@ TEST_CASE("Over seeds a row has median and quartiles, and how many runs succeede
   CHECK_THAT(text, ContainsSubstring("over seed (5 values)") && ContainsSubstring("Protocol: Sim(3)"));
 }
 
-TEST_CASE("Runs that failed count as worse than all others, and are shown") {
+TEST_CASE("Failed runs count as worse than all others, and are shown") {
   Results results;
   add_seeds(results, 3);
   results.add_seed("good", 4, std::nullopt);
@@ -54,7 +54,7 @@ TEST_CASE("Runs that failed count as worse than all others, and are shown") {
                       ContainsSubstring("arm,bad,6,3,0.0225,inf,inf"));
 }
 
-TEST_CASE("Bold is only what differs significantly from all other rows") {
+TEST_CASE("Only values that differ significantly from all other rows are bold") {
   Results few, many;
   add_seeds(few, 5);
   add_seeds(many, 8);
@@ -80,23 +80,23 @@ TEST_CASE("Bold is only what differs significantly from all other rows") {
   CHECK_THAT(line_with(table(many), "good "), !ContainsSubstring("*"));  // better than one of two
 }
 
-TEST_CASE("Settings that vary, and those asked for, set rows apart or are summarised over") {
+TEST_CASE("Settings that vary distinguish rows, or rows are summarised over them by request") {
   Results results;
   for (const int seed : {1, 2, 3}) {
     for (const double frame : {0.1, 0.2}) results.add_seed("bundle", seed, frame * seed, frame);
   }
   const auto runs = results.find();
   const std::string text = table(results);
-  CHECK_THAT(line_with(text, "ATE [m]"), ContainsSubstring("backend.frame_duration"));
+  CHECK_THAT(line_with(text, "ATE [m]"), ContainsSubstring("backend.batch_duration"));
   CHECK_THAT(text, ContainsSubstring("0.200 [0.150, 0.250]") && ContainsSubstring("0.400 [0.300, 0.500]"));
-  TableOptions options{.metrics = {"ate.trans_m.rmse"}, .over = {"seed", "backend.frame_duration"}};
+  TableOptions options{.metrics = {"ate.trans_m.rmse"}, .over = {"seed", "backend.batch_duration"}};
   CHECK_THAT(make_table(runs, options), ContainsSubstring("6 of 6") && ContainsSubstring("0.250 [0.200, 0.375]"));
   options.over = {"seeds"};
   CHECK_THROWS_WITH(make_table(runs, options),
                     ContainsSubstring("runs do not differ in \"seeds\"; did you mean \"seed\"?"));
 }
 
-TEST_CASE("The same job found twice counts once, two jobs that should be one are an error") {
+TEST_CASE("The same job in two folders counts once, and two jobs of the same place are an error") {
   Results results;
   add_seeds(results, 3);
   Json copy = run("arm", "good", scores_with(0.010));
@@ -105,7 +105,7 @@ TEST_CASE("The same job found twice counts once, two jobs that should be one are
   const Json config = {{"seed", 1},
                        {"source", {{"type", "simulation"}, {"motion", "arm"}}},
                        {"frontend", {{"type", "oracle"}}},
-                       {"backend", {{"type", "good"}, {"frame_duration", 0.1}}}};
+                       {"backend", {{"type", "good"}, {"batch_duration", 0.1}}}};
   results.add("copy", copy, config);
   CHECK_THAT(line_with(table(results), "good "), ContainsSubstring("3 of 3"));
   copy["key"] = "another";
@@ -114,14 +114,14 @@ TEST_CASE("The same job found twice counts once, two jobs that should be one are
                     ContainsSubstring("/copy") && ContainsSubstring("are both \"good\", seed 1, and not the same job"));
 }
 
-TEST_CASE("The long format has a line a run and metric, with the settings as columns") {
+TEST_CASE("The long format has a line per run and metric, with the settings as columns") {
   Results results;
   results.add_seed("bundle", 1, 0.5, 0.1);
   results.add_seed("bundle", 2, std::nullopt, 0.2);
   const std::string csv =
       make_table(results.find(), {.format = TableFormat::long_csv, .metrics = {"ate.trans_m.rmse", "runtime_s"}});
   CHECK(csv.substr(0, csv.find('\n')) ==
-        "experiment,label,backend.frame_duration,seed,key,folder,status,reason,trajectory,protocol,metric,value");
+        "experiment,label,backend.batch_duration,seed,key,folder,status,reason,trajectory,protocol,metric,value");
   CHECK(std::ranges::count(csv, '\n') == 5);
   CHECK_THAT(csv, ContainsSubstring("arm,bundle,0.1,1,") && ContainsSubstring(",ate.trans_m.rmse,0.5\n"));
   CHECK_THAT(csv, ContainsSubstring(",failed,,final,,ate.trans_m.rmse,\n") && ContainsSubstring(",runtime_s,2\n"));

@@ -28,7 +28,7 @@ SweepRecord read_sweep_record(const std::string& path) try {
   for (const RecordReader& run : json.list("runs")) plan.runs.push_back(read_run(run));
   return plan;
 } catch (const InputError& error) {
-  throw InputError(fmt::format("{}; the sweep's command writes it anew, and runs are found without it", error.what()));
+  throw InputError(fmt::format("{}; the sweep's command writes it again, and runs are found without it", error.what()));
 }
 
 }  // namespace evbench

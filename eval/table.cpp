@@ -24,7 +24,7 @@ bool shown_by_default(const Metric& metric, const TableOptions& options) {
 
 constexpr const char* kTextColumns[] = {"key", "folder", "status"};
 
-/// The columns to show: those asked for, else the default ones that at least one run has.
+/// The columns to show: the requested ones, else the default ones that at least one run has.
 std::vector<Metric> choose_metrics(const std::vector<RunNumbers>& runs, const TableOptions& options) {
   std::vector<std::string> keys;
   for (const std::string& key : options.metrics) {
@@ -128,7 +128,7 @@ std::string list_metrics(std::span<const RunRecord> runs) {
 
 namespace {
 
-/// Of absolute paths, by the text itself, what stands behind the folder that all of them have in common.
+/// Absolute paths without their common folder, by the full path.
 std::map<std::string, std::string> without_common_folder(const std::set<std::string>& texts) {
   std::vector<std::string> paths;
   std::ranges::copy_if(texts, std::back_inserter(paths), [](const std::string& text) { return text.starts_with('/'); });
@@ -142,8 +142,7 @@ std::map<std::string, std::string> without_common_folder(const std::set<std::str
   return shorter;
 }
 
-/// For print: paths that stand for labels and experiments, as those of files that are compared, say what they differ
-/// in.
+/// For print: shortens labels and experiments that are paths, as of compared files, to the parts in which they differ.
 std::vector<RunRecord> without_folders(std::span<const RunRecord> runs) {
   std::set<std::string> labels, experiments;
   for (const RunRecord& run : runs) {
@@ -170,10 +169,10 @@ std::string make_table(std::span<const RunRecord> found, const TableOptions& opt
   const std::vector<RunRecord> shortened = print ? without_folders(found) : std::vector<RunRecord>();
   const std::span<const RunRecord> runs = print ? shortened : found;
   TableRuns all;
-  all.runs = numbers_of(runs, options.online);
+  all.runs = numbers_of(runs, options.causal);
   all.protocols = collect_protocols(all.runs);
-  if (all.protocols.texts.empty() && options.online) {
-    throw InputError(fmt::format("none of the {} runs has online scores", runs.size()));
+  if (all.protocols.texts.empty() && options.causal) {
+    throw InputError(fmt::format("none of the {} runs has causal scores", runs.size()));
   }
   all.metrics = choose_metrics(all.runs, options);
   all.columns = run_columns(runs);
@@ -185,7 +184,7 @@ std::string make_table(std::span<const RunRecord> found, const TableOptions& opt
   }
   if (options.metrics.empty() && runs.size() > kCommonTimeRuns && !shows_common_time(options, runs.size())) {
     table.notes.push_back(
-        fmt::format("Of more than {} runs errors over common time are shown only where they are asked for: --metrics "
+        fmt::format("Of more than {} runs errors over common time are shown only by request: --metrics "
                     "common.ate.trans_m.rmse,...",
                     kCommonTimeRuns));
   }

@@ -12,64 +12,65 @@ namespace evbench {
 enum class TableFormat { text, markdown, csv, latex, long_csv };
 inline constexpr NameList<5> kTableFormatNames = {"text", "markdown", "csv", "latex", "long"};
 
-/// How a table is written down.
+/// Layout of a table.
 struct TableLayout {
-  /// Of text, in characters: columns that do not fit are left out, the least important first, and named below; 0: all.
+  /// Width of text [characters]: columns that do not fit are left out, the least important first, and listed in a note;
+  /// 0: all columns.
   std::size_t width = 0;
-  bool body = false;  ///< of LaTeX: the tabular alone, what is said about it in comments
+  bool body = false;  ///< LaTeX: only the tabular, with the notes as comments
 };
 
 struct TableOptions {
   TableFormat format = TableFormat::text;
-  bool online = false;  ///< the scores of the estimates at the moment they were made, instead of the final ones
+  bool causal = false;  ///< the scores of the causal trajectory, instead of the final one
   /// Columns: paths into metrics.json ("realtime_factor", "times.waiting_s") or into its scores ("rpe.trans_m.median");
-  /// empty: the default columns. "key", "folder" and "status" are columns, too, of a table with a row a run.
+  /// empty: the default columns. A table with a row per run also has the columns "key", "folder" and "status".
   std::vector<std::string> metrics = {};
-  /// What rows are summarised over, e.g. {"seed"}: names of run_columns(). Empty: a row a run.
+  /// Columns over which rows are summarised, e.g. {"seed"}: names of run_columns(). Empty: a row per run.
   std::vector<std::string> over = {};
   TableLayout layout = {};
-  bool folders = false;  ///< a column with the folder of each run, where a row is a run
+  bool folders = false;  ///< a column with the folder of each run, in a table with a row per run
 };
 
-/// A table of runs, a row each, in the order given. What tells them apart are columns: the label, the experiment and
-/// the seed where they vary, settings in which runs of one label differ, named as in a config; the key, and the folder,
-/// where these do not suffice. CSV has label, experiment, seed, key and folder always.
+/// A table of runs, a row each, in the order given. These columns distinguish the runs: the label, the experiment and
+/// the seed if they vary, settings in which runs of one label differ, named as in a config; the key, and the folder, if
+/// these do not suffice. CSV always has label, experiment, seed, key and folder.
 ///
-/// The protocol stands below (CSV: in columns; LaTeX: in the caption), and whether the final or the online trajectory
-/// is scored; runs of different protocols are marked with its number. LaTeX has fewer default columns, with shorter
-/// headers, for a column of a page; it has no folders, of paths that stand for labels what they differ in, and no
-/// sentence about what went wrong with a run, but its status as a column.
+/// Notes below the table (CSV: columns; LaTeX: the caption) give the protocol, and whether the final or the causal
+/// trajectory is scored; runs of different protocols are marked with its number. LaTeX has fewer default columns, with
+/// shorter headers, for a column of a page. It has no folders, shortens paths that serve as labels to the parts in
+/// which they differ, and has a status column instead of notes about failures.
 ///
-/// Beside the status of a run stands what is missing of its trajectory: "ok, covers 73 %" where that is less than 90 %
-/// of the time, "ok, from 1.20 s" where it begins more than a second after the sequence.
+/// The status of a run includes what is missing of its trajectory: "ok, covers 73 %" if it is less than 90 % of the
+/// time, "ok, from 1.20 s" if it begins more than a second after the sequence.
 ///
-/// Pairs, coverage and scale are columns, or, where `metrics` leaves them out, ranges below. The best value of a
+/// Pairs, coverage and scale are columns, or, if `metrics` does not have them, ranges in a note. The best value of a
 /// column, among runs of the same experiment, sequence (seed included) and protocol, is bold in Markdown and LaTeX and
-/// marked with * in text, which is explained below; runs that were lost or failed do not compete. A value that a run
-/// does not have is "-" (CSV: empty). Why runs have no scores, or were lost, stands below.
+/// marked with * in text, which a note explains; lost and failed runs do not compete. A missing value is "-" (CSV:
+/// empty). Notes give the reasons why runs have no scores, or were lost.
 ///
-/// With `over`, runs that differ in nothing else are a row: median and quartiles of each number, and how many of them
-/// succeeded, that is, have scores and were neither lost nor failed. Those that did not count as worse than all others
-/// in every number of which lower or higher is better ("fails"). Bold is what significantly differs from all other rows
-/// of the same experiment and protocol: Wilcoxon's test on pairs of the same data, corrected by Holm for the number of
-/// rows, p < 0.05 (paired_comparison.hpp). CSV has columns KEY.lower, KEY.median and KEY.upper, infinite where that is
-/// of a run that did not succeed.
+/// With `over`, runs that differ in nothing else are one row: median and quartiles of each number, and the number of
+/// successful runs, which have scores and are neither lost nor failed. The others count as worse than all others in
+/// every number of which lower or higher is better ("fails"). Bold values differ significantly from all other rows of
+/// the same experiment and protocol: Wilcoxon's test on pairs of the same data, corrected by Holm for the number of
+/// rows, p < 0.05 (paired_comparison.hpp). CSV has columns KEY.lower, KEY.median and KEY.upper, which are infinite for
+/// a run that did not succeed.
 ///
-/// The format "long" is a CSV with a line a run and metric, of all known ones where none are asked for, and what tells
-/// runs apart as columns: what pandas and R read at once.
+/// The format "long" is a CSV with a line per run and metric (by default all known ones), and with the columns that
+/// distinguish the runs: pandas and R can read it directly.
 ///
-/// Throws InputError when there is no run, when no run has a column's value at all, with the nearest known name, when
-/// no run has online scores but they are asked for, and with `over` when runs do not differ in what it names or when
-/// two of a row have the same seed (or whatever `over` names) but are not the same job.
+/// Throws InputError if there is no run, if no run has a value of a column, with the nearest known name, if causal
+/// scores are requested and no run has them, and with `over` if runs do not differ in its columns, or if two runs of a
+/// row have the same seed (or other value of `over`) but are not the same job.
 std::string make_table(std::span<const RunRecord> runs, const TableOptions& options);
 
-/// A line for each number that any of the runs has: its key, as TableOptions::metrics takes it, and its header.
+/// A line for each number that any of the runs has: its key for TableOptions::metrics, and its header.
 std::string list_metrics(std::span<const RunRecord> runs);
 
-/// Does such a table of so many runs show scores over common time (bench/common_time.hpp)? They take long: the runs'
-/// trajectories are scored again. So tables of more than kCommonTimeRuns runs have them only where they are asked for.
+/// Whether a table of so many runs shows scores over common time (bench/common_time.hpp). They take long, because the
+/// runs are scored again: tables of more than kCommonTimeRuns runs have them only by request.
 bool shows_common_time(const TableOptions& options, std::size_t runs);
-/// Is any of these metrics of common time?
+/// Whether any of these metrics is of common time.
 bool any_of_common_time(const std::vector<std::string>& metrics);
 inline constexpr std::size_t kCommonTimeRuns = 500;
 

@@ -32,7 +32,7 @@ TEST_CASE("A table shows the protocol, and the best value of each column") {
              ContainsSubstring("**0.0120**") && ContainsSubstring("\nBold: the best of a column among "));
 }
 
-TEST_CASE("Only runs of one experiment and protocol that kept track compete") {
+TEST_CASE("Only runs of one experiment and protocol that were not lost compete") {
   Results results;
   results.add("a", run("arm", "good", scores_with(0.020)));
   results.add("b", run("arm", "better but lost", scores_with(0.010), "lost"));
@@ -48,7 +48,7 @@ TEST_CASE("Only runs of one experiment and protocol that kept track compete") {
                        ContainsSubstring("do not compete"));
 }
 
-TEST_CASE("Runs compete with those of the same seed and source alone") {
+TEST_CASE("Runs compete only with those of the same seed and source") {
   Results results;
   for (const int seed : {1, 2}) {
     results.add_seed("good", seed, 0.01 * seed);
@@ -76,7 +76,7 @@ TEST_CASE("A run without an estimate is a row without values") {
   results.add("a", run("arm", "good", scores_with(0.020)));
   results.add("b", run("arm", "bad", nullptr, "failed"));
   CHECK_THAT(line_with(text_of(results, {}), "bad"), ContainsSubstring(" - ") && ContainsSubstring("failed at 3.25 s"));
-  CHECK_THROWS_WITH(text_of(results, {.online = true}), "none of the 2 runs has online scores");
+  CHECK_THROWS_WITH(text_of(results, {.causal = true}), "none of the 2 runs has causal scores");
 }
 
 TEST_CASE("Runs that could not be scored still make a table") {
@@ -87,7 +87,7 @@ TEST_CASE("Runs that could not be scored still make a table") {
              ContainsSubstring("No run has scores") && ContainsSubstring("no ground truth: not known"));
 }
 
-TEST_CASE("Columns can be chosen, pairs, coverage and scale then stand below") {
+TEST_CASE("If columns are chosen, notes give pairs, coverage and scale") {
   Results results;
   results.add("a", run("arm", "one", scores_with(0.020)));
   results.add("b", run("arm", "two", scores_with(0.030)));
@@ -100,7 +100,7 @@ TEST_CASE("Columns can be chosen, pairs, coverage and scale then stand below") {
       ContainsSubstring("no run has the metric \"rpe.trans_m.meddian\"") && ContainsSubstring("rpe.trans_m.median"));
 }
 
-TEST_CASE("Runs that differ in their seed, or in nothing but their options, can be told apart") {
+TEST_CASE("Runs that differ only in their seed or options are distinguished") {
   Results results;
   const auto add = [&](const std::string& name, int seed, const std::string& key) {
     Json json = run("arm", "mine", scores_with(0.02));
@@ -117,7 +117,7 @@ TEST_CASE("Runs that differ in their seed, or in nothing but their options, can 
              ContainsSubstring("key") && ContainsSubstring("mine-bb") && ContainsSubstring("mine-cc"));
 }
 
-TEST_CASE("Runs of one label have as columns the settings in which they differ, in the order of their values") {
+TEST_CASE("Settings in which runs of one label differ are columns, in the order of their values") {
   Results results;
   int folders = 9;
   for (const double duration : {0.05, 0.1}) {
@@ -127,31 +127,31 @@ TEST_CASE("Runs of one label have as columns the settings in which they differ, 
       results.add(std::to_string(folders--), json,
                   {{"seed", seed},
                    {"source", {{"type", "simulation"}}},
-                   {"backend", {{"type", "bundle_adjustment"}, {"frame_duration", duration}, {"label", "x"}}}});
+                   {"backend", {{"type", "bundle_adjustment"}, {"batch_duration", duration}, {"label", "x"}}}});
     }
   }
   const std::string text = text_of(results, {});
   CHECK_THAT(line_with(text, "ATE [m]"),
-             ContainsSubstring("backend.frame_duration") && ContainsSubstring("seed") && !ContainsSubstring("key"));
+             ContainsSubstring("backend.batch_duration") && ContainsSubstring("seed") && !ContainsSubstring("key"));
   CHECK_THAT(text, !ContainsSubstring("source.type") && !ContainsSubstring("backend.label"));
   const auto runs = results.find();
   CHECK(runs[0].seed == 1);
   CHECK(runs[1].seed == 2);
-  CHECK(*find_setting(runs[1].settings, "backend.frame_duration") == 0.05);
-  CHECK(*find_setting(runs[2].settings, "backend.frame_duration") == 0.1);
+  CHECK(*find_setting(runs[1].settings, "backend.batch_duration") == 0.05);
+  CHECK(*find_setting(runs[2].settings, "backend.batch_duration") == 0.1);
   CHECK_THAT(text_of(results, {.format = TableFormat::csv}),
-             ContainsSubstring("experiment,label,backend.frame_duration,seed,key,folder,") &&
+             ContainsSubstring("experiment,label,backend.batch_duration,seed,key,folder,") &&
                  ContainsSubstring("\narm,bundle_adjustment,0.05,1,"));
 }
 
-TEST_CASE("Labels that tell runs apart need no settings beside them") {
+TEST_CASE("Runs with different labels need no columns of settings") {
   Results results;
-  results.add("a", run("arm", "25 ms", scores_with(0.02)), {{"backend", {{"frame_duration", 0.025}}}});
-  results.add("b", run("arm", "50 ms", scores_with(0.03)), {{"backend", {{"frame_duration", 0.05}}}});
-  CHECK_THAT(text_of(results, {}), !ContainsSubstring("frame_duration"));
+  results.add("a", run("arm", "25 ms", scores_with(0.02)), {{"backend", {{"batch_duration", 0.025}}}});
+  results.add("b", run("arm", "50 ms", scores_with(0.03)), {{"backend", {{"batch_duration", 0.05}}}});
+  CHECK_THAT(text_of(results, {}), !ContainsSubstring("batch_duration"));
 }
 
-TEST_CASE("Rows stand in the order of their config") {
+TEST_CASE("Rows are in the order of their config") {
   Results results;
   int position = 0;
   for (const char* label : {"mine", "baseline", "another"}) {
@@ -165,7 +165,7 @@ TEST_CASE("Rows stand in the order of their config") {
   CHECK(runs[2].label == "another");
 }
 
-TEST_CASE("Front-end and back-end have a time each, and every time can be a column") {
+TEST_CASE("The times of front-end and back-end are columns, and every other time can be") {
   Results results;
   results.add("a", run("arm", "one", scores_with(0.020)));
   CHECK_THAT(line_with(text_of(results, {}), "ATE [m]"),
@@ -176,7 +176,7 @@ TEST_CASE("Front-end and back-end have a time each, and every time can be a colu
   CHECK_THROWS_WITH(text_of(results, {.metrics = {"times.waitng_s"}}), ContainsSubstring("times.waiting_s"));
 }
 
-TEST_CASE("Below a table stands why runs have no scores") {
+TEST_CASE("Notes give the reasons why runs have no scores") {
   Results results;
   results.add("a", run("arm", "good", scores_with(0.020)));
   Json bad = run("arm", "bad", nullptr, "failed");
@@ -194,7 +194,7 @@ TEST_CASE("Below a table stands why runs have no scores") {
                                        ContainsSubstring("Without scores: unscored: only 2 of the estimate's poses"));
 }
 
-TEST_CASE("A sweep's axes are columns, and runs that it has planned but not done are rows") {
+TEST_CASE("A sweep's axes are columns, and its planned runs that are not done are rows") {
   Results results;
   results.add("batching/a", run("batching", "bundle", scores_with(0.02)));
   const auto planned = [](const char* key, const char* frame) {
@@ -210,7 +210,7 @@ TEST_CASE("A sweep's axes are columns, and runs that it has planned but not done
   CHECK_THAT(text, ContainsSubstring("Not run yet: bundle (frame 0.2)."));
   CHECK_THAT(text_of(results, {.over = {"frame"}}), ContainsSubstring("1 of 1"));
 
-  // A run of it that can't be read is no less one of its runs.
+  // A run that can't be read is also one of its runs.
   results.add("batching/b", std::string("{"));
   std::vector<std::string> unreadable;
   const std::vector<RunRecord> runs = find_runs(std::vector{results.folder.path()}, &unreadable);
@@ -221,7 +221,7 @@ TEST_CASE("A sweep's axes are columns, and runs that it has planned but not done
   CHECK_THAT(make_table(runs, {.over = {"frame"}}), ContainsSubstring("1 of 2"));
 }
 
-TEST_CASE("A run that broke off says why, in tables for people and for programs") {
+TEST_CASE("The reason why a run broke off is in text tables and in CSV") {
   Results results;
   Json hung = run("arm", "hung", Json(), "failed"), crashed = hung;
   hung["status"] = {{"state", "failed"}, {"reason", "timeout after 60 s"}, {"time", 0.0}, {"complete", false}};
@@ -248,19 +248,19 @@ TEST_CASE("CSV has the exact numbers under the keys of metrics.json") {
                                     results.folder.file("a") + ",0.0123456789,100,1,"));
 }
 
-TEST_CASE("Every format says which trajectory is scored") {
+TEST_CASE("Every format has the scored trajectory, final or causal") {
   Results results;
   Json json = run("arm", "mine", scores_with(0.02));
-  json["online"] = json["final"];
+  json["causal"] = json["final"];
   results.add("a", json);
   for (const TableFormat format : {TableFormat::text, TableFormat::markdown, TableFormat::latex}) {
     CHECK_THAT(text_of(results, {.format = format}), ContainsSubstring("Final: the trajectory as estimated after"));
-    CHECK_THAT(text_of(results, {.format = format, .online = true}),
-               ContainsSubstring("Online: each pose as estimated"));
+    CHECK_THAT(text_of(results, {.format = format, .causal = true}),
+               ContainsSubstring("Causal: each pose as estimated"));
   }
   CHECK_THAT(text_of(results, {.format = TableFormat::csv}),
              ContainsSubstring(",status,reason,trajectory,protocol\n") && ContainsSubstring(",final,"));
-  CHECK_THAT(text_of(results, {.format = TableFormat::csv, .online = true}), ContainsSubstring(",online,"));
+  CHECK_THAT(text_of(results, {.format = TableFormat::csv, .causal = true}), ContainsSubstring(",causal,"));
 }
 
 TEST_CASE("LaTeX is a float for a column: few columns with short headers, a label, the protocol in the caption") {
@@ -304,7 +304,7 @@ TEST_CASE("The body of a LaTeX table is its tabular, with the protocol as a comm
   CHECK(body.ends_with("\\end{tabular}\n"));
 }
 
-TEST_CASE("LaTeX names files that are compared by what their paths differ in") {
+TEST_CASE("LaTeX shortens the paths of compared files to the parts in which they differ") {
   std::vector<RunRecord> records;
   for (const char* path : {"/data/mine/a/final.tum", "/data/mine/b/final.tum"}) {
     RunRecord& record = records.emplace_back();
@@ -318,7 +318,7 @@ TEST_CASE("LaTeX names files that are compared by what their paths differ in") {
   CHECK_THAT(make_table(records, {.format = TableFormat::csv}), ContainsSubstring("/data/mine/a/final.tum"));
 }
 
-TEST_CASE("In LaTeX numbers are aligned by their points, whatever else stands in a column") {
+TEST_CASE("In LaTeX numbers are aligned by their decimal points, whatever else is in a column") {
   TextTable table;
   table.columns = {{"", false}, {"error"}, {"p"}, {"runs"}};
   table.rows = {{{"a_1"}, {"-0.125"}, {"1e-05"}, {"5 of 5"}},
@@ -332,7 +332,7 @@ TEST_CASE("In LaTeX numbers are aligned by their points, whatever else stands in
                         ContainsSubstring("c & {fails} & {--} & 0 of 5"));
 }
 
-TEST_CASE("LaTeX tables are what pdflatex can set") {
+TEST_CASE("pdflatex accepts LaTeX tables") {
   if (std::system("command -v pdflatex > /dev/null 2>&1") != 0) {  // NOLINT(cert-env33-c,concurrency-mt-unsafe)
     WARN("left out: pdflatex is not installed");
     return;
@@ -351,7 +351,7 @@ TEST_CASE("LaTeX tables are what pdflatex can set") {
   }
 }
 
-TEST_CASE("Text leaves out the least important columns where there is no room for them, and names them") {
+TEST_CASE("Text leaves out the least important columns if they do not fit, and lists them") {
   Results results;
   results.add("a", run("arm", "asynchronous", scores_with(0.012)));
   results.add("b", run("arm", "bundle adjustment", scores_with(0.034)));
@@ -376,7 +376,7 @@ TEST_CASE("Text leaves out the least important columns where there is no room fo
         text_of(results, {.format = TableFormat::csv}));
 }
 
-TEST_CASE("The folder of a run is a column where that is asked for") {
+TEST_CASE("The folder of a run is a column by request") {
   Results results;
   results.add("a", run("arm", "mine", scores_with(0.02)));
   const std::string folder = results.folder.file("a");
@@ -388,7 +388,7 @@ TEST_CASE("The folder of a run is a column where that is asked for") {
                     ContainsSubstring("\"folder\" is of one run"));
 }
 
-TEST_CASE("Beside ok stands what part of the time is missing") {
+TEST_CASE("The status ok includes the missing part of the time") {
   const auto status = [](double coverage, double first) {
     Results results;
     Json json = run("arm", "mine", scores_with(0.02));
@@ -403,11 +403,12 @@ TEST_CASE("Beside ok stands what part of the time is missing") {
   CHECK(status(0.73, 0.5) == "ok, covers 73 %");
   CHECK(status(0.95, 1.25) == "ok, from 3.25 s");
   CHECK(status(0.5, 1.25) == "ok, covers 50 % from 3.25 s");
-  // Without ground truth the estimate's own time tells it.
+  // Without ground truth it is determined by the estimate's own time.
   Results results;
   Json json = run("arm", "mine", nullptr);
   json["range_s"] = {0.0, 10.0};
-  json["status"] = {{"state", "ok"}, {"pieces", {{{"from", 3.0}, {"to", 10.0}, {"poses", 9}}}}, {"scored_piece", 1}};
+  json["status"] = {
+      {"state", "ok"}, {"segments", {{{"from", 3.0}, {"to", 10.0}, {"poses", 9}}}}, {"scored_segment", 1}};
   results.add("a", json);
   CHECK_THAT(line_with(text_of(results, {}), "mine "), ContainsSubstring("ok, covers 70 % from 3.00 s"));
   CHECK_THAT(text_of(results, {.format = TableFormat::csv}), ContainsSubstring(",ok,,final,"));

@@ -14,7 +14,7 @@ namespace {
 
 using Cell = TextTable::Cell;
 
-/// How many characters the numbers of a column have before and behind the point, and in their exponents.
+/// Numbers of characters before and after the decimal point, and in the exponents, of a column's numbers.
 struct Digits {
   std::size_t before = 1, behind = 0, exponent = 0;
   bool minus = false, minus_exponent = false;
@@ -33,12 +33,12 @@ void add_digits(const std::smatch& match, Digits& digits) {
 
 /// A column of the table, and how it is aligned.
 struct Column {
-  bool number;                   ///< of numbers, or of text that is aligned as they are
-  std::optional<Digits> digits;  ///< by their points; none: there is no number, or something that is more than one
-  bool aside = false;            ///< something stands beside its cells
+  bool number;                   ///< of numbers, or of text that is aligned like numbers
+  std::optional<Digits> digits;  ///< for alignment by decimal points; none: a cell is not a single number
+  bool detail = false;           ///< its cells have details
 };
 
-/// What stands for a number that a run does not have.
+/// Whether the text is the placeholder of a missing number.
 bool is_no_number(const std::string& text) { return text == "-" || text == "fails" || text == "inf"; }
 
 Column column_of(const TextTable& table, std::size_t c) {
@@ -47,7 +47,7 @@ Column column_of(const TextTable& table, std::size_t c) {
   Digits digits;
   bool any = false;
   for (const auto& row : table.rows) {
-    column.aside = column.aside || !row[c].aside.empty();
+    column.detail = column.detail || !row[c].detail.empty();
     std::smatch match;
     if (std::regex_match(row[c].text, match, kNumber)) {
       add_digits(match, digits);
@@ -70,16 +70,16 @@ std::string alignment_of(const Column& column) {
     if (digits.exponent > 0) text += fmt::format("e{}{}", digits.minus_exponent ? "-" : "", digits.exponent);
     text += "]";
   }
-  return text + (column.aside ? "@{\\,}l" : "");
+  return text + (column.detail ? "@{\\,}l" : "");
 }
 
 std::string header_of(const std::string& header, const Column& column) {
   const std::string text = escape_latex(header);
-  if (column.aside) return fmt::format("\\multicolumn{{2}}{{c}}{{{}}}", text);
+  if (column.detail) return fmt::format("\\multicolumn{{2}}{{c}}{{{}}}", text);
   return column.digits ? fmt::format("{{{}}}", text) : text;
 }
 
-/// In a column that siunitx aligns, what is no number stands in braces.
+/// The text of a cell. In a column that siunitx aligns, text that is not a number is put in braces.
 std::string text_of(const Cell& cell, const Column& column) {
   std::string text = escape_latex(cell.text);
   std::smatch match;
@@ -89,13 +89,13 @@ std::string text_of(const Cell& cell, const Column& column) {
     text = fmt::format("{}e{}{}", text.substr(0, text.find('e')), match.str(4) == "-" ? "-" : "", match.str(5));
   }
   if (cell.best) text = column.digits && number ? "\\bfseries " + text : fmt::format("\\textbf{{{}}}", text);
-  if (column.aside) {
-    text += cell.aside.empty() ? " &" : fmt::format(" & {{\\scriptsize {}}}", escape_latex(cell.aside));
+  if (column.detail) {
+    text += cell.detail.empty() ? " &" : fmt::format(" & {{\\scriptsize {}}}", escape_latex(cell.detail));
   }
   return text;
 }
 
-/// What may stand in a \\label.
+/// A valid name for \\label.
 std::string label_of(const TextTable& table) {
   std::string label = fmt::format("tab:{}", fmt::join(table.experiments, "+"));
   const auto safe = [](unsigned char c) {
@@ -163,7 +163,7 @@ std::string escape_latex(const std::string& text) {
       case '|': result += "\\textbar{}"; break;
       case '[':
         result += result.empty() ? "{[}" : "[";
-        break;  // first in a row it would be an argument of the line break
+        break;  // at the beginning of a row it would be an argument of the line break
       case '\n': result += ' '; break;
       default: result += c;
     }

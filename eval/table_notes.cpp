@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMostTroubles = 20;  // a table of thousands of runs has many
 
-/// Pairs, coverage, scale as ranges, as far as they are no columns.
+/// Pairs, coverage and scale as ranges, if they are not columns.
 std::string ranges_note(const std::vector<RunNumbers>& runs, const std::vector<Metric>& shown) {
   std::string note;
   for (const char* key : {"pairs", "coverage", "scale"}) {
@@ -36,14 +36,14 @@ std::string ranges_note(const std::vector<RunNumbers>& runs, const std::vector<M
   return note.empty() ? note : note + ".";
 }
 
-/// What went wrong with a run, and why.
+/// A failure of a run and its reason.
 struct Trouble {
   std::string what, reason;
   bool operator==(const Trouble&) const = default;
 };
 
-/// None where a run was neither lost nor left without scores. The reason of its status tells most.
-std::optional<Trouble> trouble_of(const RunNumbers& numbers, bool online) {
+/// None if a run was neither lost nor is without scores. The reason of its status is the most informative.
+std::optional<Trouble> trouble_of(const RunNumbers& numbers, bool causal) {
   const RunRecord& run = numbers.run();
   if (!run.damage.empty()) return Trouble{"Damaged", run.damage};
   if (!run.done) return Trouble{"Not run yet", ""};
@@ -52,24 +52,24 @@ std::optional<Trouble> trouble_of(const RunNumbers& numbers, bool online) {
   const bool degraded = run.status && run.status->status.state == RunState::degraded;
   if (scored && degraded) return Trouble{"Degraded", run.status->status.reason};
   if (scored && run.competes()) return std::nullopt;
-  const std::string& unscored = online ? run.online_unscored : run.final_unscored;
+  const std::string& unscored = causal ? run.causal_unscored : run.final_unscored;
   const std::string what = !scored ? "Without scores" : run.status->status.state == RunState::lost ? "Lost" : "Failed";
   return Trouble{what, !reason.empty() ? reason : !unscored.empty() ? unscored : "not known"};
 }
 
-/// A sentence for each trouble, with the runs that had it.
+/// A note for each kind of trouble, with its runs.
 std::vector<std::string> trouble_notes(const std::vector<RunNumbers>& runs, const std::vector<std::string>& names,
-                                       bool online) {
+                                       bool causal) {
   std::vector<std::pair<Trouble, std::string>> troubles;
-  std::size_t told = 0, untold = 0;
+  std::size_t listed = 0, unlisted = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const std::optional<Trouble> trouble = trouble_of(runs[i], online);
+    const std::optional<Trouble> trouble = trouble_of(runs[i], causal);
     if (!trouble) continue;
-    if (told == kMostTroubles) {
-      ++untold;
+    if (listed == kMostTroubles) {
+      ++unlisted;
       continue;
     }
-    ++told;
+    ++listed;
     const auto found = std::ranges::find(troubles, *trouble, &std::pair<Trouble, std::string>::first);
     if (found == troubles.end()) {
       troubles.emplace_back(*trouble, names[i]);
@@ -81,14 +81,14 @@ std::vector<std::string> trouble_notes(const std::vector<RunNumbers>& runs, cons
   for (const auto& [trouble, who] : troubles) {
     notes.push_back(fmt::format("{}: {}{}{}.", trouble.what, who, trouble.reason.empty() ? "" : ": ", trouble.reason));
   }
-  if (untold > 0) {
+  if (unlisted > 0) {
     notes.push_back(
-        fmt::format("{} more runs were degraded, lost, failed or not run: --format csv lists them all.", untold));
+        fmt::format("{} more runs were degraded, lost, failed or not run: --format csv lists them all.", unlisted));
   }
   return notes;
 }
 
-/// The time that runs of the same data have in common.
+/// The common time of runs of the same data.
 std::vector<std::string> common_time_notes(const std::vector<RunNumbers>& runs) {
   std::vector<std::string> spans;
   for (const RunNumbers& run : runs) {
@@ -98,19 +98,19 @@ std::vector<std::string> common_time_notes(const std::vector<RunNumbers>& runs) 
     if (std::ranges::find(spans, span) == spans.end()) spans.push_back(std::move(span));
   }
   if (spans.empty()) return {};
-  const std::string span = spans.size() == 1 ? spans.front() + ", which" : "for each seed and sequence what";
-  return {fmt::format("Common time: {} every run covers that was not lost.", span)};
+  const std::string span = spans.size() == 1 ? spans.front() + "," : "for each seed and sequence the time";
+  return {fmt::format("Common time: {} covered by all runs that were not lost.", span)};
 }
 
-/// What part of the sequence a trajectory is of, where that is not most of it; by the poses that are scored, or where
-/// there is no ground truth by its own.
+/// The covered part of the sequence, if it is not most of it: of the scored poses, or without ground truth of the
+/// trajectory's own poses.
 std::string missing_text(const RunNumbers& numbers) {
   constexpr double kMost = 0.9, kSoon = 1.0;  // [s]
   const RunRecord& run = numbers.run();
   const RunStatus& status = *run.status;
   std::optional<TimeRange> span;
-  if (status.scored > 0 && status.scored <= status.pieces.size()) {
-    span = TimeRange{status.pieces[status.scored - 1].from, status.pieces[status.scored - 1].to};
+  if (status.scored > 0 && status.scored <= status.segments.size()) {
+    span = TimeRange{status.segments[status.scored - 1].from, status.segments[status.scored - 1].to};
   }
   std::optional<double> covered = numbers.at("coverage");
   if (const Json scored = numbers.scores().is_object() ? numbers.scores().value("span_s", Json()) : Json();
@@ -153,7 +153,7 @@ std::vector<std::string> table_notes(const std::vector<RunNumbers>& runs, const 
     notes.emplace_back("No run has scores.");
   } else {
     const bool of_runs = std::ranges::any_of(runs, [](const RunNumbers& run) { return run.run().status.has_value(); });
-    notes.emplace_back(options.online ? "Online: each pose as estimated at the time it was made. "
+    notes.emplace_back(options.causal ? "Causal: each pose as estimated at the time it was made. "
                        : of_runs      ? "Final: the trajectory as estimated after the whole sequence. "
                                       : "");
     notes.back() += "ATE and RPE columns are root mean squares unless they say otherwise.";
@@ -172,7 +172,7 @@ std::vector<std::string> table_notes(const std::vector<RunNumbers>& runs, const 
                     options.format == TableFormat::latex ? "RTF, the real-time factor" : "Real-time factor"));
   }
   if (options.format != TableFormat::latex) {
-    std::ranges::move(trouble_notes(runs, names, options.online), std::back_inserter(notes));
+    std::ranges::move(trouble_notes(runs, names, options.causal), std::back_inserter(notes));
   }
   return notes;
 }
@@ -185,7 +185,7 @@ std::string status_text(const RunNumbers& numbers) {
   if (run.status->status.state == RunState::ok) return word + missing_text(numbers);
   const Status& status = run.status->status;
   if (run.status->complete) return fmt::format("{} at {:.2f} s", word, status.time);
-  return status.reason.size() <= kShort ? status.reason : word;  // it broke off: at no time of the data
+  return status.reason.size() <= kShort ? status.reason : word;  // it broke off: no time in the data
 }
 
 std::string status_word(const RunRecord& run) {

@@ -8,23 +8,22 @@
 
 namespace evbench {
 
-/// The distinct protocols of runs, and each run's number among them; -1 for a run without scores.
+/// The distinct protocols of runs, and the index of each run's protocol; -1 for a run without scores.
 struct Protocols {
   std::vector<std::string> texts;
   std::vector<int> of_run;
 };
 Protocols collect_protocols(const std::vector<RunNumbers>& runs);
 
-/// What is to be said below a table of runs, in sentences: which trajectory, the protocols, pairs, coverage and scale
-/// as far as they are no columns, the common time, and, unless `options` are of LaTeX, what went wrong with which run.
-/// `names`: what each run is called.
+/// The notes below a table of runs: the scored trajectory, the protocols, pairs, coverage and scale if they are not
+/// columns, the common time, and, except for LaTeX, the failures of runs. `names`: of the runs.
 std::vector<std::string> table_notes(const std::vector<RunNumbers>& runs, const std::vector<std::string>& names,
                                      const std::vector<Metric>& metrics, const Protocols& protocols,
                                      const TableOptions& options);
 
-/// For people: "ok", "ok, covers 73 % from 1.20 s", "lost at 3.25 s", "timeout after 60 s", "not run".
+/// The status for text tables: "ok", "ok, covers 73 % from 1.20 s", "lost at 3.25 s", "timeout after 60 s", "not run".
 std::string status_text(const RunNumbers& numbers);
-/// For programs: "ok", "lost", "failed", "damaged", "not run", and why, which is empty where all is well.
+/// The status for CSV: "ok", "degraded", "lost", "failed", "damaged" or "not run"; and the reason, empty if it is ok.
 std::string status_word(const RunRecord& run);
 std::string status_reason(const RunRecord& run);
 

@@ -10,11 +10,11 @@
 #include "eval/table_notes.hpp"
 #include "eval/table_text.hpp"
 
-// What the kinds of tables have in common; make_table() puts them together.
+// Common parts of all kinds of tables, for make_table().
 
 namespace evbench {
 
-/// What every table is made from.
+/// The input of every table.
 struct TableRuns {
   std::vector<RunNumbers> runs;
   std::vector<RunColumn> columns;  ///< run_columns() of them
@@ -22,33 +22,33 @@ struct TableRuns {
   std::vector<Metric> metrics;  ///< to be shown
 };
 
-/// A row a run.
+/// A table with a row per run.
 TextTable run_table(const TableRuns& runs, const TableOptions& options);
 
-/// A row for all runs that differ only in what options.over names.
+/// A table with a row for all runs that differ only in the columns options.over.
 TextTable summary_table(const TableRuns& runs, const TableOptions& options);
 
-/// A line a run and metric.
+/// A CSV with a line per run and metric.
 std::string long_table(const TableRuns& runs, const TableOptions& options);
 
-/// Decimals with which the smallest value other than 0 shows three digits, 1 to 6.
+/// The decimals, 1 to 6, with which the smallest value other than 0 has three digits.
 int decimals_of(const std::vector<std::optional<double>>& values);
 
-/// What each run is called in notes: by its label, and by the other columns in which runs of that label differ.
+/// The names of runs in notes: the label, and the other columns in which runs of that label differ.
 std::vector<std::string> run_names(const std::vector<RunColumn>& columns);
 
 void add_column(TextTable& table, const std::string& header, bool number, std::vector<TextTable::Cell> cells,
                 std::size_t rank = 0);
 
-/// The column of a metric: its header in this format, and its rank (TextTable::Column) among those that are shown.
-/// None goes that was asked for.
+/// The column of a metric: its header in this format, and its rank (TextTable::Column). Requested columns are never
+/// left out.
 std::string header_of(const Metric& metric, TableFormat format);
 std::size_t rank_of(const Metric& metric, const TableOptions& options);
 
-/// Is a column of text, "key", "folder" or "status", among options.metrics?
+/// Whether a text column, "key", "folder" or "status", is among options.metrics.
 bool asks_for(const TableOptions& options, const char* column);
 
-/// "experiment" and the like, as far as there is one.
+/// The distinct values of the column "experiment"; empty if there is none.
 std::vector<std::string> distinct_experiments(const TableRuns& runs);
 
 }  // namespace evbench

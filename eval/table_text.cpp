@@ -42,7 +42,7 @@ std::string pad(const std::string& text, std::size_t width, bool right) {
   return right ? blanks + text : text + blanks;
 }
 
-/// The header and all rows as texts, each cell written by `write`, padded to columns of equal width.
+/// The header and all rows as text, each cell written by `write`, padded to columns of equal width.
 std::vector<std::vector<std::string>> padded_rows(const TextTable& table,
                                                   const std::function<std::string(const Cell&)>& write) {
   std::vector<std::vector<std::string>> rows(1);
@@ -59,7 +59,7 @@ std::vector<std::vector<std::string>> padded_rows(const TextTable& table,
   return rows;
 }
 
-/// Which of these columns, all of one width in all rows, fit: those of the highest ranks go, as long as there are any.
+/// The columns that fit, each of one width in all rows: those of the highest ranks are left out until the rest fits.
 std::vector<std::size_t> fitting_columns(const TextTable& table, const std::vector<std::string>& cells,
                                          std::size_t width) {
   std::vector<std::size_t> columns(cells.size());
@@ -80,8 +80,8 @@ std::vector<std::size_t> fitting_columns(const TextTable& table, const std::vect
 
 std::string format_text(const TextTable& table, std::size_t width) {
   const auto rows = padded_rows(table, [](const Cell& cell) {
-    if (cell.aside.empty()) return cell.text + (cell.best ? "*" : " ");
-    return fmt::format("{}{} {} ", cell.text, cell.best ? "*" : "", cell.aside);
+    if (cell.detail.empty()) return cell.text + (cell.best ? "*" : " ");
+    return fmt::format("{}{} {} ", cell.text, cell.best ? "*" : "", cell.detail);
   });
   const std::vector<std::size_t> columns = fitting_columns(table, rows.front(), width);
   std::string text;
@@ -105,8 +105,8 @@ std::string format_text(const TextTable& table, std::size_t width) {
 
 std::string format_markdown(const TextTable& table) {
   const auto rows = padded_rows(table, [](const Cell& cell) {
-    const std::string text = escape_markdown(cell.text), aside = escape_markdown(cell.aside);
-    return (cell.best ? fmt::format("**{}**", text) : text) + (aside.empty() ? "" : " " + aside);
+    const std::string text = escape_markdown(cell.text), detail = escape_markdown(cell.detail);
+    return (cell.best ? fmt::format("**{}**", text) : text) + (detail.empty() ? "" : " " + detail);
   });
   std::string text;
   for (std::size_t r = 0; r < rows.size(); ++r) {

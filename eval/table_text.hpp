@@ -7,30 +7,30 @@
 
 namespace evbench {
 
-/// A table ready to be written: what each cell says, and what is said about the whole.
+/// A table as text: the cells and the notes.
 struct TextTable {
   struct Column {
     std::string header;
     bool number = true;    ///< numbers align right
-    std::size_t rank = 0;  ///< where there is no room for all, columns of the highest rank go first; 0: it stays
+    std::size_t rank = 0;  ///< columns of the highest rank are left out first if not all fit; 0: never left out
   };
   struct Cell {
     std::string text;
-    bool best = false;       ///< of the text
-    std::string aside = {};  ///< behind it, small in print
+    bool best = false;        ///< of the text
+    std::string detail = {};  ///< printed after the text, small in LaTeX
   };
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;
-  std::vector<std::string> notes;        ///< sentences, one a line
-  std::vector<std::string> experiments;  ///< what it is of
+  std::vector<std::string> notes;        ///< one per line
+  std::vector<std::string> experiments;  ///< experiments of the runs
 };
 
-/// Written out; characters with a meaning in the format are escaped. LaTeX is a float that needs the packages booktabs
-/// and siunitx, which aligns numbers by their points, with a label, and the notes in its caption. Not for the format
-/// long.
+/// Formats a table; characters with a meaning in the format are escaped. LaTeX is a float with a label and the notes in
+/// its caption; it needs the packages booktabs and siunitx, which aligns numbers by their decimal points. Not for the
+/// format long.
 std::string format_table(const TextTable& table, TableFormat format, const TableLayout& layout = {});
 
-/// How the best value is marked: "*" in text, else "Bold".
+/// The mark of the best value: "*" in text, else "Bold".
 const char* mark_name(TableFormat format);
 
 /// A line of CSV.

@@ -10,7 +10,7 @@
 namespace evbench {
 namespace {
 
-/// The ranks of magnitudes that are sorted, times two: whole numbers where equal ones share their mean rank.
+/// The ranks of sorted magnitudes, doubled so that shared mean ranks are whole numbers.
 std::vector<std::size_t> doubled_ranks(const std::vector<double>& sorted) {
   std::vector<std::size_t> ranks(sorted.size());
   for (std::size_t begin = 0; begin < sorted.size();) {
@@ -23,9 +23,9 @@ std::vector<std::size_t> doubled_ranks(const std::vector<double>& sorted) {
   return ranks;
 }
 
-/// Of all choices of signs, the share whose positive ranks sum up to at most `sum`, of doubled ranks.
+/// The share of all choices of signs for which the (doubled) positive ranks sum up to at most `sum`.
 double share_up_to(const std::vector<std::size_t>& ranks, std::size_t sum) {
-  std::vector<double> shares(sum + 1, 0.0);  // by the sum so far; what is above does not come back
+  std::vector<double> shares(sum + 1, 0.0);  // by the sum so far; larger sums never decrease
   shares[0] = 1.0;
   for (const std::size_t rank : ranks) {
     for (std::size_t s = sum + 1; s-- > 0;) shares[s] = 0.5 * (shares[s] + (s >= rank ? shares[s - rank] : 0.0));
@@ -35,7 +35,7 @@ double share_up_to(const std::vector<std::size_t>& ranks, std::size_t sum) {
   return share;
 }
 
-/// Two-sided, for the smaller one of the two sums.
+/// The two-sided p, for the smaller one of the two sums.
 double normal_p(const std::vector<std::size_t>& ranks, double smaller) {
   double total = 0.0, squares = 0.0;
   for (const std::size_t rank : ranks) {

@@ -7,7 +7,7 @@
 
 namespace evbench {
 
-// Expected values: scipy.stats.wilcoxon of scipy 1.10.1, where no other source is named.
+// Expected values: scipy.stats.wilcoxon of scipy 1.10.1, unless another source is named.
 
 TEST_CASE("Wilcoxon's test is exact for few pairs, as scipy's") {
   const SignedRanks plants =
@@ -41,7 +41,7 @@ TEST_CASE("Shared ranks are part of the exact test") {
   CHECK(result.p == Approx(34.0 / 256.0).epsilon(1e-12));
 }
 
-TEST_CASE("A pair of which one failed ranks above all others, and differences of zero are no pairs") {
+TEST_CASE("A pair with one failure ranks above all others, and differences of zero are left out") {
   const double inf = std::numeric_limits<double>::infinity();
   const SignedRanks result = signed_rank_test(std::vector<double>{0.0, -1.0, inf, inf, -2.0});
   CHECK(result.pairs == 4);
@@ -53,7 +53,7 @@ TEST_CASE("A pair of which one failed ranks above all others, and differences of
   CHECK(equal.rank_biserial == 0.0);
 }
 
-TEST_CASE("No p is smaller than the number of pairs allows") {
+TEST_CASE("The smallest p depends on the number of pairs") {
   const std::vector<double> all_above = {1, 2, 3, 4, 5};
   CHECK(signed_rank_test(all_above).p == Approx(smallest_p(5)));
   CHECK(smallest_p(5) == 0.0625);

@@ -17,21 +17,21 @@ namespace evbench::bundle_adjustment {
 namespace {
 
 const Registration<BackEnd, BundleAdjustment> registration(
-    "bundle_adjustment", "bundle adjustment of frames of observations (the baseline of Liu et al. 2022)", 2);
+    "bundle_adjustment", "bundle adjustment of batches of observations (the baseline of Liu et al. 2022)", 2);
 
-constexpr double kLongestPrediction = 0.5;  // [s]; farther, constant velocity says nothing
-constexpr double kClearlyCheaper = 1.1;     // ratio of two initial guesses' errors that decides between them
-constexpr double kParallaxToDecide = 3.0;   // times the least parallax: then the cheaper guess is taken anyway
-constexpr int kHeldWindows = 3;             // windows before the optimised one whose sightings hold landmarks in place
-constexpr double kShortestSilence = 0.2;    // [s] without observations: from then on the estimate is carried
-constexpr int kGlobalRounds = 2;            // of solving and removing outliers
-constexpr double kSmallestStep = 1e-6;      // [s] between frames of observations with one and the same time
+constexpr double kLongestPrediction = 0.5;  // [s] beyond it, constant velocity predicts nothing
+constexpr double kClearlyCheaper = 1.1;  // ratio of two initial guesses' errors from which on the smaller one is taken
+constexpr double kParallaxToDecide = 3.0;  // times the least parallax, from which on the smaller one is taken anyway
+constexpr int kHeldWindows = 3;            // windows before the optimised one whose sightings hold landmarks in place
+constexpr double kShortestSilence = 0.2;   // [s] without observations, after which the estimate is predicted
+constexpr int kGlobalRounds = 2;           // of solving and removing outliers
+constexpr double kSmallestStep = 1e-6;     // [s] between batches of observations with the same time
 
 std::size_t at(int view) { return static_cast<std::size_t>(view); }
 
 }  // namespace
 
-/// A map as an initial guess and bundle adjustment over all frames between its two views make it.
+/// A map from an initial guess, after bundle adjustment over all batches between its two views.
 struct BundleAdjustment::Trial {
   Reconstruction map;
   Segment segment;
@@ -44,15 +44,15 @@ struct BundleAdjustment::Trial {
 BundleAdjustment::BundleAdjustment(const Options& options, const BackEndContext& context)
     : options_(options),
       context_(context),
-      frames_({options.frame_duration, options.frame_observations, options.frame_motion, options.shortest_frame,
-               options.common_noise_px}),
+      batches_({options.batch_duration, options.batch_observations, options.batch_motion, options.min_batch_duration,
+                options.common_noise_px}),
       initialiser_(initialiser_options(), context.camera),
       waiting_for_("no observations"),
       monitor_(context.patience) {
-  FLAGS_minloglevel = google::GLOG_ERROR;  // what Ceres warns of is in its summaries, and no news for a console
+  FLAGS_minloglevel = google::GLOG_ERROR;  // warnings of Ceres are in its summaries
 }
 
-/// Frame means have the frame's time exactly: a window of no width finds them and nothing else.
+/// Means of batches have exactly the batch's time: a window of zero width finds them and nothing else.
 InitialiserOptions BundleAdjustment::initialiser_options() const {
   InitialiserOptions result = options_.initialiser;
   result.window = 0.0;
@@ -80,47 +80,47 @@ void BundleAdjustment::advance(const TrackBatch& batch) {
         std::ranges::adjacent_find(rest, [](const auto& a, const auto& b) { return b.t - a.t > kShortestSilence; });
     const auto part = rest.first(last == rest.end() ? rest.size() : static_cast<std::size_t>(last - rest.begin()) + 1);
     if (part.front().t - last_observation_ > kShortestSilence) pass_time(part.front().t);
-    for (Frame& frame : frames_.add(part)) process(std::move(frame));
+    for (Batch& complete : batches_.add(part)) process(std::move(complete));
     last_observation_ = part.back().t;
     rest = rest.subspan(part.size());
   }
   pass_time(until_);
 }
 
-/// Without observations there are no frames, but a motion model carries the estimate, and not for ever.
+/// Without observations there are no batches. A motion model carries the estimate, for a limited time.
 void BundleAdjustment::pass_time(double t) {
-  for (Frame& frame : frames_.advance(t)) process(std::move(frame));
+  for (Batch& batch : batches_.advance(t)) process(std::move(batch));
   if (segments_.empty() || t - last_observation_ <= kShortestSilence) return;
   monitor_.observe(last_observation_, t, TrackingMonitor::Support::none, "no observations");
 }
 
-void BundleAdjustment::process(Frame frame) {
+void BundleAdjustment::process(Batch batch) {
   if (monitor_.lost()) return;
   const auto start = std::chrono::steady_clock::now();
-  std::erase_if(frame.keypoints, [&](const Keypoint& keypoint) { return removed_.contains(keypoint.track); });
-  if (!map_.views.empty()) frame.t = std::max(frame.t, map_.views.back().t + kSmallestStep);
-  const int view = map_.add(frame);
+  std::erase_if(batch.keypoints, [&](const Keypoint& keypoint) { return removed_.contains(keypoint.track); });
+  if (!map_.views.empty()) batch.t = std::max(batch.t, map_.views.back().t + kSmallestStep);
+  const int view = map_.add(batch);
   if (segments_.empty()) remember(view);
   const std::size_t maps = segments_.size();
   const SolveReport report = segments_.empty() ? initialise(view) : track(view);
   if (!segments_.empty()) {
     const int first = segments_.back().first;
-    tell_online(view, segments_.size() > maps ? first : std::max(first, view - options_.window + 1), frame.end);
+    publish_newest(view, segments_.size() > maps ? first : std::max(first, view - options_.window + 1), batch.end);
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   updates_.push_back(
-      {frame.t, elapsed.count(), report.poses, report.landmarks, report.observations, report.iterations, report.cost});
+      {batch.t, elapsed.count(), report.poses, report.landmarks, report.observations, report.iterations, report.cost});
 }
 
-/// The newest view first: the others are better estimates of times of which poses were told before, or, of a first map,
-/// of times for which it comes late.
-void BundleAdjustment::tell_online(int view, int oldest, double known_at) const {
+/// Publishes the newest view first. The others are improved estimates of poses that were published before or, with an
+/// initial map, late poses.
+void BundleAdjustment::publish_newest(int view, int oldest, double known_at) const {
   const View& newest = map_.views[at(view)];
-  context_.online({{newest.t, newest.T}, known_at, velocity_});
+  context_.publish({{newest.t, newest.T}, known_at, velocity_});
   if (!newest.estimated()) return;
   for (int i = oldest; i < view; ++i) {
     const View& older = map_.views[at(i)];
-    if (older.estimated()) context_.online({{older.t, older.T}, known_at});
+    if (older.estimated()) context_.publish({{older.t, older.T}, known_at});
   }
 }
 
@@ -201,7 +201,7 @@ void BundleAdjustment::accept(Trial trial, int view) {
                   trial.parallax_deg, trial.good, trial.error));
   failing_ = false;
   remove_outliers(trial.segment.first);
-  map_.triangulate_new(context_.camera, triangulation_options(), {options_.min_track_frames, options_.min_track_time});
+  map_.triangulate_new(context_.camera, triangulation_options(), {options_.min_track_batches, options_.min_track_time});
   update_motion(view);
 }
 
@@ -220,13 +220,13 @@ SolveReport BundleAdjustment::track(int view) {
     failing_ = false;
     monitor_.observe(before, t, TrackingMonitor::Support::full);
     map_.triangulate_new(context_.camera, triangulation_options(),
-                         {options_.min_track_frames, options_.min_track_time});
+                         {options_.min_track_batches, options_.min_track_time});
     report = solve_window(view);
     remove_outliers(view - options_.window);
     update_motion(view);
   } else {
     now.state = View::State::predicted;
-    if (!failing_) start_over();
+    if (!failing_) reset_initialisation();
     remember(view);
     report = initialise(view);
     monitor_.observe(before, t, failing_ ? TrackingMonitor::Support::none : TrackingMonitor::Support::weak, failure);
@@ -235,12 +235,12 @@ SolveReport BundleAdjustment::track(int view) {
   return report;
 }
 
-/// The view's pose from the landmarks that it sees; why not, otherwise.
+/// Locates a view from the landmarks that it sees. Returns why this failed; empty: it did not.
 std::string BundleAdjustment::locate(int view) {
   View& now = map_.views[at(view)];
   const std::vector<Keypoint> keypoints = map_.landmarks_in(view);
   if (static_cast<int>(keypoints.size()) < options_.min_landmarks) {
-    return fmt::format("{} landmarks in sight, {} needed", keypoints.size(), options_.min_landmarks);
+    return fmt::format("{} landmarks in view, {} needed", keypoints.size(), options_.min_landmarks);
   }
   const auto loss = make_loss(options_.loss, options_.loss_width * noise_factor_);
   const PoseEstimate estimate = estimate_pose(now.T, map_, keypoints, context_.camera, loss.get(), options_.outlier_px);
@@ -260,16 +260,16 @@ void BundleAdjustment::remember(int view) {
   }
 }
 
-/// The map can't be followed any more: another one is looked for in what is seen from here on.
-void BundleAdjustment::start_over() {
+/// Tracking with the map has failed: another one is searched from this view on.
+void BundleAdjustment::reset_initialisation() {
   failing_ = true;
   means_ = TrackBuffer();
   initialiser_ = Initialiser(initialiser_options(), context_.camera);
 }
 
-/// From the residuals of the views from `first` on.
+/// Estimates the noise from the residuals of the views from `first` on.
 void BundleAdjustment::learn_noise(int first) {
-  constexpr double kLeast = 0.1, kMost = 10.0;  // a fit of next to nothing, or to nothing, says little
+  constexpr double kLeast = 0.1, kMost = 10.0;  // beyond these there are too few residuals, or nothing fits
   if (!options_.learn_noise) return;
   noise_factor_ = std::clamp(map_.noise_factor(context_.camera, first).value_or(noise_factor_), kLeast, kMost);
 }
@@ -293,7 +293,7 @@ bool BundleAdjustment::remove_outliers(int first) {
   return !outliers.empty();
 }
 
-/// Velocity and median depth after the view has been estimated: what predictions and a new map's scale rest on.
+/// Velocity and median depth after the view has been estimated, for predictions and for the scale of a new map.
 void BundleAdjustment::update_motion(int view) {
   const View& now = map_.views[at(view)];
   if (view > 0 && map_.views[at(view - 1)].estimated()) {
@@ -311,10 +311,10 @@ void BundleAdjustment::update_motion(int view) {
 
 void BundleAdjustment::finish() {
   const std::string reason = waiting_for_;
-  const bool had_frames = !map_.views.empty();
-  if (std::optional<Frame> frame = frames_.rest()) process(std::move(*frame));
+  const bool had_batches = !map_.views.empty();
+  if (std::optional<Batch> batch = batches_.rest()) process(std::move(*batch));
   if (segments_.empty()) {
-    if (had_frames) waiting_for_ = reason;  // the rest of a frame shows few tracks
+    if (had_batches) waiting_for_ = reason;  // the rest of a batch has few tracks
     monitor_.fail(map_.views.empty() ? 0.0 : map_.views.back().t, "never initialised: " + waiting_for_);
     return;
   }
@@ -341,7 +341,7 @@ void BundleAdjustment::solve_segment(const Segment& segment, int last) {
                       report.iterations, report.cost});
 }
 
-/// Predicted poses between estimated ones move with these; those at the end continue with constant velocity.
+/// Predicted poses between estimated ones are interpolated; those at the end continue with constant velocity.
 void BundleAdjustment::fill_predicted() {
   int before = -1;
   for (int i = 0; i < static_cast<int>(map_.views.size()); ++i) {
@@ -372,7 +372,7 @@ Feedback BundleAdjustment::feedback(const FeedbackNeeds& needs) {
   return result;
 }
 
-/// All landmarks, where constant velocity predicts them; how well is not estimated: within outlier_px.
+/// All landmarks, predicted with constant velocity. The uncertainty is not estimated: outlier_px.
 std::vector<ExpectedFeature> BundleAdjustment::expected_features() const {
   const SE3 T_camera_world = predict(until_, static_cast<int>(map_.views.size()) - 1).inverse();
   std::vector<ExpectedFeature> result;

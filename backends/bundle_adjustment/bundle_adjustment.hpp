@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "backends/bundle_adjustment/batches.hpp"
 #include "backends/bundle_adjustment/bundle_solver.hpp"
-#include "backends/bundle_adjustment/frames.hpp"
 #include "backends/bundle_adjustment/options.hpp"
 #include "backends/bundle_adjustment/reconstruction.hpp"
 #include "core/plugin/backend.hpp"
@@ -14,17 +14,19 @@
 
 namespace evbench::bundle_adjustment {
 
-/// The baseline that the paper compares with: asynchronous observations are grouped into frames, a feature's place in a
-/// frame is the mean of its observations there, and incremental structure from motion estimates a pose for each frame.
+/// The baseline of the paper. Asynchronous observations are grouped into batches, as if a camera with frames had seen
+/// them; a feature's position in a batch is the mean of its observations there; incremental structure from motion
+/// estimates a pose for each batch.
 ///
-/// A new frame's pose: constant-velocity prediction, refined on the landmarks that it sees (PnP with RANSAC when that
-/// fails). Then new landmarks, bundle adjustment of a window of frames (older ones held), removal of outlier tracks.
-/// Then the window's poses are told anew, for whoever can wait for better ones. At the end: bundle adjustment of
-/// everything. World: the camera at the first frame used; unit: the median depth of the first landmarks.
+/// For each new batch, the pose is predicted with constant velocity and refined on the landmarks that it sees (PnP with
+/// RANSAC if that fails). Then follow new landmarks, bundle adjustment of a window of batches (older ones held), and
+/// the removal of outlier tracks. Then the window's poses are published again, as improved estimates. At the end
+/// everything is bundle adjusted. World frame: the camera at the first batch used; unit: the median depth of the first
+/// landmarks.
 ///
-/// With too few landmarks in sight a pose is predicted (`degraded`), and the map starts afresh from two new views,
-/// placed at the predicted pose and scaled so that the median depth stays what it was. Without success for the
-/// context's patience it is `lost`, and nothing follows the last estimated pose.
+/// With too few landmarks in view a pose is predicted (`degraded`), and a new map is initialised from two new views,
+/// placed at the predicted pose and scaled so that the median depth stays the same. Without success within the
+/// context's patience it is `lost`, and no pose follows the last estimated one.
 class BundleAdjustment : public BackEnd {
  public:
   using Options = bundle_adjustment::Options;
@@ -48,12 +50,12 @@ class BundleAdjustment : public BackEnd {
 
   Options options_;
   BackEndContext context_;
-  FrameBuilder frames_;
+  BatchBuilder batches_;
   Reconstruction map_;
   std::vector<Segment> segments_;
   std::vector<UpdateRecord> updates_;
 
-  TrackBuffer means_;  ///< frame means since the last initialisation was needed
+  TrackBuffer means_;  ///< means of batches since an initialisation was needed
   Initialiser initialiser_;
   std::string waiting_for_;  ///< why there is no map yet
 
@@ -74,15 +76,15 @@ class BundleAdjustment : public BackEnd {
   int view_at(double t) const;
   SE3 predict(double t, int from) const;
 
-  void process(Frame frame);
-  void tell_online(int view, int oldest, double known_at) const;
+  void process(Batch batch);
+  void publish_newest(int view, int oldest, double known_at) const;
   SolveReport initialise(int view);
   Trial try_guess(const InitialGuess& guess, int view) const;
   void accept(Trial trial, int view);
   SolveReport track(int view);
   std::string locate(int view);
   void remember(int view);
-  void start_over();
+  void reset_initialisation();
   void pass_time(double t);
   std::vector<ExpectedFeature> expected_features() const;
   void learn_noise(int first);

@@ -35,12 +35,12 @@ struct Simulation {
   PointScene scene = PointScene::volume;
   Motion motion = weaving;
   double duration = 4.0, noise = 0.3, outlier_share = 0.0;
-  double told_noise = 0.0;  ///< sigma of the observations; 0: the noise
+  double stated_noise = 0.0;  ///< sigma of the observations; 0: the noise
   double blackout_from = 0.0, blackout_to = 0.0;
   bool new_tracks_after_blackout = false;
 };
 
-/// Observations of fifty points at 100 Hz, each at times of its own, in time order.
+/// Observations of fifty points at 100 Hz, each at its own times, in time order.
 std::vector<TrackObservation> simulate(const Simulation& simulation) {
   Random random(4);
   std::vector<TrackObservation> result;
@@ -55,7 +55,7 @@ std::vector<TrackObservation> simulate(const Simulation& simulation) {
       if (outlier) pixel += t * drift;
       const bool renamed = simulation.new_tracks_after_blackout && t >= simulation.blackout_to;
       result.push_back({renamed ? id + 1000 : id, t, pixel,
-                        simulation.told_noise > 0.0 ? simulation.told_noise : std::max(0.1, simulation.noise)});
+                        simulation.stated_noise > 0.0 ? simulation.stated_noise : std::max(0.1, simulation.noise)});
     }
     ++id;
   }
@@ -65,14 +65,14 @@ std::vector<TrackObservation> simulate(const Simulation& simulation) {
   return result;
 }
 
-/// `online`: takes the causal poses.
+/// `causal`: takes the causal poses.
 BundleAdjustment make(const PinholeCamera& camera = davis(), const Options& options = {},
-                      std::vector<StampedPose>* online = nullptr) {
+                      std::vector<StampedPose>* causal = nullptr) {
   BackEndContext context;
   context.camera = camera;
-  if (online != nullptr) {
-    context.online = [online](const OnlinePose& pose) {
-      if (online->empty() || pose.t > online->back().t) online->push_back(pose);
+  if (causal != nullptr) {
+    context.publish = [causal](const CausalPose& pose) {
+      if (causal->empty() || pose.t > causal->back().t) causal->push_back(pose);
     };
   }
   return BundleAdjustment(options, context);
@@ -113,24 +113,24 @@ bool finite(const PoseTrajectory& trajectory) {
 
 }  // namespace
 
-TEST_CASE("a simulated motion is recovered, in a volume and before a plane", "[slow]") {
+TEST_CASE("a simulated motion is recovered, in front of a volume and of a plane", "[slow]") {
   for (const PointScene scene : {PointScene::volume, PointScene::plane}) {
     Simulation simulation;
     simulation.scene = scene;
-    std::vector<StampedPose> online;
-    BundleAdjustment backend = make(davis(), {}, &online);
+    std::vector<StampedPose> causal;
+    BundleAdjustment backend = make(davis(), {}, &causal);
     feed(backend, simulate(simulation));
     CHECK(backend.status().state == RunState::ok);
     CHECK(backend.trajectory().start() < 0.1);
     CHECK(backend.trajectory().end() > 3.9);
     CHECK(ate(backend.trajectory(), simulation.motion) < 0.01);
-    CHECK(ate(PoseTrajectory(online), simulation.motion) < 0.03);
+    CHECK(ate(PoseTrajectory(causal), simulation.motion) < 0.03);
     CHECK(backend.map().size() == 50);
     CHECK(backend.updates().size() >= 80);
   }
 }
 
-TEST_CASE("outlier tracks are found and do no harm") {
+TEST_CASE("outlier tracks are removed and do no harm") {
   Simulation simulation;
   simulation.outlier_share = 0.15;
   simulation.noise = 0.7;
@@ -141,9 +141,9 @@ TEST_CASE("outlier tracks are found and do no harm") {
   CHECK(backend.map().size() < 50);
 }
 
-TEST_CASE("frames by count give about the same as frames by duration") {
+TEST_CASE("batches by count give about the same as batches by duration") {
   Options options;
-  options.frame_observations = 250;
+  options.batch_observations = 250;
   const Simulation simulation;
   BundleAdjustment backend = make(davis(), options);
   feed(backend, simulate(simulation));
@@ -151,10 +151,10 @@ TEST_CASE("frames by count give about the same as frames by duration") {
   CHECK(ate(backend.trajectory(), simulation.motion) < 0.01);
 }
 
-TEST_CASE("frames by motion give about the same as frames by duration") {
+TEST_CASE("batches by motion give about the same as batches by duration") {
   Options options;
-  options.frame_motion = 3.0;
-  options.frame_duration = 0.4;
+  options.batch_motion = 3.0;
+  options.batch_duration = 0.4;
   const Simulation simulation;
   BundleAdjustment backend = make(davis(), options);
   feed(backend, simulate(simulation));
@@ -162,13 +162,13 @@ TEST_CASE("frames by motion give about the same as frames by duration") {
   CHECK(ate(backend.trajectory(), simulation.motion) < 0.01);
 }
 
-TEST_CASE("noise that is learnt makes up for sigmas that are wrong by a factor", "[slow]") {
+TEST_CASE("estimated noise makes up for sigmas that are wrong by a factor", "[slow]") {
   Simulation simulation;
   simulation.noise = 0.5;
   Options options;
   options.common_noise_px = 0.0;
-  const auto error = [&](double told, bool learn) {
-    simulation.told_noise = told;
+  const auto error = [&](double stated, bool learn) {
+    simulation.stated_noise = stated;
     options.learn_noise = learn;
     BundleAdjustment backend = make(davis(), options);
     feed(backend, simulate(simulation));
@@ -180,29 +180,29 @@ TEST_CASE("noise that is learnt makes up for sigmas that are wrong by a factor",
   CHECK(error(2.0, true) < 1.1 * right);
 }
 
-TEST_CASE("a frame's pose is told when the frame ends, and the window's poses are told anew") {
+TEST_CASE("a batch's pose is published when the batch ends, and the window's poses are published again") {
   BackEndContext context;
   context.camera = davis();
-  std::vector<OnlinePose> told;
-  context.online = [&](const OnlinePose& pose) { told.push_back(pose); };
+  std::vector<CausalPose> published;
+  context.publish = [&](const CausalPose& pose) { published.push_back(pose); };
   Options options;
-  options.frame_duration = 0.1;
+  options.batch_duration = 0.1;
   options.window = 5;
   BundleAdjustment backend(options, context);
   feed(backend, simulate({}));
   double newest = 0.0;
-  int anew = 0;
-  for (const OnlinePose& pose : told) {
+  int improved = 0;
+  for (const CausalPose& pose : published) {
     if (pose.t > newest) {
       CHECK(*pose.known_at - pose.t == Approx(0.05).margin(0.01));
       CHECK(pose.velocity);
     } else {
-      ++anew;
+      ++improved;
       CHECK(*pose.known_at > newest);
     }
     newest = std::max(newest, pose.t);
   }
-  CHECK(anew > 3 * 30);
+  CHECK(improved > 3 * 30);
 }
 
 TEST_CASE("the same observations give the same trajectory to the last bit", "[slow]") {
@@ -224,18 +224,18 @@ TEST_CASE("no observations, one track, and few tracks end as failed with a reaso
     if (z.track < 7) few.push_back(z);
   }
   for (const auto& observations : {std::vector<TrackObservation>{}, one, few}) {
-    std::vector<StampedPose> online;
-    BundleAdjustment backend = make(davis(), {}, &online);
+    std::vector<StampedPose> causal;
+    BundleAdjustment backend = make(davis(), {}, &causal);
     feed(backend, observations);
     CHECK(backend.status().state == RunState::failed);
     CHECK_FALSE(backend.status().reason.empty());
     CHECK(backend.trajectory().empty());
-    CHECK(online.empty());
+    CHECK(causal.empty());
     CHECK(backend.map().empty());
   }
 }
 
-TEST_CASE("a camera at rest and a pure rotation never initialise and say why") {
+TEST_CASE("a camera at rest and a pure rotation never initialise and report why") {
   for (const Motion motion : {resting, rotating}) {
     Simulation simulation;
     simulation.motion = motion;
@@ -246,7 +246,7 @@ TEST_CASE("a camera at rest and a pure rotation never initialise and say why") {
   }
 }
 
-TEST_CASE("a blackout that the tracks survive is told as degraded and costs nothing else") {
+TEST_CASE("a blackout that the tracks survive is reported as degraded and costs nothing else") {
   Simulation simulation;
   simulation.blackout_from = 2.0;
   simulation.blackout_to = 2.4;
@@ -261,7 +261,7 @@ TEST_CASE("a blackout that the tracks survive is told as degraded and costs noth
   CHECK(backend.status().degraded.front().to == Approx(2.4).margin(0.06));
 }
 
-TEST_CASE("after a blackout that ends all tracks the map starts afresh at the predicted pose") {
+TEST_CASE("after a blackout that ends all tracks a new map is initialised at the predicted pose") {
   Simulation simulation;
   simulation.blackout_from = 2.0;
   simulation.blackout_to = 2.2;
@@ -277,7 +277,7 @@ TEST_CASE("after a blackout that ends all tracks the map starts afresh at the pr
   CHECK(ate(backend.trajectory(), simulation.motion) < 0.15);
 }
 
-TEST_CASE("when tracks run out for good the run is lost at that time and keeps what it had") {
+TEST_CASE("when tracks run out for good the run is lost at that time and keeps its trajectory") {
   std::vector<TrackObservation> observations = simulate({});
   std::erase_if(observations, [](const TrackObservation& z) { return z.t > 2.0 && z.track > 3; });
   BundleAdjustment backend = make();
@@ -288,20 +288,20 @@ TEST_CASE("when tracks run out for good the run is lost at that time and keeps w
   CHECK(ate(backend.trajectory(), weaving) < 0.01);
 }
 
-TEST_CASE("wild observations never make a pose that is not finite") {
+TEST_CASE("absurd observations never give a pose that is not finite") {
   std::vector<TrackObservation> observations = simulate({});
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (observations[i].track % 3 == 0) observations[i].pixel *= 1e6;
     if (observations[i].t > 2.0) observations[i].pixel = Vector2(120, 90);
   }
-  std::vector<StampedPose> online;
-  BundleAdjustment backend = make(davis(), {}, &online);
+  std::vector<StampedPose> causal;
+  BundleAdjustment backend = make(davis(), {}, &causal);
   feed(backend, observations);
   CHECK(finite(backend.trajectory()));
-  CHECK(finite(PoseTrajectory(online)));
+  CHECK(finite(PoseTrajectory(causal)));
 }
 
-TEST_CASE("on the real tracks of poster_translation frames of 50 and 100 ms stay below 8 mm") {
+TEST_CASE("on the real tracks of poster_translation batches of 50 and 100 ms stay below 8 mm") {
   const auto file = testing::data_file("poster_translation/tracks_eklt.txt");
   if (!file) return;
   const Camera camera = read_calib(*testing::data_file("poster_translation/calib.txt"), 240, 180);
@@ -314,7 +314,7 @@ TEST_CASE("on the real tracks of poster_translation frames of 50 and 100 ms stay
   }
   for (const double duration : {0.05, 0.1}) {
     Options options;
-    options.frame_duration = duration;
+    options.batch_duration = duration;
     BundleAdjustment backend = make(camera.pinhole, options);
     feed(backend, observations);
     CHECK(backend.status().state == RunState::ok);

@@ -12,9 +12,9 @@
 namespace evbench::bundle_adjustment {
 namespace {
 
-constexpr int kMostDensePoses = 40;  // above, the reduced camera matrix is worth a sparse factorisation
+constexpr int kMostDensePoses = 40;  // above, a sparse factorisation of the reduced camera matrix pays
 
-/// The part of the map that a solve uses, in blocks that Ceres writes to.
+/// The part of the map in a solve, in blocks that Ceres writes to.
 struct Blocks {
   std::vector<PoseBlock> poses;  // by view
   std::vector<bool> used;        // by view

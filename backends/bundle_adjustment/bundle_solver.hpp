@@ -6,10 +6,10 @@
 
 namespace evbench::bundle_adjustment {
 
-/// Which views a solve optimises. The gauge: views before `first_variable`, and `origin`, are held; the view `scale`
+/// The views that a solve optimises. Gauge: views before `first_variable`, and `origin`, are held; the view `scale`
 /// keeps its distance from the origin.
 struct SolveScope {
-  int first_used = 0;      ///< sightings in older views don't count
+  int first_used = 0;      ///< sightings in older views are not used
   int first_variable = 0;  ///< older views are held
   int last = 0;            ///< newest view, included
   int origin = 0;

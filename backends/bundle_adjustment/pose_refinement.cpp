@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "core/geometry/so3.hpp"
-#include "core/support/median.hpp"
 #include "core/geometry/solve_symmetric.hpp"
+#include "core/support/median.hpp"
 
 namespace evbench::bundle_adjustment {
 namespace {

@@ -13,8 +13,8 @@ struct PoseEstimate {
 };
 
 /// The pose from which the landmarks are seen at the keypoints: Levenberg-Marquardt from a prediction, landmarks held.
-/// Where that ends with a median error above `limit_px`, PnP with RANSAC (OpenCV, fixed seed) starts anew and the
-/// better of both is kept. `loss` may be null.
+/// If that ends with a median error above `limit_px`, PnP with RANSAC (OpenCV, fixed seed) gives a second start, and
+/// the better result is kept. `loss` may be null.
 PoseEstimate estimate_pose(const SE3& prediction, const Reconstruction& map, std::span<const Keypoint> keypoints,
                            const PinholeCamera& camera, const ceres::LossFunction* loss, double limit_px);
 

@@ -8,10 +8,10 @@
 
 namespace evbench::bundle_adjustment {
 
-int Reconstruction::add(const Frame& frame) {
+int Reconstruction::add(const Batch& batch) {
   const int index = static_cast<int>(views.size());
-  views.push_back({frame.t, SE3{}, View::State::unknown, frame.keypoints});
-  for (const Keypoint& keypoint : frame.keypoints) {
+  views.push_back({batch.t, SE3{}, View::State::unknown, batch.keypoints});
+  for (const Keypoint& keypoint : batch.keypoints) {
     tracks[keypoint.track].sightings.push_back({index, keypoint.pixel, keypoint.sigma});
   }
   return index;

@@ -4,14 +4,14 @@
 #include <optional>
 #include <vector>
 
-#include "backends/bundle_adjustment/frames.hpp"
+#include "backends/bundle_adjustment/batches.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/structure/triangulation.hpp"
 
 namespace evbench::bundle_adjustment {
 
-/// A frame's pose. Predicted ones are guesses that take no part in triangulation or optimisation.
+/// The pose of a batch. Predicted poses are guesses that take no part in triangulation or optimisation.
 struct View {
   enum class State { unknown, predicted, estimated };
   double t = 0.0;
@@ -38,10 +38,10 @@ struct Reconstruction {
   std::vector<View> views;
   std::map<TrackId, Track> tracks;
 
-  int add(const Frame& frame);  ///< returns the new view's index
+  int add(const Batch& batch);  ///< returns the new view's index
   void remove(TrackId track);   ///< with its keypoints
 
-  /// Starts afresh at a view: tracks seen since then lose their older sightings and are no landmarks any more.
+  /// Starts again at a view: tracks seen since then lose their older sightings and are no longer landmarks.
   void cut_tracks(int view);
 
   std::vector<Keypoint> landmarks_in(int view) const;  ///< the view's keypoints of landmarks
@@ -55,12 +55,12 @@ struct Reconstruction {
   /// Triangulates the newest view's tracks that are no landmarks yet from the estimated views that see them.
   void triangulate_new(const PinholeCamera& camera, const TriangulationOptions& options, const Maturity& needed);
 
-  /// Tracks that are landmarks seen since view `first`, whose mean reprojection error over all estimated views
-  /// exceeds `limit_px` even after they have been triangulated anew.
+  /// Tracks that are landmarks seen since view `first`, whose mean reprojection error over all estimated views exceeds
+  /// `limit_px` even after they have been triangulated again.
   std::vector<TrackId> outliers(const PinholeCamera& camera, double limit_px, int first);
 
-  /// How many times as large as their sigmas say the reprojection errors are that landmarks have in the estimated views
-  /// from `first` on: by the median, which outliers don't move. None without errors.
+  /// Ratio of the landmarks' reprojection errors, in the estimated views from `first` on, to their sigmas: a median,
+  /// which is robust to outliers. None without errors.
   std::optional<double> noise_factor(const PinholeCamera& camera, int first) const;
 
   /// Mean norm of a landmark's reprojection error over the estimated views that see it [px].

@@ -121,7 +121,7 @@ bool FixedDistanceManifold::Minus(const double* y, const double* x, double* y_mi
   Eigen::Map<Vector3> rotation(y_minus_x);
   Eigen::Map<Vector2> translation(y_minus_x + 3);
   rotation = so3::log(from.q.conjugate() * to.q);
-  // The inverse of Plus: the ray to `to` met with the tangent plane at `from`.
+  // The inverse of Plus: the intersection of the ray to `to` with the tangent plane at `from`.
   const Vector3 radius = from.p - centre_, ray = to.p - centre_;
   translation = basis(from.p).transpose() * (radius.squaredNorm() / ray.dot(radius) * ray);
   return true;

@@ -13,7 +13,8 @@
 
 namespace evbench::bundle_adjustment {
 
-/// A pose as Ceres sees it: x y z w of the quaternion, then the translation (the memory of SE3 may have gaps).
+/// A pose as a parameter block of Ceres: x y z w of the quaternion, then the translation (the memory of SE3 may have
+/// gaps).
 struct PoseBlock {
   double values[7];
 

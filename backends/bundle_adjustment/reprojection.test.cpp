@@ -28,7 +28,7 @@ TEST_CASE("Jacobians of the reprojection error agree with central differences") 
   }
 }
 
-TEST_CASE("a landmark behind the camera has a constant error and no slope") {
+TEST_CASE("a landmark behind the camera has a constant error and zero Jacobians") {
   ReprojectionJacobians J;
   const Vector2 error = reprojection_error(SE3{}, Vector3(0.1, 0.2, -1.0), Vector2(100, 80), davis(), J);
   CHECK(error == Vector2::Constant(2.0 * davis().fx));
@@ -36,7 +36,7 @@ TEST_CASE("a landmark behind the camera has a constant error and no slope") {
   CHECK(J.landmark.isZero());
 }
 
-TEST_CASE("a pose survives its block") {
+TEST_CASE("a pose is the same after its conversion to a block and back") {
   const SE3 T = se3::exp((Vector6() << 0.1, -0.7, 0.3, 1, 2, 3).finished());
   CHECK(PoseBlock(T).pose().q.coeffs().isApprox(T.q.coeffs()));
   CHECK(PoseBlock(T).pose().p == T.p);

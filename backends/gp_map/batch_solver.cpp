@@ -6,7 +6,7 @@
 namespace evbench::gp_map {
 namespace {
 
-/// A graph as minimise() has it.
+/// A graph as a problem of minimise().
 struct GraphProblem {
   FactorGraph& graph;
   GraphLayout layout{graph};
@@ -61,8 +61,7 @@ BatchCovariance::~BatchCovariance() = default;
 
 std::optional<Matrix24> BatchCovariance::neighbours(int k) const {
   if (!factor_->usable || k < 0 || index(k + 1) >= graph_.states.size()) return std::nullopt;
-  const Matrix24 joint =
-      factor_->marginal(factor_->layout.state_offset[index(k)], 24);  // neighbours stand side by side
+  const Matrix24 joint = factor_->marginal(factor_->layout.state_offset[index(k)], 24);  // neighbours are adjacent
   if (!joint.allFinite()) return std::nullopt;
   return joint;
 }

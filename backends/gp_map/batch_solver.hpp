@@ -21,8 +21,8 @@ struct BatchSummary {
 };
 
 /// Levenberg-Marquardt over the problem's states and landmarks with a supernodal sparse Cholesky factorisation
-/// (CHOLMOD) of the normal equations. The reference that incremental solvers are compared with. The estimate never gets
-/// worse: steps that raise the cost are undone.
+/// (CHOLMOD) of the normal equations. It is the reference for incremental solvers. The estimate never gets worse: steps
+/// that raise the cost are undone.
 BatchSummary solve_batch(FactorGraph& graph, const BatchOptions& options);
 
 /// Marginal covariances at the present estimate (Gauss-Newton approximation, increments on the right).
@@ -31,14 +31,14 @@ class BatchCovariance {
   explicit BatchCovariance(const FactorGraph& graph);
   ~BatchCovariance();
 
-  /// Of states k and k + 1 jointly, 24 × 24; none when the information matrix is singular.
+  /// Joint covariance of states k and k + 1, 24 × 24; none if the information matrix is singular.
   std::optional<Matrix24> neighbours(int k) const;
 
-  /// Of the poses of states i and j jointly.
+  /// Joint covariance of the poses of states i and j.
   std::optional<Matrix12> poses(int i, int j) const;
 
-  /// Of pose and velocity at any time within the states' span, in the gauge of the priors: what both neighbours leave
-  /// uncertain plus the prior's own interpolation uncertainty.
+  /// Covariance of pose and velocity at any time within the states' span, in the gauge of the priors: the uncertainty
+  /// of both neighbours plus the interpolation uncertainty of the prior.
   std::optional<Matrix12> at(double t) const;
 
   std::optional<Matrix3> landmark(int landmark) const;

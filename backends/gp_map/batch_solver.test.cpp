@@ -11,8 +11,8 @@
 namespace evbench::gp_map {
 namespace {
 
-/// A camera that flies past a few points, started away from the truth.
-FactorGraph flight(int states, double error) {
+/// A camera that moves past a few points; the initial estimate has errors of this size.
+FactorGraph simulated_problem(int states, double error) {
   evbench::testing::RandomTangents random;
   FactorGraph graph;
   graph.camera = {200.0, 200.0, 120.0, 90.0};
@@ -66,7 +66,7 @@ TEST_CASE("The batch solve reaches the medium problem's documented optimum, or a
 }
 
 TEST_CASE("A solve never raises the cost and converges from far away") {
-  FactorGraph graph = flight(20, 0.15);
+  FactorGraph graph = simulated_problem(20, 0.15);
   const double before = evaluate(graph).total();
   const BatchSummary summary = solve_batch(graph, {50, 1e-10});
   CHECK(summary.converged);
@@ -77,7 +77,7 @@ TEST_CASE("A solve never raises the cost and converges from far away") {
 }
 
 TEST_CASE("Marginal covariances equal those of the dense inverse") {
-  FactorGraph graph = flight(5, 0.01);
+  FactorGraph graph = simulated_problem(5, 0.01);
   solve_batch(graph, {20, 1e-12});
   constexpr int kStates = 5, kLandmarks = 12, kSize = 12 * kStates + 3 * kLandmarks;
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(kSize, kSize);
@@ -111,8 +111,8 @@ TEST_CASE("Marginal covariances equal those of the dense inverse") {
   CHECK_FALSE(covariance.at(-1.0));
 }
 
-TEST_CASE("A problem without gauge is reported, not solved into nothing") {
-  FactorGraph graph = flight(5, 0.0);
+TEST_CASE("A problem without gauge leaves the estimate finite") {
+  FactorGraph graph = simulated_problem(5, 0.0);
   graph.pose_priors.clear();
   for (auto& landmark : graph.landmarks) landmark.prior = {};
   const BatchSummary summary = solve_batch(graph, {5, 1e-6});

@@ -62,7 +62,7 @@ void FactorGraph::add_state(const ControlState& state) {
 
 void FactorGraph::remove_newest_state() {
   const int newest = static_cast<int>(states.size()) - 1;
-  forget_interval(newest);
+  drop_observations(newest);
   intervals.pop_back();
   qcs.pop_back();
   expansions.pop_back();
@@ -142,7 +142,7 @@ bool FactorGraph::add_observation(int landmark, const Observation& observation) 
   return true;
 }
 
-void FactorGraph::forget_interval(int k) {
+void FactorGraph::drop_observations(int k) {
   IntervalObservations& interval = intervals[index(k)];
   for (const auto& group : interval.groups()) {
     std::vector<int>& seen = landmarks[index(group.landmark)].intervals;

@@ -18,8 +18,8 @@ struct Observation {
   double inverse_sigma = 1.0;  ///< [1/px]
 };
 
-/// The observations in one interval (t_{k−1}, t_k], those of one landmark together and in time order: what one
-/// landmark's observations in one interval share is computed once.
+/// The observations in one interval (t_{k−1}, t_k], grouped by landmark and in time order. So terms that a landmark's
+/// observations in one interval share are computed once.
 class IntervalObservations {
  public:
   struct Group {
@@ -28,7 +28,7 @@ class IntervalObservations {
   };
 
   void add(int landmark, const Observation& observation);
-  /// A landmark's from a time on; returns how many there were.
+  /// Removes a landmark's observations from a time on; returns their number.
   int remove(int landmark, double from = -std::numeric_limits<double>::infinity());
   void scale_sigmas(int landmark, double factor);
 
@@ -37,7 +37,7 @@ class IntervalObservations {
   std::span<const Observation> of(const Group& group) const {
     return std::span(observations_).subspan(index(group.begin), index(group.end - group.begin));
   }
-  std::span<const Observation> of(int landmark) const;  ///< empty for one that is not observed
+  std::span<const Observation> of(int landmark) const;  ///< empty if it is not observed
 
  private:
   std::vector<Observation> observations_;
@@ -60,12 +60,12 @@ struct LandmarkPrior {
   double sigma = std::numeric_limits<double>::infinity();  ///< infinite: no prior
 };
 
-/// Holds the scale: the mean nearness n_j = 1/(1 + ‖l_j − origin‖/unit) of some landmarks keeps its value, residual
-/// (mean_nearness − 1/N Σ n_j)/(change · sigma), change = 1/N Σ n_j (1 − n_j), by which the mean falls as the logarithm
-/// of all distances grows. Every observation ties the map's depth to the motion, so this holds the whole trajectory's
-/// scale; the length of one baseline would hold no more than that baseline. Nearness is bounded: a landmark whose depth
-/// nothing tells, running off to infinity, would let all others shrink to a point while it keeps their mean log
-/// distance.
+/// Factor that fixes the scale: the mean nearness n_j = 1/(1 + ‖l_j − origin‖/unit) of some landmarks keeps its value.
+/// Its residual is (mean_nearness − 1/N Σ n_j)/(change · sigma); change = 1/N Σ n_j (1 − n_j) is the decrease of the
+/// mean as the logarithm of all distances grows. Every observation ties the depth of the map to the motion, so this
+/// fixes the scale of the whole trajectory; the length of one baseline would fix that baseline only. Nearness is
+/// bounded. With the mean log distance instead, a landmark of undetermined depth that runs off to infinity would let
+/// all others shrink to a point.
 struct ScaleAnchor {
   Vector3 origin = Vector3::Zero();
   std::vector<int> landmarks;  ///< empty: no anchor
@@ -77,8 +77,7 @@ struct ScaleAnchor {
 };
 
 /// The continuous-time structure-from-motion problem: control states in time order joined by the WNOA prior, landmarks,
-/// every observation in the interval that holds its time, priors. Solvers read factors from here and write estimates
-/// back; they differ in how they solve, not in what.
+/// every observation in the interval of its time, priors. Solvers read factors from here and write estimates back.
 struct FactorGraph {
   struct Landmark {
     Vector3 position = Vector3::Zero();  ///< world frame
@@ -89,16 +88,17 @@ struct FactorGraph {
   };
 
   PinholeCamera camera;
-  Vector6 qc = Vector6::Ones();  ///< of the WNOA prior over the intervals that are added from now on
+  Vector6 qc = Vector6::Ones();  ///< of the WNOA prior in intervals that are added from now on
   RobustLoss loss;
 
   std::vector<ControlState> states;
   std::vector<Landmark> landmarks;
   std::vector<IntervalObservations> intervals;  ///< intervals[k] ends in state k; intervals[0] is empty
   std::vector<Vector6> qcs;                     ///< qcs[k]: power spectral density of the prior over interval k
-  /// expansions[k] ≥ 0 of interval k: a cost of −expansions[k] log s, s the distance of what it sees
-  /// (scene_distance()). A prior whose density is learnt has no scale, but as a fixed density it draws the world
-  /// together, with a force of eᵀ Q⁻¹ e of its translations an interval: this one is as large and the other way.
+  /// expansions[k] ≥ 0: adds the cost −expansions[k] log s to interval k; s is its distance to the scene
+  /// (scene_distance()). It balances a bias of the prior: a prior with an estimated density has no scale, but as a
+  /// fixed density it contracts the world with a force of eᵀ Q⁻¹ e of the translations of each interval. The expansion
+  /// is an equal force in the opposite direction.
   std::vector<double> expansions;
   std::vector<PosePrior> pose_priors;
   std::vector<VelocityPrior> velocity_priors;
@@ -107,38 +107,38 @@ struct FactorGraph {
   /// Appends a state after the newest one, and the motion prior between them.
   void add_state(const ControlState& state);
 
-  /// Takes the newest state back, with the observations in its interval and the priors on it.
+  /// Removes the newest state, with the observations in its interval and the priors on it.
   void remove_newest_state();
 
   int add_landmark(const Vector3& position, const LandmarkPrior& prior = {});
 
-  /// Makes these landmarks hold the scale that they have now.
+  /// Anchors the present scale of these landmarks.
   void anchor_scale(const Vector3& origin, std::vector<int> anchors);
 
-  /// Removes a landmark with its observations. The scale anchor goes on without it, at the scale of now.
+  /// Removes a landmark with its observations. The scale anchor continues without it, at the present scale.
   void remove_landmark(int landmark);
 
   /// Removes a landmark's observations from a time on.
   void remove_observations(int landmark, double from);
 
-  /// Makes the sigmas of a landmark's observations, those to come included, so many times those that they are given.
+  /// Scales the given sigmas of a landmark's observations, including future ones.
   void scale_sigmas(int landmark, double scale);
 
-  /// An observation with its sigma as given, as it counts here.
+  /// An observation with the landmark's scale of sigmas applied.
   Observation scaled(int landmark, const Observation& given) const;
 
   /// The interval k with t in (t_{k−1}, t_k]; t = t_0 belongs to the first. −1 outside.
   int interval_of(double t) const;
 
-  /// The first state later than t [s], at which the first interval ends that ends later; one past the newest when there
-  /// is none.
+  /// The first state later than t [s], the end of the first interval that ends later; one past the newest if there is
+  /// none.
   int first_state_after(double t) const;
 
-  /// False, and nothing added, when t lies outside the states' span.
+  /// Returns false and adds nothing if t is outside the states' span.
   bool add_observation(int landmark, const Observation& observation);
 
-  /// Drops the observations of an interval that is not estimated any more.
-  void forget_interval(int k);
+  /// Drops the observations of an interval that is no longer estimated.
+  void drop_observations(int k);
 
   int observation_count() const { return observation_count_; }
 

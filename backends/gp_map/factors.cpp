@@ -76,7 +76,7 @@ double residual(const ScaleAnchor& anchor, const FactorGraph& graph) {
   return (anchor.mean_nearness - mean_nearness(graph)) / (anchor.change * anchor.sigma);
 }
 
-void to_held_scale(FactorGraph& graph) {
+void to_anchored_scale(FactorGraph& graph) {
   constexpr int kSteps = 20;
   const Vector3 origin = graph.anchor.origin;
   for (int i = 0; i < kSteps && !graph.anchor.landmarks.empty(); ++i) {

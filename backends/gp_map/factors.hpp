@@ -15,17 +15,17 @@ struct Cost {
 };
 Cost evaluate(const FactorGraph& graph);
 
-/// Distance of a landmark's image from where it was observed [px]; infinite behind the camera.
+/// Distance of a landmark's image from its observation [px]; infinite behind the camera.
 double reprojection_error(const GpInterval& interval, const Vector3& landmark, const Observation& z,
                           const PinholeCamera& camera);
-/// Mean of a landmark's over all its observations.
+/// Mean reprojection error of a landmark over all its observations.
 double reprojection_mean(const FactorGraph& graph, int landmark);
 
-/// Calls visit(interval, observation) for each of a landmark's observations, in the intervals that this span meets.
+/// Calls visit(interval, observation) for each of a landmark's observations, in the intervals that overlap this span.
 template <class Visit>
 void for_each_observation(const FactorGraph& graph, int landmark, const TimeSpan& span, Visit visit) {
   for (const int k : graph.landmarks[index(landmark)].intervals) {
-    if (!span.meets(graph.states[index(k - 1)].t, graph.states[index(k)].t)) continue;
+    if (!span.overlaps(graph.states[index(k - 1)].t, graph.states[index(k)].t)) continue;
     const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
     for (const Observation& z : graph.intervals[index(k)].of(landmark)) visit(interval, z);
   }
@@ -40,14 +40,14 @@ Vector6 residual(const PosePrior& prior, const ControlState& state);
 Vector6 residual(const VelocityPrior& prior, const ControlState& state);
 Vector3 residual(const LandmarkPrior& prior, const Vector3& position);  ///< zero without a prior
 double residual(const ScaleAnchor& anchor, const FactorGraph& graph);   ///< zero without an anchor
-/// Scales the estimate about the anchor's origin so that the scale is the one that it holds.
-void to_held_scale(FactorGraph& graph);
+/// Scales the estimate about the anchor's origin to the anchored scale.
+void to_anchored_scale(FactorGraph& graph);
 
 /// ½ Σ ρ of the observations in interval k, whose states are those of `interval`.
 double measurement_cost(const FactorGraph& graph, int k, const GpInterval& interval);
-/// The harmonic mean distance of the landmarks seen in interval k from state k − 1; 1 where none is seen.
+/// Harmonic mean distance of the landmarks seen in interval k from state k − 1; 1 without landmarks.
 double scene_distance(const FactorGraph& graph, int k);
-/// Of interval k's expansion (FactorGraph::expansions).
+/// Cost of interval k's expansion (FactorGraph::expansions).
 double expansion_cost(const FactorGraph& graph, int k);
 /// ½ Σ ρ of an interval's observations and motion prior, and of the priors on a state.
 double interval_cost(const FactorGraph& graph, int k);
@@ -62,13 +62,13 @@ using Matrix3x24 = Eigen::Matrix<double, 3, 24>;
 struct ErrorSum {
   double px = 0.0;  ///< of those before the camera
   int count = 0;
-  int behind = 0;  ///< of these, so many have the landmark behind the camera
+  int behind = 0;  ///< those with the landmark behind the camera
 };
 
-/// Of interval k's observations at the graph's estimate, one for each of its groups.
+/// Sums over interval k's observations at the graph's estimate, one for each of its groups.
 std::vector<ErrorSum> reprojection_errors(const FactorGraph& graph, int k);
 
-/// What one interval contributes to the normal equations H δ = −g, H = Σ JᵀJ, g = Σ Jᵀe: state columns are the
+/// Contribution of one interval to the normal equations H δ = −g, H = Σ JᵀJ, g = Σ Jᵀe. State columns are the
 /// increments (pose, velocity) of state k−1, then of state k.
 struct IntervalLinearisation {
   struct Coupling {
@@ -84,7 +84,7 @@ struct IntervalLinearisation {
   double cost = 0.0;                ///< ½ Σ ρ
 };
 
-/// What an interval's factors depend on.
+/// Everything on which an interval's factors depend.
 struct IntervalInput {
   const PinholeCamera& camera;
   const RobustLoss& loss;

@@ -63,7 +63,7 @@ Eigen::VectorXd residuals(const FactorGraph& graph, const Vector& states, const 
 
 }  // namespace
 
-TEST_CASE("An interval's normal equations are those of central differences of its residuals") {
+TEST_CASE("An interval's normal equations equal those of central differences of its residuals") {
   RandomTangents random;
   constexpr int kLandmarks = 2;
   constexpr int kRows = 2 * 3 * kLandmarks;
@@ -104,7 +104,7 @@ TEST_CASE("An interval's normal equations are those of central differences of it
   }
 }
 
-TEST_CASE("An interval's cost and reprojection errors are the sums over its observations, however far it turns") {
+TEST_CASE("An interval's cost and reprojection errors are the sums over its observations, for any rotation") {
   RandomTangents random;
   for (int i = 0; i < 200; ++i) {
     FactorGraph graph = random_interval(random, i, 1 + i % 9);
@@ -132,7 +132,7 @@ TEST_CASE("An interval's cost and reprojection errors are the sums over its obse
   }
 }
 
-TEST_CASE("Gradients of robust losses and of state priors are those of the cost") {
+TEST_CASE("Gradients of robust losses and of state priors match the cost") {
   RandomTangents random;
   for (int i = 0; i < 100; ++i) {
     FactorGraph graph = random_interval(random, i, 3);
@@ -178,7 +178,7 @@ TEST_CASE("The scale anchor's derivative equals central differences") {
   }
 }
 
-TEST_CASE("Removing an anchor's landmark leaves the scale as it is") {
+TEST_CASE("Removing an anchor's landmark leaves the scale unchanged") {
   RandomTangents random;
   FactorGraph graph = random_interval(random, 1, 3);
   graph.anchor_scale(Vector3::Zero(), {0, 1, 2});
@@ -187,7 +187,7 @@ TEST_CASE("Removing an anchor's landmark leaves the scale as it is") {
   CHECK(linearise_anchor(graph).e == Approx(0.0).margin(1e-9));
 }
 
-TEST_CASE("A landmark's sigma scale counts for its observations to come, and is taken back as it was given") {
+TEST_CASE("A landmark's scale of sigmas applies to future observations, and can be undone") {
   FactorGraph graph;
   graph.add_state({0.0, {}, Vector6::Zero()});
   graph.add_state({1.0, {}, Vector6::Zero()});
@@ -203,7 +203,7 @@ TEST_CASE("A landmark's sigma scale counts for its observations to come, and is 
   CHECK(inverse_sigma(1) == 4.0);
 }
 
-TEST_CASE("The scale anchor feels what the scale's logarithm changes by, and little of one landmark that runs off") {
+TEST_CASE("The scale anchor measures changes of the scale's logarithm, little affected by one landmark that runs off") {
   RandomTangents random;
   constexpr int kLandmarks = 20;
   FactorGraph graph = random_interval(random, 1, kLandmarks);
@@ -222,7 +222,7 @@ TEST_CASE("The scale anchor feels what the scale's logarithm changes by, and lit
   }
 }
 
-TEST_CASE("An observation behind the camera costs a constant and moves nothing") {
+TEST_CASE("An observation behind the camera has a constant cost and no gradient") {
   RandomTangents random;
   FactorGraph graph = random_interval(random, 1, 1);
   graph.landmarks[0].position = graph.states[0].T * Vector3(0, 0, -3);
@@ -232,9 +232,7 @@ TEST_CASE("An observation behind the camera costs a constant and moves nothing")
   CHECK(evaluate(graph).measurements == Approx(3 * 4.0 * 200.0 * 200.0 / (0.7 * 0.7)));
 }
 
-TEST_CASE(
-    "An expansion's gradient is the derivative of its cost, and a world twice as large is cheaper by its share of log "
-    "2") {
+TEST_CASE("An expansion's gradient is the derivative of its cost, which falls with the logarithm of the scale") {
   RandomTangents random;
   FactorGraph graph = random_interval(random, 1, 6);
   IntervalLinearisation with, without;
@@ -242,7 +240,7 @@ TEST_CASE(
   graph.expansions[1] = 3.0;
   linearise_interval(graph, 1, with);
   CHECK(with.cost - without.cost == Approx(expansion_cost(graph, 1)));
-  const auto cost = [&](int variable, const Vector3& delta) {  // −1: where state 0 is
+  const auto cost = [&](int variable, const Vector3& delta) {  // −1: the position of state 0
     FactorGraph moved = graph;
     Vector12 step = Vector12::Zero();
     step.segment<3>(3) = delta;

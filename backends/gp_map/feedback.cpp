@@ -9,17 +9,17 @@
 #include "core/motion/wnoa.hpp"
 #include "core/support/index.hpp"
 
-// What the front-end is told: how things stand, and where landmarks are expected in the image. A first map that is in
-// doubt guides it, too: tracks go on either way.
+// Feedback for the front-end: the state of the tracking, and where landmarks are expected in the image. An initial map
+// that is not confirmed is used for it, too, because its tracks continue in any case.
 namespace evbench::gp_map {
 
 Feedback GpMap::feedback(const FeedbackNeeds& needs) {
   Feedback feedback;
   feedback.t = until_;
-  if (std::exchange(begun_anew_, false)) return feedback;  // no map, even where there is another one already
+  if (std::exchange(reinitialised_, false)) return feedback;  // no map, even if there is a new one already
   feedback.state = monitor_.state();
-  if (!world_) return feedback;
-  feedback.outliers = std::exchange(world_->outliers, {});
+  if (!map_) return feedback;
+  feedback.outliers = std::exchange(map_->outliers, {});
   if (monitor_.lost()) return feedback;
   feedback.newest = newest_seen();
   if (needs.covariance) feedback.covariance = covariance(feedback.newest->t);
@@ -27,7 +27,7 @@ Feedback GpMap::feedback(const FeedbackNeeds& needs) {
   return feedback;
 }
 
-/// The newest state, or, where that stands ahead of the data (per-observation mode), the estimate at their end.
+/// The newest state or, if it is ahead of the data (per-observation mode), the estimate at their end.
 ControlState GpMap::newest_seen() const {
   const ControlState& newest = graph().states.back();
   if (newest.t <= until_) return newest;
@@ -37,9 +37,9 @@ ControlState GpMap::newest_seen() const {
 /// All landmarks in view, predicted with constant velocity. One whose track has ended counts as independent of the
 /// newest state.
 std::vector<ExpectedFeature> GpMap::expected_features() {
-  constexpr double kNear = 1e-3;  // [units] before the camera: nearer has no image
-  // While it is near the newest state: later, finding it takes a long walk back.
-  for (const TrackId id : std::exchange(world_->ended_landmarks, {})) {
+  constexpr double kNear = 1e-3;  // [units] before the camera: nearer points have no image
+  // Computed while it is near the newest state: later this takes a long walk back.
+  for (const TrackId id : std::exchange(map_->ended_landmarks, {})) {
     const auto track = tracks_.find(id);
     if (track != tracks_.end() && track->second.role == Track::Role::landmark) covariance_of_ended(track->second);
   }
@@ -67,13 +67,13 @@ std::vector<ExpectedFeature> GpMap::expected_features() {
   return result;
 }
 
-/// Tracks whose landmarks are in view or may come into it before the next state. Found once a state: a long recording
-/// has seen many more.
+/// Tracks whose landmarks are in view or may come into view before the next state. Computed once a state: a long
+/// recording has many more landmarks.
 const std::vector<TrackId>& GpMap::nearly_in_view() {
-  constexpr double kMargin = 0.2;  // [rad] beyond what the newest velocity asks for
-  constexpr double kClose = 5.0;   // so many times as far as the camera goes: what is nearer may come in from any side
-  if (world_->nearly_in_view) return *world_->nearly_in_view;
-  std::vector<TrackId>& tracks = world_->nearly_in_view.emplace();
+  constexpr double kMargin = 0.2;  // [rad] beyond the rotation by the newest velocity
+  constexpr double kClose = 5.0;   // times the camera's displacement: nearer points may come in from any side
+  if (map_->nearly_in_view) return *map_->nearly_in_view;
+  std::vector<TrackId>& tracks = map_->nearly_in_view.emplace();
   const PinholeCamera& camera = context_.camera;
   const ControlState& newest = graph().states.back();
   const double longest = std::max(placement_.upcoming() - newest.t, std::abs(until_ - newest.t));
@@ -82,12 +82,12 @@ const std::vector<TrackId>& GpMap::nearly_in_view() {
   const double least = std::cos(std::min(corner + increment.head<3>().norm() + kMargin, std::numbers::pi));
   const double close = kClose * increment.tail<3>().norm();
   const Vector3 axis = newest.T.R().col(2);
-  for (std::size_t j = 0; j < world_->known.size(); ++j) {
+  for (std::size_t j = 0; j < map_->known.size(); ++j) {
     const FactorGraph::Landmark& landmark = graph().landmarks[j];
     const Vector3 ray = landmark.position - newest.T.p;
     const double distance = ray.norm();
     if (!landmark.alive || (distance > close && axis.dot(ray) < least * distance)) continue;
-    const auto track = tracks_.find(world_->known[j].track);
+    const auto track = tracks_.find(map_->known[j].track);
     if (track == tracks_.end() || track->second.role != Track::Role::landmark) continue;
     if (index(track->second.landmark) == j) tracks.push_back(track->first);
   }
@@ -95,8 +95,8 @@ const std::vector<TrackId>& GpMap::nearly_in_view() {
   return tracks;
 }
 
-/// How well a landmark's image is known but for the motion since the newest state. Found once a state: it is dear, and
-/// hardly changes before the next.
+/// Covariance of a landmark's image, without the motion since the newest state. Computed once a state: it is expensive,
+/// and hardly changes before the next.
 const std::optional<Matrix2>& GpMap::image_covariance(Track& track, const Eigen::Matrix<double, 2, 12>& J_state,
                                                       const Matrix23& J_landmark) {
   if (track.expected_at == graph().states.size()) return track.image_covariance;
@@ -104,7 +104,7 @@ const std::optional<Matrix2>& GpMap::image_covariance(Track& track, const Eigen:
   track.image_covariance.reset();
   if (!track.ended) {
     track.covariance.reset();
-    track.image_covariance = world_->engine.predicted_covariance(track.landmark, J_state, J_landmark);
+    track.image_covariance = map_->engine.predicted_covariance(track.landmark, J_state, J_landmark);
   } else {
     const std::optional<Matrix12>& state = newest_covariance();
     const std::optional<Matrix3> own = covariance_of_ended(track);
@@ -116,15 +116,15 @@ const std::optional<Matrix2>& GpMap::image_covariance(Track& track, const Eigen:
 }
 
 const std::optional<Matrix12>& GpMap::newest_covariance() {
-  if (world_->newest_covariance.first != graph().states.size()) {
-    world_->newest_covariance = {graph().states.size(), world_->engine.covariance(graph().states.back().t)};
+  if (map_->newest_covariance.first != graph().states.size()) {
+    map_->newest_covariance = {graph().states.size(), map_->engine.covariance(graph().states.back().t)};
   }
-  return world_->newest_covariance.second;
+  return map_->newest_covariance.second;
 }
 
-/// As it was when the track had ended: what is learnt of it afterwards is little.
+/// The covariance at the end of the track; it changes little afterwards.
 std::optional<Matrix3> GpMap::covariance_of_ended(Track& track) {
-  if (!track.covariance) track.covariance = world_->engine.landmark_covariance(track.landmark);
+  if (!track.covariance) track.covariance = map_->engine.landmark_covariance(track.landmark);
   return track.covariance;
 }
 

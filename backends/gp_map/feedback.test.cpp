@@ -8,7 +8,7 @@
 
 namespace evbench::gp_map {
 
-TEST_CASE("Every landmark that was expected once is expected whenever it is in view, however fast the camera turns",
+TEST_CASE("Every landmark that was expected once is expected whenever it is in view, at any turn rate of the camera",
           "[long]") {
   const char* turning = R"({"motion": {"kind": "smooth_random", "max_frequency": 2.0, "rotation_amplitude": 0.6},
                             "tracks": {"lifetime": [0.3, 1.0], "noise": 0.1}})";

@@ -6,35 +6,35 @@
 #include <utility>
 #include <vector>
 
-#include "backends/gp_map/earlier_explanation.hpp"
+#include "backends/gp_map/earlier_hypothesis.hpp"
 #include "backends/gp_map/gp_map.hpp"
 #include "core/support/seconds_since.hpp"
 
-// When all has been seen: everything is estimated once more, and what follows from everything is learnt.
+// The final estimate: with all data known, the parameters and the whole trajectory are estimated once more.
 namespace evbench::gp_map {
 
 void GpMap::finish() {
-  const bool had_map = world_.has_value();
-  const std::string reason = first_map_.reason();  // while there were data: the last state stands after their end
+  const bool had_map = map_.has_value();
+  const std::string reason = initial_map_.reason();  // before the last state, which is later than the data
   if (const std::optional<double> last = placement_.last()) step(*last);
-  if (!world_) {
-    monitor_.fail(std::min(first_map_.newest(), until_),
-                  "no first map: " + (had_map ? first_map_.reason() : reason));
+  if (!map_) {
+    monitor_.fail(std::min(initial_map_.newest(), until_),
+                  "no initial map: " + (had_map ? initial_map_.reason() : reason));
     return;
   }
-  world_->trusted = true;  // nothing more will tell whether the map is right
+  map_->confirmed = true;  // no more data will confirm the map
   if (options_.final_iterations == 0) {
-    world_->engine.settle();
+    map_->engine.settle();
     record_final_prior();
     return;
   }
   const auto start = std::chrono::steady_clock::now();
   if (options_.lag > 0.0) {
-    // What is settled keeps its expansions: balanced anew alone, the rest would get another scale.
-    const std::vector<double> surplus = surplus_expansions(world_->engine);
+    // Marginalised intervals keep their expansions: balancing only the others again would change their scale.
+    const std::vector<double> surplus = surplus_expansions(map_->engine);
     for (int round = 0; round < options_.learn.rounds; ++round) {
-      learn_with_hindsight({}, surplus);
-      world_->engine.update();
+      learn_from_smoothed({}, surplus);
+      map_->engine.update();
     }
     add_record(graph().states.back().t, seconds_since(start), options_.learn.rounds, {});
     record_final_prior();
@@ -47,45 +47,44 @@ void GpMap::finish() {
   record_final_prior();
 }
 
-/// Prior, noise, and what each track is worth follow from the estimate, and it from them.
+/// Estimates prior, noise and the weights of the tracks from the trajectory, and the trajectory with them.
 Engine::OptimiseSummary GpMap::estimate_everything() {
   const bool learns_prior = options_.learn.prior != LearnPrior::never;
   const bool learns = learns_prior || options_.learn.noise;
   const int rounds = learns ? options_.learn.rounds : 1;
   constexpr int kIterationsARound = 3;
-  constexpr double kRoughly = 1e-4, kLearnt = 1e-6, kFixed = 1e-9;  // what is learnt is known no better
-  world_->engine.optimise(kIterationsARound, kRoughly);
-  if (is_young()) reconsider_beginning();
-  if (auto other = explain_earlier(world_->engine, options_.health.min_landmarks)) {
-    context_.log("what was seen earlier is explained better otherwise by what came after it");
-    world_->engine = std::move(*other);
+  constexpr double kRoughly = 1e-4, kLearnt = 1e-6, kFixed = 1e-9;  // estimated parameters are not more accurate
+  map_->engine.optimise(kIterationsARound, kRoughly);
+  if (is_tentative()) test_depth_reversal();
+  if (auto other = try_earlier_hypotheses(map_->engine, options_.health.min_landmarks)) {
+    context_.log("found a better alternative estimate of the past with the data after it");
+    map_->engine = std::move(*other);
   }
   for (int round = 0; round < rounds; ++round) {
     if (options_.learn.noise) {
-      world_->noise = learn_noise(graph());
-      world_->engine.set_loss(world_->noise.loss(options_.loss, options_.loss_width));
+      map_->noise = learn_noise(graph());
+      map_->engine.set_loss(map_->noise.loss(options_.loss, options_.loss_width));
     }
-    if (learns_prior) learn_prior(world_->engine, {});
-    judge_tracks(world_->noise, {});
-    if (options_.learn.noise) weigh_tracks(world_->noise, {});
-    const bool settled = world_->engine.optimise(kIterationsARound, kRoughly).iterations == 1;
-    if (settled && round > 0) break;  // what is learnt does not change the estimate any more
+    if (learns_prior) learn_prior(map_->engine, {});
+    reject_outliers(map_->noise, {});
+    if (options_.learn.noise) estimate_track_noise(map_->noise, {});
+    const bool settled = map_->engine.optimise(kIterationsARound, kRoughly).iterations == 1;
+    if (settled && round > 0) break;  // the estimated parameters no longer change the estimate
   }
-  return world_->engine.optimise(options_.final_iterations, learns ? kLearnt : kFixed);
+  return map_->engine.optimise(options_.final_iterations, learns ? kLearnt : kFixed);
 }
 
-/// What is near and what is far may have changed places, which little motion does not tell; a map that is older has
-/// seen more. Not while running: before a plane, whose other explanation is looked for already, it misleads.
-void GpMap::reconsider_beginning() {
-  auto search = begin_search(Supposed::reversal, true);
+/// Tests whether near and far are swapped in the initial map, which little motion does not show; an older map has seen
+/// more motion. Not while running: in front of a plane, whose dual is tested already, it misleads.
+void GpMap::test_depth_reversal() {
+  auto search = begin_search(StructureHypothesis::reversal, true);
   if (!search) return;
-  while (search->go_on()) {
+  while (search->run_share()) {
   }
-  if (search->found()) go_on_with(*search->found());
+  if (search->found()) adopt(*search->found());
 }
 
-/// Beside what had been learnt by each control state's update: the density, in the end, of the interval which ends
-/// there.
+/// Adds to the record of each control state's update the final density of the interval that ends there.
 void GpMap::record_final_prior() {
   for (UpdateRecord& record : updates_) {
     const int k = graph().interval_of(record.t);

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "backends/gp_map/first_map.hpp"
+#include "backends/gp_map/initial_map.hpp"
+#include "backends/gp_map/map_estimate.hpp"
 #include "backends/gp_map/options.hpp"
-#include "backends/gp_map/recent_explanation.hpp"
+#include "backends/gp_map/recent_hypothesis.hpp"
 #include "backends/gp_map/state_placement.hpp"
 #include "backends/gp_map/time_span.hpp"
-#include "backends/gp_map/world.hpp"
 #include "core/plugin/backend.hpp"
 #include "core/plugin/tracking_monitor.hpp"
 #include "core/structure/track_buffer.hpp"
@@ -24,7 +24,7 @@ namespace evbench::gp_map {
 /// Asynchronous continuous-time structure from motion by MAP inference under a Gaussian-process prior: Algorithm 1 of
 /// Liu et al., ICRA 2022. Every observation counts at its own time.
 ///
-/// World frame and scale: first_map.hpp. The WNOA prior alone would shrink the world to a point.
+/// World frame and scale: initial_map.hpp. The WNOA prior alone would shrink the world to a point.
 class GpMap : public BackEnd {
  public:
   using Options = gp_map::Options;
@@ -44,29 +44,29 @@ class GpMap : public BackEnd {
   std::vector<Landmark> map() const override;
   std::optional<Problem> problem() const override;
   std::span<const UpdateRecord> updates() const override { return updates_; }
-  std::vector<std::string> learnt() const override;
+  std::vector<std::string> estimated_parameters() const override;
 
-  /// The problem with its present estimate; only where there is a map.
-  const FactorGraph& graph() const { return world_->engine.graph(); }
+  /// The problem with its present estimate; only if there is a map.
+  const FactorGraph& graph() const { return map_->engine.graph(); }
 
  private:
-  /// A track that waits until its landmark can be located, is a landmark, slid off one, or was an outlier.
+  /// A track that waits until its landmark can be located, is a landmark, has drifted from one, or was an outlier.
   struct Track {
-    enum class Role { waiting, landmark, slid, outlier } role = Role::waiting;
-    int landmark = -1;    ///< the engine's number
-    int tried_with = 0;   ///< observations at the last vain attempt to locate it
-    bool misfit = false;  ///< that was vain as no place fits them
+    enum class Role { waiting, landmark, drifted, outlier } role = Role::waiting;
+    int landmark = -1;    ///< its index in the engine
+    int tried_with = 0;   ///< observations at the last failed attempt to locate it
+    bool misfit = false;  ///< that attempt failed because no point fits them
     bool ended = false;
-    bool astray = false;                           ///< what it shows, until it ends, is not its landmark
-    std::optional<Matrix3> covariance = {};        ///< of the landmark, once it is asked for after the track's end
-    std::optional<Matrix2> image_covariance = {};  ///< of where it is expected in the image [px²], as of
-    std::size_t expected_at = 0;                   ///< so many states
+    bool mismatched = false;                       ///< until it ends, it does not show its landmark
+    std::optional<Matrix3> covariance = {};        ///< of the landmark; computed on demand after the track's end
+    std::optional<Matrix2> image_covariance = {};  ///< of its expected image [px²], computed at
+    std::size_t expected_at = 0;                   ///< this number of states
   };
 
-  /// Where a track's landmark is, with what is known of that beside its observations.
+  /// The position of a track's landmark, with the prior on it.
   struct Location {
     std::optional<std::pair<Vector3, LandmarkPrior>> place = {};  ///< none yet,
-    bool misfit = false;                                          ///< or none at all, as none fits the observations
+    bool misfit = false;                                          ///< or none because no point fits the observations
   };
 
   // Algorithm 1, a line each.
@@ -77,35 +77,35 @@ class GpMap : public BackEnd {
   void extrapolate_state(double t);
   void add_observations();
   void add_landmarks();
-  void trust_parallax();
+  void drop_guessed_depths();
   void bound_leverage();
   void optimise();
   void check_reappeared();
   void learn();
-  void learn_with_hindsight(const TimeSpan& span, std::span<const double> surplus = {});
-  void reconsider_recent();
-  void trust_what_fits();
-  bool is_refuted() const;
-  void begin_anew();
+  void learn_from_smoothed(const TimeSpan& span, std::span<const double> surplus = {});
+  void search_alternatives();
+  void confirm_map();
+  bool is_rejected() const;
+  void reinitialise();
   void check_support();
-  void forget_ended_tracks(double t);
+  void drop_ended_tracks(double t);
   void predict_tracks();
 
-  std::optional<ExplanationSearch> begin_search(Supposed supposed, bool young) const;
-  void go_on_with(const RecentExplanation& other);
-  void recall_condemned();
-  void send_back(TrackId id, const Reappearance& seen);
-  int misfits() const;
+  std::optional<HypothesisSearch> begin_search(StructureHypothesis hypothesis, bool tentative) const;
+  void adopt(const RecentHypothesis& other);
+  void recall_rejected();
+  void reject_reassociation(TrackId id, const Reappearance& seen);
+  int mismatched_tracks() const;
   void follow_observations(double t, double ahead);
   void take(const TrackObservation& z);
-  void see_landmark(Track& track, const TrackObservation& z);
-  bool goes_on(const Track& track);
-  void split(TrackId id);
+  void observe_landmark(Track& track, const TrackObservation& z);
+  bool continues_landmark(const Track& track);
+  void split_track(TrackId id);
   void become_landmark(TrackId track, int landmark);
   bool is_outlier(int landmark);
   void become_outlier(int landmark);
   bool end_track_of(int landmark, Track::Role role);
-  void hold_scale_without(int leaving);
+  void anchor_scale_without(int leaving);
   Location locate(TrackId id) const;
   double median_depth() const;
   ControlState newest_seen() const;
@@ -116,36 +116,36 @@ class GpMap : public BackEnd {
   const std::optional<Matrix2>& image_covariance(Track& track, const Eigen::Matrix<double, 2, 12>& J_state,
                                                  const Matrix23& J_landmark);
   int landmarks_in_view() const;
-  bool is_young() const { return !(graph().states.back().t > world_->young_until); }
-  bool is_in_doubt() const { return is_young() && !world_->trusted; }
-  void tell_online(double t);
-  void tell_recent(double t);
+  bool is_tentative() const { return !(graph().states.back().t > map_->tentative_until); }
+  bool is_pending() const { return is_tentative() && !map_->confirmed; }
+  void publish_newest(double t);
+  void publish_recent(double t);
   Engine::OptimiseSummary estimate_everything();
-  void reconsider_beginning();
-  void judge_tracks(const NoiseLearner& noise, const TimeSpan& span);
-  void slid_off(int landmark, double from);
-  void weigh_tracks(const NoiseLearner& noise, const TimeSpan& span);
+  void test_depth_reversal();
+  void reject_outliers(const NoiseLearner& noise, const TimeSpan& span);
+  void truncate_track(int landmark, double from);
+  void estimate_track_noise(const NoiseLearner& noise, const TimeSpan& span);
   void record_final_prior();
   void add_record(double t, double seconds, int iterations, std::optional<double> cost);
 
   Options options_;
   BackEndContext context_;
   StatePlacement placement_;
-  FirstMapFinder first_map_;
-  std::optional<World> world_;  ///< from the first map on, unless that is refuted
+  InitialMapFinder initial_map_;
+  std::optional<MapEstimate> map_;  ///< from the initial map on, unless it is rejected
   std::map<TrackId, Track> tracks_;
   TrackBuffer waiting_;                    ///< observations of waiting tracks
-  TrackBuffer young_;                      ///< of all tracks, while the map is young
-  std::set<TrackId> live_;                 ///< tracks that are alive, or have ended since the last step
+  TrackBuffer tentative_;                  ///< of all tracks, while the map is tentative
+  std::set<TrackId> live_;                 ///< live tracks, and tracks that have ended since the last step
   std::vector<TrackObservation> pending_;  ///< later than the newest state
   std::vector<TrackEnd> ending_;           ///< likewise
-  const double information_told_;          ///< share of the estimate's information that the loss's weights tell
-  int times_refuted_ = 0;                  ///< of first maps
-  bool begun_anew_ = false;                ///< since the last feedback
+  const double information_share_;         ///< factor of covariances: RobustLoss::information_share()
+  int times_rejected_ = 0;                 ///< number of rejected initial maps
+  bool reinitialised_ = false;             ///< since the last feedback
   double seconds_since_step_ = 0.0;        ///< spent on single observations
   TrackingMonitor monitor_;
-  double until_ = 0.0;                                        ///< [s] of the last batch
-  double online_ = -std::numeric_limits<double>::infinity();  ///< [s], time of the last pose told
+  double until_ = 0.0;                                           ///< [s] end of the last batch
+  double published_ = -std::numeric_limits<double>::infinity();  ///< [s] time of the last published pose
   std::vector<UpdateRecord> updates_;
 };
 

@@ -42,7 +42,7 @@ TEST_CASE("gp_map is registered and follows a simulated camera", "[slow]") {
   CHECK(result.scores.ate.trans_percent < 1.0);
   CHECK(result.scores.coverage > 0.97);
   CHECK(result.backend->map().size() > 40);
-  CHECK(result.online.size() > 80);
+  CHECK(result.causal.size() > 80);
 }
 
 TEST_CASE("gp_map drops outlier tracks", "[long]") {
@@ -52,12 +52,12 @@ TEST_CASE("gp_map drops outlier tracks", "[long]") {
   CHECK(result.scores.ate.trans_percent < 1.0);
 }
 
-TEST_CASE("A prior that is too strong for violent motion yields to it", "[long]") {
+TEST_CASE("A prior that is too strong is relaxed for aggressive motion", "[long]") {
   for (const char* scene : {R"({"motion": {"kind": "smooth_random", "max_frequency": 2.5, "rotation_amplitude": 0.5},
                                 "tracks": {"lifetime": [0.3, 1.0]}})",
                             R"({"motion": {"kind": "smooth_random", "max_frequency": 4.0, "rotation_amplitude": 0.2},
                                 "tracks": {"lifetime": [0.3, 1.0]}})"}) {
-    std::vector<double> errors;  // one may find little to hold on to
+    std::vector<double> errors;  // one seed may have few good tracks
     for (const std::uint64_t seed : {1, 2, 3}) {
       const auto result = run(TrackedScene(4.0, scene, seed), {.backend = R"({"qc_scale": 0.1})"});
       INFO("seed " << seed << ": " << result.backend->status().reason << " " << result.scores.ate.trans_percent);
@@ -68,8 +68,8 @@ TEST_CASE("A prior that is too strong for violent motion yields to it", "[long]"
   }
 }
 
-TEST_CASE("Tracks that show no parallax tell rotation, and a guess of their depth helps", "[long]") {
-  // After the first map the camera only turns: all that comes into view has no depth.
+TEST_CASE("Tracks without parallax determine rotation, and a guessed depth improves the estimate", "[long]") {
+  // After the initial map the camera only turns: everything that comes into view has unknown depth.
   const char* scene = R"({"motion": {"rotation_only": [2.0, 3.5]}, "tracks": {"lifetime": [0.3, 0.8]}})";
   std::vector<double> patient, guessing;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
@@ -84,7 +84,7 @@ TEST_CASE("Tracks that show no parallax tell rotation, and a guess of their dept
   CHECK(median(guessing) < 0.7 * median(patient));
 }
 
-TEST_CASE("gp_map's estimate does not depend on how its observations are cut into pieces", "[slow]") {
+TEST_CASE("gp_map's estimate does not depend on how its observations are split into batches", "[slow]") {
   const TrackedScene scene(3.0);
   const auto fine = run(scene, {.chunk = 0.003});
   const auto coarse = run(scene, {.chunk = 0.25});
@@ -97,7 +97,7 @@ TEST_CASE("gp_map's estimate does not depend on how its observations are cut int
   }
 }
 
-TEST_CASE("Tracks of a slow tracker give a map, too", "[long]") {
+TEST_CASE("Tracks of a slow tracker are sufficient for a map", "[long]") {
   for (const char* scene : {R"({"tracks": {"lifetime": [2, 4], "rate": [20, 20]}})",
                             R"({"tracks": {"lifetime": [2, 4], "rate": [10, 12]}})"}) {
     const auto result = run(TrackedScene(6.0, scene));
@@ -109,23 +109,26 @@ TEST_CASE("Tracks of a slow tracker give a map, too", "[long]") {
   }
 }
 
-TEST_CASE("A stand before the first motion is in the trajectory, with few states, and nothing is told before a look",
-          "[long]") {
-  constexpr double kStand = 20.0;  // [s]
+TEST_CASE(
+    "A stationary start is in the trajectory, with few states, and no pose is published before a hypothesis search",
+    "[long]") {
+  constexpr double kStationary = 20.0;  // [s]
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const TrackedScene scene(kStand + 4.0, R"({"motion": {"hold": [0, 20]}, "tracks": {"lifetime": [60, 60]}})", seed);
+    const TrackedScene scene(kStationary + 4.0, R"({"motion": {"hold": [0, 20]}, "tracks": {"lifetime": [60, 60]}})",
+                             seed);
     const auto result = run(scene);
     CHECK(result.backend->status().state == RunState::ok);
     CHECK(result.scores.ate.trans_percent < 1.0);
     const auto& states = result.backend->graph().states;
     CHECK(states.front().t < 1.0);
-    const auto still = std::ranges::count_if(states, [&](const ControlState& state) { return state.t < kStand; });
-    CHECK(still < 100);
-    CHECK(result.online.start() > kStand + 0.7);  // a pause after the map it would be 0.6 at most
+    const auto stationary =
+        std::ranges::count_if(states, [&](const ControlState& state) { return state.t < kStationary; });
+    CHECK(stationary < 100);
+    CHECK(result.causal.start() > kStationary + 0.7);  // a fixed delay after the map would give 0.6 at most
   }
 }
 
-TEST_CASE("A short blackout is carried by the prior and said", "[slow]") {
+TEST_CASE("A short blackout is carried by the prior and reported", "[slow]") {
   const TrackedScene scene(6.0, R"({"tracks": {"lifetime": [1.0, 3.0], "blackouts": [3.0, 3.3]}})");
   const auto result = run(scene);
   const Status status = result.backend->status();
@@ -137,7 +140,7 @@ TEST_CASE("A short blackout is carried by the prior and said", "[slow]") {
   CHECK(result.backend->trajectory().end() > 5.9);
 }
 
-TEST_CASE("A long blackout ends the run as lost, with what there was before", "[slow]") {
+TEST_CASE("A long blackout ends the run as lost, with the trajectory before it", "[slow]") {
   const TrackedScene scene(7.0, R"({"tracks": {"lifetime": [1.0, 3.0], "blackouts": [3.0, 6.0]}})");
   const auto result = run(scene);
   const Status status = result.backend->status();
@@ -152,7 +155,7 @@ TEST_CASE("A run with a lag shorter than the patience ends as lost, too") {
   const auto result = run(scene, {.backend = R"({"lag": 0.3})"});
   CHECK(result.backend->status().state == RunState::lost);
   CHECK(result.backend->trajectory().end() < 3.3);
-  CHECK(result.backend->trajectory().end() > 2.3);  // what was marginalised is not taken back
+  CHECK(result.backend->trajectory().end() > 2.3);  // marginalised states are not removed
 }
 
 TEST_CASE("A stretch of pure rotation does not destroy the trajectory", "[slow]") {
@@ -170,41 +173,42 @@ TEST_CASE("Slow motion starts as soon as the noise allows, and the trajectory be
   CHECK(result.scores.ate.trans_percent < 2.0);
 }
 
-TEST_CASE("Tracks that end before the first map lengthen the trajectory all the same", "[slow]") {
-  // The camera turns first: none of the tracks of its beginning is left when parallax shows.
+TEST_CASE("Tracks that end before the initial map extend the trajectory, too", "[slow]") {
+  // The camera turns first: none of its first tracks is left when parallax shows.
   const TrackedScene scene(6.0, R"({"motion": {"amplitude": 0.3}, "tracks": {"lifetime": [0.3, 0.6]}})", 2);
   const auto result = run(scene);
   CHECK(result.backend->status().state == RunState::ok);
   CHECK(result.backend->trajectory().start() < 0.1);
 }
 
-TEST_CASE("A camera at rest gives no map and says so") {
+TEST_CASE("A camera at rest gives no map and reports the reason") {
   const TrackedScene scene(2.0,
                            R"({"motion": {"kind": "smooth_random", "amplitude": 1e-9, "rotation_amplitude": 1e-9}})");
   const auto result = run(scene);
   CHECK(result.backend->status().state == RunState::failed);
-  CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("no first map"));
+  CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("no initial map"));
   CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("the tracks have moved by"));
   CHECK(result.backend->trajectory().empty());
 }
 
-TEST_CASE("Observations of a time that is too short for a first map are told as such, not as none") {
+TEST_CASE("Observations over too short a time for an initial map are reported as such, not as none") {
   for (const double duration : {0.05, 0.13, 0.18}) {
     INFO(duration);
     const auto result = run(TrackedScene(duration));
     CHECK(result.backend->status().state == RunState::failed);
-    CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("no first map: "));
-    CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring(duration < 0.1 ? "track" : "needed"));
+    CHECK_THAT(result.backend->status().reason, Catch::Matchers::ContainsSubstring("no initial map: "));
+    CHECK_THAT(result.backend->status().reason,
+               Catch::Matchers::ContainsSubstring(duration < 0.1 ? "track" : "needed"));
     CHECK_THAT(result.backend->status().reason, !Catch::Matchers::ContainsSubstring("no observations"));
   }
 }
 
-TEST_CASE("Nothing, one track, and two observations are no reason to crash") {
+TEST_CASE("Empty data, one track, and two observations do not crash") {
   GpMap empty({}, {});
   empty.advance({{}, {}, 1.0});
   empty.finish();
   CHECK(empty.status().state == RunState::failed);
-  CHECK(empty.status().reason == "no first map: no observations");
+  CHECK(empty.status().reason == "no initial map: no observations");
   CHECK_FALSE(empty.pose(0.5));
 
   GpMap one({}, {});
@@ -228,7 +232,7 @@ TEST_CASE("Covariance is positive and smallest at the anchor", "[slow]") {
   CHECK(middle->topLeftCorner<6, 6>().trace() > start->topLeftCorner<6, 6>().trace());
 }
 
-TEST_CASE("However control states are placed, the error is at most a tenth larger than at 20 Hz", "[long]") {
+TEST_CASE("With each placement rule the error is at most a tenth larger than at 20 Hz", "[long]") {
   const char* robot_arm =
       R"({"motion": {"kind": "robot_arm"}, "tracks": {"lifetime": [0.3, 2.0], "outlier_share": 0.05}})";
   constexpr double kDuration = 5.0;  // [s]
@@ -241,7 +245,7 @@ TEST_CASE("However control states are placed, the error is at most a tenth large
   }
 }
 
-TEST_CASE("A prior that is learnt while running makes what is told smoother, and what was told a while ago better",
+TEST_CASE("A prior that is estimated while running makes causal poses smoother, and older poses more accurate",
           "[long]") {
   double causal[2] = {}, last[2] = {};
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -249,7 +253,7 @@ TEST_CASE("A prior that is learnt while running makes what is told smoother, and
     for (const bool learns : {false, true}) {
       const auto result = run(scene, {.backend = learns ? R"({"final_iterations": 0})"
                                                         : R"({"final_iterations": 0, "learn": {"prior": "never"}})"});
-      const Scores scores = score(scene.ground_truth(), result.online, {.association = "interpolated"});
+      const Scores scores = score(scene.ground_truth(), result.causal, {.association = "interpolated"});
       causal[learns] += scores.rpe.trans_m.rmse;
       last[learns] += result.scores.ate.trans_m.rmse;
     }
@@ -258,15 +262,15 @@ TEST_CASE("A prior that is learnt while running makes what is told smoother, and
   CHECK(last[1] < 0.9 * last[0]);
 }
 
-TEST_CASE("What has been learnt by each update is told, and what is learnt in the end beside it", "[long]") {
-  // From four times a robot arm's pace to a quarter of it. A prior's density begins at 1.
+TEST_CASE("The parameters estimated by each update are reported, together with the final ones", "[long]") {
+  // From four times a robot arm's pace to a quarter of it. The prior's density begins at 1.
   const TrackedScene scene(8.0, R"({"motion": {"kind": "robot_arm", "pace": [4, 0.25]}})");
   for (const std::string options :
        {"{}", R"({"final_iterations": 0})", R"({"lag": 2})", R"({"learn": {"prior": "never"}})"}) {
     INFO(options);
     const auto result = run(scene, {.backend = options.c_str()});
-    const std::vector<std::string> names = result.backend->learnt();
-    const auto learnt = [&](const char* name, double t) {
+    const std::vector<std::string> names = result.backend->estimated_parameters();
+    const auto estimated = [&](const char* name, double t) {
       const auto updates = result.backend->updates();
       const auto update = std::ranges::find_if(updates, [&](const UpdateRecord& u) { return u.t >= t; });
       REQUIRE(update != updates.end());
@@ -277,22 +281,23 @@ TEST_CASE("What has been learnt by each update is told, and what is learnt in th
     for (const double t : {2.0, 5.0, 7.5}) {
       for (const char* name : {"qc_rotation_y", "qc_translation_x", "final_qc_rotation_y", "final_qc_translation_x"}) {
         INFO(name << " at " << t << " s");
-        CHECK((learnt(name, t) < 0.7) == learns);
+        CHECK((estimated(name, t) < 0.7) == learns);
       }
     }
-    CHECK((learnt("final_qc_translation_x", 5.0) == learnt("qc_translation_x", 5.0)) == !learns);
-    if (options == "{}") CHECK(learnt("final_qc_translation_x", 2.0) > 4.0 * learnt("final_qc_translation_x", 7.0));
+    CHECK((estimated("final_qc_translation_x", 5.0) == estimated("qc_translation_x", 5.0)) == !learns);
+    if (options == "{}")
+      CHECK(estimated("final_qc_translation_x", 2.0) > 4.0 * estimated("final_qc_translation_x", 7.0));
   }
 }
 
-TEST_CASE("With one prior, and no outliers to find afterwards, a lag of 2 s costs less than a tenth of the accuracy",
+TEST_CASE("With a fixed prior, and without late outliers, a lag of 2 s costs less than a tenth of the accuracy",
           "[long]") {
   const char* scene = R"({"tracks": {"lifetime": [1.0, 4.0]}})";
   CHECK(mean_error(scene, R"({"lag": 2, "learn": {"prior": "never"}})") <
         1.1 * mean_error(scene, R"({"learn": {"prior": "never"}})"));
 }
 
-TEST_CASE("With a lag there is no problem to give, and the trajectory has its beginning all the same", "[slow]") {
+TEST_CASE("With a lag there is no problem to return, but the trajectory includes its beginning", "[slow]") {
   const auto result = run(TrackedScene(5.0), {.backend = R"({"lag": 2})"});
   CHECK(result.backend->trajectory().start() < 1.0);
   CHECK_FALSE(result.backend->problem());
@@ -308,7 +313,7 @@ TEST_CASE("With a lag, memory grows by the results alone", "[long]") {
     TrackPlayer player(scene.observations());
     TrackBatch batch;
     double t = 0.0;
-    const auto bytes_at = [&](double until) {  // the least of the last second: some work comes and goes
+    const auto bytes_at = [&](double until) {  // the minimum of the last second: some memory is temporary
       std::size_t least = std::numeric_limits<std::size_t>::max();
       for (; t < until; t += 0.01) {
         player.advance({t}, batch);
@@ -322,12 +327,13 @@ TEST_CASE("With a lag, memory grows by the results alone", "[long]") {
     return (bytes_at(44.9) - before) / static_cast<double>(backend.graph().states.size() - states);
   };
   CHECK(bytes_per_state("{}") > 20000.0);
-  // Poses, update records, landmarks. At an even rate and over a long time: the lag holds now more, now less.
+  // Poses, update records, landmarks. At a fixed rate and over a long time, because the number of states in the lag
+  // varies.
   CHECK(bytes_per_state(R"({"lag": 2, "placement": {"rule": "rate"}})") < 3000.0);
 }
 #endif
 
-TEST_CASE("Per observation, the causal trajectory has a pose for each, and the final one is as good as the usual one",
+TEST_CASE("Per observation, each one has a causal pose, and the final estimate is as accurate as the usual one",
           "[long]") {
   const char* lifetime = R"({"tracks": {"lifetime": [1.0, 3.0]}})";
   const TrackedScene scene(5.0, lifetime);
@@ -336,8 +342,8 @@ TEST_CASE("Per observation, the causal trajectory has a pose for each, and the f
     INFO(rule);
     const std::string options = std::string(R"({"per_observation": true, "placement": {"rule": ")") + rule + R"("}})";
     const auto result = run(scene, {.backend = options.c_str()});
-    CHECK(result.online.size() > 20 * usual.online.size());
-    const Scores causal = score(scene.ground_truth(), result.online, {.association = "interpolated"});
+    CHECK(result.causal.size() > 20 * usual.causal.size());
+    const Scores causal = score(scene.ground_truth(), result.causal, {.association = "interpolated"});
     CHECK(causal.ate.trans_percent < 1.0);
   }
   CHECK(mean_error(lifetime, R"({"per_observation": true})") < 1.1 * mean_error(lifetime, "{}"));

@@ -6,7 +6,7 @@
 
 namespace evbench::gp_map {
 
-/// Where a graph's variables stand in the vector of all; −1: landmarks that nobody observes.
+/// Offsets of a graph's variables in the vector of all; −1: landmarks without observations.
 struct GraphLayout {
   static constexpr int kStateSize = 12, kLandmarkSize = 3;
 
@@ -22,7 +22,7 @@ void add_factors(const FactorGraph& graph, const GraphLayout& layout, NormalEqua
 /// Moves the graph's estimate by its part of δ.
 void apply_step(FactorGraph& graph, const GraphLayout& layout, const Eigen::VectorXd& step);
 
-/// What a step changes, to undo it.
+/// The values that a step changes, to undo it.
 class GraphEstimate {
  public:
   explicit GraphEstimate(const FactorGraph& graph);

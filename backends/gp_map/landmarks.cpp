@@ -12,23 +12,23 @@
 #include "backends/gp_map/problem_graph.hpp"
 #include "core/support/median.hpp"
 
-// Which tracks are landmarks, and where these are.
+// The life of landmarks: which tracks become landmarks, where these are, and when they are removed.
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kFoundAgain = 10.0;  ///< [s] within which most are that are found again
-constexpr double kWellSeen = 1.5;     ///< error of a landmark's first observations, over what noise makes it
+constexpr double kReacquired = 10.0;  ///< [s] within which most lost landmarks are re-acquired
+constexpr double kWellSeen = 1.5;     ///< error of a landmark's first observations, in multiples of the noise
 
 }  // namespace
 
-/// Tracks seen of late whose error was too large at the last optimum, beside what tracks err. What has been observed
-/// since is not counted: its distance from an extrapolated pose tells of the motion first.
+/// Removes landmarks of the newest interval whose error at the last optimum was too large compared with all tracks.
+/// Newer observations do not count: their distance from an extrapolated pose depends on the motion first.
 void GpMap::remove_outliers() {
   std::vector<int> outliers;
   for (const auto& group : graph().intervals.back().groups()) {
     if (is_outlier(group.landmark)) outliers.push_back(group.landmark);
   }
-  // Most tracks at once: then it is the motion that is wrong.
+  // If these are most tracks, the motion is wrong.
   if (2 * outliers.size() > graph().intervals.back().groups().size()) return;
   for (const int landmark : outliers) become_outlier(landmark);
 }
@@ -38,8 +38,8 @@ bool GpMap::is_outlier(int landmark) {
   if (l.intervals.empty()) return false;
   const Observation& last = graph().intervals[index(l.intervals.back())].of(landmark).back();
   const double inverse_sigma = l.sigma_scale * last.inverse_sigma;  // as given
-  const double far = options_.map.outlier_threshold * world_->noise.scale_of_means();
-  return inverse_sigma * world_->engine.reprojection_mean(landmark) > far;
+  const double far = options_.map.outlier_threshold * map_->noise.scale_of_means();
+  return inverse_sigma * map_->engine.reprojection_mean(landmark) > far;
 }
 
 void GpMap::add_landmarks() {
@@ -53,40 +53,40 @@ void GpMap::add_landmarks() {
     const auto [place, misfit] = locate(id);
     track.misfit = misfit;
     if (!place) continue;
-    const int landmark = world_->engine.add_landmark(place->first, place->second);
+    const int landmark = map_->engine.add_landmark(place->first, place->second);
     for (const TrackObservation& z : observations) {
-      world_->engine.add_observation(landmark, to_observation(z, options_.sigma_scale));
+      map_->engine.add_observation(landmark, to_observation(z, options_.sigma_scale));
     }
-    if (std::isfinite(place->second.sigma)) world_->guessed.push_back(landmark);
+    if (std::isfinite(place->second.sigma)) map_->guessed.push_back(landmark);
     become_landmark(id, landmark);
   }
 }
 
-/// What a landmark's depth was guessed to be is forgotten once it is seen from two sides: what shows no parallax at
-/// first is farther off than most.
-void GpMap::trust_parallax() {
+/// Drops the prior on a landmark's guessed depth once the landmark shows parallax: landmarks without parallax at first
+/// are farther away than most.
+void GpMap::drop_guessed_depths() {
   const double least = std::sin(options_.map.triangulation.min_parallax_deg / kDegrees);
   const std::vector<ControlState>& states = graph().states;
-  std::erase_if(world_->guessed, [&](int j) {
+  std::erase_if(map_->guessed, [&](int j) {
     const FactorGraph::Landmark& landmark = graph().landmarks[index(j)];
     const std::vector<int>& seen = landmark.intervals;
-    if (!landmark.alive || seen.empty() || states.back().t > states[index(seen.back())].t + kFoundAgain) return true;
+    if (!landmark.alive || seen.empty() || states.back().t > states[index(seen.back())].t + kReacquired) return true;
     const auto ray = [&](int k) { return (landmark.position - states[index(k)].T.p).normalized().eval(); };
     if (ray(seen.front()).cross(ray(seen.back())).norm() < least) return false;
-    world_->engine.drop_prior(j);
+    map_->engine.drop_prior(j);
     return true;
   });
 }
 
-/// Where a track's landmark is, by triangulation over its observations; without parallax, at the scene's depth: it
-/// tells rotation, and where landmarks live shortly, nothing else hands the scale on.
+/// Locates a track's landmark by triangulation from its observations. Without parallax, it is put at the scene's depth:
+/// it determines rotation, and where tracks are short, nothing else carries the scale on.
 GpMap::Location GpMap::locate(TrackId id) const {
-  constexpr std::size_t kViews = 16;  // evenly from all observations: enough for a start
+  constexpr std::size_t kViews = 16;  // evenly from all observations: enough for an initial value
   std::span<const TrackObservation> usable = waiting_.observations(id);  // none later than the newest state
-  const auto settled = [&](const TrackObservation& z) {
-    return graph().interval_of(z.t) <= world_->engine.first_state();
+  const auto marginalised = [&](const TrackObservation& z) {
+    return graph().interval_of(z.t) <= map_->engine.first_state();
   };
-  usable = usable.subspan(index(std::ranges::partition_point(usable, settled) - usable.begin()));
+  usable = usable.subspan(index(std::ranges::partition_point(usable, marginalised) - usable.begin()));
   if (usable.size() < 2) return {};
   std::vector<SE3> poses;
   std::vector<Vector2> pixels;
@@ -97,7 +97,7 @@ GpMap::Location GpMap::locate(TrackId id) const {
     pixels.push_back(z.pixel);
   }
   const Triangulation result = triangulate(poses, pixels, context_.camera, options_.map.triangulation);
-  const double noise = options_.sigma_scale * usable.back().sigma * world_->noise.scale_of_means();
+  const double noise = options_.sigma_scale * usable.back().sigma * map_->noise.scale_of_means();
   if (result.ok() && result.rms_px <= kWellSeen * std::numbers::sqrt2 * noise) {
     return {.place = std::pair{result.point, LandmarkPrior{}}};
   }
@@ -108,7 +108,7 @@ GpMap::Location GpMap::locate(TrackId id) const {
   return {.place = std::pair{point, LandmarkPrior{point, options_.map.depth_sigma * depth}}};
 }
 
-/// Of the landmarks seen last, from the newest pose.
+/// Median depth of the landmarks seen last, from the newest pose.
 double GpMap::median_depth() const {
   const SE3 T_camera_world = graph().states.back().T.inverse();
   std::vector<double> depths;
@@ -125,36 +125,36 @@ void GpMap::become_landmark(TrackId id, int landmark) {
   Track& track = tracks_.at(id);
   track.role = Track::Role::landmark;
   track.landmark = landmark;
-  world_->known.push_back({.track = id});
-  ++world_->tracks;
+  map_->known.push_back({.track = id});
+  ++map_->tracks;
   waiting_.forget(id);
 }
 
 void GpMap::become_outlier(int landmark) {
-  hold_scale_without(landmark);
-  world_->engine.remove_landmark(landmark);
-  if (end_track_of(landmark, Track::Role::outlier)) --world_->tracks;
+  anchor_scale_without(landmark);
+  map_->engine.remove_landmark(landmark);
+  if (end_track_of(landmark, Track::Role::outlier)) --map_->tracks;
 }
 
-/// What it will show is not of this landmark. False where it came back as another one.
+/// Further observations of the track are not of this landmark. False if the track has become another landmark.
 bool GpMap::end_track_of(int landmark, Track::Role role) {
-  const auto track = tracks_.find(world_->known[index(landmark)].track);
+  const auto track = tracks_.find(map_->known[index(landmark)].track);
   if (track == tracks_.end() || track->second.landmark != landmark) return false;
   track->second.role = role;
-  world_->outliers.push_back(track->first);
+  map_->outliers.push_back(track->first);
   return true;
 }
 
-/// One of few landmarks that hold the scale is about to go: those seen now join the others, at the scale of now.
-void GpMap::hold_scale_without(int leaving) {
+/// Before one of few landmarks of the scale anchor is removed, those in view are added to it, at the present scale.
+void GpMap::anchor_scale_without(int leaving) {
   std::set<int> anchors(graph().anchor.landmarks.begin(), graph().anchor.landmarks.end());
   if (anchors.erase(leaving) == 0 || std::ssize(anchors) >= options_.health.min_landmarks) return;
   for (const auto& group : graph().intervals.back().groups()) {
     if (group.landmark != leaving) anchors.insert(group.landmark);
   }
-  context_.log(fmt::format("{:.3f} s: most landmarks that held the scale were outliers; {} hold it now",
+  context_.log(fmt::format("{:.3f} s: most landmarks of the scale anchor were outliers; it has {} now",
                            graph().states.back().t, anchors.size()));
-  world_->engine.anchor_scale(graph().anchor.origin, {anchors.begin(), anchors.end()});
+  map_->engine.anchor_scale(graph().anchor.origin, {anchors.begin(), anchors.end()});
 }
 
 }  // namespace evbench::gp_map

@@ -13,17 +13,17 @@ namespace evbench::gp_map {
 
 using testing::TrackedScene;
 
-TEST_CASE("A track that slides off its point keeps its beginning as a landmark, and one that does not all", "[slow]") {
+TEST_CASE("A drifting track keeps its beginning as a landmark, and other tracks are kept completely", "[slow]") {
   const TrackedScene scene(10.0, R"({"tracks": {"lifetime": [4.0, 5.0]}})");
   constexpr double kAfter = 1.0, kSpeed = 3.0;  // [s], [px/s]: its mean error stays far below the outliers'
-  const auto slides = [](TrackId track) { return track % 5 == 0; };
+  const auto drifts = [](TrackId track) { return track % 5 == 0; };
   std::map<TrackId, double> begin, end;
   std::vector<TrackObservation> observations;
   for (TrackObservation z : scene.observations()) {
     begin.try_emplace(z.track, z.t);
     end[z.track] = z.t;
     const double angle = static_cast<double>(z.track), since = z.t - begin[z.track] - kAfter;
-    if (slides(z.track) && since > 0.0) z.pixel += kSpeed * since * Vector2(std::cos(angle), std::sin(angle));
+    if (drifts(z.track) && since > 0.0) z.pixel += kSpeed * since * Vector2(std::cos(angle), std::sin(angle));
     observations.push_back(z);
   }
   BackEndContext context;
@@ -31,27 +31,27 @@ TEST_CASE("A track that slides off its point keeps its beginning as a landmark, 
   GpMap backend({}, context);
   backend.advance({observations, {}, scene.duration()});
   backend.finish();
-  int slid = 0, beginnings = 0, sound = 0, whole = 0;
+  int drifted = 0, beginnings = 0, sound = 0, whole = 0;
   for (const Landmark& landmark : backend.map()) {
     if (end[landmark.track] < begin[landmark.track] + 2.5) continue;
     const auto& found =
         std::ranges::find(backend.graph().landmarks, landmark.position, &FactorGraph::Landmark::position);
     const double last = backend.graph().states[index(found->intervals.back())].t;
-    if (slides(landmark.track)) {
-      ++slid;
+    if (drifts(landmark.track)) {
+      ++drifted;
       beginnings += last > begin[landmark.track] + 0.5 && last < end[landmark.track] - 0.5;
     } else {
       ++sound;
       whole += last > end[landmark.track] - 0.2;
     }
   }
-  CHECK(slid >= 18);
-  CHECK(beginnings >= slid - 1);
+  CHECK(drifted >= 18);
+  CHECK(beginnings >= drifted - 1);
   CHECK(sound > 20);
   CHECK(whole == sound);
 }
 
-TEST_CASE("While running, a track that errs more than the others counts less", "[slow]") {
+TEST_CASE("While running, a track with larger errors than the others counts less", "[slow]") {
   const TrackedScene scene(8.0, R"({"tracks": {"lifetime": [2.0, 3.0]}})");
   const auto errs = [](TrackId track) { return track % 4 == 0; };
   constexpr double kPeriod = 0.3, kAmplitude = 4.0;  // [s], [px]
@@ -68,7 +68,7 @@ TEST_CASE("While running, a track that errs more than the others counts less", "
   GpMap backend(options, context);
   backend.advance({observations, {}, scene.duration()});
   backend.finish();
-  int erring = 0, told = 0, sound = 0, trusted = 0;
+  int erring = 0, downweighted = 0, sound = 0, unchanged = 0;
   for (const Landmark& landmark : backend.map()) {
     const auto found =
         std::ranges::find(backend.graph().landmarks, landmark.position, &FactorGraph::Landmark::position);
@@ -78,18 +78,19 @@ TEST_CASE("While running, a track that errs more than the others counts less", "
     if (seen < 1.5) continue;
     errs(landmark.track) ? ++erring : ++sound;
     if (errs(landmark.track))
-      told += found->sigma_scale > 1.5;
+      downweighted += found->sigma_scale > 1.5;
     else
-      trusted += found->sigma_scale < 1.5;
+      unchanged += found->sigma_scale < 1.5;
   }
-  INFO(told << " of " << erring << ", " << trusted << " of " << sound);
+  INFO(downweighted << " of " << erring << ", " << unchanged << " of " << sound);
   CHECK(erring >= 5);
-  CHECK(told > 0.8 * erring);
-  CHECK(trusted > 0.9 * sound);
+  CHECK(downweighted > 0.8 * erring);
+  CHECK(unchanged > 0.9 * sound);
 }
 
-TEST_CASE("Of landmarks that come back as many go on as the budget has, the others become new ones at the same place",
-          "[long]") {
+TEST_CASE(
+    "Of re-acquired landmarks as many continue as the budget allows, and the others become new ones at the same place",
+    "[long]") {
   const TrackedScene scene(8.0, R"({"tracks": {"lifetime": [6.0, 8.0]}})");
   constexpr double kPeriod = 2.0, kGone = 0.7;  // [s]
   const auto phase = [](const TrackObservation& z) { return z.t + 0.37 * static_cast<double>(z.track); };
@@ -139,28 +140,28 @@ TEST_CASE("Of landmarks that come back as many go on as the budget has, the othe
   CHECK(some > all + 10);
 }
 
-TEST_CASE("A track that comes back beside its landmark is told as an outlier, and its landmark can come back later",
+TEST_CASE("A track that is re-acquired off its landmark is reported as an outlier, and the landmark can return later",
           "[slow]") {
-  constexpr double kGone = 6.5, kAside = 7.0, kGoneAgain = 7.5, kBack = 8.0, kUntil = 10.0;  // [s]
+  constexpr double kGone = 6.5, kDisplaced = 7.0, kGoneAgain = 7.5, kBack = 8.0, kUntil = 10.0;  // [s]
   const TrackedScene scene(kUntil, R"({"tracks": {"lifetime": [9.5, 10.0]}})");
-  const auto strays = [](TrackId track) { return track % 30 == 7; };
+  const auto is_mismatched = [](TrackId track) { return track % 30 == 7; };
   BackEndContext context;
   context.camera = scene.camera();
   GpMap backend({}, context);
-  std::set<TrackId> before, aside, after, told;
+  std::set<TrackId> before, displaced, after, reported;
   std::set<TrackId> live;
   TrackBatch batch;
   for (TrackObservation z : scene.observations()) {
-    if (strays(z.track)) {
-      if ((z.t > kGone && z.t < kAside) || (z.t > kGoneAgain && z.t < kBack)) {
+    if (is_mismatched(z.track)) {
+      if ((z.t > kGone && z.t < kDisplaced) || (z.t > kGoneAgain && z.t < kBack)) {
         if (live.erase(z.track) > 0) batch.ended.push_back({z.track, z.t});
         continue;
       }
       live.insert(z.track);
       if (z.t < kGone - 1.0) before.insert(z.track);
       if (z.t > kBack) after.insert(z.track);
-      if (z.t > kAside && z.t < kBack) {
-        aside.insert(z.track);
+      if (z.t > kDisplaced && z.t < kBack) {
+        displaced.insert(z.track);
         z.pixel += Vector2(12.0, 5.0 * std::sin(z.track));
       }
     }
@@ -168,19 +169,19 @@ TEST_CASE("A track that comes back beside its landmark is told as an outlier, an
     if (z.t < batch.until + 0.05) continue;
     batch.until = z.t;
     backend.advance(batch);
-    for (const TrackId track : backend.feedback({.any = true}).outliers) told.insert(track);
+    for (const TrackId track : backend.feedback({.any = true}).outliers) reported.insert(track);
     batch = {{}, {}, batch.until};
   }
   std::vector<TrackId> all_the_time;
   for (const TrackId track : before) {
-    if (aside.contains(track) && after.contains(track)) all_the_time.push_back(track);
+    if (displaced.contains(track) && after.contains(track)) all_the_time.push_back(track);
   }
   CHECK(all_the_time.size() >= 2);
-  for (const TrackId track : all_the_time) CHECK(told.contains(track));
+  for (const TrackId track : all_the_time) CHECK(reported.contains(track));
   const auto time = [&](int k) { return backend.graph().states[index(k)].t; };
   const auto comes_back = [&](const FactorGraph::Landmark& landmark) {
     return std::ranges::adjacent_find(landmark.intervals, [&](int a, int b) {
-             return time(a) < kAside && time(b) > kBack;
+             return time(a) < kDisplaced && time(b) > kBack;
            }) != landmark.intervals.end();
   };
   CHECK(std::ranges::count_if(backend.graph().landmarks, comes_back) == std::ssize(all_the_time));

@@ -3,21 +3,22 @@
 
 #include "backends/gp_map/gp_map.hpp"
 
-// How much one landmark may say of where the camera is.
+// Bounds the influence of one landmark on the estimate of the camera's position.
 namespace evbench::gp_map {
 namespace {
 
 constexpr double kNear = 1.5;         ///< times nearer than the scene's median depth: bounded from there on
-constexpr double kLargest = 100.0;    ///< bound: such a landmark says nothing
-constexpr double kBoundChange = 1.2;  ///< by which a bound must change to be set anew
+constexpr double kLargest = 100.0;    ///< largest bound: such a landmark has no influence
+constexpr double kBoundChange = 1.2;  ///< factor by which a bound must change to be updated
 
 }  // namespace
 
-/// What a translation does to the image grows with nearness. A track that follows nothing, taken for a landmark close
-/// before the camera, says more of the translation than all others together, and the estimate then fits it: a robust
-/// loss, which looks at residuals, protects from no such leverage. Larger sigmas bound it, as Mallows' estimators do,
-/// and leave residuals by which such a track is told. In proportion to nearness they would not do: translation and
-/// rotation move all that is equally far by nearly the same, so a little that is near decides between the two.
+/// The effect of a translation on the image grows with nearness. A track that follows nothing, taken for a landmark
+/// close to the camera, has more influence on the translation than all others together, and the estimate then fits it.
+/// A robust loss depends on residuals and does not protect against such leverage. Larger sigmas bound it, as Mallows'
+/// estimators do, and leave residuals by which such a track is recognised. Sigmas in proportion to nearness do not
+/// suffice: translation and rotation move everything at the same distance by nearly the same amount, so a few near
+/// landmarks decide between the two.
 void GpMap::bound_leverage() {
   const double median = median_depth();
   const SE3 T_camera_world = graph().states.back().T.inverse();
@@ -27,12 +28,12 @@ void GpMap::bound_leverage() {
     if (!(depth > 0.0)) continue;
     const double nearness = std::max(1.0, median / (kNear * depth));
     const double bound = std::min(kLargest, nearness * nearness);
-    double& present = world_->known[index(group.landmark)].leverage;
+    double& present = map_->known[index(group.landmark)].leverage;
     if (bound < kBoundChange * present && bound > present / kBoundChange) continue;
     present = bound;
     changed.push_back(group.landmark);
   }
-  for (const int j : changed) world_->engine.scale_sigmas(j, world_->known[index(j)].sigma_scale());
+  for (const int j : changed) map_->engine.scale_sigmas(j, map_->known[index(j)].sigma_scale());
 }
 
 }  // namespace evbench::gp_map

@@ -8,9 +8,9 @@
 #include "core/motion/wnoa.hpp"
 #include "core/support/index.hpp"
 
-// Lanes run over landmarks: kLanes of them, with similar numbers of observations in the interval, are worked on
-// together, the i-th observation of each at once (weight 0 where one has fewer). What a landmark's observations share
-// then stays in registers' lanes until it is complete, and nothing is transposed but the result.
+// Lanes run over landmarks: kLanes of them, with similar numbers of observations in the interval, are processed
+// together, the i-th observation of each at once (weight 0 if one has fewer). Terms that a landmark's observations
+// share stay in lanes of registers until they are complete, and only the result is transposed.
 //
 // With m = T_0⁻¹ l and ξ = a ϖ_0 + b ξ_1 + c w_1 a residual is a function of (m, ξ) alone, e = whitened π(Exp(−ξ) m) −
 // z. With G = ∂e/∂ξ the block of each pair of (ϖ_0, ξ_1, w_1) is a multiple of GᵀG, and the first pose acts through m
@@ -23,7 +23,7 @@ using namespace lanes;  // NOLINT: this file and that header are one algorithm
 
 using Matrix12x24 = Eigen::Matrix<double, 12, 24>;
 
-/// rows × [m^, −I]: what a derivative with respect to m is with respect to δT_0.
+/// rows × [m^, −I]: turns a derivative with respect to m into one with respect to δT_0.
 template <std::size_t N>
 std::array<std::array<Lane, 6>, N> through_first_pose(const std::array<std::array<Lane, 3>, N>& rows, const Lane3& m) {
   std::array<std::array<Lane, 6>, N> result;
@@ -92,7 +92,7 @@ void write_couplings(const LandmarkSums& landmark, const std::array<std::array<L
   }
 }
 
-/// The first pose's part of the interval's sums, from the landmark's.
+/// Adds the first pose's part to the interval's sums, computed from the landmark's.
 void add_first_pose(const LandmarkSums& landmark, const std::array<std::array<Lane, 6>, 3>& mT, const Lane3& m,
                     IntervalSums& sums) {
   std::array<std::array<Lane, 3>, 6> Tm;
@@ -222,7 +222,7 @@ void map_to_states(const LocalSystem& local, const EndMap& blocks, IntervalLinea
   result.gradient.head<12>() += local.g.head<12>();
 }
 
-/// Adds the gradient of the expansion −c log s = c log Σ 1/d_j (its curvature is small beside the observations').
+/// Adds the gradient of the expansion −c log s = c log Σ 1/d_j. Its curvature is negligible against the observations'.
 void add_expansion(const IntervalInput& in, IntervalLinearisation& result) {
   if (in.expansion == 0.0 || in.positions.empty()) return;
   const SE3& T = in.state0.T;

@@ -2,13 +2,13 @@
 #include "backends/gp_map/engine/observation_geometry.hpp"
 #include "backends/gp_map/factors.hpp"
 
-// Lanes run over the observations of an interval, whatever landmarks they are of.
+// Lanes run over the observations of an interval, of any landmarks.
 namespace evbench::gp_map {
 namespace {
 
 using namespace lanes;  // NOLINT: this file works by lanes
 
-/// Calls visit(residual, observed, place of the group of each lane's observation).
+/// Calls visit(residual, observed, index of the group of each lane's observation).
 template <class Visit>
 void for_each_residual(const FactorGraph& graph, int k, const GpInterval& interval, Visit visit) {
   const Interval shared(interval);

@@ -7,23 +7,23 @@
 
 #include "backends/gp_map/factors.hpp"
 #include "core/geometry/seen_point.hpp"
-#include "core/support/median.hpp"
 #include "core/geometry/solve_symmetric.hpp"
+#include "core/support/median.hpp"
 
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kMedianNorm = 1.17741;                ///< of a two-dimensional standard normal
-constexpr double kDriftBlock = 0.2, kForgotten = 1.0;  ///< [s]
-constexpr int kFewestInBlock = 4;                      ///< observations in a block that tells of drift
+constexpr double kMedianNorm = 1.17741;              ///< of a two-dimensional standard normal
+constexpr double kDriftBlock = 0.2, kDropped = 1.0;  ///< [s] length of a block; age at which it is dropped
+constexpr int kFewestInBlock = 4;                    ///< observations in a block that measures drift
 constexpr std::size_t kFewestTracks = 8;
 constexpr double kOutlierLossWidth = 2.0;  ///< of the loss against outliers [medians]
 constexpr double kBinsPerOctave = 16.0;
 constexpr double kLeastShare = 0.01;
-constexpr int kAge = 3;  ///< states after which an interval's residuals are looked at
+constexpr int kAge = 3;  ///< states after which an interval's residuals are used
 
-/// An error of the pose that changes linearly over an interval, by weighted least squares from what it does to the
-/// image of each landmark.
+/// A pose error that changes linearly over an interval, by weighted least squares from its effects on the landmarks'
+/// images.
 class PoseError {
  public:
   using Rows = Eigen::Matrix<double, 2, 12>;
@@ -36,11 +36,11 @@ class PoseError {
   Vector2 at(const Rows& J) const { return J * error_; }
 
  private:
-  Matrix12 H_ = 1e-3 * Matrix12::Identity();  // what the tracks leave undetermined is none
+  Matrix12 H_ = 1e-3 * Matrix12::Identity();  // undetermined components are zero
   Vector12 g_ = Vector12::Zero(), error_ = g_;
 };
 
-/// A residual [stated sigmas] and what it would change by with the pose at the interval's middle and its rate.
+/// A residual [stated sigmas] and its derivative with respect to the pose at the interval's middle and its rate.
 struct Residual {
   int landmark = 0;
   double t = 0.0;
@@ -119,10 +119,10 @@ void NoiseLearner::add(const FactorGraph& graph, int k) {
   PoseError common;
   for (const Residual& r : residuals) common.add(r.J, r.value, loss.weight(r.value.squaredNorm()));
   common.solve();
-  std::erase_if(open_, [&](const auto& block) { return block.second.since < interval.t0() - kForgotten; });
+  std::erase_if(open_, [&](const auto& block) { return block.second.since < interval.t0() - kDropped; });
   const auto n = static_cast<double>(tracks);
-  const double taken_away = std::sqrt(n / (n - 3.0));  // 6 of 2 n components of the means
-  for (const Residual& r : residuals) add(r.landmark, r.t, taken_away * (r.value - common.at(r.J)));
+  const double correction = std::sqrt(n / (n - 3.0));  // 6 of 2 n components of the means
+  for (const Residual& r : residuals) add(r.landmark, r.t, correction * (r.value - common.at(r.J)));
 }
 
 void NoiseLearner::add(int landmark, double t, const Vector2& residual) {

@@ -6,26 +6,27 @@
 
 namespace evbench::gp_map {
 
-/// Learns the observations' noise from residuals: a scale of the stated sigmas, and the share of the information that
-/// counts, as a tracker's errors drift. The mean of n independent errors over a block of time has a variance of
-/// sigma²/n an axis; that of errors which hang together is larger, and they count as so many observations less. That
-/// is the cheapest model of drift; results/reference/drift_models.md compares it with dearer ones.
+/// Estimates the observations' noise from residuals: a scale of the stated sigmas, and the share of their information
+/// that counts, because a tracker's errors drift. The mean of n independent errors over a block of time has a variance
+/// of sigma²/n per axis. The mean of correlated errors has a larger one, and they count as correspondingly fewer
+/// observations. This is the cheapest model of drift; results/reference/drift_models.md compares it with more expensive
+/// ones.
 ///
-/// What a pose error, linear over an interval, explains of its residuals tells of the motion, not of noise, and is
-/// taken away first: a motion model that is wrong must not pass for noise, which would then make the prior stronger
+/// The part of an interval's residuals that a pose error, linear over the interval, explains is due to the motion and
+/// is subtracted first. Otherwise errors of the motion model would count as noise, which would make the prior stronger
 /// still.
 class NoiseLearner {
  public:
-  /// Takes the intervals since the last call that are a few states old; what was taken before fades over `memory` [s].
+  /// Uses the intervals since the last call that are a few states old. Older data fade over `memory` [s].
   void follow(const FactorGraph& graph, double memory);
 
-  /// The residuals of an interval at the graph's estimate; each interval once, in order.
+  /// Adds the residuals of an interval at the graph's estimate; each interval once, in order.
   void add(const FactorGraph& graph, int k);
 
   double scale() const;  ///< true sigma over the stated one; 1 before there is any residual
   double share() const;  ///< of the information, at most 1
 
-  /// The same as scale() for what is averaged over a short time and taken times √n: of errors that drift, larger.
+  /// scale() for means over a short time, multiplied by √n: larger if errors drift.
   double scale_of_means() const;
 
   /// The loss for residuals whitened by the stated sigmas. `width`: in true sigmas.
@@ -56,7 +57,7 @@ class NoiseLearner {
   int taken_ = 0;              ///< the last interval of follow()
 };
 
-/// The noise of a whole history, from all of it.
+/// The noise of a whole history, estimated from all of it.
 NoiseLearner learn_noise(const FactorGraph& graph);
 
 }  // namespace evbench::gp_map

@@ -12,7 +12,8 @@ namespace {
 constexpr double kRate = 100.0, kInterval = 0.05, kEnd = 10.0;  // [Hz], [s]
 constexpr int kTracks = 20;
 
-/// A camera that sees points all over the image, off by error(track, t) [px], and that is taken to rest.
+/// A camera that sees points all over the image with an error of error(track, t) [px], and that the graph takes to be
+/// at rest.
 FactorGraph seen(
     const std::function<Vector2(int track, double t)>& error,
     const std::function<SE3(double t)>& motion = [](double) { return SE3{}; }) {
@@ -35,7 +36,7 @@ Vector2 white(Random& random, double sigma) { return sigma * random.normal2(); }
 
 }  // namespace
 
-TEST_CASE("White noise is learnt as it is, though a tenth of the tracks are outliers") {
+TEST_CASE("White noise is estimated correctly although a tenth of the tracks are outliers") {
   for (const double sigma : {0.1, 1.0, 5.0}) {
     Random random(1);
     const NoiseLearner noise = learn_noise(seen([&](int track, double) {
@@ -48,7 +49,7 @@ TEST_CASE("White noise is learnt as it is, though a tenth of the tracks are outl
   }
 }
 
-TEST_CASE("Of errors that drift, as much counts as their means over a fifth of a second say") {
+TEST_CASE("Drifting errors count as much as their means over a fifth of a second") {
   constexpr double kCorrelationTime = 1.0, kSigma = 0.5;  // [s], [px]
   Random random(2);
   std::vector<Vector2> drift(kTracks, Vector2::Zero());
@@ -61,7 +62,7 @@ TEST_CASE("Of errors that drift, as much counts as their means over a fifth of a
   CHECK(noise.share() == Approx(1.0 / (0.2 * kRate)).epsilon(0.4));  // a block's observations count as one
 }
 
-TEST_CASE("What all tracks have in common tells of the motion: it passes for no noise") {
+TEST_CASE("Errors that all tracks have in common are attributed to the motion, not to noise") {
   Random random(3);
   const FactorGraph shaken = seen([&](int, double) { return white(random, 0.3); },
                                   [](double t) {
@@ -74,7 +75,7 @@ TEST_CASE("What all tracks have in common tells of the motion: it passes for no 
   CHECK(noise.share() > 0.7);
 }
 
-TEST_CASE("While running, the noise follows what was seen of late") {
+TEST_CASE("While running, the noise follows recent data") {
   Random random(4);
   const FactorGraph all = seen([&](int, double t) { return white(random, t < 0.5 * kEnd ? 0.2 : 1.0); });
   NoiseLearner noise;

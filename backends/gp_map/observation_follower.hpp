@@ -7,17 +7,17 @@
 
 namespace evbench::gp_map {
 
-/// Between two control states, follows every observation (the paper's per-event updates): a state stands ahead of the
-/// data, and it and the one before are brought to what the observations in the interval between them ask for.
+/// Follows every observation between two control states (the paper's per-event updates). A state is placed ahead of the
+/// data; this state and the one before are updated by the observations in the interval between them.
 class ObservationFollower {
  public:
-  /// Puts a state ahead, at this time, unless there is one already.
+  /// Adds a state ahead, at this time, unless there is one.
   void open(Engine& engine, double ahead);
 
   void follow(Engine& engine, int landmark, const Observation& observation);
 
-  /// The next control state is to stand at t: where the state ahead stands later, it is taken back there, and what has
-  /// been followed is added again.
+  /// The next control state will be at t. If the state ahead is later, it moves to t, and the followed observations are
+  /// added again.
   void close(Engine& engine, double t);
 
  private:
@@ -25,7 +25,8 @@ class ObservationFollower {
   std::vector<std::pair<int, Observation>> followed_;
 };
 
-/// The newest state's motion goes on to time t (paper, Algorithm 1: extrapolation of the GP).
+/// Adds a state at t, extrapolated from the newest one with constant velocity (paper, Algorithm 1: extrapolation of the
+/// GP).
 void add_extrapolated_state(Engine& engine, double t);
 
 }  // namespace evbench::gp_map

@@ -33,12 +33,12 @@ struct MapOptions {
   void declare(OptionSet& set);
 };
 
-/// When the prior's power spectral density is learnt from the data.
-enum class LearnPrior { never, hindsight, always };
+/// When the prior's power spectral density is estimated from the data.
+enum class LearnPrior { never, smoothed, always };
 
-/// What is learnt from the data.
+/// Parameters that are estimated from the data.
 struct LearningOptions {
-  LearnPrior prior = LearnPrior::hindsight;
+  LearnPrior prior = LearnPrior::smoothed;
   bool noise = true;
   double window = 0.3, memory = 3.0;
   int rounds = 6;
@@ -46,7 +46,7 @@ struct LearningOptions {
   void declare(OptionSet& set);
 };
 
-/// When too little is seen.
+/// When too few landmarks are seen.
 struct HealthOptions {
   int min_landmarks = 6;
   int lost_landmarks = 3;

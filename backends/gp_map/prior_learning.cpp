@@ -8,19 +8,19 @@
 namespace evbench::gp_map {
 namespace {
 
-constexpr double kGuessWeight = 2.0;     ///< degrees of freedom of what a longer time tells
-constexpr double kCommonWeight = 100.0;  ///< of what the other axes tell
-constexpr double kBegin = 0.5;           ///< of what was set before there was any evidence
+constexpr double kGuessWeight = 2.0;     ///< degrees of freedom of the estimate over a longer time
+constexpr double kCommonWeight = 100.0;  ///< of the estimate from the other axes
+constexpr double kBegin = 0.5;           ///< of the initial density, for the time before any evidence
 constexpr double kLeast = 1e-9;
-constexpr double kHistoryWindow = 0.5;  ///< [s], to both sides
-constexpr double kPace = 0.1;           ///< [s] between two looks
-constexpr double kLookedBack = 0.4;     ///< [s]
-constexpr int kMostLookedBack = 16;     ///< intervals
-constexpr int kSetAnew = 8;             ///< of the newest intervals
-constexpr double kForce = 1.0;          ///< by which an expansion must change
-constexpr double kDensityChange = 1.5;  ///< by which a density must change to be set anew
+constexpr double kHistoryWindow = 0.5;   ///< [s], to both sides
+constexpr double kUpdateInterval = 0.1;  ///< [s] between two updates of the evidence
+constexpr double kUpdated = 0.4;         ///< [s] whose evidence is updated
+constexpr int kMostUpdated = 16;         ///< intervals
+constexpr int kReset = 8;                ///< newest intervals whose density is set
+constexpr double kForce = 1.0;           ///< an expansion that changes by more is set
+constexpr double kDensityChange = 1.5;   ///< a density that changes by a larger factor is set
 
-/// Of the intervals from `first` on; none when the system is singular.
+/// Evidence of the intervals from `first` on; none if the system is singular.
 std::vector<PriorEvidence> evidence_from(Engine& engine, int first) {
   std::vector<PriorEvidence> result;
   const FactorGraph& graph = engine.graph();
@@ -74,20 +74,20 @@ double PriorEvidence::expansion(const Vector6& qc) const { return square.tail<3>
 
 void RecentPrior::take(int first, const std::vector<PriorEvidence>& evidence) {
   if (evidence.empty()) return;
-  recent_.erase(recent_.upper_bound(first + static_cast<int>(evidence.size()) - 1), recent_.end());  // taken back
+  recent_.erase(recent_.upper_bound(first + static_cast<int>(evidence.size()) - 1), recent_.end());  // removed states
   for (std::size_t i = 0; i < evidence.size(); ++i) recent_[first + static_cast<int>(i)] = evidence[i];
   for (; !recent_.empty() && recent_.begin()->first < first; recent_.erase(recent_.begin())) {
-    PriorEvidence settled = recent_.begin()->second, remembered = settled;
-    settled.add(settled_, window_);
+    PriorEvidence older = recent_.begin()->second, remembered = older;
+    older.add(older_, window_);
     remembered.add(remembered_, memory_);
-    settled_ = settled;
+    older_ = older;
     remembered_ = remembered;
   }
 }
 
 Vector6 RecentPrior::at(double t) const {
   PriorEvidence window{t, Vector6::Zero(), Vector6::Zero()}, memory = window;
-  window.add(settled_, window_);
+  window.add(older_, window_);
   memory.add(remembered_, memory_);
   for (const auto& [k, evidence] : recent_) {
     window.add(evidence, window_);
@@ -99,14 +99,14 @@ Vector6 RecentPrior::at(double t) const {
 void PriorLearner::follow(Engine& engine) {
   const FactorGraph& graph = engine.graph();
   const double now = graph.states.back().t;
-  if (now < followed_until_ + kPace) return;
+  if (now < followed_until_ + kUpdateInterval) return;
   followed_until_ = now;
   if (!prior_) prior_.emplace(window_, memory_, graph.qc);
   take_evidence(engine);
   if (prior_->recent().empty()) return;
   const int newest = static_cast<int>(graph.states.size()) - 1;
   for (const auto& [k, evidence] : prior_->recent()) {
-    if (k <= newest - kSetAnew) continue;
+    if (k <= newest - kReset) continue;
     const Vector6 qc = prior_->at(evidence.t), change = qc.cwiseQuotient(graph.qcs[index(k)]);
     const double expansion = evidence.expansion(qc);
     if (change.maxCoeff() > kDensityChange || change.minCoeff() < 1.0 / kDensityChange ||
@@ -120,11 +120,11 @@ void PriorLearner::follow(Engine& engine) {
 void PriorLearner::take_evidence(Engine& engine) {
   const FactorGraph& graph = engine.graph();
   const int newest = static_cast<int>(graph.states.size()) - 1;
-  int first = 1;  // all of the first map's
+  int first = 1;  // all intervals of the initial map
   if (!prior_->recent().empty()) {
     first = newest;
-    const double from = graph.states.back().t - kLookedBack;
-    while (first > 1 && newest - first + 1 < kMostLookedBack && graph.states[index(first - 1)].t > from) --first;
+    const double from = graph.states.back().t - kUpdated;
+    while (first > 1 && newest - first + 1 < kMostUpdated && graph.states[index(first - 1)].t > from) --first;
   }
   first = std::max(first, engine.first_state() + 1);
   prior_->take(first, evidence_from(engine, first));
@@ -150,7 +150,7 @@ void learn_prior(Engine& engine, const TimeSpan& span, std::span<const double> s
     all.freedom += one.freedom;
   }
   const Vector6 mean = all.qc(all.common_qc(engine.graph().qc, kBegin), kCommonWeight);
-  // Sums over those before and those after, each carried along.
+  // Sums over the intervals before and the intervals after, accumulated in both directions.
   std::vector<PriorEvidence> before = evidence, after = evidence;
   for (std::size_t k = 1; k < evidence.size(); ++k) before[k].add(before[k - 1], kHistoryWindow);
   for (std::size_t k = evidence.size(); k-- > 1;) after[k - 1].add(after[k], kHistoryWindow);

@@ -19,7 +19,7 @@ double mean_qc(const FactorGraph& graph) {
 
 }  // namespace
 
-TEST_CASE("The prior that a motion was drawn from is learnt, from one a hundred times stronger or weaker") {
+TEST_CASE("The prior from which a motion was drawn is estimated, starting a hundred times too strong or too weak") {
   for (const double start : {0.01, 1.0, 100.0}) {
     Engine engine = testing::DrawnProblem({.qc = kTrue, .pixel_sigma = 0.05}, 1).solve_incrementally();
     for (int k = 1; k < testing::DrawnProblem::kStates; ++k) engine.set_qc(k, Vector6::Constant(start * kTrue));
@@ -32,7 +32,7 @@ TEST_CASE("The prior that a motion was drawn from is learnt, from one a hundred 
   }
 }
 
-TEST_CASE("Where a part is learnt anew, its expansions keep what they push more than the prior draws") {
+TEST_CASE("When a part is estimated again, its expansions keep their surplus over the prior's contraction") {
   Engine engine = testing::DrawnProblem({.qc = kTrue, .pixel_sigma = 0.05}, 1).solve_incrementally();
   for (int k = 1; k < testing::DrawnProblem::kStates; ++k) engine.set_qc(k, Vector6::Constant(10.0 * kTrue), 20.0 + k);
   engine.update();
@@ -48,7 +48,7 @@ TEST_CASE("Where a part is learnt anew, its expansions keep what they push more 
   for (const double balance : surplus_expansions(engine)) CHECK(balance == Approx(0.0).margin(1e-9));
 }
 
-TEST_CASE("Evidence fades with time, and a guess counts where there is little") {
+TEST_CASE("Evidence fades with time, and a guess counts where there is little evidence") {
   PriorEvidence sum{1.0, Vector6::Constant(4.0), Vector6::Constant(2.0)};
   CHECK(sum.qc(Vector6::Ones(), 0.0)[0] == Approx(2.0));
   CHECK(sum.qc(Vector6::Ones(), 2.0)[3] == Approx(1.5));

@@ -10,10 +10,11 @@ namespace evbench::gp_map {
 /// observations have none and are not alive.
 FactorGraph to_graph(const Problem& problem);
 
-/// The problem file's form of what a run ended with: present estimates as initial guess. Landmarks that were removed
-/// are left out, the others numbered anew. The format has no robust loss and no scale anchor: the loss is dropped, and
-/// each of the anchor's landmarks gets a prior at its present estimate, with a sigma of 5 % of its distance.
-/// Densities of the prior become their geometric mean; sigmas are larger by what counts of the observations (the loss).
+/// The problem file's form of the result of a run: present estimates become the initial guess. Removed landmarks are
+/// left out, and the others are renumbered. The format has no robust loss and no scale anchor: the loss is dropped, and
+/// each of the anchor's landmarks gets a prior at its present estimate, with a sigma of 5 % of its distance. Densities
+/// of the prior become their geometric mean. Sigmas are increased according to the share of information that the loss
+/// counts.
 Problem to_problem(const FactorGraph& graph);
 
 inline Observation to_observation(const TrackObservation& z, double sigma_scale) {

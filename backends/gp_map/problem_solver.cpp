@@ -50,7 +50,7 @@ class IncrementalRun {
     return engine;
   }
 
-  /// All factors with the final estimate: with a lag the engine has forgotten most of them.
+  /// All factors with the final estimate: with a lag the engine has dropped most of them.
   FactorGraph complete_graph() const {
     FactorGraph graph = to_graph(problem_);
     graph.states = engine_.graph().states;

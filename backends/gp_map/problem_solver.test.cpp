@@ -10,7 +10,7 @@
 namespace evbench::gp_map {
 namespace {
 
-/// After the incremental steps and gp_map's final iterations, in standard deviations.
+/// Largest distance from the oracle, after the incremental steps and gp_map's final iterations, in standard deviations.
 double largest_distance(const std::string& path, int every) {
   const SolveResult solved = solve_problem(read_problem(path), {});
   Engine engine(solved.graph, {});
@@ -18,7 +18,7 @@ double largest_distance(const std::string& path, int every) {
   return testing::distance_from_oracle(engine.graph(), every).component;
 }
 
-/// Of each landmark so many, each but the first seen with more noise of its own.
+/// The problem with so many copies of each landmark; each copy but the first has additional noise of its own.
 Problem multiplied(const Problem& problem, int times) {
   Problem result = problem;
   Random random(1);
@@ -43,7 +43,7 @@ Problem multiplied(const Problem& problem, int times) {
 
 }  // namespace
 
-TEST_CASE("An incremental estimate is near the optimum, of 40 landmarks alive as of 200", "[slow]") {
+TEST_CASE("An incremental estimate is near the optimum, with 40 live landmarks and with 200", "[slow]") {
   const auto path = evbench::testing::problem_file("small.txt.gz");
   if (!path) return;
   const Problem problem = read_problem(*path);
@@ -53,11 +53,11 @@ TEST_CASE("An incremental estimate is near the optimum, of 40 landmarks alive as
   }
 }
 
-TEST_CASE("After the final iterations the small problem's states are the oracle's within 1 % of a sigma", "[slow]") {
+TEST_CASE("After the final iterations the small problem's states equal the oracle's within 1 % of a sigma", "[slow]") {
   if (const auto path = evbench::testing::problem_file("small.txt.gz")) CHECK(largest_distance(*path, 1) < 0.01);
 }
 
-TEST_CASE("After the final iterations the medium problem's states are the oracle's within 1 % of a sigma", "[long]") {
+TEST_CASE("After the final iterations the medium problem's states equal the oracle's within 1 % of a sigma", "[long]") {
   if (const auto path = evbench::testing::problem_file("medium.txt.gz")) CHECK(largest_distance(*path, 20) < 0.01);
 }
 

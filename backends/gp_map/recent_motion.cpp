@@ -42,7 +42,7 @@ class Chain {
     return delta;
   }
 
-  /// Of i and i + 1 jointly, for all i.
+  /// Joint covariances of i and i + 1, for all i.
   std::vector<Matrix24> covariances() const {
     std::vector<Matrix24> joint(diagonal.size() - 1);
     Matrix12 newer = factors_.back().solve(Matrix12::Identity());
@@ -69,7 +69,8 @@ void RecentMotion::follow(const FactorGraph& graph, int first_state) {
          graph.states[index(first - 1)].t > graph.states[index(newest)].t - kWindow) {
     --first;
   }
-  const std::vector<ControlState> told = std::exchange(states_, {graph.states.begin() + first, graph.states.end()});
+  const std::vector<ControlState> published =
+      std::exchange(states_, {graph.states.begin() + first, graph.states.end()});
   if (first == newest || !prior_) return;
 
   Chain chain(states_.size());
@@ -82,7 +83,7 @@ void RecentMotion::follow(const FactorGraph& graph, int first_state) {
       positions_.push_back(graph.landmarks[index(group.landmark)].position);
     }
     const Vector6 qc = prior_->at(0.5 * (before.t + state.t));
-    constexpr double kNoExpansion = 0.0;  // the map is held, so this prior cannot draw the world together
+    constexpr double kNoExpansion = 0.0;  // the map is held, so this prior cannot contract the world
     linearise_interval({graph.camera, graph.loss, qc, kNoExpansion, before, state, observations, positions_},
                        linearised_);
     const auto i = index(k - first);
@@ -96,10 +97,10 @@ void RecentMotion::follow(const FactorGraph& graph, int first_state) {
   };
   if (first == 0) {
     add_state_priors(graph, 0, chain.diagonal[0], chain.gradient[0]);
-  } else {  // held where it was told
+  } else {  // held at its published pose
     const ControlState& estimate = graph.states[index(first - 1)];
-    const auto before = std::ranges::find(told, estimate.t, &ControlState::t);
-    add_interval(first, before == told.end() ? estimate : *before);
+    const auto before = std::ranges::find(published, estimate.t, &ControlState::t);
+    add_interval(first, before == published.end() ? estimate : *before);
   }
   for (int k = first + 1; k <= newest; ++k) add_interval(k, graph.states[index(k - 1)]);
   if (!chain.factorise()) return;

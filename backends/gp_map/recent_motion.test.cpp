@@ -24,9 +24,8 @@ Engine solved_with(double qc, const DrawnProblem& problem) {
 
 }  // namespace
 
-TEST_CASE("The newest motion is smoothed by the prior that it shows, whatever the one it was estimated with",
-          "[slow]") {
-  // With one that is too strong the map has been bent, and stays so.
+TEST_CASE("The newest motion is smoothed by the prior that it shows, whichever prior it was estimated with", "[slow]") {
+  // A prior that is too strong has distorted the map, which stays so.
   for (const auto& [wrong, remains] : {std::pair(100.0, 0.5), std::pair(0.01, 0.7)}) {
     double estimated = 0.0, smoothed = 0.0;  // squared errors of the newest velocity
     for (int seed = 1; seed <= 20; ++seed) {
@@ -43,7 +42,7 @@ TEST_CASE("The newest motion is smoothed by the prior that it shows, whatever th
   }
 }
 
-TEST_CASE("States of the last 0.4 s are told, at the engine's times, and as it has them where nothing is smoothed") {
+TEST_CASE("The states of the last 0.4 s are at the engine's times, and equal its states if nothing is smoothed") {
   const Engine engine = solved_with(kDensity, DrawnProblem({.qc = kDensity, .pixel_sigma = 0.3}, 1));
   const auto& states = engine.graph().states;
   for (const bool smooth : {false, true}) {
@@ -51,17 +50,17 @@ TEST_CASE("States of the last 0.4 s are told, at the engine's times, and as it h
     motion.follow(engine.graph(), 0);
     REQUIRE(motion.states().size() == 8);  // 0.05 s apart
     for (std::size_t i = 0; i < 8; ++i) {
-      const ControlState &told = motion.states()[i], &estimate = states[states.size() - 8 + i];
-      CHECK(told.t == estimate.t);
-      CHECK((told.T.p == estimate.T.p) == !smooth);
-      CHECK((told.T.p - estimate.T.p).norm() < 0.01);
+      const ControlState &recent = motion.states()[i], &estimate = states[states.size() - 8 + i];
+      CHECK(recent.t == estimate.t);
+      CHECK((recent.T.p == estimate.T.p) == !smooth);
+      CHECK((recent.T.p - estimate.T.p).norm() < 0.01);
     }
     motion.follow(engine.graph(), static_cast<int>(states.size()) - 3);
-    CHECK(motion.states().size() == 3);  // of those before, the observations are gone
+    CHECK(motion.states().size() == 3);  // the observations before these are gone
   }
 }
 
-TEST_CASE("One state, or an estimate that is no number, is told as it is") {
+TEST_CASE("One state, or an estimate that is not finite, is returned unchanged") {
   FactorGraph graph;
   RecentMotion motion(RecentPrior(0.3, 3.0, graph.qc));
   graph.add_state({1.0, SE3(), Vector6::Ones()});

@@ -2,9 +2,9 @@
 
 namespace evbench::gp_map {
 
-/// With ψ(r) = w r of residuals r ~ N(0, I): the weights tell E[w], the estimate has E[∇·ψ/2]² / E[|ψ|²/2], and
-/// E[∇·ψ] = E[ψ·r] (Stein). Over the norm of r, by the midpoint rule.
-double RobustLoss::information_told() const {
+/// With ψ(r) = w r of residuals r ~ N(0, I): the weights state the information E[w], the estimate has E[∇·ψ/2]² /
+/// E[|ψ|²/2], and E[∇·ψ] = E[ψ·r] (Stein). Integrated over the norm of r by the midpoint rule.
+double RobustLoss::information_share() const {
   constexpr int kSteps = 1000;
   constexpr double kFarthest = 10.0, kStep = kFarthest / kSteps;
   double w = 0.0, w_s = 0.0, w2_s = 0.0;

@@ -10,8 +10,8 @@ class RobustLoss {
   enum class Kind { none, huber, cauchy };
 
   RobustLoss() = default;
-  /// `width`: the residual norm [sigmas] where the loss turns from quadratic. `share`: of the information in an
-  /// observation, as much counts.
+  /// `width`: the residual norm [sigmas] at which the loss stops being quadratic. `share`: the share of an
+  /// observation's information that counts.
   RobustLoss(Kind kind, double width, double share = 1.0) : kind_(kind), width_(width), share_(share) {}
 
   Kind kind() const { return kind_; }
@@ -23,10 +23,10 @@ class RobustLoss {
   /// ρ'(s): the weight of the residual in iteratively reweighted least squares.
   double weight(double s) const { return share_ * slope(s); }
 
-  /// The inverse of Σ weight Jᵀ J is not the covariance of an estimate: of the information that the estimate has where
-  /// errors are normal, the weights tell this share (Huber's sandwich, for two-dimensional residuals; 0.79 for a Cauchy
-  /// loss of width 2). The true covariance is so many times the inverse.
-  double information_told() const;
+  /// The share of an estimate's information that the weights state if errors are normal (Huber's sandwich, for
+  /// two-dimensional residuals; 0.79 for a Cauchy loss of width 2). The inverse of Σ weight Jᵀ J times this share is
+  /// the covariance of the estimate.
+  double information_share() const;
 
  private:
   double shape(double s) const {

@@ -9,15 +9,14 @@
 using namespace evbench;
 using namespace evbench::gp_map;
 
-TEST_CASE(
-    "What a loss's weights sum up to, and what of the information they tell, give the covariance of an estimate") {
+TEST_CASE("A loss's weights and its information share give the covariance of an estimate") {
   for (const RobustLoss& loss : {RobustLoss(RobustLoss::Kind::cauchy, 2.0), RobustLoss(RobustLoss::Kind::cauchy, 1.0),
                                  RobustLoss(RobustLoss::Kind::huber, 1.0), RobustLoss()}) {
     CAPTURE(static_cast<int>(loss.kind()), loss.width());
     constexpr int kTrials = 4000, kObservations = 50, kIterations = 20;
     Random random(1);
     double squared_error = 0.0, weights = 0.0;
-    for (int trial = 0; trial < kTrials; ++trial) {  // a place in the plane, seen with normal errors, is at zero
+    for (int trial = 0; trial < kTrials; ++trial) {  // a point in the plane, seen with normal errors, is at zero
       std::vector<Vector2> seen;
       for (int i = 0; i < kObservations; ++i) seen.push_back(random.normal2());
       Vector2 estimate = Vector2::Zero();
@@ -35,8 +34,8 @@ TEST_CASE(
       squared_error += estimate.squaredNorm() / (2.0 * kTrials);
       weights += sum / kTrials;
     }
-    CHECK(squared_error == Approx(loss.information_told() / weights).epsilon(0.05));
+    CHECK(squared_error == Approx(loss.information_share() / weights).epsilon(0.05));
   }
-  CHECK(RobustLoss().information_told() == Approx(1.0));
-  CHECK(RobustLoss(RobustLoss::Kind::cauchy, 2.0).information_told() == Approx(0.79).margin(0.005));
+  CHECK(RobustLoss().information_share() == Approx(1.0));
+  CHECK(RobustLoss(RobustLoss::Kind::cauchy, 2.0).information_share() == Approx(0.79).margin(0.005));
 }

@@ -1,4 +1,4 @@
-// The scale that a first map gives is held as long as the map lasts.
+// The scale of the initial map is held as long as the map exists.
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 using testing::run;
 using testing::TrackedScene;
 
-/// The true places of the landmarks that hold the scale.
+/// The true positions of the scale anchor's landmarks.
 std::vector<Vector3> anchored_points(const TrackedScene& scene, const GpMap& backend) {
   std::vector<Vector3> points;
   for (const int j : backend.graph().anchor.landmarks) {
@@ -30,8 +30,8 @@ std::vector<Vector3> anchored_points(const TrackedScene& scene, const GpMap& bac
   return points;
 }
 
-/// The scale from the estimate to the truth by the anchor's landmarks alone: in the truth's units, too, they have the
-/// mean nearness that the anchor holds.
+/// The scale from the estimate to the truth according to the anchor's landmarks alone: in units of the truth, too, they
+/// have the mean nearness of the anchor.
 double anchored_scale(const TrackedScene& scene, const GpMap& backend) {
   ScaleAnchor anchor = backend.graph().anchor;
   const double estimated_unit = anchor.unit;
@@ -50,7 +50,7 @@ double anchored_scale(const TrackedScene& scene, const GpMap& backend) {
 
 }  // namespace
 
-TEST_CASE("A prior a hundred times stronger or weaker leaves the scale where the anchor holds it", "[long]") {
+TEST_CASE("A prior a hundred times stronger or weaker does not change the anchored scale", "[long]") {
   const TrackedScene scene(5.0, R"({"tracks": {"lifetime": [1.0, 3.0]}})");
   for (const char* options : {"{}", R"({"qc_scale": 100})", R"({"qc_scale": 0.01})"}) {
     INFO(options);
@@ -59,27 +59,27 @@ TEST_CASE("A prior a hundred times stronger or weaker leaves the scale where the
   }
 }
 
-TEST_CASE("The first landmarks keep the mean nearness that they were given", "[slow]") {
+TEST_CASE("The landmarks of the scale anchor keep their mean nearness", "[slow]") {
   const TrackedScene scene(5.0);
   const auto result = run(scene);
   CHECK(std::abs(linearise_anchor(result.backend->graph()).e) < 5.0);  // in sigmas of 1e-4
 }
 
-TEST_CASE("Landmarks that are near, whose distances are known best, hold the scale", "[slow]") {
+TEST_CASE("Near landmarks, whose distances are known best, anchor the scale", "[slow]") {
   const TrackedScene scene(2.0, R"({"scene": {"near": 1, "far": 10}, "tracks": {"lifetime": [3.0, 4.0]}})");
   const auto result = run(scene);
   const Vector3 origin = scene.ground_truth().pose(result.backend->trajectory().start())->p;
   const auto nearness = [&](const Vector3& point) { return 1.0 / (point - origin).norm(); };
   double sum = 0.0, of_all = 0.0;
-  const std::vector<Vector3> holding = anchored_points(scene, *result.backend);
-  for (const Vector3& point : holding) sum += nearness(point);
+  const std::vector<Vector3> anchoring = anchored_points(scene, *result.backend);
+  for (const Vector3& point : anchoring) sum += nearness(point);
   for (const Landmark& landmark : result.backend->map()) of_all += nearness(scene.point(landmark.track));
   const double map_size = static_cast<double>(result.backend->map().size());
-  CHECK(sum / static_cast<double>(holding.size()) > 1.3 * of_all / map_size);
+  CHECK(sum / static_cast<double>(anchoring.size()) > 1.3 * of_all / map_size);
 }
 
-TEST_CASE("When most landmarks that hold the scale turn out to be outliers, others hold it too", "[slow]") {
-  // Only 25 tracks make the first map; 40 others come at 0.6 s; from 0.9 s on the first ones jump away in turn.
+TEST_CASE("When most landmarks of the scale anchor turn out to be outliers, others are added to it", "[slow]") {
+  // Only 25 tracks make the initial map; 40 others come at 0.6 s; from 0.9 s on the first ones jump away in turn.
   const TrackedScene scene(6.0,
                            R"({"motion": {"max_frequency": 0.3}, "tracks": {"lifetime": [7.0, 8.0], "alive": 65}})");
   constexpr TrackId kFirst = 25;
@@ -92,12 +92,14 @@ TEST_CASE("When most landmarks that hold the scale turn out to be outliers, othe
   }
   BackEndContext context;
   context.camera = scene.camera();
-  int handed_over = 0;
-  context.log = [&](const std::string& line) { handed_over += line.find("hold it now") != std::string::npos ? 1 : 0; };
+  int renewed = 0;
+  context.log = [&](const std::string& line) {
+    renewed += line.find("of the scale anchor were outliers") != std::string::npos ? 1 : 0;
+  };
   GpMap backend({}, context);
   backend.advance({observations, {}, 6.0});
   backend.finish();
-  CHECK(handed_over == 1);
+  CHECK(renewed == 1);
   CHECK(backend.graph().anchor.landmarks.size() > 10);
   CHECK(backend.status().state == RunState::ok);
   const Scores scores = score(scene.ground_truth(), backend.trajectory(), {.association = "interpolated"});

@@ -12,14 +12,13 @@ namespace evbench::gp_map {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// Supernodal, of the lower triangle. A matrix that is not positive definite is a result here, not a warning on the
-/// console.
+/// Supernodal, of the lower triangle. A matrix that is not positive definite is a result here: no warning is printed.
 struct SparseCholesky : Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> {
   SparseCholesky() { cholmod().print = 0; }
 };
 
-/// The normal equations H δ = −g, summed up block by block. Rows and columns below zero are those of what is no
-/// variable: blocks there are passed over.
+/// The normal equations H δ = −g, summed up block by block. Negative rows and columns belong to no variable: blocks
+/// there are skipped.
 class NormalEquations {
  public:
   explicit NormalEquations(int size) : gradient_(Eigen::VectorXd::Zero(size)) {}
@@ -58,9 +57,9 @@ class NormalEquations {
   Eigen::VectorXd gradient_;
 };
 
-/// Levenberg-Marquardt. A problem has cost(), linearise() at its estimate, which gives NormalEquations of always the
-/// same pattern, apply(δ), and estimate() with restore(), which undo that. The estimate never gets worse: steps that
-/// raise the cost are undone.
+/// Levenberg-Marquardt. A problem has cost(), linearise() at its estimate, which returns NormalEquations of a constant
+/// pattern, apply(δ), and estimate() with restore(), which undo it. The estimate never gets worse: steps that raise the
+/// cost are undone.
 template <class Problem>
 BatchSummary minimise(Problem& problem, const BatchOptions& options) {
   BatchSummary summary;
@@ -75,7 +74,7 @@ BatchSummary minimise(Problem& problem, const BatchOptions& options) {
     const SparseMatrix H = equations.matrix();
     if (!analysed) cholesky.analyzePattern(H);
     analysed = true;
-    // The floor keeps a variable that nothing tells (a landmark behind every camera that saw it) from being singular.
+    // The floor keeps an undetermined variable (a landmark behind every camera that saw it) from being singular.
     const Eigen::VectorXd diagonal = H.diagonal().cwiseMax(kLeastInformation);
     const auto before = problem.estimate();
     bool accepted = false;

@@ -28,14 +28,14 @@ double StatePlacement::upcoming() const {
 
 double StatePlacement::time_by_data() {
   while (!enough_ && !later_.empty() && later_.front().t <= latest()) {
-    look_at(later_.front());
+    consider(later_.front());
     if (is_enough()) enough_ = later_.front().t;
     later_.pop_front();
   }
   return std::clamp(enough_.value_or(latest()), earliest(), latest());
 }
 
-void StatePlacement::look_at(const TrackObservation& observation) {
+void StatePlacement::consider(const TrackObservation& observation) {
   ++count_;
   if (options_.rule == Rule::prediction) {
     const std::optional<double> deviation = deviation_(observation);
@@ -53,7 +53,7 @@ void StatePlacement::look_at(const TrackObservation& observation) {
 
 bool StatePlacement::is_enough() const {
   if (options_.rule == Rule::observations) return count_ >= options_.observations;
-  constexpr int kFewest = 6;  // of which one can say "most"
+  constexpr int kFewest = 6;  // tracks for a majority
   if (options_.rule == Rule::prediction) {
     return std::ssize(deviates_) >= kFewest && 2 * deviating_ > std::ssize(deviates_);
   }
@@ -63,7 +63,7 @@ bool StatePlacement::is_enough() const {
 }
 
 void StatePlacement::place(double t) {
-  for (; !later_.empty() && later_.front().t <= t; later_.pop_front()) look_at(later_.front());
+  for (; !later_.empty() && later_.front().t <= t; later_.pop_front()) consider(later_.front());
   for (auto& [id, track] : displacements_) track.from = track.to;
   std::erase_if(displacements_, [&](const auto& track) { return track.second.t < t - options_.max_spacing; });
   newest_ = t;

@@ -10,7 +10,7 @@ namespace {
 
 using Rule = PlacementOptions::Rule;
 
-/// One observation a millisecond; ten tracks that all move at `speed` [px/s], but for an outlier.
+/// One observation a millisecond; ten tracks that all move at `speed` [px/s], except for an outlier.
 std::vector<TrackObservation> moving(double speed, double until) {
   std::vector<TrackObservation> result;
   for (int i = 0; 1e-3 * i <= until; ++i) {
@@ -21,11 +21,11 @@ std::vector<TrackObservation> moving(double speed, double until) {
 }
 
 std::vector<double> placed(const PlacementOptions& options, const std::vector<TrackObservation>& observations,
-                           double piece) {
+                           double batch) {
   StatePlacement placement(options);
   std::vector<double> times;
   std::size_t next = 0;
-  for (double now = piece; next < observations.size(); now += piece) {
+  for (double now = batch; next < observations.size(); now += batch) {
     for (; next < observations.size() && observations[next].t <= now; ++next) placement.observe(observations[next]);
     while (const auto t = placement.next(std::min(now, observations.back().t))) {
       CHECK(*t <= now);
@@ -38,7 +38,8 @@ std::vector<double> placed(const PlacementOptions& options, const std::vector<Tr
 
 }  // namespace
 
-TEST_CASE("By prediction, a state stands where most tracks are not where they were predicted, else far apart") {
+TEST_CASE(
+    "By prediction, a state is placed when most tracks are off their prediction, otherwise at the greatest spacing") {
   PlacementOptions options;
   options.min_spacing = 0.01;
   options.max_spacing = 0.1;
@@ -66,7 +67,7 @@ TEST_CASE("By prediction, a state stands where most tracks are not where they we
   for (std::size_t i = 4; i < times.size(); ++i) CHECK(times[i] - times[i - 1] == Approx(0.01).margin(0.002));
 }
 
-TEST_CASE("By rate, control states stand evenly from the first observation past the last one") {
+TEST_CASE("By rate, control states are evenly spaced from the first observation past the last one") {
   PlacementOptions options;
   options.rule = Rule::rate;
   options.rate = 8.0;
@@ -75,7 +76,7 @@ TEST_CASE("By rate, control states stand evenly from the first observation past 
   for (std::size_t k = 0; k < times.size(); ++k) CHECK(times[k] == Approx(0.125 * static_cast<double>(k)));
 }
 
-TEST_CASE("By observations, a control state stands where their number is reached, within the spacings") {
+TEST_CASE("By observations, a control state is placed when their number is reached, within the spacings") {
   PlacementOptions options;
   options.rule = Rule::observations;
   options.min_spacing = 0.01;
@@ -104,7 +105,7 @@ TEST_CASE("By motion, the states' spacing follows the median speed in the image"
   CHECK(spacing(10000.0) == Approx(0.01).margin(1e-9));
 }
 
-TEST_CASE("Placement does not depend on the pieces in which observations arrive") {
+TEST_CASE("Placement does not depend on how observations are split into batches") {
   PlacementOptions options;
   for (const auto rule : {Rule::rate, Rule::observations, Rule::motion}) {
     options.rule = rule;
@@ -113,7 +114,7 @@ TEST_CASE("Placement does not depend on the pieces in which observations arrive"
   }
 }
 
-TEST_CASE("The next state will not stand later than announced") {
+TEST_CASE("The next state is not later than announced") {
   for (const auto rule : {Rule::rate, Rule::observations, Rule::motion}) {
     PlacementOptions options;
     options.rule = rule;

@@ -4,7 +4,7 @@
 
 namespace evbench::gp_map {
 
-/// After `from`, up to and with `until` [s]; by default, all times.
+/// Times after `from`, up to and including `until` [s]; by default, all times.
 struct TimeSpan {
   double from = -std::numeric_limits<double>::infinity(), until = std::numeric_limits<double>::infinity();
 
@@ -12,8 +12,8 @@ struct TimeSpan {
 
   bool is_everything() const { return from == TimeSpan().from && until == TimeSpan().until; }
 
-  /// Whether some of the times in (t0, t1] are in it.
-  bool meets(double t0, double t1) const { return from < t1 && t0 < until; }
+  /// Does it contain some of the times in (t0, t1]?
+  bool overlaps(double t0, double t1) const { return from < t1 && t0 < until; }
 };
 
 }  // namespace evbench::gp_map

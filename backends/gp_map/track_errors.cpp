@@ -10,9 +10,9 @@ namespace evbench::gp_map {
 namespace {
 
 constexpr double kErrorBlock = 0.15;       ///< [s]
-constexpr int kFewestInLastBlock = 4;      ///< observations in the last block, which may not be over
+constexpr int kFewestInLastBlock = 4;      ///< observations in the last block, which may be incomplete
 constexpr double kMedianSquare = 1.38629;  ///< of a two-dimensional standard normal
-constexpr double kOthers = 3.0;            ///< blocks that the noise of all tracks counts for
+constexpr double kOthers = 3.0;            ///< weight of the noise of all tracks, in blocks
 
 }  // namespace
 
@@ -21,7 +21,7 @@ TrackErrors::TrackErrors(const FactorGraph& graph, int landmark, double usual, c
   std::optional<Vector2> before;
   for_each_observation(graph, landmark, span, [&](const GpInterval& interval, const Observation& z) {
     if (!span.has(z.t)) return;
-    if (before == z.pixel) return;  // a camera that stands still: told again, the same error says nothing new
+    if (before == z.pixel) return;  // a stationary camera: a repeated observation has the same error again
     before = z.pixel;
     if (blocks_.empty() || z.t > blocks_.back().since + kErrorBlock) blocks_.push_back({.since = z.t});
     ++blocks_.back().count;
@@ -49,7 +49,7 @@ bool TrackErrors::is_outlier(double threshold) const {
   return 2 * far > std::ssize(blocks_);
 }
 
-std::optional<double> TrackErrors::slides_from(double threshold) const {
+std::optional<double> TrackErrors::drifts_from(double threshold) const {
   std::size_t good = blocks_.size();
   while (good > 0 && blocks_[good - 1].square > threshold * threshold) --good;
   if (good == 0 || good == blocks_.size()) return std::nullopt;

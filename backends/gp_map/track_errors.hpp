@@ -8,27 +8,27 @@
 
 namespace evbench::gp_map {
 
-/// What the residuals of one landmark's track tell, as means over short times, in which white noise vanishes and what
-/// a tracker's template does remains: how the track's noise compares with that of the others, whether the track has
-/// anything to do with its landmark, and from when on it has slid off it.
+/// Errors of one landmark's track, as means of its residuals over short times, in which white noise averages out and
+/// drift of the tracker's template remains. They show how the track's noise compares with the others', whether the
+/// track belongs to its landmark, and from when on it has drifted.
 class TrackErrors {
  public:
-  /// At the graph's estimate, of what was observed in this span. `usual`: NoiseLearner::scale_of_means() of all tracks.
+  /// Errors at the graph's estimate of the observations in this span. `usual`: NoiseLearner::scale_of_means() of all
+  /// tracks.
   TrackErrors(const FactorGraph& graph, int landmark, double usual, const TimeSpan& span);
 
-  /// Of its means, the squares [sigmas of all tracks' means].
+  /// Squares of its means [sigmas of all tracks' means].
   std::vector<double> squares() const;
 
-  /// Its sigmas over the stated ones, as that of all tracks is learnt apart: at least 1, for a track that is noisier
-  /// than most. A robust estimate, which a short track takes from the others.
+  /// Factor on the sigmas of this track; the noise of all tracks is estimated separately. At least 1: larger for a
+  /// track that is noisier than most. A robust estimate; for a short track it is close to the others'.
   double sigma_scale() const;
 
-  /// Are most of its means farther off than `threshold` sigmas of such means?
+  /// Are most of its means larger than `threshold` sigmas of such means?
   bool is_outlier(double threshold) const;
 
-  /// The time from which all that follows is farther off than that [s]; none where the end is as good as the rest, nor
-  /// where none was good before.
-  std::optional<double> slides_from(double threshold) const;
+  /// The time from which on all means are larger than that [s]; none if the last one is not, or if all are.
+  std::optional<double> drifts_from(double threshold) const;
 
  private:
   struct Block {

@@ -11,8 +11,8 @@
 namespace evbench::process {
 namespace {
 
-const Registration<BackEnd, ProcessBackEnd> registration("process",
-                                                         "a command in any language (core/process/protocol.md)");
+const Registration<BackEnd, ProcessBackEnd> registration(
+    "process", "a command in any language (docs/reference/process_protocol.md)");
 
 Json greeting(const ProcessOptions& options, const BackEndContext& context) {
   const PinholeCamera& camera = context.camera;
@@ -45,9 +45,9 @@ void ProcessBackEnd::advance(const TrackBatch& batch) {
   left_out_ += write_batch(line, batch);
   line.push_back('}');
   dialogue_.ask(line, fmt::format("the batch until {} s", batch.until), [&](const Json& answer) {
-    check_keys(answer, {"state", "reason", "online", "newest", "covariance", "outliers", "expected"});
+    check_keys(answer, {"state", "reason", "causal_poses", "online", "newest", "covariance", "outliers", "expected"});
     take_state(answer, batch.until);
-    take_online(answer, batch.until);
+    take_published(answer, batch.until);
     take_newest(answer, batch.until);
     feedback_.t = batch.until;
   });
@@ -61,34 +61,37 @@ void ProcessBackEnd::advance(const TrackBatch& batch) {
 void ProcessBackEnd::take_state(const Json& answer, double until) {
   using enum TrackingState;
   const TrackingState before = feedback_.state, now = tracking_state(require(answer, "state"));
-  const Json* const told = find(answer, "reason");
-  const std::string reason = told != nullptr ? text(*told, {"reason"}) : "the process says so";
+  const Json* const given = find(answer, "reason");
+  const std::string reason = given != nullptr ? text(*given, {"reason"}) : "reported by the process";
   const double from = updates_.empty() ? until : updates_.back().t;
   if (now == no_map && before != no_map) {
-    if (told_ || before == lost) {
-      throw MessageError("state: expected \"lost\", as poses were told or it was said before, found \"no_map\"");
+    if (has_published_ || before == lost) {
+      throw MessageError(
+          "state: expected \"lost\", because poses were published or it was reported before, found \"no_map\"");
     }
-    monitor_ = TrackingMonitor(context_.patience);  // what it said was of a map that was wrong
+    monitor_ = TrackingMonitor(context_.patience);  // its status was that of a wrong map
   }
   if (now == lost) {
     const bool was_degraded = before == degraded && !monitor_.status().degraded.empty();
     monitor_.lose(was_degraded ? monitor_.status().degraded.back().from : from, reason);
   } else if (now != no_map) {
-    // That it was alone for longer than the patience is the process' to say: it tells lost from degraded.
+    // Whether the motion model was alone for longer than the patience is up to the process: it distinguishes lost from
+    // degraded.
     const auto support = now == degraded ? TrackingMonitor::Support::weak : TrackingMonitor::Support::full;
     monitor_.observe(from, until, support, reason);
   }
   feedback_.state = now;
 }
 
-void ProcessBackEnd::take_online(const Json& answer, double until) {
-  const Json* const found = find(answer, "online");
+void ProcessBackEnd::take_published(const Json& answer, double until) {
+  const char* const key = find(answer, "causal_poses") != nullptr ? "causal_poses" : "online";  // before version 1.0
+  const Json* const found = find(answer, key);
   if (found == nullptr) return;
-  for (std::size_t i = 0; i < list(*found, {"online"}).size(); ++i) {
-    const auto [pose, velocity] = moving_pose((*found)[i], {"online", i});
-    check_not_later(pose.t, until, {"online", i});
-    context_.online({pose, until, velocity});
-    told_ = true;
+  for (std::size_t i = 0; i < list(*found, {key}).size(); ++i) {
+    const auto [pose, velocity] = moving_pose((*found)[i], {key, i});
+    check_not_later(pose.t, until, {key, i});
+    context_.publish({pose, until, velocity});
+    has_published_ = true;
   }
 }
 
@@ -133,7 +136,7 @@ std::optional<Matrix12> ProcessBackEnd::covariance(double t) {
 
 void ProcessBackEnd::finish() {
   dialogue_.finish([this](const Json& answer) { take_final(answer); });
-  if (left_out_ > 0) context_.log(fmt::format("{} observations that are not finite (not told)", left_out_));
+  if (left_out_ > 0) context_.log(fmt::format("{} observations that are not finite (not sent)", left_out_));
   if (const std::string errors = dialogue_.errors(); !errors.empty()) {
     context_.log("standard error of the back-end process:" + errors);
   }
@@ -145,23 +148,24 @@ void ProcessBackEnd::take_final(const Json& answer) {
   if (const Json* const found = find(answer, "map")) map_ = landmarks(*found);
   const double end = updates_.empty() ? 0.0 : updates_.back().t;
   if (trajectory_.empty()) monitor_.fail(end, "the process has given no trajectory");
-  const Json* const told = find(answer, "status");
-  if (told != nullptr && !trajectory_.empty()) take_status(*told);
+  const Json* const given = find(answer, "status");
+  if (given != nullptr && !trajectory_.empty()) take_status(*given);
 }
 
-/// The process knows better when it was degraded or lost than what its states say; not whether.
-void ProcessBackEnd::take_status(const Json& told) {
-  if (!told.is_object()) throw MessageError("status: expected an object");
-  check_keys(told, {"state", "reason", "time", "degraded"});
+/// The process may know more exactly when it was degraded or lost than its states show, but it may not deny that it
+/// was.
+void ProcessBackEnd::take_status(const Json& given) {
+  if (!given.is_object()) throw MessageError("status: expected an object");
+  check_keys(given, {"state", "reason", "time", "degraded"});
   Status result;
-  result.state = run_state(require(told, "state"));
+  result.state = run_state(require(given, "state"));
   if (result.state < RunState::lost && monitor_.status().state == RunState::lost) {
-    throw MessageError("status.state: expected \"lost\" or \"failed\" of a process that has said that it is lost");
+    throw MessageError("status.state: expected \"lost\" or \"failed\" of a process that has reported that it is lost");
   }
-  if (const Json* const found = find(told, "degraded")) result.degraded = degraded_spans(*found);
+  if (const Json* const found = find(given, "degraded")) result.degraded = degraded_spans(*found);
   if (result.state != RunState::ok) {
-    result.reason = text(require(told, "reason"), {"status.reason"});
-    result.time = number(require(told, "time"), {"status.time"});
+    result.reason = text(require(given, "reason"), {"status.reason"});
+    result.time = number(require(given, "time"), {"status.time"});
   }
   final_status_ = std::move(result);
 }

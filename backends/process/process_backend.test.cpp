@@ -14,7 +14,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-/// What each of the processes below begins with.
+/// The beginning of each of the processes below.
 const char* const kBegin = R"(
 import json, sys
 def hear(): return json.loads(sys.stdin.readline())
@@ -23,7 +23,7 @@ def pose(t, x): return [t, x, 0, 0, 0, 0, 0, 1]
 hello = hear()
 )";
 
-/// Moves along x by a metre a second; tells what it was told on its standard error.
+/// Moves along x by a metre a second; writes what it receives to its standard error.
 const char* const kStraight = R"(
 say({"evbench": 1, "name": "straight on"})
 print(json.dumps(hello), file=sys.stderr)
@@ -31,7 +31,8 @@ last = 0.0
 while "finish" not in (m := hear()):
   print(json.dumps(m), file=sys.stderr)
   last = m["until"]
-  say({"state": "tracking", "online": [pose(last, last)], "newest": pose(last, last), "outliers": [len(m["observations"])]})
+  say({"state": "tracking", "causal_poses": [pose(last, last)], "newest": pose(last, last),
+       "outliers": [len(m["observations"])]})
 say({"trajectory": [pose(0, 0), pose(last, last)], "map": [[7, 1, 2, 3]]})
 )";
 
@@ -47,12 +48,12 @@ class Session {
     context.seed = 18446744073709551615U;
     context.folder = folder_.path();
     context.place = "config.json: backend";
-    context.online = [this](const OnlinePose& pose) { online.push_back(pose); };
+    context.publish = [this](const CausalPose& pose) { causal.push_back(pose); };
     context.log = [this](const std::string& line) { log += line + "\n"; };
     backend = std::make_unique<ProcessBackEnd>(options, context);
   }
 
-  /// Three batches of 0.1 s, and the end.
+  /// Sends three batches of 0.1 s, and the end.
   Session& go() {
     for (int i = 1; i <= 3; ++i) {
       const double t = 0.1 * i;
@@ -62,7 +63,7 @@ class Session {
     return *this;
   }
 
-  std::vector<OnlinePose> online;
+  std::vector<CausalPose> causal;
   std::string log;
   std::unique_ptr<ProcessBackEnd> backend;
 
@@ -70,7 +71,7 @@ class Session {
   testing::TemporaryFolder folder_;
 };
 
-/// Of a process that answers `answer`, Python, to its batches, and `final` to the end.
+/// The error of a process that answers `answer`, Python, to its batches, and `final` to the end.
 std::string failure(const std::string& answer, const std::string& final = R"({"trajectory": [pose(0, 0)]})") {
   try {
     Session("say({'evbench': 1})\nwhile 'finish' not in (m := hear()):\n  t = m['until']\n  say(" + answer + ")\nsay(" +
@@ -82,7 +83,7 @@ std::string failure(const std::string& answer, const std::string& final = R"({"t
   return "";
 }
 
-/// Of a process that is this script.
+/// The error of a process with this script.
 std::string failure_of(const std::string& script, const std::string& more = "") {
   try {
     Session(script, more).go();
@@ -94,7 +95,7 @@ std::string failure_of(const std::string& script, const std::string& more = "") 
 
 }  // namespace
 
-TEST_CASE("A back-end process is told camera, observations and ended tracks, and answers with poses") {
+TEST_CASE("A back-end process receives camera, observations and ended tracks, and answers with poses") {
   Session session(kStraight);
   session.go();
   CHECK_THAT(session.log, ContainsSubstring("back-end process: straight on"));
@@ -103,9 +104,9 @@ TEST_CASE("A back-end process is told camera, observations and ended tracks, and
                               R"({"fx": 500.0, "fy": 510.0, "cx": 320.0, "cy": 240.0}, "options": {"a": [1, null]}})"));
   CHECK_THAT(session.log,
              ContainsSubstring(R"({"until": 0.1, "observations": [[1, 0.05, 1.5, 2.5, 0.7]], "ended": [[1, 0.09)"));
-  REQUIRE(session.online.size() == 3);
-  CHECK(session.online[2].t == 0.1 * 3);  // to the last bit
-  CHECK(session.online[2].T.p == Vector3(0.1 * 3, 0, 0));
+  REQUIRE(session.causal.size() == 3);
+  CHECK(session.causal[2].t == 0.1 * 3);  // to the last bit
+  CHECK(session.causal[2].T.p == Vector3(0.1 * 3, 0, 0));
   CHECK(session.backend->trajectory().size() == 2);
   CHECK(session.backend->trajectory().pose(0.15)->p.x() == Approx(0.15));
   REQUIRE(session.backend->map().size() == 1);
@@ -114,24 +115,23 @@ TEST_CASE("A back-end process is told camera, observations and ended tracks, and
   CHECK(session.backend->updates().size() == 3);
 }
 
-TEST_CASE(
-    "A back-end process may tell a velocity, and an older time again, what it tells is known at the batch's end") {
+TEST_CASE("A back-end process may publish a velocity, and an older time again, known at the batch's end") {
   Session session(R"(
 say({"evbench": 1})
 while "finish" not in (m := hear()):
   t = m["until"]
-  say({"state": "tracking", "online": [pose(t - 0.05, 1) + [0, 0, 0.5, 2, 0, 0], pose(0, t)]})
+  say({"state": "tracking", "causal_poses": [pose(t - 0.05, 1) + [0, 0, 0.5, 2, 0, 0], pose(0, t)]})
 say({"trajectory": [pose(0, 0)]})
 )");
   session.go();
-  REQUIRE(session.online.size() == 6);
-  CHECK(session.online[4].known_at == 0.1 * 3);
-  CHECK(session.online[4].velocity.value()[3] == 2.0);
-  CHECK(session.online[5].t == 0.0);
-  CHECK_FALSE(session.online[5].velocity);
+  REQUIRE(session.causal.size() == 6);
+  CHECK(session.causal[4].known_at == 0.1 * 3);
+  CHECK(session.causal[4].velocity.value()[3] == 2.0);
+  CHECK(session.causal[5].t == 0.0);
+  CHECK_FALSE(session.causal[5].velocity);
 }
 
-TEST_CASE("Feedback of a back-end process has outliers since the last one, and a velocity also where none was told") {
+TEST_CASE("Feedback of a back-end process has outliers since the last one, and a velocity even if none was sent") {
   Session session(kStraight);
   session.backend->advance({{}, {}, 0.5});
   session.backend->advance({{{3, 0.6, {1, 1}, 1.0}}, {}, 1.0});
@@ -146,7 +146,7 @@ TEST_CASE("Feedback of a back-end process has outliers since the last one, and a
   CHECK(session.backend->feedback({true, false, false}).outliers.empty());
 }
 
-TEST_CASE("The covariance that a back-end process tells is that of its newest pose") {
+TEST_CASE("The covariance that a back-end process sends is that of its newest pose") {
   Session session(R"(
 say({"evbench": 1})
 while "finish" not in (m := hear()):
@@ -170,7 +170,7 @@ TEST_CASE("The status of a run follows from the states that a process answers") 
   const auto status = [&](const std::string& states, const std::string& final) {
     return Session(script(states, final)).go().backend->status();
   };
-  CHECK(status("['no_map', 'tracking', 'standing_still']", one_pose).state == RunState::ok);
+  CHECK(status("['no_map', 'tracking', 'stationary']", one_pose).state == RunState::ok);
   const Status degraded = status("['tracking', 'degraded', 'tracking']", one_pose);
   CHECK(degraded.state == RunState::degraded);
   REQUIRE(degraded.degraded.size() == 1);
@@ -181,22 +181,23 @@ TEST_CASE("The status of a run follows from the states that a process answers") 
   CHECK(lost.state == RunState::lost);
   CHECK(lost.time == 0.1);
   CHECK(status("['tracking', 'tracking', 'lost']", one_pose).time == 0.2);
-  // A map that was wrong, of which no pose was told:
+  // A wrong map, of which no pose was published:
   CHECK(status("['degraded', 'no_map', 'tracking']", one_pose).state == RunState::ok);
   const Status none = status("['no_map'] * 3", "{'trajectory': []}");
   CHECK(none.state == RunState::failed);
   CHECK_THAT(none.reason, ContainsSubstring("no trajectory"));
-  const Status told = status("['tracking'] * 3",
-                             "{'trajectory': [pose(0, 0)], 'status': {'state': 'lost', 'reason': 'dark', 'time': 0.25, "
-                             "'degraded': [[0.1, 0.2, 'dusk']]}}");
-  CHECK(told.state == RunState::lost);
-  CHECK(told.time == 0.25);
-  CHECK(told.degraded.at(0).reason == "dusk");
-  CHECK_THROWS_WITH(status("['tracking', 'lost', 'lost']", "{'trajectory': [pose(0, 0)], 'status': {'state': 'ok'}}"),
-                    ContainsSubstring("expected \"lost\" or \"failed\" of a process that has said that it is lost"));
+  const Status own = status("['tracking'] * 3",
+                            "{'trajectory': [pose(0, 0)], 'status': {'state': 'lost', 'reason': 'dark', 'time': 0.25, "
+                            "'degraded': [[0.1, 0.2, 'dusk']]}}");
+  CHECK(own.state == RunState::lost);
+  CHECK(own.time == 0.25);
+  CHECK(own.degraded.at(0).reason == "dusk");
+  CHECK_THROWS_WITH(
+      status("['tracking', 'lost', 'lost']", "{'trajectory': [pose(0, 0)], 'status': {'state': 'ok'}}"),
+      ContainsSubstring("expected \"lost\" or \"failed\" of a process that has reported that it is lost"));
 }
 
-TEST_CASE("A back-end process that is lost says so before the end") {
+TEST_CASE("A back-end process that is lost reports it before the end") {
   Session session(
       "say({'evbench': 1})\nhear()\nsay({'state': 'lost', 'reason': 'fog'})\nhear()\nsay({'trajectory': []})");
   session.backend->advance({{}, {}, 0.1});
@@ -204,36 +205,37 @@ TEST_CASE("A back-end process that is lost says so before the end") {
   CHECK(session.backend->status().reason == "fog");
 }
 
-TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence") {
-  CHECK(failure("{'state': 'tracking', 'online': [pose(t, 0)]}").empty());
-  CHECK_THAT(failure("{'state': 'tracking', 'online': [pose(float('nan'), 0)]}"),
+TEST_CASE("Each wrong answer of a back-end process gives an error that explains it") {
+  CHECK(failure("{'state': 'tracking', 'causal_poses': [pose(t, 0)]}").empty());
+  CHECK_THAT(failure("{'state': 'tracking', 'causal_poses': [pose(float('nan'), 0)]}"),
              ContainsSubstring(
                  "config.json: backend: the process \"/usr/bin/python3 backend.py\" answered wrongly: expected one "
-                 "JSON object a line, found {\"state\": \"tracking\", \"online\": [[NaN") &&
-                 ContainsSubstring("JSON has no NaN") && ContainsSubstring("it had been told the batch until 0.1 s") &&
+                 "JSON object a line, found {\"state\": \"tracking\", \"causal_poses\": [[NaN") &&
+                 ContainsSubstring("JSON has no NaN") &&
+                 ContainsSubstring("last message to it: the batch until 0.1 s") &&
                  ContainsSubstring("it wrote nothing to its standard error"));
   CHECK_THAT(failure("{}"), ContainsSubstring("\"state\" is missing"));
   CHECK_THAT(failure("7"), ContainsSubstring("expected a JSON object, found 7"));
   CHECK_THAT(failure("{'state': 'fine'}"), ContainsSubstring("unknown state \"fine\""));
   CHECK_THAT(failure("{'state': 'tracking', 'outlier': []}"),
              ContainsSubstring("unknown key \"outlier\"; did you mean"));
-  CHECK_THAT(failure("{'state': 'tracking', 'online': [pose(t + 0.1, 0)]}"),
+  CHECK_THAT(failure("{'state': 'tracking', 'causal_poses': [pose(t + 0.1, 0)]}"),
              ContainsSubstring("later than what has been seen"));
-  CHECK_THAT(failure("{'state': 'tracking', 'online': [[t, 0, 0, 0, 0, 0, 0, 2]]}"),
+  CHECK_THAT(failure("{'state': 'tracking', 'causal_poses': [[t, 0, 0, 0, 0, 0, 0, 2]]}"),
              ContainsSubstring("quaternion's norm is 2"));
-  CHECK_THAT(failure("{'state': 'tracking', 'online': [[t, 0, 0, 0, 0, 0, 1]]}"),
+  CHECK_THAT(failure("{'state': 'tracking', 'causal_poses': [[t, 0, 0, 0, 0, 0, 1]]}"),
              ContainsSubstring("expected 8 numbers"));
   CHECK_THAT(failure("{'state': 'tracking', 'covariance': [0] * 144}"),
              ContainsSubstring("expected \"newest\" with it"));
-  CHECK_THAT(failure("{'state': 'tracking' if t < 0.15 else 'no_map', 'online': [pose(0.1, 0)]}"),
-             ContainsSubstring("expected \"lost\", as poses were told"));
+  CHECK_THAT(failure("{'state': 'tracking' if t < 0.15 else 'no_map', 'causal_poses': [pose(0.1, 0)]}"),
+             ContainsSubstring("expected \"lost\", because poses were published"));
   CHECK_THAT(failure("{'state': 'lost' if t < 0.15 else 'no_map', 'reason': 'fog'}"),
              ContainsSubstring("expected \"lost\""));
   CHECK_THAT(failure("{'error': 'I can not see'}"),
-             ContainsSubstring("says: I can not see; it had been told the batch"));
+             ContainsSubstring("reports an error: I can not see; last message to it: the batch"));
   const std::string good = "{'state': 'tracking'}";
-  CHECK_THAT(failure(good, "{}"),
-             ContainsSubstring("\"trajectory\" is missing") && ContainsSubstring("had been told that this is the end"));
+  CHECK_THAT(failure(good, "{}"), ContainsSubstring("\"trajectory\" is missing") &&
+                                      ContainsSubstring("last message to it: the finish message"));
   CHECK_THAT(failure(good, "{'trajectory': [pose(1, 0), pose(1, 0)]}"), ContainsSubstring("strictly increasing"));
   CHECK_THAT(failure(good, "{'trajectory': [], 'map': [[1, 2]]}"),
              ContainsSubstring("map[0]: expected 4 numbers (track x y z)"));
@@ -243,8 +245,8 @@ TEST_CASE("Each way in which a back-end process can answer wrongly is a sentence
 
 TEST_CASE("A back-end process of another version, or of none, is refused") {
   CHECK_THAT(failure_of("say({'evbench': 2})"), ContainsSubstring("it speaks version 2 of the protocol; expected 1"));
-  CHECK_THAT(failure_of("say({'name': 'x'})"),
-             ContainsSubstring("\"evbench\" is missing") && ContainsSubstring("had been told what it"));
+  CHECK_THAT(failure_of("say({'name': 'x'})"), ContainsSubstring("\"evbench\" is missing") &&
+                                                   ContainsSubstring("last message to it: the opening message"));
   CHECK_THAT(failure_of("print('Welcome!', flush=True)"), ContainsSubstring("found Welcome!"));
 }
 
@@ -252,7 +254,7 @@ TEST_CASE("A back-end process that crashes, ends or keeps silent fails with the 
           "[slow]") {
   CHECK_THAT(failure_of("say({'evbench': 1})\nhear()\nraise ValueError('an odd track')"),
              ContainsSubstring(
-                 "ended with exit code 1; it had been told the batch until 0.1 s; the last lines of its standard "
+                 "ended with exit code 1; last message to it: the batch until 0.1 s; the last lines of its standard "
                  "error:\n  Traceback") &&
                  ContainsSubstring("\n  ValueError: an odd track"));
   CHECK_THAT(failure_of("say({'evbench': 1})\nhear()\nimport os; os.kill(os.getpid(), 11)"),
@@ -283,7 +285,7 @@ TEST_CASE("A back-end process that has failed stays failed") {
   CHECK(first == second);
 }
 
-TEST_CASE("A command that makes no sense is said where it stands") {
+TEST_CASE("A command that makes no sense is reported with its place") {
   BackEndContext context;
   context.place = "config.json: backend";
   const auto make = [&](const std::string& options) {
@@ -302,7 +304,7 @@ TEST_CASE("A command that makes no sense is said where it stands") {
                     ContainsSubstring("in the folder /no/folder"));
 }
 
-TEST_CASE("The files that a command names are part of a run's identity, where they lie is not") {
+TEST_CASE("The files that a command names are part of a run's identity, but not their location") {
   const testing::TemporaryFolder folder;
   folder.write("backend.py", "");
   folder.write("weights", "");
@@ -320,7 +322,7 @@ TEST_CASE("The files that a command names are part of a run's identity, where th
                     ContainsSubstring("/none: no such file; the option \"files\" names it"));
 }
 
-TEST_CASE("The time that an exchange takes besides the process' own") {
+TEST_CASE("The time that an exchange takes in addition to the process' own") {
   Session session(R"(
 say({"evbench": 1})
 for line in sys.stdin:

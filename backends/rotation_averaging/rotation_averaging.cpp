@@ -13,18 +13,18 @@ namespace evbench {
 namespace {
 
 const Registration<BackEnd, RotationAveraging> registration(
-    "rotation_averaging", "rotation-only odometry: averages the relative rotations that tracks say");
+    "rotation_averaging", "rotation-only odometry: averages the relative rotations of tracks");
 
 }  // namespace
 
 void RotationAveraging::Options::declare(OptionSet& set) {
-  set.add("interval", interval, "time between two frames [s]").range(1e-3, 1.0);
-  set.add("reach", reach, "pairs are 1, 2, 4, ... frames apart, at most so many").range(1, 10'000);
-  set.add("least_tracks", least_tracks, "tracks that a pair of frames has in common, at least").range(3);
-  set.add("robust_scale", robust_scale, "distance from where a rotation takes it at which a track counts half [px]")
+  set.add("interval", interval, "time between two rotations [s]").range(1e-3, 1.0);
+  set.add("reach", reach, "pairs of rotations are 1, 2, 4, ... intervals apart, at most this many").range(1, 10'000);
+  set.add("least_tracks", least_tracks, "tracks that both times of a pair have in common, at least").range(3);
+  set.add("robust_scale", robust_scale, "distance from its rotated direction at which a track has half the weight [px]")
       .above(0.0);
   set.add("longest_gap", longest_gap,
-          "between two observations further apart a track is not interpolated; frames are this late [s]")
+          "a track is not interpolated between observations farther apart; rotations are late by this time [s]")
       .above(0.0);
 }
 
@@ -40,9 +40,9 @@ void RotationAveraging::advance(const TrackBatch& batch) {
   until_ = batch.until;
   while (start_ && !monitor_.lost() && time_of(rotations_.size()) + options_.longest_gap <= until_) {
     const std::size_t before = rotations_.size();
-    close_frame();
+    close_sample();
     if (rotations_.size() == before) continue;
-    context_.online({{time_of(before), {rotations_.back(), Vector3::Zero()}}, batch.until, {}});
+    context_.publish({{time_of(before), {rotations_.back(), Vector3::Zero()}}, batch.until, {}});
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   updates_.push_back({.t = until_,
@@ -54,7 +54,7 @@ void RotationAveraging::advance(const TrackBatch& batch) {
                       .cost = std::nullopt});
 }
 
-/// The directions at the frames between the track's last observation and this one.
+/// Interpolates the directions at the samples between the track's last observation and this one.
 void RotationAveraging::take(const TrackObservation& z) {
   if (!start_) start_ = z.t;
   const auto [found, fresh] = last_.try_emplace(z.track, z);
@@ -65,22 +65,22 @@ void RotationAveraging::take(const TrackObservation& z) {
     return static_cast<std::size_t>(std::max(0.0, std::ceil((t - *start_) / options_.interval)));
   };
   for (std::size_t k = std::max(next(before.t), rotations_.size()); time_of(k) < z.t; ++k) {
-    while (first_ + frames_.size() <= k) frames_.push_back({time_of(first_ + frames_.size())});
+    while (first_ + samples_.size() <= k) samples_.push_back({time_of(first_ + samples_.size())});
     const double part = (time_of(k) - before.t) / (z.t - before.t);
     const Vector2 pixel = before.pixel + part * (z.pixel - before.pixel);
     if (!pixel.allFinite()) continue;
-    frames_[k - first_].directions[z.track] = context_.camera.ray(pixel).normalized();
+    samples_[k - first_].directions[z.track] = context_.camera.ray(pixel).normalized();
   }
 }
 
-/// The next frame is complete: its pairs with those before, and its rotation from these. The first one is the first
-/// with enough tracks.
-void RotationAveraging::close_frame() {
+/// Closes the next sample: adds its pairs with earlier ones, and its rotation from these. The first sample is the first
+/// one with enough tracks.
+void RotationAveraging::close_sample() {
   const std::size_t k = rotations_.size();
-  while (first_ + frames_.size() <= k) frames_.push_back({time_of(first_ + frames_.size())});
-  const Frame& frame = frames_[k - first_];
-  if (k == 0 && frame.directions.size() < static_cast<std::size_t>(options_.least_tracks)) {
-    frames_.pop_front();
+  while (first_ + samples_.size() <= k) samples_.push_back({time_of(first_ + samples_.size())});
+  const Sample& sample = samples_[k - first_];
+  if (k == 0 && sample.directions.size() < static_cast<std::size_t>(options_.least_tracks)) {
+    samples_.pop_front();
     *start_ += options_.interval;
     return;
   }
@@ -91,8 +91,8 @@ void RotationAveraging::close_frame() {
   const Eigen::Quaterniond last = k == 0 ? Eigen::Quaterniond::Identity() : rotations_.back();
   for (std::size_t span = 1; span <= static_cast<std::size_t>(options_.reach) && span <= k - first_; span *= 2) {
     pairs.clear();
-    const Frame& other = frames_[k - span - first_];
-    for (const auto& [track, direction] : frame.directions) {
+    const Sample& other = samples_[k - span - first_];
+    for (const auto& [track, direction] : sample.directions) {
       if (const auto there = other.directions.find(track); there != other.directions.end()) {
         pairs.emplace_back(there->second, direction);
       }
@@ -111,11 +111,11 @@ void RotationAveraging::close_frame() {
   } else {
     monitor_.observe(time_of(k - 1), time_of(k),
                      weights > 0.0 ? TrackingMonitor::Support::full : TrackingMonitor::Support::none,
-                     fmt::format("fewer than {} tracks in common with a frame before", options_.least_tracks));
+                     fmt::format("fewer than {} tracks in common with an earlier time", options_.least_tracks));
     rotations_.push_back(weights > 0.0 ? (last * so3::exp(mean / weights)).normalized() : last);
   }
   while (first_ + static_cast<std::size_t>(options_.reach) < k) {
-    frames_.pop_front();
+    samples_.pop_front();
     ++first_;
   }
 }
@@ -133,13 +133,13 @@ Feedback RotationAveraging::feedback(const FeedbackNeeds&) {
 }
 
 void RotationAveraging::finish() {
-  const auto has_tracks = [&](std::size_t frame) {
-    return frame < first_ + frames_.size() &&
-           frames_[frame - first_].directions.size() >= static_cast<std::size_t>(options_.least_tracks);
+  const auto has_tracks = [&](std::size_t sample) {
+    return sample < first_ + samples_.size() &&
+           samples_[sample - first_].directions.size() >= static_cast<std::size_t>(options_.least_tracks);
   };
-  while (!monitor_.lost() && has_tracks(rotations_.size())) close_frame();
+  while (!monitor_.lost() && has_tracks(rotations_.size())) close_sample();
   if (rotations_.size() < 2) {
-    if (!monitor_.lost()) monitor_.fail(until_, "no two frames have enough tracks in common");
+    if (!monitor_.lost()) monitor_.fail(until_, "no two times have enough tracks in common");
     return;
   }
   average_rotations(edges_, options_.robust_scale / context_.camera.fx, rotations_);

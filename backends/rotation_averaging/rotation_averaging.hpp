@@ -11,11 +11,11 @@
 
 namespace evbench {
 
-/// Rotation-only odometry: what a front-end's tracks say of a camera that only rotates. At even times, the frames, each
-/// track's direction is interpolated between its observations; of pairs of frames the relative rotation aligns the
-/// directions of the tracks that both see; the trajectory is the average of all pairs (Liu, Parra and Chin, CVPR 2021,
-/// do so with the rotations that they register). Positions are zero, and there is no map: a translation is not seen,
-/// and turns the rotation.
+/// Rotation-only odometry from any front-end's tracks, for a camera that only rotates. At evenly spaced times, the
+/// samples, each track's direction is interpolated between its observations. For pairs of samples the relative rotation
+/// aligns the directions of the tracks that both see. The trajectory is the average over all pairs (Liu, Parra and
+/// Chin, CVPR 2021, do so with the rotations that they register). Positions are zero, and there is no map: a
+/// translation is not modelled, and would be taken for rotation.
 class RotationAveraging : public BackEnd {
  public:
   struct Options {
@@ -39,24 +39,24 @@ class RotationAveraging : public BackEnd {
   std::span<const UpdateRecord> updates() const override { return updates_; }
 
  private:
-  struct Frame {
+  struct Sample {
     double t;  ///< [s]
     std::map<TrackId, Vector3> directions = {};
   };
   void take(const TrackObservation& z);
-  void close_frame();
-  double time_of(std::size_t frame) const { return *start_ + options_.interval * static_cast<double>(frame); }
+  void close_sample();
+  double time_of(std::size_t sample) const { return *start_ + options_.interval * static_cast<double>(sample); }
 
   Options options_;
   BackEndContext context_;
   TrackingMonitor monitor_;
-  std::optional<double> start_;                ///< [s] of the first frame
-  std::map<TrackId, TrackObservation> last_;   ///< of each track
-  std::deque<Frame> frames_;                   ///< as far back as pairs reach, and those that are not closed
-  std::size_t first_ = 0;                      ///< frame that frames_ begins with
-  std::vector<Eigen::Quaterniond> rotations_;  ///< of closed frames: R_world_camera
+  std::optional<double> start_;                ///< [s] of the first sample
+  std::map<TrackId, TrackObservation> last_;   ///< observation of each track
+  std::deque<Sample> samples_;                 ///< as far back as pairs reach, and those that are not closed
+  std::size_t first_ = 0;                      ///< index of the first one in samples_
+  std::vector<Eigen::Quaterniond> rotations_;  ///< of closed samples: R_world_camera
   std::vector<RotationEdge> edges_;
-  double until_ = 0.0;  ///< [s] of the last batch
+  double until_ = 0.0;  ///< [s] end of the last batch
   std::vector<UpdateRecord> updates_;
 };
 

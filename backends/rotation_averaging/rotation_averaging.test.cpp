@@ -16,7 +16,7 @@ Eigen::Quaterniond turning(double t) { return so3::exp({0.4 * std::sin(1.3 * t),
 
 const PinholeCamera kCamera{200.0, 200.0, 119.5, 89.5};
 
-/// Far points as a camera that turns sees them, each at times of its own, `wrong` of every ten somewhere else.
+/// Far points seen by a rotating camera, each at its own times; `wrong` of every ten drift.
 std::vector<TrackObservation> observations(double duration, double noise, int wrong) {
   Random random(1);
   std::vector<TrackObservation> result;
@@ -59,7 +59,7 @@ double final_error(const PoseTrajectory& trajectory) {
 
 }  // namespace
 
-TEST_CASE("Directions are aligned though some are wrong") {
+TEST_CASE("Directions are aligned although some are wrong") {
   Random random(3);
   const Eigen::Quaterniond R = so3::exp({0.3, -0.2, 0.5});
   std::vector<std::pair<Vector3, Vector3>> pairs;
@@ -73,14 +73,14 @@ TEST_CASE("Directions are aligned though some are wrong") {
   CHECK_FALSE(align_directions(std::span(pairs).first(1), 0.01));
 }
 
-TEST_CASE("Averaged rotations are nearer to the truth than chained ones, and an edge that is wrong does no harm") {
-  constexpr std::size_t kFrames = 200;
+TEST_CASE("Averaged rotations are more accurate than chained ones, and a wrong edge does no harm") {
+  constexpr std::size_t kRotations = 200;
   Random random(1);
-  std::vector<Eigen::Quaterniond> truth, chained(kFrames, Eigen::Quaterniond::Identity());
-  for (std::size_t i = 0; i < kFrames; ++i) truth.push_back(turning(0.02 * static_cast<double>(i)));
+  std::vector<Eigen::Quaterniond> truth, chained(kRotations, Eigen::Quaterniond::Identity());
+  for (std::size_t i = 0; i < kRotations; ++i) truth.push_back(turning(0.02 * static_cast<double>(i)));
   std::vector<RotationEdge> edges;
   for (const std::size_t span : {1, 4, 16, 64}) {
-    for (std::size_t i = 0; i + span < kFrames; ++i) {
+    for (std::size_t i = 0; i + span < kRotations; ++i) {
       const Eigen::Quaterniond R = truth[i].conjugate() * truth[i + span] * so3::exp(random_vector(random, 0.003));
       edges.push_back({i, i + span, i == 100 && span == 16 ? so3::exp({1.0, 0.0, 0.0}) : R, 1e5});
       if (span == 1) chained[i + 1] = chained[i] * R;
@@ -90,16 +90,16 @@ TEST_CASE("Averaged rotations are nearer to the truth than chained ones, and an 
   average_rotations(edges, 0.01, averaged);
   const auto error = [&](const std::vector<Eigen::Quaterniond>& rotations) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < kFrames; ++i) {
+    for (std::size_t i = 0; i < kRotations; ++i) {
       sum += (truth[0].conjugate() * truth[i]).angularDistance(rotations[0].conjugate() * rotations[i]);
     }
-    return sum / kFrames;
+    return sum / kRotations;
   };
   CHECK(error(averaged) < 0.5 * error(chained));
   CHECK(error(averaged) < 0.005);
 }
 
-TEST_CASE("A camera that turns is followed by what its tracks say, noise and wrong ones among them") {
+TEST_CASE("A rotating camera is followed with exact tracks, and with noise and outliers") {
   const RotationAveraging exact = run(observations(4.0, 0.0, 0), 4.0);
   CHECK(exact.status().state == RunState::ok);
   CHECK(final_error(exact.trajectory()) < 1e-3);
@@ -109,7 +109,7 @@ TEST_CASE("A camera that turns is followed by what its tracks say, noise and wro
   for (const StampedPose& pose : noisy.trajectory().poses()) CHECK(pose.T.p.isZero());
 }
 
-TEST_CASE("Without tracks there is no rotation, and when they end it is lost") {
+TEST_CASE("Without tracks there is no rotation, and when they end tracking is lost") {
   CHECK(run({}, 1.0).status().state == RunState::failed);
   std::vector<TrackObservation> early = observations(4.0, 0.0, 0);
   std::erase_if(early, [](const TrackObservation& z) { return z.t > 1.0; });

@@ -3,8 +3,8 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 
-#include "core/geometry/so3.hpp"
 #include "core/geometry/nearest_rotation.hpp"
+#include "core/geometry/so3.hpp"
 
 namespace evbench {
 
@@ -55,7 +55,8 @@ void average_rotations(std::span<const RotationEdge> edges, double scale, std::v
     const auto add_gradient = [&](std::size_t row, const Vector3& part) {
       if (row > 0) g.segment<3>(static_cast<Eigen::Index>(3 * (row - 1))) += part;
     };
-    for (std::size_t i = 1; i < rotations.size(); ++i) add(i, i, 1e-9 * Matrix3::Identity());  // one without an edge
+    for (std::size_t i = 1; i < rotations.size(); ++i)
+      add(i, i, 1e-9 * Matrix3::Identity());  // for those without an edge
     for (const RotationEdge& edge : edges) {
       const Eigen::Quaterniond relative = rotations[edge.left].conjugate() * rotations[edge.right];
       const Vector3 e = so3::log((edge.R.conjugate() * relative).normalized());

@@ -8,7 +8,7 @@
 namespace evbench::battery {
 namespace {
 
-/// A back-end as a config would make it, and runs of it.
+/// A back-end made as from a config, and its runs.
 class CandidateBackEnd {
  public:
   CandidateBackEnd(const Plugins& plugins, const std::string& name, const Json& options)
@@ -42,41 +42,41 @@ void check_poses(const PoseTrajectory& trajectory, const char* which, double end
   }
 }
 
-/// What holds of any run: finite, within the data's time, and a state that fits.
+/// Checks what must hold for any run: finite, within the data's time range, and a consistent state.
 void CandidateBackEnd::check_sound(const RunResult& result, double end) {
-  for (const Piece& piece : result.pieces) {
-    check_poses(piece.final_trajectory, "final", end);
-    check_poses(piece.online_trajectory, "online", end);
-    for (const Landmark& landmark : piece.map) {
+  for (const TrajectorySegment& segment : result.segments) {
+    check_poses(segment.final_trajectory, "final", end);
+    check_poses(segment.causal_trajectory, "causal", end);
+    for (const Landmark& landmark : segment.map) {
       require(landmark.position.allFinite(), "landmark {} is not finite", landmark.track);
     }
   }
   for (const UpdateRecord& update : result.updates) {
     require(std::isfinite(update.cost.value_or(0.0)), "the cost of the update at {} s is not finite", update.t);
-    require(update.t <= end + 0.1, "an update stands at {} s, after the end at {} s", update.t, end);
+    require(update.t <= end + 0.1, "there is an update at {} s, after the end at {} s", update.t, end);
   }
   const Status& status = result.status;
   if (status.state != RunState::ok) {
     require(!status.reason.empty(), "it is {} without a reason", to_string(status.state));
     require(std::isfinite(status.time), "the time at which it is {} is not finite", to_string(status.state));
   }
-  require((status.state == RunState::failed) == result.pieces.empty(), "it is {} and has {} trajectories",
-          to_string(status.state), result.pieces.size());
+  require((status.state == RunState::failed) == result.segments.empty(), "it is {} and has {} trajectories",
+          to_string(status.state), result.segments.size());
 }
 
-const Piece& longest(const RunResult& result) {
-  require(!result.pieces.empty(), "it makes no trajectory: {}", result.status.reason);
-  return result.pieces[result.longest];
+const TrajectorySegment& longest(const RunResult& result) {
+  require(!result.segments.empty(), "it makes no trajectory: {}", result.status.reason);
+  return result.segments[result.longest];
 }
 
 void follows_a_good_sequence(const CandidateBackEnd& candidate) {
   const RunResult result = candidate.run({});
-  const Piece& piece = longest(result);
+  const TrajectorySegment& segment = longest(result);
   require(result.status.state <= RunState::degraded, "it is {}: {}", to_string(result.status.state),
           result.status.reason);
-  require(piece.final_trajectory.end() > 2.5, "its trajectory ends at {} s of 3 s", piece.final_trajectory.end());
-  require(piece.map.size() > 10, "its map has {} landmarks, where 50 tracks are seen", piece.map.size());
-  require(!piece.online_trajectory.empty(), "it told no online pose");
+  require(segment.final_trajectory.end() > 2.5, "its trajectory ends at {} s of 3 s", segment.final_trajectory.end());
+  require(segment.map.size() > 10, "its map has {} landmarks, where 50 tracks are seen", segment.map.size());
+  require(!segment.causal_trajectory.empty(), "it published no causal pose");
 }
 
 void fails_with_too_little(const CandidateBackEnd& candidate) {
@@ -104,10 +104,10 @@ void survives_a_gap(const CandidateBackEnd& candidate) {
   const RunResult result = candidate.run(interrupted(3.0, 1.8, 2.1));
   longest(result);
   require(result.status.state != RunState::ok, "it is ok, though nothing was seen from 1.8 to 2.1 s");
-  require(result.status.state == RunState::lost || !result.status.degraded.empty(), "no span is told as degraded");
+  require(result.status.state == RunState::lost || !result.status.degraded.empty(), "no span is reported as degraded");
 }
 
-void keeps_what_it_had(const CandidateBackEnd& candidate) {
+void keeps_its_estimate(const CandidateBackEnd& candidate) {
   SequenceOptions sequence;
   sequence.range = 6.0;
   sequence.keep = [](TrackObservation& z) { return z.t < 2.0; };
@@ -120,15 +120,15 @@ void keeps_what_it_had(const CandidateBackEnd& candidate) {
   require(std::abs(result.data_s - 2.0) < 0.1, "{} s of data were counted instead of 2", result.data_s);
 }
 
-void starts_anew_after_a_loss(const CandidateBackEnd& candidate) {
+void reinitialises_after_a_loss(const CandidateBackEnd& candidate) {
   const RunResult result = candidate.run(interrupted(8.0, 2.5, 5.0));
   require(result.status.state == RunState::lost, "it is {}, though nothing was seen for 2.5 s",
           to_string(result.status.state));
-  require(result.pieces.size() == 2, "its trajectory has {} pieces; expected one before the loss and one after it",
-          result.pieces.size());
-  const double first = result.pieces[0].final_trajectory.end(), second = result.pieces[1].final_trajectory.start();
-  require(first < 3.6, "the first piece goes on to {} s, though nothing was seen from 2.5 s on", first);
-  require(second > 4.9 && second < 7.0, "the second piece begins at {} s, though tracks came back at 5 s", second);
+  require(result.segments.size() == 2, "its trajectory has {} segments; expected one before the loss and one after it",
+          result.segments.size());
+  const double first = result.segments[0].final_trajectory.end(), second = result.segments[1].final_trajectory.start();
+  require(first < 3.6, "the first segment goes on to {} s, though nothing was seen from 2.5 s on", first);
+  require(second > 4.9 && second < 7.0, "the second segment begins at {} s, though tracks came back at 5 s", second);
 }
 
 void makes_no_map_at_rest(const CandidateBackEnd& candidate) {
@@ -137,26 +137,27 @@ void makes_no_map_at_rest(const CandidateBackEnd& candidate) {
           to_string(result.status.state));
 }
 
-/// Between 4 and 14 s nothing moves and nothing is seen; no track ends then.
-void stands_still(const CandidateBackEnd& candidate) {
+/// Between 4 and 14 s the camera does not move and nothing is observed; no track ends.
+void survives_a_stationary_period(const CandidateBackEnd& candidate) {
   SequenceOptions sequence;
   sequence.duration = 16.0;
   sequence.motion = R"({"kind": "robot_arm", "period": 4, "hold": [4, 14]})";
   sequence.tracks = R"({"alive": 50, "rate": [50, 100], "lifetime": [20, 30], "noise": 0.3})";
   sequence.keep = [](TrackObservation& z) { return z.t < 4.0 || z.t > 14.0; };
   const RunResult result = candidate.run(sequence);
-  const Piece& piece = longest(result);
-  require(result.status.state <= RunState::degraded, "it is {}: {}, though the camera only stood still",
+  const TrajectorySegment& segment = longest(result);
+  require(result.status.state <= RunState::degraded, "it is {}: {}, though the camera was only stationary",
           to_string(result.status.state), result.status.reason);
-  require(!result.still.empty() && result.still.front().to > 13.0, "the standstill from 4 to 14 s was not noticed");
-  const PoseTrajectory& trajectory = piece.final_trajectory;
+  require(!result.stationary.empty() && result.stationary.front().to > 13.0,
+          "the stationary period from 4 to 14 s was not detected");
+  const PoseTrajectory& trajectory = segment.final_trajectory;
   require(trajectory.end() > 15.5, "its trajectory ends at {} s of 16 s", trajectory.end());
   const auto early = trajectory.pose(5.0), late = trajectory.pose(13.5);
-  require(early && late, "it has no pose while the camera stands still");
+  require(early && late, "it has no pose while the camera is stationary");
   double extent = 0.0;
   for (const StampedPose& pose : trajectory.poses()) extent = std::max(extent, (pose.T.p - early->p).norm());
   require((late->p - early->p).norm() <= 0.1 * extent,
-          "it moves by {:.1f} % of the path's extent during the standstill",
+          "it moves by {:.1f} % of the path's extent during the stationary period",
           100.0 * (late->p - early->p).norm() / extent);
 }
 
@@ -169,26 +170,26 @@ void stays_finite_with_wild_tracks(const CandidateBackEnd& candidate) {
   }});
 }
 
-/// Within a frame's length: a pose is told when the frame is complete.
+/// [s] at least the length of a batch of bundle adjustment, which publishes a pose when the batch is complete.
 constexpr double kLatency = 0.1;
 
-void tells_online_poses_in_time(const CandidateBackEnd& candidate) {
+void publishes_poses_in_time(const CandidateBackEnd& candidate) {
   constexpr double kCut = 2.0;
   const auto until = [&](double end) {
     SequenceOptions sequence;
     sequence.range = end;
     sequence.keep = [end](TrackObservation& z) { return z.t <= end; };
     const RunResult result = candidate.run(sequence);
-    return result.pieces.empty() ? std::vector<StampedPose>{} : longest(result).online_trajectory.poses();
+    return result.segments.empty() ? std::vector<StampedPose>{} : longest(result).causal_trajectory.poses();
   };
   const auto early = until(kCut), all = until(3.0);
-  require(!early.empty(), "it tells no online pose in 2 s");
-  require(all.size() > early.size(), "it tells no more online poses in 3 s than in 2 s");
+  require(!early.empty(), "it publishes no causal pose in 2 s");
+  require(all.size() > early.size(), "it publishes no more causal poses in 3 s than in 2 s");
   for (std::size_t i = 0; i < early.size() && early[i].t < kCut - kLatency; ++i) {
     require(all[i].t == early[i].t && all[i].T.p == early[i].T.p,
-            "its online pose at {} s depends on what is seen later", early[i].t);
+            "its causal pose at {} s depends on later observations", early[i].t);
   }
-  require(!until(all.front().t + kLatency).empty(), "its first online pose, of {} s, is told more than {} s later",
+  require(!until(all.front().t + kLatency).empty(), "its first causal pose, of {} s, is published more than {} s later",
           all.front().t, kLatency);
 }
 
@@ -199,14 +200,16 @@ bool same(const PoseTrajectory& a, const PoseTrajectory& b) {
 }
 
 void check_same(const RunResult& a, const RunResult& b, const char* what) {
-  require(a.pieces.size() == b.pieces.size(), "{}: {} and {} pieces", what, a.pieces.size(), b.pieces.size());
-  for (std::size_t i = 0; i < a.pieces.size(); ++i) {
-    require(same(a.pieces[i].final_trajectory, b.pieces[i].final_trajectory), "{}: final trajectories differ", what);
-    require(same(a.pieces[i].online_trajectory, b.pieces[i].online_trajectory), "{}: online trajectories differ", what);
+  require(a.segments.size() == b.segments.size(), "{}: {} and {} segments", what, a.segments.size(), b.segments.size());
+  for (std::size_t i = 0; i < a.segments.size(); ++i) {
+    require(same(a.segments[i].final_trajectory, b.segments[i].final_trajectory), "{}: final trajectories differ",
+            what);
+    require(same(a.segments[i].causal_trajectory, b.segments[i].causal_trajectory), "{}: causal trajectories differ",
+            what);
     const auto equal = [](const Landmark& x, const Landmark& y) {
       return x.track == y.track && x.position == y.position;
     };
-    require(std::ranges::equal(a.pieces[i].map, b.pieces[i].map, equal), "{}: maps differ", what);
+    require(std::ranges::equal(a.segments[i].map, b.segments[i].map, equal), "{}: maps differ", what);
   }
   require(a.status.state == b.status.state && a.status.reason == b.status.reason, "{}: states differ", what);
 }
@@ -223,7 +226,7 @@ void is_the_same_in_two_threads(const CandidateBackEnd& candidate) {
   options.mode = "concurrent";
   const RunResult concurrent = candidate.run(source, two, options);
   require(sequential.tracks_sha256 == concurrent.tracks_sha256,
-          "in two threads its feedback is another one: the front-end told other tracks");
+          "in two threads its feedback differs: the front-end's tracks are not the same");
   check_same(sequential, concurrent, "in one thread and in two");
 }
 
@@ -236,19 +239,20 @@ void check_feedback(const Feedback& feedback) {
   }
   if (feedback.covariance) {
     require(feedback.covariance->allFinite() && feedback.covariance->diagonal().minCoeff() >= 0.0,
-            "the covariance fed back at {} s is none", t);
+            "the covariance fed back at {} s is not a covariance", t);
   }
   for (const ExpectedFeature& feature : feedback.expected) {
     require(feature.pixel.allFinite() && feature.position.allFinite() && feature.covariance.allFinite() &&
                 feature.covariance.diagonal().minCoeff() > 0.0 && feature.covariance.determinant() >= 0.0,
-            "what is expected of track {} at {} s is not finite, or its covariance is none", feature.track, t);
+            "the prediction of track {} at {} s is not finite, or its covariance is not a covariance", feature.track,
+            t);
   }
 }
 
-/// Distances of the expected features from where their tracks are seen next [px].
-std::vector<double> expectation_errors(const std::vector<Feedback>& heard, std::span<const TrackObservation> seen) {
+/// Distances of the expected features from the next observations of their tracks [px].
+std::vector<double> expectation_errors(const std::vector<Feedback>& received, std::span<const TrackObservation> seen) {
   std::vector<double> errors;
-  for (const Feedback& feedback : heard) {
+  for (const Feedback& feedback : received) {
     auto next = std::ranges::lower_bound(seen, feedback.t, {}, &TrackObservation::t);
     for (; next != seen.end() && next->t < feedback.t + 0.01; ++next) {
       for (const ExpectedFeature& feature : feedback.expected) {
@@ -259,28 +263,28 @@ std::vector<double> expectation_errors(const std::vector<Feedback>& heard, std::
   return errors;
 }
 
-void feeds_back_what_it_knows(const CandidateBackEnd& candidate) {
+void gives_feedback(const CandidateBackEnd& candidate) {
   const TrackSource source({});
   TrackFrontEnd frontend(source, true);
   candidate.run(source, frontend);
-  const std::vector<Feedback>& heard = frontend.heard();
-  require(heard.size() > 200, "only {} answers to 300 exchanges", heard.size());
-  require(heard.front().state == TrackingState::no_map, "its first feedback is that it is {}",
-          to_string(heard.front().state));
-  require(heard.back().state == TrackingState::tracking || heard.back().state == TrackingState::degraded,
-          "its last feedback is that it is {}", to_string(heard.back().state));
-  std::ranges::for_each(heard, check_feedback);
+  const std::vector<Feedback>& received = frontend.received();
+  require(received.size() > 200, "only {} answers to 300 exchanges", received.size());
+  require(received.front().state == TrackingState::no_map, "its first feedback is that it is {}",
+          to_string(received.front().state));
+  require(received.back().state == TrackingState::tracking || received.back().state == TrackingState::degraded,
+          "its last feedback is that it is {}", to_string(received.back().state));
+  std::ranges::for_each(received, check_feedback);
   std::vector<TrackId> outliers;
-  for (const Feedback& feedback : heard) {
+  for (const Feedback& feedback : received) {
     outliers.insert(outliers.end(), feedback.outliers.begin(), feedback.outliers.end());
   }
   std::ranges::sort(outliers);
-  require(std::ranges::adjacent_find(outliers) == outliers.end(), "an outlier track is told twice");
-  std::vector<double> errors = expectation_errors(heard, *source.true_tracks());
-  if (errors.empty()) return;  // a back-end need not expect anything
+  require(std::ranges::adjacent_find(outliers) == outliers.end(), "an outlier track is reported twice");
+  std::vector<double> errors = expectation_errors(received, *source.true_tracks());
+  if (errors.empty()) return;  // predictions are optional
   std::ranges::nth_element(errors, errors.begin() + std::ssize(errors) / 2);
   const double median = errors[errors.size() / 2];
-  require(median < 5.0, "landmarks are expected {:.1f} px from where they are seen", median);
+  require(median < 5.0, "landmarks are expected {:.1f} px from where they are observed", median);
 }
 
 }  // namespace
@@ -294,17 +298,16 @@ std::vector<Check> backend_checks(const Plugins& plugins, const std::string& nam
       check("follows a good sequence in time order and shows a map", follows_a_good_sequence),
       check("fails, with a reason, without observations, with one track, or with one observation",
             fails_with_too_little),
-      check("survives a gap in which no track is alive, and says so", survives_a_gap),
-      check("keeps what it had when all tracks end before the clock does, and is lost", keeps_what_it_had),
-      check("starts anew when tracks come back after it was lost, in a second piece", starts_anew_after_a_loss),
-      check("makes no map out of a camera that never moves, and says why", makes_no_map_at_rest),
-      check("is not lost while the camera stands still for ten seconds, and stays where it is", stands_still),
-      check("stays finite when tracks are wild", stays_finite_with_wild_tracks),
-      check("tells online poses at their own times, and never otherwise later", tells_online_poses_in_time),
+      check("survives a gap in which no track is alive, and reports it", survives_a_gap),
+      check("is lost and keeps its estimate when all tracks end before the time range does", keeps_its_estimate),
+      check("re-initialises in a second segment when tracks return after it was lost", reinitialises_after_a_loss),
+      check("makes no map from a camera that never moves, and gives the reason", makes_no_map_at_rest),
+      check("is not lost in a stationary period of ten seconds, and keeps its pose", survives_a_stationary_period),
+      check("stays finite with a quarter of the tracks far out of the image", stays_finite_with_wild_tracks),
+      check("publishes each causal pose in time and from earlier data only", publishes_poses_in_time),
       check("gives the same bits for the same observations", repeats_itself),
       check("gives the same bits in one thread and in two, its feedback included", is_the_same_in_two_threads),
-      check("feeds back what it knows: states, poses, outliers, where landmarks are expected",
-            feeds_back_what_it_knows),
+      check("gives feedback: states, poses, outliers, predicted positions of landmarks", gives_feedback),
   };
 }
 

@@ -30,7 +30,8 @@ std::string joined(const std::vector<std::string>& sentences) {
   return text;
 }
 
-/// What a careless author might write: a map at once, online poses in the future, another result each time.
+/// A back-end as a careless author might write it: ok without a map, feedback from the future, another result each
+/// time.
 class Careless : public BackEnd {
  public:
   struct Options {
@@ -41,7 +42,7 @@ class Careless : public BackEnd {
   void advance(const TrackBatch& batch) override {
     const double x = static_cast<double>(++advances_);
     poses_.push_back({batch.until, {Eigen::Quaterniond::Identity(), {x, 0, 0}}});
-    context_.online({poses_.back()});
+    context_.publish({poses_.back()});
   }
   Feedback feedback(const FeedbackNeeds&) override {
     Feedback feedback;
@@ -83,7 +84,7 @@ TEST_CASE("gp_map passes the battery with a lag, and per observation", "[long]")
   }
 }
 
-TEST_CASE("The battery finds what is wrong with a careless back-end, in words") {
+TEST_CASE("The battery reports what is wrong with a careless back-end") {
   Plugins plugins;
   Registry<BackEnd>::Entry entry;
   entry.with_options = [](const auto& use) {
@@ -114,8 +115,7 @@ TEST_CASE("The oracle and simulated sources pass the battery") {
   CHECK(joined(failures(source_checks(plugins, "event_simulation", events))) == "");
 }
 
-TEST_CASE("haste passes the battery on events, with what guides it and without, whichever way it places observations",
-          "[slow]") {
+TEST_CASE("haste passes the battery on events with each of its modes", "[slow]") {
   using testing::EventScene;
   const EventScene scene(testing::swing, 0.6, EventScene::quadrangles(150, 1));
   const Plugins plugins = registered_plugins();
@@ -127,7 +127,7 @@ TEST_CASE("haste passes the battery on events, with what guides it and without, 
   }
 }
 
-TEST_CASE("An unknown plugin is refused before any check") {
+TEST_CASE("An unknown plugin is an error before any check") {
   const Plugins plugins = registered_plugins();
   CHECK_THROWS_WITH(backend_checks(plugins, "gp_mop"), Catch::Matchers::ContainsSubstring("gp_map"));
 }

@@ -10,13 +10,13 @@
 
 namespace evbench::battery {
 
-/// One thing that every plugin of a kind must do.
+/// A check that every plugin of a kind must pass.
 struct Check {
-  std::string name;           ///< what it does, as a sentence without its subject: "survives a gap ..."
-  std::function<void()> run;  ///< throws Failure, or whatever the plugin throws, when it doesn't
+  std::string name;           ///< a sentence without its subject, the plugin: "survives a gap ..."
+  std::function<void()> run;  ///< throws Failure, or whatever the plugin throws, if it fails
 };
 
-/// How a plugin failed a check.
+/// The reason why a plugin fails a check.
 class Failure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -8,7 +8,7 @@
 namespace evbench::battery {
 namespace {
 
-/// A front-end as a config would make it, on one source.
+/// A front-end made as from a config, on one source.
 class CandidateFrontEnd {
  public:
   CandidateFrontEnd(const Plugins& plugins, const std::string& name, const Json& options, const Source& source,
@@ -22,7 +22,7 @@ class CandidateFrontEnd {
   std::unique_ptr<FrontEnd> make() const { return entry_.make(options_, {source_, 1, folder_, name_}); }
   const Source& source() const { return source_; }
 
-  /// All that it tells, in exchanges of `interval` [s] and at most `most` observations. Checks each batch.
+  /// All its output, in exchanges of `interval` [s] and at most `most` observations. Checks each batch.
   TrackBatch all(double interval, std::size_t most = 0) const;
 
  private:
@@ -32,12 +32,12 @@ class CandidateFrontEnd {
   std::string folder_, name_;
 };
 
-/// How far the front-end has told, and looked.
+/// `until` and `seen` of the last batch (TrackBatch).
 struct Progress {
   double until, seen;
   bool first = true;
 
-  void go_on(const TrackBatch& batch) { *this = {batch.until, batch.known_at(), false}; }
+  void update(const TrackBatch& batch) { *this = {batch.until, batch.known_at(), false}; }
 };
 
 void check_batch(const TrackBatch& batch, const Progress& progress, const FrontEnd::Horizon& horizon) {
@@ -45,7 +45,7 @@ void check_batch(const TrackBatch& batch, const Progress& progress, const FrontE
   const double seen = batch.known_at();
   const bool goes_on = batch.until > before || seen > clock || first;
   require(batch.until >= before && batch.until <= seen && seen >= clock && seen <= horizon.t && goes_on,
-          "asked for up to {} s, from {} s on, it tells up to {} s, having looked up to {} s", horizon.t, before,
+          "requested up to {} s, from {} s on, its batch ends at {} s and is known at {} s", horizon.t, before,
           batch.until, seen);
   double t = before;
   for (const TrackObservation& z : batch.observations) {
@@ -73,7 +73,7 @@ TrackBatch CandidateFrontEnd::all(double interval, std::size_t most) const {
     check_batch(batch, progress, {t, most});
     everything.observations.insert(everything.observations.end(), batch.observations.begin(), batch.observations.end());
     everything.ended.insert(everything.ended.end(), batch.ended.begin(), batch.ended.end());
-    progress.go_on(batch);
+    progress.update(batch);
     if (progress.seen >= t) ++k;
   }
   everything.until = progress.until;
@@ -88,9 +88,9 @@ bool same(const TrackBatch& a, const TrackBatch& b) {
   return std::ranges::equal(a.observations, b.observations, equal) && std::ranges::equal(a.ended, b.ended, ends);
 }
 
-void tells_tracks_in_order(const CandidateFrontEnd& candidate) {
+void has_observations_in_order(const CandidateFrontEnd& candidate) {
   const TrackBatch all = candidate.all(0.01);
-  require(!all.observations.empty(), "it tells no observation of the whole source");
+  require(!all.observations.empty(), "it has no observation in the whole source");
 }
 
 void ends_each_track_once(const CandidateFrontEnd& candidate) {
@@ -106,17 +106,17 @@ void ends_each_track_once(const CandidateFrontEnd& candidate) {
 }
 
 void repeats_itself(const CandidateFrontEnd& candidate) {
-  require(same(candidate.all(0.01), candidate.all(0.01)), "made twice, it tells other tracks");
+  require(same(candidate.all(0.01), candidate.all(0.01)), "made twice, its tracks differ");
 }
 
-/// Whoever uses feedback may tell other tracks when it comes at other times; here there is none.
-void is_the_same_however_it_is_asked(const CandidateFrontEnd& candidate) {
+/// Without feedback: a front-end that uses it may give other tracks if it arrives at other times.
+void does_not_depend_on_the_exchanges(const CandidateFrontEnd& candidate) {
   const TrackBatch usual = candidate.all(0.01);
-  require(same(usual, candidate.all(0.1)), "asked every 0.1 s instead of 0.01 s, it tells other tracks");
-  require(same(usual, candidate.all(0.01, 3)), "asked for three observations at a time, it tells other tracks");
+  require(same(usual, candidate.all(0.1)), "with exchanges of 0.1 s instead of 0.01 s its tracks differ");
+  require(same(usual, candidate.all(0.01, 3)), "with three observations per exchange its tracks differ");
 }
 
-void bears_any_feedback(const CandidateFrontEnd& candidate) {
+void accepts_any_feedback(const CandidateFrontEnd& candidate) {
   const auto frontend = candidate.make();
   const TimeRange range = candidate.source().time_range();
   TrackBatch batch;
@@ -125,7 +125,7 @@ void bears_any_feedback(const CandidateFrontEnd& candidate) {
     const double t = std::min(range.to, range.from + 0.01 * k);
     const bool more = frontend->advance({t}, batch);
     check_batch(batch, progress, {t});
-    progress.go_on(batch);
+    progress.update(batch);
     Feedback feedback;
     feedback.t = batch.until;
     feedback.state = static_cast<TrackingState>(k % 5);
@@ -151,11 +151,11 @@ std::vector<Check> frontend_checks(const Plugins& plugins, const std::string& na
     return Check{text, [=] { run(candidate); }};
   };
   return {
-      check("tells observations in time order, within what it was asked for", tells_tracks_in_order),
-      check("ends a track once, and observes it no more", ends_each_track_once),
-      check("tells the same tracks when it is made twice", repeats_itself),
-      check("tells the same tracks however it is asked", is_the_same_however_it_is_asked),
-      check("bears any feedback", bears_any_feedback),
+      check("gives observations in time order, within the requested time", has_observations_in_order),
+      check("ends a track once, and does not observe it afterwards", ends_each_track_once),
+      check("gives the same tracks when it is made twice", repeats_itself),
+      check("gives the same tracks whatever the exchanges are", does_not_depend_on_the_exchanges),
+      check("accepts any feedback", accepts_any_feedback),
   };
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using MakeSource = std::function<std::unique_ptr<Source>()>;
 
-constexpr std::size_t kEvents = 1'000'000;  ///< looked at, at most
+constexpr std::size_t kEvents = 1'000'000;  ///< checked, at most
 
 std::vector<Event> events_of(const Source& source) {
   std::vector<Event> all;
@@ -42,7 +42,7 @@ void has_a_camera(const MakeSource& make) {
           "its lens model can't be inverted in the middle of the image");
 }
 
-void has_sound_ground_truth(const MakeSource& make) {
+void has_valid_ground_truth(const MakeSource& make) {
   const auto source = make();
   const PoseTrajectory& truth = source->ground_truth();
   if (truth.empty()) return;
@@ -50,7 +50,7 @@ void has_sound_ground_truth(const MakeSource& make) {
   require(truth.start() < to && truth.end() > from, "its ground truth, {} to {} s, does not meet its range, {} to {} s",
           truth.start(), truth.end(), from, to);
   for (const auto& [t, T] : truth.poses()) {
-    require(T.p.allFinite() && std::abs(T.q.norm() - 1.0) < 1e-6, "its true pose at {} s is none", t);
+    require(T.p.allFinite() && std::abs(T.q.norm() - 1.0) < 1e-6, "its true pose at {} s is not a pose", t);
   }
 }
 
@@ -96,7 +96,7 @@ void names_its_files(const MakeSource& make) {
   const auto source = make();
   for (const auto& files : {source->files(), source->event_files()}) {
     for (const std::string& file : files) {
-      require(std::filesystem::is_regular_file(file), "it names the file {}, which there is not", file);
+      require(std::filesystem::is_regular_file(file), "it names the file {}, which does not exist", file);
     }
   }
 }
@@ -112,11 +112,11 @@ std::vector<Check> source_checks(const Plugins& plugins, const std::string& name
   return {
       check("says how long it is", says_how_long_it_is),
       check("has a camera", has_a_camera),
-      check("has ground truth that is sound, or none", has_sound_ground_truth),
+      check("has valid ground truth, or none", has_valid_ground_truth),
       check("has tracks in time order, or none", has_tracks_in_order),
       check("has events in time order, within the sensor, or none", has_events_in_order),
       check("has the same data when it is made twice", repeats_itself),
-      check("names files that there are", names_its_files),
+      check("names files that exist", names_its_files),
   };
 }
 

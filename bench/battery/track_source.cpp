@@ -35,13 +35,13 @@ TrackSource::TrackSource(const SequenceOptions& options)
 
 bool TrackFrontEnd::advance(const Horizon& horizon, TrackBatch& batch) {
   const bool more = player_.advance(horizon, batch);
-  if (heard_.empty() || !heard_.back().newest) return more;
-  // So little that it does no harm, and that it shows when feedback came at another time.
-  const double shift = 1e-3 * std::sin(1e3 * heard_.back().newest->T.p.sum() + 1e4 * heard_.back().t);
+  if (received_.empty() || !received_.back().newest) return more;
+  // Small enough to do no harm; it makes feedback at another time visible in the tracks.
+  const double shift = 1e-3 * std::sin(1e3 * received_.back().newest->T.p.sum() + 1e4 * received_.back().t);
   for (TrackObservation& z : batch.observations) z.pixel.x() += shift;
   return more;
 }
 
-void TrackFrontEnd::receive(const Feedback& feedback) { heard_.push_back(feedback); }
+void TrackFrontEnd::receive(const Feedback& feedback) { received_.push_back(feedback); }
 
 }  // namespace evbench::battery

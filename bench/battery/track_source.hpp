@@ -11,17 +11,17 @@
 
 namespace evbench::battery {
 
-/// What the simulated sequence of a check is like.
+/// Options of the simulated sequence of a check.
 struct SequenceOptions {
   double duration = 3.0;  ///< [s]
   double range = 0.0;     ///< [s] end of the time range; 0: duration
   std::string motion = R"({"kind": "robot_arm", "period": 3})";
   std::string tracks = R"({"alive": 50, "rate": [50, 100], "lifetime": [2, 5]})";
-  /// Which observations there are; may change them.
+  /// Whether to keep an observation; may change it.
   std::function<bool(TrackObservation&)> keep = [](TrackObservation&) { return true; };
 };
 
-/// A camera that moves before a volume of points, and the tracks that it would see.
+/// A camera that moves in front of a volume of points, and the simulated tracks of these.
 class TrackSource : public Source {
  public:
   explicit TrackSource(const SequenceOptions& options);
@@ -38,7 +38,7 @@ class TrackSource : public Source {
   std::vector<TrackObservation> observations_;
 };
 
-/// Hands on a source's tracks. As a listener it takes all feedback, keeps it, and lets it change what it tells.
+/// Replays a source's tracks. If it listens, it keeps all feedback and shifts its observations by it.
 class TrackFrontEnd : public FrontEnd {
  public:
   explicit TrackFrontEnd(const Source& source, bool listens = false)
@@ -48,12 +48,12 @@ class TrackFrontEnd : public FrontEnd {
   FeedbackNeeds needs() const override { return {listens_, listens_, listens_}; }
   void receive(const Feedback& feedback) override;
 
-  const std::vector<Feedback>& heard() const { return heard_; }
+  const std::vector<Feedback>& received() const { return received_; }
 
  private:
   TrackPlayer player_;
   bool listens_;
-  std::vector<Feedback> heard_;
+  std::vector<Feedback> received_;
 };
 
 }  // namespace evbench::battery

@@ -15,16 +15,16 @@
 #include "bench/commands/name_check.hpp"
 #include "core/plugin/registry.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 #include "core/support/json_reason.hpp"
 #include "core/support/nearest.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench {
 namespace {
 
 using namespace battery;
 
-/// A kind of plugin: the names that there are, with their origins, and its battery.
+/// A kind of plugin: its registered names with their origins, and its battery.
 struct Kind {
   std::string name;
   std::map<std::string, std::string> plugins;
@@ -38,7 +38,7 @@ Kind kind_of(const Plugins& plugins, std::function<std::vector<Check>(const std:
   return result;
 }
 
-/// Why a check fails; nothing when it doesn't.
+/// The reason why a check fails; empty if it passes.
 std::string failure(const Check& check) {
   try {
     check.run();
@@ -63,7 +63,7 @@ Json parse(const std::string& text, const std::string& place) {
   }
 }
 
-/// What front-ends are tried on.
+/// The source for checks of front-ends.
 std::unique_ptr<Source> make_source(const Plugins& plugins, const std::string& text) {
   const std::string place = "check-plugin: --source";
   Json json = parse(text, place);
@@ -81,8 +81,7 @@ constexpr const char* kSimulatedEvents = R"({
   "motion": {"kind": "smooth_random", "max_frequency": 1.0}, "scene": {"kind": "shapes"}
 })";
 
-/// Leaves of the plugins those that are asked for: the named ones; without a name those from outside, or all where
-/// there are none.
+/// Selects the named plugins; without names those from outside, or all if there are none.
 void choose(std::vector<Kind>& kinds, const std::vector<std::string>& names) {
   std::vector<std::string> known;
   bool outside = false;
@@ -94,7 +93,7 @@ void choose(std::vector<Kind>& kinds, const std::vector<std::string>& names) {
   }
   for (const std::string& name : names) {
     if (std::ranges::find(known, name) != known.end()) continue;
-    throw InputError(fmt::format("check-plugin: no plugin is called \"{}\"{}", name, suggestion(name, known)));
+    throw InputError(fmt::format("no plugin is called \"{}\"{}", name, suggestion(name, known)));
   }
   for (Kind& kind : kinds) {
     std::erase_if(kind.plugins, [&](const auto& item) {
@@ -104,12 +103,12 @@ void choose(std::vector<Kind>& kinds, const std::vector<std::string>& names) {
   }
 }
 
-/// How many checks hold, and how many there are.
+/// Number of checks that hold, and of all.
 struct Count {
   int good = 0, all = 0;
 };
 
-/// A line a check.
+/// Prints one line per check.
 Count try_plugin(const std::vector<Check>& checks) {
   Count count;
   for (const Check& check : checks) {
@@ -122,7 +121,8 @@ Count try_plugin(const std::vector<Check>& checks) {
   return count;
 }
 
-/// Do all checks hold? A plugin that can't be made of the options is an error when it is named.
+/// Returns whether all checks hold. A plugin that can't be made with the options is an error if it was named, else it
+/// is left out.
 bool check_plugins(const Plugins& plugins, const Arguments& arguments) {
   const Json options = parse(arguments.options, "check-plugin: --options");
   const auto given = arguments.source.empty() ? nullptr : make_source(plugins, arguments.source);
@@ -162,15 +162,16 @@ bool check_plugins(const Plugins& plugins, const Arguments& arguments) {
 
 void add_check_plugin(CLI::App& app, const Plugins& plugins, int& exit_code) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("check-plugin", "Check that plugins do what all of their kind must do");
-  command->add_option("name", arguments->names, "Names; without one all from outside, or all where there are none");
-  command->add_option("--kind", arguments->kind, "source, frontend or backend; without it each kind")
+  CLI::App* command = app.add_subcommand("check-plugin", "Check that plugins meet the requirements of their kind");
+  command->add_option("name", arguments->names, "Names; by default all plugins from outside, or all if there are none");
+  command->add_option("--kind", arguments->kind, "source, frontend or backend; by default each kind")
       ->check(one_of({"source", "frontend", "backend"}));
   command->add_option("--options", arguments->options, "The plugin's options, a JSON object")->capture_default_str();
-  command->add_option("--source", arguments->source,
-                      "What front-ends are tried on, as in a config: {\"type\": NAME, options}; by default simulated "
-                      "tracks, and for those that read events simulated events with tracks");
-  command->footer("A line a check. Exit codes: 0 all hold, 2 bad input, 3 one fails.");
+  command->add_option(
+      "--source", arguments->source,
+      "Source for checks of front-ends, as in a config: {\"type\": NAME, options}; by default simulated "
+      "tracks, and simulated events with tracks for those that read events");
+  command->footer("Prints one line per check. Exit codes: 0 all hold, 2 bad input, 3 one fails.");
   command->callback([arguments, &plugins, &exit_code] {
     if (!check_plugins(plugins, *arguments)) exit_code = kExitFailed;
   });

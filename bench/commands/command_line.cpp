@@ -29,7 +29,7 @@ std::string no_command(const std::string& word, const CLI::App& command) {
   return fmt::format("\"{}\" is no command{}", word, suggestion(word, names_of(command)));
 }
 
-/// A sentence where a word stands in the place of a command and is none; empty: that is not what is wrong.
+/// The message for a word in the place of a command that is none; empty if there is no such word.
 std::string unknown_command(const CLI::App& program, const std::vector<std::string>& words) {
   const CLI::App* place = &program;
   for (const std::string& word : words) {
@@ -41,7 +41,7 @@ std::string unknown_command(const CLI::App& program, const std::vector<std::stri
   return "";
 }
 
-/// Names of the options that may stand behind a command: its own and those of the commands above it.
+/// Names of the options that may follow a command: its own and those of the commands above it.
 std::vector<std::string> option_names(const CLI::App* command) {
   std::vector<std::string> names;
   for (; command != nullptr; command = command->get_parent()) {
@@ -53,7 +53,7 @@ std::vector<std::string> option_names(const CLI::App* command) {
   return names;
 }
 
-/// What nothing was there for, in the order of the command line.
+/// The message for the words that no option or positional takes.
 std::string unexpected(const CLI::App* command, std::vector<std::string> words) {
   const std::vector<std::string> names = option_names(command);
   for (const std::string& word : words) {

@@ -9,7 +9,7 @@
 
 namespace evbench {
 
-/// All of the program's, in the order of its help.
+/// Adds all commands, in the order of the help.
 void add_commands(CLI::App& app, Plugins& plugins, int& exit_code);
 
 /// Each adds a subcommand of `evbench`; its callback throws InputError, which `main` catches. `plugins` must outlive
@@ -31,28 +31,27 @@ void add_new_plugin(CLI::App& app, const Plugins& plugins);
 
 void add_export(CLI::App& app, const Plugins& plugins);
 
-/// `exit_code` is set to what the program returns: 0, or 3 when a run failed. A config may name libraries with more
-/// plugins: they are added.
+/// `exit_code` is set to what the program returns: 0, or 3 when a run failed. Plugins of libraries that a config names
+/// are added.
 void add_run(CLI::App& app, Plugins& plugins, int& exit_code);
-
-/// Likewise.
 void add_reproduce(CLI::App& app, Plugins& plugins, int& exit_code);
 void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code);
 void add_task(CLI::App& app, Plugins& plugins, int& exit_code);
 
-/// `exit_code` likewise: 3 when runs failed or are still to be done.
+/// `exit_code`: 3 when runs failed or are still to be done.
 void add_status(CLI::App& app, int& exit_code);
 
-/// `exit_code` likewise: 3 when a check fails.
+/// `exit_code`: 3 when a check fails.
 void add_check_plugin(CLI::App& app, const Plugins& plugins, int& exit_code);
 
-/// The commands that tell of the others: help, completion, man. To be added last.
+/// The commands about the others: help, completion, man. To be added last.
 void add_help(CLI::App& app);
 
-/// The option --set of commands that read configs, a KEY=VALUE each time; `text`: its help.
+/// The repeatable option --set KEY=VALUE of commands that read configs; `text`: its help.
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const std::string& text);
 
-/// Tells on the standard output, at once, what is about to be run that a file alone names; nothing where it is quiet.
+/// Prints to the standard output which commands or libraries of a config are about to be used; prints nothing if
+/// `quiet`.
 std::function<void(const std::string&)> announcement(bool quiet);
 
 /// The options of commands that read events.

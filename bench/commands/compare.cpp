@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/commands/causal_flag.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/run_outputs.hpp"
@@ -26,7 +27,7 @@ void execute(const CompareArguments& arguments) {
   ComparisonOptions options = arguments.options;
   options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
   use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
-    if (any_of_common_time(options.metrics)) score_common_time(runs, options.online);
+    if (any_of_common_time(options.metrics)) score_common_time(runs, options.causal);
     arguments.out.write(make_comparison_table(runs, options));
   });
 }
@@ -37,17 +38,19 @@ void add_compare(CLI::App& app) {
   auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand("compare", "Compare back-ends pair by pair on the same data, with statistics");
   add_run_selection(*command, arguments->runs);
-  command->add_option("--base", arguments->options.base, "What the others are compared with: its label; else the first")
+  command
+      ->add_option("--base", arguments->options.base,
+                   "Label of the back-end with which the others are compared; by default the first")
       ->type_name("NAME");
   add_list_option(*command, "--metrics", arguments->options.metrics,
-                  "What is compared, e.g. ate.trans_m.rmse,common.rpe.trans_m.rmse,times.backend_ms.p99");
-  command->add_flag("--online", arguments->options.online, "Scores of the poses as estimated when they were made");
+                  "Metrics to compare, e.g. ate.trans_m.rmse,common.rpe.trans_m.rmse,times.backend_ms.p99");
+  add_causal_flag(*command, arguments->options.causal, "Scores of the causal poses, as first published");
   command->add_option("--format", arguments->format, "Format")
       ->check(one_of({"text", "markdown", "csv", "latex"}))
       ->capture_default_str();
   add_text_output(*command, arguments->out);
   add_wide(*command, arguments->options.layout, arguments->wide);
-  command->add_flag("--body", arguments->options.layout.body, "LaTeX: the tabular alone, without float and caption");
+  command->add_flag("--body", arguments->options.layout.body, "LaTeX: only the tabular, without float and caption");
   command->callback([arguments] { execute(*arguments); });
 }
 

@@ -23,7 +23,7 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   return names;
 }
 
-/// What is known of each command, as functions of a shell that bash and zsh understand alike.
+/// The options and names of each command, as shell functions for both bash and zsh.
 std::string tables_of(const CLI::App& program) {
   std::string flags, valued, names;
   std::vector<std::string> commands;
@@ -62,7 +62,7 @@ _evbench_valued() {{  # COMMAND: its options that take a value
 {}  esac
 }}
 
-_evbench_names() {{  # COMMAND PLACE: what can stand there, behind an option or as a positional of that number
+_evbench_names() {{  # COMMAND PLACE: names for an option's value or for the positional of that number
   names=
   case "$1 $2" in
 {}  esac
@@ -71,8 +71,8 @@ _evbench_names() {{  # COMMAND PLACE: what can stand there, behind an option or 
                      fmt::join(commands, " | "), flags, valued, names);
 }
 
-/// Sets `reached` and `place` by the words before the one that is completed. Bash takes --format=text for three words,
-/// and so a KEY=VALUE.
+/// Sets `reached` and `place` by the words before the completed one. Bash splits --format=text and KEY=VALUE into three
+/// words.
 constexpr const char* kFind = R"(
 _evbench_find() {
   local word waits= number=1
@@ -113,7 +113,7 @@ _evbench() {
     _evbench_names "$reached" "$place"
   fi
   COMPREPLY=($(compgen -W "$names" -- "$current"))
-  return 0  # none fits: bash completes files
+  return 0  # no match: bash completes files
 }
 complete -o default -F _evbench evbench
 )";

@@ -5,8 +5,8 @@
 
 namespace evbench {
 
-/// Scripts with which a shell completes the program's commands, options, and values that are one of a few names; where
-/// none of these can stand, files. Made from the declarations.
+/// Scripts with which a shell completes commands, options and named values, and files everywhere else. Generated from
+/// the declarations.
 std::string bash_completion(const CLI::App& program);
 std::string zsh_completion(const CLI::App& program);
 

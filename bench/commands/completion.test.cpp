@@ -9,7 +9,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-/// What bash offers for the last of these words, as bash has taken a line apart.
+/// The completions of bash for the last of these words.
 std::set<std::string> offered(const TemporaryFolder& folder, const std::string& words) {
   const Outcome outcome = shell(folder, "bash -c 'source completion && COMP_WORDS=(" + words +
                                             ") && COMP_CWORD=$((${#COMP_WORDS[@]} - 1)) && $(complete -p evbench | sed "
@@ -51,7 +51,7 @@ TEST_CASE("Bash completes commands, options, and values that are one of a few na
   CHECK(offers("evbench sweep --vary seed = 1..3 --dry") == Names{"--dry-run"});
 }
 
-TEST_CASE("Completion for zsh has what that for bash has") {
+TEST_CASE("Completion for zsh offers the same as for bash") {
   const TemporaryFolder folder;
   const std::string bash = testing::evbench(folder, "completion bash").out,
                     zsh = testing::evbench(folder, "completion zsh").out;
@@ -65,7 +65,7 @@ TEST_CASE("Completion for zsh has what that for bash has") {
   CHECK_THAT(testing::evbench(folder, "completion fish").err, ContainsSubstring("\"fish\" is none of its names"));
 }
 
-TEST_CASE("The manual page has every command and option, and man has nothing to say against it", "[slow]") {
+TEST_CASE("The manual page has every command and option, and man prints no warning", "[slow]") {
   const TemporaryFolder folder;
   const std::string page = testing::evbench(folder, "man").out;
   CHECK(page.starts_with(".TH EVBENCH 1 "));

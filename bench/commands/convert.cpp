@@ -23,7 +23,7 @@ struct ConvertArguments {
 };
 
 void execute(const ConvertArguments& arguments) {
-  check_outputs({arguments.out}, {arguments.in}, arguments.force);  // at once, as far as it can be told
+  check_outputs({arguments.out}, {arguments.in}, arguments.force);  // early, as far as the files are known
   ConversionOptions options = arguments.options;
   options.force = arguments.force;
   set_time_range(arguments.range, options.stream);
@@ -51,9 +51,9 @@ std::string formats_text() {
     text += fmt::format("  {:<8}{:<6}{}\n", format.name, format.extension, format.description);
   }
   return text +
-         "Calibration, ground truth and header are kept by native alone; text and hdf5 keep the sensor's size. Text\n"
-         "begins with comments that say so and name its columns: grep -v '^#' takes them out.\n"
-         "OUT appears when it is complete; an interrupted conversion leaves nothing, and what was there before.\n"
+         "Only native keeps calibration, ground truth and header; text and hdf5 keep the sensor's size. Text begins\n"
+         "with comments that give the size and the columns: grep -v '^#' removes them.\n"
+         "OUT appears when it is complete; an interrupted conversion leaves an existing file as it was.\n"
          "Text can be written to a pipe or device: convert IN /dev/stdout --format text --quiet | head";
 }
 
@@ -72,8 +72,8 @@ void add_convert(CLI::App& app, const Plugins& plugins) {
   add_time_range(*command, arguments->range, arguments->options.stream);
   command
       ->add_option("--undistort", arguments->options.undistort,
-                   "Move events to where an ideal pinhole would see them, to the nearest pixel; those outside are left "
-                   "out. CALIB: a calibration, text or YAML, or \"own\": the recording's")
+                   "Undistort events to the nearest pixel of the ideal pinhole camera; events outside it are left out. "
+                   "CALIB: a calibration, text or YAML, or \"own\": the recording's")
       ->type_name("CALIB");
   command->add_option("--camera", arguments->options.camera, "Which camera of a CALIB that has several (Kalibr)")
       ->type_name("NAME");

@@ -16,12 +16,12 @@ namespace evbench {
 namespace {
 
 constexpr const char* kPlace =
-    "Datasets are kept in the folder that EVBENCH_DATASETS names, or ~/.cache/evbench/datasets, each in one of its\n"
-    "name. Beside it, NAME.download has what was fetched of one that is not complete yet; NAME.fetched.json has\n"
-    "address, size and SHA-256 of what was fetched, and of every file. A source of type recording takes them by name:\n"
-    "{\"dataset\": \"ecd/dynamic_6dof\"}. Their licences are their own.";
+    "Datasets are kept in the folder EVBENCH_DATASETS, by default ~/.cache/evbench/datasets, each in a subfolder of\n"
+    "its name. NAME.download next to it has the files of an incomplete download; NAME.fetched.json has address, size\n"
+    "and SHA-256 of the download and of every file. A source of type recording uses a dataset by its name:\n"
+    "{\"dataset\": \"ecd/dynamic_6dof\"}. Each dataset has its own licence.";
 
-/// "1234.5 MiB" of all its files, as the servers say; "?" where one doesn't.
+/// "1234.5 MiB", the size of all its files as reported by the servers; "?" if one does not report it.
 std::string size_text(const Dataset& dataset) {
   double mib = 0.0;
   for (const Dataset::File& file : dataset.files) {
@@ -53,26 +53,27 @@ void get_dataset(const std::string& name, bool quiet) {
   const Dataset& dataset = find_dataset(catalogue, name);
   const std::string folder = dataset_folder(name);
   ProgressLine progress(name, quiet);
-  const auto tell = [&](const std::string& line) {
+  const auto print_line = [&](const std::string& line) {
     if (quiet) return;
     progress.clear();
     fmt::print("{}\n", line);
     std::fflush(stdout);
   };
   if (std::filesystem::is_directory(folder)) {
-    tell(fmt::format("{}: is there already", folder));
+    print_line(fmt::format("{}: is there already", folder));
     return;
   }
-  tell(fmt::format("{}: {}\nLicence: {}; see {}", dataset.name, dataset.collection, dataset.licence, dataset.homepage));
-  const Interruption interruption(name + ": interrupted; the same command goes on from there");
+  print_line(
+      fmt::format("{}: {}\nLicence: {}; see {}", dataset.name, dataset.collection, dataset.licence, dataset.homepage));
+  const Interruption interruption(name + ": interrupted; the same command continues from there");
   DownloadOptions options;
   options.progress = [&](std::uint64_t have, std::optional<std::uint64_t> total) {
     const double mib = static_cast<double>(have) * 0x1p-20;
     progress.update(total ? fmt::format("{:.1f} of {:.1f} MiB", mib, static_cast<double>(*total) * 0x1p-20)
                           : fmt::format("{:.1f} MiB", mib));
   };
-  fetch_dataset(dataset, folder, options, tell);
-  tell("written: " + folder);
+  fetch_dataset(dataset, folder, options, print_line);
+  print_line("written: " + folder);
 }
 
 void verify(const std::string& name) {
@@ -93,10 +94,10 @@ void add_dataset(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("dataset", "List and fetch public recordings");
   command->require_subcommand(1);
-  CLI::App* list = command->add_subcommand("list", "List the catalogue; a star marks what is there");
+  CLI::App* list = command->add_subcommand("list", "List the catalogue; a star marks local datasets");
   list->add_flag("--sizes", arguments->sizes, "Ask the servers how large the downloads are");
   list->callback([arguments] { list_datasets(arguments->sizes); });
-  CLI::App* get = command->add_subcommand("get", "Fetch a dataset; a download that broke off goes on");
+  CLI::App* get = command->add_subcommand("get", "Fetch a dataset; an interrupted download is continued");
   get->footer(kPlace);
   get->add_option("name", arguments->name, "Name, e.g. ecd/dynamic_6dof")->required();
   get->add_flag("--quiet", arguments->quiet, "Print nothing but errors");

@@ -27,7 +27,7 @@
 namespace evbench {
 namespace {
 
-/// The command line, in evo's words.
+/// Arguments, named as in evo.
 struct EvalArguments {
   std::string ground_truth;
   std::vector<std::string> estimates;
@@ -45,7 +45,7 @@ struct EvalArguments {
   std::string json, aligned, errors;
   std::string plot, plot_kind = "trajectory";
   bool no_caption = false, force = false;
-  ScoreOptions options = {.rpe_delta = 1.0};  ///< what goes straight into the protocol
+  ScoreOptions options = {.rpe_delta = 1.0};  ///< options that are stored directly in the protocol
 };
 
 PoseFile read_file(const std::string& path, const std::string& unit, const std::string& quaternion,
@@ -64,12 +64,13 @@ void print_remarks(const PoseFile& file) {
   for (const std::string& remark : file.remarks) fmt::print(stderr, "remark: {}\n", remark);
 }
 
-/// Where neither file has times, poses go together by their numbers.
+/// If neither file has times, poses are associated by their numbers.
 void check_numbers(const PoseFile& ground_truth, const PoseFile& estimate, const std::string& path,
                    const EvalArguments& arguments) {
   if (ground_truth.numbered != estimate.numbered) {
-    throw InputError(fmt::format("{}: has no times, as the other trajectory has; expected --times with a time a pose",
-                                 estimate.numbered ? path : arguments.ground_truth));
+    throw InputError(
+        fmt::format("{}: has no times, as the other trajectory has; expected --times with a time for each pose",
+                    estimate.numbered ? path : arguments.ground_truth));
   }
   const std::size_t poses = estimate.trajectory.size(), expected = ground_truth.trajectory.size();
   if (!estimate.numbered || poses == expected) return;
@@ -77,7 +78,8 @@ void check_numbers(const PoseFile& ground_truth, const PoseFile& estimate, const
                                poses, expected));
 }
 
-/// Where nothing in a file tells the unit of its times, the other trajectory's do, which go from `from` to `to`.
+/// If the file does not define the unit of its times, takes the one in which they overlap the other trajectory's,
+/// `from` to `to`.
 void find_unit(PoseFile& file, const std::string& path, double from, double to, const char* option) {
   if (file.unknown_unit.empty()) return;
   const auto unit = unit_that_meets(file.trajectory.start(), file.trajectory.end(), from, to);
@@ -102,7 +104,7 @@ void find_units(PoseFile& ground_truth, PoseFile& estimate, const std::string& p
             "--groundtruth_unit");
 }
 
-/// Quaternions in a wrong order are still rotations: the ground truth tells.
+/// Quaternions read in a wrong order are still rotations: only the ground truth shows the error.
 void remark_order(const PoseFile& ground_truth, const PoseFile& estimate, const std::string& path,
                   const EvalArguments& arguments, const Scores& scores) {
   const Similarity undone = scores.alignment.transform.inverse();
@@ -121,16 +123,15 @@ void remark_order(const PoseFile& ground_truth, const PoseFile& estimate, const 
              better->of_ground_truth ? "groundtruth" : "estimate", name);
 }
 
-/// Where the ground truth is the sparser one, its poses lead.
-void remark_left_aside(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, const std::string& path,
-                       const EvalArguments& arguments, const Scores& scores) {
-  if (scores.left_aside == 0) return;
+/// If the ground truth has fewer poses, pairs are made from its poses.
+void remark_unmatched(const PoseTrajectory& ground_truth, const PoseTrajectory& estimate, const std::string& path,
+                      const EvalArguments& arguments, const Scores& scores) {
+  if (scores.unmatched == 0) return;
   const bool truth_leads = !arguments.interpolate && ground_truth.size() < estimate.size();
-  fmt::print(stderr, "remark: {}: {} of its {} poses are left aside, without ground truth of their own within {} s{}\n",
-             path, scores.left_aside, estimate.size(), scores.options.tolerance,
-             truth_leads ? "; --interpolate, with a larger --t_max_diff, takes it between two of the ground truth's "
-                           "fewer poses"
-                         : "");
+  fmt::print(
+      stderr, "remark: {}: {} of its {} poses are not compared, without ground truth of their own within {} s{}\n",
+      path, scores.unmatched, estimate.size(), scores.options.tolerance,
+      truth_leads ? "; --interpolate, with a larger --t_max_diff, interpolates the ground truth's fewer poses" : "");
 }
 
 std::string alignment_name(const EvalArguments& arguments) {
@@ -162,7 +163,7 @@ ScoreOptions score_options(const EvalArguments& arguments) {
   return options;
 }
 
-/// Errors name the estimate's file, as those of reading do.
+/// Errors name the estimate's file.
 ScoredEstimate score_file(PoseFile ground_truth, const std::string& path, const EvalArguments& arguments) {
   PoseFile estimate = read_file(path, arguments.estimate_unit, arguments.estimate_quaternion, arguments);
   print_remarks(estimate);
@@ -171,14 +172,14 @@ ScoredEstimate score_file(PoseFile ground_truth, const std::string& path, const 
   try {
     Scores scores = score(ground_truth.trajectory, estimate.trajectory, score_options(arguments));
     remark_order(ground_truth, estimate, path, arguments, scores);
-    remark_left_aside(ground_truth.trajectory, estimate.trajectory, path, arguments, scores);
+    remark_unmatched(ground_truth.trajectory, estimate.trajectory, path, arguments, scores);
     return {std::move(estimate.trajectory), std::move(scores)};
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", path, error.what()));
   }
 }
 
-/// What only a run knows is left open.
+/// Leaves fields empty that only a run has.
 RunRecord record_of(const std::string& ground_truth, const std::string& estimate, const Scores& scores) {
   RunRecord record;
   record.experiment = ground_truth;
@@ -187,7 +188,7 @@ RunRecord record_of(const std::string& ground_truth, const std::string& estimate
   return record;
 }
 
-/// One estimate's as a run's metrics.json, several as a list of them.
+/// Of one estimate the text of a run's metrics.json, of several a list of them.
 std::string json_text(const std::vector<RunRecord>& records) {
   Json json = Json::array();
   for (const RunRecord& record : records) json.push_back(to_json(record));
@@ -213,7 +214,7 @@ void write_outputs(const EvalArguments& arguments, const std::vector<RunRecord>&
   if (!arguments.errors.empty()) write_file(arguments.errors, errors_csv(last.scores));
 }
 
-/// What a plot calls the estimates: by their files' names, where these differ.
+/// Names of the estimates in a plot: their files' names if these differ, else the paths.
 std::vector<std::string> plot_names(const std::vector<RunRecord>& records) {
   std::set<std::string> names;
   std::vector<std::string> files, paths;
@@ -239,7 +240,7 @@ void plot_trajectories(const EvalArguments& arguments, const std::vector<RunReco
   if (!warnings.empty()) fmt::print(stderr, "{}: is drawn, but Python warns:{}\n", arguments.plot, warnings);
 }
 
-/// Nothing where an output goes to the terminal.
+/// Prints nothing if an output goes to the standard output.
 void print_scores(const EvalArguments& arguments, const std::vector<RunRecord>& records, const ScoredEstimate& last) {
   for (const std::string* path : {&arguments.json, &arguments.aligned, &arguments.errors}) {
     if (*path == "/dev/stdout") return;
@@ -284,13 +285,13 @@ void add_file_options(CLI::App& command, EvalArguments& arguments) {
       .add_option(
           "--format", arguments.format,
           "Columns of both files: tum (t x y z qx qy qz qw), euroc (t x y z qw qx qy qz), kitti (3x4 matrices), "
-          "robotevt (t r11..r33 x y z); auto: as their names or number tell")
+          "robotevt (t r11..r33 x y z); auto: by their names or number")
       ->check(one_of(to_strings(kPoseFormatNames)))
       ->capture_default_str();
-  command.add_option("--times", arguments.times, "Times, one a line, of trajectories without (KITTI)")
+  command.add_option("--times", arguments.times, "Times, one per line, for trajectories without (KITTI)")
       ->type_name("FILE");
   const auto add_unit = [&](const char* name, std::string& unit, const std::string& whose) {
-    command.add_option(name, unit, "Unit of the " + whose + "'s times; auto: as their column's name says, or seconds")
+    command.add_option(name, unit, "Unit of the " + whose + "'s times; auto: by the name of their column, or seconds")
         ->check(one_of(to_strings(kTimeUnitNames)))
         ->capture_default_str();
   };
@@ -298,8 +299,7 @@ void add_file_options(CLI::App& command, EvalArguments& arguments) {
   add_unit("--estimate_unit", arguments.estimate_unit, "estimate");
   const auto add_order = [&](const char* name, std::string& order, const std::string& whose) {
     command
-        .add_option(name, order,
-                    "Order of the " + whose + "'s quaternion columns; auto: as their names or the format tell")
+        .add_option(name, order, "Order of the " + whose + "'s quaternion columns; auto: by their names or the format")
         ->check(one_of(to_strings(kQuaternionOrderNames)))
         ->capture_default_str();
   };
@@ -310,10 +310,10 @@ void add_file_options(CLI::App& command, EvalArguments& arguments) {
 void add_alignment_options(CLI::App& command, EvalArguments& arguments) {
   auto* align = command.add_flag("-a,--align", arguments.align, "SE(3) alignment (Umeyama); with -s: Sim(3)");
   auto* scale =
-      command.add_flag("-s,--correct_scale", arguments.correct_scale, "Correct the scale; without -a: it alone");
+      command.add_flag("-s,--correct_scale", arguments.correct_scale, "Correct the scale; without -a: only the scale");
   auto* origin = command.add_flag("--align_origin", arguments.align_origin, "Make the first poses equal");
   origin->excludes(align)->excludes(scale);
-  command.add_option("--alignment", arguments.alignment, "The same by name, and yaw only (about z)")
+  command.add_option("--alignment", arguments.alignment, "Alignment by name; also yaw only (about z)")
       ->check(one_of(to_strings(kAlignmentNames)))
       ->excludes(align)
       ->excludes(scale)
@@ -356,7 +356,7 @@ void add_relative_options(CLI::App& command, EvalArguments& arguments) {
   command.add_option("-t,--delta_tol", options.rpe_tolerance, "How far from delta a pair may be, relative to it")
       ->check(not_negative())
       ->capture_default_str();
-  command.add_flag("--all_pairs", arguments.all_pairs, "Pairs from every pose on, not one chain");
+  command.add_flag("--all_pairs", arguments.all_pairs, "Pairs from every pose, not one chain");
   command.add_flag("--pairs_from_reference", arguments.pairs_from_reference,
                    "Measure metres and degrees on the ground truth, not on the estimate");
 }
@@ -372,38 +372,38 @@ void add_segment_options(CLI::App& command, EvalArguments& arguments) {
           ->capture_default_str();
   command
       .add_option("--segment_lengths", options.segment_lengths,
-                  "Their lengths; else 10 to 50 % of the path (rpg), 100 to 800 m (kitti)")
+                  "Their lengths; by default 10 to 50 % of the path (rpg), 100 to 800 m (kitti)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(above_zero())
       ->type_name("LENGTH,...")
       ->needs(rule);
-  command.add_option("--segment_unit", options.segment_unit, "What --segment_lengths are in")
+  command.add_option("--segment_unit", options.segment_unit, "Unit of --segment_lengths")
       ->check(one_of(to_strings(kLengthUnitNames)))
       ->capture_default_str();
 }
 
 void add_output_options(CLI::App& command, EvalArguments& arguments) {
-  command.add_option("--table", arguments.table, "Print a table of this format; of several estimates: text")
+  command.add_option("--table", arguments.table, "Print a table of this format; by default text for several estimates")
       ->check(one_of(to_strings(kTableFormatNames)));
   add_wide(command, arguments.layout, arguments.wide);
   command
       .add_option("--json", arguments.json,
-                  "Write the scores, with the structure of a run's metrics.json; of several estimates a list of them")
+                  "Write the scores, with the structure of a run's metrics.json; for several estimates a list of them")
       ->type_name("FILE");
   command.add_option("--aligned", arguments.aligned, "Write the estimate as it is compared, aligned (TUM)")
       ->type_name("FILE");
   command.add_option("--errors", arguments.errors, "Write the error of each pose: CSV")->type_name("FILE");
   command
       .add_option("--plot", arguments.plot,
-                  "Draw the aligned estimates and the ground truth to this .svg, .pdf or .png, by Python's matplotlib")
+                  "Draw the aligned estimates and the ground truth to this .svg, .pdf or .png, with matplotlib")
       ->type_name("FILE");
   command
       .add_option("--plot_kind", arguments.plot_kind,
                   "What is drawn: trajectory (from three sides), position (x, y, z over time), error (over time)")
       ->check(one_of({"trajectory", "position", "error"}))
       ->capture_default_str();
-  command.add_flag("--no-caption", arguments.no_caption, "The plot without the sentence below it");
+  command.add_flag("--no-caption", arguments.no_caption, "Draw no caption below the plot");
   command.add_flag("--force", arguments.force, "Replace files that exist");
 }
 

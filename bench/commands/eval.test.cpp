@@ -33,7 +33,7 @@ struct Trajectories {
     write_file(estimate, format_tum(disturbed(seen_from(truth, {2.0, {so3::exp({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0}}}))));
   }
 
-  /// Runs `evbench eval` with these options and gives what it wrote with --json.
+  /// Runs `evbench eval` with these options and returns the output of --json.
   Json eval(const std::string& options) const {
     CLI::App app;
     add_eval(app);
@@ -61,7 +61,7 @@ TEST_CASE("eval aligns as evo's options say") {
   CHECK_THROWS_AS(method("--alignment sim4"), CLI::ParseError);
 }
 
-TEST_CASE("eval takes relative errors over one frame, consecutively, unless told otherwise") {
+TEST_CASE("eval takes relative errors over one frame, consecutively, by default") {
   const Trajectories files;
   const Json usual = files.eval("").at("final").at("rpe");
   CHECK(usual.at("delta") == 1.0);
@@ -86,7 +86,7 @@ TEST_CASE("eval writes the structure of a run's metrics, which table reads") {
   const Trajectories files;
   const Json json = files.eval("-as");
   for (const char* key :
-       {"experiment", "label", "final", "online", "runtime_s", "realtime_factor", "peak_rss_mib", "status"}) {
+       {"experiment", "label", "final", "causal", "runtime_s", "realtime_factor", "peak_rss_mib", "status"}) {
     CHECK(json.contains(key));
   }
   for (const char* pointer : {"/ate/trans_m/rmse", "/ate/rot_deg/rmse", "/rpe/trans_m/rmse", "/rpe/rot_deg/sse",
@@ -150,7 +150,7 @@ TEST_CASE("eval takes errors over sub-trajectories as rpg_trajectory_evaluation 
   CHECK_THROWS_AS(files.eval("--segment_lengths 1"), CLI::ParseError);
 }
 
-TEST_CASE("eval writes the aligned estimate and the error of each pose, and replaces nothing unasked", "[slow]") {
+TEST_CASE("eval writes the aligned estimate and the error of each pose, and replaces files only by --force", "[slow]") {
   const Trajectories files;
   const std::string command = "eval truth.txt estimate.txt -as --aligned aligned.txt --errors errors.csv";
   REQUIRE(testing::evbench(files.folder, command).exit_code == 0);
@@ -177,7 +177,7 @@ TEST_CASE("eval writes the aligned estimate and the error of each pose, and repl
   CHECK(testing::evbench(files.folder, "eval truth.txt estimate.txt truth.txt --aligned a.txt").exit_code == 2);
 }
 
-TEST_CASE("table replaces no file unless that is asked for", "[slow]") {
+TEST_CASE("table replaces a file only by --force", "[slow]") {
   const Trajectories files;
   files.folder.write("metrics.json", dump_json(files.eval("-as")));
   files.folder.write("table.txt", "mine");
@@ -245,20 +245,20 @@ TEST_CASE("eval gives the same scores for the same trajectories in KITTI's and E
   CHECK(ate("") == Approx(expected).epsilon(1e-9));
 }
 
-TEST_CASE("eval says how many poses of the estimate it left aside", "[slow]") {
+TEST_CASE("eval reports how many poses of the estimate are unmatched", "[slow]") {
   const Trajectories files;
   write_file(files.ground_truth, format_tum(sample(wavy_pose, 20, 0.1)));
   const Outcome sparse = testing::evbench(files.folder, "eval truth.txt estimate.txt -as --json scores.json");
   CHECK(sparse.exit_code == 0);
-  CHECK_THAT(sparse.out, ContainsSubstring("20 poses compared, 180 of the estimate left aside"));
-  CHECK_THAT(sparse.err, ContainsSubstring("estimate.txt: 180 of its 200 poses are left aside") &&
+  CHECK_THAT(sparse.out, ContainsSubstring("20 poses compared, 180 of the estimate unmatched"));
+  CHECK_THAT(sparse.err, ContainsSubstring("estimate.txt: 180 of its 200 poses are not compared") &&
                              ContainsSubstring("--interpolate"));
   const Outcome all = testing::evbench(files.folder, "eval truth.txt truth.txt");
   CHECK(all.err.empty());
-  CHECK_THAT(all.out, !ContainsSubstring("left aside"));
+  CHECK_THAT(all.out, !ContainsSubstring("unmatched"));
 }
 
-TEST_CASE("eval finds out the unit of times that may be any by the other trajectory, or refuses them", "[slow]") {
+TEST_CASE("eval determines an unknown unit of times by the other trajectory, or gives an error", "[slow]") {
   const Trajectories files;
   const auto in_unit = [](double per_second) {
     std::string text;
@@ -284,12 +284,12 @@ TEST_CASE("eval finds out the unit of times that may be any by the other traject
   CHECK_THROWS_WITH(files.eval(""), ContainsSubstring("--estimate_unit and --groundtruth_unit"));
 }
 
-TEST_CASE("eval says that another order of the quaternions fits, and how to choose it", "[slow]") {
+TEST_CASE("eval reports that another order of the quaternions fits, and how to choose it", "[slow]") {
   const Trajectories files;
   std::string w_first;
   for (const auto& [t, T] : sample(wavy_pose, 200, 0.05).poses()) {
-    w_first += fmt::format("{},{},{},{},{},{},{},{}\n", t, T.p.x(), T.p.y(), T.p.z(), T.q.w(), T.q.x(), T.q.y(),
-                           T.q.z());
+    w_first +=
+        fmt::format("{},{},{},{},{},{},{},{}\n", t, T.p.x(), T.p.y(), T.p.z(), T.q.w(), T.q.x(), T.q.y(), T.q.z());
   }
   write_file(files.ground_truth, format_tum(sample(wavy_pose, 200, 0.05)));
   write_file(files.estimate, w_first);
@@ -308,7 +308,7 @@ TEST_CASE("eval says that another order of the quaternions fits, and how to choo
   CHECK_THROWS_AS(files.eval("--estimate_quaternion abcd"), CLI::ParseError);
 }
 
-TEST_CASE("eval scores other tools' files as they are meant") {
+TEST_CASE("eval reads other tools' files in their own conventions") {
   const struct {
     const char *truth, *estimate, *options, *score;
     double expected, error;
@@ -331,7 +331,7 @@ TEST_CASE("eval scores other tools' files as they are meant") {
   }
 }
 
-TEST_CASE("eval refuses what it can't score and then writes nothing") {
+TEST_CASE("eval gives an error for what it can't score and then writes nothing") {
   const Trajectories files;
   CHECK_THROWS_AS(files.eval("--t_offset 100"), InputError);
   files.folder.write("estimate.txt", "1 0 0 0 0 0 0 1\n0.5 0 0 0 0 0 0 1\n");

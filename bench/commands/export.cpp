@@ -6,6 +6,7 @@
 #include <iterator>
 #include <memory>
 
+#include "bench/commands/causal_flag.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/experiment.hpp"
@@ -29,7 +30,7 @@ struct ExportArguments {
   std::vector<std::string> overrides;
   std::string ground_truth, tracks, calibration, aligned, errors, evo, rpg;
   std::string evo_error = kEvoErrorNames[0];
-  bool online = false;
+  bool causal = false;
   bool force = false;
 
   std::vector<std::string> outputs() const { return {ground_truth, tracks, calibration, aligned, errors, evo, rpg}; }
@@ -58,16 +59,16 @@ void check(const ExportArguments& arguments) {
   }
   std::vector<std::string> read = {arguments.from};
   for (const char* name : {"config.json", "job.json", "manifest.json", "metrics.json", "status.json", "final.tum",
-                           "online.tum", "groundtruth.tum", "map.ply", "timing.csv", "log.txt"}) {
+                           "causal.tum", "groundtruth.tum", "map.ply", "timing.csv", "log.txt"}) {
     read.push_back(arguments.from + "/" + name);
   }
   check_outputs(arguments.outputs(), read, arguments.force);
   if (folder && !arguments.overrides.empty()) {
-    throw InputError(fmt::format("{}: --set changes configs, not what a run has done", arguments.from));
+    throw InputError(fmt::format("{}: --set changes configs, not finished runs", arguments.from));
   }
 }
 
-/// Loads no library that only the config names; where its source is of one, that is told.
+/// Loads no library that only the config names; if its source needs one, the error says so.
 std::unique_ptr<Source> make_source_of(const std::string& config, const ExportArguments& arguments,
                                        const Plugins& plugins) {
   try {
@@ -83,7 +84,7 @@ void export_source(const std::string& config, const ExportArguments& arguments, 
   const std::unique_ptr<Source> source = make_source_of(config, arguments, plugins);
   std::vector<std::string> read = source->files();
   std::ranges::move(source->event_files(), std::back_inserter(read));
-  check_outputs(arguments.outputs(), read, true);  // what exists has been asked before, and may be written by now
+  check_outputs(arguments.outputs(), read, true);  // existing files were checked before any were written
   const auto tracks = source->true_tracks();
   if (!arguments.ground_truth.empty() && source->ground_truth().empty()) {
     throw InputError(fmt::format("{}: its source has no ground truth", config));
@@ -99,7 +100,7 @@ void export_source(const std::string& config, const ExportArguments& arguments, 
 void export_run(const ExportArguments& arguments) {
   const ScoreOptions protocol = protocol_of_run(arguments.from);
   const RunRecord record = read_record(arguments.from);
-  const auto [estimate, scores] = score_estimate(arguments.from, arguments.online, protocol, record);
+  const auto [estimate, scores] = score_estimate(arguments.from, arguments.causal, protocol, record);
   if (!arguments.aligned.empty()) write_file(arguments.aligned, format_tum(aligned_estimate(estimate, scores)));
   if (!arguments.errors.empty()) write_file(arguments.errors, errors_csv(scores));
   if (!arguments.evo.empty()) {
@@ -145,20 +146,21 @@ void add_export(CLI::App& app, const Plugins& plugins) {
   command->add_option("--evo", arguments->evo, "Its errors as evo's result archive, for evo_res")
       ->type_name("FILE.zip");
   command
-      ->add_option("--evo-error", arguments->evo_error, "Which errors: absolute or relative, translation or rotation")
+      ->add_option("--evo-error", arguments->evo_error,
+                   "Errors to export: absolute or relative, translation or rotation")
       ->check(one_of(to_strings(kEvoErrorNames)))
       ->capture_default_str();
   command
       ->add_option("--rpg", arguments->rpg,
-                   "A folder as rpg_trajectory_evaluation reads it: the estimate, the ground truth, the alignment")
+                   "A folder for rpg_trajectory_evaluation: the estimate, the ground truth, the alignment")
       ->type_name("DIR");
-  command->add_flag("--online", arguments->online, "The poses as estimated when they were made, not the final ones");
+  add_causal_flag(*command, arguments->causal, "The causal poses, as first published, not the final ones");
   add_overrides(*command, arguments->overrides, "Override a value of the config: KEY=VALUE, e.g. seed=3");
   command->add_flag("--force", arguments->force, "Replace files that exist");
   command->footer(
-      "A config's source is made as evbench run makes it: the same seed gives the same tracks. Written as\n"
-      "groundtruth.txt, calib.txt and tracks.txt, it can be run by the source recording and the front-end recorded.\n"
-      "A run's folder stands for its config; its estimate is scored by its own protocol.");
+      "A config's source is made as by evbench run: the same seed gives the same tracks. Exported as groundtruth.txt,\n"
+      "calib.txt and tracks.txt, it can be run with the source recording and the front-end recorded. The folder of a\n"
+      "run can be given instead of its config; its estimate is scored by its own protocol.");
   command->callback([arguments, &plugins] { execute(*arguments, plugins); });
 }
 

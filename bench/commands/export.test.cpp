@@ -52,7 +52,7 @@ TEST_CASE("A simulated sequence is exported whole, and can be run from its files
   CHECK(read_file(sequence.folder.file("tracks.txt")) != first);
 }
 
-TEST_CASE("A run's aligned estimate and errors are those that it was scored by", "[slow]") {
+TEST_CASE("A run's exported estimate and errors agree with its scores", "[slow]") {
   const Sequence sequence;
   REQUIRE(sequence.run("run c.json --quiet").exit_code == 0);
   const std::string run =
@@ -67,8 +67,8 @@ TEST_CASE("A run's aligned estimate and errors are those that it was scored by",
   const Json aligned = parse_json(read_file(sequence.folder.file("s.json"))).at("final");
   CHECK(aligned.at("ate").at("trans_m").at("rmse").get<double>() ==
         Approx(scores.at("ate").at("trans_m").at("rmse").get<double>()).epsilon(1e-6));
-  REQUIRE(sequence.run("export '" + run + "' --online --aligned online.txt").exit_code == 0);
-  CHECK(read_file(sequence.folder.file("online.txt")) != read_file(sequence.folder.file("a.txt")));
+  REQUIRE(sequence.run("export '" + run + "' --causal --aligned causal.txt").exit_code == 0);
+  CHECK(read_file(sequence.folder.file("causal.txt")) != read_file(sequence.folder.file("a.txt")));
 }
 
 TEST_CASE("A run is exported as evo's result archive, which reads back as evo reads it", "[slow]") {
@@ -128,7 +128,7 @@ TEST_CASE("A run is exported in rpg_trajectory_evaluation's layout, which gives 
   CHECK_THAT(refused.err, ContainsSubstring("rpg_trajectory_evaluation does not align by \"origin\""));
 }
 
-TEST_CASE("What can't be exported is refused with what was expected, and no file is replaced", "[slow]") {
+TEST_CASE("An impossible export is an error that says what is expected, and no file is replaced", "[slow]") {
   const Sequence sequence;
   sequence.refused("c.json", "nothing to export; expected at least one of --groundtruth");
   sequence.refused("c.json --errors e.csv",

@@ -8,7 +8,7 @@
 
 namespace evbench {
 
-/// What went wrong with some of many; what() is the last of the messages.
+/// Errors of several items of a list; what() is the last message.
 class SeveralErrors : public InputError {
  public:
   SeveralErrors(std::vector<std::string> others, const std::string& last)
@@ -19,7 +19,7 @@ class SeveralErrors : public InputError {
   std::vector<std::string> others_;
 };
 
-/// Tells it when the others are done. Nothing where there are no messages.
+/// Throws the messages as one error; does nothing if there are none. Called when the other items are done.
 inline void throw_together(std::vector<std::string> messages) {
   if (messages.empty()) return;
   const std::string last = std::move(messages.back());

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/commands/causal_flag.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/number_check.hpp"
@@ -21,7 +22,7 @@
 namespace evbench {
 namespace {
 
-/// A kind of figure, how it is made, and which of the options it takes that not all kinds do.
+/// A kind of figure, its function, and the options that only some kinds have.
 struct FigureKind {
   const char* name;
   const char* text;
@@ -34,20 +35,20 @@ const std::vector<FigureKind>& figure_kinds() {
       {"sweep",
        "metrics against an axis: medians, and bands between the quartiles of all other runs",
        sweep_figure,
-       {"--metrics", "--axis", "--axis-label", "--online"}},
+       {"--metrics", "--axis", "--axis-label", "--causal"}},
       {"map",
        "against an axis and across another one: the ratio of a metric to that of another method",
        map_figure,
-       {"--metrics", "--axis", "--axis-label", "--across", "--base", "--online"}},
-      {"box", "quartiles and median of each back-end's runs, and the runs", box_figure, {"--metrics", "--online"}},
-      {"error", "errors over time of a sequence's runs", error_figure, {"--online"}},
-      {"position", "x, y and z over time, with the ground truth", position_figure, {"--online"}},
-      {"trajectory", "from three sides, with the ground truth", trajectory_figure, {"--online"}},
+       {"--metrics", "--axis", "--axis-label", "--across", "--base", "--causal"}},
+      {"box", "quartiles and median of each back-end's runs, and the runs", box_figure, {"--metrics", "--causal"}},
+      {"error", "errors over time of a sequence's runs", error_figure, {"--causal"}},
+      {"position", "x, y and z over time, with the ground truth", position_figure, {"--causal"}},
+      {"trajectory", "from three sides, with the ground truth", trajectory_figure, {"--causal"}},
       {"times", "the distribution of the times of updates", times_figure, {}},
       {"profile",
        "performance profiles: the share of sequences and seeds within a factor of the best",
        profile_figure,
-       {"--metrics", "--online"}},
+       {"--metrics", "--causal"}},
   };
   return kinds;
 }
@@ -62,13 +63,13 @@ const FigureKind& find_kind(const std::string& name) {
   return *std::ranges::find(figure_kinds(), name, &FigureKind::name);  // CLI11 has checked it
 }
 
-/// An option that another kind takes, and this one does not, must not be given.
+/// Throws InputError for an option that only other kinds have.
 void check_options(const CLI::App& command, const FigureKind& kind) {
   for (const FigureKind& other : figure_kinds()) {
     for (const std::string& option : other.options) {
       if (command.count(option) == 0 || std::ranges::find(kind.options, option) != kind.options.end()) continue;
       throw InputError(fmt::format(
-          "{} says nothing of a figure of the kind {}; of the options that not all kinds have it takes {}", option,
+          "{} has no effect on a figure of the kind {}; of the options that only some kinds have it takes {}", option,
           kind.name, kind.options.empty() ? "none" : fmt::format("{}", fmt::join(kind.options, ", "))));
     }
   }
@@ -89,7 +90,7 @@ void execute(const FigureArguments& arguments) {
   check_figure_name(arguments.out);
   check_outputs({arguments.out, arguments.keep_script ? script : ""}, {}, arguments.force);
   use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
-    if (any_of_common_time(arguments.options.metrics)) score_common_time(runs, arguments.options.online);
+    if (any_of_common_time(arguments.options.metrics)) score_common_time(runs, arguments.options.causal);
     Figure figure = find_kind(arguments.kind).make(runs, arguments.options);
     if (arguments.width_mm > 0.0) figure.width_mm = arguments.width_mm;
     if (arguments.height_mm > 0.0) figure.height_mm = arguments.height_mm;
@@ -107,26 +108,27 @@ void add_figure(CLI::App& app) {
   auto arguments = std::make_shared<FigureArguments>();
   CLI::App* command =
       app.add_subcommand("figure", "Draw runs for a paper: sweeps, boxes, errors, trajectories, profiles");
-  command->add_option("kind", arguments->kind, "What is drawn")->required()->check(one_of(kind_names()));
+  command->add_option("kind", arguments->kind, "Kind of figure")->required()->check(one_of(kind_names()));
   add_run_selection(*command, arguments->runs);
   command->add_option("--out", arguments->out, "The file: .svg, .pdf or .png")->required()->type_name("FILE");
-  add_list_option(*command, "--metrics", arguments->options.metrics, "What is shown, a panel each; else ATE, RPE");
-  command->add_option("--axis", arguments->options.axis, "What a sweep is drawn against, e.g. backend.frame_duration")
+  add_list_option(*command, "--metrics", arguments->options.metrics, "Metrics, one panel each; by default ATE and RPE");
+  command->add_option("--axis", arguments->options.axis, "Axis of a sweep, e.g. backend.batch_duration")
       ->type_name("NAME");
-  command
-      ->add_option("--axis-label", arguments->options.axis_label, "What is written there, e.g. \"frame duration [s]\"")
+  command->add_option("--axis-label", arguments->options.axis_label, "Label of that axis, e.g. \"batch duration [s]\"")
       ->type_name("TEXT");
   command->add_option("--across", arguments->options.across, "The other axis of a map")->type_name("NAME");
-  command->add_option("--base", arguments->options.base, "What a map compares with; else the method without the axis")
+  command->add_option("--base", arguments->options.base, "Reference of a map; by default the method without the axis")
       ->type_name("METHOD");
-  command->add_flag("--online", arguments->options.online, "The poses as estimated when they were made");
-  command->add_option("--width", arguments->width_mm, "Width [mm]; else 174, a page's")->check(in_range(20.0, 2000.0));
+  add_causal_flag(*command, arguments->options.causal, "The causal poses, as first published");
+  command->add_option("--width", arguments->width_mm, "Width [mm]; by default 174, that of a page")
+      ->check(in_range(20.0, 2000.0));
   command->add_option("--height", arguments->height_mm, "Height of the panels, without legend and caption [mm]")
       ->check(in_range(20.0, 2000.0));
-  command->add_flag("--no-caption", arguments->no_caption, "Without the sentences below it, for who writes their own");
+  command->add_flag("--no-caption", arguments->no_caption, "Draw no caption below the figure");
   command->add_flag("--keep-script", arguments->keep_script,
-                    "Also write FILE with the ending .py: the Python script that draws it, to be changed by hand");
-  command->add_option("--python", arguments->python, "A Python with matplotlib; else python3")->type_name("PROGRAM");
+                    "Also write FILE with the extension .py: the Python script that draws it, to edit by hand");
+  command->add_option("--python", arguments->python, "A Python with matplotlib; by default python3")
+      ->type_name("PROGRAM");
   command->add_flag("--force", arguments->force, "Replace files that exist");
   std::string kinds;
   for (const FigureKind& kind : figure_kinds()) {

@@ -17,14 +17,14 @@ namespace evbench {
 void add_help(CLI::App& app) {
   auto shell = std::make_shared<std::string>();
   CLI::App* completion =
-      app.add_subcommand("completion", "Print what a shell completes commands and options with; it is installed, too");
+      app.add_subcommand("completion", "Print the completion script for a shell; it is also installed");
   completion->add_option("shell", *shell, "The shell")->required()->check(one_of({"bash", "zsh"}));
-  completion->footer("Where evbench is not installed: source <(evbench completion bash)");
+  completion->footer("If evbench is not installed: source <(evbench completion bash)");
   completion->callback(
       [shell, &app] { fmt::print("{}", *shell == "zsh" ? zsh_completion(app) : bash_completion(app)); });
 
-  CLI::App* man = app.add_subcommand("man", "Print the manual page; it is installed, too");
-  man->footer("Where evbench is not installed: evbench man | man -l -");
+  CLI::App* man = app.add_subcommand("man", "Print the manual page; it is also installed");
+  man->footer("If evbench is not installed: evbench man | man -l -");
   man->callback([&app] { fmt::print("{}", man_page(app)); });
 
   auto words = std::make_shared<std::vector<std::string>>();

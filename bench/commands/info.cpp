@@ -22,7 +22,7 @@ struct InfoArguments {
 void execute(const InfoArguments& arguments) {
   RecordingSummary summary;
   StreamOptions options = arguments.options;
-  options.read.lenient = true;  // what is wrong is what one wants to see
+  options.read.lenient = true;  // faults are what the summary shows
   {
     ProgressLine line(arguments.file, arguments.quiet);
     summary = summarise(arguments.file, options, [&](std::int64_t events, std::int64_t t) {
@@ -39,34 +39,35 @@ void execute(const InfoArguments& arguments) {
 
 void add_read_options(CLI::App& command, ReadOptions& options) {
   command.add_option("--topic", options.topic,
-                     "Whose events: topic of a bag, group of an HDF5 file; default: the first");
+                     "Topic of the events in a bag, or their group in an HDF5 file; default: the first");
   command.add_option("--ground-truth-topic", options.ground_truth_topic,
-                     "Whose poses in a bag are the ground truth; default: the event camera's by its name");
+                     "Topic of the ground-truth poses in a bag; default: the event camera's by its name");
   command.add_option("--camera-info-topic", options.camera_info_topic,
-                     "Whose camera info in a bag is the calibration; default: the event camera's by its size and name");
+                     "Topic of the camera info in a bag; default: the event camera's by its size and name");
   auto* strict =
-      command.add_flag("--strict", options.strict, "The first oddity of the recording is an error, not a counted skip");
+      command.add_flag("--strict", options.strict,
+                       "The first fault of the recording is an error; by default faults are skipped and counted");
   command
       .add_flag("--lenient", options.lenient,
-                "However much of the recording has to be left out; otherwise more than a tenth is an error")
+                "Accept any number of skipped events; by default more than a tenth is an error")
       ->excludes(strict);
   command
       .add_option("--width", options.width,
-                  "Sensor's width, where the file of events does not say [px]; goes before what lies beside it")
+                  "Sensor's width [px], if the file of events does not have it; overrides files next to it")
       ->check(CLI::Range(1, 65536));
-  command.add_option("--height", options.height, "Sensor's height, likewise [px]")->check(CLI::Range(1, 65536));
+  command.add_option("--height", options.height, "Sensor's height [px], likewise")->check(CLI::Range(1, 65536));
   command
-      .add_option(
-          "--columns", options.columns,
-          "Columns of text or of HDF5's rows in their order, where it is not what it looks like: t (or t_s, t_ms, "
-          "t_us, t_ns), x, y, p; anything else is passed over. Of HDF5's single columns only the unit counts")
+      .add_option("--columns", options.columns,
+                  "Columns of text or of HDF5 rows in their order, if they are not recognised: t (or t_s, t_ms, t_us, "
+                  "t_ns), x, "
+                  "y, p; other names are skipped. For single columns of HDF5 only the unit counts")
       ->type_name("t,x,y,p");
 }
 
 void add_info(CLI::App& app, const Plugins& plugins) {
   auto arguments = std::make_shared<InfoArguments>();
   arguments->options.open = recordings_and_configs(plugins);
-  CLI::App* command = app.add_subcommand("info", "Describe a recording of events: format, counts, rates, oddities");
+  CLI::App* command = app.add_subcommand("info", "Describe a recording of events: format, counts, rates, faults");
   command->add_option("file", arguments->file, "File or folder, of any format that evbench reads; -: standard input")
       ->required()
       ->type_name("FILE");
@@ -74,8 +75,9 @@ void add_info(CLI::App& app, const Plugins& plugins) {
   command->add_flag("--quiet", arguments->quiet, "Show no progress");
   add_read_options(*command, arguments->options.read);
   command->footer(
-      "Oddities are events that were left out: out of the order of time, outside the sensor, in damaged parts of the "
-      "file. Exit code 2 where they are more than a tenth, unless --lenient.");
+      "Faults are events that are skipped: out of time order, outside the sensor, or in damaged parts of the file. "
+      "Exit "
+      "code 2 if they are more than a tenth, unless --lenient.");
   command->callback([arguments] { execute(*arguments); });
 }
 

@@ -23,12 +23,12 @@ void list(const Plugins& plugins) {
   }
 }
 
-/// False where there is no such plugin of this kind. An empty kind: any.
+/// False if there is no such plugin of this kind. An empty kind matches any.
 template <class Interface>
 bool describe(const Plugins& plugins, const std::string& kind, const std::string& name, bool schema) {
   const std::string own = PluginKind<Interface>::name;
   if (kind.empty() ? !plugins.of<Interface>().entries().contains(name) : kind != own) return false;
-  const auto& entry = plugins.of<Interface>().find(name, "describe " + own);
+  const auto& entry = plugins.of<Interface>().find(name, own);
   if (schema) {
     fmt::print("{}\n", dump_json(entry.schema(), 2));
   } else {
@@ -66,7 +66,7 @@ void add_describe(CLI::App& app, const Plugins& plugins) {
     const bool schema = arguments->schema;
     std::string kind = arguments->kind, name = arguments->name;
     if (kind == "config") {
-      if (!name.empty()) throw InputError(fmt::format("describe config: expected no name beside it, but got {}", name));
+      if (!name.empty()) throw InputError(fmt::format("config: expected no name with it, but got {}", name));
       fmt::print("{}\n", schema ? dump_json(experiment_schema(plugins), 2) : describe_experiment());
       return;
     }
@@ -74,7 +74,7 @@ void add_describe(CLI::App& app, const Plugins& plugins) {
     if (!describe<Source>(plugins, kind, name, schema) && !describe<FrontEnd>(plugins, kind, name, schema) &&
         !describe<BackEnd>(plugins, kind, name, schema)) {
       throw InputError(fmt::format(
-          "describe {}: expected config, a plugin's name, or source, frontend or backend and a name; see evbench list",
+          "{}: expected config, a plugin's name, or source, frontend or backend and a name; see evbench list",
           arguments->kind));
     }
   });

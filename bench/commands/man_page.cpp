@@ -13,7 +13,7 @@
 namespace evbench {
 namespace {
 
-/// Text that means nothing to man's macros.
+/// Escapes text for man's macros.
 std::string escaped(const std::string& text) {
   std::string result;
   bool begins = true;  // a line
@@ -28,7 +28,7 @@ std::string escaped(const std::string& text) {
 
 std::string bold(const std::string& text) { return "\\fB" + escaped(text) + "\\fR"; }
 
-/// "--out TEXT [results]", then what it is.
+/// "--out TEXT (results)" and the description.
 std::string item(const CLI::Option& option) {
   std::string text = ".TP\n";
   if (option.get_positional()) {
@@ -45,7 +45,9 @@ std::string item(const CLI::Option& option) {
     if (!(option.get_positional() && type == "TEXT")) text += " \\fI" + escaped(type) + "\\fR";
     if (!option.get_default_str().empty()) text += escaped(" (" + option.get_default_str() + ")");
   }
-  return text + "\n" + escaped(option.get_description()) + "\n";
+  text += "\n" + escaped(option.get_description());
+  if (!option.get_envname().empty()) text += escaped("; also set by the environment variable " + option.get_envname());
+  return text + "\n";
 }
 
 std::string items(const CLI::App& command) {
@@ -58,7 +60,7 @@ std::string items(const CLI::App& command) {
   return positionals + options;
 }
 
-/// As it stands, its lines being laid out.
+/// Unfilled: the lines of the footer are kept.
 std::string footer(const CLI::App& command) {
   const std::string text = command.get_footer();
   return text.empty() ? "" : fmt::format(".PP\n.nf\n{}\n.fi\n", escaped(text));
@@ -82,7 +84,7 @@ std::string man_page(const CLI::App& program) {
       {kExitDone, "done"},
       {kExitBadInput, "a command line, config or file that can't be used"},
       {kExitFailed, "a run or a check failed; the others were done"},
-      {kExitNotWritten, "what was to be written can't be"}};
+      {kExitNotWritten, "an output can't be written"}};
   for (const auto& [code, text] : kCodes) page += fmt::format(".TP\n{}\n{}\n", code, escaped(text));
   return page + ".TP\n" + escaped("128 + n") + "\nit was ended by signal n\n";
 }

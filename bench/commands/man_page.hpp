@@ -5,7 +5,7 @@
 
 namespace evbench {
 
-/// The manual page evbench(1), for man: every command with its options, made from the declarations.
+/// The manual page evbench(1): every command with its options, generated from the declarations.
 std::string man_page(const CLI::App& program);
 
 }  // namespace evbench

@@ -12,7 +12,7 @@
 
 namespace evbench {
 
-/// The check of an option that takes one of a few names, in place of CLI::IsMember: its message has the nearest one.
+/// Checks an option that accepts only some names. Unlike CLI::IsMember its message suggests the nearest one.
 inline CLI::Validator one_of(const std::vector<std::string>& names) {
   const auto check = [names](const std::string& text) {
     if (std::ranges::find(names, text) != names.end()) return std::string();

@@ -20,7 +20,7 @@ struct NewConfigArguments {
   bool force = false, quiet = false;
 };
 
-/// In the working folder, as the recording is called.
+/// The recording's name with .json, in the working folder.
 std::string usual_name(const std::string& recording) {
   const std::filesystem::path path = std::filesystem::absolute(recording).lexically_normal();
   const std::filesystem::path name = path.has_filename() ? path.filename() : path.parent_path().filename();
@@ -49,8 +49,7 @@ void execute(const NewConfigArguments& arguments, const Plugins& plugins) {
 
 void add_new_config(CLI::App& app, const Plugins& plugins) {
   auto arguments = std::make_shared<NewConfigArguments>();
-  CLI::App* command =
-      app.add_subcommand("new-config", "Write a config for a recording of your own, from what is found in it");
+  CLI::App* command = app.add_subcommand("new-config", "Write a config for your own recording, from its contents");
   command->add_option("recording", arguments->recording, "File or folder, of any format that evbench reads")
       ->required()
       ->type_name("RECORDING");
@@ -58,7 +57,7 @@ void add_new_config(CLI::App& app, const Plugins& plugins) {
       ->type_name("FILE");
   command
       ->add_option("--calibration", arguments->options.calibration,
-                   "Calibration, instead of what is in or beside the recording: fx fy cx cy k1 k2 p1 p2 k3, or YAML of "
+                   "Calibration, instead of that in or next to the recording: fx fy cx cy k1 k2 p1 p2 k3, or YAML of "
                    "Kalibr, ROS or OpenCV")
       ->type_name("FILE");
   command

@@ -20,7 +20,7 @@ void expect_free(const Plugins& plugins, const std::string& kind, const std::str
   const auto& entries = plugins.of<Interface>().entries();
   const auto known = entries.find(name);
   if (known == entries.end()) return;
-  throw InputError(fmt::format("new-plugin: a {} is called \"{}\" already ({}); expected a name of its own", kind, name,
+  throw InputError(fmt::format("new-plugin: there is a {} \"{}\" already ({}); expected another name", kind, name,
                                known->second.origin));
 }
 
@@ -32,12 +32,11 @@ void add_new_plugin(CLI::App& app, const Plugins& plugins) {
     bool minimal = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app.add_subcommand("new-plugin", "Write a small repository with a plugin of your own to start from");
+  CLI::App* command = app.add_subcommand("new-plugin", "Write a small repository with a working plugin to start from");
   command->add_option("kind", arguments->kind, "source, frontend or backend")
       ->required()
       ->check(one_of({"source", "frontend", "backend"}));
-  command->add_option("name", arguments->name, "Name of the plugin: small letters, digits and _")->required();
+  command->add_option("name", arguments->name, "Name of the plugin: lower-case letters, digits and _")->required();
   command->add_option("--out", arguments->out, "Folder to make; by default NAME");
   command->add_flag("--minimal", arguments->minimal, "A back-end in the fewest lines that run, without a test");
   command->footer(
@@ -46,7 +45,7 @@ void add_new_plugin(CLI::App& app, const Plugins& plugins) {
   command->callback([arguments, &plugins] {
     const auto& [kind, name, out, minimal] = *arguments;
     if (minimal && kind != PluginKind<BackEnd>::name) {
-      throw InputError(fmt::format("--minimal: is of a backend; this is a {}", kind));
+      throw InputError(fmt::format("--minimal: is for a backend; this is a {}", kind));
     }
     expect_free<Source>(plugins, kind, name);
     expect_free<FrontEnd>(plugins, kind, name);

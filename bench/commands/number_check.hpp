@@ -10,8 +10,8 @@
 
 namespace evbench {
 
-/// Checks of an option's number: every option of a floating-point type has one of them, so that none is NaN or
-/// infinite. CLI11's own let NaN through, and spell out the largest number there is. `name`: in help texts.
+/// Checks the number of an option. Every option of a floating-point type has such a check, so that no value is NaN or
+/// infinite: the checks of CLI11 accept NaN. `name`: in help texts.
 inline CLI::Validator number_check(const std::string& name, const std::string& expected,
                                    std::function<bool(double)> good) {
   const auto check = [expected, good = std::move(good)](const std::string& text) {
@@ -34,7 +34,7 @@ inline CLI::Validator above_zero() {
 inline CLI::Validator not_negative() {
   return number_check("NONNEGATIVE", " of at least 0", [](double value) { return value >= 0.0; });
 }
-/// Both ends belong to it.
+/// Includes both ends.
 inline CLI::Validator in_range(double from, double to) {
   return number_check(fmt::format("{} to {}", from, to), fmt::format(" from {} to {}", from, to),
                       [=](double value) { return value >= from && value <= to; });

@@ -9,15 +9,15 @@
 
 namespace evbench {
 
-/// How often it is told how far work is.
+/// How often progress is printed.
 struct ProgressPace {
-  bool rewritten = false;                        ///< one line that rewrites itself; else a line each time
-  std::chrono::milliseconds first{0}, every{0};  ///< since the beginning; from one to the next
+  bool rewritten = false;                        ///< one line that is overwritten; else a new line each time
+  std::chrono::milliseconds first{0}, every{0};  ///< first line after the beginning; interval of the others
   bool silent = false;
 };
 
-/// On a terminal a line that rewrites itself; in a log, which keeps all of them, a line each 10 s, and none of work
-/// that is done by then; where it is watched, a line each second.
+/// On a terminal one line that is overwritten; in a log a line every 10 s, so that short work prints none; with
+/// `watch` a line every second.
 inline ProgressPace progress_pace(bool terminal, bool quiet, bool watch) {
   using std::chrono::milliseconds;
   if (watch) return {false, milliseconds(0), milliseconds(1000), quiet};
@@ -25,7 +25,7 @@ inline ProgressPace progress_pace(bool terminal, bool quiet, bool watch) {
   return {false, milliseconds(10000), milliseconds(10000), quiet};
 }
 
-/// How far long work is, on the standard error.
+/// Prints the progress of long work on the standard error.
 class ProgressLine {
  public:
   ProgressLine(std::string title, bool quiet, bool watch = false)
@@ -36,13 +36,13 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// Makes room for other text; the next update shows the line again.
+  /// Clears the line for other text; the next update prints it again.
   void clear() {
     if (pace_.rewritten && !pace_.silent) fmt::print(stderr, "\r\033[K");
     std::fflush(stderr);
   }
 
-  /// May be called as often as one likes.
+  /// Prints only when a line is due, so it may be called at any rate.
   void update(const std::string& text) {
     const auto now = Clock::now();
     if (pace_.silent || now < next_) return;

@@ -10,7 +10,7 @@ using std::chrono::milliseconds;
 
 namespace {
 
-/// What a line writes on the standard error at this pace, updated now and 50 ms later.
+/// The output of a line on the standard error at this pace, updated now and 50 ms later.
 std::string written(const ProgressPace& pace) {
   const testing::TemporaryFolder folder;
   std::fflush(stderr);
@@ -33,7 +33,7 @@ std::string written(const ProgressPace& pace) {
 
 }  // namespace
 
-TEST_CASE("A log gets a line each 10 s, from the tenth on, and a terminal one that rewrites itself") {
+TEST_CASE("A log gets a line every 10 s, from the tenth on, and a terminal one line that is overwritten") {
   const ProgressPace log = progress_pace(false, false, false), terminal = progress_pace(true, false, false);
   CHECK_FALSE(log.rewritten);
   CHECK(log.first == milliseconds(10000));

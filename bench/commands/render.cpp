@@ -72,16 +72,16 @@ void add_time_options(CLI::App& command, RenderArguments& arguments) {
   RenderOptions& options = arguments.options;
   add_time_range(command, arguments.range, options.stream);
   auto* duration = command.add_option("--duration", arguments.duration,
-                                      "Events of how long a picture shows [ms]; default: 20, or what --from and --to "
-                                      "enclose; in a video 1 to 10 times the time between pictures");
+                                      "Duration of the events in a picture [ms]; default: 20, or from --from to --to; "
+                                      "in a video 1 to 10 times the time between pictures");
   duration->check(in_range(0.001, 1e9));
-  command.add_option("--count", options.count, "How many events a picture shows, instead of a duration")
+  command.add_option("--count", options.count, "Number of events in a picture, instead of a duration")
       ->check(CLI::Range(1, 100000000))
       ->excludes(duration);
-  command.add_option("--fps", options.fps, "Pictures a second of playback")
+  command.add_option("--fps", options.fps, "Pictures per second of playback")
       ->check(in_range(0.1, 1000.0))
       ->capture_default_str();
-  command.add_option("--speed", options.speed, "Of playback: 0.1 is ten times slower than it was")
+  command.add_option("--speed", options.speed, "Speed of playback: 0.1 is ten times slower than real time")
       ->check(in_range(1e-6, 1e6))
       ->capture_default_str();
 }
@@ -90,8 +90,8 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
   RenderOptions& options = arguments.options;
   command
       .add_option("--mode", arguments.mode,
-                  "events: red (brighter) and blue (darker), the newest on top; time_surface: the fainter the older; "
-                  "compensated: moved along the camera's motion to one time")
+                  "events: red (brighter) and blue (darker), the newest on top; time_surface: older events are "
+                  "fainter; compensated: events are moved along the camera's motion to one time")
       ->check(one_of({"events", "time_surface", "compensated"}))
       ->type_name("NAME")
       ->capture_default_str();
@@ -103,7 +103,7 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
   trajectory->type_name("FILE");
   command
       .add_option("--quaternion", arguments.quaternion,
-                  "Order of its quaternion's columns; auto: as their names or number tell")
+                  "Order of its quaternion's columns; auto: by their names or number")
       ->check(one_of(to_strings(kQuaternionOrderNames)))
       ->needs(trajectory)
       ->capture_default_str();
@@ -115,7 +115,7 @@ void add_mode_options(CLI::App& command, RenderArguments& arguments) {
       ->type_name("NAME");
   command
       .add_option("--depth", options.depth,
-                  "Compensate translation, too, for a plane at this depth [m] in front of the camera")
+                  "Also compensate translation, for a plane at this depth [m] in front of the camera")
       ->check(in_range(1e-6, 1e9));
 }
 
@@ -123,17 +123,16 @@ void add_picture_options(CLI::App& command, RenderArguments& arguments) {
   RenderOptions& options = arguments.options;
   auto* tracks = command.add_option("--tracks", options.tracks, "Draw these feature tracks (id t x y) over the events");
   tracks->type_name("FILE");
-  command.add_option("--tail", arguments.tail, "How long a track's tail is [ms]; default: 100")
+  command.add_option("--tail", arguments.tail, "Length of a track's tail [ms]; default: 100")
       ->check(in_range(0.001, 1e9))
       ->needs(tracks);
   command
-      .add_option(
-          "--run", options.run,
-          "Draw a run (its folder, made by evbench run --tracks): tracks, landmarks that are tracked (rings), found "
-          "again (bold rings) and lost (crosses), the trajectory beside the truth")
+      .add_option("--run", options.run,
+                  "Draw a run (its folder, made by evbench run --tracks): tracks, landmarks that are tracked (rings), "
+                  "re-associated (bold rings) and lost (crosses), and the trajectory with the ground truth")
       ->type_name("DIR")
       ->excludes(tracks);
-  command.add_option("--beside", options.beside, "Another recording, at the right at the same times")
+  command.add_option("--beside", options.beside, "Another recording, drawn to the right at the same times")
       ->type_name("FILE");
   command
       .add_option("--scale", options.scale,
@@ -143,8 +142,8 @@ void add_picture_options(CLI::App& command, RenderArguments& arguments) {
   command.add_flag("--dark", options.dark, "On a dark background");
   command.add_flag(
       "--time", options.time,
-      "Write the time into the lower left corner: the end of what a picture shows, or the time that events "
-      "are moved to");
+      "Write the time into the lower left corner: the end of the picture's events, or the time to which they are "
+      "moved");
 }
 
 }  // namespace
@@ -166,8 +165,8 @@ void add_render(CLI::App& app, const Plugins& plugins) {
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   add_read_options(*command, arguments->options.stream.read);
   command->footer(
-      "OUT appears when it is complete. A sensor of unknown size is taken as large as its events need; --width and "
-      "--height say it. Times of tracks and trajectory are the recording's own, before --rebase.");
+      "OUT appears when it is complete. A sensor of unknown size gets the size that its events need; --width and "
+      "--height set it. Times of tracks and trajectory are the recording's own, before --rebase.");
   command->callback([arguments] { execute(*arguments); });
 }
 

@@ -11,7 +11,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-/// "a.evb": 50 ms, an event a millisecond.
+/// "a.evb": 50 ms, one event per millisecond.
 void write_recording_of_events(const TemporaryFolder& folder) {
   std::vector<Event> events;
   for (int i = 0; i < 50; ++i) events.push_back({1000 * i, static_cast<std::uint16_t>(i % 20), 3, i % 2 == 0});
@@ -61,7 +61,7 @@ TEST_CASE("render draws a run's tracks over its events", "[slow]") {
   CHECK_THAT(without.err, ContainsSubstring("--tracks"));
 }
 
-TEST_CASE("render refuses with exit code 2 and a sentence what it can't draw", "[slow]") {
+TEST_CASE("render rejects bad input with exit code 2 and a message", "[slow]") {
   const TemporaryFolder folder;
   write_recording_of_events(folder);
   const auto refused = [&](const std::string& arguments, const std::string& message) {
@@ -81,7 +81,7 @@ TEST_CASE("render refuses with exit code 2 and a sentence what it can't draw", "
   refused("a.evb a.png --mode compensated", "--trajectory");
   refused("a.evb a.png --tracks none.txt", "none.txt");
   refused("a.evb a.png --fps 0", "--fps");
-  refused("a.evb a.evb --force", "a.evb: is what is read");
+  refused("a.evb a.evb --force", "a.evb: is also an input");
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb"});
 }
 
@@ -89,7 +89,7 @@ TEST_CASE("An interrupted video leaves nothing", "[slow]") {
   const TemporaryFolder folder;
   write_recording_of_events(folder);
   for (const char* signal : {"INT", "KILL"}) {
-    // Minutes of film: the signal comes first.
+    // Minutes of video: the signal comes first.
     shell(folder,
           std::string("timeout -s ") + signal + " 1 \"$evbench\" render a.evb a.mp4 --speed 0.00002 --scale 32");
     CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb"});

@@ -30,7 +30,7 @@ struct ReproduceArguments {
 
 constexpr const char* kConfigs = "configs/paper";
 
-/// The folder with the configs: that of the repository, where it is the working folder, else the installed one.
+/// The folder with the configs: that of the repository if it is the working folder, else the installed one.
 std::string find_folder(const std::string& asked) {
   std::error_code error;
   if (!asked.empty()) {
@@ -80,7 +80,7 @@ int execute(ReproduceArguments& arguments, Plugins& plugins) {
       throw;
     } catch (const OutputError&) {
       throw;
-    } catch (const InputError& error) {  // data that is not here, mostly: the others are done all the same
+    } catch (const InputError& error) {  // mostly missing data: the other configs are run all the same
       failures.push_back(fmt::format("{} is left out: {}", name, error.what()));
     }
   }
@@ -96,26 +96,25 @@ int execute(ReproduceArguments& arguments, Plugins& plugins) {
 
 void add_reproduce(CLI::App& app, Plugins& plugins, int& exit_code) {
   auto arguments = std::make_shared<ReproduceArguments>();
-  CLI::App* command = app.add_subcommand(
-      "reproduce", "Run the paper's experiments, and put what came of them beside what the paper claims");
+  CLI::App* command =
+      app.add_subcommand("reproduce", "Run the paper's experiments, and compare the results with the published ones");
   command->add_option("names", arguments->names, "Configs by name, e.g. table1_simulated; none: all")
       ->type_name("NAME");
   command
       ->add_option("--configs", arguments->configs,
-                   "Folder with the configs, and published.json with the numbers; else configs/paper here, or where "
-                   "evbench is installed")
+                   "Folder with the configs, and published.json with the numbers; by default configs/paper here, or "
+                   "where evbench is installed")
       ->type_name("DIR");
   command->add_option("--out", arguments->run.out, "Folder for results")->capture_default_str();
   add_overrides(*command, arguments->run.overrides, "Override a value of all configs: KEY=VALUE, e.g. seed=3");
   command->add_option("--format", arguments->format, "Format of the table")
       ->check(one_of({"text", "markdown", "csv", "latex"}))
       ->capture_default_str();
-  command->add_flag("--force", arguments->run.force, "Do runs again that are complete already");
+  command->add_flag("--force", arguments->run.force, "Repeat runs that are complete already");
   command->add_flag("--quiet", arguments->run.quiet, "Print nothing but the table and errors");
   command->footer(
-      "Configs whose data is not here are left out and named, with an exit code of 2; what is complete below OUT is "
-      "not\n"
-      "run again.");
+      "Configs whose data are missing are left out and listed, with exit code 2; runs that are complete below OUT are\n"
+      "not repeated.");
   command->callback([arguments, &plugins, &exit_code] { exit_code = execute(*arguments, plugins); });
 }
 

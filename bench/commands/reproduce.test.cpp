@@ -12,7 +12,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-/// A folder of configs with the paper's numbers: one that runs here, one whose data is not here.
+/// A folder of configs with the paper's numbers: one that runs, one whose data are missing.
 struct Paper {
   TemporaryFolder folder;
 
@@ -44,12 +44,12 @@ struct Paper {
 
 }  // namespace
 
-TEST_CASE("What the paper claims is compared as ratios, with both protocols and why they can't be equal", "[slow]") {
+TEST_CASE("Published results are compared as ratios, with both protocols and why they can't be equal", "[slow]") {
   const Paper paper;
   const Outcome outcome = paper.reproduce("arm");
   INFO(outcome.err);
   REQUIRE(outcome.exit_code == 0);
-  // The ratio of what the runs themselves say, at whatever scale they are.
+  // The ratio of the runs' own errors, whatever their scale is.
   std::map<std::string, double> ate;
   for (const std::string& run : runs_of(paper.folder.file("results/arm"))) {
     const Json metrics = parse_json(read_file(run + "/metrics.json"));
@@ -71,7 +71,7 @@ TEST_CASE("What the paper claims is compared as ratios, with both protocols and 
                  ContainsSubstring("arm,asynchronous,,times.backend_s,") && ContainsSubstring(",60,\n"));
 }
 
-TEST_CASE("Configs whose data is not here are left out and named, the others are done", "[slow]") {
+TEST_CASE("Configs whose data are missing are left out and listed, the others are run", "[slow]") {
   const Paper paper;
   const Outcome outcome = paper.reproduce("");
   CHECK(outcome.exit_code == 2);
@@ -80,7 +80,7 @@ TEST_CASE("Configs whose data is not here are left out and named, the others are
   CHECK(names_in(paper.folder.file("results")) == std::set<std::string>{"arm"});
 }
 
-TEST_CASE("Names that are no configs and damaged numbers are refused with the place", "[slow]") {
+TEST_CASE("Unknown configs and damaged numbers are errors that name the place", "[slow]") {
   const Paper paper;
   CHECK_THAT(paper.reproduce("arn").err, ContainsSubstring("paper has no config \"arn\"; did you mean \"arm\"?"));
   paper.write({{"config", "arm"}, {"what", "Table I"}});
@@ -95,7 +95,7 @@ TEST_CASE("Names that are no configs and damaged numbers are refused with the pl
                  ContainsSubstring("--configs REPOSITORY/configs/paper"));
 }
 
-TEST_CASE("An installed program has the configs beside it", "[slow]") {
+TEST_CASE("An installed program finds the installed configs", "[slow]") {
   const Paper paper;
   const auto copy = [&](const std::string& from, const std::string& to) {
     std::filesystem::create_directories(std::filesystem::path(paper.folder.file(to)).parent_path());
@@ -121,7 +121,7 @@ TEST_CASE("Table I's claims are a tenth less error, whatever the scale") {
   }
 }
 
-TEST_CASE("The paper's numbers are of configs and back-ends that there are") {
+TEST_CASE("The paper's numbers belong to existing configs and back-ends") {
   const Published published = read_published(EVBENCH_CONFIGS "/paper/published.json");
   CHECK(published.results.size() >= 2);
   for (const PublishedResult& result : published.results) {

@@ -32,7 +32,7 @@
 namespace evbench {
 namespace {
 
-/// All runs in the config's order. Two that would do the same work are a mistake in the config.
+/// Plans all runs in the config's order. Two runs with the same job are a mistake in the config.
 std::vector<PlannedRun> plan(const Experiment& experiment, const Source& source, const Plugins& plugins,
                              const RunArguments& arguments) {
   Digests digests;
@@ -62,7 +62,7 @@ ExecutorOptions executor_options(const RunArguments& arguments) {
   return options;
 }
 
-/// The runs of an experiment: those that are complete already are taken, the others done, one after the other here or
+/// The runs of an experiment. Complete ones are reused; the others are done, one after the other in this process or
 /// several at a time in processes of their own.
 class Runs {
  public:
@@ -74,9 +74,9 @@ class Runs {
         ground_truth_(ground_truth_tum(source)),
         index_(arguments.out + "/" + experiment.name) {}
 
-  void tell_complete() const {
+  void print_complete() const {
     if (runs_.front().config.job.pipeline.mode == "free" && !arguments_.quiet) {
-      fmt::print("pipeline.mode is free: not reproducible, the same config gives other results each time\n");
+      fmt::print("pipeline.mode is free: not reproducible, results differ from run to run\n");
     }
     const auto complete =
         std::ranges::count_if(runs_, [&](const PlannedRun& run) { return complete_run(run).has_value(); });
@@ -117,7 +117,7 @@ class Runs {
   /// The records are in the config's order, whichever run ends first.
   void run_in_processes() {
     ProgressLine line(arguments_.config, arguments_.quiet, arguments_.watch);
-    const auto tell = [&](const SweepProgress& now) { line.update(describe(now)); };
+    const auto report = [&](const SweepProgress& now) { line.update(describe(now)); };
     const auto read = [&] {
       for (const PlannedRun& run : runs_) {
         std::string ignored;
@@ -127,7 +127,7 @@ class Runs {
       }
     };
     try {
-      do_runs(runs_, plugins_, executor_options(arguments_), tell);
+      do_runs(runs_, plugins_, executor_options(arguments_), report);
     } catch (const InputError&) {
       read();
       throw;
@@ -139,14 +139,14 @@ class Runs {
     RunFolder folder(arguments_.out, run.config.experiment, run.identity.key);
     ProgressLine line(fmt::format("[{}/{}] {}", records_.size() + 1, runs_.size(), run.config.label), arguments_.quiet,
                       arguments_.watch);
-    const auto tell = [&](const RunProgress& now) {
+    const auto report = [&](const RunProgress& now) {
       std::string text =
           fmt::format("{:.2f} of {:.2f} s, {} tracks, {} landmarks, {} states, delay {:.0f} ms",
                       std::min(now.t, now.end), now.end, now.tracks, now.landmarks, now.states, 1e3 * now.delay);
       if (now.realtime_factor) text += fmt::format(", real-time factor {:.2f}", *now.realtime_factor);
       line.update(text);
     };
-    const Execution execution = execute(run.config.job, source_, plugins_, tell, arguments_.tracks);
+    const Execution execution = execute(run.config.job, source_, plugins_, report, arguments_.tracks);
     return folder.write(run.config, run.identity, source_, ground_truth_, execution, arguments_.problem);
   }
 
@@ -168,7 +168,7 @@ void print_table(const Runs& runs, const RunArguments& arguments, const std::str
   std::fflush(stdout);
 }
 
-/// Results can be written to a folder, or to one that is to be made there.
+/// Throws OutputError unless results can be written to the folder, or the folder can be made.
 void check_writable(const std::string& folder) {
   std::error_code error;
   std::filesystem::path place = std::filesystem::absolute(folder);
@@ -188,7 +188,7 @@ void check_writable(const std::string& folder) {
   }
 }
 
-/// As far as it goes without code that only the config names.
+/// Checks a config without starting commands or loading libraries that only the config names.
 void check(const RunArguments& arguments, const Plugins& plugins) {
   check_writable(arguments.out);
   std::vector<std::string> unchecked;
@@ -210,6 +210,7 @@ void check(const RunArguments& arguments, const Plugins& plugins) {
       if (std::ranges::find(unchecked, text) == unchecked.end()) unchecked.push_back(std::move(text));
     }
   }
+  for (const std::string& remark : experiment.remarks) fmt::print("{}\n", remark);
   fmt::print("{}: fine, {} run{}\n", arguments.config, experiment.runs.size(), experiment.runs.size() == 1 ? "" : "s");
   if (!missing.empty()) unchecked.push_back(missing);
   for (const std::string& text : unchecked) fmt::print("not checked: {}\n", text);
@@ -218,7 +219,7 @@ void check(const RunArguments& arguments, const Plugins& plugins) {
 }  // namespace
 
 int run_config(const RunArguments& arguments, Plugins& plugins, std::vector<RunRecord>* records) {
-  const Interruption interruption(arguments.config + ": interrupted; no run was begun");
+  const Interruption interruption(arguments.config + ": interrupted; no run was started");
   if (arguments.jobs > 1) stay_without_threads();
   if (arguments.check) {
     check(arguments, plugins);
@@ -227,17 +228,18 @@ int run_config(const RunArguments& arguments, Plugins& plugins, std::vector<RunR
   const Announce announce = announcement(arguments.quiet);
   load_plugins_of(plugins, arguments.config, arguments.overrides, {.announce = announce});
   const Experiment experiment = read_experiment(arguments.config, arguments.overrides, plugins);
+  for (const std::string& remark : experiment.remarks) announce(fmt::format("{}: {}", arguments.config, remark));
   std::vector<const Job*> jobs;
   for (const RunConfig& run : experiment.runs) jobs.push_back(&run.job);
   announce_commands(jobs, plugins, announce);
   const std::unique_ptr<Source> source = make_source(experiment.runs.front().job, plugins);
   Runs runs(arguments, plugins, experiment, *source);
-  runs.tell_complete();
+  runs.print_complete();
   try {
     runs.run_all();
   } catch (const Interrupted& interrupted) {
     print_table(runs, arguments, experiment.name);
-    throw Interrupted(fmt::format("{}: interrupted; {} of {} runs are complete, the same command goes on from there",
+    throw Interrupted(fmt::format("{}: interrupted; {} of {} runs are complete, the same command continues from there",
                                   arguments.config, runs.records().size(), runs.size()),
                       interrupted.signal());
   } catch (const OutputError&) {
@@ -263,7 +265,7 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const
   command.add_option("--set", overrides, text)
       ->type_name("KEY=VALUE")
       ->check(has_equals("KEY=VALUE"))
-      ->allow_extra_args(false);  // so that the config may stand behind it
+      ->allow_extra_args(false);  // so that the config may follow
 }
 
 void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
@@ -275,29 +277,31 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
   command
       ->add_option(
           "-j,--jobs", arguments->jobs,
-          "Runs at a time, of a config with several back-ends, each in a process of its own; 1 where times are "
-          "compared")
+          "Runs at a time, for a config with several back-ends, each in a process of its own; use 1 to compare "
+          "times")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
-  command->add_flag("--force", arguments->force, "Do runs again that are complete already");
+  command->add_flag("--force", arguments->force, "Repeat runs that are complete already");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->add_flag("--problem", arguments->problem,
-                    "Also write problem.txt: the problem that gp_map ended with, for evbench solve and other solvers");
+                    "Also write problem.txt: the final problem of gp_map, for evbench solve and other solvers");
   command->add_flag(
       "--tracks", arguments->tracks,
-      "Also write tracks.txt and track_ends.txt: what the front-end told, for evbench render and the front-end "
+      "Also write tracks.txt and track_ends.txt: the tracks of the front-end, for evbench render and the front-end "
       "recorded");
   command->add_flag("--watch", arguments->watch,
-                    "Print a line each second, on the standard error: how far, tracks, landmarks, states, delay, pace");
+                    "Print a line each second, on the standard error: time, tracks, landmarks, states, delay, "
+                    "real-time factor");
   command->add_flag(
       "--check", arguments->check,
-      "Check the config, and that its files can be read, and stop; starts no command and loads no library "
-      "that only the config names, and says what is therefore not checked");
+      "Only check the config, and that its files can be read; starts no command and loads no library that only the "
+      "config names, and lists what is therefore not checked");
   command->footer(
-      "Each run writes OUT/EXPERIMENT/KEY: config.json, job.json, manifest.json, final.tum, online.tum, told.txt,\n"
-      "groundtruth.tum, map.ply, metrics.json, timing.csv, log.txt, status.json. KEY names what determines the\n"
-      "trajectory (job.json). A run that is complete below OUT is not done again, but named and scored as the config\n"
-      "says; one that broke off with an error is.\n"
+      "Each run writes OUT/EXPERIMENT/KEY: config.json, job.json, manifest.json, final.tum, causal.tum,\n"
+      "causal_poses.txt, groundtruth.tum, map.ply, metrics.json, timing.csv, log.txt, status.json. KEY is a hash of "
+      "all that determines\n"
+      "the trajectory (job.json). A run that is complete below OUT is not repeated, but labelled and scored as the\n"
+      "config says; a run that ended with an error is repeated.\n"
       "Exit codes: 0 done (also when a run is degraded or lost: see its status), 2 bad input, 3 a run failed,\n"
       "4 results can't be written (disk full), 130 interrupted (Ctrl-C).");
   command->callback([arguments, &plugins, &exit_code] { exit_code = run_config(*arguments, plugins); });

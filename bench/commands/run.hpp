@@ -8,7 +8,7 @@
 
 namespace evbench {
 
-/// What `evbench run` is told.
+/// Arguments of `evbench run`.
 struct RunArguments {
   std::string config;
   std::vector<std::string> overrides;
@@ -20,9 +20,8 @@ struct RunArguments {
   int jobs = 1;  ///< runs at a time; more than one: each in a process of its own
 };
 
-/// Does it: runs a config, writes the folders of its runs below `out`, prints the table. Returns the exit code:
-/// kExitDone, or kExitFailed when a run failed. Throws InputError and Interrupted as the command does. `records` gets
-/// its runs.
+/// Runs a config, writes the folders of its runs below `out` and prints the table. Returns the exit code: kExitDone, or
+/// kExitFailed when a run failed. Throws InputError, OutputError or Interrupted. Appends the runs to `records`.
 int run_config(const RunArguments& arguments, Plugins& plugins, std::vector<RunRecord>* records = nullptr);
 
 }  // namespace evbench

@@ -17,7 +17,7 @@ CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::ve
                              const std::string& text, const std::string& type) {
   return command.add_option(name, items, text)
       ->delimiter(',')
-      ->allow_extra_args(false)  // so that folders may stand behind it
+      ->allow_extra_args(false)  // so that folders may follow
       ->type_name(type);
 }
 
@@ -42,7 +42,7 @@ void add_wide(CLI::App& command, TableLayout& layout, bool& wide) {
         layout.width = 0;
         wide = true;
       },
-      "All columns of a table of text, else as many as fit the terminal ($COLUMNS, or 120, where there is none)");
+      "Print all columns of a text table; by default as many as fit the terminal ($COLUMNS, or 120, without one)");
 }
 
 void TextOutput::check() const {

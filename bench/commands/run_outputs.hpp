@@ -6,27 +6,27 @@
 
 #include "eval/table.hpp"
 
-// What commands have in common that make something of runs.
+// Common options of commands that evaluate runs.
 
 namespace evbench {
 
-/// An option that takes a list, its items between commas; `type`: how the help shows it.
+/// Adds an option with a comma-separated list; `type`: its form in the help.
 CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::vector<std::string>& items,
                              const std::string& text, const std::string& type = "KEY,...");
 
-/// The width of a table of text that is printed [characters]: the terminal's; where the standard output is none, what
-/// the environment variable COLUMNS says, else 120.
+/// Width of a printed text table [characters]: the terminal's; if the standard output is no terminal, that of the
+/// environment variable COLUMNS, else 120.
 std::size_t text_width();
 
-/// The option --wide: all columns, however wide the table gets. It overrides `width`, which is set to text_width().
+/// The option --wide: prints all columns. Without it the width of the table is text_width().
 void add_wide(CLI::App& command, TableLayout& layout, bool& wide);
 
-/// Where a table goes.
+/// Destination of a table.
 struct TextOutput {
   std::string file;  ///< empty: the terminal
   bool force = false;
 
-  /// Throws InputError where the file must not be written: before any work is done.
+  /// Throws InputError if the file must not be written. Called before any work is done.
   void check() const;
   void write(const std::string& text) const;
 };

@@ -17,7 +17,7 @@
 namespace evbench {
 namespace {
 
-/// What each run says of a name.
+/// Each run's value of a column, setting or "key".
 std::vector<std::string> values_of(const std::string& name, const std::vector<RunColumn>& columns,
                                    const std::vector<RunRecord>& runs) {
   const bool is_column = std::ranges::find(columns, name, &RunColumn::name) != columns.end();
@@ -58,11 +58,11 @@ void add_run_selection(CLI::App& command, RunSelection& selection) {
                   "Only runs with this value of a column, a setting, or \"key\", e.g. seed=3; several of one name: any "
                   "of them")
       ->type_name("NAME=VALUE")
-      ->allow_extra_args(false)  // so that folders may stand behind it
+      ->allow_extra_args(false)  // so that folders may follow
       ->check(has_equals("NAME=VALUE"));
   command.add_flag("--all", selection.all,
-                   "All jobs; else of those of one label and config, say of a plugin that was rebuilt, the newest");
-  command.add_option("--labels", selection.labels, "Call a label otherwise, one each time")
+                   "Use all jobs; by default only the newest of each label and config, e.g. of a rebuilt plugin");
+  command.add_option("--labels", selection.labels, "Rename a label; can be given several times")
       ->type_name("OLD=NEW")
       ->allow_extra_args(false)
       ->check(has_equals("OLD=NEW"));
@@ -73,7 +73,8 @@ void use_runs(const RunSelection& selection, const std::function<void(std::vecto
     if (!selection.only.empty()) keep_only(selection.only, runs);
     const std::size_t older = selection.all ? 0 : keep_newest_jobs(runs);
     if (older > 0) {
-      fmt::print(stderr, "remark: {} left out, as there is a newer job of the same label and config; --all takes {}\n",
+      fmt::print(stderr,
+                 "remark: {} left out, as there is a newer job of the same label and config; --all includes {}\n",
                  older == 1 ? "1 older run is" : fmt::format("{} older runs are", older), older == 1 ? "it" : "them");
     }
     rename_labels(selection.labels, runs);
@@ -106,7 +107,7 @@ void rename_labels(const std::vector<std::string>& renamed, std::vector<RunRecor
   std::set<std::string> labels;
   for (const RunRecord& run : runs) labels.insert(run.label);
   for (const std::string& text : renamed) {
-    std::size_t equals = text.find('=');  // labels may have one, too
+    std::size_t equals = text.find('=');  // labels may also contain one
     while (!labels.contains(text.substr(0, equals)) && text.find('=', equals + 1) != std::string::npos) {
       equals = text.find('=', equals + 1);
     }

@@ -34,9 +34,9 @@ ScoreOptions protocol_of(const std::string& folder, const ScoreArguments& argume
 void execute(const ScoreArguments& arguments) {
   const Interruption interruption("interrupted; the runs that were not scored again are as before");
   use_runs(arguments.folders, [&](std::vector<RunRecord>& records) {
-    std::erase_if(records, [](const RunRecord& run) { return !run.done; });  // a sweep's that are still to come
+    std::erase_if(records, [](const RunRecord& run) { return !run.done; });  // runs of a sweep that are still to do
     if (records.empty()) throw InputError("none of these runs was done yet; expected some to score");
-    std::vector<ScoreOptions> protocols;  // all of them first: what is wrong with one is told before any work
+    std::vector<ScoreOptions> protocols;  // all of them first: errors are reported before any work
     for (const RunRecord& run : records) {
       protocols.push_back(protocol_of(run.folder, arguments));
       require_scores(run.folder, protocols.back());
@@ -71,8 +71,8 @@ void add_score(CLI::App& app) {
                 "Override a value of the protocol: evaluation.KEY=VALUE, e.g. evaluation.alignment=se3");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->footer(
-      "Reads final.tum, online.tum, told.txt and groundtruth.tum of each run, rewrites its metrics.json, and its\n"
-      "config.json with the protocol. The same protocol gives the same bytes.");
+      "Reads final.tum, causal.tum, causal_poses.txt and groundtruth.tum of each run, rewrites its metrics.json, and\n"
+      "its config.json with the protocol. The same protocol gives identical files.");
   command->callback([arguments] { execute(*arguments); });
 }
 

@@ -10,7 +10,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-/// The short comparison, run.
+/// Runs the short comparison.
 struct ScoredRuns {
   TemporaryFolder folder;
   std::vector<std::string> runs;
@@ -30,7 +30,7 @@ Json json_file(const std::string& path) { return parse_json(read_file(path)); }
 
 }  // namespace
 
-TEST_CASE("Scored again by the same protocol, a run's folder has the same bytes", "[slow]") {
+TEST_CASE("Scored again by the same protocol, a run's files are identical", "[slow]") {
   const ScoredRuns runs;
   const std::string before = runs.sums();
   const Outcome outcome = runs.score("results");
@@ -68,7 +68,7 @@ TEST_CASE("Scores of a run are those that eval gives for its files", "[slow]") {
   CHECK(json_file(runs.folder.file("e.json")).at("final") == json_file(runs.runs[0] + "/metrics.json").at("final"));
 }
 
-TEST_CASE("What can't be scored is refused, and all runs are as before", "[slow]") {
+TEST_CASE("A run that can't be scored is an error, and no run is changed", "[slow]") {
   const ScoredRuns runs;
   const std::string before = runs.sums();
   const auto refused = [&](const std::string& arguments, const std::string& message) {
@@ -83,7 +83,7 @@ TEST_CASE("What can't be scored is refused, and all runs are as before", "[slow]
   refused("results --set evaluation.alignment=sim4", "did you mean \"sim3\"");
   refused("results --set evaluation.algnment=sim3", "unknown key \"algnment\"");
   refused("results --config no.json", "no.json: no such file");
-  refused("results --set 'evaluation.time_range=[100,200]'", "has scores, of which this protocol leaves none: ");
+  refused("results --set 'evaluation.time_range=[100,200]'", "has scores, but would have none by this protocol: ");
   std::filesystem::remove(runs.runs[1] + "/config.json");
   const Outcome outcome = runs.score("results");
   CHECK(outcome.exit_code == 2);

@@ -9,8 +9,8 @@
 #include "bench/commands/number_check.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
-#include "eval/quantile.hpp"
 #include "core/support/json.hpp"
+#include "eval/quantile.hpp"
 
 namespace evbench {
 namespace {
@@ -82,16 +82,18 @@ void add_solve(CLI::App& app) {
   command->add_option("problem", arguments->problem, "Problem file")->required()->type_name("FILE");
   command
       ->add_option("--mode", arguments->options.mode,
-                   "incremental: a control state at a time; batch: at once from the initial guess; fixed-lag: "
-                   "incremental, what is older than --lag is marginalised")
+                   "incremental: one control state at a time; batch: all at once from the initial guess; fixed-lag: "
+                   "incremental, states older than --lag are marginalised")
       ->transform(CLI::CheckedTransformer(kModes).description("{incremental,batch,fixed-lag}"))
       ->type_name("NAME")
       ->default_str("incremental");
-  command->add_option("--json", arguments->json, "Write the figures to this file, too")->type_name("FILE");
+  command->add_option("--json", arguments->json, "Also write the results to this file")->type_name("FILE");
   command->add_option("--states", arguments->states, "Write the final states as a problem's STATE records")
       ->type_name("FILE");
   command->add_option("--steps", arguments->steps, "Write a CSV with a line for each step")->type_name("FILE");
-  command->add_option("--reach", arguments->options.engine.reach, "States that relinearisation may reach back, at most")
+  command
+      ->add_option("--reach", arguments->options.engine.reach,
+                   "Number of states that relinearisation reaches back, at most")
       ->check(above_zero())
       ->capture_default_str();
   command->add_flag("--check", arguments->check, "Compare the cost with that of a batch solve from the result");

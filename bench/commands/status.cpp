@@ -12,7 +12,7 @@ namespace evbench {
 
 void add_status(CLI::App& app, int& exit_code) {
   auto folder = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("status", "How far sweeps are, and what failed");
+  CLI::App* command = app.add_subcommand("status", "Show the progress and the failures of sweeps");
   command->add_option("folder", *folder, "Folder of a sweep, OUT/NAME, or of several, OUT")
       ->required()
       ->type_name("DIR");

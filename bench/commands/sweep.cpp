@@ -42,7 +42,7 @@ struct SweepArguments {
 
 void print_plan(const std::vector<PlannedRun>& runs, const SweepPlan& plan, const ExecutorOptions& options) {
   constexpr const char* kConditions[] = {"to do", "complete", "broken off", "damaged"};
-  std::set<std::string> all, to_do, failed;  // keys: a job may stand at several places
+  std::set<std::string> all, to_do, failed;  // keys: several runs may have the same job
   for (const PlannedRun& run : runs) {
     std::string why;
     auto condition =
@@ -67,21 +67,21 @@ int do_locally(const std::vector<PlannedRun>& runs, const SweepArguments& argume
                const Plugins& plugins) {
   ProgressLine line(folder, arguments.quiet);
   SweepProgress now;
-  std::size_t told = 0;
-  const auto tell = [&](const SweepProgress& progress) {
-    for (; told < progress.troubled.size(); ++told) {
+  std::size_t reported = 0;
+  const auto report = [&](const SweepProgress& progress) {
+    for (; reported < progress.troubled.size(); ++reported) {
       line.clear();
-      fmt::print(stderr, "{}\n", describe(progress.troubled[told]));
+      fmt::print(stderr, "{}\n", describe(progress.troubled[reported]));
     }
     line.update(describe(progress));
     now = progress;
   };
   const auto complete = [&] {
-    return fmt::format("{} of {} runs are complete, the same command goes on from there", now.done, now.runs);
+    return fmt::format("{} of {} runs are complete, the same command continues from there", now.done, now.runs);
   };
   try {
-    now = do_runs(runs, plugins, arguments.options, tell);
-    tell(now);
+    now = do_runs(runs, plugins, arguments.options, report);
+    report(now);
     line.clear();
   } catch (const Interrupted& interrupted) {
     throw Interrupted(fmt::format("{}: interrupted; {}", folder, complete()), interrupted.signal());
@@ -98,7 +98,7 @@ int do_locally(const std::vector<PlannedRun>& runs, const SweepArguments& argume
   return now.failed == 0 ? kExitDone : kExitFailed;
 }
 
-/// With --wait what came of it counts.
+/// With --wait the exit code is that of the finished sweep.
 int exit_code_of(const std::string& folder) {
   for (const SweepStatus& sweep : read_sweep_status(folder)) {
     if (sweep.done < sweep.runs) return kExitFailed;
@@ -106,7 +106,7 @@ int exit_code_of(const std::string& folder) {
   return kExitDone;
 }
 
-int hand_to_slurm(const std::vector<PlannedRun>& runs, SweepArguments& arguments, const std::string& folder) {
+int submit(const std::vector<PlannedRun>& runs, SweepArguments& arguments, const std::string& folder) {
   if (runs.empty()) {
     if (!arguments.quiet) fmt::print("{}: nothing is to be done\n", folder);
     return exit_code_of(folder);
@@ -131,7 +131,7 @@ int write_manifest(const std::vector<PlannedRun>& runs, const SweepArguments& ar
 }
 
 int execute(SweepArguments& arguments, Plugins& plugins) {
-  const Interruption interruption(arguments.file + ": interrupted; no run was begun");
+  const Interruption interruption(arguments.file + ": interrupted; no run was started");
   stay_without_threads();
   const Announce announce = announcement(arguments.quiet);
   const LibraryPolicy policy = {.refused_by = arguments.dry_run ? "--dry-run" : "", .announce = announce};
@@ -143,9 +143,10 @@ int execute(SweepArguments& arguments, Plugins& plugins) {
   options.processes = arguments.at_a_time.value_or(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
   const SweepPlan plan = [&] {
     ProgressLine line(arguments.file, arguments.quiet);
-    line.update("planning: sources are made, for the files that they read");
+    line.update("planning: making the sources to list their files");
     return plan_sweep(sweep, plugins);
   }();
+  for (const std::string& remark : plan.remarks) announce(fmt::format("{}: {}", sweep.config, remark));
   const std::vector<PlannedRun> runs = select_runs(plan, arguments.only);
   if (runs.empty()) throw InputError(fmt::format("{}: no run has all the values of --only", sweep.place));
   if (arguments.dry_run) {
@@ -162,8 +163,7 @@ int execute(SweepArguments& arguments, Plugins& plugins) {
   write_file(folder + "/sweep.json", dump_json(plan.to_json(), 1) + "\n");
   if (arguments.executor == "local") return do_locally(runs, arguments, folder, plugins);
   const std::vector<PlannedRun> left = runs_to_do(runs, plugins, options);
-  return arguments.executor == "slurm" ? hand_to_slurm(left, arguments, folder)
-                                       : write_manifest(left, arguments, folder);
+  return arguments.executor == "slurm" ? submit(left, arguments, folder) : write_manifest(left, arguments, folder);
 }
 
 }  // namespace
@@ -186,24 +186,24 @@ void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code) {
   command->add_option("--out", arguments->options.out, "Folder for results")->capture_default_str();
   command
       ->add_option("-j,--jobs", arguments->at_a_time,
-                   "Runs at a time: by default one a processor, or as many as Slurm likes; 1 where times are compared")
+                   "Runs at a time: by default one per processor, or as many as Slurm starts; use 1 to compare times")
       ->check(CLI::Range(1, 4096));
-  command->add_option("--timeout", arguments->seconds, "Time that a run may take [s]; 0: no limit")
-      ->check(not_negative());
-  command->add_option("--memory", arguments->memory_mib, "Memory that a run may take [MiB]; 0: no limit")
-      ->check(not_negative());
+  command->add_option("--timeout", arguments->seconds, "Time limit of a run [s]; 0: none")->check(not_negative());
+  command->add_option("--memory", arguments->memory_mib, "Memory limit of a run [MiB]; 0: none")->check(not_negative());
   command->add_flag("--retry-failed", arguments->options.retry_failed,
-                    "Do runs again that crashed, hung or took too much, and damaged ones");
-  command->add_flag("--dry-run", arguments->dry_run,
-                    "Print the plan, and what of it is complete, and stop; loads no library that only the files name");
+                    "Repeat runs that crashed, hung or exceeded a limit, and damaged ones");
+  command->add_flag(
+      "--dry-run", arguments->dry_run,
+      "Only print the plan and which of its runs are complete; loads no library that only the files name");
   command
       ->add_option("--executor", arguments->executor,
-                   "local: here; slurm: a job array; none: only write OUT/NAME/manifest.jsonl, of which evbench task "
-                   "does a line")
+                   "local: processes on this machine; slurm: a job array; none: only write OUT/NAME/manifest.jsonl, "
+                   "whose lines evbench task runs")
       ->check(one_of({"local", "slurm", "none"}))
       ->capture_default_str();
   command->add_option("--partition", arguments->slurm.partition, "Slurm: partition");
-  command->add_option("--time", arguments->slurm.time, "Slurm: time of a task, e.g. 30 or 2:00:00; else by --timeout");
+  command->add_option("--time", arguments->slurm.time,
+                      "Slurm: time limit of a task, e.g. 30 or 2:00:00; by default from --timeout");
   command->add_option("--setup", arguments->slurm.setup,
                       "Slurm: a line of shell before each task, e.g. \"module load gcc\", or around it: "
                       "\"apptainer exec evbench.sif {}\"");
@@ -211,9 +211,9 @@ void add_sweep(CLI::App& app, Plugins& plugins, int& exit_code) {
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->footer([] {
     return "A sweep's file:\n\n" + describe_sweep() +
-           "bench/sweep/sweep.md says what an axis is.\n"
-           "A run that is complete below OUT is not done again; a sweep that was killed goes on from there. Several\n"
-           "processes may do the same sweep. Exit codes: as of evbench run.";
+           "docs/guides/sweep.md says what an axis is.\n"
+           "A run that is complete below OUT is not repeated, so that a killed sweep can be continued. Several\n"
+           "processes may run the same sweep. Exit codes: as of evbench run.";
   });
   command->callback([arguments, &plugins, &exit_code] { exit_code = execute(*arguments, plugins); });
 }

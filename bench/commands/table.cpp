@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "bench/commands/causal_flag.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/name_check.hpp"
 #include "bench/commands/run_outputs.hpp"
@@ -28,7 +29,7 @@ void execute(const TableArguments& arguments) {
   TableOptions options = arguments.options;
   options.format = parse_name<TableFormat>(kTableFormatNames, arguments.format, "table format");
   use_runs(arguments.runs, [&](std::vector<RunRecord>& runs) {
-    if (shows_common_time(options, runs.size())) score_common_time(runs, options.online);
+    if (shows_common_time(options, runs.size())) score_common_time(runs, options.causal);
     arguments.out.write(make_table(runs, options));
   });
 }
@@ -42,22 +43,22 @@ void add_table(CLI::App& app) {
   add_run_selection(*command, arguments->runs);
   command
       ->add_option("--format", arguments->format,
-                   "Format; latex has few columns and needs the packages booktabs and siunitx; long: CSV, a line a run "
-                   "and metric")
+                   "Format; latex has few columns and needs the packages booktabs and siunitx; long: CSV with a line "
+                   "per run and metric")
       ->check(one_of(to_strings(kTableFormatNames)))
       ->capture_default_str();
   add_text_output(*command, arguments->out);
   add_list_option(*command, "--metrics,--columns", arguments->options.metrics,
-                  "Columns, e.g. ate.trans_m.rmse,rpe.trans_m.median,runtime_s; key, folder and status are some, too");
+                  "Columns, e.g. ate.trans_m.rmse,rpe.trans_m.median,runtime_s; also key, folder and status");
   add_wide(*command, arguments->options.layout, arguments->options.folders);
-  command->add_flag("--body", arguments->options.layout.body, "LaTeX: the tabular alone, without float and caption");
+  command->add_flag("--body", arguments->options.layout.body, "LaTeX: only the tabular, without float and caption");
   add_list_option(*command, "--over", arguments->options.over,
-                  "Summarise over these columns: a row for all runs that differ in nothing else, e.g. seed, or "
+                  "Summarise over these columns: one row for all runs that differ only in these, e.g. seed, or "
                   "seed,experiment",
                   "NAME,...");
   command->add_flag("--list-metrics", arguments->list_metrics,
-                    "List the keys that --metrics knows: all numbers that these runs have, and what tables call them");
-  command->add_flag("--online", arguments->options.online, "Scores of the poses as estimated when they were made");
+                    "List the keys for --metrics: all numbers of these runs, and their names in tables");
+  add_causal_flag(*command, arguments->options.causal, "Scores of the causal poses, as first published");
   command->callback([arguments] { execute(*arguments); });
 }
 

@@ -21,7 +21,7 @@ struct TaskArguments {
 };
 
 int execute(const TaskArguments& arguments, Plugins& plugins) {
-  const Interruption interruption(arguments.manifest + ": interrupted; what was complete stays");
+  const Interruption interruption(arguments.manifest + ": interrupted; complete runs are kept");
   stay_without_threads();
   int exit_code = kExitDone;
   const Announce announce = announcement(false);
@@ -44,10 +44,10 @@ int execute(const TaskArguments& arguments, Plugins& plugins) {
 
 void add_task(CLI::App& app, Plugins& plugins, int& exit_code) {
   auto arguments = std::make_shared<TaskArguments>();
-  CLI::App* command = app.add_subcommand("task", "Do a line of the manifest that evbench sweep wrote");
+  CLI::App* command = app.add_subcommand("task", "Run a line of the manifest of evbench sweep");
   command->add_option("manifest", arguments->manifest, "manifest.jsonl")->required();
   command->add_option("line", arguments->line, "Number of the line, from 1")->required()->check(above_zero());
-  command->add_option("--stride", arguments->stride, "And every so many lines after it; 0: that line alone");
+  command->add_option("--stride", arguments->stride, "Also run every N-th line after it; 0: only that line");
   command->footer("Exit codes: as of evbench run.");
   command->callback([arguments, &plugins, &exit_code] { exit_code = execute(*arguments, plugins); });
 }

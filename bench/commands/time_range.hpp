@@ -7,15 +7,15 @@
 
 namespace evbench {
 
-/// --from and --to as they are given [s].
+/// Values of --from and --to [s].
 struct TimeRangeArguments {
   std::optional<double> from, to;
 };
 
-/// --from, --to, --rebase of commands that read events.
+/// Adds --from, --to and --rebase to a command that reads events.
 void add_time_range(CLI::App& command, TimeRangeArguments& range, StreamOptions& options);
 
-/// Throws InputError when the range is empty or no time at all.
+/// Throws InputError if the range is empty or not finite.
 void set_time_range(const TimeRangeArguments& range, StreamOptions& options);
 
 }  // namespace evbench

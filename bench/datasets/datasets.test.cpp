@@ -85,7 +85,7 @@ class Server {
         response.set_header("Content-Range", "bytes */" + std::to_string(body.size()));
         return;
       }
-      // The library cuts by itself what has no status: the answer is made by hand.
+      // The library cuts answers without a status: this one is made by hand.
       response.status = 206;
       response.set_header("Content-Range", "bytes " + std::to_string(from) + "-" + std::to_string(body.size() - 1) +
                                                "/" + std::to_string(body.size()));
@@ -160,7 +160,7 @@ std::string made_folder(const TemporaryFolder& folder, const std::string& name) 
 
 }  // namespace
 
-TEST_CASE("A download has the file's bytes, also by way of a redirection, and leaves nothing else") {
+TEST_CASE("A download has the file's bytes, also after a redirection, and leaves nothing else") {
   const TemporaryFolder folder;
   const Server server(noise(300000));
   std::uint64_t reported = 0;
@@ -188,7 +188,7 @@ TEST_CASE("A download whose connection is cut goes on where it stopped, or from 
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.zip"});
 }
 
-TEST_CASE("A download that broke off too often says so, the next call goes on") {
+TEST_CASE("A download that broke off too often reports it, and the next call goes on") {
   const TemporaryFolder folder;
   Server server(noise(300000));
   server.cuts = 2;
@@ -216,7 +216,7 @@ TEST_CASE("A file that changed on the server since the download broke off is fet
 }
 
 TEST_CASE(
-    "Without a strong tag, the time of the last change tells versions apart, without either all is fetched anew") {
+    "Without a strong tag the time of the last change identifies a version, without either all is fetched again") {
   const TemporaryFolder folder;
   Server server(noise(300000));
   server.cuts = 1;
@@ -247,7 +247,7 @@ TEST_CASE("A download of which all bytes are there, but which was not finished, 
   CHECK(read_file(folder.file("a.zip")) == noise(1000));
 }
 
-TEST_CASE("A web page in the place of a file is an error, a file that begins likewise is not") {
+TEST_CASE("A web page instead of a file is an error, a file that begins like one is not") {
   const TemporaryFolder folder;
   Server server("");
   server.more = {{"a.zip", "\n<!DOCTYPE HTML><p>Not found"}, {"b.html", "<?xml?><html>"}, {"c.xml", "<?xml?><a/>"}};
@@ -259,7 +259,7 @@ TEST_CASE("A web page in the place of a file is an error, a file that begins lik
   CHECK_NOTHROW(download(server.url("more/c.xml"), folder.file("c.xml"), quick()));
 }
 
-TEST_CASE("A download that is interrupted says so and keeps what is there", "[slow]") {
+TEST_CASE("A download that is interrupted reports it and keeps its part file", "[slow]") {
   const TemporaryFolder folder;
   const Server server(noise(30000000));
   DownloadOptions options = quick();
@@ -283,7 +283,7 @@ TEST_CASE("An error while a download is written passes through") {
                     ContainsSubstring("a.zip.part: can't be written"));
 }
 
-TEST_CASE("A part file that is longer than what the server has is thrown away") {
+TEST_CASE("A part file that is longer than the server's file is removed") {
   const TemporaryFolder folder;
   const Server server(noise(1000));
   folder.write("a.zip.part", std::string(5000, 'x'));
@@ -291,7 +291,7 @@ TEST_CASE("A part file that is longer than what the server has is thrown away") 
   CHECK(read_file(folder.file("a.zip")) == noise(1000));
 }
 
-TEST_CASE("What a server refuses, another checksum and too big a file are errors that say so") {
+TEST_CASE("A refusal by the server, a wrong checksum and a file that is too big are errors with the reason") {
   const TemporaryFolder folder;
   const Server server(noise(1000));
   CHECK_THROWS_WITH(download(server.url("no.zip"), folder.file("a.zip"), quick()),
@@ -322,7 +322,7 @@ TEST_CASE("An archive is unpacked, without the folder that all of it is in") {
   CHECK(read_file(wrapped + "/seq/1.png") == "1");
 }
 
-TEST_CASE("An archive that leads out of the folder, has links, repeats itself or is too big is refused") {
+TEST_CASE("An archive with names outside the folder, links or repeated names, or that is too big, is refused") {
   const TemporaryFolder folder;
   const auto refused = [&](const std::vector<ArchiveEntry>& entries, const std::string& message) {
     for (const char* name : {"a.zip", "a.tar.gz"}) {
@@ -357,7 +357,7 @@ TEST_CASE("A zip that is truncated or has a flipped bit is refused") {
   CHECK_THROWS_AS(unpack(folder.file("flipped.zip"), made_folder(folder, "flipped"), 1 << 20), InputError);
 }
 
-TEST_CASE("An archive has names of any language") {
+TEST_CASE("Names in an archive may be of any language") {
   const TemporaryFolder folder;
   const std::string bytes = read_file(make_archive(folder.file("a.zip"), {{"ae_name.txt", "x"}, {"b.txt", "y"}}));
   std::string named = bytes;  // libarchive writes such names only where the locale has them
@@ -373,7 +373,7 @@ TEST_CASE("An archive has names of any language") {
   CHECK(read_file(folder.file("out/b.txt")) == "y");
 }
 
-TEST_CASE("What was fetched of a dataset stays until all of it is there, a damaged archive is fetched again") {
+TEST_CASE("Downloaded files of a dataset stay until it is complete, and a damaged archive is fetched again") {
   const TemporaryFolder folder;
   Server server("");
   const std::string zip = read_file(make_archive(folder.file("b.zip"), {{"events.txt", noise(5000)}}));
@@ -403,7 +403,7 @@ TEST_CASE("What was fetched of a dataset stays until all of it is there, a damag
   CHECK(record["downloads"][1]["sha256"] == sha256(zip));
 }
 
-TEST_CASE("What an earlier call left is fetched again when the checksum tells that it is another file") {
+TEST_CASE("A file of an earlier call is fetched again when its checksum is not the expected one") {
   const TemporaryFolder folder;
   Server server("");
   server.more = {{"a.h5", noise(1000)}};
@@ -416,7 +416,7 @@ TEST_CASE("What an earlier call left is fetched again when the checksum tells th
   CHECK(read_file(folder.file("set/a.h5")) == noise(1000));
 }
 
-TEST_CASE("dataset get fetches and unpacks by name, once, dataset list marks what is there", "[slow]") {
+TEST_CASE("dataset get fetches and unpacks by name, once, and dataset list marks installed ones", "[slow]") {
   const TemporaryFolder folder;
   make_archive(folder.file("sequence.zip"),
                {{"events.txt", "0.1 1 1 1\n"}, {"calib.txt", "200 200 120 90 0 0 0 0 0\n"}});

@@ -24,8 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What tells one version of a file on the server from another, for If-Range: its entity tag, or else when it was
-/// changed. Empty where the server says neither, or nothing has been fetched.
+/// The version of a file on the server, for If-Range: its entity tag, or else the time of its last change. Empty where
+/// the server gives neither, or nothing has been fetched.
 std::string version_path(const std::string& part) { return part + ".version"; }
 std::string version_of(const std::string& part) {
   std::string version;
@@ -44,7 +44,7 @@ void initialise_curl() {
   if (initialised != CURLE_OK) throw InputError("libcurl can't be initialised");
 }
 
-/// What is asked of every server.
+/// The options of every request.
 void set_manners(CURL* curl, const std::string& url) {
   constexpr long kConnectSeconds = 30, kSilentSeconds = 60;
   curl_easy_setopt(curl, CURLOPT_URL, url.c_str());
@@ -57,7 +57,7 @@ void set_manners(CURL* curl, const std::string& url) {
   curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, 1L);
   curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, kSilentSeconds);
   curl_easy_setopt(curl, CURLOPT_USERAGENT, "evbench");
-  // Called about once a second, also while nothing comes. Ends the transfer unless 0.
+  // Called about once a second, also while no data come. A result other than 0 ends the transfer.
   curl_easy_setopt(
       curl, CURLOPT_XFERINFOFUNCTION, +[](void*, curl_off_t, curl_off_t, curl_off_t, curl_off_t) -> int {
         return Interruption::is_requested() ? 1 : 0;
@@ -70,11 +70,11 @@ class Transfer {
  public:
   Transfer(const std::string& url, const std::string& part, const DownloadOptions& options);
 
-  enum class End { complete, broken_off, other_file };  ///< other_file: the part file doesn't fit what the server has
-  /// Throws InputError for what another attempt would not change.
+  enum class End { complete, broken_off, other_file };  ///< other_file: the part file is of another file
+  /// Throws InputError for errors that another attempt would not change.
   End perform();
   std::string header(const char* name) const;  ///< of the last answer; empty: it has none
-  /// What went wrong.
+  /// The error.
   const char* message() const { return error_[0] != '\0' ? error_ : curl_easy_strerror(code_); }
   std::uint64_t bytes() const { return have_; }
 
@@ -95,7 +95,7 @@ class Transfer {
   CURLcode code_ = CURLE_OK;
   char error_[CURL_ERROR_SIZE] = {};
   std::exception_ptr failure_;  ///< of a callback
-  bool fits_ = true;            ///< the answer, behind the part file
+  bool fits_ = true;            ///< whether the answer continues the part file
 };
 
 Transfer::Transfer(const std::string& url, const std::string& part, const DownloadOptions& options)
@@ -108,9 +108,9 @@ Transfer::Transfer(const std::string& url, const std::string& part, const Downlo
   const std::string version = version_of(part_);
   std::error_code none;
   const std::uintmax_t size = fs::file_size(part_, none);
-  if (none || size == 0 || version.empty()) return;  // whether it would be the same file can't be known
+  if (none || size == 0 || version.empty()) return;  // it might be another file
   have_ = size;
-  // Not RESUME_FROM: where the whole file comes instead of the rest, libcurl would refuse it.
+  // Not RESUME_FROM: libcurl would refuse an answer with the whole file instead of the rest.
   curl_easy_setopt(curl, CURLOPT_RANGE, fmt::format("{}-", have_).c_str());
   headers_.reset(curl_slist_append(nullptr, ("If-Range: " + version).c_str()));
   curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers_.get());
@@ -136,7 +136,7 @@ Transfer::End Transfer::perform() {
   if (file_ && std::fclose(file_.release()) != 0) {
     throw OutputError(fmt::format("{}: can't be written (disk full?)", part_));
   }
-  // Nothing is missing, or the file is another one.
+  // The file is complete, or another one.
   if (status() == kRangeNotSatisfiable) fits_ = header("Content-Range") == fmt::format("bytes */{}", have_);
   if (!fits_) return End::other_file;
   if (code_ == CURLE_OK || status() == kRangeNotSatisfiable) return End::complete;
@@ -149,7 +149,7 @@ Transfer::End Transfer::perform() {
   return End::broken_off;
 }
 
-/// The answer's first byte: is it the file's first, or the one that is next?
+/// Checks that the answer begins with the file's first byte, or with the one that follows the part file.
 bool Transfer::begin() {
   constexpr long kPartialContent = 206;
   if (status() != kPartialContent) have_ = 0;
@@ -184,13 +184,14 @@ std::size_t Transfer::on_body(char* data, std::size_t size, std::size_t count, v
   auto* const transfer = static_cast<Transfer*>(self);
   try {
     return transfer->body(data, size * count) ? size * count : 0;
-  } catch (...) {  // must not pass through libcurl, which is C
+  } catch (...) {  // exceptions must not pass through libcurl, which is C
     transfer->failure_ = std::current_exception();
     return 0;
   }
 }
 
-/// A page that says "not found", "log in" or "accept our terms" in the place of the file. `type`: as the server says.
+/// Whether the answer is a web page ("not found", "log in", "accept our terms") instead of the file. `type`: the
+/// server's content type.
 bool is_web_page(const std::string& path, const std::string& type) {
   std::string head(256, '\0');
   std::ifstream file(path, std::ios::binary);

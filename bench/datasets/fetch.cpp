@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file or folder into a folder that has none of its name.
+/// Moves a file or folder into a folder that has none of its name.
 void move_into(const fs::path& folder, const fs::path& path) {
   const fs::path target = folder / path.filename();
   if (fs::exists(target)) {
@@ -30,7 +30,7 @@ void move_into(const fs::path& folder, const fs::path& path) {
   fs::rename(path, target);
 }
 
-/// An archive that is of no use is removed: fetched once more, it may be good.
+/// Unpacks an archive. A damaged one is removed, as it may be good when fetched again.
 void unpack_into(const fs::path& folder, const fs::path& archive, const std::string& url, std::uint64_t limit) {
   const fs::path unpacked = folder / ".unpacked";
   fs::create_directory(unpacked);
@@ -48,7 +48,7 @@ Json record_of_file(const char* key, const std::string& name, const std::string&
   return {{key, name}, {"bytes", fs::file_size(path)}, {"sha256", sha256_file(path)}};
 }
 
-/// Of every file in a folder and below it, by its name there.
+/// Size and SHA-256 of every file in a folder and below it, by its name there.
 std::map<std::string, Json> records_of_files(const fs::path& folder) {
   std::map<std::string, Json> records;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -108,7 +108,7 @@ void fetch_dataset(const Dataset& dataset, const std::string& folder, const Down
   for (const Dataset::File& file : dataset.files) {
     options.sha256 = file.sha256;
     const std::string path = downloads / file.name;
-    // What an earlier call left may be of another catalogue.
+    // Files of an earlier call may be of another catalogue.
     if (fs::exists(path) && !file.sha256.empty() && sha256_file(path) != file.sha256) fs::remove(path);
     try {
       if (!fs::exists(path)) download(file.url, path, options);
@@ -122,7 +122,7 @@ void fetch_dataset(const Dataset& dataset, const std::string& folder, const Down
                      record["downloads"].back()["sha256"].get<std::string>(),
                      file.sha256.empty() ? "not compared: the catalogue has none" : "as the catalogue has it"));
   }
-  // Nothing is taken from the downloads before all of it is known to be good.
+  // No download is used before all of them are checked.
   for (const Dataset::File& file : dataset.files) {
     if (file.unpack) unpack_into(atomic.part(), downloads / file.name, file.url, options.limit);
   }

@@ -9,11 +9,11 @@
 
 namespace evbench {
 
-/// Downloads a dataset's files and unpacks them into `folder`, which appears when all of it is there. Until then
-/// `folder`.download has the files, those that are complete and those that broke off, and the next call goes on from
-/// there; an archive that is damaged is removed. What was fetched, and every file that came of it, is kept with size
-/// and SHA-256 in record_of_dataset(folder), for verify_dataset(). `told` gets a line for each file, `download` has the
-/// pause, attempts and progress of downloads. Throws InputError.
+/// Downloads a dataset's files and unpacks them into `folder`, which appears when it is complete. Until then
+/// `folder`.download has the complete and partial files, and the next call goes on from there. A damaged archive is
+/// removed. record_of_dataset(folder) has the size and SHA-256 of the downloads and of every file made from them, for
+/// verify_dataset(). `told` is called with a line for each file; `download` has the pause, attempts and progress of
+/// downloads. Throws InputError.
 void fetch_dataset(const Dataset& dataset, const std::string& folder, const DownloadOptions& download,
                    const std::function<void(const std::string&)>& told);
 

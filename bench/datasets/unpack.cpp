@@ -70,7 +70,7 @@ class Unpacker {
   std::vector<std::byte> block_ = std::vector<std::byte>(1 << 20);
 };
 
-/// Where the folder holds one folder and nothing else, that one's content takes its place.
+/// Where the folder holds only one folder, replaces that folder by its content.
 void lift_single_folder(const std::string& folder) {
   std::vector<fs::directory_entry> entries{fs::directory_iterator(folder), fs::directory_iterator()};
   if (entries.size() != 1 || !entries[0].is_directory()) return;

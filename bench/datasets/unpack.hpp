@@ -10,7 +10,7 @@ namespace evbench {
 ///
 /// Throws BadArchive (core/io/archive.hpp), naming the archive and the entry, for a damaged archive, a name that leads
 /// out of the folder (absolute, ".."), a link or device, a name that is there twice, and for more than `limit` bytes in
-/// all; InputError for what can't be written and for an Interruption. What was unpacked until then stays.
+/// all; InputError where writing fails and for an Interruption. Files that were unpacked until then stay.
 void unpack(const std::string& archive, const std::string& folder, std::uint64_t limit);
 
 }  // namespace evbench

@@ -8,11 +8,11 @@
 namespace evbench {
 namespace {
 
-constexpr std::size_t kColumns = 3;  ///< of panels, at most: beside them the names stand
+constexpr std::size_t kColumns = 3;  ///< of panels, at most, as names are at their left
 
-/// A method's runs, as a metric has them.
+/// A method's runs under one metric.
 struct Row {
-  std::vector<double> values;  ///< of those that did not fail
+  std::vector<double> values;  ///< of the runs that did not fail
   std::string failures;        ///< how many did, on one line by no-break spaces; empty: none
 };
 
@@ -28,7 +28,7 @@ Row row_of(const Method& method, const FigureRuns& all, const Metric& metric) {
 }  // namespace
 
 Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  const FigureRuns all(runs, options.online, "", "experiment");
+  const FigureRuns all(runs, options.causal, "", "experiment");
   const std::vector<Metric> metrics = all.metrics(options);
   Figure figure;
   figure.legend = false;
@@ -40,7 +40,7 @@ Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options)
   }
   bool some_failed = false;
   std::vector<std::vector<double>> drawn;  // in each panel
-  std::vector<std::string> told;  // of failures, by the first panel of a row, which has the names for all of it
+  std::vector<std::string> told;           // failures that the first panel of a row shows with its names
   for (const Metric& metric : metrics) {
     const bool begins_row = figure.panels.size() % figure.columns == 0;
     if (begins_row) told.clear();
@@ -67,7 +67,7 @@ Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options)
   figure.height_mm = (13.0 + 6.5 * static_cast<double>(all.methods.size())) * static_cast<double>(rows);
   const std::string what = all.pooled("Boxes between quartiles, with the median and each run as a point", groups);
   figure.caption =
-      all.scored_caption(what + (some_failed ? " Those that failed are in no box." : ""), options.online, metrics);
+      all.scored_caption(what + (some_failed ? " Those that failed are in no box." : ""), options.causal, metrics);
   return figure;
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array kKindNames = {"line", "points", "band", "level", "steps", "failures", "box", "cells"};
 
-/// Python's JSON knows no infinity; what is not finite is not drawn.
+/// Python's JSON has no infinity; values that are not finite are not drawn.
 Json numbers(const std::vector<double>& values) {
   Json list = Json::array();
   for (const double value : values) list.push_back(std::isfinite(value) ? Json(value) : Json());
@@ -105,7 +105,7 @@ std::string find_python() {
 std::string drawing_script(const Figure& figure) {
   std::string script(figure_script());
   const std::string place = "@DATA@";
-  std::string data = to_json(figure).dump(-1, ' ', true);  // ASCII: no doubt about the file's encoding
+  std::string data = to_json(figure).dump(-1, ' ', true);  // ASCII, whatever the file's encoding
   return script.replace(script.find(place), place.size(), data);
 }
 
@@ -116,17 +116,17 @@ void check_figure_name(const std::string& file) {
 }
 
 std::string draw(const Figure& figure, const std::string& file, const std::string& python) {
-  PartFile{file};  // says by the name that was asked for, not by those below, why it can't be written
+  PartFile{file};  // errors name the requested file, not the temporary ones below
   const std::string interpreter = python.empty() ? find_python() : python;
   const std::filesystem::path target(file);
-  // Beside the target, so that it can be renamed; with its extension, which tells matplotlib the format.
+  // In the target's folder, so that it can be renamed; with its extension, which gives matplotlib the format.
   const std::string part = file + ".part" + target.extension().string(), script = file + ".part.py";
   write_file(script, drawing_script(figure));
   std::string failure, warnings;
   try {
     ChildProcess process({interpreter, script, part}, "");
     try {
-      process.exchange("\n", kPatience);  // it says a line when it is done
+      process.exchange("\n", kPatience);  // it prints a line when it is done
       process.close(kPatience);
       warnings = process.errors().text("  ");
     } catch (const ProcessError& error) {

@@ -1,5 +1,5 @@
 # Draws what follows as DATA with matplotlib: python3 THIS.py FILE.svg (or .pdf, .png). All numbers, texts and colours
-# are in DATA; how they look is here.
+# are in DATA; their layout and style are here.
 import json
 import math
 import sys
@@ -13,8 +13,8 @@ import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
-# Okabe and Ito's colours, and Tol's wine instead of black, which is the truth's: people with any kind of colour vision tell
-# them apart; in grey, lines differ by dash and marker.
+# Okabe and Ito's colours, and Tol's wine instead of black, which is the truth's: they can be distinguished with any kind
+# of colour vision; in grey, lines differ by dash and marker.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#882255", "#999999"]
 DASHES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (3, 1, 1, 1, 1, 1))]
 MARKERS = "osD^vP*X"
@@ -23,9 +23,9 @@ LARGEST_RATIO, DARK_RATIO = 8.0, 4.0  # of cells: where colours end; from where 
 CAPTION_WIDTH, COUNT_WIDTH, LABEL_WIDTH = 1.02, 1.25, 1.45  # [mm] of a letter; the last one of names and axes' labels
 CAPTION_HEIGHT, LEGEND_HEIGHT, NAME_HEIGHT = 2.3, 4.2, 3.2  # [mm] of a line
 NAMES_SHARE = 0.4  # of the figure's width, that names take at most
-TICKS_SIZE, TICK_WIDTH = 14.0, 8.0  # [mm] of what stands beside and below axes, about; of a number below them, at least
+TICKS_SIZE, TICK_WIDTH = 14.0, 8.0  # [mm] margin left of and below axes, about; least width of a number below them
 
-# What goes wrong is told to people that never saw this file.
+# Error messages are for people that never saw this file.
 warnings.formatwarning = lambda message, *_: f"{message}\n"
 
 plt.rcParams.update({
@@ -39,7 +39,7 @@ plt.rcParams.update({
 
 
 def numbers(values):
-    """What is not finite is null in JSON, and not drawn."""
+    """Values that are not finite are null in JSON, and not drawn."""
     return [float("nan") if value is None else value for value in values]
 
 
@@ -84,7 +84,7 @@ def draw(axes, mark, series):
 
 
 def draw_failures(axes, panel, series, width):
-    """Above the panel: where how many runs of how many failed, in rows of each series, as many as it takes to be read."""
+    """Above the panel: how many runs of how many failed at each x, in as many rows a series as are needed to read them."""
     marks = [mark for mark in panel["marks"] if mark["kind"] == "failures"]
 
     def place(x):
@@ -112,7 +112,7 @@ def draw_failures(axes, panel, series, width):
 
 
 def draw_cells(axes, mark):
-    """Cells of equal size, whatever lies between their places. What is infinite or not known is grey."""
+    """Cells of equal size, whatever the distance between their values. Infinite or unknown values are grey."""
     columns, rows = sorted(set(mark["x"])), sorted(set(mark["y"]))
     ratios = [[float("nan")] * len(columns) for _ in rows]
     for x, y, ratio in zip(mark["x"], mark["y"], mark["low"]):
@@ -150,7 +150,7 @@ def set_scale(axis, scale, low, high, ticks=6):
 
 
 def set_ends(axis, scale, ends, low, high, least):
-    """Ticks at the ends of what is drawn, and those between that are not too near: `least` is a share of the axis."""
+    """Ticks at the ends of the data, and those between that are not too near: `least` is a share of the axis."""
     def place(value):
         return math.log(value) if scale == "log" else value
 
@@ -171,7 +171,7 @@ def spread_alike(grid, panels):
 
 
 def axis_label(axis, width):
-    """On as many lines as it takes: layout does not see to it that a label is no longer than its axis."""
+    """Breaks a label into lines no longer than its axis, which the layout does not do."""
     return wrap(axis["label"] + (" (logarithmic)" if axis["scale"] == "log" else ""), width)
 
 
@@ -208,7 +208,7 @@ def draw_panel(axes, panel, series, width, height):
 
 
 def wrap_names(panels, width):
-    """Returns what names take now [mm]: the width of the longest line, the height of a panel's further lines."""
+    """Returns the current size of names [mm]: the width of the longest line, the height of a panel's further lines."""
     for panel in panels:
         panel["names"] = [wrap(name, width) for name in panel["names"]]
     names = [name.split("\n") for panel in panels for name in panel["names"]]

@@ -13,9 +13,9 @@
 
 namespace evbench {
 
-FigureRuns::FigureRuns(std::span<const RunRecord> records, bool online, const std::string& without,
+FigureRuns::FigureRuns(std::span<const RunRecord> records, bool causal, const std::string& without,
                        const std::string& apart)
-    : runs(numbers_of(records, online)),
+    : runs(numbers_of(records, causal)),
       columns(columns_with(records, without)),
       methods(methods_of(runs, columns, without, apart)) {
   if (methods.empty()) throw InputError("none of these runs was done yet; expected some to draw");
@@ -49,7 +49,7 @@ std::string FigureRuns::caption(const std::string& what) const {
   return fmt::format("{}. {}", fmt::join(experiments, ", "), what);
 }
 
-std::string FigureRuns::scored_caption(const std::string& what, bool online, const std::vector<Metric>& metrics) const {
+std::string FigureRuns::scored_caption(const std::string& what, bool causal, const std::vector<Metric>& metrics) const {
   const auto any = [&](const char* part) {
     return std::ranges::any_of(metrics,
                                [&](const Metric& metric) { return metric.key.find(part) != std::string::npos; });
@@ -60,7 +60,7 @@ std::string FigureRuns::scored_caption(const std::string& what, bool online, con
   };
   if (!metrics.empty() && std::ranges::all_of(metrics, is_measured)) return caption(what);
   const ProtocolParts parts{any("rpe."), any("segments."), any("equal_latency.")};
-  std::string text = caption(what) + (online ? " Online: each pose as estimated at the time it was made."
+  std::string text = caption(what) + (causal ? " Causal: each pose as estimated at the time it was made."
                                              : " Final: the trajectory as estimated after the whole sequence.");
   std::vector<std::string> protocols;
   for (const RunNumbers& run : runs) {

@@ -15,7 +15,7 @@ bool has_axis(const Method& method, const RunColumn& axis) {
   return std::ranges::any_of(method.runs, [&](std::size_t run) { return !axis.values[run].empty(); });
 }
 
-/// The only one of the methods that has the axis, or has it not.
+/// The only method with the axis, or the only one without it.
 const Method& only_method(const FigureRuns& all, const RunColumn& axis, bool with) {
   const Method* found = nullptr;
   for (const Method& method : all.methods) {
@@ -47,7 +47,7 @@ Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options)
   if (options.axis == options.across) {
     throw InputError(fmt::format("--axis and --across are both \"{}\"; expected two axes", options.axis));
   }
-  const FigureRuns all(runs, options.online, options.axis);
+  const FigureRuns all(runs, options.causal, options.axis);
   const std::vector<Metric> metrics = all.metrics(options);
   const RunColumn &axis = find_column(all.columns, options.axis), &across = find_column(all.columns, options.across);
   check_numbers(axis);
@@ -92,7 +92,7 @@ Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options)
                                      "Below 1, blue, the former is better. Cells are of one size, "
                                      "whatever lies between their values.",
                                      shown, method.name, base.name, pairs, pairs == 1 ? "" : "s"),
-                         options.online, metrics);
+                         options.causal, metrics);
   return figure;
 }
 

@@ -12,10 +12,10 @@
 namespace evbench {
 namespace {
 
-/// costs[method][problem], of the data of which all methods have a run.
+/// costs[method][problem], for the data that all methods have a run on.
 std::vector<std::vector<double>> costs_by_problem(const FigureRuns& all, const Metric& metric) {
   const std::vector<std::size_t> data = number_data(all.runs);
-  std::map<std::size_t, std::map<std::size_t, double>> by_data;  // a cost a method
+  std::map<std::size_t, std::map<std::size_t, double>> by_data;  // one cost a method
   for (std::size_t m = 0; m < all.methods.size(); ++m) {
     for (const std::size_t run : all.methods[m].runs) {
       if (const std::optional<double> cost = all.runs[run].cost(metric)) by_data[data[run]][m] = *cost;
@@ -32,7 +32,7 @@ std::vector<std::vector<double>> costs_by_problem(const FigureRuns& all, const M
 }  // namespace
 
 Figure profile_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  const FigureRuns all(runs, options.online);
+  const FigureRuns all(runs, options.causal);
   const std::vector<Metric> metrics = all.metrics(options);
   Figure figure;
   std::size_t problems = 0;
@@ -66,7 +66,7 @@ Figure profile_figure(std::span<const RunRecord> runs, const FigureOptions& opti
   }
   figure.columns = std::min<std::size_t>(figure.panels.size(), 2);
   figure.caption = all.scored_caption(
-      fmt::format("Performance profiles (Dolan and Moré 2002) over {} sequences and seeds.", problems), options.online,
+      fmt::format("Performance profiles (Dolan and Moré 2002) over {} sequences and seeds.", problems), options.causal,
       metrics);
   return figure;
 }

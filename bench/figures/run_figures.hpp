@@ -10,17 +10,17 @@
 
 namespace evbench {
 
-/// Which runs' figure is made, and of what.
+/// Options of figures of runs.
 struct FigureOptions {
   std::vector<std::string> metrics = {};  ///< a panel each, as in tables; empty: ATE and RPE
   std::string axis = "";                  ///< of sweeps: a name of run_columns(); empty: the one that has numbers alone
   std::string axis_label = "";            ///< what is written there; empty: the axis' name
   std::string across = "";                ///< of maps: the column that is the other axis
-  std::string base = "";  ///< of maps: the method that all is compared with; empty: the one without axis
-  bool online = false;    ///< the scores of the online trajectories, instead of the final ones
+  std::string base = "";                  ///< of maps: the method to compare with; empty: the one without axis
+  bool causal = false;                    ///< the scores of the causal trajectories, instead of the final ones
 };
 
-/// Trajectories of one sequence that were scored, wherever they come from.
+/// Scored trajectories of one sequence, from any source.
 struct ScoredTrajectories {
   std::vector<std::string> names;  ///< one each
   std::vector<Scores> scores;
@@ -28,29 +28,29 @@ struct ScoredTrajectories {
   bool numbered = false;  ///< poses have numbers, not times
 };
 
-/// Their errors over time; their coordinates over time, and they from three sides, with the ground truth.
+/// Their errors over time; their coordinates over time, and their views from three sides, with the ground truth.
 Figure error_figure(const ScoredTrajectories& scored);
 Figure position_figure(const ScoredTrajectories& scored);
 Figure trajectory_figure(const ScoredTrajectories& scored);
 
-// All throw InputError where there is nothing to draw, saying what was expected. What failed is shown: as a number
+// All throw InputError where there is nothing to draw, saying what was expected. Failed runs are shown: as a number
 // above a sweep's panel or behind a box's name, as a share that is not reached in a profile, in the caption elsewhere.
 
 /// Metrics against an axis: a curve for each method (eval/methods.hpp) through the medians of its other runs, a band
 /// between their quartiles. A method that does not have the axis is a level across.
 Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& options);
 
-/// Where a method is worth how much: against an axis and across another one, both of numbers, the median over all other
-/// runs of what a metric is of the method that has the axis over what it is of the base on the same data.
+/// A map of ratios against two axes of numbers: the median over the runs at a point of the metric of the method that
+/// has the axis, divided by the metric of the base on the same data.
 Figure map_figure(std::span<const RunRecord> runs, const FigureOptions& options);
 
 /// A box for each method: quartiles, median, and each run.
 Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options);
 
-/// Performance profiles (eval/performance_profile.hpp): a problem is the data of which all methods have a run.
+/// Performance profiles (eval/performance_profile.hpp): a problem is data that all methods have a run on.
 Figure profile_figure(std::span<const RunRecord> runs, const FigureOptions& options);
 
-/// How long updates took: the share of them that took at most that long, of the runs that succeeded.
+/// Distribution of update times: the share of updates that took at most a time, in runs that succeeded.
 Figure times_figure(std::span<const RunRecord> runs, const FigureOptions& options);
 
 /// Errors over time of the runs of one sequence, translation above rotation, aligned as they were scored. Of several

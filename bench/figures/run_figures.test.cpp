@@ -44,7 +44,7 @@ struct Swept : Results {
 
 }  // namespace
 
-TEST_CASE("A sweep is a curve of medians with bands, and a level for what does not have the axis") {
+TEST_CASE("A sweep is a curve of medians with bands, and a level for a method without the axis") {
   const Swept results;
   const Figure figure = sweep_figure(results.find(), {.metrics = {"ate.trans_m.rmse"}, .axis_label = "frame [s]"});
   REQUIRE(figure.series.size() == 2);
@@ -67,7 +67,7 @@ TEST_CASE("A sweep is a curve of medians with bands, and a level for what does n
 TEST_CASE("A map has the median ratio to the base on the same data, by two axes") {
   const Swept results;
   const FigureOptions options{
-      .metrics = {"ate.trans_m.rmse"}, .axis = "backend.frame_duration", .across = "seed", .base = "asynchronous"};
+      .metrics = {"ate.trans_m.rmse"}, .axis = "backend.batch_duration", .across = "seed", .base = "asynchronous"};
   const Figure figure = map_figure(results.find(), options);
   const Mark& cells = mark_of(figure.panels.at(0), Mark::Kind::cells, 0);
   REQUIRE(cells.low.size() == 9);  // three frames, three seeds
@@ -82,7 +82,7 @@ TEST_CASE("A map has the median ratio to the base on the same data, by two axes"
   CHECK_THROWS_WITH(map_figure(results.find(), other), ContainsSubstring("expected --axis and --across"));
 }
 
-TEST_CASE("What failed is told above a sweep, behind a box's name, and by a profile") {
+TEST_CASE("Failed runs are shown above a sweep, behind a box's name, and in a profile") {
   Swept results;
   results.add_seed("bundle", 4, std::nullopt, 0.1);
   const std::vector<RunRecord> runs = results.find();
@@ -94,13 +94,13 @@ TEST_CASE("What failed is told above a sweep, behind a box's name, and by a prof
   CHECK_THAT(sweep.caption, ContainsSubstring("of 3 to 4 runs each (seed). Above: how many of the runs failed"));
   const Figure boxes = box_figure(runs, {});
   CHECK(boxes.panels.at(0).names.at(2) ==
-        "bundle, backend.frame_duration 0.1 (1\u00a0of\u00a04\u00a0fail)");  // not to be broken
-  CHECK(boxes.panels.at(1).names.at(2).empty());                             // the first panel has said it
+        "bundle, backend.batch_duration 0.1 (1\u00a0of\u00a04\u00a0fail)");  // not to be broken
+  CHECK(boxes.panels.at(1).names.at(2).empty());                             // the first panel shows it
   CHECK_THAT(boxes.caption, ContainsSubstring("Those that failed are in no box."));
   CHECK(mark_of(boxes.panels.at(0), Mark::Kind::box, 2).y.size() == 3);
 }
 
-TEST_CASE("What of a level failed is told, too") {
+TEST_CASE("Failed runs of a level are shown, too") {
   const Swept results;
   results.add_asynchronous(4, std::nullopt);
   const Figure figure = sweep_figure(results.find(), {});
@@ -124,7 +124,7 @@ TEST_CASE("A value of the axis at which the median fails is in the figure", "[sl
              ContainsSubstring("<!-- 0.4 -->") && ContainsSubstring("<!-- 3/3 -->"));
 }
 
-TEST_CASE("Two experiments in one box plot are told apart") {
+TEST_CASE("Two experiments in one box plot have different names") {
   const Results results;
   for (int seed = 1; seed <= 3; ++seed) {
     results.add_seed("mine", seed, 0.1 * seed);
@@ -140,18 +140,18 @@ TEST_CASE("Two experiments in one box plot are told apart") {
   CHECK(figure.series[1].label == "mine, experiment legs");
 }
 
-TEST_CASE("A sweep over a setting in which labels differ, too, is drawn and says so") {
+TEST_CASE("A sweep over a setting that labels also differ in is drawn with a remark") {
   const Results results;
   for (const double frame : {0.05, 0.1, 0.2}) {
     const std::string label = fmt::format("bundle {}", frame);
     results.add(label, run("arm", label, scores_with(frame)),
-                {{"source", {{"type", "simulation"}}}, {"backend", {{"frame_duration", frame}}}});
+                {{"source", {{"type", "simulation"}}}, {"backend", {{"batch_duration", frame}}}});
   }
-  const Figure figure = sweep_figure(results.find(), {.axis = "backend.frame_duration"});
+  const Figure figure = sweep_figure(results.find(), {.axis = "backend.batch_duration"});
   REQUIRE(figure.series.size() == 3);
   CHECK(mark_of(figure.panels.at(0), Mark::Kind::points, 0).x == std::vector{0.1});
   REQUIRE(figure.remarks.size() == 1);
-  CHECK_THAT(figure.remarks[0], ContainsSubstring("Labels differ wherever backend.frame_duration does"));
+  CHECK_THAT(figure.remarks[0], ContainsSubstring("Labels differ wherever backend.batch_duration does"));
   CHECK_THAT(figure.caption, ContainsSubstring(figure.remarks[0]));
   std::vector<RunRecord> one = results.find();
   for (RunRecord& run : one) run.label = "bundle";
@@ -164,7 +164,7 @@ TEST_CASE("A sweep over a setting in which labels differ, too, is drawn and says
 
 TEST_CASE("Panels of one figure are scaled alike, and an axis has ticks at both of its ends") {
   const Swept results;  // ATE from 0.05 to 0.6, RPE the same everywhere
-  const Figure sweep = sweep_figure(results.find(), {.axis = "backend.frame_duration"});
+  const Figure sweep = sweep_figure(results.find(), {.axis = "backend.batch_duration"});
   REQUIRE(sweep.panels.size() == 2);
   for (const Panel& panel : sweep.panels) {
     CHECK(panel.y.log);
@@ -178,7 +178,7 @@ TEST_CASE("Panels of one figure are scaled alike, and an axis has ticks at both 
   CHECK(error_figure(scored).panels.at(0).y.label == "translation error [m]");
 }
 
-TEST_CASE("Below a figure stands the part of the protocol that it follows from") {
+TEST_CASE("The caption has the part of the protocol that a figure depends on") {
   const Swept results;
   const std::vector<RunRecord> runs = results.find();
   const auto caption = [&](const std::vector<std::string>& metrics) {
@@ -189,7 +189,7 @@ TEST_CASE("Below a figure stands the part of the protocol that it follows from")
   CHECK_THAT(caption({"realtime_factor"}), !ContainsSubstring("Sim(3)") && !ContainsSubstring("Final"));
 }
 
-TEST_CASE("What runs that are drawn together differ in is said") {
+TEST_CASE("The caption says what runs that are drawn together differ in") {
   const Swept results;
   std::vector<RunRecord> runs = results.find();
   for (std::size_t i = runs.size(); i > 0; --i) {
@@ -197,7 +197,7 @@ TEST_CASE("What runs that are drawn together differ in is said") {
     slow.settings.emplace_back("source.speed", 0.5);
     slow.key += "-slow";
   }
-  CHECK_THAT(sweep_figure(runs, {.axis = "backend.frame_duration"}).caption,
+  CHECK_THAT(sweep_figure(runs, {.axis = "backend.batch_duration"}).caption,
              ContainsSubstring("Medians, and bands between quartiles, of 6 runs each (source.speed, seed)."));
   CHECK_THAT(sweep_figure(runs, {.axis = "seed"}).caption,
              ContainsSubstring("quartiles, of 2 runs each (source.speed)."));
@@ -205,7 +205,7 @@ TEST_CASE("What runs that are drawn together differ in is said") {
   CHECK_THAT(sweep_figure(results.find(), {.axis = "seed"}).caption, ContainsSubstring("arm. Each point is one run."));
 }
 
-TEST_CASE("A profile is of the data that all methods have runs of") {
+TEST_CASE("A profile is of the data that all methods have runs on") {
   Results results;
   for (int seed = 1; seed <= 4; ++seed) results.add_seed("a", seed, 0.1);
   for (int seed = 1; seed <= 3; ++seed)
@@ -219,7 +219,7 @@ TEST_CASE("A profile is of the data that all methods have runs of") {
   CHECK_THAT(figure.caption, ContainsSubstring("over 3 sequences and seeds"));
 }
 
-TEST_CASE("Times are drawn of runs without scores, and what needs scores says so") {
+TEST_CASE("Times are drawn for runs without scores, and figures that need scores say so") {
   const Results results;
   results.add("a", run("arm", "no ground truth", nullptr));
   results.folder.write("a/timing.csv", "t_s,update_ms\n0.1,2.5\n0.2,3.5\n");
@@ -237,7 +237,7 @@ TEST_CASE("What can't be drawn is refused with what was expected") {
   const std::vector<RunRecord> runs = results.find();
   CHECK_THROWS_WITH(sweep_figure(runs, {.axis = "label"}),
                     ContainsSubstring("has the value \"asynchronous\"; expected numbers"));
-  CHECK_THROWS_WITH(sweep_figure(runs, {.axis = "backend.frame"}), ContainsSubstring("backend.frame_duration"));
+  CHECK_THROWS_WITH(sweep_figure(runs, {.axis = "backend.frame"}), ContainsSubstring("backend.batch_duration"));
   CHECK_THROWS_WITH(profile_figure(runs, {.metrics = {"coverage"}}),
                     ContainsSubstring("neither lower nor higher is better"));
   Results one;
@@ -267,12 +267,12 @@ TEST_CASE("Figures of runs are drawn by the program, the same bytes each time", 
   CHECK(read_file(folder.file("again.pdf")).starts_with("%PDF"));
 }
 
-TEST_CASE("A figure of one sequence names it, and it and what is exported tell why a run is not in them", "[slow]") {
+TEST_CASE("A figure of one sequence names it, and it and its exported data say why a run is missing", "[slow]") {
   const TemporaryFolder folder;
   Json config = short_comparison();
   config["source"]["duration"] = 1;
   config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "a"}},
-                        {{"type", "bundle_adjustment"}, {"label", "b"}, {"frame_duration", 0.1}}};
+                        {{"type", "bundle_adjustment"}, {"label", "b"}, {"batch_duration", 0.1}}};
   folder.write("c.json", dump_json(config));
   for (const std::string alive : {"40", "50"}) {
     REQUIRE(testing::evbench(folder, "run c.json --quiet --set source.tracks.alive=" + alive).exit_code == 0);
@@ -280,12 +280,12 @@ TEST_CASE("A figure of one sequence names it, and it and what is exported tell w
   std::string failed;
   for (const RunRecord& run : find_runs(std::vector{folder.path()})) {
     if (run.label != "b") continue;
-    failed = run.folder;  // as a run that was stopped leaves it
+    failed = run.folder;  // like a run that was stopped
     Json metrics = parse_json(read_file(run.folder + "/metrics.json"));
     metrics["status"]["state"] = "failed";
     metrics["status"]["reason"] = "timeout after 20 s";
     write_file(run.folder + "/metrics.json", dump_json(metrics));
-    for (const char* estimate : {"/final.tum", "/online.tum"}) write_file(run.folder + estimate, "");
+    for (const char* estimate : {"/final.tum", "/causal.tum"}) write_file(run.folder + estimate, "");
     std::filesystem::remove(run.folder + "/groundtruth.tum");
     score_again(run.folder, protocol_of_run(run.folder));
   }
@@ -301,7 +301,7 @@ TEST_CASE("A figure of one sequence names it, and it and what is exported tell w
   CHECK_THROWS_WITH(error_figure(runs, {}), ContainsSubstring("b is not drawn: no trajectory: timeout after 20 s."));
 }
 
-TEST_CASE("Runs that are asked for by several values of one name have any of them", "[slow]") {
+TEST_CASE("Runs selected by several values of one name have any of them", "[slow]") {
   const Swept results;
   const auto script_of = [&](const std::string& only) {
     const Outcome outcome =
@@ -339,7 +339,7 @@ TEST_CASE("Trajectories from elsewhere are drawn with their ground truth", "[slo
   CHECK_THAT(testing::evbench(folder, "eval truth.tum a.tum --plot f.jpg").err, ContainsSubstring("is no .svg"));
 }
 
-TEST_CASE("What Python warns of is passed on", "[slow]") {
+TEST_CASE("Python's warnings are passed on", "[slow]") {
   const Swept results;
   const Outcome outcome = testing::evbench(results.folder, "figure box . --out f.svg --width 20");
   CHECK(outcome.exit_code == 0);
@@ -366,7 +366,7 @@ TEST_CASE("Figures that can't be written or drawn are errors, and nothing is rep
   for (const std::string& name : names_in(results.folder.path())) CHECK_FALSE(name.starts_with("f.svg.part"));
 }
 
-TEST_CASE("An option that says nothing of a kind of figure is refused") {
+TEST_CASE("An option that does not apply to a kind of figure is refused") {
   const Swept results;
   const auto refused = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = testing::evbench(results.folder, "figure " + arguments + " --out f.svg");
@@ -374,8 +374,8 @@ TEST_CASE("An option that says nothing of a kind of figure is refused") {
     CHECK(outcome.exit_code == 2);
     CHECK_THAT(outcome.err, ContainsSubstring(message));
   };
-  refused("box . --axis backend.frame_duration", "--axis says nothing of a figure of the kind box");
-  refused("sweep . --across seed", "it takes --metrics, --axis, --axis-label, --online");
-  refused("times . --online", "it takes none");
+  refused("box . --axis backend.batch_duration", "--axis has no effect on a figure of the kind box");
+  refused("sweep . --across seed", "it takes --metrics, --axis, --axis-label, --causal");
+  refused("times . --causal", "it takes none");
   CHECK(names_in(results.folder.path()).count("f.svg") == 0);
 }

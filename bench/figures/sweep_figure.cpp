@@ -19,7 +19,7 @@ bool is_numeric_axis(const RunColumn& column) {
          std::ranges::all_of(column.values, [](const std::string& value) { return value.empty() || number_in(value); });
 }
 
-/// The axis asked for, or the only one that has numbers.
+/// The requested axis, or the only one that has numbers.
 std::string axis_of(std::span<const RunRecord> runs, const FigureOptions& options) {
   const std::vector<RunColumn> columns = columns_with(runs, options.axis);
   if (!options.axis.empty()) {
@@ -41,7 +41,7 @@ std::string axis_of(std::span<const RunRecord> runs, const FigureOptions& option
 /// The runs of a method.
 struct Places {
   std::map<double, std::vector<std::size_t>> at;  ///< by their value of the axis
-  std::vector<std::size_t> without;               ///< that do not have the axis
+  std::vector<std::size_t> without;               ///< runs without the axis
 };
 
 Places places_of(const Method& method, const RunColumn& axis) {
@@ -53,7 +53,7 @@ Places places_of(const Method& method, const RunColumn& axis) {
   return places;
 }
 
-/// Of a method at one value of the axis.
+/// A method's values at one value of the axis.
 struct Spot {
   Quartiles quartiles;
   double runs, failed;  ///< how many
@@ -99,7 +99,7 @@ std::vector<Mark> draw_method(const Places& places, std::size_t number, const Fi
   return marks;
 }
 
-/// Does every method that has the axis have one value of it, and not all the same? Then labels differ as the axis does.
+/// Whether every method that has the axis has one value of it, and not all the same: labels then differ with the axis.
 bool labels_follow(const std::vector<Places>& methods) {
   std::set<double> values;
   for (const Places& places : methods) {
@@ -113,7 +113,7 @@ bool labels_follow(const std::vector<Places>& methods) {
 
 Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
   const std::string name = axis_of(runs, options);
-  const FigureRuns all(runs, options.online, name);
+  const FigureRuns all(runs, options.causal, name);
   const std::vector<Metric> metrics = all.metrics(options);
   const RunColumn& axis = find_column(all.columns, name);
   Figure figure;
@@ -161,7 +161,7 @@ Figure sweep_figure(std::span<const RunRecord> runs, const FigureOptions& option
         fmt::format("Labels differ wherever {} does: no curve joins their points, unless they get one label.", name));
     what += " " + figure.remarks.back();
   }
-  figure.caption = all.scored_caption(what, options.online, metrics);
+  figure.caption = all.scored_caption(what, options.causal, metrics);
   return figure;
 }
 

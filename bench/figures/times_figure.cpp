@@ -9,9 +9,9 @@
 namespace evbench {
 namespace {
 
-constexpr int kPoints = 400;  ///< of a curve: as many as a page shows
+constexpr int kPoints = 400;  ///< of a curve: the resolution of a page
 
-/// The column update_ms of a run's timing.csv, appended.
+/// Appends the column update_ms of a run's timing.csv.
 void add_times(const std::string& folder, std::vector<double>& times) {
   TextReader file(folder + "/timing.csv");
   if (!file.next()) file.fail("is empty; expected a run's times");
@@ -23,7 +23,7 @@ void add_times(const std::string& folder, std::vector<double>& times) {
 }  // namespace
 
 Figure times_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  const FigureRuns all(runs, options.online);
+  const FigureRuns all(runs, options.causal);
   Figure figure;
   Panel panel{{"time of an update [ms]", true}, {"share of updates", false, true}, {}};
   for (const Method& method : all.methods) {

@@ -14,7 +14,7 @@
 namespace evbench {
 namespace {
 
-/// Is a column the same for all runs of one sequence? Then it tells which one it is.
+/// Whether a column is the same for all runs of one sequence: it then identifies the sequence.
 bool tells_sequence(const RunColumn& column, const std::vector<std::string>& sequences) {
   std::map<std::string, std::string> values;
   for (std::size_t i = 0; i < sequences.size(); ++i) {
@@ -23,7 +23,7 @@ bool tells_sequence(const RunColumn& column, const std::vector<std::string>& seq
   return true;
 }
 
-/// "sequence fast, seed 1": what a run's sequence is called, by these columns. `sequences`: of all runs.
+/// The name of a run's sequence by these columns, such as "sequence fast, seed 1". `sequences`: of all runs.
 std::string name_of_sequence(const std::vector<RunColumn>& columns, const std::vector<std::string>& sequences,
                              std::size_t run) {
   std::string name;
@@ -53,12 +53,12 @@ ScoredTrajectories score_first_sequence(std::span<const RunRecord> records, cons
       if (sequences[i] != sequences[first]) continue;
       drawn.push_back(run);
       if (all.runs[i].scores().is_null()) {
-        const std::string& unscored = options.online ? run.online_unscored : run.final_unscored;
+        const std::string& unscored = options.causal ? run.causal_unscored : run.final_unscored;
         missing += fmt::format(" {} is not drawn: {}.", method.name, unscored.empty() ? "it failed" : unscored);
         continue;
       }
       result.names.push_back(method.name);
-      result.scores.push_back(score_estimate(run.folder, options.online, protocol_of_run(run.folder), run).scores);
+      result.scores.push_back(score_estimate(run.folder, options.causal, protocol_of_run(run.folder), run).scores);
     }
   }
   if (result.scores.empty()) {
@@ -68,9 +68,9 @@ ScoredTrajectories score_first_sequence(std::span<const RunRecord> records, cons
   }
   const std::string others =
       distinct.size() > 1 ? fmt::format(" (the first of {} sequences and seeds)", distinct.size()) : "";
-  const FigureRuns of_sequence(drawn, options.online);
+  const FigureRuns of_sequence(drawn, options.causal);
   result.caption = of_sequence.scored_caption(
-      fmt::format("{}{}{}{}.{}", what, name.empty() ? "" : ", ", name, others, missing), options.online, {});
+      fmt::format("{}{}{}{}.{}", what, name.empty() ? "" : ", ", name, others, missing), options.causal, {});
   return result;
 }
 
@@ -142,16 +142,16 @@ Figure trajectory_figure(const ScoredTrajectories& scored) {
 
 Figure error_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
   return error_figure(
-      score_first_sequence(runs, FigureRuns(runs, options.online), options, "Error of each pose after alignment"));
+      score_first_sequence(runs, FigureRuns(runs, options.causal), options, "Error of each pose after alignment"));
 }
 
 Figure position_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
   return position_figure(
-      score_first_sequence(runs, FigureRuns(runs, options.online), options, "Position over time, after alignment"));
+      score_first_sequence(runs, FigureRuns(runs, options.causal), options, "Position over time, after alignment"));
 }
 
 Figure trajectory_figure(std::span<const RunRecord> runs, const FigureOptions& options) {
-  return trajectory_figure(score_first_sequence(runs, FigureRuns(runs, options.online), options,
+  return trajectory_figure(score_first_sequence(runs, FigureRuns(runs, options.causal), options,
                                                 "Trajectories after alignment, from three sides"));
 }
 

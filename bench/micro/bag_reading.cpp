@@ -1,10 +1,10 @@
-// How fast bags are read, beside what their own libraries deliver; one thread, warm page cache, the best of three:
+// Speed of reading bags, compared with their own libraries; one thread, warm page cache, the best of three:
 //
 //   bag_reading FILE...        ROS 1 bags, ROS 2 bags in SQLite, MCAP files
 //
-// The first row is what the container alone costs: a plain SELECT for SQLite, reading and decompressing the chunks for
-// MCAP. "evbench, bytes" gives the same bytes by evbench's reader of the container, "evbench, events" what users get: a
-// message's bytes decoded to events. Percentages are of the speed in the first row, by processor time.
+// The first row is the cost of the container alone: a plain SELECT for SQLite, reading and decompressing the chunks for
+// MCAP. "evbench, bytes" gives the same bytes by evbench's reader of the container, "evbench, events" decodes messages'
+// bytes to events, as users get them. Percentages are of the speed in the first row, by processor time.
 
 #include <fmt/format.h>
 #include <lz4frame.h>
@@ -27,7 +27,7 @@ namespace {
 
 using namespace evbench;
 
-/// What came out of a bag. Every cache line of it is touched, so that nobody gains by leaving pages alone.
+/// The output of reading a bag. Every cache line of it is touched, so that no method gains by skipping pages.
 struct Delivered {
   std::int64_t messages = 0, bytes = 0;
   std::uint64_t sum = 0;
@@ -40,7 +40,7 @@ struct Delivered {
   }
 };
 
-/// A way of reading a bag to its end.
+/// A method of reading a bag to its end.
 struct WayToRead {
   std::string name;
   std::function<Delivered()> read;
@@ -85,7 +85,7 @@ std::size_t unpack_chunk(const std::string& compression, std::span<const std::by
   return made;
 }
 
-/// The chunks of an MCAP file, unpacked; messages outside chunks aren't looked at.
+/// The chunks of an MCAP file, unpacked; messages outside chunks are ignored.
 Delivered read_chunks(const std::string& path) {
   constexpr std::size_t kMagic = 8, kHeader = 9;
   constexpr std::byte kChunk{6};
@@ -113,7 +113,7 @@ Delivered read_chunks(const std::string& path) {
   return delivered;
 }
 
-/// The container alone first, where that can be told apart, then the same by evbench.
+/// The container alone first, where it can be measured separately, then evbench.
 std::vector<WayToRead> ways_to_read(const std::string& path) {
   const auto by_evbench = [path](auto open) {
     return WayToRead{"evbench, bytes", [path, open] {

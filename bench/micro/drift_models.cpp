@@ -1,22 +1,22 @@
-// What a model of trackers' drifting errors is worth: the final problem of gp_map, its observations, states and prior,
-// solved at once under each model from where gp_map ended.
+// Compares models of trackers' drifting errors: the final problem of gp_map, its observations, states and prior, is
+// solved in one batch under each model, starting from gp_map's estimate.
 //
 //   drift_models CONFIG [--set KEY=VALUE]... [--seeds N] [--drift PX --time S] [--true-noise]
 //
 // CONFIG's first back-end must be a gp_map. --drift adds an Ornstein-Uhlenbeck process of that size and correlation
 // time to each track; --true-noise lets the models know what the simulator adds (source.tracks.noise and --drift, both
-// in pixels), else they take what the residuals of gp_map's estimate show (track_noise.hpp). Models:
+// in pixels), else they use estimates from the residuals of gp_map's estimate (track_noise.hpp). Models:
 //
 //   white        every observation counts in full, with noise as large as white and drifting part together
-//   fewer        gp_map's own: a learnt share of the information (noise_learning.hpp)
+//   fewer        gp_map's own: an estimated share of the information (noise_learning.hpp)
 //   one offset   an offset in the image a track
 //   common part  an offset a window of twice the correlation time, each for itself
 //   chain        a Gauss-Markov chain of offsets, one a correlation time
 //   fine chain   likewise, four a correlation time
 //   exact        likewise, one an observation
 //
-// The models with offsets have white noise beside them, with as much of the drift as offsets over windows can't follow.
-// One row a model, medians over seeds: ATE and RPE as CONFIG scores, each beside its ratio to that of "fewer", seed by
+// The models with offsets also have white noise, which includes the drift that offsets over windows cannot follow.
+// One row a model, medians over seeds: ATE and RPE as CONFIG scores, each with its ratio to that of "fewer", seed by
 // seed (median, and Wilcoxon's p); normalised error of relative poses over 0.1 s and 1 s (1: as large as the covariance
 // says; mean over seeds); variables, iterations, and processor time of an iteration.
 
@@ -51,7 +51,7 @@ using gp_map::RobustLoss;
 
 constexpr double kExchange = 0.01;  ///< [s]
 constexpr double kLossWidth = 2.0;  ///< [sigmas], as gp_map has it
-constexpr int kRelativePoses = 20;  ///< of a run whose covariance is looked at, a distance in time
+constexpr int kRelativePoses = 20;  ///< of a run whose covariance is evaluated, for each time distance
 
 struct Arguments {
   std::string config;
@@ -61,7 +61,7 @@ struct Arguments {
   bool true_noise = false;
 };
 
-/// What a front-end gives, without feedback, undistorted.
+/// A front-end's tracks without feedback, undistorted.
 std::vector<TrackObservation> tracks_of(const Job& job, const Source& source, const Plugins& plugins) {
   const auto& entry = plugins.of<FrontEnd>().find(job.frontend.type, job.frontend.place);
   const auto frontend = entry.make(job.frontend.options, {source, job.seed, job.folder, job.frontend.place});
@@ -79,7 +79,7 @@ std::vector<TrackObservation> tracks_of(const Job& job, const Source& source, co
   return result;
 }
 
-/// gp_map's problem as it ends, without the tracks that it holds for outliers.
+/// gp_map's final problem, without the tracks that it rejects as outliers.
 FactorGraph final_graph(const Job& job, const Camera& camera, const std::vector<TrackObservation>& observations,
                         const Plugins& plugins) {
   BackEndContext context;
@@ -101,13 +101,13 @@ FactorGraph final_graph(const Job& job, const Camera& camera, const std::vector<
   }
   backend->finish();
   if (backend->trajectory().empty()) {
-    throw InputError(fmt::format("{}: gp_map finds no first map in these tracks, seed {}: {}", job.backend.place,
+    throw InputError(fmt::format("{}: gp_map finds no initial map in these tracks, seed {}: {}", job.backend.place,
                                  job.seed, backend->status().reason));
   }
   return gp_map->graph();
 }
 
-/// What a model says of tracks' errors.
+/// A model of tracks' errors.
 struct Errors {
   RobustLoss loss;
   DriftModel drift;
@@ -121,7 +121,7 @@ Errors fewer(const FactorGraph& graph, const TrackNoise&) {
   return {learn_noise(graph).loss(RobustLoss::Kind::cauchy, kLossWidth), {}};
 }
 
-/// The drift's means over windows as offsets; what remains of it passes for white.
+/// The drift's means over windows as offsets; the rest of it is modelled as white noise.
 Errors windows(const TrackNoise& noise, double window, bool chained) {
   const double x = window / noise.time, lost = 1.0 - std::exp(-x);
   const double share = 2.0 * (x - lost) / (x * x);           // of the drift's variance, in its means

@@ -14,8 +14,8 @@ struct DriftModel {
   double time = 0.0;    ///< offsets Δt apart, from middle to middle, correlate by exp(−Δt/time) [s]; 0: not at all
 };
 
-/// A graph's problem in which each observation is z = π(T(t)⁻¹ l) + σ (o + e): e is what the graph's loss says of
-/// noise, o the offset of the landmark's track in the window that holds t, a Gauss-Markov chain by DriftModel.
+/// A graph's problem in which each observation is z = π(T(t)⁻¹ l) + σ (o + e): e is noise under the graph's loss,
+/// o the offset of the landmark's track in the window that holds t, a Gauss-Markov chain by DriftModel.
 class DriftProblem {
  public:
   DriftProblem(gp_map::FactorGraph graph, const DriftModel& model);
@@ -28,7 +28,7 @@ class DriftProblem {
   const gp_map::GraphLayout& layout() const { return layout_; }
   int unknowns() const { return layout_.size + 2 * static_cast<int>(offsets_.size()); }
 
-  // What minimise() asks for.
+  // The interface that minimise() needs.
   struct Estimate {
     gp_map::GraphEstimate graph;
     std::vector<Vector2> offsets;

@@ -27,7 +27,8 @@ struct Drawn {
   std::vector<ControlState> truth;
 };
 
-/// A flight past known points, drawn from its prior, observed 80 times a second with noise in units of kSigma.
+/// A simulated sequence past known points, drawn from its prior, observed 80 times a second with noise in units of
+/// kSigma.
 Drawn draw(const TrackNoise& noise, std::uint64_t seed) {
   Random random(seed);
   const auto normal = [&](auto vector) {
@@ -92,13 +93,13 @@ double normalised_error(const TrackNoise& noise, double white, const DriftModel&
 
 }  // namespace
 
-TEST_CASE("Errors are as large as the model says that made them, and larger than one says that ignores drift") {
+TEST_CASE("Errors agree with the covariance of the true model, and exceed that of a model without drift") {
   const TrackNoise noise{0.4, 1.0, 0.3};
   CHECK(normalised_error(noise, 0.4, {1.0, 0.0, 0.3}) == Approx(1.0).epsilon(0.2));
   CHECK(normalised_error(noise, std::hypot(0.4, 1.0), {}) > 2.0);
 }
 
-TEST_CASE("Offsets that can't be but zero change nothing") {
+TEST_CASE("Offsets with zero variance change nothing") {
   Drawn drawn = draw({1.0, 0.0, 0.3}, 1);
   drawn.graph.loss = RobustLoss(RobustLoss::Kind::cauchy, 2.0);
   FactorGraph white = drawn.graph;
@@ -135,7 +136,7 @@ TEST_CASE("The gradient of a problem with offsets is that of its cost") {
   }
 }
 
-TEST_CASE("White and drifting noise are told apart by residuals") {
+TEST_CASE("White and drifting noise are distinguished by residuals") {
   for (const TrackNoise& noise : {TrackNoise{0.5, 1.0, 0.2}, TrackNoise{1.0, 0.0, 0.3}}) {
     const TrackNoise found = estimate_noise(draw(noise, 1).graph);
     CAPTURE(noise.drift, found.white, found.drift, found.time);

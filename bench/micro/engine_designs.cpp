@@ -1,5 +1,5 @@
-// The two orders of elimination that were considered for the engine, as kernels: floating-point operations and measured
-// time for one control state, without linearisation. See backends/gp_map/engine/engine.md.
+// Two orders of elimination for the engine, as kernels: floating-point operations and measured
+// time for one control state, without linearisation. See docs/algorithms/smoother.md.
 #include <fmt/format.h>
 
 #include <algorithm>

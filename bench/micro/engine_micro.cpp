@@ -48,7 +48,7 @@ void observations(FactorGraph graph) {
   if (!std::isfinite(cost)) fmt::print("the cost is not finite\n");
 }
 
-/// A kernel of the engine beside the same by Eigen, on the same data, by turns.
+/// A kernel of the engine compared with Eigen's, on the same data, in turns.
 template <class Own, class ByEigen>
 void compare(const char* name, int n, int p, double flops, Own own, ByEigen by_eigen) {
   std::vector<double> ratios, seconds;

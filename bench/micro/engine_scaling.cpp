@@ -1,7 +1,7 @@
 // How the incremental engine's time per update scales.
 //   engine_scaling [--quick] [landmarks] [life] [rate] [history] [again]
 // One row a problem: time per update, how far updates reach, linearisation, and the floating-point operations of the
-// updates beside those of dense Cholesky factorisations as large as the root. Without names all sweeps; --quick: 10 s
+// updates compared with dense Cholesky factorisations as large as the root. Without names all sweeps; --quick: 10 s
 // instead of 30 s of data, short histories.
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 //   event_reading FILE...               each file three times; the best counts
 //   event_reading --make N FILE.evb     writes a native file of N synthetic events of a 240x180 sensor, 1 million/s
 //
-// Processor time stands beside wall time: that is what counts on a machine that does other things, too. "reader" is the
-// format's alone, "stream" with the checks that everybody else gets.
+// Shows processor time and wall time: the former counts on a machine with other load. "reader" is the format's reader
+// alone, "stream" includes the checks that all users get.
 
 #include <fmt/format.h>
 

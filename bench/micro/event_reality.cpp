@@ -1,5 +1,5 @@
-// event_reality: simulated events beside real ones. EVBENCH_DATA names the folder of real excerpts; the table goes to
-// standard output as Markdown.
+// event_reality: compares simulated events with real ones. EVBENCH_DATA names the folder of real excerpts; the table
+// goes to standard output as Markdown.
 //
 // The rule: a similar scene, along the same motion, with the same lens, all options at their defaults but one, the
 // contrast threshold (ON and OFF alike). It is fitted on the first half of an excerpt so that the event rate there is
@@ -88,7 +88,7 @@ class Stage {
     return simulate(threshold, kWarmUp + case_->first.seconds, duration_);
   }
 
-  /// The threshold with which the first half has the real rate: bisection of its logarithm.
+  /// The threshold at which the first half has the real event rate, by bisection of its logarithm.
   double fit() const {
     constexpr int kSteps = 8;
     double low = 0.05, high = 2.0;
@@ -163,7 +163,7 @@ double variance(const Recording& recording, const Case& c, std::size_t count, do
   return squares / n - sum * sum / (n * n);
 }
 
-/// The depth at which compensation makes the sharpest image, and how much sharper than none.
+/// The depth at which compensation makes the sharpest image, and how much sharper it is than without.
 struct Sharpness {
   double depth = 0.0, gain = 0.0;
 };

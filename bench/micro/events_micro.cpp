@@ -3,8 +3,8 @@
 //   events_micro [MILLIONS]     writes files of that many million random events (10) to a temporary folder, and reads
 //                               each three times; the best counts
 //
-// "reader" is the format's alone, "stream" with the checks that everybody else gets; both in million events a second,
-// by wall time and by processor time.
+// "reader" is the format's reader alone, "stream" includes the checks that all users get; both in million events a
+// second, by wall time and by processor time.
 
 #include <fmt/format.h>
 #include <unistd.h>

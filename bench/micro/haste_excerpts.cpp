@@ -1,11 +1,11 @@
-// How good tracks of real events are, where the camera's motion is known: the front-end `haste` without a back-end on
+// Accuracy of tracks of real events where the camera's motion is known: the front-end `haste` without a back-end on
 // the Event-Camera Dataset's excerpts in EVBENCH_DATA.
 //
 //   haste_excerpts [--set frontend.KEY=VALUE]...
 //
 // slider_depth: the camera moves along its x axis, so that nothing moves across, along y. A track slips when it is more
-// than 1.2 px across from where it began; at 0.125 s of age, of those that are still told as alive, and at any moment
-// up to then, of all that began. shapes_rotation and dynamic_rotation: the camera turns, by the IMU's mean rates
+// than 1.2 px across from where it began; at 0.125 s of age, as a share of those still alive, and at any moment up to
+// then, as a share of all that began. shapes_rotation and dynamic_rotation: the camera turns, by the IMU's mean rates
 // (motion.txt), which are 12 to 16 % lower than what the events say, or by what the contrast of the events is highest
 // for; a track errs by its distance, at its last observation, from where its first one would then be seen.
 
@@ -43,10 +43,10 @@ struct Observed {
 
 struct Track {
   std::vector<Observed> observed;
-  std::optional<double> ended;  ///< [s] when that was told
+  std::optional<double> ended;  ///< [s] when its end was published
 };
 
-/// An excerpt, and what the front-end makes of it.
+/// An excerpt, and the front-end's tracks of it.
 struct Excerpt {
   std::unique_ptr<Source> source;
   std::vector<Event> events;

@@ -1,4 +1,4 @@
-// What tracking costs, and how far off tracks are:
+// Cost of tracking, and errors of tracks:
 //
 //   haste_micro [SECONDS [TRAJECTORY [START [SCENE [VARIANT [THREADS]]]]]]
 //
@@ -7,7 +7,7 @@
 // last 15,000 events, 15 px apart; ended 15 px from the border and where the scores' spread is below 0.1
 // (correlations). Only variants whose names contain VARIANT are measured. A variant's time is that of TrackerSet::push
 // alone, of the processor with one thread and by the clock with more, of each call (10,000 events) the least of seven
-// equal runs; beside it that of the plain transcription on the events of some of the trackers. Errors: of each change
+// equal runs; with that of the plain transcription on the events of some of the trackers. Errors: of each change
 // of state against the true track of the point at which its tracker started, median over those between 0.1 and 0.2 s
 // later.
 

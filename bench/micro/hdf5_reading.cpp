@@ -1,11 +1,11 @@
-// How fast HDF5 files of events are read, beside what the HDF5 library delivers; one thread, warm page cache:
+// Speed of reading HDF5 files of events, compared with the HDF5 library; one thread, warm page cache:
 //
 //   hdf5_reading [MILLIONS]     writes files of that many million random events (10) to a temporary folder, and reads
 //                               each three times; the best counts
 //
 // "library" only reads the columns x, y, t, p with H5Dread into memory, in the types that the file has: some rows at a
-// time, which stay in the processor's caches, or all at once. "reader" makes events of them, "stream" checks these,
-// too, as everybody gets them. Million events a second of processor time, and shares of the library's.
+// time, which stay in the processor's caches, or all at once. "reader" makes events of them, "stream" also checks
+// them, as for all users. Million events a second of processor time, and shares of the library's.
 
 #include <fmt/format.h>
 #include <hdf5.h>

@@ -15,8 +15,7 @@ namespace evbench {
 struct Reading {
   std::int64_t events = 0;
   double wall_s = std::numeric_limits<double>::infinity();
-  double processor_s =
-      std::numeric_limits<double>::infinity();  ///< what counts on a machine that does other things, too
+  double processor_s = std::numeric_limits<double>::infinity();  ///< the relevant time on a machine with other load
 };
 
 inline double processor_seconds() {

@@ -1,14 +1,14 @@
-// How gp_map starts: 20 simulated beginnings of each of ten kinds, 240 x 180 pixels, f = 200, one track in ten an
+// Initialisation of gp_map: 20 simulated starts of each of ten kinds, 240 x 180 pixels, f = 200, one track in ten an
 // outlier.
 //
-//   first_map_starts [--first SEED] [--seeds N] [KIND...]
+//   initial_map_starts [--first SEED] [--seeds N] [KIND...]
 //
-// One row a kind. "right" is a share of all starts: the estimated motion goes the true way, to within 30 degrees, and
-// half of the landmarks' depths are, up to scale, within 30 %; at the first map, when the first pose is told, 2.5 s
-// after the first map, and in the final estimate of what has been seen by then. "first map" and "first pose" are times
-// from the first observation, median and 90 % quantile; "reaches back" is how much of the time to the map the
-// trajectory covers. "attempt" is what a step costs before there is a first map, "first" the step that finds it, with
-// the engine's first update; wall time.
+// One row a kind. "right" is a share of all starts: the estimated motion has the true direction to within 30 degrees,
+// and half of the landmarks' depths are, up to scale, within 30 %; at the initial map, when the first pose is
+// published, 2.5 s after the initial map, and in the final estimate of what has been seen by then. "initial map" and
+// "first pose" are times from the first observation, median and 90 % quantile; "reaches back" is how much of the time
+// to the map the trajectory covers. "attempt" is what a step costs before there is an initial map, "first" the step
+// that finds it, with the engine's first update; wall time.
 
 #include <fmt/format.h>
 
@@ -31,7 +31,7 @@ namespace {
 using namespace evbench;
 
 constexpr double kDuration = 8.0;    ///< [s] for a start, at most
-constexpr double kAfterwards = 2.5;  ///< [s] until a start is looked at again
+constexpr double kAfterwards = 2.5;  ///< [s] until a start is evaluated again
 constexpr double kExchange = 0.01;   ///< [s]
 
 struct Kind {
@@ -107,7 +107,7 @@ Beginning simulate(const Kind& kind, std::uint64_t seed) {
 
 double angle_deg(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)) * kDegrees; }
 
-/// Does the estimate go the true way, before landmarks at their true depths up to scale?
+/// Whether the estimated motion has the true direction, and landmarks have their true depths up to scale.
 bool is_right(const gp_map::GpMap& backend, const Beginning& beginning) {
   const PoseTrajectory estimate = backend.trajectory();
   const StampedPose& first = estimate.poses().front();
@@ -134,8 +134,8 @@ bool is_right(const gp_map::GpMap& backend, const Beginning& beginning) {
 
 struct Start {
   bool right = false, right_told = false, right_later = false, right_final = false;
-  double seconds = kDuration;    ///< until the first map
-  double told = kDuration;       ///< [s] until the first pose is told
+  double seconds = kDuration;    ///< until the initial map
+  double told = kDuration;       ///< [s] until the first pose is published
   double reach = 0.0;            ///< share of that time that the trajectory covers
   std::vector<double> attempts;  ///< [ms]
   double first = 0.0;            ///< [ms]
@@ -146,7 +146,7 @@ Start start(const Beginning& beginning, std::uint64_t seed) {
   context.camera = beginning.camera.pinhole;
   context.seed = seed;
   bool telling = false;
-  context.online = [&](const OnlinePose&) { telling = true; };
+  context.publish = [&](const CausalPose&) { telling = true; };
   gp_map::GpMap backend({}, context);
   TrackPlayer player(beginning.tracks.observations);
   TrackBatch batch;
@@ -217,7 +217,7 @@ bool take_number(std::vector<std::string_view>& arguments, std::string_view name
 }
 
 int usage() {
-  fmt::print(stderr, "usage: first_map_starts [--first SEED] [--seeds N] [KIND...]; kinds:\n");
+  fmt::print(stderr, "usage: initial_map_starts [--first SEED] [--seeds N] [KIND...]; kinds:\n");
   for (const Kind& kind : all_kinds()) fmt::print(stderr, "  \"{}\"\n", kind.name);
   return 2;
 }
@@ -233,7 +233,8 @@ int main(int argc, char** argv) {
     if (std::ranges::find(kinds, name, &Kind::name) == kinds.end()) return usage();
   }
   fmt::print(
-      "| kind | right [%] | told [%] | later [%] | final [%] | first map [s] | 90 % [s] | first pose [s] | 90 % [s] | "
+      "| kind | right [%] | told [%] | later [%] | final [%] | initial map [s] | 90 % [s] | first pose [s] | 90 % [s] "
+      "| "
       "reaches back [%] | attempt, median [ms] | max | first, median [ms] | max |\n"
       "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   std::vector<Start> all;

@@ -1,4 +1,4 @@
-// What of the registration matters, each choice beside the default:
+// Ablation of the registration, each choice compared with the default:
 //
 //   str_ablation [SEEDS]
 //
@@ -32,8 +32,8 @@ struct Slices {
 
 struct Variant {
   std::string name;
-  std::function<void(RegistrationOptions&)> choose;      ///< what an option can say
-  std::function<void(Slices&)> change = [](Slices&) {};  ///< and what none does
+  std::function<void(RegistrationOptions&)> choose;      ///< a change by options
+  std::function<void(Slices&)> change = [](Slices&) {};  ///< a change that no option makes
 };
 
 std::vector<Variant> variants() {

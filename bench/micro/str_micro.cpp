@@ -1,4 +1,4 @@
-// What registration costs, and how far off it is:
+// Cost and error of registration:
 //
 //   str_micro [SECONDS]
 //
@@ -6,8 +6,8 @@
 // the same horizontal field of view. Batches of 10 and 20 px of motion, each started from the last one's, with all
 // events of the first slice as queries and with 1,000; as they are, and thinned to as many events as the smallest
 // sensor's batches have. Times are the processor's, the least of five runs over three million events or a few more.
-// Beside it contrast maximisation of the smallest sensor's first five batches, as it is written down
-// (testing/contrast.hpp).
+// For comparison: a direct implementation of contrast maximisation (testing/contrast.hpp) on the smallest sensor's
+// first five batches.
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
-// What a sweep costs beside its runs: sweep_cost [RUNS [PROCESSES]], by default 1,000 on two. Each run is of a back-end
+// Overhead of a sweep: sweep_cost [RUNS [PROCESSES]], by default 1,000 on two. Each run is of a back-end
 // that does nothing on 0.1 s of simulated tracks, in a process of its own, with all files of a run's folder, below a
-// temporary folder ($TMPDIR). Told are the times of planning (keys), of the sweep, of the sweep once more when all is
+// temporary folder ($TMPDIR). Prints the times of planning (keys), of the sweep, of the sweep once more when all is
 // complete, and of the runs alone, in this process and without a folder.
 
 #include <fmt/format.h>

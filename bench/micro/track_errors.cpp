@@ -1,12 +1,12 @@
-// How far off tracks of simulated events are, against the truth:
+// Errors of tracks of simulated events, against the ground truth:
 //
 //   track_errors RUN...
 //
 // of the folders of runs that kept their tracks (`evbench run CONFIG --tracks`, a source `event_simulation`). A track
-// errs by its distance from where the point of the scene is seen that its first observation shows; tracks that begin
-// where nothing is, and observations of points that are hidden or outside the image, tell nothing. At an age, the
-// observation that is next after it, for tracks that are old enough; alive are those that are still observed then. What
-// is found again after a track's end counts as another track, which begins there.
+// The error of a track is its distance from the image of the scene point of its first observation. Tracks that begin
+// where there is no scene point, and observations of points that are hidden or outside the image, are left out. At an
+// age, the next observation counts, for tracks that are old enough; alive are those that are still observed then. A
+// track that is re-acquired after its end counts as another track, which begins there.
 
 #include <fmt/format.h>
 

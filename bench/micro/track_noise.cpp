@@ -48,7 +48,7 @@ Variogram variogram_of(const gp_map::FactorGraph& graph) {
   Variogram result;
   for (std::size_t lag = 0; lag < kApart.size(); ++lag) {
     const double square = squares[lag].empty() ? 0.0 : median(squares[lag]);
-    if (square == 0.0) continue;  // of tracks that stand still, too
+    if (square == 0.0) continue;  // also of stationary tracks
     result.apart.push_back(median(times[lag]));
     result.value.push_back(0.5 * square / kMedianSquare);
   }

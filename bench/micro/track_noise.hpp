@@ -11,10 +11,10 @@ struct TrackNoise {
   double time = 1.0;                ///< [s] of the drift's correlation, exp(−Δt/time)
 };
 
-/// Estimates it [sigmas that the observations state] from how much residuals of one landmark differ with the time that
-/// lies between them, at the graph's estimate: half the mean square difference is white² + drift² (1 − exp(−Δt/time)),
-/// in which an error of the landmark's own place has no part. Of medians, so that outliers count little. White and as
-/// stated where tracks are too short to tell.
+/// Estimates the track noise, in units of the observations' stated sigmas, from the differences of residuals of one
+/// landmark over the time between them, at the graph's estimate. Half the mean square difference is
+/// white² + drift² (1 − exp(−Δt/time)), which is independent of the landmark's own position error. Medians are used, so
+/// that outliers count little. Where tracks are too short, the noise is white and as stated.
 TrackNoise estimate_noise(const gp_map::FactorGraph& graph);
 
 }  // namespace evbench

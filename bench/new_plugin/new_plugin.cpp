@@ -16,21 +16,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_small(char c) { return c >= 'a' && c <= 'z'; }
+bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 void check_name(const std::string& name) {
-  const bool fits = !name.empty() && is_small(name.front()) &&
-                    std::ranges::all_of(name, [](char c) { return is_small(c) || is_digit(c) || c == '_'; });
+  const bool fits = !name.empty() && is_lower(name.front()) &&
+                    std::ranges::all_of(name, [](char c) { return is_lower(c) || is_digit(c) || c == '_'; });
   if (!fits) {
     throw InputError(fmt::format(
-        "new-plugin: \"{}\" can't name a plugin; expected a small letter, then small letters, digits and _", name));
+        "new-plugin: \"{}\" can't name a plugin; expected a lower-case letter, then such letters, digits and _", name));
   }
   constexpr std::array<std::string_view, 10> kReserved = {
       "all",        "clean",         "edit_cache", "help",           "install",
       "preinstall", "rebuild_cache", "package",    "package_source", "test"};
   if (std::ranges::find(kReserved, name) != kReserved.end()) {
-    throw InputError(fmt::format("new-plugin: \"{}\" is a name that CMake keeps for itself; expected another", name));
+    throw InputError(fmt::format("new-plugin: \"{}\" is a name that CMake reserves; expected another", name));
   }
 }
 
@@ -39,7 +39,7 @@ std::string class_name(const std::string& name) {
   std::string result;
   bool begins = true;
   for (const char c : name) {
-    if (c != '_') result += begins && is_small(c) ? static_cast<char>(c - 'a' + 'A') : c;
+    if (c != '_') result += begins && is_lower(c) ? static_cast<char>(c - 'a' + 'A') : c;
     begins = c == '_';
   }
   return result;
@@ -57,7 +57,7 @@ void check_folder(const std::string& folder) {
   if (!fs::is_directory(folder) || !fs::is_empty(folder)) {
     throw InputError(fmt::format("{}: is there already; expected a new folder, or an empty one", folder));
   }
-  if (fs::equivalent(folder, fs::current_path())) {  // it would be replaced under the shell's feet
+  if (fs::equivalent(folder, fs::current_path())) {  // replacing it would leave the shell in a deleted folder
     throw InputError(fmt::format("{}: is the current folder; expected another", folder));
   }
 }

@@ -13,7 +13,7 @@ using namespace evbench;
 using namespace evbench::testing;
 using Catch::Matchers::ContainsSubstring;
 
-// That what is written builds, passes its tests and gives a table is a test of the installation: check_install.cmake.
+// check_install.cmake tests that the written plugin builds, passes its tests and gives a table.
 
 TEST_CASE("A new plugin has a source, a test, a config and a README with its name in place of the templates'") {
   const TemporaryFolder folder;
@@ -35,7 +35,7 @@ TEST_CASE("A new plugin has a source, a test, a config and a README with its nam
   CHECK(parse_json(read_file(path + "/config.json")).at("name") == "my_2nd_try");
 }
 
-TEST_CASE("The program says what to do with a new plugin, which may go into an empty folder") {
+TEST_CASE("The program prints how to build a new plugin, whose folder may exist if it is empty") {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.file("empty"));
   const Outcome outcome = testing::evbench(folder, "new-plugin backend mine --out empty/");
@@ -53,7 +53,7 @@ TEST_CASE("The program says what to do with a new plugin, which may go into an e
   CHECK(std::ranges::count(source, '\n') < 60);
 }
 
-TEST_CASE("A new plugin that can't be is refused with a sentence, and nothing is left behind", "[slow]") {
+TEST_CASE("A new plugin with bad arguments is an error with a message, and no file is left behind", "[slow]") {
   const TemporaryFolder folder;
   folder.write("file", "");
   std::filesystem::create_directory(folder.file("full"));
@@ -65,15 +65,15 @@ TEST_CASE("A new plugin that can't be is refused with a sentence, and nothing is
     CHECK_THAT(outcome.err, ContainsSubstring(message));
     CHECK(names_in(folder.path()) == std::set<std::string>{"file", "full"});
   };
-  refused("backend Mine", "\"Mine\" can't name a plugin; expected a small letter");
+  refused("backend Mine", "\"Mine\" can't name a plugin; expected a lower-case letter");
   refused("backend 2nd", "can't name a plugin");
   refused("backend my-plugin", "can't name a plugin");
   refused("backend ''", "can't name a plugin");
-  refused("backend test", "CMake keeps for itself");
-  refused("backend gp_map", "a backend is called \"gp_map\" already (built in)");
+  refused("backend test", "CMake reserves");
+  refused("backend gp_map", "there is a backend \"gp_map\" already (built in)");
   refused("tracker mine", "tracker");
   refused("bakend mine", "did you mean \"backend\"?");
-  refused("source mine --minimal", "--minimal: is of a backend; this is a source");
+  refused("source mine --minimal", "--minimal: is for a backend; this is a source");
   refused("backend mine --out full", "full: is there already; expected a new folder");
   refused("backend mine --out file", "file: is there already");
   refused("backend mine --out file/mine", "file", kExitNotWritten);

@@ -11,22 +11,22 @@
 
 namespace evbench {
 
-/// Batches on their way from the front-end's thread to the back-end's: a bounded queue, so that the front-end is never
-/// more than that ahead.
+/// Bounded queue of batches between the front-end's thread and the back-end's. The bound limits how far the front-end
+/// may be ahead.
 class BatchQueue {
  public:
   explicit BatchQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  /// Waits for a place. False when nobody takes batches any more.
+  /// Waits while the queue is full. False if the queue was closed.
   bool push(TrackBatch batch);
 
-  /// No more batches; with an error, pop() throws it when it has come to the end.
+  /// Marks the end of the batches. With an error, pop() throws it after the last batch.
   void finish(std::exception_ptr error = nullptr);
 
-  /// Waits for the next one. None at the end.
+  /// Waits for the next batch. None at the end.
   std::optional<TrackBatch> pop();
 
-  /// Batches are no longer taken.
+  /// Called by the consumer when it stops: push() returns false from then on.
   void close();
 
  private:

@@ -41,7 +41,7 @@ void append_batch(std::string& bytes, const TrackBatch& batch) {
   }
 }
 
-/// Behind the batches: the facts as JSON, their length, the digest.
+/// The bytes after the batches are the facts as JSON, their length and the digest.
 std::string format_facts(const FrontFacts& facts) {
   Json work = Json::array();
   for (const Work& of_batch : facts.work) work.push_back({of_batch.until, of_batch.seconds});

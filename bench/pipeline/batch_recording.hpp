@@ -9,15 +9,15 @@
 
 namespace evbench {
 
-/// All that a front-end gives which takes no feedback, and what is known of its side at the end: bytes from which
-/// RecordedBatches gives it once more, so that any number of back-ends get the identical batches of one front-end's
-/// work. Of this machine's byte order; the last line is the SHA-256 of what stands before it.
+/// Records all batches of a front-end that uses no feedback, and its facts. RecordedBatches replays the bytes, so that
+/// any number of back-ends get identical batches and the front-end runs once. The bytes have this machine's byte
+/// order; the last line is the SHA-256 of all before it.
 std::string record_batches(BatchStream& batches);
 
-/// A recording, played. Facts are those of the front-end that was recorded: its time counts, not that of reading.
+/// Replays a recording. The facts are those of the recorded front-end: its processing time counts, not that of reading.
 class RecordedBatches : public BatchStream {
  public:
-  /// Nothing where there is no such file, or it is damaged: who needs the batches then makes them.
+  /// Null if there is no such file or it is damaged: the caller then runs the front-end.
   static std::unique_ptr<RecordedBatches> open(const std::string& path);
 
   std::optional<TrackBatch> next() override;
@@ -31,7 +31,7 @@ class RecordedBatches : public BatchStream {
   TrackBatch take_batch();
 
   std::string bytes_;
-  std::size_t at_ = 0, end_ = 0;  ///< of what is to be played
+  std::size_t at_ = 0, end_ = 0;  ///< position of the next batch; end of the batches
   FrontFacts facts_;
   Stopwatch watch_;
 };

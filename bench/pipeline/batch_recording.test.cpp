@@ -29,7 +29,7 @@ class ThreeBatches : public BatchStream {
 
 }  // namespace
 
-TEST_CASE("A recording plays the same batches, bit by bit, and the facts of the front-end that was recorded") {
+TEST_CASE("A recording replays the same batches, bit by bit, and the facts of the recorded front-end") {
   const testing::TemporaryFolder folder;
   ThreeBatches recorded, again;
   const auto played = RecordedBatches::open(folder.write("batches", record_batches(recorded)));
@@ -59,7 +59,7 @@ TEST_CASE("A recording plays the same batches, bit by bit, and the facts of the 
   CHECK(facts.log.size() == 2);
 }
 
-TEST_CASE("A recording that is missing, cut off or changed is none") {
+TEST_CASE("A recording that is missing, truncated or changed is not opened") {
   const testing::TemporaryFolder folder;
   ThreeBatches recorded;
   const std::string bytes = record_batches(recorded);

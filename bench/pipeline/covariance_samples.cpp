@@ -16,7 +16,7 @@ struct Span {
 };
 constexpr Span kSpans[] = {{"over_100ms", 0.1}, {"over_1s", 1.0}};
 
-/// The pose about `length` later than pose i, if there is one within half of that.
+/// The pose nearest to `length` after pose i; null if it is off by more than half of that.
 const StampedPose* later(const std::vector<StampedPose>& poses, std::size_t i, double length) {
   const double t = poses[i].t + length;
   const auto right = std::ranges::lower_bound(poses, t, {}, &StampedPose::t);
@@ -27,8 +27,8 @@ const StampedPose* later(const std::vector<StampedPose>& poses, std::size_t i, d
 }  // namespace
 
 void CovarianceSamples::take(const StampedPose& newest, BackEnd& backend) {
-  if (newest.t < asked_ + kSampleInterval) return;
-  asked_ = newest.t;
+  if (newest.t < sampled_ + kSampleInterval) return;
+  sampled_ = newest.t;
   const std::optional<Matrix12> covariance = backend.covariance(newest.t);
   if (covariance) newest_.push_back({newest, covariance->topLeftCorner<6, 6>()});
 }

@@ -8,16 +8,16 @@
 
 namespace evbench {
 
-/// Asks a back-end how sure it is, now and then, where it says so at all. This is no part of its work: the time that it
-/// takes is the harness'.
+/// Samples the covariances of a back-end, if it has any, for the consistency scores (ANEES). The time that this takes
+/// counts as the harness', not as the back-end's.
 class CovarianceSamples {
  public:
-  /// After an update: of the newest pose told, unless another one was asked for less than 0.1 s before.
+  /// Called after an update: samples the newest published pose, unless the last sample is less than 0.1 s older.
   void take(const StampedPose& newest, BackEnd& backend);
 
-  /// After the end: the newest poses that were taken, relative to the first pose of the final estimate, which holds the
-  /// back-end's world; and relative poses of the final estimate over about 0.1 and 1 s, evenly from all of it, at most
-  /// 50 of each.
+  /// Called after the end. Returns the sampled newest poses, relative to the first pose of the final estimate, which
+  /// anchors the back-end's world frame; and relative poses of the final estimate over about 0.1 s and 1 s, at most 50
+  /// of each, evenly distributed.
   std::vector<RelativePose> finish(BackEnd& backend) const;
 
  private:
@@ -26,7 +26,7 @@ class CovarianceSamples {
     Matrix6 covariance;
   };
   std::vector<Newest> newest_;
-  double asked_ = -std::numeric_limits<double>::infinity();  ///< [s] time of the last pose asked for
+  double sampled_ = -std::numeric_limits<double>::infinity();  ///< [s] time of the last sample
 };
 
 }  // namespace evbench

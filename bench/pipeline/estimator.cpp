@@ -12,7 +12,7 @@
 namespace evbench {
 namespace {
 
-/// At that rate [Hz]; the back-end's own poses where the rate is 0, or so low that there would be none.
+/// The trajectory at that rate [Hz]; the back-end's own poses if the rate is 0 or so low that there would be none.
 PoseTrajectory sample(const BackEnd& backend, double rate) {
   const PoseTrajectory own = backend.trajectory();
   if (rate == 0.0 || own.empty()) return own;
@@ -30,7 +30,7 @@ PoseTrajectory sample(const BackEnd& backend, double rate) {
 
 bool is_finite(const StampedPose& pose) { return pose.T.p.allFinite() && pose.T.q.coeffs().allFinite(); }
 
-/// Evenly from all of the trajectory.
+/// Evenly distributed poses of the trajectory.
 std::vector<SE3> views_of(const PoseTrajectory& trajectory) {
   constexpr std::size_t kViews = 24;
   std::vector<SE3> views;
@@ -43,48 +43,48 @@ std::vector<SE3> views_of(const PoseTrajectory& trajectory) {
 
 }  // namespace
 
-/// A pose ahead of the data counts as known when its time has come. A back-end knows the times of the observations that
-/// it makes poses from; where a front-end tells those late, the poses are known as much later.
-void Estimator::hear(OnlinePose pose, double until, double seen) {
+/// A pose that is ahead of the data counts as known at its own time. The back-end states known_at in times of the
+/// observations that it used; the delay of the front-end is added to that.
+void Estimator::on_pose(CausalPose pose, double until, double seen) {
   if (!std::isfinite(pose.t) || !is_finite(pose) || (pose.velocity && !pose.velocity->allFinite())) {
     throw std::runtime_error(fmt::format("the back-end's pose at {:.6f} s is not finite", pose.t));
   }
   const double now = std::max(pose.t, pose.known_at.value_or(seen));
-  if (!told.empty() && !(now >= said)) {
+  if (!published.empty() && !(now >= last_known_at)) {
     throw std::runtime_error(
-        fmt::format("the back-end told an online pose as known at {:.6f} s after one known at {:.6f} s", now, said));
+        fmt::format("the back-end published a pose known at {:.6f} s after one known at {:.6f} s", now, last_known_at));
   }
-  said = now;
-  const double complete = pose.known_at.value_or(seen), late = seen - until;
-  pose.known_at = std::max(pose.t, complete < seen ? std::min(complete + late, seen) : complete);
-  // What comes less late than what was told before it has waited for that.
-  if (!told.empty()) pose.known_at = std::max(*pose.known_at, *told.back().known_at);
-  told.push_back(pose);
+  last_known_at = now;
+  const double complete = pose.known_at.value_or(seen), delay = seen - until;
+  pose.known_at = std::max(pose.t, complete < seen ? std::min(complete + delay, seen) : complete);
+  // Poses are published in order: one with a smaller delay waits for those before it.
+  if (!published.empty()) pose.known_at = std::max(*pose.known_at, *published.back().known_at);
+  published.push_back(pose);
   if (!newest || pose.t >= newest->t) newest = pose;
-  if (is_elsewhere()) told_there.push_back(carried(pose, to_world));
+  if (is_relocalised()) published_in_world.push_back(transformed(pose, to_world));
 }
 
-std::vector<Landmark> Estimator::trusted_map() const {
+std::vector<Landmark> Estimator::confirmed_map() const {
   std::vector<Landmark> result = backend->map();
-  std::erase_if(result, [&](const Landmark& landmark) { return doubtful.contains(landmark.track); });
+  std::erase_if(result, [&](const Landmark& landmark) { return unconfirmed.contains(landmark.track); });
   return result;
 }
 
-std::optional<Estimator::Found> Estimator::find_in(const Estimator& other, const PinholeCamera& camera) const {
+std::optional<Estimator::Relocalisation> Estimator::find_in(const Estimator& other, const PinholeCamera& camera) const {
   const std::vector<SE3> views = views_of(backend->trajectory());
-  const auto alignment = align_maps(trusted_map(), views, other.trusted_map(), camera);
+  const auto alignment = align_maps(confirmed_map(), views, other.confirmed_map(), camera);
   if (!alignment) return std::nullopt;
-  return Found{other.world, other.to_world * alignment->transform.inverse(), alignment->landmarks};
+  return Relocalisation{other.world, other.to_world * alignment->transform.inverse(), alignment->landmarks};
 }
 
-void Estimator::stand_in(const Found& found) {
-  if (world != found.world) told_there.clear();
+void Estimator::relocalise(const Relocalisation& found) {
+  if (world != found.world) published_in_world.clear();
   world = found.world;
   to_world = found.to_world;
 }
 
-std::optional<Piece> Estimator::piece(double rate) {
-  Piece result;
+std::optional<TrajectorySegment> Estimator::segment(double rate) {
+  TrajectorySegment result;
   result.final_trajectory = sample(*backend, rate);
   if (!std::ranges::all_of(result.final_trajectory.poses(), is_finite)) {
     throw std::runtime_error("the back-end's trajectory is not finite");
@@ -94,14 +94,14 @@ std::optional<Piece> Estimator::piece(double rate) {
     result.final_trajectory = result.final_trajectory.cut(result.final_trajectory.start(), its_status.time);
   }
   if (result.final_trajectory.empty() || its_status.state == RunState::failed) return std::nullopt;
-  // What was told after the data had ended is no estimate from data.
+  // Poses after the loss are not supported by data.
   if (its_status.state == RunState::lost) {
-    const auto late = [&](const OnlinePose& pose) { return pose.t > its_status.time; };
-    std::erase_if(told, late);
+    const auto after_loss = [&](const CausalPose& pose) { return pose.t > its_status.time; };
+    std::erase_if(published, after_loss);
   }
-  result.told = std::move(told);
-  result.online_trajectory = newest_poses(result.told);
-  result.map = trusted_map();
+  result.published = std::move(published);
+  result.causal_trajectory = newest_poses(result.published);
+  result.map = confirmed_map();
   result.problem = backend->problem();
   result.relative = covariances.finish(*backend);
   if (its_status.state == RunState::lost) {

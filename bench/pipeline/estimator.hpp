@@ -7,59 +7,59 @@
 #include <vector>
 
 #include "bench/pipeline/covariance_samples.hpp"
-#include "bench/pipeline/piece.hpp"
+#include "bench/pipeline/trajectory_segment.hpp"
 #include "core/plugin/backend.hpp"
 
 namespace evbench {
 
-/// One of a run's back-ends, what it told, and in whose world it stands: in its own, until landmarks that both have
-/// show where that lies in the world of one before it.
+/// One of a run's back-ends, its published poses, and the world frame in which they are reported. That is its own
+/// world, until it is relocalised in the world of an earlier one by common landmarks.
 struct Estimator {
   explicit Estimator(std::size_t its_number) : number(its_number), world(its_number) {}
 
-  std::size_t number;  ///< from 0, in the order in which they are made
+  std::size_t number;  ///< from 0, in order of creation
   std::unique_ptr<BackEnd> backend;
-  std::vector<OnlinePose> told;       ///< in its own world
-  double said = 0.0;                  ///< [s], when the last of these was known, in the back-end's words
+  std::vector<CausalPose> published;  ///< in its own world
+  double last_known_at = 0.0;         ///< [s], of the last of these, as the back-end stated it
   std::optional<StampedPose> newest;  ///< of these
   CovarianceSamples covariances;
 
-  std::optional<Status> ended;  ///< how it was taken out of the run, where it did not tell that itself
-  std::set<TrackId> doubtful;   ///< tracks that may have been on something else since then
+  std::optional<Status> ended;    ///< set if the harness ended the back-end: overrides its own status
+  std::set<TrackId> unconfirmed;  ///< tracks that may observe other scene points since it ended
 
-  std::size_t world;                     ///< number of the estimator whose world it is
-  Similarity to_world;                   ///< carries its own world to that one
-  std::vector<OnlinePose> told_there{};  ///< what it told since it was found there, in that world
+  std::size_t world;                             ///< number of the estimator whose world is used
+  Similarity to_world;                           ///< from its own world to that one
+  std::vector<CausalPose> published_in_world{};  ///< poses published since the relocalisation, in that world
 
-  void stand_alone() {
+  void use_own_world() {
     world = number;
     to_world = {};
   }
 
   Status status() const { return ended ? *ended : backend->status(); }
 
-  bool is_elsewhere() const { return world != number; }
+  bool is_relocalised() const { return world != number; }
 
-  /// Takes a pose that was told while data up to `seen` were looked at, of which a batch up to `until` was made [s].
-  /// Throws std::runtime_error for one that is not finite or known before what was told already.
-  void hear(OnlinePose pose, double until, double seen);
+  /// Takes a published pose. `until` and `seen` [s] are those of the current batch (TrackBatch). Throws
+  /// std::runtime_error for a pose that is not finite or whose known_at decreases.
+  void on_pose(CausalPose pose, double until, double seen);
 
-  /// But for landmarks of doubtful tracks.
-  std::vector<Landmark> trusted_map() const;
+  /// The map without landmarks of unconfirmed tracks.
+  std::vector<Landmark> confirmed_map() const;
 
-  /// Where it stands in another one's world, and by how many landmarks.
-  struct Found {
+  /// Transform to the world of an earlier estimator, and the number of landmarks that support it.
+  struct Relocalisation {
     std::size_t world;
     Similarity to_world;
     int landmarks;
   };
-  /// Looks for its world in that of another one, by landmarks that both have.
-  std::optional<Found> find_in(const Estimator& other, const PinholeCamera& camera) const;
-  void stand_in(const Found& found);
+  /// Aligns its map with that of another one by common landmarks. None if too few agree.
+  std::optional<Relocalisation> find_in(const Estimator& other, const PinholeCamera& camera) const;
+  void relocalise(const Relocalisation& found);
 
-  /// Its estimate in its own world, once it is finished; none where it has none. `rate`: of the final trajectory [Hz];
+  /// The finished estimate in its own world; none if there is no trajectory. `rate`: of the final trajectory [Hz];
   /// 0: the back-end's own poses. Throws std::runtime_error for a trajectory that is not finite.
-  std::optional<Piece> piece(double rate);
+  std::optional<TrajectorySegment> segment(double rate);
 };
 
 }  // namespace evbench

@@ -9,27 +9,27 @@
 
 namespace evbench {
 
-/// Carries feedback from the back-end to the front-end, each in its own thread or both in one. What was known at t is
-/// handed over when the front-end has reached t + latency in data time, neither sooner nor later, however fast either
-/// thread is: that makes a run reproducible. Free-running, it is handed over as soon as it is there.
+/// Delivers feedback from the back-end to the front-end, each in its own thread or both in one. Feedback known at t is
+/// delivered exactly when the front-end has reached t + latency in data time, however fast either thread is: this makes
+/// a run reproducible. Free-running, it is delivered as soon as it is available.
 class FeedbackLine {
  public:
   FeedbackLine(double latency, bool free) : latency_(latency), free_(free) {}
 
-  /// The front-end has sent a batch that was known at t [s]: an answer is to come.
+  /// The front-end has sent a batch that was known at t [s]: an answer will follow.
   void expect(double t);
 
   /// The back-end's answer to the oldest batch that has none.
   void answer(Feedback feedback);
 
-  /// What the front-end gets before it goes on from `now`; waits until the back-end has answered what is due by then.
+  /// The feedback that is due at `now` [s]. Waits until the back-end has answered all batches that are due.
   std::vector<Feedback> due(double now);
 
-  /// Nothing more will be answered: nobody waits any longer.
+  /// No more answers will come: due() no longer waits.
   void close();
 
  private:
-  bool is_due(double t, double now) const { return t + latency_ <= now + 1e-9; }  // but for rounding
+  bool is_due(double t, double now) const { return t + latency_ <= now + 1e-9; }  // tolerance for rounding
 
   double latency_;
   bool free_;

@@ -6,7 +6,7 @@
 
 namespace evbench {
 
-/// How front-end and back-end work together: the key "pipeline" of a config.
+/// How front-end and back-end are coupled: the key "pipeline" of a config. `declare` documents each option.
 struct PipelineOptions {
   double interval = 0.01;
   int observations = 0;
@@ -15,7 +15,7 @@ struct PipelineOptions {
   int queue = 4;
   double patience = 1.0;
   bool relocalise = true;
-  double still_after = 0.1;
+  double stationary_after = 0.1;
 
   void declare(OptionSet& set);
 };

@@ -18,7 +18,7 @@ TEST_CASE("A window may be as long as all of the data, however their times are r
   CHECK(slowest_pace({{{0.3, 0.5}}}, 0.1, 0.2) == Approx(0.4));
 }
 
-TEST_CASE("Work of less than the window has no slowest pace, nor has none") {
+TEST_CASE("Work shorter than the window, or no work, has no slowest pace") {
   CHECK_FALSE(slowest_pace({{{11.0, 0.1}, {14.9, 0.1}}}, 10.0, 5.0));
   CHECK_FALSE(slowest_pace({}, 0.0, 5.0));
   CHECK_FALSE(slowest_pace({{}, {}}, 0.0, 5.0));
@@ -26,7 +26,7 @@ TEST_CASE("Work of less than the window has no slowest pace, nor has none") {
 
 }  // namespace evbench
 
-TEST_CASE("The real-time factor is data time by processing time, and none where nothing took time") {
+TEST_CASE("The real-time factor is data time by processing time, and none if the processing time is zero") {
   CHECK(realtime_factor(10.0, 4.0) == 2.5);
   CHECK_FALSE(realtime_factor(10.0, 0.0));
 }

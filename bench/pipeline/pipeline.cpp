@@ -6,37 +6,37 @@
 #include <fstream>
 #include <thread>
 
-#include "bench/pipeline/back_side.hpp"
+#include "bench/pipeline/backend_runner.hpp"
 #include "bench/pipeline/batch_queue.hpp"
 #include "bench/pipeline/feedback_line.hpp"
-#include "bench/pipeline/front_side.hpp"
+#include "bench/pipeline/frontend_runner.hpp"
 #include "bench/pipeline/pace.hpp"
 #include "core/support/peak_memory.hpp"
 
 namespace evbench {
 namespace {
 
-/// peak_memory_mib() counts from here on.
+/// Restarts peak_memory_mib().
 void reset_peak_memory() {
   ::malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5";
 }
 
-/// One exchange on the back-end's side.
-void exchange(TrackBatch batch, const FeedbackNeeds& needs, BackSide& back, FeedbackLine& feedback,
+/// The back-end half of one exchange.
+void exchange(TrackBatch batch, const FeedbackNeeds& needs, BackEndRunner& back, FeedbackLine& feedback,
               const Progress& progress) {
   back.take(std::move(batch));
   if (needs.any) feedback.answer(back.feedback(needs));
   if (progress) progress(back.progress());
 }
 
-void run_sequential(BatchStream& front, BackSide& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
+void run_sequential(BatchStream& front, BackEndRunner& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
                     const Progress& progress) {
   while (std::optional<TrackBatch> batch = front.next()) exchange(std::move(*batch), needs, back, feedback, progress);
 }
 
-/// The front-end in a thread of its own. Returns how long the back-end's waited for it [s].
-double run_concurrent(BatchStream& front, BackSide& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
+/// Runs the front-end in a second thread. Returns how long the back-end's thread waited for it [s].
+double run_concurrent(BatchStream& front, BackEndRunner& back, const FeedbackNeeds& needs, FeedbackLine& feedback,
                       std::size_t capacity, const Progress& progress) {
   BatchQueue queue(capacity);
   std::jthread thread([&] {
@@ -54,7 +54,7 @@ double run_concurrent(BatchStream& front, BackSide& back, const FeedbackNeeds& n
     while (std::optional<TrackBatch> batch = waiting.time([&] { return queue.pop(); })) {
       exchange(std::move(*batch), needs, back, feedback, progress);
     }
-  } catch (...) {  // the front-end's thread is waiting for a place or an answer that will not come
+  } catch (...) {  // the front-end's thread may wait for a place in the queue or for an answer
     queue.close();
     feedback.close();
     throw;
@@ -62,13 +62,13 @@ double run_concurrent(BatchStream& front, BackSide& back, const FeedbackNeeds& n
   return waiting.seconds();
 }
 
-/// `feedback` is used where the front-end needs any.
+/// `feedback` is used only if the front-end needs any.
 RunResult run(const Source& source, BatchStream& front, const FeedbackNeeds& needs, FeedbackLine& feedback,
               const MakeBackEnd& make_backend, BackEndContext context, const PipelineOptions& options,
               double trajectory_rate, const Progress& progress) {
   RunResult result;
   context.log = [&](const std::string& line) { result.log.push_back(line); };
-  BackSide back(make_backend, std::move(context), source.camera(), source.time_range(), options);
+  BackEndRunner back(make_backend, std::move(context), source.camera(), source.time_range(), options);
   Stopwatch total;
   total.time([&] {
     if (options.mode == "sequential") {
@@ -81,18 +81,18 @@ RunResult run(const Source& source, BatchStream& front, const FeedbackNeeds& nee
   });
   const FrontFacts facts = front.facts();
   const bool sequential = options.mode == "sequential";
-  const double elsewhere = sequential ? front.spent() : result.times.waiting;
+  const double not_harness = sequential ? front.spent() : result.times.waiting;
   result.times.source = facts.source_s;
   result.times.frontend = facts.frontend_s;
   for (const Work& of_batch : facts.work) result.times.frontend_batches.push_back(of_batch.seconds);
   result.times.slowest_5s = slowest_pace({facts.work, back.work()}, source.time_range().from, 5.0);
   result.times.backend = back.seconds();
-  result.times.harness = std::max(0.0, total.seconds() - back.seconds() - elsewhere);
+  result.times.harness = std::max(0.0, total.seconds() - back.seconds() - not_harness);
   result.times.total = total.seconds() + (sequential ? facts.source_s + facts.frontend_s - front.spent() : 0.0);
   result.data_s = facts.data_s;
   result.peak_rss_mib = peak_memory_mib();
   result.log.insert(result.log.end(), facts.log.begin(), facts.log.end());
-  if (options.mode == "free") result.log.push_back("pipeline: free-running, which is not reproducible");
+  if (options.mode == "free") result.log.push_back("pipeline: mode free is not reproducible");
   return result;
 }
 
@@ -104,13 +104,13 @@ RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackE
   reset_peak_memory();
   TrackBatch tracks;
   FeedbackLine feedback(options.latency, options.mode == "free");
-  FrontSide front(frontend, source, options, feedback, keep_tracks ? &tracks : nullptr);
-  const Progress tell = [&](RunProgress now) {
+  FrontEndRunner front(frontend, source, options, feedback, keep_tracks ? &tracks : nullptr);
+  const Progress report = [&](RunProgress now) {
     now.realtime_factor = realtime_factor(front.data_s(), front.frontend_s() + now.backend_s);
     progress(now);
   };
   RunResult result = run(source, front, frontend.needs(), feedback, make_backend, std::move(context), options,
-                         trajectory_rate, progress ? tell : Progress());
+                         trajectory_rate, progress ? report : Progress());
   if (keep_tracks) result.tracks = std::move(tracks);
   return result;
 }

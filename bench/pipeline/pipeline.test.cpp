@@ -46,7 +46,7 @@ std::vector<TrackObservation> tracks(const std::vector<std::pair<double, double>
   return result;
 }
 
-/// Known tracks, and a note of the feedback that it got. What it hears shifts what it sees.
+/// Replays given tracks and records the feedback that it gets. The feedback shifts its observations.
 class Listener : public FrontEnd {
  public:
   Listener(std::vector<TrackObservation> observations, FeedbackNeeds needs)
@@ -61,13 +61,13 @@ class Listener : public FrontEnd {
   }
   FeedbackNeeds needs() const override { return needs_; }
   void receive(const Feedback& feedback) override {
-    heard.push_back({feedback.t, until_});
+    received.push_back({feedback.t, until_});
     states.push_back(feedback.state);
     if (feedback.newest) shift_ = 0.1 * std::sin(1000.0 * feedback.newest->T.p.x());
   }
 
   int exchanges = 0;
-  std::vector<std::pair<double, double>> heard;  ///< time of the feedback, data time at which it came
+  std::vector<std::pair<double, double>> received;  ///< time of the feedback, data time at which it arrived
   std::vector<TrackingState> states;
 
  private:
@@ -77,7 +77,7 @@ class Listener : public FrontEnd {
   double shift_ = 0.0, until_ = 0.0;
 };
 
-/// Goes where the mean of what it sees is; lost after the patience without any.
+/// Publishes the running mean of the observed pixels as its position; lost after the patience without observations.
 class Mean : public BackEnd {
  public:
   explicit Mean(const BackEndContext& context) : context_(context), monitor_(context.patience) {}
@@ -89,7 +89,7 @@ class Mean : public BackEnd {
     }
     if (!batch.observations.empty()) {
       poses_.push_back({batch.observations.back().t, {Eigen::Quaterniond::Identity(), {sum_.x(), sum_.y(), 0.0}}});
-      context_.online({poses_.back()});
+      context_.publish({poses_.back()});
       silent_since_ = batch.until;
     }
     using Support = TrackingMonitor::Support;
@@ -136,20 +136,20 @@ bool same(const PoseTrajectory& a, const PoseTrajectory& b) {
 
 }  // namespace
 
-TEST_CASE("A run goes to the end of its range, is lost there without tracks, and counts the time of the data alone") {
+TEST_CASE("A run reaches the end of its range, is lost without tracks, and counts the time of the data alone") {
   Listener frontend(tracks({{0.0, 3.0}}), {});
   const RunResult result = run(frontend, 30.0);
   CHECK(result.status.state == RunState::lost);
   CHECK(result.status.time == Approx(3.0).margin(0.1));
   CHECK(result.data_s == Approx(3.0).margin(0.01));
-  REQUIRE(result.pieces.size() == 1);
-  CHECK(result.pieces[0].final_trajectory.end() == Approx(3.0).margin(0.01));
+  REQUIRE(result.segments.size() == 1);
+  CHECK(result.segments[0].final_trajectory.end() == Approx(3.0).margin(0.01));
   CHECK(result.times.frontend > 0.0);
   CHECK(result.times.backend > 0.0);
   CHECK(result.times.total >= result.times.frontend + result.times.backend);
 }
 
-TEST_CASE("Sequential and concurrent runs give the same bytes, whatever the feedback does") {
+TEST_CASE("Sequential and concurrent runs give identical results, whatever the feedback does") {
   for (const double latency : {0.0, 0.01, 0.035}) {
     for (const int observations : {0, 7}) {
       CAPTURE(latency, observations);
@@ -161,17 +161,17 @@ TEST_CASE("Sequential and concurrent runs give the same bytes, whatever the feed
       options.mode = "concurrent";
       const RunResult concurrent = run(two, 2.5, options);
       CHECK(sequential.tracks_sha256 == concurrent.tracks_sha256);
-      CHECK(same(sequential.pieces.at(0).final_trajectory, concurrent.pieces.at(0).final_trajectory));
-      CHECK(same(sequential.pieces.at(0).online_trajectory, concurrent.pieces.at(0).online_trajectory));
-      CHECK(one.heard == two.heard);
-      CHECK(one.heard.size() > 100);
+      CHECK(same(sequential.segments.at(0).final_trajectory, concurrent.segments.at(0).final_trajectory));
+      CHECK(same(sequential.segments.at(0).causal_trajectory, concurrent.segments.at(0).causal_trajectory));
+      CHECK(one.received == two.received);
+      CHECK(one.received.size() > 100);
     }
   }
 }
 
 namespace {
 
-/// Tells of a time only when it has looked at what comes 30 ms later.
+/// Gives the observations of a time only after it has processed the data up to 30 ms later.
 class LateListener : public Listener {
  public:
   static constexpr double kDelay = 0.03;
@@ -188,31 +188,32 @@ class LateListener : public Listener {
 
 }  // namespace
 
-TEST_CASE("What a front-end tells late is known late, and feedback waits for it, in one thread and in two") {
+TEST_CASE("Poses from delayed observations are known late, and feedback waits for it, in one thread and in two") {
   PipelineOptions options;
   LateListener one(tracks({{0.0, 1.0}}), {true, false, false}), two(tracks({{0.0, 1.0}}), {true, false, false});
   const RunResult sequential = run(one, 1.0, options);
   options.mode = "concurrent";
   const RunResult concurrent = run(two, 1.0, options);
   CHECK(sequential.tracks_sha256 == concurrent.tracks_sha256);
-  CHECK(one.heard == two.heard);
-  REQUIRE(sequential.pieces.size() == 1);
-  const auto& told = sequential.pieces[0].told;
-  REQUIRE(told.size() > 50);
-  for (std::size_t i = 1; i + 4 < told.size(); ++i) {                                     // but for those at the ends
-    CHECK(*told[i].known_at == Approx(told[i].t + LateListener::kDelay).margin(0.0011));  // a millisecond a pose
+  CHECK(one.received == two.received);
+  REQUIRE(sequential.segments.size() == 1);
+  const auto& published = sequential.segments[0].published;
+  REQUIRE(published.size() > 50);
+  for (std::size_t i = 1; i + 4 < published.size(); ++i) {  // without those at the ends
+    const CausalPose& pose = published[i];
+    CHECK(*pose.known_at == Approx(pose.t + LateListener::kDelay).margin(0.0011));  // a millisecond per pose
   }
-  CHECK(told.back().t == Approx(1.0));
+  CHECK(published.back().t == Approx(1.0));
   CHECK(sequential.observations == tracks({{0.0, 1.0}}).size());
 }
 
-TEST_CASE("A back-end that says itself when it knew a pose knows it as late, where observations are told late") {
+TEST_CASE("The front-end's delay is added to the known_at that a back-end states") {
   class Exact : public BackEnd {
    public:
     explicit Exact(const BackEndContext& context) : mean_(quiet(context)), context_(context) {}
     void advance(const TrackBatch& batch) override {
       mean_.advance(batch);
-      for (const TrackObservation& z : batch.observations) context_.online({{z.t, {}}, z.t, {}});
+      for (const TrackObservation& z : batch.observations) context_.publish({{z.t, {}}, z.t, {}});
     }
     Feedback feedback(const FeedbackNeeds& needs) override { return mean_.feedback(needs); }
     void finish() override { mean_.finish(); }
@@ -222,7 +223,7 @@ TEST_CASE("A back-end that says itself when it knew a pose knows it as late, whe
 
    private:
     static BackEndContext quiet(BackEndContext context) {
-      context.online = [](const OnlinePose&) {};
+      context.publish = [](const CausalPose&) {};
       return context;
     }
     Mean mean_;
@@ -231,43 +232,43 @@ TEST_CASE("A back-end that says itself when it knew a pose knows it as late, whe
   const auto make = [](const BackEndContext& context) { return std::make_unique<Exact>(context); };
   LateListener late(tracks({{0.0, 1.0}}), {});
   const RunResult result = run(late, 1.0, {}, make);
-  REQUIRE(result.pieces.size() == 1);
-  const auto& told = result.pieces[0].told;
-  REQUIRE(told.size() > 500);
-  for (const OnlinePose& pose : told) {
+  REQUIRE(result.segments.size() == 1);
+  const auto& published = result.segments[0].published;
+  REQUIRE(published.size() > 500);
+  for (const CausalPose& pose : published) {
     if (pose.t < 0.05 || pose.t > 0.9) continue;
     CHECK(*pose.known_at == Approx(pose.t + LateListener::kDelay).margin(1e-9));
   }
-  CHECK(std::ranges::is_sorted(told, {}, [](const OnlinePose& pose) { return *pose.known_at; }));
+  CHECK(std::ranges::is_sorted(published, {}, [](const CausalPose& pose) { return *pose.known_at; }));
 
   Listener prompt(tracks({{0.0, 1.0}}), {});
   const RunResult at_once = run(prompt, 1.0, {}, make);
-  REQUIRE(at_once.pieces.size() == 1);
-  for (const OnlinePose& pose : at_once.pieces[0].told) CHECK(*pose.known_at == pose.t);
+  REQUIRE(at_once.segments.size() == 1);
+  for (const CausalPose& pose : at_once.segments[0].published) CHECK(*pose.known_at == pose.t);
 }
 
-TEST_CASE("Feedback reaches the front-end after the latency in data time, in order, each once") {
+TEST_CASE("Feedback reaches the front-end after the latency in data time, in order and only once") {
   PipelineOptions options;
   options.latency = 0.025;
   Listener frontend(tracks({{0.0, 1.0}}), {true, false, false});
   run(frontend, 1.0, options);
   double before = 0.0;
-  for (const auto& [t, now] : frontend.heard) {
+  for (const auto& [t, now] : frontend.received) {
     CHECK(t > before);
     CHECK(now >= t + 0.025 - 1e-9);
     CHECK(now < t + 0.025 + 0.01 + 1e-9);
     before = t;
   }
-  CHECK(frontend.heard.size() == 96);  // the last exchange begins at 0.99 s: what was known up to 0.96 s
+  CHECK(frontend.received.size() == 96);  // the last exchange begins at 0.99 s: what was known up to 0.96 s
 }
 
-TEST_CASE("A front-end that needs no feedback is told nothing, and gives every back-end the same tracks") {
+TEST_CASE("A front-end that needs no feedback gets none") {
   Listener frontend(tracks({{0.0, 1.0}}), {});
   run(frontend, 1.0);
-  CHECK(frontend.heard.empty());
+  CHECK(frontend.received.empty());
 }
 
-TEST_CASE("Feedback is of raw pixels, and says where the estimate stands") {
+TEST_CASE("Feedback has raw pixels and the tracking state") {
   class Sees : public Listener {
    public:
     using Listener::Listener;
@@ -286,7 +287,7 @@ TEST_CASE("Feedback is of raw pixels, and says where the estimate stands") {
   CHECK(frontend.states.front() == TrackingState::tracking);
 }
 
-TEST_CASE("Exchanges after a number of observations come sooner where more is seen") {
+TEST_CASE("Exchanges after a number of observations are more frequent where there are more observations") {
   PipelineOptions options;
   options.interval = 0.1;
   options.observations = 20;
@@ -295,7 +296,7 @@ TEST_CASE("Exchanges after a number of observations come sooner where more is se
   CHECK(frontend.exchanges == Approx(50).margin(11));  // 1,001 observations, and intervals' ends
 }
 
-TEST_CASE("A camera that stands still for ten seconds is not lost, and its stand is told") {
+TEST_CASE("A camera that is stationary for ten seconds is not lost, and the stationary period is reported") {
   for (const char* mode : {"sequential", "concurrent"}) {
     PipelineOptions options;
     options.mode = mode;
@@ -304,14 +305,14 @@ TEST_CASE("A camera that stands still for ten seconds is not lost, and its stand
     Listener frontend(before, {true, false, false});
     const RunResult result = run(frontend, 13.0, options);
     CHECK(result.status.state != RunState::lost);
-    REQUIRE(result.still.size() == 1);
-    CHECK(result.still[0].from == Approx(2.0).margin(0.01));
-    CHECK(result.still[0].to == Approx(12.0).margin(0.1));
-    CHECK(std::ranges::count(frontend.states, TrackingState::standing_still) > 900);
+    REQUIRE(result.stationary.size() == 1);
+    CHECK(result.stationary[0].from == Approx(2.0).margin(0.01));
+    CHECK(result.stationary[0].to == Approx(12.0).margin(0.1));
+    CHECK(std::ranges::count(frontend.states, TrackingState::stationary) > 900);
   }
 }
 
-TEST_CASE("A stand just before the end of the data remains one, though all tracks end then") {
+TEST_CASE("A stationary period just before the end of the data is kept, though all tracks end then") {
   std::vector<TrackObservation> before = tracks({{0.0, 2.0}});
   for (TrackId track = 0; track < 10; ++track) before.push_back({track, 4.95, Vector2(60.0, 80.0), 1.0});
   before.resize(before.size() - 9);  // one of them moves
@@ -319,30 +320,30 @@ TEST_CASE("A stand just before the end of the data remains one, though all track
   Listener frontend(before, {true, false, false});
   const RunResult result = run(frontend, 5.0);
   CHECK(result.status.state != RunState::lost);
-  REQUIRE(result.still.size() >= 1);
-  CHECK(result.still[0].from == Approx(2.0).margin(0.01));
-  CHECK(result.pieces.size() == 1);
+  REQUIRE(result.stationary.size() >= 1);
+  CHECK(result.stationary[0].from == Approx(2.0).margin(0.01));
+  CHECK(result.segments.size() == 1);
 }
 
-TEST_CASE("After a loss another back-end starts, the trajectory is in pieces, and the longest one is told") {
+TEST_CASE("After a loss another back-end starts, the trajectory has segments, and the longest one is reported") {
   Listener frontend(tracks({{0.0, 1.0}, {4.0, 7.0}}), {true, false, false});
   const RunResult result = run(frontend, 7.0);
   CHECK(result.status.state == RunState::lost);
   CHECK(result.status.time == Approx(1.0).margin(0.1));
-  REQUIRE(result.pieces.size() == 2);
+  REQUIRE(result.segments.size() == 2);
   CHECK(result.longest == 1);
-  CHECK(result.pieces[0].final_trajectory.end() < 1.1);
-  CHECK(result.pieces[1].final_trajectory.start() == Approx(4.0).margin(0.02));
-  CHECK(result.pieces[1].final_trajectory.end() == Approx(7.0).margin(0.02));
+  CHECK(result.segments[0].final_trajectory.end() < 1.1);
+  CHECK(result.segments[1].final_trajectory.start() == Approx(4.0).margin(0.02));
+  CHECK(result.segments[1].final_trajectory.end() == Approx(7.0).margin(0.02));
   REQUIRE_FALSE(result.status.degraded.empty());
   CHECK(std::ranges::count(frontend.states, TrackingState::lost) == 1);
 }
 
-TEST_CASE("A gap within the patience is carried by one and the same back-end") {
+TEST_CASE("The same back-end continues after a gap within the patience") {
   Listener frontend(tracks({{0.0, 1.0}, {1.5, 3.0}}), {});
   const RunResult result = run(frontend, 3.0);
   CHECK(result.status.state == RunState::degraded);
-  CHECK(result.pieces.size() == 1);
+  CHECK(result.segments.size() == 1);
 }
 
 TEST_CASE("A run without any observation fails with a reason, after its whole range") {
@@ -350,11 +351,11 @@ TEST_CASE("A run without any observation fails with a reason, after its whole ra
   const RunResult result = run(frontend, 3.0);
   CHECK(result.status.state == RunState::failed);
   CHECK_FALSE(result.status.reason.empty());
-  CHECK(result.pieces.empty());
+  CHECK(result.segments.empty());
   CHECK(result.data_s == 0.0);
 }
 
-TEST_CASE("A front-end that breaks its contract ends the run with a sentence") {
+TEST_CASE("A front-end that breaks its contract ends the run with a message that says how") {
   class Broken : public FrontEnd {
    public:
     explicit Broken(TrackBatch batch) : batch_(std::move(batch)) {}
@@ -385,7 +386,7 @@ TEST_CASE("A front-end that breaks its contract ends the run with a sentence") {
   }
 }
 
-TEST_CASE("An end is told though nothing can be told of the time since") {
+TEST_CASE("A track's end reaches the back-end although the batch's end has not advanced") {
   class Ending : public FrontEnd {
    public:
     bool advance(const Horizon& horizon, TrackBatch& batch) override {
@@ -398,9 +399,9 @@ TEST_CASE("An end is told though nothing can be told of the time since") {
    private:
     bool ended_ = false;
   };
-  class Hearing : public Mean {
+  class CountsEnds : public Mean {
    public:
-    Hearing(const BackEndContext& context, int& ends) : Mean(context), ends_(ends) {}
+    CountsEnds(const BackEndContext& context, int& ends) : Mean(context), ends_(ends) {}
     void advance(const TrackBatch& batch) override {
       ends_ += static_cast<int>(batch.ended.size());
       Mean::advance(batch);
@@ -411,13 +412,13 @@ TEST_CASE("An end is told though nothing can be told of the time since") {
   };
   int ends = 0;
   Ending frontend;
-  const MakeBackEnd make = [&](const BackEndContext& context) { return std::make_unique<Hearing>(context, ends); };
+  const MakeBackEnd make = [&](const BackEndContext& context) { return std::make_unique<CountsEnds>(context, ends); };
   PipelineOptions options;
   run_pipeline(EmptySource(0.9), frontend, make, {}, options, 0.0);
   CHECK(ends == 1);
 }
 
-TEST_CASE("An error in the back-end ends a run in two threads, too") {
+TEST_CASE("An error in the back-end ends a run in every mode") {
   class Throws : public Mean {
    public:
     using Mean::Mean;
@@ -436,39 +437,40 @@ TEST_CASE("An error in the back-end ends a run in two threads, too") {
   }
 }
 
-TEST_CASE("Online poses that are not finite, or known before what was told already, are an error") {
-  class Tells : public Mean {
+TEST_CASE("Causal poses that are not finite, or whose known_at decreases, are an error") {
+  class PublishesPose : public Mean {
    public:
-    Tells(const BackEndContext& context, OnlinePose pose) : Mean(context), online_(context.online), pose_(pose) {}
+    PublishesPose(const BackEndContext& context, CausalPose pose)
+        : Mean(context), publish_(context.publish), pose_(pose) {}
     void advance(const TrackBatch& batch) override {
-      if (batch.until > 0.5) online_({{batch.until, {}}});
-      if (batch.until > 0.5) online_(pose_);
+      if (batch.until > 0.5) publish_({{batch.until, {}}});
+      if (batch.until > 0.5) publish_(pose_);
     }
 
    private:
-    std::function<void(const OnlinePose&)> online_;
-    OnlinePose pose_;
+    std::function<void(const CausalPose&)> publish_;
+    CausalPose pose_;
   };
   Listener frontend(tracks({{0.0, 2.0}}), {});
-  const auto telling = [](const OnlinePose& pose) {
-    return [pose](const BackEndContext& context) { return std::make_unique<Tells>(context, pose); };
+  const auto publishing = [](const CausalPose& pose) {
+    return [pose](const BackEndContext& context) { return std::make_unique<PublishesPose>(context, pose); };
   };
-  CHECK_THROWS_WITH(run(frontend, 2.0, {}, telling({{0.5, {}}, 0.5})),
+  CHECK_THROWS_WITH(run(frontend, 2.0, {}, publishing({{0.5, {}}, 0.5})),
                     ContainsSubstring("known at 0.500000 s after one"));
   const SE3 broken{Eigen::Quaterniond::Identity(), {0, std::nan(""), 0}};
-  CHECK_THROWS_WITH(run(frontend, 2.0, {}, telling({{0.5, broken}})), ContainsSubstring("not finite"));
+  CHECK_THROWS_WITH(run(frontend, 2.0, {}, publishing({{0.5, broken}})), ContainsSubstring("not finite"));
   const Vector6 no_velocity = Vector6::Constant(std::nan(""));
-  CHECK_THROWS_WITH(run(frontend, 2.0, {}, telling({{0.5, {}}, {}, no_velocity})), ContainsSubstring("not finite"));
+  CHECK_THROWS_WITH(run(frontend, 2.0, {}, publishing({{0.5, {}}, {}, no_velocity})), ContainsSubstring("not finite"));
 }
 
-TEST_CASE("What a back-end tells of an older time again is kept beside the online trajectory, with when it was known") {
+TEST_CASE("Poses published again for an older time are kept with their known_at, apart from the causal trajectory") {
   class Smooths : public Mean {
    public:
-    explicit Smooths(const BackEndContext& context) : Mean(context), online_(context.online) {}
+    explicit Smooths(const BackEndContext& context) : Mean(context), publish_(context.publish) {}
     void advance(const TrackBatch& batch) override {
       const SE3 T;
-      online_({{batch.until - 0.005, T}, batch.until - 0.002});
-      if (batch.until > 0.5) online_({{batch.until - 0.205, T}});
+      publish_({{batch.until - 0.005, T}, batch.until - 0.002});
+      if (batch.until > 0.5) publish_({{batch.until - 0.205, T}});
     }
     void finish() override {}
     PoseTrajectory trajectory() const override {
@@ -476,26 +478,26 @@ TEST_CASE("What a back-end tells of an older time again is kept beside the onlin
     }
 
    private:
-    std::function<void(const OnlinePose&)> online_;
+    std::function<void(const CausalPose&)> publish_;
   };
   Listener frontend(tracks({{0.0, 1.0}}), {});
   const RunResult result =
       run(frontend, 1.0, {}, [](const BackEndContext& context) { return std::make_unique<Smooths>(context); });
-  const std::vector<OnlinePose>& told = result.pieces.at(0).told;
-  const PoseTrajectory& online = result.pieces.at(0).online_trajectory;
-  CHECK(online.size() == 100);
-  CHECK(told.size() == 150);
-  CHECK(told.back().t == Approx(0.795));
-  CHECK(told.back().known_at == Approx(1.0));
-  CHECK(told[told.size() - 2].known_at == Approx(0.998));
+  const std::vector<CausalPose>& published = result.segments.at(0).published;
+  const PoseTrajectory& causal = result.segments.at(0).causal_trajectory;
+  CHECK(causal.size() == 100);
+  CHECK(published.size() == 150);
+  CHECK(published.back().t == Approx(0.795));
+  CHECK(published.back().known_at == Approx(1.0));
+  CHECK(published[published.size() - 2].known_at == Approx(0.998));
 }
 
-TEST_CASE("Free-running, feedback comes as soon as it is there, and the log says that the run can't be repeated") {
+TEST_CASE("In mode free, feedback arrives as soon as it is available, and the log says that this isn't reproducible") {
   PipelineOptions options;
   options.mode = "free";
   options.latency = 5.0;
   Listener frontend(tracks({{0.0, 2.0}}), {true, false, false});
   const RunResult result = run(frontend, 2.0, options);
-  CHECK_FALSE(frontend.heard.empty());
+  CHECK_FALSE(frontend.received.empty());
   CHECK_THAT(result.log.back(), ContainsSubstring("not reproducible"));
 }

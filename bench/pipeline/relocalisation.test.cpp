@@ -11,12 +11,12 @@ using namespace evbench;
 
 namespace {
 
-constexpr double kGap = 2.0, kAgain = 4.0, kEnd = 7.0;  // [s] tracks are seen up to, again from, and up to
+constexpr double kGap = 2.0, kAgain = 4.0, kEnd = 7.0;  // [s] tracks are observed until kGap and from kAgain to kEnd
 
-/// A camera that goes to the right at 0.1 m/s.
+/// A camera that moves to the right at 0.1 m/s.
 SE3 truth(double t) { return {Eigen::Quaterniond::Identity(), {0.1 * t, 0.0, 0.0}}; }
 
-/// Landmarks about 2 m before it.
+/// Landmarks about 2 m in front of it.
 Vector3 point_of(TrackId track) {
   const auto i = static_cast<double>(track);
   return {0.3 + 0.9 * std::sin(2.1 * i), 0.6 * std::sin(3.7 * i + 1.0), 2.0 + 0.5 * std::sin(5.3 * i)};
@@ -38,15 +38,15 @@ class View : public Source {
   PoseTrajectory truth_;
 };
 
-/// Twenty tracks before the gap, and twenty after it of which `common` are the same. Keeps what it is told.
+/// Twenty tracks before the gap, and twenty after it of which `common` are the same. Keeps the feedback.
 class Tracks : public FrontEnd {
  public:
   explicit Tracks(TrackId common) : observations_(made(common)), player_(observations_, ends_at_gap()) {}
   bool advance(const Horizon& horizon, TrackBatch& batch) override { return player_.advance(horizon, batch); }
   FeedbackNeeds needs() const override { return {true, true, true}; }
-  void receive(const Feedback& feedback) override { heard.push_back(feedback); }
+  void receive(const Feedback& feedback) override { received.push_back(feedback); }
 
-  std::vector<Feedback> heard;
+  std::vector<Feedback> received;
 
  private:
   static std::vector<TrackEnd> ends_at_gap() {
@@ -69,7 +69,7 @@ class Tracks : public FrontEnd {
   TrackPlayer player_;
 };
 
-/// Knows the truth, in a world and a scale of its own that is another one each time that it is made; maps what it sees.
+/// Publishes the true poses in a world frame and scale of its own, and maps all observed tracks.
 class Surveyor : public BackEnd {
  public:
   Surveyor(const BackEndContext& context, const Similarity& world)
@@ -80,7 +80,7 @@ class Surveyor : public BackEnd {
     if (!batch.observations.empty()) {
       newest_ = batch.observations.back().t;
       poses_.push_back({newest_, to_own_ * truth(newest_)});
-      context_.online({poses_.back(), {}, velocity()});
+      context_.publish({poses_.back(), {}, body_velocity()});
     }
     using Support = TrackingMonitor::Support;
     const bool sees = batch.until - newest_ < 0.05;
@@ -112,7 +112,7 @@ class Surveyor : public BackEnd {
   }
 
  private:
-  Vector6 velocity() const { return (Vector6() << 0, 0, 0, 0.1 * to_own_.scale, 0, 0).finished(); }
+  Vector6 body_velocity() const { return (Vector6() << 0, 0, 0, 0.1 * to_own_.scale, 0, 0).finished(); }
 
   BackEndContext context_;
   TrackingMonitor monitor_;
@@ -122,7 +122,7 @@ class Surveyor : public BackEnd {
   double until_ = 0.0, newest_ = 0.0;
 };
 
-/// The first one's world is the true one.
+/// Each back-end has another world frame and scale; the first one's is the true one.
 MakeBackEnd surveyors() {
   return [made = 0](const BackEndContext& context) mutable {
     const double i = made++;
@@ -146,35 +146,35 @@ void check_true(const PoseTrajectory& trajectory, double from) {
 
 }  // namespace
 
-TEST_CASE("After a loss the run goes on in the same world where landmarks of before are seen again") {
+TEST_CASE("After a loss the run continues in the same world if earlier landmarks are observed again") {
   Tracks tracks(12);
   const RunResult result = run(tracks);
   CHECK(result.status.state == RunState::degraded);
   CHECK(result.status.time == Approx(kGap).margin(0.1));
   CHECK(result.status.reason.find("nothing is seen") != std::string::npos);
-  REQUIRE(result.pieces.size() == 1);
-  const Piece& piece = result.pieces.front();
-  check_true(piece.final_trajectory, 0.0);
-  check_true(piece.online_trajectory, 0.0);
+  REQUIRE(result.segments.size() == 1);
+  const TrajectorySegment& segment = result.segments.front();
+  check_true(segment.final_trajectory, 0.0);
+  check_true(segment.causal_trajectory, 0.0);
   const auto in_gap = [](const StampedPose& pose) { return pose.t > kGap + 0.1 && pose.t < kAgain; };
-  CHECK(std::ranges::none_of(piece.final_trajectory.poses(), in_gap));
-  CHECK(piece.map.size() == 28);
-  for (const Landmark& landmark : piece.map) CHECK((landmark.position - point_of(landmark.track)).norm() < 1e-4);
-  for (const OnlinePose& pose : piece.told) CHECK(pose.velocity->tail<3>().norm() == Approx(0.1).epsilon(1e-3));
+  CHECK(std::ranges::none_of(segment.final_trajectory.poses(), in_gap));
+  CHECK(segment.map.size() == 28);
+  for (const Landmark& landmark : segment.map) CHECK((landmark.position - point_of(landmark.track)).norm() < 1e-4);
+  for (const CausalPose& pose : segment.published) CHECK(pose.velocity->tail<3>().norm() == Approx(0.1).epsilon(1e-3));
   CHECK(std::ranges::any_of(result.log, [](const std::string& line) {
-    return line.find("found in the world of before, by ") != std::string::npos;
+    return line.find("relocalised in the earlier world, by ") != std::string::npos;
   }));
 }
 
-TEST_CASE("Once the camera is found in the world of before, the front-end is told of it and of its other landmarks") {
+TEST_CASE("Once the camera is relocalised, feedback is in the earlier world and predicts its other landmarks") {
   Tracks tracks(12);
   run(tracks);
   const auto in = [&](std::size_t world) {
-    return std::ranges::count_if(tracks.heard, [&](const Feedback& f) { return f.newest && f.world == world; });
+    return std::ranges::count_if(tracks.received, [&](const Feedback& f) { return f.newest && f.world == world; });
   };
   CHECK(in(0) > 100);
-  CHECK(in(1) > 0);  // until it is found
-  const Feedback& last = tracks.heard.back();
+  CHECK(in(1) > 0);  // until it is relocalised
+  const Feedback& last = tracks.received.back();
   CHECK(last.world == 0);
   REQUIRE(last.newest);
   CHECK((last.newest->T.p - truth(last.newest->t).p).norm() < 1e-4);
@@ -194,14 +194,14 @@ TEST_CASE("Once the camera is found in the world of before, the front-end is tol
   CHECK(std::ranges::count_if(expected, of_before) >= 4);
 }
 
-TEST_CASE("After a loss the trajectory is in pieces where too little of before is seen again, or it isn't asked for") {
-  Tracks strangers(5), not_asked(12);
-  for (const RunResult& result : {run(strangers), run(not_asked, false)}) {
+TEST_CASE("After a loss the trajectory has segments if too few earlier landmarks are observed again, or by option") {
+  Tracks few_common(5), switched_off(12);
+  for (const RunResult& result : {run(few_common), run(switched_off, false)}) {
     CHECK(result.status.state == RunState::lost);
-    REQUIRE(result.pieces.size() == 2);
-    CHECK(result.pieces[0].final_trajectory.end() < kAgain);
-    CHECK(result.pieces[1].final_trajectory.start() >= kAgain);
-    CHECK(result.pieces[1].map.size() == 20);
+    REQUIRE(result.segments.size() == 2);
+    CHECK(result.segments[0].final_trajectory.end() < kAgain);
+    CHECK(result.segments[1].final_trajectory.start() >= kAgain);
+    CHECK(result.segments[1].map.size() == 20);
   }
-  CHECK(strangers.heard.back().world == 1);
+  CHECK(few_common.received.back().world == 1);
 }

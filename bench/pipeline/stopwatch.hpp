@@ -18,7 +18,7 @@ class Stopwatch {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Adds its life, whichever way it ends.
+  /// Adds its lifetime, also when call() throws.
   class Lap {
    public:
     explicit Lap(Stopwatch& watch) : watch_(watch) {}

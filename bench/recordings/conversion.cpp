@@ -29,7 +29,7 @@ class NearestUndistortion {
     }
   }
 
-  /// Moves events; returns how many lie outside now and were left out.
+  /// Moves events; returns the number that is now outside and left out.
   std::int64_t apply(std::vector<Event>& events) const {
     return static_cast<std::int64_t>(std::erase_if(events, [&](Event& event) {
       const Pixel pixel = table_[event.y * width_ + event.x];
@@ -97,7 +97,7 @@ RecordingHeader make_header(EventStream& stream, const std::string& in, const St
     const double to = options.to ? 1e-6 * static_cast<double>(*options.to) + kMargin : truth.end();
     header.ground_truth = truth.cut(from, to);
   }
-  header.metadata = stream.info().metadata;  // with remarks on what was read just now
+  header.metadata = stream.info().metadata;  // with remarks on the events read just now
   header.metadata.insert(header.metadata.end(), own.unusable.begin(), own.unusable.end());
   header.metadata.emplace_back("converted from", fmt::format("{} ({})", in, stream.info().format));
   if (options.from || options.to) header.metadata.emplace_back("a part of it", range_text(options));
@@ -108,7 +108,7 @@ bool fits(const Camera& camera, const RecordingHeader& header) {
   return camera.width == header.width && camera.height == header.height;
 }
 
-/// The lens to be undone; the header then says that there is none.
+/// The lens to be removed; the header then has none.
 Camera take_lens(const ConversionOptions& options, const std::string& in, RecordingHeader& header) {
   const std::string& calibration = options.undistort;
   if (header.width <= 0 || header.height <= 0) {
@@ -131,7 +131,7 @@ Camera take_lens(const ConversionOptions& options, const std::string& in, Record
   return lens;
 }
 
-/// A calibration of another sensor is of no use.
+/// Refuses a calibration of another sensor.
 void drop_misfit(RecordingHeader& header) {
   if (!header.calibration || header.width <= 0 || fits(*header.calibration, header)) return;
   const Camera& camera = *header.calibration;
@@ -139,7 +139,7 @@ void drop_misfit(RecordingHeader& header) {
   header.calibration.reset();
 }
 
-/// Why nothing was left to be written.
+/// The reason why no event was left to be written.
 const char* why_none(const StreamOptions& options, const ConversionReport& report) {
   if (report.outside > 0) return "all events lie outside the undistorted image";
   if (options.from || options.to) return "has no events in the time range that is asked for";
@@ -153,7 +153,7 @@ ConversionReport convert(const std::string& in, const std::string& out, const Co
   const WritableFormat& format = find_format(out, options.format);
   EventStream stream(in, options.stream);
   RecordingHeader header = make_header(stream, in, options.stream);
-  std::vector<std::string> inputs = stream.reader().files_beside();
+  std::vector<std::string> inputs = stream.reader().companion_files();
   std::ranges::move(files_of_events(in), std::back_inserter(inputs));
   inputs.push_back(options.undistort);
   check_outputs({out}, inputs, options.force);

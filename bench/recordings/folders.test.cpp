@@ -26,7 +26,7 @@ TEST_CASE("Folders of public data sets are described, converted and drawn, and c
   CHECK_THAT(named.out, ContainsSubstring("calibration   fx "));
 }
 
-TEST_CASE("What was assumed of the ground truth beside a recording is a remark on it, which a native copy keeps",
+TEST_CASE("Assumptions on a recording's ground truth file are remarks on the recording, which a native copy keeps",
           "[slow]") {
   const testing::TemporaryFolder folder;
   folder.write("events.txt", "0.1 5 6 1\n0.2 7 8 0\n");

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As it is written in a config at `place`: from its folder on where it lies there, else from the root.
+/// The path as written in a config at `place`: relative where it is in the config's folder, else absolute.
 std::string path_for(const std::string& path, const std::string& place) {
   fs::path absolute = fs::absolute(path).lexically_normal();
   if (!absolute.has_filename()) absolute = absolute.parent_path();  // "folder/"
@@ -53,7 +53,7 @@ class Lines {
   std::string text_;
 };
 
-/// Sensor, calibration and ground truth, as `info` tells them.
+/// Sensor, calibration and ground truth, as `info` reports them.
 std::string found_text(const RecordingSummary& s) {
   std::string text =
       s.info.width > 0 ? fmt::format("Sensor {}x{} pixels", s.info.width, s.info.height) : "Sensor of unknown size";
@@ -65,7 +65,7 @@ std::string found_text(const RecordingSummary& s) {
   return text + ".";
 }
 
-/// What names a folder of results; empty: the file's own name does.
+/// The name for a folder of results; empty: the file's own name is used.
 std::string experiment_name(const std::string& place) {
   const std::string stem = fs::path(place).stem().string();
   std::string name = stem;
@@ -87,7 +87,7 @@ std::string text_of(const Lines& source, const std::string& recording, const std
       "  \"source\": {{\n{}\n  }},\n"
       "  // What tracks features in the events; evbench list names others.\n"
       "  \"frontend\": {{\"type\": \"haste\"}},\n"
-      "  // Compared on the same tracks.\n"
+      "  // The back-ends to compare; haste follows the feedback of each, on tracks of its own.\n"
       "  \"backends\": [{{\"type\": \"gp_map\"}}, {{\"type\": \"bundle_adjustment\"}}],\n"
       "  // {}\n"
       "  \"evaluation\": {{}}\n"
@@ -148,7 +148,7 @@ std::string new_config(const std::string& recording, const RecordingSummary& s, 
   }
   source.add(what, "time_range", {from, to});
   const std::string text = text_of(source, recording, experiment_name(place), s, truth);
-  // It must run as it is.
+  // It must run unchanged.
   const Json json = Json::parse(text, nullptr, true, true);
   const Experiment experiment = ConfigFile(place, json, plugins).experiment({});
   make_source(experiment.runs.front().job, plugins);

@@ -23,7 +23,7 @@ Json config_of(const TemporaryFolder& folder, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("new-config writes a config for a recording that runs as it is", "[slow]") {
+TEST_CASE("new-config writes a config for a recording that runs unchanged", "[slow]") {
   const TemporaryFolder folder;
   write_text_events(folder, "mine.txt");
   folder.write("cam.txt", "250 250 173 130 0 0 0 0 0\n");
@@ -44,7 +44,7 @@ TEST_CASE("new-config writes a config for a recording that runs as it is", "[slo
   CHECK_THAT(run.out, ContainsSubstring("gp_map") && ContainsSubstring("bundle_adjustment"));
 }
 
-TEST_CASE("new-config takes what lies beside the recording, and the time that events and ground truth share",
+TEST_CASE("new-config takes files in the recording's folder, and the time that events and ground truth share",
           "[slow]") {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.file("mine"));
@@ -61,7 +61,7 @@ TEST_CASE("new-config takes what lies beside the recording, and the time that ev
   CHECK(testing::evbench(folder, "run a.json --check").exit_code == 0);
 }
 
-TEST_CASE("new-config says what is missing, and replaces nothing unasked", "[slow]") {
+TEST_CASE("new-config reports what is missing, and replaces nothing without a request", "[slow]") {
   const TemporaryFolder folder;
   write_text_events(folder, "mine.txt");
   const Outcome none = testing::evbench(folder, "new-config mine.txt");
@@ -75,7 +75,7 @@ TEST_CASE("new-config says what is missing, and replaces nothing unasked", "[slo
   CHECK(testing::evbench(folder, "new-config mine.txt --calibration cam.txt --force").exit_code == 0);
 }
 
-TEST_CASE("A recording in the place of a config is told, with the command that makes one", "[slow]") {
+TEST_CASE("A recording instead of a config is refused, with the command that makes one", "[slow]") {
   const TemporaryFolder folder;
   write_text_events(folder, "mine.txt");
   const Outcome run = testing::evbench(folder, "run mine.txt");

@@ -9,7 +9,7 @@
 
 namespace evbench {
 
-/// What a recording has beside its events.
+/// Calibration and ground truth of a recording.
 struct OwnCalibration {
   std::optional<Camera> calibration;
   std::optional<PoseTrajectory> ground_truth;
@@ -17,7 +17,7 @@ struct OwnCalibration {
   std::vector<std::pair<std::string, std::string>> unusable;
 };
 
-/// Asks a reader. What is wrong with one does not keep the events from being used, but is an InputError where `strict`.
+/// Gets them from a reader. An error in one of them leaves the events usable, but is an InputError where `strict`.
 OwnCalibration own_calibration(EventReader& reader, bool strict);
 
 }  // namespace evbench

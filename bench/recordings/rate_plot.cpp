@@ -10,7 +10,7 @@ namespace evbench {
 
 namespace {
 
-constexpr double kSlow = 1e5;  // [events/s], below which millions are a bad unit
+constexpr double kSlow = 1e5;  // [events/s]; below it rates are not shown in millions
 
 }  // namespace
 
@@ -34,7 +34,7 @@ void RateHistogram::add(std::span<const Event> events) {
   }
 }
 
-/// Half the bins, twice as wide.
+/// Merges bins to half as many, twice as wide.
 void RateHistogram::halve() {
   const std::size_t half = (bins_.size() + 1) / 2;
   for (std::size_t i = 0; i < half; ++i) {

@@ -12,8 +12,8 @@ namespace evbench {
 /// "1.234 million/s", of slow recordings "1234/s".
 std::string rate_text(double events_per_second);
 
-/// How many events there were when, in bounded memory although nobody knows beforehand how long it will last: bins of
-/// equal width, which doubles when they run out.
+/// Histogram of events over time, in bounded memory for an unknown duration: bins of equal width, which doubles when
+/// they run out.
 class RateHistogram {
  public:
   static constexpr std::size_t kBins = 2048;  ///< at most
@@ -24,7 +24,7 @@ class RateHistogram {
   double start() const { return static_cast<double>(start_) * 1e-6; }  ///< [s] of the first event
   double width() const { return static_cast<double>(width_) * 1e-6; }  ///< of a bin [s]
 
-  /// [events/s], a number a bin. The last bin counts as long as its events last.
+  /// Rate of each bin [events/s]. The last bin ends with its last event.
   std::vector<double> rates() const;
 
   /// Mean rates of `count` equal parts of the time from the first event to the last [events/s].
@@ -38,7 +38,7 @@ class RateHistogram {
   std::int64_t width_ = 1000;            ///< [µs]
 };
 
-/// Bars of eighths of a line, `rows` lines high, with the scale beside and the times below; one bar a rate.
+/// One bar a rate, in eighths of a line, `rows` lines high, with the scale at the side and the times below.
 std::string plot_rates(const std::vector<double>& rates, double start, double end, int rows = 4);
 
 }  // namespace evbench

@@ -64,7 +64,7 @@ void damage(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("info says a recording's format, sensor, counts, times, rates, calibration and ground truth", "[slow]") {
+TEST_CASE("info reports a recording's format, sensor, counts, times, rates, calibration and ground truth", "[slow]") {
   const TemporaryFolder folder;
   write_native(folder.file("a.evb"), walking_events(1000), davis_header());
   const Outcome text = testing::evbench(folder, "info a.evb");
@@ -87,7 +87,7 @@ TEST_CASE("info says a recording's format, sensor, counts, times, rates, calibra
   CHECK(json.at("oddities").empty());
 }
 
-TEST_CASE("info of a recording without events, and of one with damage, says so", "[slow]") {
+TEST_CASE("info reports a recording without events, and damage", "[slow]") {
   const TemporaryFolder folder;
   write_native(folder.file("none.evb"), {}, {});
   CHECK_THAT(testing::evbench(folder, "info none.evb").out,
@@ -118,7 +118,7 @@ TEST_CASE("A recording of 100 days still has a histogram, of bounded size, with 
   CHECK(count == Approx(1000.0).epsilon(1e-6));
 }
 
-TEST_CASE("Rates are plotted as high as they are") {
+TEST_CASE("Rates are plotted in proportion") {
   const std::string plot = plot_rates({0.0, 1e6, 2e6}, 0.0, 3.0, 1);
   CHECK_THAT(plot, ContainsSubstring("million events/s\n") && ContainsSubstring("2.000 | ▄█\n") &&
                        ContainsSubstring("0.000 s"));
@@ -147,7 +147,7 @@ TEST_CASE("convert writes native, text and HDF5 files that read back as the same
   CHECK(names_in(folder.path()) == std::set<std::string>{"a.evb", "b.evb", "b.h5", "b"});
 }
 
-TEST_CASE("Text has times before zero with their sign") {
+TEST_CASE("Times before zero have a sign in text") {
   const TemporaryFolder folder;
   write_native(folder.file("a.evb"), {{-1500000, 1, 2, true}, {-1, 1, 2, false}, {7, 1, 2, true}}, davis_header());
   convert(folder.file("a.evb"), folder.file("a.txt"), {});
@@ -171,7 +171,7 @@ TEST_CASE("convert takes a time range, with times from the first event on or as 
   CHECK(open_events(folder.file("b.evb"))->ground_truth()->start() == Approx(0.0).margin(1e-12));
 }
 
-TEST_CASE("What evbench writes as text it reads as the same events, however they begin", "[slow]") {
+TEST_CASE("Text that evbench writes is read as the same events, whatever the first ones are", "[slow]") {
   const TemporaryFolder folder;
   std::vector<Event> events;  // times and pixels that could be of either order, or in microseconds
   for (int i = 0; i < 1500; ++i) events.push_back({0, 1, 1, true});
@@ -186,7 +186,7 @@ TEST_CASE("What evbench writes as text it reads as the same events, however they
   CHECK(read_all(folder.file("bare.txt")) == events);
 }
 
-TEST_CASE("A part of a recording keeps the ground truth of its time, and a folder says which file was read", "[slow]") {
+TEST_CASE("A part of a recording keeps its ground truth, and a folder's description names the file", "[slow]") {
   const TemporaryFolder folder;
   RecordingHeader header = davis_header();
   std::vector<StampedPose> poses;
@@ -223,7 +223,7 @@ TEST_CASE("A recording may come from a pipe or the standard input, of any format
              ContainsSubstring("evbench info: -: ") && ContainsSubstring("truncated") && !ContainsSubstring("/proc"));
 }
 
-TEST_CASE("convert undoes the lens: events go to where a pinhole sees them, or are left out and counted", "[slow]") {
+TEST_CASE("convert removes lens distortion, and counts events that it leaves out", "[slow]") {
   const TemporaryFolder folder;
   const auto events = walking_events(720);
   write_native(folder.file("a.evb"), events, davis_header());
@@ -257,7 +257,7 @@ TEST_CASE("convert undoes the lens: events go to where a pinhole sees them, or a
   CHECK(read_all(folder.file("d.evb")) == expected);
 }
 
-TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing behind", "[slow]") {
+TEST_CASE("convert refuses invalid requests with the reason, and leaves nothing behind", "[slow]") {
   const TemporaryFolder folder;
   write_native(folder.file("a.evb"), walking_events(20000), davis_header());
   write_native(folder.file("unknown.evb"), walking_events(10), {});
@@ -283,7 +283,7 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
   refused("mistaken.json b.evb --undistort own", "a sensor of 320x240 pixels, the recording one of 240x180");
   refused("a.evb no/b.evb", "no/b.evb: can't be written", kExitNotWritten);
   refused("unknown.evb ok.txt", "ok.txt: exists already; --force replaces it");
-  refused("a.evb a.evb --force --to 3", "a.evb: is what is read");
+  refused("a.evb a.evb --force --to 3", "a.evb: is also an input");
   refused("a.evb ok.txt --force --from 100", "has no events in the time range");
   refused("corner.evb ok.txt --force --undistort lens.txt", "all events lie outside the undistorted image");
   refused("none.evb ok.txt --force", "has no events; nothing was written");
@@ -298,7 +298,7 @@ TEST_CASE("convert refuses what makes no sense, says why, and leaves nothing beh
                                                          "mistaken.json", "lens.txt", "ok.txt", "ok.evb"});
 }
 
-TEST_CASE("A conversion that is interrupted leaves nothing, and the older file as it was") {
+TEST_CASE("A conversion that is interrupted leaves nothing, and keeps an older file") {
   const TemporaryFolder folder;
   write_native(folder.file("a.evb"), walking_events(100000), davis_header());
   const std::string out = GENERATE("b.txt", "b.h5", "b.evb");
@@ -312,7 +312,7 @@ TEST_CASE("A conversion that is interrupted leaves nothing, and the older file a
   CHECK(read_file(folder.file(out)) == "old");
 }
 
-TEST_CASE("A signal ends a conversion with an error that says so") {
+TEST_CASE("A signal ends a conversion with an error that names it") {
   const TemporaryFolder folder;
   write_native(folder.file("a.evb"), walking_events(100000), davis_header());
   // A pipe that nobody reads holds the program: it is there when the signal comes. Its handler is set by then.
@@ -356,7 +356,7 @@ TEST_CASE("A disk that is full while a file is written is an error that names th
   write_native(folder.file("a.evb"), events, davis_header());
   const std::string out = GENERATE("b.txt", "b.h5", "b.evb");
   folder.write(out, "old");
-  // A limit on the size of files stands for the disk.
+  // A limit on the size of files takes the role of a full disk.
   const Outcome outcome = testing::shell(folder, "trap '' XFSZ; ulimit -f 64; \"$evbench\" convert --force a.evb " +
                                                      out + "; code=$?; ulimit -f unlimited; exit $code");
   CHECK(outcome.exit_code == 4);
@@ -408,12 +408,12 @@ TEST_CASE("A config that names itself, or one that names it, as its recording is
                           "frontend": {"type": "oracle"}, "backend": {"type": "bundle_adjustment"}})");
   };
   const std::string named = GENERATE("a.json", "b.json");
-  // What the source has to ask its events for, or not.
+  // Options for which the source reads its events, or does not.
   const std::string more = GENERATE("", R"(, "calibration": "calib.txt", "time_range": [0, 1])");
   write_config("a.json", named, more);
   write_config("b.json", "a.json", more);
   for (const std::string command : {"info a.json", "convert a.json a.evb", "render a.json a.png", "run a.json"}) {
-    if (command == "run a.json" && !more.empty()) continue;  // the oracle has no use for events
+    if (command == "run a.json" && !more.empty()) continue;  // the oracle does not use events
     CAPTURE(command, named, more);
     const Outcome refused = testing::evbench(folder, command);
     CHECK(refused.exit_code == 2);

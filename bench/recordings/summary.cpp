@@ -28,7 +28,7 @@ std::string calibration_text(const Camera& camera) {
                      to_string(camera.distortion));
 }
 
-/// Where there is nothing that is taken.
+/// The text for a missing calibration or ground truth.
 std::string missing_text(const RecordingSummary& s, const char* unusable_key) {
   const auto unusable = [&](const auto& entry) { return entry.first == unusable_key; };
   return std::ranges::any_of(s.info.metadata, unusable) ? "cannot be used, see below" : "none in the recording";
@@ -69,9 +69,9 @@ RecordingSummary summarise(const std::string& path, const StreamOptions& options
   OwnCalibration own = own_calibration(stream.reader(), options.read.strict);
   s.calibration = own.calibration;
   if (own.ground_truth) s.ground_truth = std::move(*own.ground_truth);
-  s.info = stream.info();  // with remarks on what was read just now
+  s.info = stream.info();  // with remarks on the events read just now
   if (s.info.guessed_time_unit) {
-    const auto doubt = doubtful_rate(s.events, static_cast<double>(s.end - s.start), *s.info.guessed_time_unit);
+    const auto doubt = implausible_rate(s.events, static_cast<double>(s.end - s.start), *s.info.guessed_time_unit);
     if (doubt) s.info.metadata.emplace_back("remark", *doubt);
   }
   s.info.metadata.insert(s.info.metadata.end(), own.unusable.begin(), own.unusable.end());

@@ -12,11 +12,11 @@
 
 namespace evbench {
 
-/// What `evbench info` says of a recording, after reading all of it.
+/// The content of `evbench info` on a recording, after reading all of it.
 struct RecordingSummary {
   std::vector<std::string> files;  ///< that hold the events
   StreamInfo info;
-  std::int64_t events = 0, on = 0;  ///< without those that are faults
+  std::int64_t events = 0, on = 0;  ///< without faulty ones
   std::int64_t start = 0, end = 0;  ///< [µs] of the first and last event, the file's own time
   int max_x = 0, max_y = 0;         ///< [px]
   RateHistogram rates;
@@ -28,7 +28,7 @@ struct RecordingSummary {
   double duration() const { return static_cast<double>(end - start) * 1e-6; }  ///< [s]
 };
 
-/// `progress` is told how many events have been read, and the time reached [µs].
+/// `progress` is called with the number of events read, and the time reached [µs].
 RecordingSummary summarise(const std::string& path, const StreamOptions& options,
                            const std::function<void(std::int64_t, std::int64_t)>& progress = {});
 

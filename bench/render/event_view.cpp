@@ -15,7 +15,7 @@
 namespace evbench {
 namespace {
 
-/// As the recording says; otherwise what its events in the time range need.
+/// The sensor size of the recording; where it is unknown, the size that the events in the time range need.
 cv::Size sensor_size(const std::string& path, const StreamOptions& options, const StreamInfo& info) {
   if (info.width > 0 && info.height > 0) return {info.width, info.height};
   cv::Size size(1, 1);
@@ -74,7 +74,7 @@ void EventView::prepare_compensation(const std::string& path, const RenderOption
 EventView::Sight EventView::before(std::int64_t t) {
   const std::span<const Event> events = window_.before(t);
   const bool any = !events.empty();
-  // Not beyond the end of the recording, where a time surface would have faded, and no time is to be told.
+  // Not after the end of the recording, where a time surface would have faded, and no time must be shown.
   if (any && !window_.next()) t = std::min(t, events.back().t);
   switch (mode_) {
     case RenderMode::events: break;

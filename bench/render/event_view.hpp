@@ -12,15 +12,15 @@
 namespace evbench {
 
 /// The motion for compensation: the file that the options name, or the recording's own. Throws InputError where there
-/// is neither. What was assumed of a file is in its remarks.
+/// is neither. Assumptions on a file are in its remarks.
 PoseFile motion_of(const std::string& path, const RenderOptions& options, EventStream& stream);
 
 /// The camera: of the file that the options name, or the recording's own. Throws InputError where there is neither, and
-/// where it is not of the sensor's size. `what` needs it, for the message.
+/// where it is not of the sensor's size. `what`: the part that needs it, for the message.
 Camera camera_of(const std::string& path, const RenderOptions& options, EventStream& stream, const cv::Size& sensor,
                  const std::string& what);
 
-/// One recording as it is seen at a time: reads what it needs, time moves forward.
+/// Draws one recording at a time. Reads the events that it needs; time moves forward.
 class EventView {
  public:
   EventView(const std::string& path, const RenderOptions& options, const WindowExtent& extent);
@@ -29,7 +29,7 @@ class EventView {
 
   struct Sight {
     Picture picture;     ///< a sensor pixel a pixel
-    std::int64_t t = 0;  ///< what it shows [µs]: the end of its events' time, or where they are moved to
+    std::int64_t t = 0;  ///< time of the picture [µs]: the end of its events' time, or the time they are moved to
     bool has_events = false;
   };
   Sight before(std::int64_t t);

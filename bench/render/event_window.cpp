@@ -27,7 +27,7 @@ std::span<const Event> EventWindow::before(std::int64_t t) {
   return window_;
 }
 
-/// Forgets what lies before the window that ends at t.
+/// Removes events before the window that ends at t.
 void EventWindow::trim(std::int64_t t) {
   auto first = window_.begin();
   if (!extent_.count) {

@@ -9,13 +9,13 @@
 
 namespace evbench {
 
-/// How much of a stream is looked at at once: a time, or a number of events.
+/// The size of a window: a duration, or a number of events.
 struct WindowExtent {
   std::int64_t duration = 20000;          ///< [µs]
   std::optional<std::size_t> count = {};  ///< where set, instead of the duration
 };
 
-/// A window that moves forward over a stream. Keeps no more than the window's events and a chunk of the stream.
+/// A window that moves forward over a stream. Keeps only the window's events and a chunk of the stream in memory.
 class EventWindow {
  public:
   EventWindow(EventStream& stream, const WindowExtent& extent) : stream_(&stream), extent_(extent) {}

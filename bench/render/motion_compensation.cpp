@@ -68,7 +68,7 @@ SE3 MotionCompensation::pose(std::int64_t t) const {
                   name_, trajectory_->start(), trajectory_->end(), seconds));
 }
 
-/// Where the camera at the reference time sees what the camera at an event's time saw along the ray.
+/// Projects the ray of an event at its time into the camera at the reference time.
 std::optional<Vector2> MotionCompensation::project(const SE3& T_reference_event, const Vector3& ray) const {
   Vector3 point = T_reference_event.q * ray;
   if (depth_) {

@@ -17,17 +17,18 @@ struct PolarityCounts {
   cv::Mat1f on, off;
 };
 
-/// Moves events to where the camera would have seen their edges at one time, along a known motion (the image of warped
-/// events of Gallego et al., CVPR 2018, with a known instead of an estimated motion). The motion is a pure rotation, or
-/// with a depth the whole pose: all edges then lie on the plane z = depth of the camera at the reference time.
+/// Warps events along a known motion to where the camera would see their edges at one time (the image of warped events
+/// of Gallego et al., CVPR 2018, with a known instead of an estimated motion). Without a depth only the rotation is
+/// used. With a depth the whole pose is used, and all edges are taken to lie on the plane z = depth of the camera at
+/// the reference time.
 class MotionCompensation {
  public:
   /// `camera` with the sensor's size; `depth` [m]; `name`: the trajectory's, for messages.
   MotionCompensation(const PoseTrajectory& trajectory, const Camera& camera, std::optional<double> depth,
                      std::string name);
 
-  /// Events shared among the four pixels around them, in the raw image at time `reference` [µs]; what leaves the image
-  /// is left out. `zero` [µs] is the trajectory's time of the events' zero.
+  /// Events shared among the four pixels around them, in the raw image at time `reference` [µs]; events outside the
+  /// image are left out. `zero` [µs] is the trajectory's time at the events' zero.
   /// Throws InputError when the trajectory does not reach an event, or the reference.
   PolarityCounts accumulate(std::span<const Event> events, std::int64_t reference, std::int64_t zero = 0) const;
 
@@ -43,7 +44,8 @@ class MotionCompensation {
   Vector2 ray_min_, ray_max_;                 ///< their x and y
 };
 
-/// The more events the stronger, up to full colour at 95 % of the pixels that have some; polarities' colours mix.
+/// Draws counts: colours are stronger for more events, full at the 95 % quantile of the pixels with events; the
+/// polarities' colours mix.
 Picture draw_counts(const PolarityCounts& counts, const Palette& palette);
 
 }  // namespace evbench

@@ -73,7 +73,7 @@ PolarityCounts uncompensated(const std::vector<Event>& events, const Camera& cam
 
 }  // namespace
 
-TEST_CASE("Compensation of a rotation puts a point's events together where the camera sees it at the reference time") {
+TEST_CASE("Compensation of a rotation moves a point's events to its pixel at the reference time") {
   const Camera camera = lens_camera();
   const PoseTrajectory trajectory = moving(Vector3::Zero());
   const std::vector<Vector3> points = points_on_plane(trajectory, 1.0);
@@ -87,7 +87,7 @@ TEST_CASE("Compensation of a rotation puts a point's events together where the c
   CHECK(cv::sum(counts.on(around))[0] + cv::sum(counts.off(around))[0] == Approx(kSteps + 1).margin(2));
 }
 
-TEST_CASE("Compensation of a translation needs the depth, and with the right one is sharpest") {
+TEST_CASE("Compensation of a translation is sharpest at the right depth") {
   const Camera camera = lens_camera();
   const PoseTrajectory trajectory = moving({2.0, -1.0, 0.5});
   const std::vector<Event> events = see(points_on_plane(trajectory, 2.0), trajectory, camera);
@@ -117,7 +117,7 @@ TEST_CASE("A trajectory that does not reach an event is refused with both times"
                                                                 Catch::Matchers::ContainsSubstring("0.100001 s"));
 }
 
-TEST_CASE("Counts are drawn the stronger the more, in the mixed colour of their polarities") {
+TEST_CASE("Higher counts are drawn stronger, in the mixed colour of their polarities") {
   const Palette palette = light_palette();
   PolarityCounts counts{cv::Mat1f(1, 4, 0.0F), cv::Mat1f(1, 4, 0.0F)};
   counts.on(0, 1) = counts.off(0, 2) = 4.0F;

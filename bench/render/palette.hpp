@@ -5,9 +5,9 @@
 namespace evbench {
 
 using Colour = cv::Vec3b;   ///< blue, green, red: OpenCV's order
-using Picture = cv::Mat3b;  ///< of such
+using Picture = cv::Mat3b;  ///< an image of these
 
-/// What pictures are drawn with.
+/// The colours of pictures.
 struct Palette {
   Colour background, on, off, frame;
 };

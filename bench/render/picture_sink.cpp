@@ -45,7 +45,7 @@ class FolderSink : public PictureSink {
   std::int64_t count_ = 0;
 };
 
-/// Only what has been rendered may be replaced: 000000.png and so on.
+/// Only rendered pictures may be replaced: 000000.png and so on.
 void check_replaceable(const std::string& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();

@@ -7,11 +7,11 @@
 
 namespace evbench {
 
-/// Where pictures go. Nothing is there before finish(), and an older file stays until then.
+/// Output of pictures. The result appears at finish(), and an older file stays until then.
 class PictureSink {
  public:
   virtual ~PictureSink() = default;
-  virtual bool takes_many() const = 0;  ///< or one picture only
+  virtual bool takes_many() const = 0;  ///< false: one picture only
   /// All pictures have the same size.
   virtual void add(const Picture& picture) = 0;
   /// Once, at the end.

@@ -18,7 +18,7 @@
 namespace evbench {
 namespace {
 
-constexpr double kMaxStill = 1e5;  // pictures without an event: more are a clock's fault
+constexpr double kMaxStill = 1e5;  // pictures without an event; more come from an error of the clock
 
 std::int64_t microseconds(double seconds) { return std::max<std::int64_t>(1, std::llround(seconds * 1e6)); }
 
@@ -37,7 +37,7 @@ WindowExtent make_extent(const RenderOptions& options, bool one_picture, std::in
   return extent;
 }
 
-/// The end of the first picture's time. Reads the stream anew, as a count tells it only by reading.
+/// The end of the first picture's time. Opens the stream separately, as for a count the time is known only by reading.
 std::int64_t first_end(const std::string& path, const StreamOptions& options, const WindowExtent& extent) {
   EventStream stream(path, options);
   std::vector<Event> events;
@@ -75,7 +75,7 @@ Picture enlarge(const Picture& picture, int scale) {
   return large;
 }
 
-/// With a bar between, aligned at the top.
+/// Puts two pictures side by side with a bar between, aligned at the top.
 Picture side_by_side(const Picture& left, const Picture& right, const Palette& palette) {
   constexpr int kBar = 4;
   const int height = std::max(left.rows, right.rows);
@@ -86,7 +86,7 @@ Picture side_by_side(const Picture& left, const Picture& right, const Palette& p
   return both;
 }
 
-/// Draws the pictures, one time after the other.
+/// Draws the pictures in time order.
 class Renderer {
  public:
   Renderer(const std::string& in, const RenderOptions& options, const WindowExtent& extent)
@@ -156,11 +156,12 @@ class Renderer {
   std::optional<RunOverlay> run_;
   std::optional<TrackOverlay> tracks_;
   std::optional<EventView> beside_;
-  bool drawn_ = false, drawn_beside_ = false;  ///< any event?
+  bool drawn_ = false, drawn_beside_ = false;  ///< whether any event was drawn
   bool drawn_tracks_ = false;
 };
 
-/// What is compensated without --from or --to: the time that the trajectory covers. Says so where that is not all.
+/// Restricts compensation without --from or --to to the time that the trajectory covers, with a remark where that is
+/// not the whole recording.
 RenderOptions within_motion(const std::string& in, const RenderOptions& asked, RenderReport& report) {
   if (asked.mode != RenderMode::compensated) return asked;
   RenderOptions options = asked;

@@ -52,7 +52,7 @@ std::vector<cv::Mat> read_video(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("A picture tells its time where that is asked for") {
+TEST_CASE("A picture shows its time where that is requested") {
   const TemporaryFolder folder;
   const std::string in = write_native(folder, "a.evb", hundred_events());
   const auto draw = [&](const std::string& name, bool time, std::int64_t from) {
@@ -93,7 +93,7 @@ TEST_CASE("A picture shows the events of its duration or count, at any scale") {
   options.stream.from = 1010000;
   options.stream.to = 1050000;
   render(in, out, options);
-  CHECK(drawn_pixels(out) == 40);  // what the range encloses
+  CHECK(drawn_pixels(out) == 40);  // the whole range
   options.scale = 3;
   render(in, out, options);
   CHECK(drawn_pixels(out) == 40 * 9);
@@ -127,7 +127,7 @@ TEST_CASE("Pictures follow at fractions of a microsecond without drifting, and n
   CHECK_THROWS_WITH(render(in, folder.file("out/"), options), ContainsSubstring("0.333 us; expected 1 us or more"));
 }
 
-TEST_CASE("Nothing is drawn where there are no events, in the recording or in that beside") {
+TEST_CASE("Nothing is drawn where the recording or the second one has no events") {
   const TemporaryFolder folder;
   const std::vector<Event> two{{1000000, 1, 1, true}, {2000000, 1, 1, true}}, one{{9000000, 1, 1, true}};
   const std::string in = write_native(folder, "a.evb", two), late = write_native(folder, "late.evb", one);
@@ -145,7 +145,7 @@ TEST_CASE("Nothing is drawn where there are no events, in the recording or in th
   CHECK_NOTHROW(render(in, out, options));
 }
 
-TEST_CASE("A time surface of a short recording is as fresh as its last event") {
+TEST_CASE("A time surface of a short recording is that of its last event") {
   const TemporaryFolder folder;
   const std::string in = write_native(folder, "a.evb", hundred_events()), out = folder.file("a.png");
   RenderOptions options;
@@ -156,7 +156,7 @@ TEST_CASE("A time surface of a short recording is as fresh as its last event") {
   CHECK(cv::norm(picture(4, 19) - light_palette().off) < 10.0);  // the last event
 }
 
-TEST_CASE("What only compensation can use is refused elsewhere") {
+TEST_CASE("Options of compensation are refused elsewhere") {
   const TemporaryFolder folder;
   const std::string in = write_native(folder, "a.evb", hundred_events());
   RenderOptions options;
@@ -181,8 +181,7 @@ TEST_CASE("A folder gets a picture each speed / fps seconds, until the last even
   CHECK(names(folder.file("pictures")).size() == 6);
 }
 
-TEST_CASE(
-    "Unless it is said, a picture of a film shows at least what happened since the last one, at most ten times that") {
+TEST_CASE("By default a picture of a video shows at least the time since the last one, at most ten times that") {
   const TemporaryFolder folder;
   const std::string in = write_native(folder, "a.evb", hundred_events());
   const auto drawn = [&](double speed) {
@@ -245,7 +244,7 @@ TEST_CASE("A video of odd size is made even at its borders") {
   CHECK(video[0].size() == cv::Size(56, 34));
 }
 
-TEST_CASE("What is interrupted leaves nothing, and an older file") {
+TEST_CASE("An interrupted rendering leaves nothing, and keeps an older file") {
   const TemporaryFolder folder;
   for (const char* name : {"a.png", "a.mp4", "pictures/"}) {
     open_picture_sink(folder.file(name), 30.0)->add(Picture(16, 16, Colour(0, 0, 0)));
@@ -256,7 +255,7 @@ TEST_CASE("What is interrupted leaves nothing, and an older file") {
   CHECK(read_file(folder.file("a.mp4")) == "older");
 }
 
-TEST_CASE("Two recordings stand side by side, at the same times") {
+TEST_CASE("Two recordings are drawn side by side, at the same times") {
   const TemporaryFolder folder;
   const std::string in = write_native(folder, "a.evb", hundred_events()), out = folder.file("a.png");
   RecordingHeader header;
@@ -285,7 +284,7 @@ TEST_CASE("Tracks are drawn over the recording that they belong to") {
   CHECK(picture(34, 42) == track_colour(4, light_palette()));
 }
 
-TEST_CASE("Tracks of which none is in view at the times that are drawn are told") {
+TEST_CASE("Tracks that are never in view at the drawn times are reported") {
   const TemporaryFolder folder;
   const std::string in = write_native(folder, "a.evb", hundred_events());
   RenderOptions options;
@@ -357,7 +356,7 @@ TEST_CASE("A recording with ground truth and calibration is compensated by them"
   CHECK_THROWS_WITH(render(bare, out, options), ContainsSubstring("late.txt") && ContainsSubstring("--from"));
 }
 
-TEST_CASE("A film is compensated up to the last event, where a trajectory may end, and over times without events") {
+TEST_CASE("A video is compensated up to the last event, where a trajectory may end, and over times without events") {
   const TemporaryFolder folder;
   std::vector<Event> events = hundred_events();
   std::erase_if(events, [](const Event& event) { return event.t > 1030000 && event.t < 1090000; });
@@ -370,7 +369,7 @@ TEST_CASE("A film is compensated up to the last event, where a trajectory may en
   CHECK(render(write_native(folder, "a.evb", events), folder.file("a/"), options).pictures == 10);
 }
 
-TEST_CASE("What can't be drawn or written is refused with a sentence, and nothing is written") {
+TEST_CASE("Invalid input or output is refused with a sentence, and nothing is written") {
   const TemporaryFolder folder;
   const std::string in = write_native(folder, "a.evb", hundred_events());
   const auto refused = [&](const std::string& out, const RenderOptions& options, const std::string& message) {
@@ -389,7 +388,7 @@ TEST_CASE("What can't be drawn or written is refused with a sentence, and nothin
   CHECK(names(folder.path()) == std::set<std::string>{"a.evb"});
 }
 
-TEST_CASE("A clock that jumps by days is refused, not filmed") {
+TEST_CASE("A clock that jumps by days is refused, not drawn") {
   const TemporaryFolder folder;
   const std::vector<Event> events{{0, 1, 1, true}, {1'000'000'000'000, 2, 2, true}};
   CHECK_THROWS_WITH(render(write_native(folder, "a.evb", events), folder.file("a.mp4"), {}),
@@ -397,7 +396,7 @@ TEST_CASE("A clock that jumps by days is refused, not filmed") {
   CHECK(names(folder.path()) == std::set<std::string>{"a.evb"});
 }
 
-TEST_CASE("Times that end before a trajectory begins are refused, and a range that is none holds no events") {
+TEST_CASE("Times that end before a trajectory begins are refused, and an empty range has no events") {
   const TemporaryFolder folder;
   const std::string in = write_native(folder, "a.evb", hundred_events());
   RenderOptions options;

@@ -20,7 +20,7 @@ namespace evbench {
 namespace {
 
 constexpr double kAlive = 0.25;      ///< [s] without an observation after which a track counts as lost
-constexpr double kFoundAgain = 0.7;  ///< [s] for which it is shown that it was found
+constexpr double kFoundAgain = 0.7;  ///< [s] for which a re-acquired landmark is marked
 
 std::string file_of(const std::string& folder, const char* name, const char* hint) {
   const std::string path = folder + "/" + name;
@@ -39,7 +39,7 @@ std::vector<StampedPose> aligned(const PoseTrajectory& estimate, const PoseTraje
   return result;
 }
 
-/// The two axes in which the positions are widest, and what they reach there.
+/// The two axes with the largest extent of the positions, and the extents.
 struct Frame {
   std::array<int, 2> axes{};
   std::array<double, 2> from{}, to{};
@@ -82,7 +82,7 @@ RunOverlay::RunOverlay(const std::string& folder, const Camera& camera)
   try {
     aligned_ = aligned(estimate_, truth);
     truth_ = truth.cut(estimate_.start(), estimate_.end()).poses();
-  } catch (const InputError& error) {  // few poses, or none at the truth's times
+  } catch (const InputError& error) {  // few poses, or none at the ground truth's times
     remark_ = fmt::format("{}: the ground truth is left out: {}", folder, error.what());
   }
 }

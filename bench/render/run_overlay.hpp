@@ -12,8 +12,8 @@
 
 namespace evbench {
 
-/// A run as one sees it beside its events: where its final estimate says that its landmarks are in the image, which of
-/// them are tracked, and where the camera has been. A run that failed has tracks alone.
+/// Draws a run over and next to its events: the landmarks of its final estimate in the image, which of them are
+/// tracked, and the camera's trajectory. A run that failed has only tracks.
 class RunOverlay {
  public:
   /// Throws InputError for a folder that is not a run's, or was made without --tracks.
@@ -22,15 +22,15 @@ class RunOverlay {
   /// In time order.
   const std::vector<TrackObservation>& tracks() const { return tracks_; }
 
-  /// What can't be drawn as it should be, and why; empty where all can.
+  /// What can't be drawn correctly, and why; empty where everything can.
   const std::string& remark() const { return remark_; }
 
   /// Landmarks over a picture of the sensor at t [s], each pixel of it `scale` pixels wide: a ring where it is tracked,
-  /// a bold one for a while when it has been found again, a cross where it was seen before and is not now.
+  /// a bold ring for a while after it is re-acquired, a cross where it was seen before and is not now.
   void draw_landmarks(double t, int scale, const Palette& palette, Picture& picture) const;
 
-  /// A square picture of so many pixels: ground truth and the estimate up to t, as far as there are such, aligned by
-  /// Sim(3), in the two directions in which they are widest.
+  /// A square picture of this size [px]: ground truth and the estimate up to t, where available, aligned by Sim(3), in
+  /// the two directions of their largest extent.
   Picture draw_trajectory(double t, int size, const Palette& palette) const;
 
  private:
@@ -41,7 +41,7 @@ class RunOverlay {
   std::vector<TrackObservation> tracks_;
   std::map<TrackId, std::vector<double>> times_;  ///< [s] of each track's observations
   std::vector<Landmark> map_;
-  PoseTrajectory estimate_;  ///< as the back-end has it
+  PoseTrajectory estimate_;  ///< in the back-end's frame
   std::vector<StampedPose> aligned_, truth_;
   std::string remark_;
 };

@@ -63,7 +63,7 @@ std::array<int, 3> drawn_at(const RunOverlay& overlay, double t) {
 
 }  // namespace
 
-TEST_CASE("Landmarks are drawn as they are tracked, lost, and found again, and not before they were seen") {
+TEST_CASE("Landmarks are drawn as tracked, lost and re-acquired, and not before they were seen") {
   const TemporaryFolder folder;
   write_run(folder);
   const RunOverlay overlay(folder.path(), camera());
@@ -88,7 +88,7 @@ TEST_CASE("The trajectory grows with time, over all of the truth") {
   CHECK(drawn(overlay.draw_trajectory(4.0, 200, light_palette())) > half);
 }
 
-TEST_CASE("Of a run without a trajectory the tracks are drawn, and the truth") {
+TEST_CASE("For a run without a trajectory the tracks and the ground truth are drawn") {
   const TemporaryFolder folder;
   write_run(folder);
   write_file(folder.file("final.tum"), "");
@@ -113,7 +113,7 @@ TEST_CASE("A trajectory that can't be aligned with the truth is drawn alone, wit
   CHECK(RunOverlay(folder.path(), camera()).remark().empty());
 }
 
-TEST_CASE("A folder without tracks is refused with what makes them") {
+TEST_CASE("A folder without tracks is refused with the command that makes them") {
   const TemporaryFolder folder;
   write_run(folder);
   std::filesystem::remove(folder.file("tracks.txt"));

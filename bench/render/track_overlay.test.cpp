@@ -33,7 +33,7 @@ TEST_CASE("A track is drawn as a dot in its colour at its newest position, with 
   CHECK(at(drawn(1.14), 25, 10) != at(drawn(1.08), 25, 10));  // older, fainter
 }
 
-TEST_CASE("A track that has ended for longer than a tail is drawn no more") {
+TEST_CASE("A track that ended longer ago than a tail is not drawn") {
   const Picture picture = drawn(1.19);
   CHECK(cv::countNonZero(picture.reshape(1) != 255) == 0);
 }

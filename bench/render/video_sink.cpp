@@ -15,7 +15,7 @@ namespace evbench {
 namespace fs = std::filesystem;
 namespace {
 
-/// Another name of a file for a moment, with an extension: FFmpeg chooses the container by it.
+/// A temporary second name of a file, with the extension by which FFmpeg chooses the container.
 class NameWithExtension {
  public:
   NameWithExtension(const std::string& target, const std::string& extension) : extension_(extension) {
@@ -53,7 +53,7 @@ class VideoSink : public PictureSink {
 
   void finish() override {
     writer_.release();
-    // The writer says nothing of errors: a file that can be read with all its pictures had none.
+    // The writer reports no errors: the file is read back to check that it has all its pictures.
     cv::VideoCapture written(file_.writable_path(), cv::CAP_FFMPEG);
     const bool complete = written.isOpened() && std::lround(written.get(cv::CAP_PROP_FRAME_COUNT)) == count_;
     written.release();

@@ -14,7 +14,7 @@
 namespace evbench {
 namespace {
 
-/// More values than anybody has time for: a step that is too small by mistake.
+/// A larger number of values is a step that is too small by mistake.
 constexpr int kMostValues = 100'000;
 
 struct RangeOptions {
@@ -37,7 +37,7 @@ struct AxisOptions {
   Json values, range, overlays, zip;
 
   void declare(OptionSet& set) {
-    set.add("name", name, "what it is called; by default its key");
+    set.add("name", name, "its name; by default its key");
     set.add("key", key, "path of what is varied in the config");
     set.add("values", values, "list of values");
     set.add("range", range, "values between two");
@@ -46,7 +46,7 @@ struct AxisOptions {
   }
 };
 
-/// As a command line says it: text as it is, all else as JSON.
+/// As on a command line: text as it is, other values as JSON.
 std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : dump_json(value); }
 
 AxisValue value_of(const std::string& key, const std::string& text) { return {text, {key + "=" + text}}; }
@@ -56,7 +56,7 @@ std::string rounded(double value, int digits) {
   const std::string text = fmt::format("{:.{}g}", value, digits);
   std::from_chars(text.data(), text.data() + text.size(), result);
   return fmt::format("{}",
-                     result == 0.0 ? 0.0 : result);  // the shortest text, without exponent where there need be none
+                     result == 0.0 ? 0.0 : result);  // the shortest text, without exponent where possible
 }
 
 std::vector<std::string> values_of(const RangeOptions& range, const std::string& place) {
@@ -122,7 +122,7 @@ ZippedAxes read_zip(const Json& zip, const std::string& place) {
   return axes;
 }
 
-/// The parts between commas that are outside of brackets and quotes.
+/// Splits at commas that are outside of brackets and quotes.
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts(1);
   int depth = 0;

@@ -7,7 +7,7 @@
 
 namespace evbench {
 
-/// One of an axis' values: what it is called, and the overrides "KEY=VALUE" that it makes in a config.
+/// A value of an axis: its name, and the overrides "KEY=VALUE" that it makes in a config.
 struct AxisValue {
   std::string text;
   std::vector<std::string> overrides;
@@ -16,13 +16,13 @@ struct AxisValue {
   std::vector<std::string> keys() const;
 };
 
-/// What is varied, and the values that it takes: at least one, no two of one text.
+/// A setting that is varied, and its values: at least one, no two with the same text.
 struct Axis {
   std::string name;
   std::vector<AxisValue> values;
 };
 
-/// Axes that advance together, each with as many values as the others.
+/// Axes that advance together, each with the same number of values.
 using ZippedAxes = std::vector<Axis>;
 
 /// One item of the list "axes" of a sweep's file:
@@ -34,13 +34,13 @@ using ZippedAxes = std::vector<Axis>;
 ///   {"zip": [AXIS, ...]}
 ///
 /// KEY is a path in the config, as for --set. A "name" takes the place of the key in tables. Values of a range are
-/// rounded to D significant digits (6), whatever lies between whole numbers or is one. `place` begins messages. Throws
+/// rounded to D significant digits (6), whole numbers or not. `place` begins messages. Throws
 /// InputError for an unknown key, an axis without values or with a value twice, and zipped axes of different lengths.
 ZippedAxes read_axis(const Json& axis, const std::string& place);
 
-/// An axis as a command line says it: KEY=VALUES, with values between commas that are outside of brackets and quotes.
-/// A..B stands for whole numbers in steps of one, A..B:N for N values at equal distances, A..B:Nlog for N values at
-/// equal ratios. Throws InputError likewise.
+/// An axis from a command line: KEY=VALUES, with values between commas that are outside of brackets and quotes. A..B
+/// means whole numbers in steps of one, A..B:N means N values at equal distances, A..B:Nlog means N values at equal
+/// ratios. Throws InputError likewise.
 Axis parse_axis(const std::string& text);
 
 }  // namespace evbench

@@ -1,8 +1,8 @@
 #include "bench/sweep/axis.hpp"
 
 #include "core/support/error.hpp"
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using Catch::Matchers::ContainsSubstring;
@@ -33,7 +33,7 @@ TEST_CASE("An axis is a list, or a range with equal distances or ratios, of roun
         Texts{"10", "32", "100", "320", "1000"});
 }
 
-TEST_CASE("An axis is said on a command line in the same ways") {
+TEST_CASE("An axis on a command line has the same forms") {
   CHECK(texts(parse_axis("a=1..3,7")) == Texts{"1", "2", "3", "7"});
   CHECK(texts(parse_axis("a=0..1:3")) == Texts{"0", "0.5", "1"});
   CHECK(texts(parse_axis("a=1..100:3log,x")) == Texts{"1", "10", "100", "x"});
@@ -61,7 +61,7 @@ TEST_CASE("Overlays set several keys under one name, and zipped axes keep their 
   CHECK(texts(zipped[1]) == Texts{"3", "4"});
 }
 
-TEST_CASE("An axis that can't be is refused with its place and what was expected") {
+TEST_CASE("An invalid axis is refused with its place and what was expected") {
   const auto refused = [](const std::string& json, const std::string& message) {
     INFO(json);
     CHECK_THROWS_WITH(read_axis(parse_json(json), "s.json: axes.0"),

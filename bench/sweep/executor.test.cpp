@@ -23,7 +23,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-/// A back-end that does what no back-end should, once observations come.
+/// A back-end that misbehaves once observations come.
 class Troublemaker : public BackEnd {
  public:
   struct Options {
@@ -69,7 +69,7 @@ class Troublemaker : public BackEnd {
 
 const Registration<BackEnd, Troublemaker> registration("troublemaker", "does what no back-end should");
 
-/// A source that can't be made without harm.
+/// A source that crashes or hangs when it is made.
 class TroubledSource : public Source {
  public:
   struct Options {
@@ -111,7 +111,7 @@ std::map<std::string, std::string> reasons(const SweepProgress& progress) {
 
 }  // namespace
 
-TEST_CASE("A source that crashes or hangs when it is made leaves the sweep a sentence to say", "[slow]") {
+TEST_CASE("A source that crashes or hangs when it is made is reported by the sweep with a sentence", "[slow]") {
   const TemporaryFolder folder;
   Json config = tiny_config();
   config["source"] = {{"type", "troubled"}};
@@ -126,16 +126,16 @@ TEST_CASE("A source that crashes or hangs when it is made leaves the sweep a sen
                     ContainsSubstring("timeout after 0.3 s"));
 }
 
-TEST_CASE("A plugin that crashes, hangs or eats memory takes its own run down, which says so in the table", "[slow]") {
+TEST_CASE("A plugin that crashes, hangs or eats memory ends only its own run, with the reason in the table", "[slow]") {
   const TemporaryFolder folder;
   Json config = tiny_config();
   config.erase("backend");
-  config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "fine"}, {"frame_duration", 0.1}}};
+  config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "fine"}, {"batch_duration", 0.1}}};
   for (const char* const what : {"crash", "hang", "eat", "exit", "throw", "die"}) {
     config["backends"].push_back({{"type", "troublemaker"}, {"label", what}, {"what", what}});
   }
   const std::vector<PlannedRun> runs = runs_of(folder, config);
-  // Apart from the others, which may take any time: a slow machine is no reason to fail.
+  // Separate from the others, which have no time limit, so that a slow machine does not fail the test.
   const std::vector<PlannedRun> hangs = {runs[2]};
   CHECK(run(hangs, {folder.file("out"), 1, {0.3, 0.0}, false}).failed == 1);
   ExecutorOptions options{folder.file("out"), 2, {0.0, 1500.0}, false};
@@ -164,7 +164,7 @@ TEST_CASE("A plugin that crashes, hangs or eats memory takes its own run down, w
   }
   for (const std::string& name : names_in(folder.file("out/tiny"))) CHECK_THAT(name, !ContainsSubstring(".evbench."));
 
-  // Not tried again, unless that is asked for.
+  // Not retried, unless requested.
   const auto before = results_of(folder.file("out/tiny"));
   const SweepProgress again = run(runs, options);
   CHECK(again.before == 7);
@@ -176,16 +176,16 @@ TEST_CASE("A plugin that crashes, hangs or eats memory takes its own run down, w
   CHECK(run(exits, options).before == 0);
 }
 
-TEST_CASE("A run that is killed from outside is tried once more") {
+TEST_CASE("A run that is killed from outside is retried once") {
   const TemporaryFolder folder;
   Json config = tiny_config();
   config["backend"] = {{"type", "troublemaker"}, {"what", "die once"}, {"file", folder.file("here")}};
   const SweepProgress progress = run(runs_of(folder, config), {folder.file("out"), 1, {}, false});
   REQUIRE(progress.troubled.size() == 1);
-  CHECK(progress.troubled[0].reason == "no estimate is made");  // it came to its end
+  CHECK(progress.troubled[0].reason == "no estimate is made");  // it was done to the end
 }
 
-TEST_CASE("Runs that another process does are waited for, and taken over when it ends without a result", "[slow]") {
+TEST_CASE("The sweep waits for runs of another process, and takes them over when it ends without a result", "[slow]") {
   const TemporaryFolder folder;
   const std::vector<PlannedRun> runs = runs_of(folder, tiny_config());
   const ExecutorOptions options{folder.file("out"), 1, {}, false};

@@ -48,7 +48,7 @@ int kills() {
 
 }  // namespace
 
-TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the same bytes once it is done again",
+TEST_CASE("A sweep that is killed at any moment, or whose runs are, has the same bytes once it is repeated",
           "[random]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
@@ -71,7 +71,7 @@ TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the 
       of_sweeps += WIFSIGNALED(wait_for(sweep));
     }
     if (random() % 3 != 0) continue;  // the next one goes on here
-    // A run that was killed twice is told as failed: it is asked for again.
+    // A run that was killed twice is reported as failed: its retry is requested.
     REQUIRE(testing::evbench(folder, kKilledSweep + out + " --retry-failed").exit_code == 0);
     CHECK(difference(expected, results_of(folder.file(out + "/tiny"))) == "");
     ++sweeps;
@@ -82,8 +82,7 @@ TEST_CASE("A sweep that is killed at any moment, or its runs are, ends with the 
   CHECK(of_sweeps > 0);
 }
 
-TEST_CASE("A run that is complete while its writer is still ending is taken when that is gone, and no lock stays",
-          "[slow]") {
+TEST_CASE("A complete run is taken once its writer has ended, and no lock stays", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   REQUIRE(testing::evbench(folder, kKilledSweep + "out").exit_code == 0);
@@ -95,7 +94,7 @@ TEST_CASE("A run that is complete while its writer is still ending is taken when
   CHECK(difference(expected, results_of(folder.file("out/tiny"))) == "");
 }
 
-TEST_CASE("A sweep onto a full disk says so and loses nothing: with more room it ends with the same bytes", "[slow]") {
+TEST_CASE("A sweep on a full disk reports it and loses nothing, and has the same bytes once there is room", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   const std::string disk = folder.file("disk");

@@ -26,14 +26,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// How often runs that another process does are looked after.
+/// How often runs of other processes are checked.
 constexpr std::chrono::milliseconds kLookElsewhere(500);
 
-/// What a process of the pool tells. Text after "not written: " and "refused: ".
+/// Reports of a process of the pool. More text follows "not written: " and "refused: ".
 const std::string kWritten = "written",
                   kNotWritten = "not written: ", kRefused = "refused: ", kNotShared = "not shared";
 
-/// Where what runs share is made already: its front-end's tracks, its source's events; empty: it is not.
+/// Files with shared inputs that are made already: its front-end's tracks, its source's events; empty: none.
 struct SharedFiles {
   std::string tracks, events;
 };
@@ -43,7 +43,7 @@ std::unique_ptr<Source> make_source(const Job& job, const Plugins& plugins, cons
   return shared.events.empty() ? std::move(source) : with_recorded_events(std::move(source), shared.events);
 }
 
-/// Seeds say little of how long a run takes.
+/// Seeds hardly affect how long a run takes.
 RunDurations::Traits traits_of(const PlannedRun& run) {
   RunDurations::Traits traits{run.config.label, {}};
   for (const auto& [axis, value] : run.axes) {
@@ -52,7 +52,7 @@ RunDurations::Traits traits_of(const PlannedRun& run) {
   return traits;
 }
 
-/// In a process of its own: does the run and writes its folder.
+/// Does the run and writes its folder, in a process of its own.
 std::string do_run(const PlannedRun& run, const Plugins& plugins, const SharedFiles& shared, const RunOutputs& outputs,
                    RunFolder& folder) {
   try {
@@ -70,10 +70,10 @@ std::string do_run(const PlannedRun& run, const Plugins& plugins, const SharedFi
   }
 }
 
-/// The one file in the folder of what runs share.
+/// The one file in the folder of a shared input.
 constexpr const char *kBatches = "batches.bin", *kEvents = "events.evb";
 
-/// Each in a process of its own: makes what runs share.
+/// Makes a shared input, each in a process of its own.
 bool make_tracks(const Job& job, const Plugins& plugins, const SharedFiles& shared, const AtomicFolder& folder) {
   const std::optional<std::string> batches = record_front_end(job, *make_source(job, plugins, shared), plugins);
   if (batches) folder.write(kBatches, *batches);
@@ -90,7 +90,7 @@ std::string make_shared_files(decltype(make_tracks)* make, const Job& job, const
     folder.commit();
     return kWritten;
   } catch (const OutputError&) {
-    return kNotShared;  // a full disk: runs may still have room for their results, and say so where they have none
+    return kNotShared;  // a full disk: runs may still have room for their results, or else report it
   }
 }
 
@@ -137,19 +137,19 @@ class Executor {
  private:
   struct Job {
     const PlannedRun* run;
-    bool retry;                                     ///< what broke off is done again
+    bool retry;                                     ///< an interrupted run is done again
     bool killed;                                    ///< from outside, once
     std::unique_ptr<RunFolder> folder;              ///< its claim on the run
     std::optional<Clock::time_point> started = {};  ///< while its process runs
   };
 
-  /// What a front-end or a source gives, and several runs need.
+  /// A shared input: the output of a front-end or a source that several runs need.
   struct Shared {
     std::string path;  ///< its folder
     const char* file;  ///< in it
     decltype(make_tracks)* make;
     std::size_t id = 0;                              ///< of the process that makes it
-    bool settled = false;                            ///< it is there, or every run makes it for itself
+    bool settled = false;                            ///< it is made, or every run makes it for itself
     std::unique_ptr<AtomicFolder> folder = nullptr;  ///< the claim on it, while it is made
     std::vector<std::size_t> waiting = {};           ///< jobs
   };
@@ -181,7 +181,7 @@ class Executor {
     keep_together();
   }
 
-  /// Jobs of the same events follow one another: these can go soon.
+  /// Sorts jobs by their events, so that the events can be removed soon.
   void keep_together() {
     std::map<std::string, std::size_t> firsts;
     for (const std::size_t i : waiting_) firsts.emplace(jobs_[i].run->events, i);
@@ -192,8 +192,8 @@ class Executor {
     std::ranges::stable_sort(waiting_, {}, place);
   }
 
-  /// Takes what lies there already, if that is to be taken. Not while somebody writes to it, be it a killed sweep's run
-  /// in its last moment: what it leaves behind is seen later.
+  /// Takes an existing result, if it may be taken. Not while a process writes to it, such as a killed sweep's run in
+  /// its last moment: that result is checked later.
   bool take_result(Job& job) {
     if (AtomicFolder::is_taken(folder_of(job))) return false;
     AtomicFolder::clear_leftovers(folder_of(job));
@@ -214,7 +214,7 @@ class Executor {
            condition_of(folder_of(job), job.run->identity.key, ignored) == RunCondition::complete;
   }
 
-  /// Another process may be adopting it, too: it is then looked at again later.
+  /// Another process may be adopting it as well: it is then checked again later.
   bool adopt(Job& job, const std::string& from) {
     try {
       count(job, adopt_run(from, folder_of(job), job.run->config));
@@ -237,7 +237,7 @@ class Executor {
   void start(std::size_t i) {
     Job& job = jobs_[i];
     const PlannedRun& run = *job.run;
-    // Shared tracks are as the back-end gets them, not as they were told.
+    // Shared tracks are as the back-end gets them, not as they were published.
     Shared* const tracks = shared(options_.outputs.tracks ? "" : run.tracks, "tracks", kBatches, make_tracks);
     Shared* const events = shared(run.events, "events", kEvents, make_events);
     if (file_of(tracks).empty() && !get(events, i, {})) return;
@@ -248,10 +248,10 @@ class Executor {
       job.folder = std::make_unique<RunFolder>(options_.out, run.config.experiment, run.identity.key);
     } catch (const FolderTaken&) {
       elsewhere_.push_back(i);
-      job.retry = false;  // what that process makes of it is its result
+      job.retry = false;  // that process' result counts
       return;
     }
-    if (is_complete(job)) {  // since it was looked at
+    if (is_complete(job)) {  // since the last check
       job.folder.reset();
       if (!take_result(job)) waiting_.push_back(i);
       return;
@@ -261,7 +261,7 @@ class Executor {
     job.started = Clock::now();
   }
 
-  /// What runs share of this name; nullptr where there is no name.
+  /// The shared input of this name; nullptr where there is no name.
   Shared* shared(const std::string& name, const char* kind, const char* file, decltype(make_tracks)* make) {
     if (name.empty()) return nullptr;
     const std::string path = fmt::format("{}/.{}/{}", options_.out, kind, name);
@@ -279,8 +279,8 @@ class Executor {
     return !path.empty() && shared->settled && std::filesystem::exists(path) ? path : "";
   }
 
-  /// Has made what a job needs; false where it has to wait, and begins again when that is settled. `files`: what it is
-  /// made of.
+  /// Ensures that a shared input of a job is made. False where the job has to wait; it begins again when the input is
+  /// settled. `files`: the input files that it is made of.
   bool get(Shared* shared, std::size_t i, const SharedFiles& files) {
     if (shared == nullptr || shared->settled) return true;
     if (!shared->folder) {
@@ -300,7 +300,7 @@ class Executor {
     return false;
   }
 
-  /// What could not be made is made by each run, which then says what is wrong.
+  /// An input that could not be made is made by each run, which then reports the error.
   void settle(const Ending& ending) {
     for (auto& [path, shared] : shared_) {
       if (shared.id != ending.id) continue;
@@ -311,7 +311,7 @@ class Executor {
     }
   }
 
-  /// A job is done. Events that nobody needs any more go: they are large.
+  /// Ends a job. Removes events that no job needs any more, as they are large.
   void leave(const Job& job) {
     const std::string& events = job.run->events;
     if (--users_[events] > 0 || events.empty()) return;
@@ -381,8 +381,7 @@ class Executor {
     ++progress_.done;
   }
 
-  /// Again when a run has ended: it then takes as long as the runs that are done suggest. Those that another process
-  /// does count as if they had just begun.
+  /// Updates the expected time left when a run has ended. Runs of other processes count as if they had just begun.
   void estimate() {
     const auto now = Clock::now();
     if (progress_.done != estimated_at_) {
@@ -409,16 +408,16 @@ class Executor {
   std::deque<std::size_t> waiting_;
   std::vector<std::size_t> elsewhere_;
   std::map<std::string, Shared> shared_;      ///< by path
-  std::size_t shared_made_ = 0;               ///< numbers of processes that were given to what runs share
+  std::size_t shared_made_ = 0;               ///< process ids given to shared inputs
   std::map<std::string, std::size_t> users_;  ///< jobs that are not done, by the events that they need
   Clock::time_point looked_ = {};
   RunDurations durations_;
-  std::optional<std::size_t> estimated_at_;  ///< runs that were done then
-  Clock::time_point done_at_ = {};           ///< as expected then
+  std::optional<std::size_t> estimated_at_;  ///< runs that were done at the estimate
+  Clock::time_point done_at_ = {};           ///< expected end at the estimate
   RunIndex index_;
-  std::size_t indexed_ = 0;  ///< runs that were done when the index was told
+  std::size_t indexed_ = 0;  ///< runs that were done when the index was updated
   SweepProgress progress_;
-  ProcessPool pool_;  // the last one: its processes end before what they use
+  ProcessPool pool_;  // the last member: its processes end before the data that they use
 };
 
 }  // namespace

@@ -50,7 +50,7 @@ ManifestLine read_line(const std::string& text, const std::string& place, Plugin
   return line;
 }
 
-/// Other lines, which other processes do, may need the same events. Where none does, they are not kept.
+/// Lines that other processes do may need the same events. Events that no other line needs are not kept.
 void share_events(std::vector<ManifestLine>& lines, const std::vector<std::string>& texts) {
   if (std::ranges::all_of(lines, [](const ManifestLine& line) { return line.run.events.empty(); })) return;
   std::map<std::string, std::vector<std::string>> keys;  // by the name of the events

@@ -7,9 +7,9 @@
 
 namespace evbench {
 
-/// A sweep's runs as lines of JSON, for processes that do some of them each, on this machine or others that share the
+/// A sweep's runs as lines of JSON, for processes that each do some of them, on this machine or others that share the
 /// folder: {"key", "axes", "position", "config", "tracks", "events", "out", "timeout", "memory", "retry_failed"}, the
-/// config complete, as in a run's config.json, and paths that mean the same everywhere.
+/// config complete, as in a run's config.json, and paths that are valid on all machines.
 std::string format_manifest(const std::vector<PlannedRun>& runs, const ExecutorOptions& options);
 
 /// A line of a manifest, as do_runs() takes it.

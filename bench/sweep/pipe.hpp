@@ -13,7 +13,7 @@
 
 namespace evbench {
 
-/// A pipe of which the end that is read does not block.
+/// A pipe with a non-blocking read end.
 class Pipe {
  public:
   Pipe() {
@@ -34,11 +34,11 @@ class Pipe {
   void close_read() { close(ends_[0]); }
   void close_write() { close(ends_[1]); }
 
-  /// Takes what there is to be read; closes its end when there will be no more.
+  /// Reads the available data; closes the read end when there will be no more.
   template <class Take>
   void read(Take take) {
     std::array<char, 65536> bytes;
-    // Not until nothing is left: one that writes without end must not keep us here.
+    // Not until nothing is left, as a process may write without end.
     for (int i = 0; i < 16 && ends_[0] >= 0; ++i) {
       const ssize_t count = ::read(ends_[0], bytes.data(), bytes.size());
       if (count > 0) take(std::string_view(bytes.data(), static_cast<std::size_t>(count)));

@@ -18,7 +18,7 @@
 namespace evbench {
 namespace {
 
-/// One point of a grid: what it changes in the config, and its place on the axes.
+/// A point of a grid: its overrides of the config, and its values on the axes.
 struct Point {
   std::vector<std::string> overrides;
   RunAxes axes;
@@ -63,7 +63,7 @@ class Planner {
   }
 
  private:
-  /// An error says which sweep it is of.
+  /// Adds the sweep to an error.
   template <class Work>
   void with_place(const Work& work) const {
     try {
@@ -84,6 +84,7 @@ class Planner {
     with_place([&] {
       const Experiment experiment = config_.experiment(overrides, "the sweep's");
       plan_.name = experiment.name;
+      if (plan_.remarks.empty()) plan_.remarks = experiment.remarks;
       for (const RunConfig& config : experiment.runs) gathered_.emplace_back(config, point.axes);
     });
     for (const auto& [axis, value] : point.axes) note(axis, value);
@@ -99,8 +100,8 @@ class Planner {
     if (places_.insert(place).second) plan_.runs.push_back(std::move(run));  // grids may overlap
   }
 
-  /// Of a job that has several places in the sweep there is one run, which stands in tables at each of them, by the
-  /// label that it has there. It can have one protocol.
+  /// A job with several places in the sweep has one run, which is in tables at each place, under its label there. It
+  /// can have only one protocol.
   static void check_twin(const PlannedRun& a, const PlannedRun& b) {
     if (write_options(a.config.evaluation) == write_options(b.config.evaluation)) return;
     throw InputError(fmt::format(
@@ -113,9 +114,9 @@ class Planner {
     return fmt::format("{} {}", job.seed, dump_json(job.source.with_type()));
   }
 
-  /// Makes each source once, for the files that it reads; in a process of their own: one that crashes or hangs when it
-  /// is made must not take the sweep along without a word. Where that happens, each has its own, so that it is known
-  /// which one it was.
+  /// Makes each source once, to learn the files that it reads. This is done in a separate process, so that a source
+  /// that crashes or hangs does not end the sweep without a message. If that happens, each source gets its own process,
+  /// to find which one it was.
   void look_at_sources() {
     std::map<std::string, const Job*> jobs;
     std::vector<const Job*> all;
@@ -132,7 +133,7 @@ class Planner {
 
   /// Why the process ended before it was done; empty: it was done.
   std::string look_at(const std::vector<const Job*>& jobs) {
-    static const std::string kCantBeMade = "refused: ";  // what the process says of a source that can't be made, first
+    static const std::string kCantBeMade = "refused: ";  // begins the process' report of a source that can't be made
     const auto work = [&]() -> std::string {
       Json list = Json::array();
       try {
@@ -208,7 +209,7 @@ SweepPlan plan_sweep(const Sweep& sweep, const Plugins& plugins) { return Planne
 
 void share_what_is_made_of_events(std::vector<PlannedRun>& runs, const Plugins& plugins,
                                   const std::function<bool(const Job&)>& events_in_files) {
-  std::map<std::string, std::set<std::string>> jobs;  // that need the same events or tracks
+  std::map<std::string, std::set<std::string>> jobs;  // jobs that need the same events or tracks
   for (PlannedRun& run : runs) {
     const PluginConfig& frontend = run.config.job.frontend;
     if (!plugins.of<FrontEnd>().find(frontend.type, frontend.place + ".type").reads_events) continue;

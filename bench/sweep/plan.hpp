@@ -12,18 +12,18 @@
 
 namespace evbench {
 
-/// A run of a sweep, and what determines its result.
+/// A run of a sweep, and all that determines its result.
 struct PlannedRun {
   RunConfig config;
   JobIdentity identity;
   RunAxes axes;  ///< its value on each axis, in their order
-  /// Names what its front-end gives, where that is made from events and other runs of the sweep need the same: the
-  /// SHA-256 of the job without its back-end, ten digits of it. Empty: the run makes it for itself.
+  /// Name of its front-end's tracks, where these are made from events and other runs of the sweep need the same: ten
+  /// digits of the SHA-256 of the job without its back-end. Empty: the run makes them for itself.
   std::string tracks;
-  /// Likewise names its source and seed, where its front-end begins with events that no file holds, and other runs do,
-  /// too: ten digits of the SHA-256 of that part of the job.
+  /// Likewise the name of its source and seed, where its front-end takes events that are in no file and other runs need
+  /// the same: ten digits of the SHA-256 of that part of the job.
   std::string events;
-  /// Keys of runs that other processes do and that need the same events, which stay until all of them are done.
+  /// Keys of runs of other processes that need the same events: these stay until all of the runs are done.
   std::vector<std::string> events_for;
 };
 
@@ -35,20 +35,21 @@ struct SweepPlan {
   std::string name;                                                    ///< of the experiment
   std::vector<std::pair<std::string, std::vector<std::string>>> axes;  ///< and all of their values
   std::vector<PlannedRun> runs;
+  std::vector<std::string> remarks;  ///< on its config, for who wrote it
 
   /// The sweep as JSON, {"name", "axes": [{"name", "values"}], "runs": [{"key", "label", "axes": {AXIS: VALUE}}]}: what
   /// is written as sweep.json, so that tables know the axes, and that nothing is missing.
   Json to_json() const;
 };
 
-/// Makes every config of the sweep, checks it, and finds the keys; each source is made once, for the files that it
-/// reads, in another process, with the sweep's limits for each. A job may have several places in a sweep, under several
-/// labels. Throws InputError, with the sweep's place, for a value that can't be, and for two places of one job that
+/// Makes and checks every config of the sweep, and computes the keys. Each source is made once in another process, with
+/// the sweep's limits, to learn the files that it reads. A job may have several places in a sweep, under several
+/// labels. Throws InputError, with the sweep's place, for an invalid value, and for two places of one job that
 /// differ in protocol: it is one run.
 SweepPlan plan_sweep(const Sweep& sweep, const Plugins& plugins);
 
-/// Sets PlannedRun::tracks and PlannedRun::events of runs that need the same. `events_in_files`: does the job's source
-/// read its events from files?
+/// Sets PlannedRun::tracks and PlannedRun::events of runs that need the same. `events_in_files`: whether the job's
+/// source reads its events from files.
 void share_what_is_made_of_events(std::vector<PlannedRun>& runs, const Plugins& plugins,
                                   const std::function<bool(const Job&)>& events_in_files);
 

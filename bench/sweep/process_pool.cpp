@@ -31,15 +31,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// How often limits are looked after.
+/// How often limits are checked.
 constexpr std::chrono::milliseconds kWatch(50);
 
 std::string shown_memory(double mib) {
   return mib < 1024.0 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.1f} GiB", mib / 1024.0);
 }
 
-/// What a process does first: it is to end with its parent, be the one that goes when memory is short, leave
-/// signals to their defaults, and write into the pipe.
+/// Sets up a new process: it ends with its parent, is the first to be killed when memory is short, has default signal
+/// handlers, and writes into the pipe.
 void settle(pid_t parent, const Pipe& output) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -87,7 +87,7 @@ class ProcessPool::Process {
     }
   }
 
-  /// Takes what it says, holds it to its limits, and tells how it ended, once it has.
+  /// Reads its output, enforces its limits, and returns how it ended, once it has.
   std::optional<Ending> look() {
     listen();
     int status = 0;
@@ -108,7 +108,7 @@ class ProcessPool::Process {
       fmt::print(stderr, "{}\n", error.what());
       std::fflush(nullptr);
     }
-    ::_exit(code);  // what the program has to do at its end is the parent's
+    ::_exit(code);  // the program's exit handlers are the parent's
   }
 
   void listen() {
@@ -166,7 +166,7 @@ class ProcessPool::Process {
 };
 
 ProcessPool::ProcessPool() {
-  ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a process leaves behind becomes this one's child
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // orphaned descendants become children of this process
 }
 
 ProcessPool::~ProcessPool() {
@@ -193,7 +193,7 @@ std::vector<Ending> ProcessPool::wait(std::chrono::milliseconds most) {
   return endings;
 }
 
-/// Children of this program that are none of the pool's were started by one that has ended.
+/// Ends children of this program that do not belong to the pool: an ended process has started them.
 void ProcessPool::kill_orphans() {
   const auto is_ours = [&](pid_t child) {
     return std::ranges::find(processes_, child, &Process::pid) != processes_.end();

@@ -46,7 +46,7 @@ pid_t leave_sleeper() {
 
 }  // namespace
 
-TEST_CASE("A pool's process tells what its work returned, however long, and what it printed") {
+TEST_CASE("A pool's process reports the result of its work, of any length, and its output") {
   const std::string report(200'000, 'x');
   const Ending ending = run([&] {
     std::puts("a line");
@@ -58,7 +58,7 @@ TEST_CASE("A pool's process tells what its work returned, however long, and what
   CHECK(ending.seconds > 0.0);
 }
 
-TEST_CASE("A pool's process that crashes, leaves or throws is told with how it ended, and what it said") {
+TEST_CASE("A pool's process that crashes, exits or throws is reported with how it ended and its output") {
   ProcessPool pool;
   const auto raise = [](int signal) {
     return [signal]() -> std::string {
@@ -82,7 +82,7 @@ TEST_CASE("A pool's process that crashes, leaves or throws is told with how it e
   CHECK(thrown.log == std::vector<std::string>{"what is wrong"});
 }
 
-TEST_CASE("A pool's process is held to its limits of time and of memory, its children's included", "[slow]") {
+TEST_CASE("Limits of time and memory of a pool's process are enforced, including its children's", "[slow]") {
   ProcessPool pool;
   const Ending slow = run(pool,
                           []() -> std::string {
@@ -109,7 +109,7 @@ TEST_CASE("A pool's process is held to its limits of time and of memory, its chi
   CHECK_THAT(run(pool, let_eat, {0.0, 2.0 * limit}).reason, ContainsSubstring("killed: "));
 }
 
-TEST_CASE("What a pool's process leaves behind ends with it, wherever it went, and however the process ended") {
+TEST_CASE("Descendants of a pool's process end with it, in any session, and however the process ended") {
   ProcessPool pool;
   const Ending done = run(pool, [] { return std::to_string(leave_sleeper()); });
   CHECK_FALSE(is_alive(std::stoi(done.report)));
@@ -120,7 +120,7 @@ TEST_CASE("What a pool's process leaves behind ends with it, wherever it went, a
   };
   const Ending crashed = run(pool, [&]() -> std::string {
     leave();
-    ::signal(SIGABRT, SIG_DFL);  // of the tests' program, which would say much
+    ::signal(SIGABRT, SIG_DFL);  // not the test program's, which prints much
     ::abort();
   });
   CHECK_FALSE(is_alive(of_log(crashed)));
@@ -134,7 +134,7 @@ TEST_CASE("What a pool's process leaves behind ends with it, wherever it went, a
   CHECK_FALSE(is_alive(of_log(slow)));
 }
 
-TEST_CASE("A pool's processes end with the program, also with one that is killed", "[slow]") {
+TEST_CASE("A pool's processes end with the program, also when it is killed", "[slow]") {
   int pipe[2];
   REQUIRE(::pipe(pipe) == 0);
   const pid_t program = ::fork();

@@ -45,7 +45,7 @@ double resident_mib(pid_t process) {
 }
 
 void kill_tree(pid_t process) {
-  // Stopped, none of them starts another one or loses its parent while the others are found.
+  // Stopped processes start no others and do not lose their parents while the others are found.
   std::vector<pid_t> stopped;
   ::kill(process, SIGSTOP);
   for (std::vector<pid_t> found = descendants(process); found.size() > stopped.size(); found = descendants(process)) {

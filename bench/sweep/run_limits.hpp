@@ -4,7 +4,7 @@
 
 namespace evbench {
 
-/// What a run may use.
+/// Limits of a run.
 struct RunLimits {
   double seconds = 0.0;     ///< wall clock; 0: no limit
   double memory_mib = 0.0;  ///< resident memory of all its processes together; 0: no limit

@@ -10,7 +10,7 @@
 namespace evbench {
 namespace {
 
-/// What a source is, but for where its events come from.
+/// The properties of a source, apart from its events.
 class RecordedEvents : public Source {
  public:
   RecordedEvents(std::unique_ptr<Source> source, std::string path)
@@ -19,7 +19,7 @@ class RecordedEvents : public Source {
   const Camera& camera() const override { return source_->camera(); }
   TimeRange time_range() const override { return source_->time_range(); }
   const PoseTrajectory& ground_truth() const override { return source_->ground_truth(); }
-  /// Another sweep that needs them no more may have taken the recording away: then they are made again.
+  /// Another sweep that no longer needs the events may have removed the recording: they are then made again.
   std::unique_ptr<EventReader> all_events() const override {
     std::error_code error;
     if (!std::filesystem::exists(path_, error)) return source_->all_events();
@@ -38,7 +38,7 @@ class RecordedEvents : public Source {
   std::string path_;
 };
 
-/// Are all of a recording's events there? A damaged one would leave some out.
+/// Whether a recording is complete; a damaged one would leave out events.
 bool is_intact(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;

@@ -10,7 +10,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-/// A cluster on this host while it lives, and shell commands that speak with it.
+/// A cluster on this host for the lifetime of this object, and shell commands for it.
 class Cluster {
  public:
   explicit Cluster(const TemporaryFolder& folder) : folder_(folder) {
@@ -35,14 +35,14 @@ bool has_slurm() { return std::system("command -v slurmctld slurmd sbatch > /dev
 
 }  // namespace
 
-TEST_CASE("Slurm does a sweep with the same bytes, though a task is killed and a node goes down", "[cluster]") {
+TEST_CASE("A sweep by Slurm has the same bytes, although a task is killed and a node goes down", "[cluster]") {
   if (!has_slurm()) {
     std::printf("SKIPPED: Slurm is not installed (slurm-wlm), or this is not root\n");
     return;
   }
   const TemporaryFolder folder;
   Json config = short_config();
-  config["backend"]["frame_duration"] = 0.05;
+  config["backend"]["batch_duration"] = 0.05;
   folder.write("c.json", dump_json(config));
   const std::string sweep = "\"$evbench\" sweep c.json --vary seed=1..8 ";
   REQUIRE(testing::shell(folder, sweep + "--quiet --out here").exit_code == 0);
@@ -63,7 +63,7 @@ TEST_CASE("Slurm does a sweep with the same bytes, though a task is killed and a
   // The process of a task; its run ends with it.
   const Outcome killed = cluster.shell(wait_for_run + "pkill -9 -o -f '[e]vbench task " + folder.path() + "'");
   CHECK(killed.exit_code == 0);
-  // Its tasks go to the other node, by themselves after two minutes.
+  // Slurm moves its tasks to the other node after two minutes.
   const Outcome down = cluster.shell(
       wait_for_run +
       "node=$(squeue -h -t R -o %N | head -1); scontrol update nodename=$node state=down reason=test;"

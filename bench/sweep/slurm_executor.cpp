@@ -18,7 +18,7 @@ namespace evbench {
 namespace fs = std::filesystem;
 namespace {
 
-/// Slurm's own default, where it does not say.
+/// Slurm's own default, where it reports none.
 constexpr std::size_t kMaxArraySize = 1001;
 
 struct Answer {
@@ -64,7 +64,7 @@ std::string submit(const std::string& arguments, const std::string& script) {
   if (answer.exit_code == 127) {
     throw InputError("--executor slurm: there is no sbatch; expected Slurm's commands in the PATH");
   }
-  // --parsable: the number alone, with ;CLUSTER behind it where there are several; what is odd is told before it.
+  // --parsable: the number alone, with ;CLUSTER after it where there are several; warnings come before it.
   const std::string last = answer.text.substr(answer.text.rfind('\n') + 1);
   const std::string number = last.substr(0, last.find(';'));
   if (number.empty() || number.find_first_not_of("0123456789") != std::string::npos) {
@@ -87,15 +87,15 @@ std::string make_folder(const std::string& sweep_folder) {
   throw OutputError(fmt::format("{}: can't be made: {}", parent, error.message()));
 }
 
-/// The command as the setup has it.
+/// The command with the setup.
 std::string set_up(const std::string& setup, const std::string& command) {
   const std::size_t place = setup.find("{}");
   if (place == std::string::npos) return setup + "\n" + command + "\n";
   return std::string(setup).replace(place, 2, command) + "\n";
 }
 
-/// Minutes in which a task can do its runs, each with its limit, and wait for what they share with others, of which
-/// each is made with the limit of a run.
+/// Time limit of a task [min]: enough for its runs, each with its limit, and for waiting for their shared inputs, each
+/// made with the limit of a run.
 std::string task_time(const std::vector<PlannedRun>& runs, const ExecutorOptions& options, const SlurmOptions& slurm,
                       std::size_t tasks) {
   if (!slurm.time.empty()) return slurm.time;
@@ -107,7 +107,7 @@ std::string task_time(const std::vector<PlannedRun>& runs, const ExecutorOptions
   return fmt::format("{:.0f}", std::ceil(options.limits.seconds * limits / 60.0) + 1.0);
 }
 
-/// Options of sbatch for the tasks. Its limit of memory is above the run's, which tells what happened.
+/// Options of sbatch for the tasks. Its memory limit is above the run's, so that the run can report the reason.
 std::string task_options(const ExecutorOptions& options, const SlurmOptions& slurm, const SlurmSubmission& submission,
                          const std::vector<PlannedRun>& runs) {
   std::string text = fmt::format("--requeue --array=1-{}", submission.tasks);

@@ -10,15 +10,15 @@ namespace evbench {
 /// How a sweep is handed to Slurm.
 struct SlurmOptions {
   std::string partition;  ///< empty: the cluster's default
-  std::string time;       ///< of a task, as sbatch has it (minutes, hours:minutes:seconds); empty: by the runs' timeout
-  std::string setup;      ///< a line of shell before the program, or around it: {} stands for the command
-  int width = 0;          ///< tasks at a time; 0: as many as the cluster likes
-  bool wait = false;      ///< until the table is made
+  std::string time;       ///< of a task, in sbatch's format (minutes, hours:minutes:seconds); empty: from the timeout
+  std::string setup;      ///< a line of shell before the program, or around it: {} is the command
+  int width = 0;          ///< tasks at a time; 0: as many as the cluster allows
+  bool wait = false;      ///< wait until the table is made
 };
 
-/// What was submitted.
+/// The submitted jobs.
 struct SlurmSubmission {
-  std::string array_job, table_job;  ///< Slurm's numbers of them
+  std::string array_job, table_job;  ///< Slurm's job numbers
   std::size_t tasks = 0;
   std::string folder;  ///< SWEEP/slurm/N: manifest.jsonl, tasks.sh, a log a task, the table's
 };
@@ -26,7 +26,7 @@ struct SlurmSubmission {
 /// Submits runs as a job array, each task being `evbench task` on its lines of a manifest, and a job that waits for all
 /// of them, however they end, and writes `sweep_folder`/table.md and status.txt. A task on a node that fails is run
 /// again by Slurm; one that was killed leaves its run to be done, and the next sweep submits it. Runs that are
-/// submitted twice are done once. Throws InputError when there is no Slurm or it refuses a job, with what it says.
+/// submitted twice are done once. Throws InputError when there is no Slurm or it refuses a job, with its message.
 SlurmSubmission submit_to_slurm(const std::vector<PlannedRun>& runs, const ExecutorOptions& options,
                                 const SlurmOptions& slurm, const std::string& sweep_folder);
 

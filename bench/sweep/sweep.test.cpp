@@ -30,7 +30,7 @@ const char* const kSweepFile = R"({
   "grids": [
     {"axes": [{"name": "back-end", "overlays": {"asynchronous": {"backend": {"type": "gp_map"}}}}]},
     {"axes": [{"name": "back-end", "overlays": {"frames": {"backend": {"type": "bundle_adjustment", "label": "BA"}}}},
-              {"zip": [{"key": "backend.frame_duration", "name": "frame", "values": [0.1, 0.2]},
+              {"zip": [{"key": "backend.batch_duration", "name": "frame", "values": [0.1, 0.2]},
                        {"key": "backend.window", "values": [10, 5]}]}]}
   ]})";
 
@@ -75,13 +75,13 @@ TEST_CASE("The same config has the same key in a sweep as alone, and points of o
   CHECK(made.name == "tiny");
   CHECK(made.runs.at(0).identity.key == key_of(read_experiment(path, {}, known_plugins()).runs[0]));
   CHECK(made.runs.at(1).identity.key == key_of(read_experiment(path, {"seed=2"}, known_plugins()).runs[0]));
-  const SweepPlan same = plan(folder, "c.json", {"backend.frame_duration=0.1,0.10"});
+  const SweepPlan same = plan(folder, "c.json", {"backend.batch_duration=0.1,0.10"});
   CHECK(same.runs.at(0).identity.key == same.runs.at(1).identity.key);
   CHECK_THROWS_WITH(plan(folder, "c.json", {"evaluation.alignment=se3,sim3"}),
                     ContainsSubstring("evaluation.alignment=se3") && ContainsSubstring("differ in their protocol"));
 }
 
-TEST_CASE("A sweep that can't be is refused before anything is written, with place and nearest name", "[slow]") {
+TEST_CASE("An invalid sweep is refused before anything is written, with place and nearest name", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   const auto refused = [&](const std::string& sweep, const std::string& message) {
@@ -91,18 +91,18 @@ TEST_CASE("A sweep that can't be is refused before anything is written, with pla
   };
   refused(R"({"config": "c.json", "axis": []})", "unknown key \"axis\"; did you mean \"axes\"?");
   refused(R"({"config": "d.json"})", "d.json: no such file");
-  refused(R"({"config": "c.json", "axes": [{"key": "backend.frame_durations", "values": [1]}]})",
-          "unknown key \"frame_durations\"; did you mean \"frame_duration\"? (from the sweep's "
-          "backend.frame_durations=1)");
+  refused(R"({"config": "c.json", "axes": [{"key": "backend.batch_durations", "values": [1]}]})",
+          "unknown key \"batch_durations\"; did you mean \"batch_duration\"? (from the sweep's "
+          "backend.batch_durations=1)");
   refused(R"({"config": "c.json", "axes": [{"key": "seed", "values": []}]})",
           "axes.0: the axis \"seed\" has no values");
   refused(R"({"config": "c.json", "axes": [{"key": "seed", "values": [1]}, {"key": "seed", "values": [1]}]})",
           "expected one axis for a key");
   refused(R"({"config": "c.json", "axes": [{"key": "seed", "values": [1]}, {"name": "seed", "overlays": {"a": {}}}]})",
           "two axes are called \"seed\"");
-  refused(R"({"config": "c.json", "axes": [{"key": "backend.frame_duration", "values": [0.1]}],
+  refused(R"({"config": "c.json", "axes": [{"key": "backend.batch_duration", "values": [0.1]}],
               "grids": [{"axes": [{"name": "which", "overlays": {"a": {"backend": {"type": "gp_map"}}}}]}]})",
-          "the axis \"which\" sets \"backend\", and with it \"backend.frame_duration\"");
+          "the axis \"which\" sets \"backend\", and with it \"backend.batch_duration\"");
   refused(R"({"axes": [{"key": "seed", "values": [1]}]})", "\"config\" is missing");
   refused(R"({"config": "c.json", "grids": [{"axes": [{"key": "seed"}]}]})", "grids.0.axes.0: expected one of");
   refused(R"({"config": "c.json", "plugins": ["no.so"]})", "plugins: ");
@@ -127,7 +127,7 @@ TEST_CASE("A sweep that can't be is refused before anything is written, with pla
   }
 }
 
-TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on request, and renaming runs nothing",
+TEST_CASE("A sweep does missing runs: those of a new value, damaged ones on request, and none for a new name",
           "[long]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
@@ -157,7 +157,7 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
   REQUIRE(testing::evbench(folder, "run c.json --quiet --out alone").exit_code == 0);
   for (const auto& [path, content] : results_of(folder.file("alone/tiny"))) CHECK(before.at(path) == content);
 
-  // Both see the same damage, and say so.
+  // Both report the same damage.
   REQUIRE(testing::shell(folder, "rm -r results/other; rm results/tiny/*/final.tum").exit_code == 0);
   const Outcome damaged = sweep("--vary seed=1..2");
   CHECK(damaged.exit_code == 3);
@@ -178,7 +178,7 @@ TEST_CASE("A sweep does what is missing: a new value's runs, damaged ones on req
   auto after = results_of(folder.file("results/tiny"));
   for (const auto& [path, content] : before) {
     INFO(path);
-    CHECK(after.at(path).size() == content.size());  // a log tells that a protocol or name was another one
+    CHECK(after.at(path).size() == content.size());  // the log notes a change of protocol or name
   }
 }
 
@@ -208,15 +208,15 @@ TEST_CASE("Two processes share a sweep, and lines of its manifest, done one by o
 }
 
 TEST_CASE(
-    "Tracks from events are made once for back-ends that share them, and change nothing, but not those with feedback",
+    "Tracks from events are made once for back-ends that share them, with the same results, but not with feedback",
     "[slow]") {
   const TemporaryFolder folder;
   Json config = tiny_config();
   config.erase("backend");
   config["source"] = {{"type", "event_simulation"}, {"duration", 0.5}};
   config["frontend"] = {{"type", "haste"}, {"guidance", {{"outliers", false}, {"veto", false}, {"reacquire", false}}}};
-  config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "a"}, {"frame_duration", 0.1}},
-                        {{"type", "bundle_adjustment"}, {"label", "b"}, {"frame_duration", 0.05}},
+  config["backends"] = {{{"type", "bundle_adjustment"}, {"label", "a"}, {"batch_duration", 0.1}},
+                        {{"type", "bundle_adjustment"}, {"label", "b"}, {"batch_duration", 0.05}},
                         {{"type", "gp_map"}, {"label", "c"}}};
   folder.write("c.json", dump_json(config));
   testing::evbench(folder, "run c.json --quiet --out alone");  // whether or not so short a run has an estimate
@@ -228,7 +228,7 @@ TEST_CASE(
   CHECK(difference(expected, shared) == "");
   CHECK(names_in(folder.file("shared/.tracks")).size() == 1);
 
-  // A damaged recording is not believed, and feedback makes tracks a back-end's own.
+  // A damaged recording is not used, and tracks with feedback are not shared.
   REQUIRE(testing::shell(folder, "rm -r shared/tiny; f=$(ls shared/.tracks/*/*); head -c 50000 $f > x; mv x $f")
               .exit_code == 0);
   testing::evbench(folder, "sweep c.json --quiet --out shared");
@@ -240,23 +240,23 @@ TEST_CASE(
   CHECK(names_in(folder.file("guided/.tracks")).empty());
 }
 
-TEST_CASE("Simulated events are made once for runs that share them, change nothing, and are gone at the end",
+TEST_CASE("Simulated events are made once for runs that share them, with the same results, and removed at the end",
           "[slow]") {
   const TemporaryFolder folder;
   Json config = tiny_config();
   config["source"] = {{"type", "event_simulation"}, {"duration", 0.3}};
   config["frontend"] = {{"type", "haste"}};  // guided
   folder.write("c.json", dump_json(config));
-  const std::string sweep = "sweep c.json --quiet --vary backend.frame_duration=0.1,0.05 --vary frontend.tracks=40,60 ";
+  const std::string sweep = "sweep c.json --quiet --vary backend.batch_duration=0.1,0.05 --vary frontend.tracks=40,60 ";
   const std::vector<PlannedRun> runs =
-      plan(folder, "c.json", {"backend.frame_duration=0.1,0.05", "frontend.tracks=40,60"}).runs;
+      plan(folder, "c.json", {"backend.batch_duration=0.1,0.05", "frontend.tracks=40,60"}).runs;
   for (const PlannedRun& run : runs) CHECK((!run.events.empty() && run.events == runs[0].events));
   CHECK(plan(folder, "c.json", {"seed=1,2"}).runs.at(0).events.empty());
 
   for (const char* const tracks : {"40", "60"}) {
     for (const char* const duration : {"0.1", "0.05"}) {
       testing::evbench(folder, fmt::format("run c.json --quiet --out own --set frontend.tracks={} "
-                                           "--set backend.frame_duration={}",
+                                           "--set backend.batch_duration={}",
                                            tracks, duration));
     }
   }
@@ -271,7 +271,7 @@ TEST_CASE("Simulated events are made once for runs that share them, change nothi
   testing::evbench(folder, sweep + "--out shared");
   is_expected("shared");
 
-  // Tasks share them as well: those that come later find what the first one has made.
+  // Tasks share them as well: later ones use those that the first one has made.
   REQUIRE(testing::evbench(folder, sweep + "--out tasks --executor none").exit_code == 0);
   const std::string task = "\"$evbench\" task tasks/tiny/manifest.jsonl ";
   testing::shell(folder, task + "1");
@@ -283,7 +283,7 @@ TEST_CASE("Simulated events are made once for runs that share them, change nothi
   testing::shell(folder, task + "4");
   is_expected("tasks");
 
-  // One that is damaged is not believed.
+  // A damaged one is not used.
   REQUIRE(testing::shell(folder, "mkdir -p bad/.events/" + runs[0].events + " && echo no > bad/.events/" +
                                      runs[0].events + "/events.evb")
               .exit_code == 0);
@@ -291,7 +291,7 @@ TEST_CASE("Simulated events are made once for runs that share them, change nothi
   is_expected("bad");
 }
 
-TEST_CASE("A job that has two labels in a sweep is run once, and stands in its table under both", "[slow]") {
+TEST_CASE("A job that has two labels in a sweep is run once, and is in its table under both", "[slow]") {
   const TemporaryFolder folder;
   folder.write("c.json", dump_json(tiny_config()));
   folder.write("s.json", R"({"config": "c.json", "axes": [{"name": "which", "overlays": {
@@ -304,7 +304,7 @@ TEST_CASE("A job that has two labels in a sweep is run once, and stands in its t
 TEST_CASE("The sweeps that come with evbench can be planned", "[slow]") {
   const TemporaryFolder folder;
   Json sweep = read_json(EVBENCH_SOURCE "/configs/sweeps/batching.json");
-  sweep.erase("plugins");  // built by whoever wants it
+  sweep.erase("plugins");  // built on request
   sweep["grids"][0]["axes"][0]["overlays"].erase("B-spline");
   sweep["config"] = EVBENCH_SOURCE "/configs/paper/table1_simulated.json";
   folder.write("batching.json", dump_json(sweep));

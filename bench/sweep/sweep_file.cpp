@@ -45,7 +45,7 @@ void add_axes(const Json& axes, const std::string& place, Grid& grid) {
   for (std::size_t i = 0; i < axes.size(); ++i) grid.push_back(read_axis(axes[i], fmt::format("{}.{}", place, i)));
 }
 
-/// No axis may undo what another one before it has set: runs would stand at places where they are not.
+/// No axis may override what an earlier one has set: runs would be shown at wrong values.
 void check_axes(const Sweep& sweep, const Grid& grid) {
   std::set<std::string> names;
   std::map<std::string, std::string> set_by;  // key, axis

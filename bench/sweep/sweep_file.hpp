@@ -10,10 +10,10 @@
 
 namespace evbench {
 
-/// Axes that vary on their own: their product. The first one varies slowest.
+/// Axes that vary independently: their product. The first one varies slowest.
 using Grid = std::vector<ZippedAxes>;
 
-/// A base config and what is varied in it.
+/// A base config and the axes that vary it.
 struct Sweep {
   std::string place;                   ///< the file, for messages
   std::string name;                    ///< its folder below --out; empty: the config's name

@@ -8,19 +8,19 @@
 
 namespace evbench {
 
-/// How far a sweep's folder is, whoever works on it: each run of its sweep.json once.
+/// Progress of a sweep's folder, whichever processes work on it: each run of its sweep.json once.
 struct SweepStatus {
   std::string folder, name;
   std::size_t runs = 0, done = 0, failed = 0, running = 0, missing = 0;
-  std::size_t others = 0;             ///< runs in its folder that it does not plan (any more), and tables pass over
-  std::vector<TroubledRun> troubled;  ///< failed, damaged ones among them, or lost, which are done
+  std::size_t others = 0;             ///< runs in its folder that are not in its plan (any more); tables skip them
+  std::vector<TroubledRun> troubled;  ///< failed (including damaged) or lost ones
 };
 
 /// The sweeps in a folder: its own or those of the folders in it. Throws InputError where there is none, and for a
 /// sweep.json that can't be read.
 std::vector<SweepStatus> read_sweep_status(const std::string& folder);
 
-/// A line for `others`.
+/// The line that reports `others`.
 std::string describe_others(std::size_t others);
 
 /// SweepStatus::others of a sweep's folder.

@@ -7,13 +7,13 @@
 
 namespace evbench {
 
-/// What is expected of how long runs take, learnt from those that are done.
+/// Predicts how long runs take from those that are done.
 ///
 /// A run takes as long as the mean of the most similar ones that are done: of the same label if there are any and, of
 /// those, with the most values on axes in common.
 class RunDurations {
  public:
-  /// What a run's duration may depend on.
+  /// The properties that a run's duration may depend on.
   struct Traits {
     std::string label;
     std::vector<std::string> values;  ///< "AXIS=VALUE", in the order of the sweep's axes
@@ -21,7 +21,7 @@ class RunDurations {
 
   void add(const Traits& traits, double seconds);
 
-  /// [s]; 0 where none is done.
+  /// Expected duration [s]; 0 where no run is done.
   double expected(const Traits& traits) const;
 
  private:
@@ -32,7 +32,7 @@ class RunDurations {
   std::vector<Done> done_;
 };
 
-/// How long it takes until runs are done that take so long each [s], started in this order, so many at a time.
+/// Time [s] until runs of these durations [s] are done, started in this order, a given number at a time.
 double time_left(std::span<const double> seconds, std::size_t at_a_time);
 
 }  // namespace evbench

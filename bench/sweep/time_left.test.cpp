@@ -15,7 +15,7 @@ TEST_CASE("A run is expected to take as long as those of its label, before those
   CHECK(durations.expected({"other", {"frames=0.1"}}) == Approx(50.5));
 }
 
-TEST_CASE("Of a label the runs count that have most values in common") {
+TEST_CASE("Among runs of a label those with most values in common count") {
   RunDurations durations;
   durations.add({"a", {"frames=0.01"}}, 80.0);
   durations.add({"a", {"frames=0.01"}}, 120.0);
@@ -25,7 +25,7 @@ TEST_CASE("Of a label the runs count that have most values in common") {
   CHECK(durations.expected({"a", {"frames=0.1"}}) == Approx(67.0));
 }
 
-TEST_CASE("Runs go on where one has ended, and the last one counts") {
+TEST_CASE("A run starts where another has ended, and the end of the last one counts") {
   CHECK(time_left({}, 2) == 0.0);
   CHECK(time_left(std::vector{10.0, 1.0, 1.0, 1.0}, 1) == 13.0);
   CHECK(time_left(std::vector{10.0, 1.0, 1.0, 1.0}, 2) == 10.0);

@@ -7,7 +7,7 @@
 
 namespace evbench::testing {
 
-/// The configs that come with evbench: all JSON below configs/ but what is none, sweeps among it.
+/// Paths of the shipped configs: all JSON files below configs/ except sweeps, the catalogue and published numbers.
 inline std::vector<std::string> shipped_configs() {
   const std::set<std::string> others = {"datasets.json", "published.json"};
   std::vector<std::string> paths;

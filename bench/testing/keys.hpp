@@ -7,13 +7,13 @@
 
 namespace evbench::testing {
 
-/// The plugins that are built in.
+/// The built-in plugins.
 inline const Plugins& known_plugins() {
   static const Plugins plugins = registered_plugins();
   return plugins;
 }
 
-/// What determines a run's trajectory.
+/// Identity of a run: all that determines its trajectory.
 inline JobIdentity identity_of(const RunConfig& run) {
   Digests digests;
   return identify(run.job, *make_source(run.job, known_plugins()), known_plugins(), digests);

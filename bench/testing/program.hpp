@@ -8,12 +8,12 @@
 #include <string>
 
 #include "core/plugin/options.hpp"
-#include "core/testing/data.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/data.hpp"
 
 namespace evbench::testing {
 
-/// What a command left behind.
+/// Exit code and output of a command.
 struct Outcome {
   int exit_code = 0;
   std::string out, err;
@@ -33,7 +33,7 @@ inline Outcome evbench(const TemporaryFolder& folder, const std::string& argumen
   return shell(folder, "\"$evbench\" " + arguments);
 }
 
-/// Names in a folder, none when there is none.
+/// Names in a folder; empty if there is no such folder.
 inline std::set<std::string> names_in(const std::string& path) {
   std::set<std::string> names;
   if (!std::filesystem::is_directory(path)) return names;
@@ -41,7 +41,7 @@ inline std::set<std::string> names_in(const std::string& path) {
   return names;
 }
 
-/// Folders of an experiment's runs, beside which a sweep keeps its plan.
+/// Folders of an experiment's runs, without files next to them such as the plan of a sweep.
 inline std::set<std::string> runs_of(const std::string& experiment) {
   std::set<std::string> runs;
   for (const std::string& name : names_in(experiment)) {
@@ -50,7 +50,7 @@ inline std::set<std::string> runs_of(const std::string& experiment) {
   return runs;
 }
 
-/// A simulated sequence of 3 s with few tracks, seen by one back-end.
+/// Config of a simulated sequence of 3 s with few tracks, for one back-end.
 inline Json short_config(const std::string& backend = "bundle_adjustment") {
   return {{"name", "short"},
           {"source",
@@ -63,7 +63,7 @@ inline Json short_config(const std::string& backend = "bundle_adjustment") {
           {"evaluation", {{"association", "interpolated"}}}};
 }
 
-/// The short sequence seen by both back-ends.
+/// Config of the short sequence for both back-ends.
 inline Json short_comparison() {
   Json config = short_config();
   config.erase("backend");
@@ -72,8 +72,8 @@ inline Json short_comparison() {
   return config;
 }
 
-/// A recording of 1 s: calibration, ground truth, tracks of still points, and the config "recording.json" that names
-/// them by relative paths.
+/// Writes a recording of 1 s: calibration, ground truth, tracks of fixed pixels, and the config "recording.json" with
+/// relative paths.
 inline void write_recording(const TemporaryFolder& folder) {
   std::string truth, tracks;
   for (int i = 0; i <= 100; ++i) truth += std::to_string(0.01 * i) + " " + std::to_string(0.001 * i) + " 0 0 0 0 0 1\n";

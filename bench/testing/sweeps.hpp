@@ -11,16 +11,16 @@
 
 namespace evbench::testing {
 
-/// A run that takes no time worth speaking of.
+/// Config of a run that takes little time.
 inline Json tiny_config() {
   Json config = short_config();
   config["name"] = "tiny";
   config["source"]["duration"] = 1;
-  config["backend"]["frame_duration"] = 0.1;
+  config["backend"]["batch_duration"] = 0.1;
   return config;
 }
 
-/// All that the runs of an experiment wrote, but for what was measured, by folder and file.
+/// All files of an experiment's runs, by path, without measured times and memory.
 inline std::map<std::string, std::string> results_of(const std::string& experiment) {
   std::map<std::string, std::string> results;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(experiment)) {
@@ -43,7 +43,7 @@ inline std::map<std::string, std::string> results_of(const std::string& experime
   return results;
 }
 
-/// Where two sets of results differ, for messages; empty where they don't.
+/// Describes where two sets of results differ; empty if they are equal.
 inline std::string difference(const std::map<std::string, std::string>& a,
                               const std::map<std::string, std::string>& b) {
   std::string text;
@@ -56,7 +56,7 @@ inline std::string difference(const std::map<std::string, std::string>& a,
     }
   }
   for (const auto& [path, content] : b) {
-    if (!a.contains(path)) text += path + " is too many; ";
+    if (!a.contains(path)) text += path + " is unexpected; ";
   }
   return text;
 }

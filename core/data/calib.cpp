@@ -23,7 +23,7 @@ struct Coefficients {
   const char* columns;
 };
 
-/// With every coefficient that there may be.
+/// The columns with all coefficients of a lens model.
 Coefficients layout(DistortionModel model) {
   switch (model) {
     case DistortionModel::radial_tangential: return {9, "fx fy cx cy k1 k2 p1 p2 k3"};

@@ -35,7 +35,7 @@ TEST_CASE("A calibration that is written reads back as the same camera") {
   CHECK(format_calib(calib("199 198 132 110", DistortionModel::none)) == "199 198 132 110 0 0 0 0 0\n");
 }
 
-TEST_CASE("A damaged calibration is refused with what is wrong") {
+TEST_CASE("A damaged calibration is refused with its fault") {
   CHECK_THROWS_AS(calib(""), InputError);
   CHECK_THROWS_WITH(calib(""), ContainsSubstring("is empty"));
   CHECK_THROWS_WITH(calib("<?xml version=\"1.0\"?>\n<opencv_storage>\n"),
@@ -64,7 +64,7 @@ TEST_CASE("A principal point outside the image is refused with the image's size"
       ContainsSubstring("calib.txt:1: has the principal point (320, 240), outside the image of 240x180 pixels"));
 }
 
-TEST_CASE("Kalibr's calibration is read with its own size and lens, of several cameras one is named") {
+TEST_CASE("Kalibr's calibration is read with its own size and lens, and one of several cameras is selected by name") {
   const std::string cam0 = R"(cam0:
   camera_model: pinhole
   distortion_coeffs: [-0.37, 0.15, -0.0003, -0.0008]
@@ -96,7 +96,7 @@ TEST_CASE("Kalibr's calibration is read with its own size and lens, of several c
                     ContainsSubstring("\"omni\"; expected pinhole"));
 }
 
-TEST_CASE("ROS's camera_info is read, rational_polynomial where it is radial and tangential only") {
+TEST_CASE("ROS's camera_info is read, with rational_polynomial if it is radial and tangential only") {
   const std::string info = R"(image_width: 346
 image_height: 260
 camera_name: davis
@@ -122,7 +122,7 @@ distortion_coefficients:
   CHECK_THROWS_WITH(calib("camera_matrix: {data: [1, 0, 2]}\n"),
                     ContainsSubstring("camera_matrix: is no camera matrix"));
   CHECK_THROWS_WITH(calib("name: x\n"), ContainsSubstring("is no camera; expected camera_model and intrinsics"));
-  // The message, as rostopic prints it.
+  // The message as rostopic prints it.
   CHECK(calib("height: 260\nwidth: 346\ndistortion_model: plumb_bob\nD: [-0.3, 0.1, 0.0, 0.0, 0.0]\n"
               "K: [250.5, 0.0, 170.25, 0.0, 251.5, 130.75, 0.0, 0.0, 1.0]\n")
             .coefficients[0] == -0.3);

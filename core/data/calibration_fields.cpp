@@ -14,7 +14,7 @@
 namespace evbench {
 namespace {
 
-/// Coefficients that the model doesn't have may follow as zeros: rational_polynomial of ROS and OpenCV has up to 14.
+/// Accepts zeros after the coefficients of the model: rational_polynomial of ROS and OpenCV has up to 14.
 void set_lens(const std::string& place, DistortionModel model, const std::vector<double>& coefficients,
               Camera& camera) {
   const auto fail = [&](const std::string& message) {
@@ -37,7 +37,7 @@ void set_lens(const std::string& place, DistortionModel model, const std::vector
   }
 }
 
-/// The first of several keys for the same; none.
+/// The value of the first key that exists; none if none does.
 std::optional<Field> first_of(const Field& map, std::initializer_list<const char*> keys) {
   for (const char* key : keys) {
     if (map.has(key)) return map.at(key);
@@ -45,12 +45,12 @@ std::optional<Field> first_of(const Field& map, std::initializer_list<const char
   return std::nullopt;
 }
 
-/// A list, or the data of {rows, cols, data}.
+/// The numbers of a list, or of the data of {rows, cols, data}.
 std::vector<double> matrix_numbers(const Field& matrix) {
   return (matrix.has("data") ? matrix.at("data") : matrix).numbers();
 }
 
-/// As ROS and OpenCV write it: camera_info, also as a message.
+/// Reads a camera as ROS (camera_info, also as a message) and OpenCV write it.
 Camera matrix_camera(const Field& camera, const Field& matrix, const CalibrationDefaults& defaults) {
   const std::vector<double> intrinsics = matrix_intrinsics(matrix.place(), matrix_numbers(matrix));
   DistortionModel distortion = defaults.distortion;
@@ -117,7 +117,7 @@ Camera checked_camera(const std::string& place, const std::vector<double>& intri
 }
 
 std::vector<double> matrix_intrinsics(const std::string& place, std::span<const double> K) {
-  if (K.size() != 9 || K[1] != 0.0) {
+  if (K.size() != 9 || K[1] != 0.0 || K[3] != 0.0 || K[6] != 0.0 || K[7] != 0.0 || K[8] != 1.0) {
     throw InputError(fmt::format("{}: is no camera matrix; expected fx 0 cx 0 fy cy 0 0 1", place));
   }
   return {K[0], K[4], K[2], K[5]};
@@ -159,7 +159,7 @@ Camera yaml_camera(const Field& file, const std::string& name, const Calibration
   const auto names = camera_names(cameras);
   if (names.empty() && name.empty()) return single_camera(file, defaults);
   if (name.empty() && names.size() > 1) {
-    cameras.fail(fmt::format("holds {}; expected the name of the one that is meant (camera)", fmt::join(names, ", ")));
+    cameras.fail(fmt::format("holds {}; expected the name of one of them (option camera)", fmt::join(names, ", ")));
   }
   if (!name.empty() && std::ranges::find(names, name) == names.end()) {
     cameras.fail(fmt::format("has no camera \"{}\"{}", name, suggestion(name, names)));

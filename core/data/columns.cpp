@@ -11,7 +11,7 @@
 namespace evbench {
 namespace {
 
-/// Names as they stand between separators; blanks separate where nothing else does, but for a unit's bracket.
+/// Splits names at separators; at blanks if there are no others, but not before a unit in brackets.
 std::vector<std::string> split_names(std::string_view line) {
   const bool by_blanks = line.find_first_of(",;") == std::string_view::npos;
   std::vector<std::string> names(1);
@@ -27,7 +27,7 @@ std::vector<std::string> split_names(std::string_view line) {
     }
   }
   if (!by_blanks) return names;
-  std::vector<std::string> whole;  // runs of blanks, and a unit behind one
+  std::vector<std::string> whole;  // blanks in a row are one separator; a unit in brackets belongs to its name
   for (std::string& name : names) {
     if (!whole.empty() && (name.starts_with('[') || name.starts_with('('))) {
       whole.back() += name;
@@ -39,14 +39,14 @@ std::vector<std::string> split_names(std::string_view line) {
 }
 
 struct Name {
-  std::string text;   ///< as it stands in the file
+  std::string text;   ///< as in the file
   std::string words;  ///< in lower case, with _ between them, without a unit of time
   std::string unit_word;
   TimeUnit unit = TimeUnit::unsaid;
 };
 
 Name read_name(const std::string& name_in_file) {
-  constexpr std::size_t kShortestWord = 3;  // a unit that stands alone, "sec", is a time; "s" may be anything
+  constexpr std::size_t kShortestWord = 3;  // a bare unit such as "sec" is a time; "s" is ambiguous
   const std::string text = with_plain_micro(name_in_file);
   const std::size_t bracket = std::min(text.find_first_of("[("), text.size());
   Name name;
@@ -72,7 +72,7 @@ Name read_name(const std::string& name_in_file) {
   return name;
 }
 
-/// ROS's two parts of a stamp, in this order.
+/// Are these the two parts of a ROS stamp, in this order?
 bool are_parts(const Name& whole, const Name& rest) {
   const auto is = [](const std::string& word, std::initializer_list<const char*> words) {
     return std::ranges::any_of(words, [&](const char* known) { return word == known; });
@@ -91,7 +91,7 @@ bool is_number(std::string_view column) {
 /// Is the present record a line of names?
 bool names_columns(const TextReader& reader) { return std::ranges::none_of(reader.columns(), is_number); }
 
-/// Without the mark of a comment.
+/// The line without a comment mark.
 std::string_view bare(std::string_view line) {
   return line.substr(std::min(line.find_first_not_of("#% \t"), line.size()));
 }
@@ -99,7 +99,7 @@ std::string_view bare(std::string_view line) {
 }  // namespace
 
 Columns::Columns(std::string_view line, std::span<const Quantity> quantities) {
-  constexpr std::size_t kLongest = 64;  // std::regex takes stack by the length, and nobody's names are longer
+  constexpr std::size_t kLongest = 64;  // std::regex needs stack in proportion to the length; real names are shorter
   std::vector<Name> names;
   for (const std::string& text : split_names(bare(line))) names.push_back(read_name(text));
   quantities_.resize(names.size());
@@ -180,8 +180,7 @@ std::optional<Columns> read_names(TextReader& reader, std::span<const Quantity> 
         fmt::format("names the columns \"{:.80}\"; expected names such as {}, or numbers", reader.text(), expected));
   }
   if (!columns.ambiguity().empty()) {
-    reader.fail(
-        fmt::format("the columns are named {}; expected one of them: leave the other out", columns.ambiguity()));
+    reader.fail(fmt::format("the columns are named {}; expected only one of them", columns.ambiguity()));
   }
   if (in_record) reader.next();
   return columns;
@@ -208,7 +207,7 @@ double TimeColumn::count(const TextReader& reader) const {
   const std::int64_t seconds = reader.integer(column_, "the time's seconds");
   const std::int64_t rest = reader.integer(*nanoseconds_, "the time's nanoseconds");
   if (rest < 0 || rest >= 1'000'000'000) {
-    reader.fail(fmt::format("the time's nanoseconds are {}; expected 0 to 999999999, beside whole seconds", rest));
+    reader.fail(fmt::format("the time's nanoseconds are {}; expected 0 to 999999999, with whole seconds", rest));
   }
   return static_cast<double>(seconds) + 1e-9 * static_cast<double>(rest);
 }

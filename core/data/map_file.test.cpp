@@ -7,7 +7,7 @@
 using namespace evbench;
 using namespace evbench::testing;
 
-TEST_CASE("A map that was written is read back as it was") {
+TEST_CASE("A map is read back as written") {
   const TemporaryFolder folder;
   const std::vector<Landmark> map = {{17, {0.5, -1.25, 3.0}}, {1234567890123, {1e-3, 2.0, 1e6}}};
   write_file(folder.file("map.ply"), format_map(map));
@@ -18,7 +18,7 @@ TEST_CASE("A map that was written is read back as it was") {
   CHECK(read[1].position == map[1].position);
 }
 
-TEST_CASE("What is no map is refused with the place") {
+TEST_CASE("A file that is no map is refused with its place") {
   const TemporaryFolder folder;
   write_file(folder.file("a.ply"), "solid\n1 2 3\n");
   CHECK_THROWS_WITH(read_map(folder.file("a.ply")), Catch::Matchers::ContainsSubstring("a.ply:1"));

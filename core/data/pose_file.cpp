@@ -57,7 +57,7 @@ std::array<Quantity, 4> quaternion_in(QuaternionOrder order) {
   return quaternion;
 }
 
-/// Where a record has its pose.
+/// Reads the pose of a record from its columns.
 class PoseColumns {
  public:
   explicit PoseColumns(const Columns& columns)
@@ -85,15 +85,15 @@ class PoseColumns {
   std::vector<std::size_t> position_, quaternion_, matrix_;
 };
 
-/// Commas and nanoseconds since 1970: EuRoC's times, and those of VINS and other tools for it, which write their
-/// quaternions as its ground truth does, and no names.
+/// Has the record commas and nanoseconds since 1970? VINS and other tools for EuRoC write such files, without names and
+/// with quaternions in EuRoC's order.
 bool looks_like_euroc(const TextReader& reader) {
   return reader.text().find(',') != std::string::npos &&
          usual_time_unit(reader.number(0, "the time")) == TimeUnit::nanoseconds;
 }
 
-/// By the number of the record's columns: a format's, or of all formats the first whose rotation is one. What has a
-/// quaternion may be followed by more.
+/// The layout from the number of columns: of the given format, or the first of all formats whose rotation is valid.
+/// Layouts with a quaternion may have further columns.
 Columns find_layout(const TextReader& reader, PoseFormat format) {
   const std::size_t count = reader.columns().size();
   std::vector<Layout> layouts;
@@ -117,7 +117,7 @@ Columns find_layout(const TextReader& reader, PoseFormat format) {
   return rotating == fitting.end() ? fitting.front() : *rotating;
 }
 
-/// The same columns with the quaternion in another order.
+/// The columns with the quaternion in the order of the options.
 Columns in_order(const Columns& columns, QuaternionOrder order, const TextReader& reader) {
   if (order == QuaternionOrder::automatic) return columns;
   if (columns.find_all(kQuaternion).empty()) {
@@ -127,7 +127,7 @@ Columns in_order(const Columns& columns, QuaternionOrder order, const TextReader
   return columns.in_order(quaternion_in(order));
 }
 
-/// Of columns that are one behind the other.
+/// Quaternion order of consecutive columns.
 QuaternionOrder order_of(const Columns& columns) {
   const std::vector<std::size_t> at = columns.find_all(kQuaternion);
   for (const auto order :
@@ -137,7 +137,7 @@ QuaternionOrder order_of(const Columns& columns) {
   return QuaternionOrder::automatic;
 }
 
-/// Of poses, one after the other: from a column, from a file of their own, or their numbers.
+/// Times of the poses in sequence: from a column, from a separate file, or numbers.
 class PoseTimes {
  public:
   PoseTimes(const TextReader& poses, const Columns& columns, const PoseFileOptions& options) {
@@ -152,7 +152,7 @@ class PoseTimes {
     }
   }
 
-  /// [s]; as it stands in the file where unknown_unit() says something at the end.
+  /// [s]; unchanged from the file if unknown_unit() is not empty at the end.
   double next(const TextReader& poses) {
     if (!file_) return column_ ? read(poses) : static_cast<double>(number_++);
     if (file_->columns().empty()) poses.fail(fmt::format("has no time in {}; expected a time a pose", file_->path()));
@@ -161,7 +161,7 @@ class PoseTimes {
     return t;
   }
 
-  /// At the end of the poses.
+  /// Called after the last pose.
   void expect_end() const {
     if (file_ && !file_->columns().empty()) file_->fail("a time without a pose; expected a time a pose");
   }
@@ -171,7 +171,7 @@ class PoseTimes {
   const std::string& unknown_unit() const { return unknown_unit_; }
 
  private:
-  /// A unit that is a guess by the first time may turn out to be none: 5e10 is followed by 2e11.
+  /// A unit guessed from the first time may turn out to be wrong: 5e10 followed by 2e11.
   double read(const TextReader& reader) {
     const double t = column_->read(reader);
     const double count = t * per_second(column_->unit());
@@ -188,20 +188,20 @@ class PoseTimes {
   std::string unknown_unit_;
 };
 
-/// As TUM's all along: nothing that one could have taken otherwise.
+/// Is the file unambiguously a TUM file?
 bool is_usual(const TextReader& first, const Columns& columns, bool named) {
   const bool by_blanks = first.text().find_first_of(",;") == std::string::npos;
   return columns.text() == kLayouts[0].columns && (named || by_blanks);
 }
 
-/// What a reader of the file could have taken otherwise; empty for what is usual.
+/// Remark on what was assumed about the layout; empty for the usual layout.
 std::string assumption(const TextReader& first, bool named, const Columns& columns, const PoseTimes& times,
                        const PoseFileOptions& options) {
   const bool asked = options.format != PoseFormat::automatic && columns.text().find('-') == std::string::npos;
   std::string text;
   if (!asked && !is_usual(first, columns, named)) {
     text += fmt::format(", columns {} ({}{})", columns.text(), named ? "as they are named" : "assumed",
-                        options.quaternion == QuaternionOrder::automatic ? "" : "; the quaternion as asked for");
+                        options.quaternion == QuaternionOrder::automatic ? "" : "; the quaternion as requested");
   }
   if (times.numbered()) text += ", without times: poses are numbered";
   if (options.time_unit == TimeUnit::unsaid && per_second(times.unit()) != 1.0) {

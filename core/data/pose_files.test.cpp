@@ -79,7 +79,7 @@ TEST_CASE("A slightly unnormalised quaternion is normalised") {
   CHECK(tum("0 0 0 0 0 0 0 1.005\n").poses()[0].T.q.w() == 1.0);
 }
 
-TEST_CASE("A damaged TUM file is refused with the line and what is wrong") {
+TEST_CASE("A damaged TUM file is refused with its line and fault") {
   const std::string good = "0 0 0 0 0 0 0 1\n";
   CHECK_THROWS_AS(read_tum("/no/such/file"), InputError);
   CHECK_THROWS_WITH(read_tum("/no/such/file"), ContainsSubstring("no such file"));
@@ -95,7 +95,7 @@ TEST_CASE("A damaged TUM file is refused with the line and what is wrong") {
                     ContainsSubstring("poses.txt:2") && ContainsSubstring("increasing times"));
 }
 
-TEST_CASE("A damaged RobotEvt file is refused with the line and what is wrong") {
+TEST_CASE("A damaged RobotEvt file is refused with its line and fault") {
   const std::string good = "0 1 0 0 0 1 0 0 0 1 0 0 0\n";
   CHECK_THROWS_WITH(robotevt(""), ContainsSubstring("holds no pose"));
   CHECK_THROWS_WITH(robotevt("0 0 0 0 0 0 0 1\n"), ContainsSubstring("has 8 columns; expected 13"));
@@ -116,7 +116,7 @@ void check_quarter_turn(const PoseFile& file, double t) {
 
 }  // namespace
 
-TEST_CASE("TUM trajectories may have commas, a line of names, further columns") {
+TEST_CASE("TUM trajectories may have commas, a line of names, and further columns") {
   check_quarter_turn(poses("0.5 1 2 3 0 0 0.70710678 0.70710678\n"), 0.5);
   check_quarter_turn(poses("0.5,1,2,3,0,0,0.70710678,0.70710678\n"), 0.5);
   check_quarter_turn(poses("time,x,y,z,qx,qy,qz,qw\n0.5,1,2,3,0,0,0.70710678,0.70710678\n"), 0.5);
@@ -128,7 +128,7 @@ TEST_CASE("TUM trajectories may have commas, a line of names, further columns") 
   CHECK_THAT(poses("0.5 1 2 3 0 0 0 1 7\n").remarks.at(0), ContainsSubstring("t px py pz qx qy qz qw - (assumed)"));
 }
 
-TEST_CASE("Columns are in the order that names say") {
+TEST_CASE("Column names give the order of the columns") {
   check_quarter_turn(poses("qw,qx,qy,qz,pos_x,pos_y,pos_z,t_us\n0.70710678,0,0,0.70710678,1,2,3,500000\n"), 0.5);
   CHECK_THROWS_WITH(poses("t a b c\n0 1 2 3\n"),
                     ContainsSubstring("poses.txt:1: names the columns \"t a b c\"; expected names such "
@@ -136,7 +136,7 @@ TEST_CASE("Columns are in the order that names say") {
   check_quarter_turn(poses("a b c d e f g h\n0.5 1 2 3 0 0 0.70710678 0.70710678\n", {.format = PoseFormat::tum}), 0.5);
 }
 
-TEST_CASE("Of the times of a topic that was written out, the header's stamp counts") {
+TEST_CASE("The header's stamp is preferred to the other times of a printed topic") {
   const std::string pose =
       "field.pose.position.x,field.pose.position.y,field.pose.position.z,"
       "field.pose.orientation.x,field.pose.orientation.y,field.pose.orientation.z,"
@@ -169,7 +169,7 @@ TEST_CASE("Names of two poses in a line are refused and quoted") {
   CHECK(poses("t " + two + "\n" + numbers, {.format = PoseFormat::tum}).trajectory.poses()[0].T.p.x() == 1.0);
 }
 
-TEST_CASE("EuRoC's ground truth is known by its names or by its columns, in nanoseconds") {
+TEST_CASE("EuRoC's ground truth, in nanoseconds, is recognised by its names or its columns") {
   const std::string names =
       "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], "
       "v_RS_R_x [m s^-1], v_RS_R_y [m s^-1], v_RS_R_z [m s^-1], b_w_RS_S_x [rad s^-1], b_w_RS_S_y [rad s^-1], "
@@ -190,7 +190,7 @@ TEST_CASE("EuRoC's ground truth is known by its names or by its columns, in nano
   check_quarter_turn(poses("0.5 1 2 3 0.70710678 0 0 0.70710678\n", {.format = PoseFormat::euroc}), 0.5);
 }
 
-TEST_CASE("Nanoseconds between commas, without names, are laid out as EuRoC's ground truth, as VINS writes them") {
+TEST_CASE("Nanoseconds and commas without names are read in EuRoC's layout, as VINS writes them") {
   for (const char* more : {"\n", ",\n", ",0.1,0.2,0.3,\n"}) {
     const PoseFile file = poses("1403636580838555648,1,2,3,0.70710678,0,0,0.70710678" + std::string(more));
     check_quarter_turn(file, 1403636580838555648 / 1e9);
@@ -200,7 +200,7 @@ TEST_CASE("Nanoseconds between commas, without names, are laid out as EuRoC's gr
   }
 }
 
-TEST_CASE("A quaternion is read in the order that is asked for, whatever the file looks like") {
+TEST_CASE("A quaternion is read in the requested order, whatever the file's layout") {
   const struct {
     QuaternionOrder order;
     const char* text;
@@ -223,7 +223,7 @@ TEST_CASE("A quaternion is read in the order that is asked for, whatever the fil
   CHECK(poses("t px py pz qz qy qx qw\n0.5 1 2 3 0 0 0 1\n").quaternion == QuaternionOrder::automatic);
 }
 
-TEST_CASE("KITTI's matrices come with times in a file of their own, in the line, or are numbered on request") {
+TEST_CASE("KITTI's matrices have times in a separate file or in the line, or are numbered on request") {
   const testing::TemporaryFolder folder;
   const std::string matrix = "0 -1 0 1 1 0 0 2 0 0 1 3", next = "\n1 0 0 1 0 1 0 2 0 0 1 3\n";
   const std::string two = folder.write("times.txt", "5.0e-01\n6.0e-01\n"), one = folder.write("one.txt", "0.5\n");
@@ -241,7 +241,7 @@ TEST_CASE("KITTI's matrices come with times in a file of their own, in the line,
   CHECK_THROWS_WITH(poses(matrix, {.times = two}), ContainsSubstring("times.txt:2: a time without a pose"));
 }
 
-TEST_CASE("Poses with the time of the one before are left out, and that is said") {
+TEST_CASE("Poses with the time of the previous pose are dropped with a remark") {
   const PoseFile file = poses("0 1 0 0 0 0 0 1\n0 2 0 0 0 0 0 1\n1 3 0 0 0 0 0 1\n1 4 0 0 0 0 0 1\n");
   REQUIRE(file.trajectory.size() == 2);
   CHECK(file.trajectory.poses()[1].T.p.x() == 3.0);
@@ -256,7 +256,7 @@ TEST_CASE("Times too late for seconds need their unit") {
   const PoseFile open = poses(late, {.may_lack_unit = true});
   CHECK(open.trajectory.start() == 1403636580838555);
   CHECK_THAT(open.unknown_unit, ContainsSubstring("poses.txt:1: the time is 1403636580838555, too late for seconds"));
-  // The first time alone does not tell.
+  // The first time alone is not enough.
   CHECK_THROWS_WITH(poses("0 0 0 0 0 0 0 1\n" + late), ContainsSubstring("poses.txt:2: the time is 1403636580838555"));
   CHECK_THROWS_WITH(poses("0 0 0 0 0 0 0 1\n1403636580838555648 0 0 0 0 0 0 1\n"),
                     ContainsSubstring("poses.txt:2: the time is 1.4036365808385556e+18, too late for seconds"));
@@ -283,7 +283,7 @@ TEST_CASE("The real ground truth of poster_translation reads whole") {
   CHECK(poses.start() == 0.036104394);
 }
 
-TEST_CASE("Times that are closer to one another than a nanosecond are written apart") {
+TEST_CASE("Times less than a nanosecond apart are written as different numbers") {
   const PoseTrajectory close({{0.25, {}}, {0.2500000001, {}}, {1.0 / 3.0, {}}, {0.5, {}}});
   CHECK(worst_difference(tum(format_tum(close)), close) == 0.0);
   CHECK_THAT(format_tum(close), Catch::Matchers::StartsWith("0.250000000 0.0000000000 "));

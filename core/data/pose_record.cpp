@@ -11,7 +11,7 @@
 namespace evbench {
 namespace {
 
-constexpr double kTolerance = 1e-2;  // files carry few digits; anything worse is not a rotation
+constexpr double kTolerance = 1e-2;  // allows for rounded files; a larger deviation is no rotation
 
 }  // namespace
 

@@ -9,9 +9,9 @@
 
 namespace evbench {
 
-/// Parts of a pose in the columns of a record. Every error names the file and the line.
+/// Reads the parts of a pose from the columns of a record. Every error names file and line.
 
-/// `first` and those behind it.
+/// The column `first` and the following ones, `count` in all.
 template <std::size_t count>
 std::array<std::size_t, count> consecutive(std::size_t first) {
   std::array<std::size_t, count> columns;
@@ -19,14 +19,14 @@ std::array<std::size_t, count> consecutive(std::size_t first) {
   return columns;
 }
 
-/// Columns of qx qy qz qw. Throws when the norm is not within 1e-2 of 1; normalised.
+/// Reads and normalises a quaternion from the columns of qx qy qz qw. Throws when the norm is not within 1e-2 of 1.
 Eigen::Quaterniond read_quaternion(const TextReader& reader, std::span<const std::size_t> columns);
 
-/// Columns of a rotation matrix, row by row. Throws when R Rᵀ is not within 1e-2 of the identity or det R < 0; the
-/// nearest rotation (Frobenius norm, by SVD) is returned.
+/// Reads a rotation matrix from its columns, row by row, and returns the nearest rotation (Frobenius norm, by SVD).
+/// Throws when R Rᵀ is not within 1e-2 of the identity or det R < 0.
 Eigen::Quaterniond read_rotation_matrix(const TextReader& reader, std::span<const std::size_t> columns);
 
-/// `what` names it in messages.
+/// Reads a vector; `what` names it in messages.
 Vector3 read_vector3(const TextReader& reader, std::span<const std::size_t> columns, const char* what);
 
 }  // namespace evbench

@@ -13,7 +13,7 @@
 namespace evbench {
 namespace {
 
-/// A record that carries its own index or refers to one, with the line it stood in.
+/// A record with its own index or with a reference to one, and its line.
 template <class Value>
 struct Indexed {
   int index;
@@ -162,7 +162,7 @@ class ProblemReader {
     problem_.landmark_priors.push_back({landmark_references_.back().index, vector3(2), positive(5, "sigma")});
   }
 
-  /// The values by index; every index from 0 on must be there once. Leaves the records sorted by index.
+  /// The values by index; every index from 0 on must occur once. Sorts the records by index.
   template <class Value>
   std::vector<Value> in_sequence(std::vector<Indexed<Value>>& records, const char* kind) const {
     std::ranges::stable_sort(records, {}, &Indexed<Value>::index);
@@ -200,7 +200,7 @@ class ProblemReader {
   }
 };
 
-/// " a b c": the values, each after a blank.
+/// " a b c": the values, each preceded by a blank.
 template <class Derived>
 std::string columns(const Eigen::MatrixBase<Derived>& values) {
   std::string text;

@@ -44,8 +44,8 @@ struct Problem {
   std::vector<LandmarkPrior> landmark_priors;
 };
 
-/// Reads a problem (gzip or not) as it stands in the file, observations and priors in the file's order. One record a
-/// line, in any order:
+/// Reads a problem (gzip or not). Observations and priors keep the order of the file. One record per line, in any
+/// order:
 ///
 ///   CAM fx fy cx cy                                  pinhole, once
 ///   QC q1..q6                                        once, > 0
@@ -56,17 +56,17 @@ struct Problem {
 ///   PRIORVEL i wx wy wz vx vy vz s1..s6
 ///   LMPRIOR j x y z sigma
 ///
-/// Throws InputError, naming file and line, for an unknown record, a wrong number of columns, a value that is not
-/// finite, a repeated or missing index, an index that does not exist, times that do not increase, a sigma ≤ 0, a
-/// quaternion that is not a rotation, and a file without CAM, QC or STATE.
+/// Throws InputError with file and line for an unknown record, a wrong number of columns, a value that is not finite, a
+/// repeated or missing index, a reference to a missing index, times that do not increase, a sigma ≤ 0, a quaternion
+/// that is not a rotation, and a file without CAM, QC or STATE.
 Problem read_problem(const std::string& path);
 
-/// Records in the order of the table above, with the shortest digits that read back as the same numbers.
+/// The records in the order of the table above, with the shortest digits that read back as the same numbers.
 std::string format_problem(const Problem& problem);
 
-/// The problem that is solved: observations outside [first state, last state] are dropped, and so is every observation
-/// and prior of a landmark with fewer than two that are left; observations are sorted by time, then by landmark.
-/// Indices stay: a landmark that nothing refers to any more keeps its place.
+/// Prepares a problem for solving: drops observations outside [first state, last state], then all observations and
+/// priors of landmarks with fewer than two observations left; sorts observations by time, then by landmark. Indices are
+/// unchanged: a landmark without observations keeps its index.
 Problem prepare(Problem problem);
 
 }  // namespace evbench

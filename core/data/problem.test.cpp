@@ -10,7 +10,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-// Records deliberately in an unusual order.
+// The records are deliberately in an unusual order.
 const std::string kProblem =
     "OBS 0.5 1 10 20 0.7\n"
     "LM 1 4 5 6\n"
@@ -59,7 +59,7 @@ TEST_CASE("A problem is read with its records in any order") {
   CHECK(p.landmark_priors.at(1).sigma == 0.5);
 }
 
-TEST_CASE("A prepared problem has only usable observations, sorted, and no prior of an unusable landmark") {
+TEST_CASE("A prepared problem has only usable observations, sorted, and no priors of unusable landmarks") {
   const Problem p = prepare(problem(kProblem));
   REQUIRE(p.observations.size() == 2);
   CHECK(p.observations[0].t == 0.25);
@@ -77,7 +77,7 @@ TEST_CASE("A problem reads back exactly as written") {
   CHECK(format_problem(read_problem(folder.file("p.txt"))) == format_problem(p));
 }
 
-TEST_CASE("A damaged problem is refused with the line and what is wrong") {
+TEST_CASE("A damaged problem is refused with its line and fault") {
   CHECK_THROWS_AS(problem(""), InputError);
   CHECK_THROWS_WITH(problem(without("CAM")), ContainsSubstring("has no CAM record"));
   CHECK_THROWS_WITH(problem(without("QC")), ContainsSubstring("has no QC record"));

@@ -7,7 +7,7 @@
 
 using namespace evbench;
 
-TEST_CASE("Relative poses with covariances are read as they were written, and a short line is refused") {
+TEST_CASE("Relative poses with covariances are read back as written, and a short line is refused") {
   RelativePose pose{"newest", 0.1, 1.0 / 3.0, {so3::exp({0.1, -0.2, 0.3}), {1.0 / 7.0, -2.0, 3e-9}}, {}};
   for (int i = 0; i < 36; ++i) pose.covariance(i / 6, i % 6) = 1.0 / (1.0 + i);
   const testing::TemporaryFolder folder;

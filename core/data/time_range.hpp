@@ -4,7 +4,7 @@
 
 namespace evbench {
 
-/// By default, all times.
+/// A closed range of times; by default, all times.
 struct TimeRange {
   double from = -std::numeric_limits<double>::infinity();  ///< [s], closed
   double to = std::numeric_limits<double>::infinity();     ///< [s], closed

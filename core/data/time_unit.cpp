@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array kFiner{TimeUnit::milliseconds, TimeUnit::microseconds, TimeUnit::nanoseconds};
 
-/// Length that two ranges have in common, of the length that they have together; < 0: they don't meet.
+/// Length of the intersection of two ranges over that of their union; < 0: they don't meet.
 double overlap(double from_a, double to_a, double from_b, double to_b) {
   const double common = std::min(to_a, to_b) - std::max(from_a, from_b);
   const double together = std::max(to_a, to_b) - std::min(from_a, from_b);
@@ -23,7 +23,7 @@ double overlap(double from_a, double to_a, double from_b, double to_b) {
 }  // namespace
 
 std::string with_plain_micro(std::string text) {
-  for (const char* micro : {"\xC2\xB5", "\xCE\xBC"}) {  // the sign, and the Greek letter
+  for (const char* micro : {"\xC2\xB5", "\xCE\xBC"}) {  // the micro sign and the Greek letter
     for (std::size_t at = text.find(micro); at != std::string::npos; at = text.find(micro)) text.replace(at, 2, "u");
   }
   return text;
@@ -76,7 +76,7 @@ std::optional<TimeUnit> unit_that_meets(double from, double to, double range_fro
   return found;
 }
 
-std::string times_beside(double from, double to, double range_from, double range_to, const std::string& option) {
+std::string times_outside(double from, double to, double range_from, double range_to, const std::string& option) {
   constexpr double kAboutThere = 0.01;
   const auto fit = [&](TimeUnit unit) {
     return overlap(from / per_second(unit), to / per_second(unit), range_from, range_to);

@@ -25,15 +25,14 @@ bool is_integer(std::string_view text) {
   return text.find_first_not_of("0123456789", text.starts_with('-') ? 1 : 0) == std::string_view::npos;
 }
 
-/// At the first record; a line of names is passed over.
+/// The columns, determined at the first record; skips a line of names.
 Columns find_columns(TextReader& reader, const std::string& asked) {
   if (!asked.empty()) {
     pass_over_names(reader);
     Columns columns(asked, kQuantities);
     if (complete(columns) && columns.ambiguity().empty()) return columns;
-    throw InputError(
-        fmt::format("{}: what is asked for names the columns \"{:.80}\"; expected id, t, x and y, and - for others",
-                    reader.path(), asked));
+    throw InputError(fmt::format("{}: the requested columns are \"{:.80}\"; expected id, t, x and y, and - for others",
+                                 reader.path(), asked));
   }
   if (const auto named = read_names(reader, kQuantities, complete, kUsual)) return *named;
   const auto record = reader.columns();

@@ -17,7 +17,7 @@ TrackFile tracks(const std::string& content) {
 
 }  // namespace
 
-TEST_CASE("Tracks are sorted by time, then by id, and oddities are counted") {
+TEST_CASE("Tracks are sorted by time, then by id, and anomalies are counted") {
   const TrackFile file = tracks("7 0.2 1 1\n3 0.2 2 2\n7 0.1 3 3\n7 0.2 9 9\n3 0.3 240 10\n5 0.1 4 4\n");
   REQUIRE(file.observations.size() == 5);
   CHECK(file.observations[0].track == 5);
@@ -33,7 +33,7 @@ TEST_CASE("Tracks are sorted by time, then by id, and oddities are counted") {
   CHECK(file.report.single_observation == 1);
 }
 
-TEST_CASE("A file that holds one track after the other is not out of order") {
+TEST_CASE("A file with one track after the other is not counted as unordered") {
   CHECK(tracks("1 0.1 1 1\n1 0.2 1 1\n2 0.1 1 1\n2 0.2 1 1\n").report.unordered == 0);
 }
 
@@ -51,7 +51,7 @@ TEST_CASE("A track file reads back exactly as written") {
   }
 }
 
-TEST_CASE("A damaged track file is refused with the line and what is wrong") {
+TEST_CASE("A damaged track file is refused with its line and fault") {
   CHECK_THROWS_AS(tracks(""), InputError);
   CHECK_THROWS_WITH(tracks(""), ContainsSubstring("holds no observation"));
   CHECK_THROWS_WITH(tracks("1 0.1 1 1\n1 0.2 1\n"), ContainsSubstring("tracks.txt:2: has 3 columns; expected 4"));
@@ -61,7 +61,7 @@ TEST_CASE("A damaged track file is refused with the line and what is wrong") {
   CHECK_THROWS_WITH(read_tracks("/no/such/file", 240, 180), ContainsSubstring("no such file"));
 }
 
-TEST_CASE("Tracks are in the columns that are asked for, that names say, or that EKLT and HASTE write") {
+TEST_CASE("Track columns are those requested, those named in the file, or those of EKLT and HASTE") {
   const auto same = [](const TrackFile& file) {
     REQUIRE(file.observations.size() == 2);
     CHECK(file.observations[0].track == 7);

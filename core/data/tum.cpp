@@ -9,7 +9,7 @@
 namespace evbench {
 namespace {
 
-/// With nine decimals, or as many as it takes to read back the same time: stamps that differ must not become equal.
+/// The time with nine decimals, or as many as needed to read it back: different stamps must not become equal.
 void append_time(double t, fmt::memory_buffer& text) {
   const std::size_t begin = text.size();
   fmt::format_to(std::back_inserter(text), "{:.9f}", t);

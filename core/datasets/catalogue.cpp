@@ -55,7 +55,7 @@ Dataset::File read_file(const Json& json, const std::string& name) {
   return file;
 }
 
-/// A sequence of a collection.
+/// Reads a sequence of a collection.
 Dataset read_dataset(const Json& collection, const Json& sequence) {
   const auto name = sequence.at("name").get<std::string>();
   Dataset dataset;

@@ -12,7 +12,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-/// An environment variable, for as long as this object lives.
+/// Sets an environment variable for its lifetime.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) { ::setenv(name, value.c_str(), 1); }
@@ -34,7 +34,7 @@ const char* const kSequence = R"({"name": "a", "description": "d"})";
 
 }  // namespace
 
-TEST_CASE("The catalogue that comes with the program has the Event-Camera Dataset with addresses and licence") {
+TEST_CASE("The catalogue of the program has the Event-Camera Dataset with addresses and licence") {
   const auto catalogue = read_catalogue(catalogue_path());
   const Dataset& dataset = find_dataset(catalogue, "ecd/dynamic_6dof");
   REQUIRE(dataset.files.size() == 1);
@@ -45,7 +45,7 @@ TEST_CASE("The catalogue that comes with the program has the Event-Camera Datase
                     ContainsSubstring("did you mean \"ecd/dynamic_6dof\"?"));
 }
 
-TEST_CASE("A dataset that is there is found by its name, for one that isn't, the command that fetches it is named") {
+TEST_CASE("A downloaded dataset is found by its name, and the error for a missing one names the command to fetch it") {
   const testing::TemporaryFolder folder;
   const Variable variable("EVBENCH_DATASETS", folder.path());
   CHECK_THROWS_WITH(existing_dataset_folder("ecd/dynamic_6dof", "here"),
@@ -58,7 +58,7 @@ TEST_CASE("A dataset that is there is found by its name, for one that isn't, the
   }
 }
 
-TEST_CASE("A catalogue that is broken is refused with the place") {
+TEST_CASE("A damaged catalogue is refused with its place") {
   const testing::TemporaryFolder folder;
   const auto refused = [&](const std::string& text, const std::string& message) {
     CHECK_THROWS_WITH(read_catalogue(folder.write("c.json", text)),

@@ -14,7 +14,7 @@
 #include "core/events/text/text_writer.hpp"
 #include "core/events/writer.hpp"
 
-// The one file that knows every family of formats: a new one gets a line here.
+// The only file that knows every family of formats: a new one gets a line here.
 namespace evbench {
 
 const std::vector<EventFormat>& event_formats() {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr Quantity kEventQuantities[] = {kTime, {"x", "x.*"}, {"y", "y.*"}, {"p", "p.*|on"}};
 
-/// Nobody writes pixels with a fraction and times without.
+/// No file has fractions in its pixels and none in its times.
 bool fits(const EventRow& row, const EventOrder& order, std::size_t time) {
   constexpr double kMostPixels = 65535.0;
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -37,7 +37,7 @@ std::int64_t count_fitting(std::span<const EventRow> rows, const EventOrder& ord
   double last = rows.front().values[time];
   return std::ranges::count_if(rows, [&](const EventRow& row) {
     const double t = row.values[time], before = std::exchange(last, t);
-    // Out of order only what can't be a pixel.
+    // Times may be out of order only if they have fractions, which pixels cannot have.
     return fits(row, order, time) && (in_time_order ? t >= before : bool(row.have_fractions[time]));
   });
 }

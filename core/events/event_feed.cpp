@@ -13,10 +13,10 @@ std::span<const Event> EventFeed::until(std::int64_t t) {
     next_ = 0;
   }
   const auto left = std::span(events_).subspan(next_);
-  const auto piece =
+  const auto part =
       left.first(static_cast<std::size_t>(std::ranges::upper_bound(left, t, {}, &Event::t) - left.begin()));
-  next_ += piece.size();
-  return piece;
+  next_ += part.size();
+  return part;
 }
 
 }  // namespace evbench

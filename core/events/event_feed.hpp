@@ -11,19 +11,19 @@
 
 namespace evbench {
 
-/// A source's events in pieces that end where one wants them to.
+/// A source's events, one after the other, up to any requested time.
 class EventFeed {
  public:
   explicit EventFeed(std::unique_ptr<EventStream> stream) : stream_(std::move(stream)) {}
 
-  /// The next events with times ≤ t [µs], valid until the next call; a piece of them, never none as long as there are
-  /// more. None: later ones alone are left, or no events at all.
+  /// The next events with times ≤ t [µs], valid until the next call: some of them, and at least one while there are
+  /// any. Empty: all events left are later, or none is left.
   std::span<const Event> until(std::int64_t t);
 
   const EventStream& stream() const { return *stream_; }
-  double seconds() const { return seconds_; }  ///< [s] it took to read them
+  double seconds() const { return seconds_; }  ///< [s] spent reading them
 
-  /// Nothing is left.
+  /// No event is left.
   bool ended() const { return ended_ && next_ == events_.size(); }
 
  private:

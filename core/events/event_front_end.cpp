@@ -23,8 +23,8 @@ std::unique_ptr<EventStream> events_of(const FrontEndContext& context, const std
   return events;
 }
 
-/// Events with these largest coordinates, do they leave a fifth of the sensor free on both sides, and are they many
-/// enough to say so? The two sizes of DAVIS sensors are 0.69 of one another.
+/// Do events with these largest coordinates leave a fifth of the sensor free on both sides, and are they enough to say
+/// so? The two sizes of DAVIS sensors differ by a factor of 0.69.
 bool leave_much_free(int max_x, int max_y, const Camera& camera, std::int64_t events) {
   return events >= 10'000 && max_x + 1 < 0.8 * camera.width && max_y + 1 < 0.8 * camera.height;
 }
@@ -48,7 +48,7 @@ void expect_events(const Source& source, const std::string& place) {
 EventFrontEnd::EventFrontEnd(const FrontEndContext& context, const std::string& name)
     : camera_(context.source.camera()),
       range_(context.source.time_range()),
-      told_(range_.from),
+      delayed_(range_.from),
       clock_(range_.from),
       source_(context.source),
       place_(context.place),
@@ -56,21 +56,21 @@ EventFrontEnd::EventFrontEnd(const FrontEndContext& context, const std::string& 
       silence_is_known_(context.source.silence_is_known()) {}
 
 bool EventFrontEnd::advance(const Horizon& horizon, TrackBatch& batch) {
-  const auto enough = [&] { return horizon.observations > 0 && told_.has(horizon.observations, complete()); };
+  const auto enough = [&] { return horizon.observations > 0 && delayed_.has(horizon.observations, complete()); };
   while (clock_ < horizon.t && !is_over() && !enough()) {
     const double tick = range_.from + static_cast<double>(ticks_ + 1) * kTick;
     follow(std::min(tick, horizon.t));
     if (clock_ < tick && clock_ < range_.to) continue;
     ++ticks_;
-    look();
+    on_tick();
   }
   if (is_over() && events_ == 0) expect_events(source_, place_);
-  told_.tell(is_over() ? clock_ : complete(), horizon.observations, batch);
+  delayed_.release(is_over() ? clock_ : complete(), horizon.observations, batch);
   batch.seen = clock_;
-  return !is_over() || !told_.empty();
+  return !is_over() || !delayed_.empty();
 }
 
-/// All events up to t.
+/// Takes all events up to t.
 void EventFrontEnd::follow(double t) {
   const std::int64_t until = microseconds(t);
   for (auto events = feed_.until(until); !events.empty(); events = feed_.until(until)) {

@@ -11,14 +11,14 @@
 
 namespace evbench {
 
-/// Throws InputError where a recording has no events in the source's time range: it is another one's, or is misread. A
-/// simulated camera may see nothing. Reads up to the first event; `place` is the front-end's, for messages.
+/// Throws InputError if a recording has no events in the source's time range: it is the wrong recording, or is misread.
+/// A simulated camera may see nothing. Reads up to the first event; `place` is the front-end's, for messages.
 void expect_events(const Source& source, const std::string& place);
 
-/// A front-end that goes through its source's events: what those have in common that do. Events come in pieces; at
-/// every tick, 5 ms of data time apart however the run exchanges, and at the end of the time range, it looks after what
-/// it tracks. Where a recording ends before the time range does, so do the data; one without any event in it is an
-/// InputError. Observations may come late and out of order: they are told once none before them can come.
+/// Base of the front-ends that process their source's events. Events come in parts. At every tick, 5 ms of data time
+/// apart whatever the exchange interval of the run, and at the end of the time range, on_tick() maintains the tracks.
+/// Where a recording ends before the time range, so do the data; a recording without any event in the range is an
+/// InputError. Observations may come late and out of order: they are released once none before them can come.
 class EventFrontEnd : public FrontEnd {
  public:
   bool advance(const Horizon& horizon, TrackBatch& batch) final;
@@ -33,19 +33,19 @@ class EventFrontEnd : public FrontEnd {
   /// The next events, in time order.
   virtual void take(std::span<const Event> events) = 0;
 
-  /// All events up to the clock have been taken, and it is time for a tick.
-  virtual void look() = 0;
+  /// Called at every tick, when all events up to clock_ have been taken.
+  virtual void on_tick() = 0;
 
-  /// [s] All observations up to here have been made.
+  /// [s] Time up to which all observations have been made.
   virtual double complete() const = 0;
 
-  /// What is to be remarked of the tracks.
+  /// Remarks on the tracks, for the run's log.
   virtual std::vector<std::string> counts() const = 0;
 
   Camera camera_;
   TimeRange range_;
-  DelayedTracks told_;
-  double clock_;  ///< [s] all events up to here have been taken; while some are, those before them
+  DelayedTracks delayed_;
+  double clock_;  ///< [s] all events up to here have been taken; take() sees the value before its events
 
  private:
   void follow(double t);

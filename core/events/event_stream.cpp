@@ -18,8 +18,8 @@ namespace {
 // So that differences and sums of times can't overflow.
 constexpr std::int64_t kLatestStreamTime = std::int64_t{1} << 61;  // [us]
 
-/// All in time order, none before `from` or beyond any time, all within the sensor? Without branches and in the
-/// narrowest types, so that it is vectorised: this is asked of every event.
+/// Are all in time order, none before `from` or beyond any time, and all within the sensor? It has no branches and the
+/// narrowest types, so that it is vectorised: it checks every event.
 bool are_fine(std::span<const Event> events, std::int64_t from, int width, int height) {
   const auto last_x = static_cast<std::uint32_t>(width - 1), last_y = static_cast<std::uint32_t>(height - 1);
   std::uint64_t back = events.front().t < from;
@@ -48,7 +48,7 @@ EventStream::EventStream(std::unique_ptr<EventReader> reader, std::string path, 
   if (options.from) seek(*options.from);
 }
 
-/// The first event that is one; goes back to the beginning.
+/// Finds the time of the first event; returns to the beginning.
 void EventStream::find_zero() {
   std::vector<Event> first;
   if (read(first)) zero_ = first.front().t;
@@ -69,7 +69,7 @@ void EventStream::seek_reader(std::int64_t t) {
   reader_->seek(t);
 }
 
-/// The reader's next events; ahead_ has those after them.
+/// The reader's next events; ahead_ has those that follow them.
 bool EventStream::next_chunk(std::vector<Event>& events) {
   check_interruption();
   if (ahead_.empty() && !reader_->read(ahead_)) return false;
@@ -106,7 +106,7 @@ std::optional<std::string> EventStream::large_loss() const {
       path_, 100.0 * static_cast<double>(lost) / static_cast<double>(all), lost, all, worst, fault.first, others);
 }
 
-/// Keeps what is in order, in the sensor, and in the range, with times of the stream.
+/// Keeps what is in order, in the sensor and in the range, with times of the stream.
 void EventStream::check(std::vector<Event>& events) {
   if (events.empty()) return;
   const int width = info().width > 0 ? std::min(info().width, width_) : width_;
@@ -141,7 +141,7 @@ void EventStream::note_extent(std::span<const Event> events) {
   }
 }
 
-// Faults are told once a chunk: a recording may be nothing but faults.
+// Faults are reported once a chunk: a recording may consist of nothing but faults.
 
 void EventStream::leave_out_outside(std::vector<Event>& events, int width, int height) {
   std::int64_t outside = 0, beyond = 0;
@@ -178,7 +178,7 @@ void EventStream::leave_out_disorder(std::vector<Event>& events) {
   };
   const auto too_early = [&](const Event& event) { return event.t < newest_; };
   std::erase_if(events, [&](const Event& event) { return too_early(event) && leave_out(event); });
-  // With the events behind them, as it may be the last ones that are wrong.
+  // With the events that follow, as the last ones may be the wrong ones.
   const std::size_t count = events.size();
   if (overlaps_next(events)) std::ranges::remove_copy_if(ahead_, std::back_inserter(events), too_early);
   const std::vector<std::uint32_t> kept = longest_in_order(events);

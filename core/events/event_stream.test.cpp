@@ -91,7 +91,7 @@ TEST_CASE("A time that is far too late at the end of what a reader gives at once
   CHECK(times(events, kLenient) == std::vector<std::int64_t>{100, 110, 110, 150});
 }
 
-TEST_CASE("Zero is the first event that is given, and what is wrong before it is told once") {
+TEST_CASE("Zero is the first event that is given, and faults before it are reported once") {
   const testing::TemporaryFolder folder;
   const std::string path = folder.write("a.txt", "240 180\n10 240 1 1\nno event\n20 1 1 1\n30 2 2 0\n");
   for (const bool rebase : {false, true}) {

@@ -7,13 +7,13 @@
 
 namespace evbench {
 
-/// An event's time [µs] as that of everything else [s].
+/// An event's time [µs] in seconds.
 inline double seconds(std::int64_t t) { return static_cast<double>(t) / 1e6; }
 
-/// The last microsecond of events that is not after t [s], which may be off by a rounding.
+/// The last microsecond that is not after t [s]; t may be off by a rounding error.
 inline std::int64_t microseconds(double t) { return static_cast<std::int64_t>(std::floor(t * 1e6 + 1e-3)); }
 
-/// A whole number of a unit in [µs], rounded. False where it is beyond 64 bits.
+/// Converts a whole number of `unit` to [µs], rounded. False beyond 64 bits.
 inline bool to_microseconds(std::int64_t time, TimeUnit unit, std::int64_t& t) {
   if (unit == TimeUnit::nanoseconds) {
     const std::int64_t part = ((time % 1000) + 1000) % 1000;

@@ -7,8 +7,8 @@
 
 namespace evbench {
 
-/// What is wrong with a recording: in strict mode the first fault is an InputError, otherwise faults are counted, what
-/// they concern is skipped, and a user is told.
+/// What is wrong with a recording. In strict mode the first fault is an InputError. Otherwise faults are counted, the
+/// data they concern is skipped, and the faults are reported to the user.
 class Faults {
  public:
   /// `file`: for messages.
@@ -19,7 +19,7 @@ class Faults {
 
   struct Fault {
     std::int64_t count = 0;
-    std::string first;  ///< where
+    std::string first;  ///< place of the first one
   };
   const std::map<std::string, Fault>& all() const { return faults_; }
   bool empty() const { return faults_.empty(); }

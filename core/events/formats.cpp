@@ -14,7 +14,7 @@
 namespace evbench {
 namespace {
 
-/// Nothing for a folder.
+/// The beginning of a file; empty for a folder.
 std::vector<std::byte> read_head(const std::string& path) {
   constexpr std::size_t kHead = 1 << 16;
   std::vector<std::byte> head;
@@ -33,7 +33,7 @@ const EventFormat* find_format(const std::string& path, std::span<const std::byt
   return nullptr;
 }
 
-/// A name that the recording does not have would be passed over in silence.
+/// Checks the names of topics: a reader would silently ignore one that the recording does not have.
 void check_topics(const std::string& path, const StreamInfo& info, const ReadOptions& options) {
   if (!options.topic.empty() && info.topics.empty()) {
     throw InputError(fmt::format("{}: has no topics or groups, of which {} would be one", path, options.topic));
@@ -47,7 +47,7 @@ void check_topics(const std::string& path, const StreamInfo& info, const ReadOpt
   }
 }
 
-/// Of a regular file or a folder.
+/// Opens a regular file or a folder.
 std::unique_ptr<EventReader> open_recording(const std::string& path, const ReadOptions& options) {
   const auto files = std::make_shared<const RecordingFiles>(path);
   std::string events = files->events();
@@ -109,7 +109,7 @@ std::vector<std::string> files_of_events(const std::string& path) {
   return files;
 }
 
-// Here and not beside its class, which core needs without any format.
+// Here and not with the rest of its class, which core needs without any format.
 EventStream::EventStream(const std::string& path, const StreamOptions& options)
     : EventStream((options.open ? options.open : open_events)(path, options.read), path, options) {}
 

@@ -7,7 +7,7 @@ namespace evbench {
 
 std::vector<std::uint32_t> longest_in_order(std::span<const Event> events) {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> ends;  // of the subsequences of each length that end earliest
+  std::vector<std::uint32_t> ends;  // of the subsequence of each length that ends earliest
   std::vector<std::uint32_t> before(events.size(), kNone);
   for (std::uint32_t i = 0; i < events.size(); ++i) {
     auto place = ends.end();

@@ -16,8 +16,8 @@
 namespace evbench {
 namespace {
 
-/// What events are called in a recording's folder, in the order in which they are taken: evbench's native copy, the
-/// Event-Camera Dataset, EDS, DSEC as it is unpacked in one way or the other, TUM-VIE, M3ED, MVSEC.
+/// Names of events in a recording's folder, in order of precedence: evbench's native copy, the Event-Camera Dataset,
+/// EDS, DSEC as unpacked in two ways, TUM-VIE, M3ED, MVSEC.
 constexpr const char* kEventFiles[] = {"events.evb",     "events.txt",      "events.h5", "events/left/events.h5",
                                        "left/events.h5", "*events_left.h5", "*_data.h5", "*_data.hdf5"};
 
@@ -36,13 +36,13 @@ std::array<std::byte, 8> read_first_bytes(const std::string& path) {
                                path.ends_with('/') ? "name the file" : "unpack it, and name a folder"));
 }
 
-/// With the slash.
+/// With a trailing slash.
 std::string folder_of(const std::string& file) {
   const auto slash = file.rfind('/');
   return slash == std::string::npos ? "" : file.substr(0, slash + 1);
 }
 
-/// Cuts this last part of a folder's path off; false, and nothing is cut, where the last part is another.
+/// Removes this last part of a folder's path; false, and nothing is removed, if the last part is another.
 bool leave(std::string& folder, const std::string& last) {
   const std::string end = last + "/";
   if (folder != end && !folder.ends_with("/" + end)) return false;
@@ -50,7 +50,7 @@ bool leave(std::string& folder, const std::string& last) {
   return true;
 }
 
-/// The folder of the recording that a file of events belongs to, with the slash: that of the file but for
+/// The folder of the recording that a file of events belongs to, with a trailing slash: the folder of the file but for
 /// events/left/events.h5 and left/events.h5.
 std::string recording_of(const std::string& file) {
   std::string folder = folder_of(file);
@@ -60,7 +60,7 @@ std::string recording_of(const std::string& file) {
   return folder;
 }
 
-/// A file in memory that has a path.
+/// A file in memory with a path.
 class MemoryFile {
  public:
   explicit MemoryFile(ByteSource& content) : descriptor_(::memfd_create("evbench", MFD_CLOEXEC)) {

@@ -13,24 +13,24 @@
 
 namespace evbench {
 
-/// A recording's folder, or a .zip of one: which file holds the events, and what lies beside it.
+/// A recording's folder, or a .zip of one: the file with the events, and the files next to it.
 class RecordingFiles {
  public:
-  /// `path`: a folder, a .zip with an events.txt, or a file of events of any name. The folder of DSEC's
-  /// events/left/events.h5 is that with events/ in it, that of left/events.h5 the one with left/ in it. Throws
+  /// `path`: a folder, a .zip with an events.txt, or a file of events of any name. The recording's folder is the one
+  /// with events/ in it for DSEC's events/left/events.h5, and the one with left/ in it for left/events.h5. Throws
   /// InputError for a .zip without an events.txt, or with several.
   explicit RecordingFiles(const std::string& path);
 
-  /// Path of the events, or of the .zip that has them; empty: a folder without. In a folder the first of events.evb (a
-  /// native copy), events.txt, and the names of DSEC, TUM-VIE, M3ED, MVSEC and EDS. Throws InputError for a folder with
-  /// two of the same kind.
+  /// Path of the events, or of the .zip that has them; empty: a folder without events. In a folder it is the first of
+  /// events.evb (a native copy), events.txt, and the names of DSEC, TUM-VIE, M3ED, MVSEC and EDS. Throws InputError for
+  /// a folder with two of the same kind.
   std::string events() const;
-  /// Unpacked, where they are a compressed file.
+  /// The events; unpacked if their file is compressed.
   std::unique_ptr<ByteSource> open_events() const;
 
   /// Names are relative to the folder.
   bool has(const std::string& name) const;
-  /// The names that fit a pattern, sorted: `*` stands for anything but a slash, and only in the last part.
+  /// The names that fit a pattern, sorted: `*` matches anything but a slash, and only in the last part.
   std::vector<std::string> matching(const std::string& pattern) const;
   std::string path(const std::string& name) const;
 
@@ -49,8 +49,8 @@ class RecordingFiles {
 
  private:
   std::optional<ZipArchive> archive_;
-  std::string folder_;  ///< in the archive, or the file system; with the slash
-  std::string events_;  ///< likewise; empty: to be looked for
+  std::string folder_;  ///< in the archive or the file system; ends with a slash
+  std::string events_;  ///< likewise; empty: events() searches for them
 };
 
 }  // namespace evbench

@@ -41,14 +41,14 @@ TimeUnit guess_time_unit(double time, bool have_fractions, const std::string& pl
                   time, to_string(guess), hint));
 }
 
-std::optional<std::string> doubtful_rate(std::int64_t count, double duration, TimeUnit unit) {
+std::optional<std::string> implausible_rate(std::int64_t count, double duration, TimeUnit unit) {
   constexpr double kFewest = 1e3, kUsual = 3e5, kMost = 1e9;  // events a second
   constexpr std::int64_t kEnough = 200;
   const double rate = 1e6 * static_cast<double>(count) / duration;
   if (count < kEnough || duration < 0.0 || (rate >= kFewest && rate <= kMost)) return std::nullopt;
   if (!(duration > 0.0)) return fmt::format("all {} events have the same time: are its digits lost?", count);
   const auto rate_in = [&](TimeUnit other) { return rate * per_second(other) / per_second(unit); };
-  // The one that makes it most plausible; seconds are what has fractions, which nanoseconds don't.
+  // The unit with the most plausible rate. Times with fractions were taken for seconds; nanoseconds have none.
   const auto improbability = [&](TimeUnit other) {
     if (unit == TimeUnit::seconds && other == TimeUnit::nanoseconds) return std::numeric_limits<double>::infinity();
     return std::abs(std::log10(rate_in(other) / kUsual));

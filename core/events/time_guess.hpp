@@ -8,12 +8,12 @@
 
 namespace evbench {
 
-/// The unit of events' times where nothing says it: seconds where they have fractions, otherwise microseconds. Throws
-/// InputError, which asks for --columns, where `time`, one of them, is too late for that unit.
+/// The unit of events' times if nothing states it: seconds if they have fractions, otherwise microseconds. Throws
+/// InputError, which names --columns as the remedy, if `time`, one of them, is too late for that unit.
 TimeUnit guess_time_unit(double time, bool have_fractions, const std::string& place);
 
-/// A sentence where `count` events in `duration` [µs] are fewer or more than event cameras give, which tells in which
-/// other unit they would not be.
-std::optional<std::string> doubtful_rate(std::int64_t count, double duration, TimeUnit unit);
+/// A sentence if `count` events in `duration` [µs] are fewer or more than event cameras produce. It names the unit in
+/// which the rate would be plausible.
+std::optional<std::string> implausible_rate(std::int64_t count, double duration, TimeUnit unit);
 
 }  // namespace evbench

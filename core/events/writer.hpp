@@ -14,7 +14,7 @@
 
 namespace evbench {
 
-/// What a file says beside its events; formats keep what they have a place for.
+/// A recording's content other than events; formats keep what they have a place for.
 struct RecordingHeader {
   int width = 0, height = 0;  ///< sensor [px]; 0: unknown
   std::vector<std::pair<std::string, std::string>> metadata;
@@ -22,23 +22,23 @@ struct RecordingHeader {
   PoseTrajectory ground_truth;  ///< empty: unknown
 };
 
-/// Writes a recording, events given in time order and within the sensor. All functions throw InputError for what the
-/// format can't hold and for a disk that is full.
+/// Writes a recording; events come in time order and within the sensor. All functions throw InputError for what the
+/// format can't hold, and OutputError for a full disk.
 class EventWriter {
  public:
   virtual ~EventWriter() = default;
   virtual void write(std::span<const Event> events) = 0;
-  /// Once, at the end: only then is the file complete.
+  /// Completes the file; to be called once, at the end.
   virtual void finish() = 0;
 };
 
 /// A format that can be written.
 struct WritableFormat {
   std::string name;         ///< e.g. "native"
-  std::string extension;    ///< that stands for it, e.g. ".evb"
+  std::string extension;    ///< that selects it, e.g. ".evb"
   std::string description;  ///< a line
-  PartFile::Needs needs;    ///< of the file that it writes to
-  /// `path`: to write to; `name`: what messages call it.
+  PartFile::Needs needs;    ///< requirements on the file that it writes to
+  /// `path`: to write to; `name`: the file's, for messages.
   std::unique_ptr<EventWriter> (*make)(const std::string& path, const std::string& name, const RecordingHeader& header);
 };
 

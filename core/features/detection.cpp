@@ -58,13 +58,13 @@ void DetectionOptions::declare(OptionSet& set) {
   set.add("method", method, {"corners", "histogram"},
           "corners: of the image of the newest events (Shi and Tomasi 1994); histogram: where most of them are (Liu et "
           "al. 2022)");
-  set.add("events", events, "newest events that are looked at").range(100, 10'000'000);
+  set.add("events", events, "number of newest events in that image").range(100, 10'000'000);
   set.add("interval", interval, "time between two detections, where features are missing [s]").above(0.0);
-  set.add("distance", distance, "new features keep this far from one another and from those that are tracked [px]")
+  set.add("distance", distance, "smallest distance of new features from one another and from tracked ones [px]")
       .range(1.0, 1000.0);
-  set.add("quality", quality, "a feature is at least this good, as a share of the best one's corner measure, or count")
+  set.add("quality", quality, "smallest quality of a feature, as a share of the best one's corner measure or count")
       .range(0.0, 1.0);
-  set.add("border", border, "and this far from the image's border [px]").range(0.0, 1000.0);
+  set.add("border", border, "smallest distance of a feature from the image's border [px]").range(0.0, 1000.0);
 }
 
 std::vector<Vector2> detect_features(const DetectionOptions& options, std::span<const Event> events, int width,

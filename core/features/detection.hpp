@@ -20,9 +20,9 @@ struct DetectionOptions {
   void declare(OptionSet& set);
 };
 
-/// At most `count` places worth tracking [px], the best ones first, in the image of these events: pixels count their
-/// events, polarity ignored, smoothed. They keep away from `taken`, and from one another, and only a share of all is in
-/// one part of the image. The sensor's size in pixels.
+/// At most `count` locations worth tracking [px], best first, in the image of these events. The image counts the events
+/// per pixel, polarity ignored, and is smoothed. Features keep away from `taken` and from one another, and each part of
+/// the image has a limited share of them. `width`, `height`: the sensor's [px].
 std::vector<Vector2> detect_features(const DetectionOptions& options, std::span<const Event> events, int width,
                                      int height, std::span<const Vector2> taken, std::size_t count);
 

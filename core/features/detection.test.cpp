@@ -128,10 +128,10 @@ TEST_CASE("The best features come first, and fewer are the first ones of more") 
   }
 }
 
-// A pixel that fires all the time is taken for a feature, the only one or the second best: its count is held down
-// (kMost), but a point is a corner. Its tracker ends as starved, as it does not move with the image; hot pixels are for
-// a filter of events (bench/events_to_trajectory.test.cpp has twenty, which are borne).
-TEST_CASE("A hot pixel is no better a feature than one that fired five times, and never the best beside a corner") {
+// A pixel that fires all the time is taken for a feature, the only one or the second best: its count is limited
+// (kMost), but a point is a corner. Its tracker ends as starved, as it does not move with the image. Hot pixels need a
+// filter of events (bench/events_to_trajectory.test.cpp has twenty, which are tolerated).
+TEST_CASE("A hot pixel is no better a feature than one that fired five times, and never the best next to a corner") {
   for (const auto method : kMethods) {
     std::vector<Event> once, often;
     for (int i = 0; i < 5; ++i) once.push_back({i, 50, 120, true});

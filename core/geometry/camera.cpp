@@ -99,7 +99,7 @@ std::optional<Vector2> Camera::undistort(const Vector2& raw) const {
   constexpr int kMaxIterations = 30;
   for (int i = 0; i < kMaxIterations; ++i) {
     const Bent bent = bend(distortion, n, coefficients);
-    // Beyond the turning point of the polynomial the model folds back: no inverse there.
+    // Beyond the maximum of the polynomial the model folds back and has no inverse.
     if (!(bent.jacobian.determinant() > 1e-6)) return std::nullopt;
     const Vector2 step = bent.jacobian.inverse() * (target - bent.point);
     n += step;

@@ -20,7 +20,7 @@ struct PinholeCamera {
   Vector3 ray(const Vector2& pixel) const { return {(pixel.x() - cx) / fx, (pixel.y() - cy) / fy, 1.0}; }
 };
 
-/// How a lens bends rays.
+/// Model of the lens distortion.
 enum class DistortionModel {
   none,
   radial_tangential,  ///< k1 k2 p1 p2 k3 (OpenCV's order of the first five)
@@ -30,7 +30,7 @@ enum class DistortionModel {
 DistortionModel parse_distortion_model(const std::string& name);  ///< throws InputError with the known names
 std::string to_string(DistortionModel model);
 
-/// A camera as calibrated: pinhole, lens, sensor size.
+/// A calibrated camera: pinhole, lens distortion, sensor size.
 struct Camera {
   PinholeCamera pinhole;
   DistortionModel distortion = DistortionModel::none;
@@ -40,8 +40,8 @@ struct Camera {
   /// Raw (distorted) pixel of a point in camera coordinates, z > 0.
   Vector2 project(const Vector3& point) const;
 
-  /// The ideal pinhole's pixel for a raw one. None where the lens model cannot be inverted (far outside its valid
-  /// range). Inverse by Newton's method to 1e-12 in normalised coordinates.
+  /// The ideal pinhole's pixel of a raw one, by Newton's method to 1e-12 in normalised coordinates. None where the lens
+  /// model cannot be inverted (far outside its valid range).
   std::optional<Vector2> undistort(const Vector2& raw) const;
 
   /// Is the pixel on the sensor, at least `margin` pixels from its border?
@@ -51,7 +51,7 @@ struct Camera {
   }
 };
 
-/// Throws InputError, with the place of the option, where a border [px] leaves nothing of the image.
+/// Throws InputError with the place of the option if a border [px] leaves nothing of the image.
 void check_border(double border, const Camera& camera, const std::string& place);
 
 }  // namespace evbench

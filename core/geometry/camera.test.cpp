@@ -37,16 +37,16 @@ TEST_CASE("Undistortion inverts distortion over the whole image") {
   }
 }
 
-TEST_CASE("A lens bends nothing at its centre and outer pixels most") {
+TEST_CASE("The lens distortion is zero at the centre and largest at the border") {
   const Camera camera = davis(DistortionModel::radial_tangential);
   const Vector2 centre(camera.pinhole.cx, camera.pinhole.cy);
   CHECK((*camera.undistort(centre) - centre).norm() < 1e-9);
   CHECK((*camera.undistort({0.0, 0.0}) - Vector2(0.0, 0.0)).norm() > 5.0);
 }
 
-TEST_CASE("A pixel that no ray of the lens model reaches has no undistorted place") {
+TEST_CASE("A pixel outside the range of the lens model has no undistorted pixel") {
   Camera folding = davis(DistortionModel::radial_tangential);
-  folding.coefficients << -0.3, 0.0, 0.0, 0.0, 0.0;  // r (1 - 0.3 r²) grows no more beyond r = 1.05
+  folding.coefficients << -0.3, 0.0, 0.0, 0.0, 0.0;  // r (1 - 0.3 r²) decreases beyond r = 1.05
   CHECK_FALSE(folding.undistort({500.0, 500.0}));
   CHECK_FALSE(davis(DistortionModel::equidistant).undistort({5000.0, 5000.0}));
 }
@@ -67,7 +67,7 @@ TEST_CASE("The Jacobian of the projection equals central differences") {
   }
 }
 
-TEST_CASE("Names of distortion models are read and written, unknown ones refused") {
+TEST_CASE("Names of distortion models are read and written, and unknown ones are refused") {
   for (const char* name : {"none", "radial_tangential", "equidistant"}) {
     CHECK(to_string(parse_distortion_model(name)) == name);
   }

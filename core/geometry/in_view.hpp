@@ -6,10 +6,10 @@
 
 namespace evbench {
 
-/// A reach within which lenses may see, which see farther than pinholes.
+/// A reach for in_view() that covers the larger field of view of distorted lenses.
 inline constexpr double kLensReach = 1.5;
 
-/// Is the pixel, along each axis, no farther from the principal point than `reach` times the image's border is?
+/// Is the pixel, along each axis, at most `reach` times as far from the principal point as the image border?
 inline bool in_view(const PinholeCamera& camera, const Vector2& pixel, double reach) {
   return std::abs(pixel.x() - camera.cx) <= reach * camera.cx && std::abs(pixel.y() - camera.cy) <= reach * camera.cy;
 }

@@ -18,7 +18,7 @@ Vector6 between(const SE3& a, const SE3& b) { return se3::log(a.inverse() * b); 
 
 }  // namespace
 
-TEST_CASE("Series and closed form of the Lie coefficients meet where one takes over from the other") {
+TEST_CASE("Series and closed form of the Lie coefficients agree where they switch") {
   for (const auto& function : {coefficient_b, coefficient_c, inverse_jacobian_coefficient}) {
     const CoefficientJet below = function(1.0 - 1e-12);
     const CoefficientJet above = function(1.0 + 1e-12);
@@ -61,7 +61,7 @@ TEST_CASE("SE(3) log inverts exp from zero to pi") {
   }
 }
 
-TEST_CASE("SE(3) adjoint carries an increment from the right to the left") {
+TEST_CASE("SE(3) adjoint transforms a right increment to a left one") {
   RandomTangents random;
   for (int i = 0; i < kCases; ++i) {
     const SE3 T = random.pose();

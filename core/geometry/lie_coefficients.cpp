@@ -7,7 +7,7 @@
 namespace evbench {
 namespace {
 
-constexpr double kSeriesBelow = 1.0;  // θ² up to which the series has all digits with the terms below
+constexpr double kSeriesBelow = 1.0;  // θ² up to which the series below is exact to rounding
 
 template <std::size_t N>
 CoefficientJet series(const std::array<double, N>& coefficients, double z) {

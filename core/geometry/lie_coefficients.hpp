@@ -9,10 +9,10 @@ struct CoefficientJet {
   double dd = 0.0;  ///< second derivative with respect to z
 };
 
-/// The analytic functions of z = θ² from which exp, log and the Jacobians of SO(3) and SE(3) are put together:
+/// The analytic functions of z = θ² in exp, log and the Jacobians of SO(3) and SE(3):
 ///   b(z) = (1 − cos θ)/θ²,  c(z) = (θ − sin θ)/θ³  (left Jacobian:  I + b φ^ + c φ^²)
 ///   h(z) = (1 − (θ/2) cot(θ/2))/θ²                 (its inverse:    I − φ^/2 + h φ^²)
-/// Power series below θ = 1, closed forms with derivative recursions above: every digit near zero, and no
+/// Power series below θ = 1, closed forms with derivative recursions above: exact to rounding near zero, without a
 /// special case at π. `inverse_jacobian_coefficient` has a pole at θ = 2π.
 CoefficientJet coefficient_b(double z);
 CoefficientJet coefficient_c(double z);

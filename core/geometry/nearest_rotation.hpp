@@ -4,12 +4,12 @@
 
 namespace evbench {
 
-/// The rotation R with the largest tr(Rᵀ M), which is also the nearest to M (Frobenius norm), and the singular value
-/// decomposition that it comes from. Umeyama 1991.
+/// The rotation R that maximises tr(Rᵀ M), which is also the nearest to M (Frobenius norm), with parts of the singular
+/// value decomposition of M. Umeyama 1991.
 struct NearestRotation {
   Matrix3 R;
   double trace = 0.0;             ///< tr(Rᵀ M)
-  Vector3 values = {0, 0, 0};     ///< singular values of M, falling
+  Vector3 values = {0, 0, 0};     ///< singular values of M, in decreasing order
   Vector3 direction = {0, 0, 1};  ///< right singular vector of the largest
 };
 

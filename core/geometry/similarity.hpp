@@ -4,7 +4,7 @@
 
 namespace evbench {
 
-/// A similarity transformation that carries one world to another: p' = R (scale p) + t, R' = R R_p.
+/// A similarity transformation between two world frames: p' = R (scale p) + t, R' = R R_p.
 struct Similarity {
   double scale = 1.0;
   SE3 T;

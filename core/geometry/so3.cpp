@@ -15,7 +15,7 @@ Matrix3 hat(const Vector3& phi) {
 Eigen::Quaterniond exp(const Vector3& phi) {
   const double theta_squared = phi.squaredNorm();
   const double theta = std::sqrt(theta_squared);
-  // sin(θ/2)/θ; its series is exact to rounding where the quotient is not defined.
+  // sin(θ/2)/θ; near zero by its series, exact to rounding.
   const double k = theta < 1e-4 ? 0.5 - theta_squared / 48.0 : std::sin(0.5 * theta) / theta;
   return {std::cos(0.5 * theta), k * phi.x(), k * phi.y(), k * phi.z()};
 }
@@ -25,7 +25,7 @@ Vector3 log(const Eigen::Quaterniond& q) {
   const Vector3 v = sign * q.vec();
   const double w = sign * q.w();
   const double s = v.norm();
-  // 2 atan2(s, w)/s; below the bound its series in s/w.
+  // 2 atan2(s, w)/s; below the bound by its series in s/w.
   const double k = s < 1e-6 ? 2.0 / w - 2.0 * s * s / (3.0 * w * w * w) : 2.0 * std::atan2(s, w) / s;
   return k * v;
 }

@@ -6,7 +6,7 @@
 
 namespace evbench {
 
-/// Two unit vectors across a unit vector and across each other, which span the plane that touches the sphere there.
+/// Two orthonormal vectors orthogonal to a unit vector: a basis of the tangent plane of the unit sphere there.
 inline Eigen::Matrix<double, 3, 2> tangent_plane(const Vector3& direction) {
   Eigen::Matrix<double, 3, 2> result;
   result.col(0) = direction.unitOrthogonal();

@@ -16,6 +16,6 @@ using Matrix12 = Eigen::Matrix<double, 12, 12>;
 using Matrix23 = Eigen::Matrix<double, 2, 3>;
 using Matrix26 = Eigen::Matrix<double, 2, 6>;
 
-constexpr double kDegrees = 180.0 / M_PI;  ///< in a radian
+constexpr double kDegrees = 180.0 / M_PI;  ///< degrees per radian
 
 }  // namespace evbench

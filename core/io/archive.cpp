@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMostEntries = 1'000'000;
 
-/// While one lives, this thread's characters are UTF-8: libarchive converts names to those of the thread's locale.
+/// Sets this thread's locale to UTF-8 for its lifetime: libarchive converts names to the encoding of the locale.
 class Utf8 {
  public:
   Utf8() {
@@ -52,7 +52,7 @@ bool Archive::next() {
   archive_entry* entry = nullptr;
   const int status = archive_read_next_header(archive_.get(), &entry);
   if (status == ARCHIVE_EOF) return false;
-  if (status < ARCHIVE_WARN) fail();  // a warning is of a name that this locale has no characters for
+  if (status < ARCHIVE_WARN) fail();  // a warning means that a name has no representation in this locale
   if (++entries_ > kMostEntries) throw BadArchive(fmt::format("{}: has more than {} entries", path_, kMostEntries));
   const char* name = archive_entry_pathname_utf8(entry);
   if (name == nullptr) name = archive_entry_pathname(entry);

@@ -11,16 +11,15 @@ struct archive;  // libarchive's
 
 namespace evbench {
 
-/// What is wrong with an archive itself, not with the disk that it is unpacked to.
+/// An error of an archive itself, not of the disk that it is unpacked to.
 class BadArchive : public InputError {
  public:
   using InputError::InputError;
 };
 
-/// The entries of an archive (zip, tar, tar.gz), one after the other; a compressed file (gzip, bzip2, xz, zstd) is one
-/// that has a single entry. Their names are UTF-8, whatever the user's locale
-/// is. All functions throw BadArchive, naming the archive, for one that is damaged, for an entry without a name, and
-/// for more than a million entries.
+/// Reads the entries of an archive (zip, tar, tar.gz) one after the other. A compressed file (gzip, bzip2, xz, zstd) is
+/// an archive with a single entry. Names of entries are UTF-8, independent of the user's locale. All functions throw
+/// BadArchive with the archive's path for a damaged archive, an entry without a name, and more than a million entries.
 class Archive {
  public:
   enum class Kind { file, folder, other };  ///< other: a link or device
@@ -29,12 +28,12 @@ class Archive {
 
   explicit Archive(std::string path, Form form = Form::archive);
 
-  /// Goes to the first entry, then to the next one; false at the end.
+  /// Advances to the first or next entry; false at the end.
   bool next();
   const std::string& name() const { return name_; }
   Kind kind() const { return kind_; }
 
-  /// The next bytes of the current file; 0 at its end.
+  /// Reads the next bytes of the current file; returns their number, 0 at its end.
   std::size_t read(std::span<std::byte> out);
 
  private:

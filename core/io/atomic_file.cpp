@@ -20,8 +20,8 @@ namespace evbench {
 namespace fs = std::filesystem;
 namespace {
 
-/// Writes a file, then does `flush` with its descriptor, which returns an error of errno or 0, and closes it. Errors
-/// name the file `shown`.
+/// Writes a file, calls `flush` with its descriptor (returns an errno or 0), and closes it. Errors name the file
+/// `shown`.
 template <class Flush>
 void write_whole(const std::string& path, std::string_view content, const std::string& shown, Flush flush) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
@@ -32,18 +32,19 @@ void write_whole(const std::string& path, std::string_view content, const std::s
   if (error != 0) fail_to_write(shown, error);
 }
 
-/// Content and name to the disk. Returns an error of errno, 0 where it is fine or means nothing (a pipe, a device).
+/// Flushes content and name to the disk. Returns an errno; 0 on success and for pipes and devices.
 int flush_durably(int file) { return ::fsync(file) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno; }
 
-/// The content to the disk, so that "disk full" is noticed, and is there before the folder has its name: file systems
-/// keep the order of names. Not the journal: waiting for it takes ten times as long, and only a power cut could tell.
+/// Flushes the content to the disk, so that "disk full" is noticed and the content is there before the folder gets its
+/// name (file systems keep the order of renames). Does not wait for the journal: that takes ten times as long and
+/// matters only after a power cut.
 int flush_data(int file) {
   constexpr unsigned kAll = SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER;
   const bool full = ::sync_file_range(file, 0, 0, kAll) != 0 && (errno == ENOSPC || errno == EDQUOT || errno == EIO);
   return full ? errno : 0;
 }
 
-/// Opens and locks a file; -1 when another process has it locked. Errors name the folder `shown`.
+/// Opens and locks a file; -1 if another process has locked it. Errors name the folder `shown`.
 int open_locked(const std::string& path, const std::string& shown) {
   while (true) {
     const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
@@ -56,7 +57,7 @@ int open_locked(const std::string& path, const std::string& shown) {
     if (same) return file;
     ::close(file);
     if (!locked) return -1;
-    // The holder removed the file after it was opened here: what is locked now has no name.
+    // The previous holder removed the file after it was opened here: the locked file has no name any more.
   }
 }
 
@@ -70,7 +71,7 @@ void write_file(const std::string& path, std::string_view content) {
 
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& read, bool force) {
   std::error_code error;
-  std::vector<std::string> files;  // of them, those that are there or are to be made
+  std::vector<std::string> files;  // those that exist or will be written
   for (const std::string& path : outputs) {
     if (path.empty()) continue;
     if (path == "-") throw InputError("-: expected a file's name; the standard output is /dev/stdout");
@@ -78,11 +79,11 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
     if (fs::exists(path, error) && !is_file && !is_folder) continue;
     for (const std::string& other : read) {
       if (!fs::equivalent(path, other, error)) continue;
-      throw InputError(fmt::format("{}: is what is read; expected another name for what is written", path));
+      throw InputError(fmt::format("{}: is also an input; expected another name for the output", path));
     }
     const std::string place = fs::weakly_canonical(fs::absolute(path, error), error).string();
     if (std::ranges::find(files, place) != files.end()) {
-      throw InputError(fmt::format("{}: is to be written twice; expected a name for each output", path));
+      throw InputError(fmt::format("{}: is given as two outputs; expected a name for each output", path));
     }
     files.push_back(place);
     const bool holds_something = is_file || (is_folder && !fs::is_empty(path, error));
@@ -105,7 +106,7 @@ AtomicFolder::AtomicFolder(const std::string& path)
     throw FolderTaken(fmt::format("{}: another run is writing to this folder; wait for it, or write elsewhere", path));
   }
   std::error_code removal;
-  fs::remove_all(part_, removal);  // what a killed run left
+  fs::remove_all(part_, removal);  // leftovers of a killed run
   if (fs::exists(target_, error)) {
     fs::remove_all(old_, removal);
   } else {
@@ -129,10 +130,10 @@ bool AtomicFolder::is_taken(const std::string& path) {
 
 void AtomicFolder::clear_leftovers(const std::string& path) {
   std::error_code error;
-  if (!fs::exists(follow_links(path) + ".evbench.lock", error)) return;  // it goes last
+  if (!fs::exists(follow_links(path) + ".evbench.lock", error)) return;  // the lock is removed last
   try {
     const AtomicFolder folder(path);
-  } catch (const FolderTaken&) {  // whose writer lives
+  } catch (const FolderTaken&) {  // its writer is still running
   }
 }
 
@@ -162,7 +163,7 @@ void AtomicFolder::commit() {
   fs::rename(part_, target_, error);
   if (error) {
     std::error_code ignored;
-    fs::rename(old_, target_, ignored);  // what was there before stays
+    fs::rename(old_, target_, ignored);  // the previous content stays
     throw OutputError(fmt::format("{}: can't be written: {}", path_, error.message()));
   }
   fs::remove_all(old_, error);

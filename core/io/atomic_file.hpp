@@ -8,26 +8,27 @@
 
 namespace evbench {
 
-/// Writes a whole file as a PartFile: readers see the old content or the new, never a half; a pipe or device is written
-/// to. Throws InputError (folder missing, no permission, disk full) and leaves nothing behind.
+/// Writes a whole file atomically as a PartFile: readers see the old or the new content, never a part. Pipes and
+/// devices are written to directly. Throws InputError (folder missing, no permission, disk full) and then leaves
+/// nothing behind.
 void write_file(const std::string& path, std::string_view content);
 
-/// What a command asks before it works: throws InputError for an output, a file or a folder of files, that is there
-/// already, unless it is told to replace it; for one that is among the files that are read, in any case; and for two
-/// that are the same. Empty names are none; empty folders, pipes and devices hold nothing that could be lost.
+/// Checks the outputs of a command before it starts. Throws InputError for an output (a file or a non-empty folder)
+/// that exists, unless `force` is set; for an output that is also read; and for two equal outputs. Empty names are
+/// ignored; empty folders, pipes and devices may exist.
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& read, bool force);
 
-/// Another writer has the folder.
+/// Another process is writing to the folder.
 class FolderTaken : public InputError {
  public:
   using InputError::InputError;
 };
 
-/// A folder that appears under its name only when it is complete: files are written into a temporary folder beside it
-/// (name + ".evbench.part"), commit() renames it, replacing an older folder of that name, or the one that a symbolic
-/// link of that name leads to. Locked while it exists: a second writer of the same folder gets FolderTaken. The lock
-/// ends with the process and those that it forks, however they end. Not committed, it disappears with the object; what
-/// a killed program left, the next writer removes. After a power cut it is there whole or not at all.
+/// A folder that appears under its name only when it is complete. Files are written into a temporary folder next to it
+/// (name + ".evbench.part"); commit() renames it and replaces an older folder of that name, or the target of a symbolic
+/// link of that name. The folder is locked: a second writer gets FolderTaken. The lock ends with the process and its
+/// forks, however they end. Without commit() the temporary folder is removed with the object; leftovers of a killed
+/// program are removed by the next writer. After a power cut the folder is complete or does not exist.
 class AtomicFolder {
  public:
   explicit AtomicFolder(const std::string& path);
@@ -35,19 +36,19 @@ class AtomicFolder {
   AtomicFolder(const AtomicFolder&) = delete;
   AtomicFolder& operator=(const AtomicFolder&) = delete;
 
-  /// Is somebody writing to this folder, this process included?
+  /// Is any process, including this one, writing to this folder?
   static bool is_taken(const std::string& path);
 
-  /// Clears away what a killed writer of this folder left beside it, and puts back what that was replacing.
+  /// Removes the leftovers of a killed writer of this folder, and restores the folder that it was replacing.
   static void clear_leftovers(const std::string& path);
 
-  /// Writes a file of this name into the folder; throws InputError when it can't.
+  /// Writes a file into the folder; throws InputError on failure.
   void write(const std::string& name, std::string_view content) const;
 
-  /// The temporary folder, for files that are too big for write().
+  /// The temporary folder, for files too large for write().
   const std::string& part() const { return part_; }
 
-  /// Removes what has been written so far.
+  /// Removes everything written so far.
   void clear() const;
 
   void commit();

@@ -18,7 +18,7 @@ std::size_t count_entries(const std::string& folder) {
 
 }  // namespace
 
-TEST_CASE("A file is written whole, replaces an older one, and leaves nothing else behind") {
+TEST_CASE("A file is written completely, replaces an older one, and leaves nothing else behind") {
   const testing::TemporaryFolder folder;
   write_file(folder.file("a"), "first");
   write_file(folder.file("a"), "second");
@@ -35,7 +35,7 @@ TEST_CASE("A file that can't be written is an error that names it, and leaves no
   CHECK(count_entries(folder.path()) == 0);
 }
 
-TEST_CASE("A file that is there is not replaced unless that is asked for, one that is read never") {
+TEST_CASE("An existing file is replaced only on request, and a file that is read never") {
   const testing::TemporaryFolder folder;
   const std::string path = folder.write("a", "mine");
   std::filesystem::create_symlink("a", folder.file("link"));
@@ -45,9 +45,9 @@ TEST_CASE("A file that is there is not replaced unless that is asked for, one th
   CHECK_NOTHROW(check_outputs({path, ""}, {}, true));
   CHECK_NOTHROW(check_outputs({folder.file("b")}, {path}, false));
   CHECK_NOTHROW(check_outputs({"/dev/stdout", "/dev/stdout"}, {}, false));
-  CHECK_THROWS_WITH(check_outputs({folder.file("link")}, {path}, true), ContainsSubstring("link: is what is read"));
+  CHECK_THROWS_WITH(check_outputs({folder.file("link")}, {path}, true), ContainsSubstring("link: is also an input"));
   CHECK_THROWS_WITH(check_outputs({folder.file("b"), folder.file("./b")}, {}, true),
-                    ContainsSubstring("is to be written twice"));
+                    ContainsSubstring("is given as two outputs"));
   CHECK_THROWS_WITH(check_outputs({"-"}, {}, true), ContainsSubstring("/dev/stdout"));
   CHECK(read_file(path) == "mine");
 }
@@ -83,7 +83,7 @@ TEST_CASE("A folder that is not committed leaves what was there before") {
   CHECK(count_entries(folder.path()) == 1);
 }
 
-TEST_CASE("A folder takes the place of what a link leads to, and leaves alone what others have beside it") {
+TEST_CASE("A folder replaces the target of a link and leaves other files next to it unchanged") {
   const testing::TemporaryFolder folder;
   std::filesystem::create_directories(folder.file("disk/run"));
   std::filesystem::create_symlink("disk/run", folder.file("run"));
@@ -100,7 +100,7 @@ TEST_CASE("A folder takes the place of what a link leads to, and leaves alone wh
   CHECK(count_entries(folder.file("disk")) == 2);
 }
 
-TEST_CASE("A folder that is cleared holds what is written afterwards alone") {
+TEST_CASE("A cleared folder contains only what is written afterwards") {
   const testing::TemporaryFolder folder;
   AtomicFolder run(folder.file("run"));
   run.write("a", "half");
@@ -124,7 +124,7 @@ TEST_CASE("A folder has one writer at a time") {
   CHECK_NOTHROW(AtomicFolder(folder.file("run")));
 }
 
-TEST_CASE("What a killed writer left is cleared away, and what it was replacing comes back") {
+TEST_CASE("Leftovers of a killed writer are removed, and the folder that it was replacing is restored") {
   const testing::TemporaryFolder folder;
   std::filesystem::create_directory(folder.file("run.evbench.part"));
   folder.write("run.evbench.part/half", "x");

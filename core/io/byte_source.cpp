@@ -13,7 +13,7 @@
 
 namespace evbench {
 
-// O_NONBLOCK: a pipe is refused at once, not when it has a writer.
+// O_NONBLOCK: refuse a pipe at once instead of waiting for a writer.
 FileBytes::FileBytes(std::string path)
     : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   if (descriptor_ < 0) throw InputError(fmt::format("{}: {}", path_, std::strerror(errno)));

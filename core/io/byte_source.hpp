@@ -7,19 +7,19 @@
 
 namespace evbench {
 
-/// Bytes to be decoded: a file, or memory in tests.
+/// Bytes to decode: a file, or memory in tests.
 class ByteSource {
  public:
   virtual ~ByteSource() = default;
-  /// [bytes]; 0 where nobody knows before the end is read (a file in a .zip).
+  /// [bytes]; 0 if unknown before the end is read (a file in a .zip).
   virtual std::uint64_t size() const = 0;
-  /// Reads from `offset` on, as many as there are; returns their number, 0 from the end on.
+  /// Reads the available bytes from `offset` on; returns their number, 0 at and beyond the end.
   virtual std::size_t read(std::uint64_t offset, std::span<std::byte> out) = 0;
-  /// For messages.
+  /// Name for messages.
   virtual const std::string& name() const = 0;
 };
 
-/// Throws InputError when it is no regular file that can be read.
+/// The bytes of a file. Throws InputError unless it is a readable regular file.
 class FileBytes : public ByteSource {
  public:
   explicit FileBytes(std::string path);
@@ -36,10 +36,11 @@ class FileBytes : public ByteSource {
   std::uint64_t size_ = 0;
 };
 
-/// A whole file. Throws InputError for one of more than `most` bytes, and says what was expected, e.g. "a calibration".
+/// Reads a whole file. Throws InputError if it has more than `most` bytes; `what` is the expected content in the
+/// message, e.g. "a calibration".
 std::string read_small_file(const std::string& path, std::uint64_t most, const std::string& what);
 
-/// Bytes that somebody else keeps.
+/// Bytes in memory, which must outlive the object.
 class MemoryBytes : public ByteSource {
  public:
   MemoryBytes(std::span<const std::byte> bytes, std::string name) : bytes_(bytes), name_(std::move(name)) {}

@@ -19,7 +19,8 @@ std::string read_text(const std::string& path) {
   return read_small_file(path, kMost, "a calibration");
 }
 
-/// A scalar is a number where it looks like one. Aliases are written out: `most` values in all, and 100 levels.
+/// Converts YAML to JSON. A scalar that looks like a number is one. Aliases are expanded; at most `most` values in all
+/// and 100 levels.
 Json to_json(const YAML::Node& node, std::size_t& most, int depth = 0) {
   constexpr int kDeepest = 100;
   if (most-- == 0 || depth > kDeepest)

@@ -7,8 +7,8 @@
 
 namespace evbench {
 
-/// A value in a JSON or YAML file that others wrote, and where it stands. What is missing, or of another kind than
-/// expected, is an InputError that names file and keys: "cam_to_cam.yaml: intrinsics: has no cam0; ...".
+/// A value in a JSON or YAML file from outside, with its place. Missing values and values of the wrong type throw an
+/// InputError with file and keys: "cam_to_cam.yaml: intrinsics: has no cam0; ...".
 class Field {
  public:
   static Field read_json(const std::string& path);
@@ -19,7 +19,7 @@ class Field {
   Field at(std::size_t index) const;
 
   bool is_map() const { return value_->is_object(); }
-  std::vector<std::string> keys() const;  ///< of a map; otherwise none
+  std::vector<std::string> keys() const;  ///< of a map; else empty
 
   double number() const;                                 ///< finite
   std::vector<double> numbers() const;                   ///< a list

@@ -9,7 +9,7 @@ struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// A file that is closed with the handle; what could not be written is then not said: std::fflush() it before.
+/// A file that is closed with the handle. Closing does not report write errors: call std::fflush() before.
 using FileHandle = std::unique_ptr<std::FILE, CloseFile>;
 
 }  // namespace evbench

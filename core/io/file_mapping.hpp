@@ -6,12 +6,12 @@
 
 namespace evbench {
 
-/// A file's bytes in memory, read by the kernel as they are touched. The file may be replaced by a rename while it is
-/// mapped, but not be shortened: the kernel ends a program that touches what is gone (SIGBUS). expect_whole() before a
-/// part is read makes that an error, unless the file is shortened in that very moment.
+/// A memory-mapped file. The file may be replaced by a rename while it is mapped but must not be shortened: reading the
+/// missing part ends the program (SIGBUS). Calling expect_whole() before reading a part turns that into an error,
+/// unless the file is shortened at that very moment.
 class FileMapping {
  public:
-  /// Throws InputError when it is no regular file that can be read.
+  /// Throws InputError unless it is a readable regular file.
   explicit FileMapping(const std::string& path);
   ~FileMapping();
   FileMapping(const FileMapping&) = delete;
@@ -22,7 +22,7 @@ class FileMapping {
   /// Throws InputError when the file has been shortened since it was mapped. Takes less than a microsecond.
   void expect_whole() const;
 
-  /// These bytes are done with: their pages no longer count as this program's memory. They can be read again.
+  /// Releases the pages of these bytes, so that they no longer count as this program's memory. They can be read again.
   void forget(std::size_t offset, std::size_t size) const;
 
  private:

@@ -18,9 +18,8 @@ int open_to_read(const std::string& path) {
   if (!is_input && (::stat(path.c_str(), &status) != 0 || !S_ISFIFO(status.st_mode))) {
     return ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   }
-  const int file = is_input
-                       ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
-                       : ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // at once, also without a writer
+  const int file = is_input ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                            : ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // does not wait for a writer
   if (file < 0) return -1;
   pollfd ready = {file, POLLIN, 0};
   int found = ::poll(&ready, 1, kPatience);

@@ -4,9 +4,8 @@
 
 namespace evbench {
 
-/// Opens a file to be read, "-" being the standard input; -1 with errno where that fails. A pipe is waited for until
-/// there is something in it, with a word on the standard error after a second: nobody should sit before a silent
-/// terminal. A signal ends the waiting (EINTR).
+/// Opens a file for reading; "-" is the standard input. Returns -1 with errno on failure. Waits until a pipe has data;
+/// after a second a message on the standard error says so. A signal ends the waiting (EINTR).
 int open_to_read(const std::string& path);
 
 }  // namespace evbench

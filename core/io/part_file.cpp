@@ -25,7 +25,7 @@ std::string folder_of(const std::string& path) {
 
 }  // namespace
 
-/// Makes the name beside the file by `succeeds`, which must fail with EEXIST where the name is taken.
+/// Creates a temporary name next to the file by `succeeds`, which must fail with EEXIST if the name is taken.
 template <class Try>
 void PartFile::take_name(Try succeeds) {
   const std::string name = fmt::format("{}.part{}", target_, ::getpid());
@@ -71,9 +71,9 @@ PartFile::~PartFile() {
 
 void PartFile::commit() {
   if (descriptor_ < 0) return;
-  // A full disk is noticed here and not lost.
+  // A full disk is reported here.
   if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) fail_to_write(path_, errno);
-  if (part_.empty()) {  // linkat() does not replace: by way of a name beside it
+  if (part_.empty()) {  // linkat() does not replace a file, so a temporary name is needed
     take_name([&](const std::string& name) {
       return ::linkat(AT_FDCWD, writable_path_.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
     });

@@ -4,33 +4,32 @@
 
 namespace evbench {
 
-/// A file that appears under its name only when it is complete, whoever writes it and however that ends: until commit()
-/// it has no name in its folder (Linux' O_TMPFILE), so that nothing is left even of a program that is killed. Where the
-/// file system can't do that, it has a name beside `path` that nothing else has (`path`.part with this process' number)
-/// and disappears with the object. A symbolic link stays one: what it leads to is replaced, with the permissions it
-/// has.
+/// A file that appears under its name only when it is complete. Until commit() it has no name in its folder (Linux'
+/// O_TMPFILE), so that even a killed program leaves nothing. If the file system does not support that, it has a unique
+/// name next to `path` (`path`.part and the process id) and is removed with the object. A symbolic link is kept: its
+/// target is replaced, with the target's permissions.
 ///
-/// A pipe or a device is no file to be replaced: it is written to at once, where the writer can do so.
+/// Pipes and devices are written to directly, if the writer can do so.
 class PartFile {
  public:
-  /// What a writer asks of the file.
+  /// What a writer requires of the file.
   enum class Needs {
-    nothing,  ///< it is written from its beginning to its end: a pipe or a device will do
-    seeking,  ///< the writer goes back in it
-    name,     ///< likewise, and the writer is a library that can't write to a file without a name (HDF5)
+    nothing,  ///< it is written from beginning to end: a pipe or a device suffices
+    seeking,  ///< the writer seeks in it
+    name,     ///< likewise, and the writer can't write to a file without a name (HDF5)
   };
 
-  /// Throws InputError when the folder is missing or can't be written to, when `path` is a folder, and when it is a
-  /// pipe or device but the writer needs more.
+  /// Throws InputError if the folder is missing or not writable, if `path` is a folder, and if it is a pipe or device
+  /// that does not meet the writer's needs.
   explicit PartFile(const std::string& path, Needs needs = Needs::seeking);
   ~PartFile();
   PartFile(const PartFile&) = delete;
   PartFile& operator=(const PartFile&) = delete;
 
-  /// A path by which the file can be opened, and written, as long as this object lives.
+  /// A path for opening and writing the file, valid during this object's lifetime.
   const std::string& writable_path() const { return writable_path_; }
 
-  /// What is written is on the disk and has its name, replacing an older file. Throws InputError when it can't.
+  /// Flushes the file to the disk and gives it its name, replacing an older file. Throws InputError on failure.
   void commit();
 
  private:
@@ -38,8 +37,8 @@ class PartFile {
   void take_name(Try succeeds);
 
   std::string path_;    ///< as given
-  std::string target_;  ///< where its links lead
-  std::string part_;    ///< the name beside it; empty: none (yet)
+  std::string target_;  ///< target of its links
+  std::string part_;    ///< the temporary name; empty: none (yet)
   std::string writable_path_;
   int descriptor_ = -1;  ///< none for a pipe or device
 };

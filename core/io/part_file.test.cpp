@@ -14,7 +14,7 @@
 using namespace evbench;
 using Catch::Matchers::ContainsSubstring;
 
-TEST_CASE("A part file has its name, in place of an older file, once it is committed") {
+TEST_CASE("A committed part file has its name and replaces an older file") {
   const PartFile::Needs needs = GENERATE(PartFile::Needs::nothing, PartFile::Needs::seeking, PartFile::Needs::name);
   const testing::TemporaryFolder folder;
   const std::string path = folder.write("out", "old");
@@ -35,13 +35,13 @@ TEST_CASE("A part file that is not committed leaves nothing behind") {
   CHECK(std::filesystem::is_empty(folder.path()));
 }
 
-TEST_CASE("A part file in a folder that is missing, or in the place of a folder, is refused") {
+TEST_CASE("A part file in a missing folder, or with the name of a folder, is refused") {
   const testing::TemporaryFolder folder;
   CHECK_THROWS_WITH(PartFile(folder.file("no/out")), ContainsSubstring("can't be written"));
   CHECK_THROWS_WITH(PartFile(folder.path()), ContainsSubstring("is a folder"));
 }
 
-TEST_CASE("Part files take nobody else's name, nor each other's") {
+TEST_CASE("Part files do not use existing names, nor each other's") {
   const PartFile::Needs needs = GENERATE(PartFile::Needs::seeking, PartFile::Needs::name);
   const testing::TemporaryFolder folder;
   const std::string path = folder.file("out");
@@ -61,12 +61,12 @@ TEST_CASE("Part files take nobody else's name, nor each other's") {
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 4);
 }
 
-TEST_CASE("A part file replaces what a link leads to, and keeps its permissions") {
+TEST_CASE("A part file replaces the target of a link and keeps its permissions") {
   const PartFile::Needs needs = GENERATE(PartFile::Needs::seeking, PartFile::Needs::name);
   const testing::TemporaryFolder folder;
   std::filesystem::create_directory(folder.file("disk"));
   std::filesystem::create_symlink("disk/target", folder.file("link"));
-  for (const char* content : {"new", "newer"}) {  // the link leads to nothing, then to a file
+  for (const char* content : {"new", "newer"}) {  // the link's target does not exist, then it does
     PartFile file(folder.file("link"), needs);
     std::ofstream(file.writable_path()) << content;
     file.commit();
@@ -80,7 +80,7 @@ TEST_CASE("A part file replaces what a link leads to, and keeps its permissions"
   }
 }
 
-TEST_CASE("A pipe is written to where that will do, and refused otherwise, it stays a pipe") {
+TEST_CASE("A pipe is written to if that suffices and refused otherwise, and it stays a pipe") {
   const testing::TemporaryFolder folder;
   const std::string pipe = folder.file("pipe");
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);

@@ -13,7 +13,8 @@ namespace {
 std::string environment(const std::string& name, const std::string& path) {
   const char* const value = std::getenv(name.c_str());
   if (value != nullptr && *value != '\0') return value;
-  const char* const what = name == "EVBENCH_DATA" ? "the folder that holds the recordings" : "what the path means";
+  const char* const what =
+      name == "EVBENCH_DATA" ? "the folder of the recordings" : "the part of the path that it replaces";
   throw InputError(fmt::format("{}: the environment variable {} is not set; set it to {}", path, name, what));
 }
 

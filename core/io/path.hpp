@@ -4,15 +4,15 @@
 
 namespace evbench {
 
-/// A path as written in a config: ${NAME} is replaced by the environment variable, then a relative path is taken from
+/// Resolves a path of a config: replaces ${NAME} by the environment variable, then makes a relative path relative to
 /// `folder`. Throws InputError for a variable that is not set and for an unclosed ${.
 std::string resolve_path(const std::string& path, const std::string& folder);
 
-/// A relative path taken from `folder`; environment variables stay as they are written.
+/// Makes a relative path relative to `folder`; environment variables are not replaced.
 std::string anchored_path(const std::string& path, const std::string& folder);
 
-/// Where a symbolic link leads in the end, whether or not something is there; any other path as it is. Throws
-/// InputError for links that lead in a circle.
+/// The final target of a symbolic link, whether or not it exists; other paths are returned unchanged. Throws InputError
+/// for links that form a circle.
 std::string follow_links(const std::string& path);
 
 }  // namespace evbench

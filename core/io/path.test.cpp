@@ -10,14 +10,14 @@
 using namespace evbench;
 using Catch::Matchers::ContainsSubstring;
 
-TEST_CASE("Relative paths are taken from the folder, absolute ones are left alone") {
+TEST_CASE("Relative paths are relative to the folder, absolute ones are unchanged") {
   CHECK(resolve_path("a/b.txt", "/folder") == "/folder/a/b.txt");
   CHECK(resolve_path("../b.txt", "/folder/c") == "/folder/b.txt");
   CHECK(resolve_path("/a/b.txt", "/folder") == "/a/b.txt");
   CHECK(resolve_path("a", "") == "a");
 }
 
-TEST_CASE("Environment variables in paths are expanded, unset ones are refused with what to set") {
+TEST_CASE("Environment variables in paths are replaced, and unset ones are refused with what to set") {
   REQUIRE(::setenv("EVBENCH_TEST_VARIABLE", "/data", 1) == 0);
   CHECK(resolve_path("${EVBENCH_TEST_VARIABLE}/x", "/folder") == "/data/x");
   CHECK(resolve_path("/a/${EVBENCH_TEST_VARIABLE}/${EVBENCH_TEST_VARIABLE}", "") == "/a//data//data");
@@ -28,7 +28,7 @@ TEST_CASE("Environment variables in paths are expanded, unset ones are refused w
   CHECK_THROWS_WITH(resolve_path("${EVBENCH_TEST_VARIABLE", ""), ContainsSubstring("closing brace"));
 }
 
-TEST_CASE("Links are followed to where they lead, also to nothing, but not in a circle") {
+TEST_CASE("Links are followed to their target, even to a missing one, but not in a circle") {
   const testing::TemporaryFolder folder;
   const auto link = [&](const char* target, const char* name) {
     std::filesystem::create_symlink(target, folder.file(name));

@@ -43,7 +43,7 @@ std::string sha256_file(const std::string& path) {
   std::vector<char> buffer(std::size_t{1} << 20);
   Sha256 hash;
   while (file) {
-    check_interruption();  // recordings have tens of GB
+    check_interruption();  // recordings may have tens of GB
     file.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
     hash.add({buffer.data(), static_cast<std::size_t>(file.gcount())});
   }

@@ -28,7 +28,7 @@ class Sha256 {
 
 std::string sha256(std::string_view bytes);
 
-/// Of a file's bytes, as `sha256sum` prints it. Throws InputError when it can't be read.
+/// SHA-256 of a file, as printed by `sha256sum`. Throws InputError if it can't be read.
 std::string sha256_file(const std::string& path);
 
 }  // namespace evbench

@@ -16,7 +16,7 @@ TEST_CASE("SHA-256 gives the digests of FIPS 180-4's examples, in one part or ma
   CHECK(hash.hex() == sha256("abc"));
 }
 
-TEST_CASE("A file's digest is that of its bytes, a file that can't be read is refused") {
+TEST_CASE("A file's digest is that of its bytes, and an unreadable file is refused") {
   const testing::TemporaryFolder folder;
   const std::string bytes(3000000, 'x');
   CHECK(sha256_file(folder.write("a", bytes)) == sha256(bytes));

@@ -19,7 +19,7 @@ namespace evbench {
 namespace {
 
 [[noreturn]] void fail(const std::string& path, int error) {
-  check_interruption();  // it may have waited
+  check_interruption();  // opening may have waited
   throw InputError(fmt::format("{}: can't be read: {}", path, std::strerror(error)));
 }
 
@@ -29,13 +29,13 @@ std::unique_ptr<TemporaryFile> copy(const std::string& path) {
   const auto close = [](const int* open) { ::close(*open); };
   const std::unique_ptr<const int, decltype(close)> closed(&file, close);
   auto copy = std::make_unique<TemporaryFile>();
-  std::vector<std::byte> piece(1 << 20);
+  std::vector<std::byte> block(1 << 20);
   while (true) {
     check_interruption();
-    const ssize_t got = ::read(file, piece.data(), piece.size());
+    const ssize_t got = ::read(file, block.data(), block.size());
     if (got < 0) fail(path, errno);
     if (got == 0) return copy;
-    copy->write(std::span(piece).first(static_cast<std::size_t>(got)));
+    copy->write(std::span(block).first(static_cast<std::size_t>(got)));
   }
 }
 
@@ -47,7 +47,7 @@ std::string seekable_path(const std::string& path) {
     return path;
   }
   static std::mutex mutex;
-  static std::map<std::string, std::unique_ptr<TemporaryFile>> copies;  // a pipe can be read once only
+  static std::map<std::string, std::unique_ptr<TemporaryFile>> copies;  // a pipe can be read only once
   const std::lock_guard lock(mutex);
   std::unique_ptr<TemporaryFile>& kept = copies[path];
   if (!kept) kept = copy(path);

@@ -6,13 +6,12 @@
 
 namespace evbench {
 
-/// The folder for temporary files: $TMPDIR ($TMP, $TEMP, $TEMPDIR), or /tmp. Throws OutputError, naming the variable,
-/// where there is no such folder.
+/// The folder for temporary files: $TMPDIR ($TMP, $TEMP, $TEMPDIR), or /tmp. Throws OutputError with the variable if
+/// the folder does not exist.
 std::string temporary_folder();
 
-/// A file in the folder for temporary files that disappears with the object: for what has to be read by
-/// a path, by libraries that follow it or by other processes. All functions throw OutputError where it can't be
-/// written.
+/// A temporary file that is removed with the object, for data that libraries or other processes read by a path. All
+/// functions throw OutputError if it can't be written.
 class TemporaryFile {
  public:
   TemporaryFile();

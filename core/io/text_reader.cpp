@@ -32,7 +32,7 @@ TextReader::TextReader(const std::string& path) : path_(path), buffer_(kBufferSi
   const int file = open_to_read(path);
   if (file < 0) {
     const int error = errno;
-    check_interruption();  // it may have waited for a pipe
+    check_interruption();  // opening may have waited for a pipe
     throw InputError(fmt::format("{}: can't be opened: {}", path, std::strerror(error)));
   }
   file_ = gzdopen(file, "rb");
@@ -48,7 +48,7 @@ void TextReader::fill() {
   const int count = gzread(handle(file_), buffer_.data(), static_cast<unsigned>(buffer_.size()));
   int code = Z_OK;
   const char* message = gzerror(handle(file_), &code);
-  check_interruption();  // which may have ended the reading
+  check_interruption();  // a signal may have ended the reading
   if (count < 0 || (code != Z_OK && code != Z_STREAM_END)) {
     fail(code == Z_BUF_ERROR ? "the gzip data end too early: the file is truncated"
                              : fmt::format("can't be read on: {}", message));
@@ -98,7 +98,7 @@ bool TextReader::next() {
   }
 }
 
-/// A separator behind the last column ends it; there is none behind it.
+/// A separator after the last column does not start another one.
 void TextReader::split() {
   constexpr std::string_view kBlanks = " \t", kSeparators = " \t,;";
   columns_.clear();

@@ -8,25 +8,25 @@
 
 namespace evbench {
 
-/// Reads a text file, gzip or not, record by record: the columns of each line that is neither blank nor a comment (# or
-/// %). Between columns are blanks and tabs, or a comma or semicolon with or without them. Every error is an InputError
-/// that names the file and the line.
+/// Reads a text file (gzip or not) record by record. A record is a line that is neither blank nor a comment (# or %),
+/// split into columns at blanks and tabs, or at a comma or semicolon with optional blanks. Every error is an InputError
+/// with file and line.
 class TextReader {
  public:
-  /// "-" is the standard input. Throws when the file can't be opened. Waits for a pipe, and says so on the standard
-  /// error after a second.
+  /// "-" is the standard input. Waits for data of a pipe; after a second a message on the standard error says so.
+  /// Throws if the file can't be opened.
   explicit TextReader(const std::string& path);
   ~TextReader();
   TextReader(const TextReader&) = delete;
   TextReader& operator=(const TextReader&) = delete;
 
-  /// The next record; false at the end of the file. Throws when the file is damaged (truncated gzip, a line of more
+  /// Reads the next record; false at the end of the file. Throws if the file is damaged (truncated gzip, a line of more
   /// than 64 KiB, a NUL byte).
   bool next();
 
-  /// Empty before the first record and behind the last one.
+  /// Empty before the first record and after the last one.
   std::span<const std::string_view> columns() const { return columns_; }
-  /// The record's line, and the comment that stands directly before it; empty: none.
+  /// The record's line, and the comment directly before it (empty: none).
   const std::string& text() const { return current_; }
   const std::string& comment() const { return comment_; }
   std::int64_t line() const { return line_; }
@@ -36,7 +36,7 @@ class TextReader {
   /// Throws unless the record has exactly `count` columns; `what` names them ("id t x y").
   void expect_columns(std::size_t count, const char* what) const;
 
-  /// Column as a finite number; throws for anything else. `what` names it in the message.
+  /// A column as a finite number; throws for anything else. `what` names it in the message.
   double number(std::size_t column, const char* what) const;
   std::int64_t integer(std::size_t column, const char* what) const;
 

@@ -26,22 +26,22 @@ using Records = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("Records are split at blanks, comments and blank lines are none") {
+TEST_CASE("Records are split at blanks, and comments and blank lines are skipped") {
   CHECK(records("1 2\n\n# no\n  \t\n\t 3 \t 4 \n% no\n") == Records{"1|2|", "3|4|"});
   CHECK(records("").empty());
 }
 
-TEST_CASE("Records are split at each comma and semicolon, blanks around them or not, and may end with one") {
+TEST_CASE("Records are split at commas and semicolons with optional blanks, and may end with one") {
   CHECK(records("1,2\n3, 4\n5 ;6\n7;8;\n") == Records{"1|2|", "3|4|", "5|6|", "7|8|"});
   CHECK(records("1,,2\n,3\n") == Records{"1||2|", "|3|"});
 }
 
-TEST_CASE("A byte order mark is no part of the text") {
+TEST_CASE("A byte order mark is skipped") {
   CHECK(records("\xEF\xBB\xBF"
                 "1 2\n") == Records{"1|2|"});
 }
 
-TEST_CASE("The comment that stands directly before a record is known") {
+TEST_CASE("The comment directly before a record is available") {
   const testing::TemporaryFolder folder;
   TextReader reader(folder.write("a.txt", "# far\n# near\n1 2\n3 4\n# cut off\n\n5 6\n"));
   std::string comments;
@@ -50,11 +50,11 @@ TEST_CASE("The comment that stands directly before a record is known") {
   CHECK(reader.columns().empty());
 }
 
-TEST_CASE("Windows line ends and a last line without an end are no matter") {
+TEST_CASE("Windows line ends and a last line without a line end are read") {
   CHECK(records("1 2\r\n3 4") == Records{"1|2|", "3|4|"});
 }
 
-TEST_CASE("Lines that cross the reader's buffer are whole") {
+TEST_CASE("Lines that cross the reader's buffer are read completely") {
   std::string text;
   Records expected;
   for (int i = 0; i < 200; ++i) {
@@ -65,7 +65,7 @@ TEST_CASE("Lines that cross the reader's buffer are whole") {
   CHECK(records(text) == expected);
 }
 
-TEST_CASE("Errors name the file, the line, what was found and what is expected") {
+TEST_CASE("Errors name the file, the line, the value found and the expected one") {
   const testing::TemporaryFolder folder;
   TextReader reader(folder.write("a.txt", "# head\n1 2.5x 9223372036854775808\n"));
   REQUIRE(reader.next());
@@ -76,7 +76,7 @@ TEST_CASE("Errors name the file, the line, what was found and what is expected")
   CHECK(reader.integer(0, "the id") == 1);
 }
 
-TEST_CASE("What is no text file is refused") {
+TEST_CASE("A file that is no text file is refused") {
   const testing::TemporaryFolder folder;
   CHECK_THROWS_WITH(TextReader(folder.file("none")), ContainsSubstring("none: no such file"));
   CHECK_THROWS_WITH(TextReader(folder.path()), ContainsSubstring("is a folder"));

@@ -5,7 +5,7 @@
 
 namespace evbench {
 
-/// A time as ISO 8601 has it, "2024-05-01T12:34:56.789Z": later times are later texts.
+/// A time in ISO 8601, "2024-05-01T12:34:56.789Z". Texts sort like their times.
 std::string utc_time(std::chrono::system_clock::time_point time);
 
 }  // namespace evbench

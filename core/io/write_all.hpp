@@ -6,10 +6,10 @@
 
 namespace evbench {
 
-/// Writes all bytes to a file, however many calls that takes. Returns an error of errno; 0 when all is well.
+/// Writes all bytes to a file, in several calls if needed. Returns an errno; 0 on success.
 int write_all(int file, std::span<const std::byte> bytes);
 
-/// Throws an OutputError that says that the file can't be written, by an error of errno.
+/// Throws an OutputError: the file can't be written because of this errno.
 [[noreturn]] void fail_to_write(const std::string& path, int error);
 
 }  // namespace evbench

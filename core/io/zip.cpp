@@ -34,7 +34,7 @@ std::string zip(std::span<const std::pair<std::string, std::string>> files) {
     archive_entry_set_size(entry.get(), static_cast<la_int64_t>(content.size()));
     archive_entry_set_filetype(entry.get(), AE_IFREG);
     archive_entry_set_perm(entry.get(), 0644);
-    archive_entry_set_mtime(entry.get(), 315619200, 0);  // 1980-01-02, among the earliest that a zip can have
+    archive_entry_set_mtime(entry.get(), 315619200, 0);  // 1980-01-02, close to the earliest date of a zip
     check(writer.get(), archive_write_header(writer.get(), entry.get()));
     check(writer.get(), archive_write_data(writer.get(), content.data(), content.size()));
   }

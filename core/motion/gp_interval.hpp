@@ -4,7 +4,7 @@
 
 namespace evbench {
 
-/// Pose and body velocity at a time: the variable of a continuous-time trajectory.
+/// Pose and body velocity at a time: the state variable of a continuous-time trajectory.
 struct ControlState {
   double t = 0.0;                      ///< [s]
   SE3 T;                               ///< T_world_camera
@@ -19,7 +19,7 @@ struct ControlState {
 /// The state dt [s] later (or earlier) at constant body velocity: T Exp(dt ϖ).
 ControlState extrapolate(const ControlState& state, double dt);
 
-/// Weights of (ϖ_0, ξ_1, J_r(ξ_1)⁻¹ϖ_1) in the local tangent ξ(τ), and of the same in its time derivative.
+/// Weights of (ϖ_0, ξ_1, J_r(ξ_1)⁻¹ϖ_1) in the local tangent ξ(τ) and in its time derivative.
 struct HermiteWeights {
   double a, b, c;     ///< ξ(τ) = a ϖ_0 + b ξ_1 + c w_1
   double da, db, dc;  ///< ξ'(τ) = da ϖ_0 + db ξ_1 + dc w_1
@@ -30,7 +30,8 @@ struct HermiteWeights {
 ///
 /// With ξ_1 = Log(T_0⁻¹T_1) and w_1 = J_r(ξ_1)⁻¹ϖ_1, the posterior mean at τ = t − t_0, s = τ/Δt, is the cubic Hermite
 /// polynomial ξ(τ) in the tangent space of T_0, and T(t) = T_0 Exp(ξ(τ)), ϖ(t) = J_r(ξ) ξ'(τ) (Dong 2018; Λ and Ψ
-/// reduce to it because Qc cancels). What depends on the interval alone is computed once, here; queries share it.
+/// reduce to it because Qc cancels). Terms that depend only on the interval are computed once and shared by all
+/// queries.
 class GpInterval {
  public:
   GpInterval(const ControlState& state0, const ControlState& state1);
@@ -77,10 +78,11 @@ class GpInterval {
   };
   PriorJacobians prior_jacobians(const Derivatives& derivatives) const;
 
-  /// Covariance of (δT(t), δϖ(t)) that remains when both states are known (Barfoot 2014, eq. 24).
+  /// Covariance of (δT(t), δϖ(t)) conditioned on both states (Barfoot 2014, eq. 24).
   Matrix12 conditional_covariance(double t, const Vector6& qc) const;
 
-  /// Covariance of (δT(t), δϖ(t)) from the joint one of both states' increments (24 × 24) and what the prior adds.
+  /// Covariance of (δT(t), δϖ(t)): the joint covariance of both states' increments (24 × 24), propagated, plus the
+  /// conditional covariance of the prior.
   Matrix12 covariance(double t, const Eigen::Matrix<double, 24, 24>& states, const Vector6& qc) const;
 
  private:

@@ -16,7 +16,7 @@ using testing::relative_error;
 constexpr double kTolerance = 1e-6;
 using Vector24 = Eigen::Matrix<double, 24, 1>;
 
-/// Two states whose relative rotation takes all angles up to next to π.
+/// Two states whose relative rotation covers all angles up to almost π.
 std::pair<ControlState, ControlState> neighbours(RandomTangents& random, int i) {
   ControlState a, b;
   a.t = random.uniform(-5.0, 5.0);
@@ -30,7 +30,7 @@ std::pair<ControlState, ControlState> neighbours(RandomTangents& random, int i) 
 
 }  // namespace
 
-TEST_CASE("Interpolation meets both control states in pose and velocity") {
+TEST_CASE("Interpolation equals both control states in pose and velocity") {
   RandomTangents random;
   for (int i = 0; i < 1000; ++i) {
     const auto [a, b] = neighbours(random, i);
@@ -58,7 +58,7 @@ TEST_CASE("Interpolated velocity is the time derivative of the interpolated pose
   }
 }
 
-TEST_CASE("Constant velocity is interpolated exactly and costs nothing under the prior") {
+TEST_CASE("Constant velocity is interpolated exactly and has zero prior cost") {
   RandomTangents random;
   for (int i = 0; i < 100; ++i) {
     auto [a, b] = neighbours(random, i);
@@ -121,7 +121,7 @@ TEST_CASE("Covariance between two states equals the dense GP posterior for small
   const Vector6 qc = (Vector6() << 0.1, 0.2, 0.3, 1.0, 2.0, 3.0).finished();
   const GpInterval interval(a, b);
   const double t = 0.15;
-  // Joint of (x(0), x(t), x(0.4)) with x(0) ~ N(0, P0), conditioned on nothing: marginal of x(t) must come back.
+  // Joint distribution of (x(0), x(t), x(0.4)) with x(0) ~ N(0, P0), unconditioned: the result is the marginal of x(t).
   const Matrix12 P0 = 0.01 * Matrix12::Identity();
   const Matrix12 phi1 = wnoa::transition(t), phi = wnoa::transition(b.t);
   Eigen::Matrix<double, 24, 24> joint;
@@ -131,7 +131,7 @@ TEST_CASE("Covariance between two states equals the dense GP posterior for small
   CHECK(interval.conditional_covariance(0.0, qc).norm() == 0.0);
 }
 
-TEST_CASE("A state goes on with constant velocity, ahead and back") {
+TEST_CASE("A state is extrapolated with constant velocity, forwards and backwards") {
   ControlState a;
   a.t = 1.0;
   a.velocity[3] = 2.0;

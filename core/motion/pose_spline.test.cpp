@@ -10,13 +10,13 @@ using namespace evbench;
 
 namespace {
 
-/// A motion that turns and swings in all directions.
+/// A motion with rotation and translation in all directions.
 SE3 truth(double t) {
   return SE3{so3::exp({0.8 * std::sin(1.3 * t), 0.5 * std::cos(1.7 * t), 0.9 * std::sin(0.7 * t + 1.0)}),
              {std::sin(t), 0.5 * std::cos(1.9 * t), 0.3 * std::sin(2.3 * t)}};
 }
 
-/// Poses of it at uneven times, about `step` [s] apart.
+/// Poses of this motion at uneven times, about `step` [s] apart.
 std::vector<StampedPose> poses(double step) {
   std::vector<StampedPose> result;
   for (double t = 0.0; t < 5.0; t += step * (1.0 + 0.4 * std::sin(7.0 * t))) result.push_back({t, truth(t)});
@@ -50,14 +50,13 @@ TEST_CASE("A pose spline passes through its poses") {
   for (const StampedPose& pose : given) CHECK(se3::log(pose.T.inverse() * spline.at(pose.t)).norm() < 1e-12);
 }
 
-TEST_CASE(
-    "Velocity and acceleration of a pose spline do not jump where its pieces meet, in rotation as in translation") {
+TEST_CASE("Velocity and acceleration of a pose spline are continuous at its poses, in rotation and translation") {
   const std::vector<StampedPose> given = poses(0.1);
   const PoseSpline spline{PoseTrajectory(given)};
   double largest = 0.0;
   for (std::size_t i = 1; i + 1 < given.size(); ++i) {
     const double t = given[i].t;
-    // A jump stays however near one looks; what changes steadily does not.
+    // A discontinuity stays as the distance shrinks; a continuous change does not.
     const auto change = [&](const auto& rate, double near) {
       return Vector6(rate(spline, t + near) - rate(spline, t - near));
     };
@@ -67,16 +66,16 @@ TEST_CASE(
     CHECK(near.tail<3>().norm() < 0.05 + 0.5 * far.tail<3>().norm());
     largest = std::max(largest, acceleration(spline, t).norm());
   }
-  CHECK(largest > 2.0);  // there is something that could jump
+  CHECK(largest > 2.0);  // the velocity does change
 }
 
-TEST_CASE("A pose spline comes nearer to a smooth motion by the third power of the poses' distance") {
+TEST_CASE("A pose spline converges to a smooth motion with the third power of the poses' spacing") {
   const double coarse = largest_error(0.1), fine = largest_error(0.05);
   CHECK(coarse < 1e-3);
   CHECK(fine < coarse / 6.0);
 }
 
-TEST_CASE("A pose spline of two poses is a constant velocity, of one pose a rest") {
+TEST_CASE("A pose spline of two poses is a constant velocity, and of one pose constant") {
   const SE3 A = truth(0.0), B = truth(0.2);
   const PoseSpline line(PoseTrajectory({{1.0, A}, {3.0, B}}));
   CHECK(se3::log(B.inverse() * line.at(3.0)).norm() < 1e-12);

@@ -8,7 +8,7 @@ namespace evbench {
 /// Qc is diagonal, in the body frame: rad²/s³ for the rotation, m²/s³ for the translation.
 namespace wnoa {
 
-/// Covariance of (Δpose, Δvelocity) that the noise adds over dt [s]: [[dt³/3 Qc, dt²/2 Qc], [dt²/2 Qc, dt Qc]].
+/// Covariance of (Δpose, Δvelocity) accumulated over dt [s]: [[dt³/3 Qc, dt²/2 Qc], [dt²/2 Qc, dt Qc]].
 Matrix12 process_covariance(double dt, const Vector6& qc);
 
 /// Its inverse, in closed form: [[12/dt³ Qc⁻¹, −6/dt² Qc⁻¹], [−6/dt² Qc⁻¹, 4/dt Qc⁻¹]].

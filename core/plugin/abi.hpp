@@ -4,16 +4,16 @@
 #include <nlohmann/json_fwd.hpp>
 #include <version>
 
-#ifndef NLOHMANN_JSON_VERSION_MAJOR  // before 3.11 it is there alone
+#ifndef NLOHMANN_JSON_VERSION_MAJOR  // before 3.11 only the full header defines it
 #include <nlohmann/json.hpp>
 #endif
 
-// What a program and a plugin in a shared library must have in common to exchange C++ objects, as one text that the
-// preprocessor makes: it stands in the library's bytes, so that it can be compared before anything of the library runs.
+// ABI text of a program or plugin: everything that both must have in common to exchange C++ objects. The preprocessor
+// makes it a constant in the library's bytes, so it is compared before any code of the library runs.
 
-/// Raised with every change of what plugins include (core/plugin/, and what that includes) that a plugin built before
-/// would not survive: a virtual function, a member, a different meaning.
-#define EVBENCH_PLUGIN_API 7
+/// Version of the plugin API. Raised with every incompatible change of the headers that plugins include (core/plugin/
+/// and its includes): a virtual function, a member, a changed meaning.
+#define EVBENCH_PLUGIN_API 8
 
 #define EVBENCH_ABI_TEXT_OF(value) #value
 #define EVBENCH_ABI_TEXT(value) EVBENCH_ABI_TEXT_OF(value)
@@ -32,7 +32,7 @@
 #define EVBENCH_ABI_LIBRARY "libstdc++, cxx11 abi " EVBENCH_ABI_TEXT(_GLIBCXX_USE_CXX11_ABI)
 #endif
 
-// Memory that Eigen has aligned for wider registers (-march) must be freed by code that knows so.
+// Memory that Eigen aligned for wider registers (-march) must be freed by code built with the same alignment.
 #define EVBENCH_ABI_EIGEN \
   "Eigen " EVBENCH_ABI_TEXT(EIGEN_WORLD_VERSION) "." EVBENCH_ABI_TEXT(EIGEN_MAJOR_VERSION) "." EVBENCH_ABI_TEXT( \
       EIGEN_MINOR_VERSION) " aligned to " EVBENCH_ABI_TEXT(EIGEN_MAX_ALIGN_BYTES) " bytes, members "             \
@@ -60,12 +60,12 @@
 #define EVBENCH_ABI_SANITIZER "no sanitizer"
 #endif
 
-/// What the text begins with.
+/// Beginning of the text.
 #define EVBENCH_PLUGIN_ABI_MARK "evbench plugin ABI: "
 
 namespace evbench {
 
-/// The text of whatever is being compiled: the mark, then parts that "; " separates, in a fixed order.
+/// The ABI text of this translation unit: the mark, then parts separated by "; " in a fixed order.
 inline const char* plugin_abi() {
   return EVBENCH_PLUGIN_ABI_MARK
       "api " EVBENCH_ABI_TEXT(EVBENCH_PLUGIN_API) "; " EVBENCH_ABI_COMPILER "; " EVBENCH_ABI_LIBRARY

@@ -12,7 +12,7 @@ void DelayedTracks::take_back(TrackId track, double t) {
   std::erase_if(waiting_, [&](const TrackObservation& z) { return z.track == track && z.t > t; });
 }
 
-void DelayedTracks::tell(double t, std::size_t most, TrackBatch& batch) {
+void DelayedTracks::release(double t, std::size_t most, TrackBatch& batch) {
   batch.until = std::max(until_, t);
   if (most > 0 && has(most, batch.until)) batch.until = waiting_[most - 1].t;
   batch.observations.clear();

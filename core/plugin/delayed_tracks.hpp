@@ -6,30 +6,32 @@
 
 namespace evbench {
 
-/// Observations on their way to the back-end: they come out of time order, and wait until none before them can come.
+/// A queue that sorts the observations of a front-end by time. Front-ends that observe tracks with a delay add
+/// observations out of time order; each waits until no earlier one can follow.
 class DelayedTracks {
  public:
   explicit DelayedTracks(double from) : until_(from) {}
 
-  /// One of a time that has not been told yet.
+  /// Adds an observation of a time that has not been released yet.
   void add(const TrackObservation& z);
-  /// Leaves out those of a track that stand for times after `t` and have not been told yet.
+  /// Removes the waiting observations of a track after time `t`.
   void take_back(TrackId track, double t);
-  /// Ends come in time order.
+  /// Adds the end of a track; ends must be added in time order.
   void end(const TrackEnd& ended) { ended_.push_back(ended); }
 
-  /// Whether so many observations stand for times up to `t`.
+  /// Are at least `count` observations of times up to `t` waiting?
   bool has(std::size_t count, double t) const { return waiting_.size() >= count && waiting_[count - 1].t <= t; }
 
-  /// What stands for times up to `t`; with `most` above 0 not beyond the time of so many observations.
-  void tell(double t, std::size_t most, TrackBatch& batch);
+  /// Replaces `batch` by the observations and ends up to time `t`. With `most` > 0, the batch ends earlier: at the time
+  /// of the observation with which this number is reached.
+  void release(double t, std::size_t most, TrackBatch& batch);
 
   bool empty() const { return waiting_.empty() && ended_.empty(); }
 
  private:
   std::deque<TrackObservation> waiting_;  ///< in time order
   std::deque<TrackEnd> ended_;            ///< likewise
-  double until_;                          ///< [s] what was told stands for times up to here
+  double until_;                          ///< [s] everything up to here has been released
 };
 
 }  // namespace evbench

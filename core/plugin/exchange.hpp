@@ -11,25 +11,25 @@
 
 namespace evbench {
 
-// What front-end and back-end tell one another. Both only ever see these two values, so that they may run in one thread
-// or in two.
+// The data that front-end and back-end exchange: track batches and feedback. They share nothing else, so they may run
+// in one thread or in two.
 
-/// What a front-end hands over at one exchange: everything that happened to its tracks since the one before.
+/// Output of a front-end at one exchange: all observations and ended tracks since the exchange before.
 struct TrackBatch {
   std::vector<TrackObservation> observations;  ///< in time order, later than the last batch's `until`
-  /// In time order. A track that is neither observed nor ended is where it was: nothing moved enough to be seen.
+  /// In time order. A track that is neither observed nor ended is at its last position: it has not moved measurably.
   std::vector<TrackEnd> ended;
-  /// [s] Everything up to here has been seen: this batch holds nothing later, the next one nothing that is not later.
+  /// [s] The batch is complete up to this time: it contains nothing later, and the next batch only later observations.
   double until = 0.0;
-  /// [s] The data have been looked at up to here, which is when this batch is known. Later than `until` for a front-end
-  /// whose observations stand for times that have passed; none: `until`.
+  /// [s] Data time at which this batch is known: the front-end has processed the data up to here. Later than `until`
+  /// for a front-end with delayed observations; none: equal to `until`.
   std::optional<double> seen = {};
 
   double known_at() const { return seen.value_or(until); }
 };
 
-/// Goes through observations and ends, each in time order, as they happened: a track that is observed after its end
-/// lives again. An end at the time of an observation comes after it.
+/// Visits observations and ends, each in time order, merged by time. An end at the time of an observation comes after
+/// it. A track that is observed after its end is alive again.
 template <class Observe, class End>
 void in_time_order(std::span<const TrackObservation> observations, std::span<const TrackEnd> ended,
                    const Observe& observe, const End& end) {
@@ -41,42 +41,42 @@ void in_time_order(std::span<const TrackObservation> observations, std::span<con
   std::for_each(next, ended.end(), end);
 }
 
-/// Where the estimate stands at an exchange. Worse is larger.
+/// State of the estimate at an exchange. Worse is larger.
 enum class TrackingState {
-  no_map,          ///< not enough has been seen for a first map; or one was wrong, of which no online pose was told
-  tracking,        ///< observations determine the motion
-  standing_still,  ///< tracks are alive and nothing moves: an event camera at rest sees nothing
-  degraded,        ///< too little is seen: a motion model carries the estimate
-  lost,            ///< it was carried for longer than the patience, or can't go on; observations are no longer used
+  no_map,      ///< no initial map yet, or the initial map was rejected before any causal pose was published
+  tracking,    ///< observations determine the motion
+  stationary,  ///< tracks are alive and nothing moves: an event camera at rest sees nothing
+  degraded,    ///< too few observations: the motion model carries the estimate
+  lost,        ///< degraded for longer than the patience, or unable to continue; observations are no longer used
 };
 std::string to_string(TrackingState state);
 
-/// Where the image of a landmark is expected.
+/// Predicted image position of a landmark.
 struct ExpectedFeature {
   TrackId track = 0;
-  Vector3 position = Vector3::Zero();        ///< of the landmark, world frame: to predict it at other poses
+  Vector3 position = Vector3::Zero();        ///< of the landmark, world frame; for predictions at other poses
   Vector2 pixel = Vector2::Zero();           ///< [px], raw for a front-end, undistorted from a back-end
-  Matrix2 covariance = Matrix2::Identity();  ///< of the prediction [px²], an observation's own noise not included
+  Matrix2 covariance = Matrix2::Identity();  ///< of the prediction [px²], without the noise of an observation
 };
 
-/// What a back-end hands back.
+/// Feedback of a back-end to the front-end.
 struct Feedback {
-  double t = 0.0;  ///< [s], the time it stands for: what was observed up to here is in it, nothing later
+  double t = 0.0;  ///< [s], it includes all observations up to this time and nothing later
   TrackingState state = TrackingState::no_map;
   std::optional<ControlState> newest;  ///< pose and velocity at newest->t ≤ t: extrapolate to predict
   std::optional<Matrix12> covariance;  ///< of (δpose, δvelocity) of `newest`, T ← T Exp(δpose)
   std::vector<TrackId> outliers;       ///< tracks dropped as outliers since the last feedback
-  /// Landmarks in view, predicted at t: those of live tracks and those that were seen before. A front-end that finds
-  /// one of these again goes on with its track.
+  /// Landmarks in view, predicted at t: of live tracks and of ended ones. A front-end that re-associates an ended one
+  /// continues its track.
   std::vector<ExpectedFeature> expected;
-  /// Which world frame `newest` and `expected` are in: another one after a loss, and the earlier one again once the
-  /// camera has been found in it. Set by the harness. After `no_map` the same number may stand for another frame: what
-  /// was known in it is void.
+  /// Number of the world frame of `newest` and `expected`: a new one after tracking was lost, the earlier one again
+  /// after relocalisation. Set by the harness. After `no_map` the same number may denote another frame: earlier
+  /// knowledge of it is void.
   std::size_t world = 0;
 };
 
-/// What of the feedback a front-end makes use of: the rest is not computed. None: the back-end is not asked at all, and
-/// every back-end gets the identical tracks.
+/// The parts of the feedback that a front-end uses; the others are not computed. None: the front-end gets no feedback,
+/// and all back-ends get identical tracks.
 struct FeedbackNeeds {
   bool any = false;         ///< state, newest, outliers
   bool covariance = false;  ///< with any

@@ -10,49 +10,49 @@
 
 namespace evbench {
 
-/// What makes a front-end, besides its options.
+/// What a front-end gets in addition to its options.
 struct FrontEndContext {
   const Source& source;  ///< outlives the front-end
   std::uint64_t seed = 0;
-  std::string folder;              ///< what relative paths in options refer to
-  std::string place = "frontend";  ///< where the options stand, for messages: "config.json: frontend"
+  std::string folder;              ///< base of relative paths in options
+  std::string place = "frontend";  ///< place of the options, for messages: "config.json: frontend"
 };
 
-/// A front-end: makes track observations from a source. One run owns one front-end.
+/// A front-end: computes track observations from a source. Each run owns one front-end.
 class FrontEnd {
  public:
   virtual ~FrontEnd() = default;
 
-  /// How far one exchange goes.
+  /// Limit of one exchange.
   struct Horizon {
-    double t = 0.0;                ///< [s] no farther than this time
-    std::size_t observations = 0;  ///< not beyond the time of this many observations; 0: no matter how many
+    double t = 0.0;                ///< [s] not beyond this time
+    std::size_t observations = 0;  ///< not beyond the time of this many observations; 0: no limit
   };
 
-  /// Replaces `batch` by what happened since the last call, raw pixels, up to the horizon: batch.until is the horizon's
-  /// time, or the time of the observation with which its number was reached (others of that same time belong to the
-  /// batch). One whose observations come late says how far it has looked (batch.seen ≤ horizon.t) and ends the batch
-  /// earlier: it may do so by as much as it likes, but at the end of the time range nothing is left. Returns false when
-  /// nothing more will come at any time; the run then goes on without observations, to the end of the time range or of
-  /// the data.
+  /// Replaces `batch` by the observations (raw pixels) and track ends since the last call, up to the horizon.
+  /// batch.until is the horizon's time, or the time of the observation with which its number is reached (all
+  /// observations of that time belong to the batch). A front-end with delayed observations sets batch.seen ≤ horizon.t
+  /// to the time up to which it has processed the data, and may end the batch arbitrarily earlier; at the end of the
+  /// time range it releases everything. Returns false when nothing more will follow; the run then continues without
+  /// observations to the end of the time range or of the data.
   virtual bool advance(const Horizon& horizon, TrackBatch& batch) = 0;
 
-  /// [s] Where the source's data have turned out to end before its time range does: time goes no farther, as nothing
-  /// is known of it. None: they have not.
+  /// [s] End of the source's data if they end before the time range does: the run ends there. None: the data have not
+  /// ended early.
   virtual std::optional<double> data_end() const { return std::nullopt; }
 
-  /// What of the feedback is made use of.
+  /// The parts of the feedback that it uses.
   virtual FeedbackNeeds needs() const { return {}; }
 
-  /// What the back-end knows, raw pixels: called between two calls of advance(), in the order of feedback.t, each once
-  /// the run's latency has passed in data time.
+  /// Receives the feedback of the back-end, in raw pixels. Called between two calls of advance(), in the order of
+  /// feedback.t, once the run's latency has passed in data time.
   virtual void receive(const Feedback& /*feedback*/) {}
 
-  /// [s] It has waited for its source's events so far, which are read, decoded or simulated meanwhile: no work of its
-  /// own.
+  /// [s] Total time it has waited for the source's events to be read, decoded or simulated: not counted as its own
+  /// work.
   virtual double waited() const { return 0.0; }
 
-  /// What a user should know of the tracks: counts, oddities, what was left out. For the run's log.
+  /// Remarks on the tracks for the run's log: counts, anomalies, omissions.
   virtual std::vector<std::string> remarks() const { return {}; }
 };
 

@@ -32,7 +32,7 @@ std::vector<std::string_view> parts(std::string_view text) {
   return result;
 }
 
-/// What one text has and the other has not.
+/// The parts in which two ABI texts differ.
 std::string difference(std::string_view theirs, std::string_view ours) {
   const auto a = parts(theirs), b = parts(ours);
   std::string result;
@@ -48,13 +48,13 @@ void check_abi(const std::string& path, std::string_view theirs) {
   const std::string_view ours = plugin_abi();
   if (theirs == ours) return;
   throw InputError(fmt::format(
-      "{}: was built for another evbench: it has {} (its \"{}\", this program's \"{}\"); expected the same: build it "
-      "anew with this evbench's evbench_add_plugin",
+      "{}: was built for another evbench: it has {} (its \"{}\", this program's \"{}\"); expected the same: rebuild it "
+      "with this evbench's evbench_add_plugin",
       path, difference(theirs, ours), theirs, ours));
 }
 
-/// The ABI text among a file's bytes. A library of another ABI may end the program while it is being loaded (one with a
-/// sanitizer does), so its file is looked at first.
+/// The ABI text in a library's file. It is read before the library is loaded, because loading a library of another ABI
+/// may end the program (one with a sanitizer does).
 std::optional<std::string> abi_in_file(const std::string& path) {
   const FileMapping mapping(path);
   const std::string_view bytes(reinterpret_cast<const char*>(mapping.bytes().data()), mapping.bytes().size());
@@ -65,9 +65,9 @@ std::optional<std::string> abi_in_file(const std::string& path) {
   return std::nullopt;
 }
 
-/// What the dynamic linker complains of, without the path that it begins with.
+/// The dynamic linker's error message without the leading path.
 std::string linker_error(const std::string& path) {
-  const char* error = dlerror();  // NOLINT(concurrency-mt-unsafe): a state of each thread in glibc
+  const char* error = dlerror();  // NOLINT(concurrency-mt-unsafe): per thread in glibc
   std::string text = error != nullptr ? error : "unknown error";
   if (text.starts_with(path + ": ")) text.erase(0, path.size() + 2);
   return text;
@@ -107,7 +107,7 @@ void load(Plugins& plugins, const std::string& path) {
   }
   check_abi(path, function_of<const char* (*)()>(library, path, "evbench_plugin_abi")());
   const auto add = function_of<void (*)(Plugins&, const char*)>(library, path, "evbench_plugin_add");
-  Plugins trial = plugins;  // so that nothing stays of a library that fails half-way
+  Plugins trial = plugins;  // discarded if the registration fails half-way
   try {
     add(trial, path.c_str());
   } catch (const InputError& error) {
@@ -123,7 +123,7 @@ void load(Plugins& plugins, const std::string& path) {
   plugins = std::move(trial);
 }
 
-/// What to do where a library is missing from the build folder of a plugin whose source is there; else nothing.
+/// The build command, if the missing library belongs into the build folder of a plugin's source; else empty.
 std::string how_to_build(const fs::path& library) {
   std::error_code ignored;
   const fs::path build = fs::absolute(library, ignored).parent_path(), source = build.parent_path();
@@ -135,7 +135,7 @@ std::string how_to_build(const fs::path& library) {
       shown(source), shown(build));
 }
 
-/// A library, or those of a folder in the order of their names, without links.
+/// The library, or the libraries of a folder in the order of their names, with links resolved.
 std::vector<std::string> libraries_at(const std::string& path) {
   if (!fs::exists(path)) {
     throw InputError(fmt::format("{}: no such file; expected a plugin's shared library, or a folder of them{}", path,

@@ -15,7 +15,7 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-/// The program's own plugin.
+/// A plugin of the test program itself.
 class Own : public BackEnd {
  public:
   struct Options {
@@ -40,7 +40,7 @@ std::vector<std::string> names(const Plugins& plugins) {
   return result;
 }
 
-/// The sentence with which a path is refused; nothing has been added then.
+/// The message with which a path is refused; checks that nothing was added.
 std::string refusal(const std::string& path, Plugins plugins = registered_plugins()) {
   const std::vector<std::string> before = names(plugins);
   std::string message;
@@ -55,7 +55,7 @@ std::string refusal(const std::string& path, Plugins plugins = registered_plugin
 
 }  // namespace
 
-TEST_CASE("A library's plugin registers with the program's, and does not bring the program's own again") {
+TEST_CASE("A library adds its plugins to the program's, and does not register the program's own again") {
   Plugins plugins = registered_plugins();
   REQUIRE(names(plugins) == std::vector<std::string>{"own"});
   load_plugin_libraries(plugins, library("tiny"));
@@ -69,7 +69,7 @@ TEST_CASE("A library's plugin registers with the program's, and does not bring t
   CHECK(entry.make(options, {})->status().reason == "7");
 }
 
-TEST_CASE("An error of a library's plugin reaches the program as the error that it is") {
+TEST_CASE("An error of a library's plugin reaches the program with its type") {
   Plugins plugins;
   load_plugin_libraries(plugins, library("tiny"));
   const auto& entry = plugins.of<BackEnd>().find("tiny", "test");
@@ -77,7 +77,7 @@ TEST_CASE("An error of a library's plugin reaches the program as the error that 
   CHECK_THROWS_AS(entry.resolve(Json{{"cuont", 1}}, "test", ""), InputError);
 }
 
-TEST_CASE("A library that is named twice is loaded once, by whatever path") {
+TEST_CASE("A library that is named twice, even by different paths, is loaded once") {
   const testing::TemporaryFolder folder;
   std::filesystem::create_symlink(library("tiny"), folder.file("link.so"));
   Plugins plugins;
@@ -86,7 +86,7 @@ TEST_CASE("A library that is named twice is loaded once, by whatever path") {
   CHECK(names(plugins) == std::vector<std::string>{"tiny"});
 }
 
-TEST_CASE("Of a folder all libraries are loaded, in the order of their names") {
+TEST_CASE("All libraries of a folder are loaded, in the order of their names") {
   const testing::TemporaryFolder folder;
   folder.write("notes.txt", "no library");
   std::filesystem::copy_file(library("tiny"), folder.file("libb.so"));
@@ -98,7 +98,7 @@ TEST_CASE("Of a folder all libraries are loaded, in the order of their names") {
   CHECK(names(plugins) == std::vector<std::string>{"tiny"});
 }
 
-TEST_CASE("What is no library, or not there, is refused with a sentence") {
+TEST_CASE("A file that is no library or does not exist is refused with a sentence") {
   const testing::TemporaryFolder folder;
   CHECK_THAT(refusal(folder.file("none.so")), StartsWith(folder.file("none.so") + ": no such file"));
   CHECK_THAT(refusal(folder.path()), ContainsSubstring("has no shared library"));
@@ -109,7 +109,7 @@ TEST_CASE("What is no library, or not there, is refused with a sentence") {
   CHECK_THAT(refusal(folder.file("empty.so")), ContainsSubstring("can't be loaded as a shared library: "));
 }
 
-TEST_CASE("A library that is no plugin, or one with something missing, is refused with a sentence") {
+TEST_CASE("A library that is no plugin or lacks a symbol is refused with a sentence") {
   CHECK_THAT(refusal(library("no_plugin")),
              ContainsSubstring("is no plugin of evbench") && ContainsSubstring("evbench_plugin_abi"));
   CHECK_THAT(refusal(library("missing_symbol")),
@@ -118,13 +118,13 @@ TEST_CASE("A library that is no plugin, or one with something missing, is refuse
   CHECK_THAT(refusal(library("throws")), ContainsSubstring("registration failed: the licence server is down"));
 }
 
-TEST_CASE("A library of another ABI is refused before any of it runs, with both texts and what differs") {
+TEST_CASE("A library of another ABI is refused before any of its code runs, with both ABI texts and their difference") {
   const std::string message = refusal(library("other_abi"));
   CHECK_THAT(message, ContainsSubstring("api 99 instead of api " EVBENCH_ABI_TEXT(EVBENCH_PLUGIN_API)));
   CHECK_THAT(message, ContainsSubstring("api 99; gcc 3; no sanitizer") && ContainsSubstring(plugin_abi()));
 }
 
-TEST_CASE("A name that is taken is refused with both origins, and nothing of the library stays") {
+TEST_CASE("A name that is taken is refused with both origins, and nothing of the library is added") {
   Plugins plugins;
   load_plugin_libraries(plugins, library("tiny"));
   const std::string message = refusal(library("twin"), plugins);

@@ -25,7 +25,7 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
-/// Lines of at most kLine characters, broken between words, each behind `indent` blanks.
+/// Wraps a text into lines of at most kLine characters, indented by `indent` blanks.
 std::string wrapped(const std::string& text, std::size_t indent) {
   constexpr std::size_t kLine = 100;
   std::istringstream words(text);

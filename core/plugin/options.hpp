@@ -24,8 +24,9 @@ namespace evbench {
 ///     }
 ///   };
 ///
-/// From this come reading a JSON object (defaults, types, ranges, unknown keys), writing it back complete, the text of
-/// `evbench describe`, and a JSON Schema. The set refers to the struct's members: it must not outlive the struct.
+/// The declaration gives the reading of a JSON object (defaults, types, ranges, unknown keys), the writing of the
+/// complete object, the text of `evbench describe`, and a JSON Schema. The set refers to the struct's members and must
+/// not outlive the struct.
 class OptionSet {
  public:
   using List = std::vector<double>;
@@ -43,11 +44,11 @@ class OptionSet {
                   double maximum = std::numeric_limits<double>::infinity());  ///< closed; numbers, items
     Option& above(double minimum);                                            ///< open below: > minimum
     Option& choices(std::vector<std::string> values);
-    Option& size(std::size_t count);  ///< number of items of a list; none are fine too where that is the default
-    Option& rising();                 ///< items of a list, e.g. [from, to]
+    Option& size(std::size_t count);  ///< number of items of a list; an empty list is valid if it is the default
+    Option& rising();                 ///< the items of a list increase, e.g. [from, to]
     Option& required();               ///< no default: must be given
     Option& path();                   ///< text that names a file or folder, relative to the config's folder
-    Option& folder();                 ///< likewise; what lies there is not part of a run's identity
+    Option& folder();                 ///< likewise; its content is not part of a run's identity
 
    private:
     friend class OptionSet;
@@ -72,7 +73,7 @@ class OptionSet {
   OptionSet(OptionSet&& other) noexcept;
   ~OptionSet();
 
-  /// `text` is one sentence part with the unit in brackets. A Json target takes any value.
+  /// `text` is a phrase with the unit in brackets. A Json target accepts any value.
   Option& add(const std::string& name, Target target, const std::string& text);
   template <class T>
   Option& add(const std::string& name, T& member, const std::string& text) {
@@ -86,11 +87,11 @@ class OptionSet {
     if constexpr (kIsTarget) {
       return add(name, Target(&member), text);
     } else {
-      return options_.back();  // is not compiled: one error is enough
+      return options_.back();  // never compiled: the assertion fails first
     }
   }
 
-  /// An enumeration, written as text: the names of its values 0, 1, ...
+  /// Adds an enumeration, written as text; `names` are those of its values 0, 1, ...
   template <class Enum>
   requires std::is_enum_v<Enum> Option& add(const std::string& name, Enum& member, std::vector<std::string> names,
                                             const std::string& text) {
@@ -99,7 +100,7 @@ class OptionSet {
     return add(name, Target(target), text).choices(std::move(names));
   }
 
-  /// A nested object with options of its own.
+  /// Adds a nested object with its own options.
   template <class Struct>
   void group(const std::string& name, Struct& member, const std::string& text) {
     OptionSet set;
@@ -107,22 +108,22 @@ class OptionSet {
     add_group(name, text, std::move(set));
   }
 
-  /// At least one of these texts has to be given.
+  /// At least one of these options (texts) must be given.
   void require_one_of(std::vector<std::string> names) { alternatives_.push_back(std::move(names)); }
 
-  /// Sets the members from a JSON object; keys that are missing keep their defaults. `place` is where the object
-  /// stands ("config.json: backend"), for messages. Throws InputError for a value of a wrong type or out of range, an
-  /// unknown key (with the nearest known one), a required key that is missing, none of several alternatives.
+  /// Sets the members from a JSON object; missing keys keep their defaults. `place` is the place of the object for
+  /// messages ("config.json: backend"). Throws InputError for a value of a wrong type or out of range, an unknown key
+  /// (with the nearest known one), a missing required key, and when none of several alternatives is given.
   void read(const Json& object, const std::string& place);
 
-  /// Takes relative paths among the options from `folder`, so that they mean the same wherever they are written.
+  /// Makes relative paths among the options relative to `folder`, so that they are valid from anywhere.
   void anchor_paths(const std::string& folder);
 
-  Json write() const;                      ///< every option with its present value
-  Json write_without_paths() const;        ///< likewise, options that name files or folders being left out
-  std::vector<std::string> paths() const;  ///< what path() options name, groups included
+  Json write() const;                      ///< every option with its current value
+  Json write_without_paths() const;        ///< likewise without the options that name files or folders
+  std::vector<std::string> paths() const;  ///< the values of path() options, including groups
   Json schema() const;                     ///< JSON Schema (2020-12) of the object
-  std::string describe() const;            ///< a table for people: name, type, default, range, text
+  std::string describe() const;            ///< a readable table: name, type, default, range, text
 
  private:
   struct Group;
@@ -139,12 +140,12 @@ struct OptionSet::Group {
   OptionSet set;
 };
 
-// Here, where a group is a complete type.
+// Defined here, where Group is a complete type.
 inline OptionSet::OptionSet() = default;
 inline OptionSet::OptionSet(OptionSet&&) noexcept = default;
 inline OptionSet::~OptionSet() = default;
 
-/// A struct's options, read from JSON.
+/// Reads the options of a struct from JSON.
 template <class Struct>
 Struct read_options(const Json& object, const std::string& place) {
   Struct result;

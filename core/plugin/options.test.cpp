@@ -40,7 +40,7 @@ Options read(const char* text) { return read_options<Options>(parse_json(text), 
 
 }  // namespace
 
-TEST_CASE("Options are read over their defaults, nested ones too") {
+TEST_CASE("Options given in JSON replace their defaults, also in nested objects") {
   const Options o = read(R"({"path": "a", "rate": 50, "range": [1, 2], "inner": {"width": 2}})");
   CHECK(o.rate == 50.0);
   CHECK(o.count == 3);
@@ -58,7 +58,7 @@ TEST_CASE("Writing options and reading them again changes nothing") {
   CHECK(json["inner"]["width"] == 1.5);
 }
 
-TEST_CASE("Bad options are refused with the place and what was expected") {
+TEST_CASE("Invalid options are refused with their place and the expected value") {
   using Catch::Matchers::ContainsSubstring;
   CHECK_THROWS_WITH(read(R"({"path": "a", "rte": 5})"),
                     ContainsSubstring("c.json: x") && ContainsSubstring("\"rte\"") && ContainsSubstring("\"rate\""));
@@ -82,14 +82,14 @@ TEST_CASE("Bad options are refused with the place and what was expected") {
   CHECK_THROWS_WITH(read("{}"), ContainsSubstring("\"path\" is missing"));
 }
 
-TEST_CASE("Places name the file, then the keys below") {
+TEST_CASE("A place in a message names the file, then the keys") {
   using Catch::Matchers::ContainsSubstring;
   CHECK_THROWS_WITH(read_options<Options>(parse_json(R"({"rate": 0})"), "c.json"),
                     ContainsSubstring("c.json: rate: 0 is"));
   CHECK_THROWS_WITH(read(R"({"path": "a", "inner": {"width": 0}})"), ContainsSubstring("c.json: x.inner.width: 0 is"));
 }
 
-TEST_CASE("Paths among the options are anchored in a folder") {
+TEST_CASE("Relative paths among the options become relative to a folder") {
   struct Files {
     std::string file, other, name;
     void declare(OptionSet& set) {
@@ -123,7 +123,7 @@ TEST_CASE("Description and schema name every option with its default and bounds"
   CHECK(schema["properties"]["rule"]["enum"] == Json::array({"rate", "motion"}));
   CHECK(schema["properties"]["weights"]["minItems"] == 2);
   CHECK(schema["properties"]["weights"]["maxItems"] == 2);
-  CHECK(schema["properties"]["range"]["anyOf"].size() == 2);  // two, or none
+  CHECK(schema["properties"]["range"]["anyOf"].size() == 2);  // two items or none
   CHECK(schema["required"] == Json::array({"path"}));
   CHECK(schema["additionalProperties"] == false);
 }

@@ -14,7 +14,7 @@ namespace detail {
 
 using AddPlugin = std::function<void(Plugins&, const std::string& origin)>;
 
-/// The registrations of one program or shared library. Hidden: each has a list of its own, whoever loads it.
+/// The registrations of one program or shared library. Hidden symbol, so that each has its own list.
 __attribute__((visibility("hidden"))) inline std::vector<AddPlugin>& registrations() {
   static std::vector<AddPlugin> list;
   return list;
@@ -31,23 +31,24 @@ concept NamesCommands = requires(const Options& options) {
 };
 
 template <class Plugin>
-concept SaysWhetherItReadsEvents = requires {
+concept DeclaresReadsEvents = requires {
   Plugin::reads_events;
 };
 
 }  // namespace detail
 
-/// A plugin names itself with one line in its own .cpp, built in or in a shared library alike:
+/// Registers a plugin with one line in its own .cpp, built in or in a shared library:
 ///
 ///   const Registration<BackEnd, GpMap> registration("gp_map", "asynchronous MAP under a GP prior (Liu et al. 2022)");
 ///
 /// GpMap has `using Options = ...` (see OptionSet) and a constructor (Options, const Context&), Context being
-/// PluginKind<...>::Context. `version` is raised when the same options come to give other results: runs of the old
-/// version are then not taken for the new one's. Files that path() options name are part of a run's identity; Options
-/// may have `std::vector<std::string> files() const` for others, and must have `std::vector<std::string> commands(const
-/// std::string& place) const` where the plugin starts commands: they are told before, and can be refused. A front-end
-/// that leaves the source's events alone says `static constexpr bool reads_events = false;`. A program's plugins are
-/// CMake OBJECT libraries, so that the linker keeps their registration.
+/// PluginKind<...>::Context. Raise `version` when the same options give different results, so that results of the old
+/// version are not reused. Files that path() options name are part of a run's identity. Options may have
+/// `std::vector<std::string> files() const` for further files. Options of a plugin that starts commands must have
+/// `std::vector<std::string> commands(const std::string& place) const`: the commands are announced before they start,
+/// and the user can refuse them. A front-end that does not read the source's events declares
+/// `static constexpr bool reads_events = false;`. A program's plugins are CMake OBJECT libraries, so that the linker
+/// keeps their registration.
 template <class Interface, class Plugin>
 class Registration {
  public:
@@ -78,7 +79,7 @@ class Registration {
   static typename Registry<Interface>::Entry entry() {
     using Context = typename PluginKind<Interface>::Context;
     typename Registry<Interface>::Entry entry;
-    if constexpr (detail::SaysWhetherItReadsEvents<Plugin>) entry.reads_events = Plugin::reads_events;
+    if constexpr (detail::DeclaresReadsEvents<Plugin>) entry.reads_events = Plugin::reads_events;
     entry.with_options = [](const std::function<void(const DeclaredOptions&)>& use) {
       Options options;
       OptionSet set;
@@ -93,12 +94,12 @@ class Registration {
   }
 };
 
-/// Adds what this program or shared library registers. `origin` says whose it is, in messages.
+/// Adds the plugins that this program or shared library registers. `origin` names it in messages.
 __attribute__((visibility("hidden"))) inline void add_registered_plugins(Plugins& plugins, const std::string& origin) {
   for (const detail::AddPlugin& add : detail::registrations()) add(plugins, origin);
 }
 
-/// The plugins of this program alone: for tests.
+/// The plugins of this program alone, for tests.
 __attribute__((visibility("hidden"))) inline Plugins registered_plugins() {
   Plugins plugins;
   add_registered_plugins(plugins, kBuiltIn);

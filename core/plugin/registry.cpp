@@ -74,7 +74,7 @@ auto Registry<Interface>::find(const std::string& name, const std::string& place
   std::vector<std::string> names;
   for (const auto& [known, entry] : entries_) names.push_back(known);
   throw InputError(
-      fmt::format("{}: no {} is called \"{}\"{} (one from outside must be loaded: by --plugin LIBRARY, the variable "
+      fmt::format("{}: no {} is called \"{}\"{} (an external one must be loaded: by --plugin LIBRARY, the variable "
                   "EVBENCH_PLUGINS or the "
                   "key \"plugins\" of a config)",
                   place, PluginKind<Interface>::name, name, suggestion(name, names)));

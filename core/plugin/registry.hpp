@@ -33,10 +33,10 @@ struct PluginKind<BackEnd> {
   static constexpr const char* name = "backend";
 };
 
-/// The origin of what the program itself registers.
+/// Origin of the plugins that the program itself registers.
 inline constexpr const char* kBuiltIn = "built in";
 
-/// Options of a plugin, fresh ones: what is declared, the files that they name besides those of path() options, and the
+/// A new set of options of a plugin: the declaration, the files that they name in addition to path() options, and the
 /// commands that they start.
 struct DeclaredOptions {
   OptionSet& set;
@@ -44,24 +44,24 @@ struct DeclaredOptions {
   std::function<std::vector<std::string>(const std::string& place)> commands;
 };
 
-/// What is known of a plugin of any kind.
+/// Properties of a plugin of any kind.
 struct PluginEntry {
   std::string text;          ///< one line for `evbench list`
   std::string origin;        ///< kBuiltIn, or the library's path
-  int version = 1;           ///< of what it computes: raised when the same options give other results
-  bool reads_events = true;  ///< front-ends: the content of the source's events counts for a run
+  int version = 1;           ///< of its results: raised when the same options give different results
+  bool reads_events = true;  ///< front-ends: the events are part of a run's identity
 
-  /// Calls its argument with the plugin's options.
+  /// Calls its argument with new options of the plugin.
   std::function<void(const std::function<void(const DeclaredOptions&)>&)> with_options;
 
   std::string describe() const;  ///< table of its options
   Json schema() const;           ///< JSON Schema of its options
-  /// Options checked, completed with defaults, relative paths taken from the folder.
+  /// Checks the options, adds defaults, and makes relative paths relative to `folder`.
   Json resolve(const Json& options, const std::string& place, const std::string& folder) const;
-  std::vector<std::string> files(const Json& options) const;  ///< that resolved options name, in their order
-  /// Commands that a plugin of resolved options starts, as one would type them. Throws InputError for what is none.
+  std::vector<std::string> files(const Json& options) const;  ///< named by resolved options, in their order
+  /// Commands that the plugin starts with resolved options, as typed in a shell. Throws InputError for an invalid one.
   std::vector<std::string> commands(const Json& options, const std::string& place) const;
-  Json identity(const Json& options) const;  ///< resolved options without the names of files: their content counts
+  Json identity(const Json& options) const;  ///< resolved options without file names: the files' content counts instead
 };
 
 /// The plugins of one kind by name.
@@ -74,10 +74,10 @@ class Registry {
     std::function<std::unique_ptr<Interface>(const Json&, const Context&)> make;  ///< from resolved options
   };
 
-  /// Throws InputError when there is one of that name already, naming where both are from.
+  /// Throws InputError with both origins when the name is taken.
   void add(const std::string& name, Entry entry);
 
-  /// Throws InputError with the nearest name for an unknown one; `place` is where the name stands.
+  /// Throws InputError with the nearest name for an unknown one; `place` is the place of the name in the config.
   const Entry& find(const std::string& name, const std::string& place) const;
 
   const std::map<std::string, Entry>& entries() const { return entries_; }
@@ -90,10 +90,10 @@ extern template class Registry<Source>;
 extern template class Registry<FrontEnd>;
 extern template class Registry<BackEnd>;
 
-/// All plugins that a program knows: main owns them.
+/// All plugins of a program; main owns them.
 class Plugins {
  public:
-  /// Whether plugins may be made that start commands, and libraries be loaded that a config alone names.
+  /// May plugins start commands, and may libraries be loaded that only a config names?
   bool external_code_allowed() const { return external_code_allowed_; }
   void refuse_external_code() { external_code_allowed_ = false; }
 

@@ -15,57 +15,55 @@
 
 namespace evbench {
 
-/// What makes a source, besides its options.
+/// What a source gets in addition to its options.
 struct SourceContext {
   std::uint64_t seed = 0;
-  std::string folder;            ///< what relative paths in options refer to
-  std::string place = "source";  ///< where the options stand, for messages: "config.json: source"
+  std::string folder;            ///< base of relative paths in options
+  std::string place = "source";  ///< place of the options, for messages: "config.json: source"
 };
 
-/// A sequence: a recording or a simulation. Everything of it is in sequence time, whose zero is the source's own; a run
-/// uses time_range() of it.
+/// A sequence: a recording or a simulation. All times are sequence time, whose zero the source defines; a run uses
+/// time_range() of it.
 class Source {
  public:
   virtual ~Source() = default;
 
   virtual const Camera& camera() const = 0;
 
-  /// The time of the sequence that a run uses, [s]: its clock goes from the one to the other, whatever is seen.
+  /// The time range that a run uses [s]: its clock runs from the beginning to the end, whether or not there are events.
   virtual TimeRange time_range() const = 0;
 
   /// T_world_camera; empty when unknown.
   virtual const PoseTrajectory& ground_truth() const = 0;
 
-  /// The events that a front-end gets: in time order, within the camera's sensor, from ≤ t ≤ to of the time range, from
-  /// its beginning. nullptr where there are none: a source of tracks. The source must outlive it. Throws InputError
-  /// where camera and events say different sizes of the sensor, or the camera none.
+  /// A new stream of the events for a front-end: in time order, within the camera's sensor, from ≤ t ≤ to of the time
+  /// range. nullptr for a source of tracks without events. The source must outlive the stream. Throws InputError when
+  /// the sensor sizes of camera and events differ, or the camera has none.
   std::unique_ptr<EventStream> events() const;
 
-  /// The sequence's events as they come, in sequence time [µs], from its own beginning to its end; events() is made of
-  /// it. nullptr where there are none.
+  /// All events of the sequence as recorded, in sequence time [µs]; events() filters them. nullptr if there are none.
   virtual std::unique_ptr<EventReader> all_events() const { return nullptr; }
 
-  /// Whether there are no events after the last one, up to the sequence's end, because nothing was to be seen, as in a
-  /// simulation. A recording may just have been cut off.
+  /// True if no event between the last one and the sequence's end means that nothing moved, as in a simulation. False
+  /// for a recording, which may have been cut off.
   virtual bool silence_is_known() const { return false; }
 
-  /// A sentence, where nothing says how large the camera's sensor is and its size is assumed. An event outside it is
+  /// A sentence if the sensor size is not given and was assumed; else empty. An event outside the assumed sensor is
   /// then an error of events().
   virtual std::string size_assumption() const { return {}; }
 
-  /// Whether events() may leave out however many have to be (EventStream::large_loss).
+  /// May events() drop any number of invalid events (EventStream::large_loss)?
   virtual bool is_lenient() const { return false; }
 
-  /// Track observations with known association (raw pixels, time order), for sources that know it: simulators.
-  /// None where the source does not.
+  /// Track observations with true association (raw pixels, time order), for simulators. None if it is unknown.
   virtual std::optional<std::span<const TrackObservation>> true_tracks() const { return std::nullopt; }
 
-  /// Files that the sequence is made of, but for its events: their content is part of a run's identity.
+  /// Files of the sequence without those of the events: their content is part of a run's identity.
   virtual std::vector<std::string> files() const { return {}; }
-  /// The files of the events: likewise, where the front-end reads them.
+  /// Files of the events: part of a run's identity if the front-end reads events.
   virtual std::vector<std::string> event_files() const { return {}; }
 
-  /// What a user should know of the data: counts, oddities. For the run's log.
+  /// Remarks on the data for the run's log: counts, anomalies.
   virtual std::vector<std::string> remarks() const { return {}; }
 };
 

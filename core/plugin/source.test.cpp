@@ -6,7 +6,7 @@ using namespace evbench;
 
 namespace {
 
-/// Events as a careless driver would write them.
+/// Events with faults, as some drivers write them.
 class Careless : public EventReader {
  public:
   Careless() { info_.width = info_.height = 10; }
@@ -17,7 +17,7 @@ class Careless : public EventReader {
     done_ = true;
     events = {{100, 1, 1, true},  {200, 2, 2, true},  {350, 3, 3, true}, {300, 4, 4, true},
               {310, 5, 5, false}, {400, 40, 6, true}, {500, 7, 7, true}, {501, 8, 8, false}};
-    events.insert(events.begin(), 20, {100, 1, 1, true});  // so that two that are wrong are few
+    events.insert(events.begin(), 20, {100, 1, 1, true});  // so that the two invalid ones are few
     return true;
   }
   void seek(std::int64_t) override { done_ = false; }
@@ -50,7 +50,7 @@ class FakeSource : public Source {
 TEST_CASE(
     "A front-end gets a source's events in order, within the sensor, and within the time range, both ends included") {
   const FakeSource source(true);
-  for (int repetition = 0; repetition < 2; ++repetition) {  // each time from the beginning
+  for (int repetition = 0; repetition < 2; ++repetition) {  // each stream starts at the beginning
     std::vector<std::int64_t> times;
     const auto stream = source.events();
     for (std::vector<Event> events; stream->read(events);) {
@@ -60,4 +60,4 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A source of tracks has no stream of events") { CHECK(FakeSource(false).events() == nullptr); }
+TEST_CASE("A source of tracks has no event stream") { CHECK(FakeSource(false).events() == nullptr); }

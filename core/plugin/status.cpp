@@ -18,7 +18,7 @@ std::string to_string(TrackingState state) {
   switch (state) {
     case TrackingState::no_map: return "no map yet";
     case TrackingState::tracking: return "tracking";
-    case TrackingState::standing_still: return "standing still";
+    case TrackingState::stationary: return "stationary";
     case TrackingState::degraded: return "degraded";
     case TrackingState::lost: break;
   }

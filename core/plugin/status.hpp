@@ -5,18 +5,18 @@
 
 namespace evbench {
 
-/// How a run went. Worse is larger.
+/// Result of a run. Worse is larger.
 enum class RunState {
-  ok,        ///< an estimate for the whole time
-  degraded,  ///< as ok, but for some spans the data did not suffice: a motion model carried the estimate, or it was
-             ///< lost and went on in the same world afterwards
-  lost,      ///< the estimate ended before the data did, or is in pieces; what there was is kept
+  ok,        ///< an estimate for the whole time range
+  degraded,  ///< as ok, but in some spans the data did not suffice: the motion model carried the estimate, or tracking
+             ///< was lost and continued in the same world frame
+  lost,      ///< the estimate ends before the data do, or consists of several segments; all segments are kept
   failed,    ///< no estimate
 };
 
 std::string to_string(RunState state);
 
-/// A span of time with too little data, and why.
+/// A time span with too little data, and the reason.
 struct DegradedSpan {
   double from = 0.0, to = 0.0;  ///< [s]
   std::string reason;

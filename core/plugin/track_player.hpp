@@ -8,17 +8,17 @@
 
 namespace evbench {
 
-/// For front-ends whose tracks are known beforehand: plays each observation and each end of a track once.
+/// Plays known tracks, for front-ends whose tracks are recorded or simulated: each observation and each end once.
 class TrackPlayer {
  public:
   TrackPlayer() = default;
 
-  /// The observations in time order; they must outlive the player. `ends`: where tracks end, in any order, also those
-  /// that go on later. A track of which none is at its last observation or after it ends with that; those before its
-  /// first one are none.
+  /// `observations` in time order must outlive the player. `ends` are track ends in any order; a track may continue
+  /// after an end. A track without an end at or after its last observation ends with that observation. Ends before a
+  /// track's first observation are ignored.
   explicit TrackPlayer(std::span<const TrackObservation> observations, std::vector<TrackEnd> ends = {});
 
-  /// As FrontEnd::advance().
+  /// See FrontEnd::advance().
   bool advance(const FrontEnd::Horizon& horizon, TrackBatch& batch);
 
  private:

@@ -10,7 +10,7 @@ TrackObservation seen(TrackId track, double t) { return {track, t, Vector2(1, 2)
 
 }  // namespace
 
-TEST_CASE("Known tracks are played once, up to the time asked for, and end with their last observation") {
+TEST_CASE("Known tracks are played once, up to the requested time, and end with their last observation") {
   const std::vector<TrackObservation> all = {seen(1, 0.1), seen(2, 0.2), seen(1, 0.3), seen(2, 0.3), seen(2, 0.9)};
   TrackPlayer player(all);
   TrackBatch batch;
@@ -31,7 +31,7 @@ TEST_CASE("Known tracks are played once, up to the time asked for, and end with 
   CHECK(batch.observations.empty());
 }
 
-TEST_CASE("Known tracks end where that is known, more than once if need be, and with their last observation else") {
+TEST_CASE("Known tracks end at the given times, possibly more than once, and otherwise with their last observation") {
   const std::vector<TrackObservation> all = {seen(1, 0.1), seen(2, 0.2), seen(1, 0.5), seen(3, 0.6)};
   TrackPlayer player(all, {{2, 0.4}, {1, 0.3}, {9, 0.2}, {2, 0.1}, {3, 0.9}});
   TrackBatch batch;
@@ -43,7 +43,7 @@ TEST_CASE("Known tracks end where that is known, more than once if need be, and 
   CHECK(ended == std::vector<std::pair<TrackId, double>>{{1, 0.3}, {2, 0.4}, {1, 0.5}, {3, 0.9}});
 }
 
-TEST_CASE("A number of observations ends at the time of the last of them, with others of that time") {
+TEST_CASE("A batch limited in number ends at the time of its last observation and contains all of that time") {
   const std::vector<TrackObservation> all = {seen(1, 0.1), seen(2, 0.2), seen(3, 0.2), seen(4, 0.3)};
   TrackPlayer player(all);
   TrackBatch batch;

@@ -8,29 +8,30 @@
 
 namespace evbench {
 
-/// The rule by which every back-end tells degraded and lost: a span with too little data is `degraded`, whatever still
-/// determines the motion there; when for longer than the patience nothing but a motion model carries the estimate, it
-/// is `lost` from the beginning of that span on.
+/// The common rule of all back-ends for degraded and lost tracking. A span with too little data is `degraded`. When the
+/// motion model alone carries the estimate for longer than the patience, tracking is `lost` from the beginning of that
+/// span.
 class TrackingMonitor {
  public:
   explicit TrackingMonitor(double patience) : patience_(patience) {}
 
   enum class Support {
     full,  ///< observations determine the motion
-    weak,  ///< they contribute, but are too few to be relied on
-    none,  ///< a motion model alone
+    weak,  ///< observations contribute but are too few to rely on
+    none,  ///< the motion model alone
   };
 
-  /// There is a map; what carried the estimate between two times. `reason` says what is missing, where it isn't full.
+  /// Reports what supports the estimate between two times [s], once there is a map. `reason` says what is missing if
+  /// the support is not full.
   void observe(double from, double to, Support support, const std::string& reason = {});
 
-  /// Another map, found just now, determines the motion from `since` on: the degraded span at hand ends there.
+  /// Reports a new map that determines the motion from `since` [s] on: the current degraded span ends there.
   void recovered(double since);
 
-  /// The estimate can't go on from t.
+  /// Reports that the estimate cannot continue after t [s].
   void lose(double t, const std::string& reason);
 
-  /// There is no estimate.
+  /// Reports that there is no estimate.
   void fail(double t, const std::string& reason);
 
   bool lost() const { return status_.state == RunState::lost || status_.state == RunState::failed; }
@@ -43,7 +44,7 @@ class TrackingMonitor {
   double patience_;
   Status status_;
   bool has_map_ = false, in_degraded_ = false;
-  std::optional<double> alone_since_;  ///< a motion model carries alone from here on
+  std::optional<double> alone_since_;  ///< [s] since then the motion model alone carries the estimate
 };
 
 }  // namespace evbench

@@ -5,7 +5,7 @@
 using namespace evbench;
 using Support = TrackingMonitor::Support;
 
-TEST_CASE("Before there is a map nothing is lost, and with one and enough data all is well") {
+TEST_CASE("Without a map tracking is not lost, and with a map and enough data it is ok") {
   TrackingMonitor monitor(1.0);
   CHECK(monitor.state() == TrackingState::no_map);
   monitor.observe(0.0, 0.1, Support::full);
@@ -13,8 +13,7 @@ TEST_CASE("Before there is a map nothing is lost, and with one and enough data a
   CHECK(monitor.status().state == RunState::ok);
 }
 
-TEST_CASE(
-    "Too little data is degraded as long as it lasts, and what carries alone for longer than the patience is lost") {
+TEST_CASE("Too little data is degraded while it lasts, and a motion model alone for longer than the patience is lost") {
   TrackingMonitor monitor(1.0);
   monitor.observe(0.0, 0.1, Support::full);
   for (int i = 1; i < 30; ++i) monitor.observe(0.1 * i, 0.1 * (i + 1), Support::weak, "few");
@@ -36,7 +35,7 @@ TEST_CASE(
   CHECK(monitor.lost());  // for good
 }
 
-TEST_CASE("A map found late ends the degraded span where it begins, and the patience begins anew") {
+TEST_CASE("A new map ends the degraded span at its beginning and restarts the patience") {
   TrackingMonitor monitor(1.0);
   monitor.observe(0.0, 1.0, Support::full);
   monitor.observe(1.0, 1.9, Support::none, "nothing");

@@ -5,7 +5,7 @@
 
 namespace evbench {
 
-/// All options of a struct as JSON.
+/// Writes all options of a struct as JSON.
 template <class Struct>
 Json write_options(Struct options) {
   OptionSet set;

@@ -26,12 +26,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kSlice = 100;        ///< [ms] between two looks for an interruption and for a silent end
+constexpr int kSlice = 100;        ///< [ms] between two checks for an interruption and for a silent end
 constexpr double kEndGrace = 1.0;  ///< [s] from the end of its output to that of the process
 
 std::string reason(int error) { return std::strerror(error); }
 
-/// While one lives, writing to a pipe that nobody reads is an error for this thread, not a signal.
+/// Blocks SIGPIPE in this thread for its lifetime: writing to a closed pipe is an error, not a signal.
 class BrokenPipeIgnored {
  public:
   BrokenPipeIgnored() {
@@ -59,11 +59,11 @@ class BrokenPipeIgnored {
   bool was_pending_ = false;
 };
 
-/// Reads what there is to read. False at the stream's end.
+/// Reads the available bytes. False at the stream's end.
 template <class Take>
 bool read_some(int descriptor, Take take) {
   std::array<char, 65536> bytes;
-  // Not until nothing is left: one that writes without end must not keep us here.
+  // Bounded: a process that writes without end must not block this loop.
   for (int i = 0; i < 16; ++i) {
     const ssize_t count = ::read(descriptor, bytes.data(), bytes.size());
     if (count == 0) return false;
@@ -77,9 +77,9 @@ std::string how_it_ended(int status) {
   const auto signal = [](int number) { return fmt::format("signal {} ({})", number, ::strsignal(number)); };
   if (WIFSIGNALED(status)) return "was ended by " + signal(WTERMSIG(status));
   const int code = WEXITSTATUS(status);
-  if (code == 127) return "ended with exit code 127 (by which a shell says that there is no such command)";
+  if (code == 127) return "ended with exit code 127 (a shell's code for: there is no such command)";
   if (code > 128 && code < 128 + 32) {
-    return fmt::format("ended with exit code {} (by which a shell says: {})", code, signal(code - 128));
+    return fmt::format("ended with exit code {} (a shell's code for {})", code, signal(code - 128));
   }
   return fmt::format("ended with exit code {}", code);
 }
@@ -161,7 +161,7 @@ ChildProcess::~ChildProcess() { kill(); }
 
 void ChildProcess::kill() noexcept {
   if (id_ < 0) return;
-  // It isn't reaped, so its number is still its group's, whatever has become of it.
+  // It is not reaped yet, so its id still names its group.
   ::kill(-id_, SIGKILL);
   while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
   }
@@ -203,7 +203,7 @@ void ChildProcess::read_errors() {
 
 /// Waits until one of the pipes can be served, and serves it.
 void ChildProcess::serve(std::string_view& unsent, int milliseconds) {
-  // poll() leaves out what has a negative number: what is closed, and the input when there is nothing to be written.
+  // poll() ignores negative descriptors: closed ones, and the input when there is nothing to write.
   pollfd pipes[3] = {
       {output_.number(), POLLIN, 0}, {error_.number(), POLLIN, 0}, {unsent.empty() ? -1 : input_.number(), POLLOUT, 0}};
   if (::poll(pipes, std::size(pipes), milliseconds) <= 0) return;
@@ -227,7 +227,7 @@ std::optional<std::string> ChildProcess::take_line(std::size_t longest) {
 }
 
 void ChildProcess::fail_ended(const char* otherwise) {
-  // What else it has to say comes with its end, if that is what happens.
+  // Further output is read when the process ends.
   std::string_view nothing;
   const auto deadline = Clock::now() + std::chrono::duration<double>(kEndGrace);
   while (!has_ended() && Clock::now() < deadline) {
@@ -250,7 +250,7 @@ std::string ChildProcess::exchange(std::string_view line, double timeout, std::s
   while (true) {
     if (std::optional<std::string> answer = take_line(longest)) {
       if (unsent.empty()) return *std::move(answer);
-      throw ProcessError("answered before it had read what it was told: " + printable(*answer, 200));
+      throw ProcessError("answered before it had read its message: " + printable(*answer, 200));
     }
     if (!output_.is_open()) fail_ended("closed its standard output");
     if (!input_.is_open()) fail_ended("closed its standard input");
@@ -260,7 +260,7 @@ std::string ChildProcess::exchange(std::string_view line, double timeout, std::s
       throw ProcessError(fmt::format("did not answer within {} s (is each of its lines flushed?)", timeout));
     }
     const std::size_t before = received_.size();
-    // Its end does not close its output when a process that it has started holds that, too.
+    // Its end does not close its output if a process that it started shares it.
     const bool over = has_ended();
     serve(unsent, over ? 0 : static_cast<int>(std::min(1e3 * left.count() + 1.0, static_cast<double>(kSlice))));
     if (over && received_.size() == before) fail_ended("ended");

@@ -13,45 +13,44 @@
 
 namespace evbench {
 
-/// A process of ours has failed: it could not be started, ended, kept silent or said what can't be understood. From
-/// ChildProcess, what() is a predicate ("ended with exit code 3"); from Dialogue, a whole sentence.
+/// Failure of a child process: it can't be started, ended early, did not answer in time, or answered wrongly. what() is
+/// a predicate from ChildProcess ("ended with exit code 3") and a whole sentence from Dialogue.
 class ProcessError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A program that runs beside this one and is spoken with in lines: one is told on its standard input, one is awaited
-/// on its standard output. It has a process group of its own, inherits no open file but the standard ones, and is
-/// killed with all of its group when this object ends. Not to be shared between threads.
+/// A child process that communicates by lines: each line written to its standard input is answered by one line on its
+/// standard output. It runs in its own process group, inherits only the standard streams, and is killed with its whole
+/// group when this object is destroyed. Not for use from several threads.
 class ChildProcess {
  public:
   /// Starts `words` (a program, searched in PATH when its name has no slash, and its arguments) in `folder`. Throws
-  /// ProcessError when that can't be done.
+  /// ProcessError when it can't be started.
   ChildProcess(const std::vector<std::string>& words, const std::string& folder);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Writes a line (its newline included) and returns the one that answers (without). Both directions and the standard
-  /// error are served at the same time, so that neither side waits for the other one in vain. Throws ProcessError when
-  /// there is no answer within `timeout` seconds, when the process ends or closes a stream instead, when it wrote
-  /// before it was asked, and for a line of more than `longest` bytes; what check_interruption() throws when the
-  /// program is asked to end.
+  /// Writes a line (with its newline) and returns the answer (without). Input, output and standard error are served at
+  /// the same time, so no deadlock is possible. Throws ProcessError when there is no answer within `timeout` seconds,
+  /// when the process ends or closes a stream, when it wrote before it was asked, and for a line of more than `longest`
+  /// bytes. Throws what check_interruption() throws when the program is asked to end.
   std::string exchange(std::string_view line, double timeout, std::size_t longest = kLongest);
   static constexpr std::size_t kLongest = std::size_t{256} << 20;
 
-  /// Tells it that nothing more comes and waits until it ends, for `grace` seconds at most, unless the program is
+  /// Closes its standard input and waits for its end, for at most `grace` seconds. Does not wait when the program is
   /// asked to end.
   void close(double grace) noexcept;
 
-  /// Kills it and its group, at once.
+  /// Kills it and its group at once.
   void kill() noexcept;
 
-  /// The last lines of what it wrote on its standard error.
+  /// The last lines of its standard error.
   const LineTail& errors() const { return errors_; }
 
  private:
-  /// A pipe's end.
+  /// One end of a pipe.
   class Descriptor {
    public:
     ~Descriptor() { close(); }
@@ -75,10 +74,10 @@ class ChildProcess {
   [[noreturn]] void fail_ended(const char* otherwise);
 
   pid_t id_ = -1;
-  Descriptor input_, output_, error_;  ///< our ends: of its standard input, output and error
-  std::string received_;               ///< of its standard output, not yet handed on
-  std::size_t searched_ = 0;           ///< of `received_`: no newline before
-  bool ended_ = false;                 ///< not reaped before the object ends, so that its number stays its own
+  Descriptor input_, output_, error_;  ///< our ends of its standard input, output and error
+  std::string received_;               ///< from its standard output, not yet returned
+  std::size_t searched_ = 0;           ///< `received_` has no newline before this position
+  bool ended_ = false;                 ///< reaped only by the destructor, so that the process id stays valid
   int status_ = 0;                     ///< as waitpid's, once ended
   LineTail errors_;
 };

@@ -22,7 +22,7 @@ namespace {
 
 std::vector<std::string> shell(const std::string& script) { return {"/bin/sh", "-c", script}; }
 
-/// What an exchange with a shell script is refused for.
+/// The error of an exchange with a shell script.
 std::string failure(const std::string& script, double timeout = 10.0, const std::string& line = "hello\n") {
   ChildProcess process(shell(script), "");
   try {
@@ -61,7 +61,7 @@ TEST_CASE("Lines larger than any pipe go both ways while the standard error is f
   CHECK_THAT(process.errors().text(""), ContainsSubstring("lines before these)\ncomplaint\n"));
 }
 
-TEST_CASE("A child process that ends instead of answering says how") {
+TEST_CASE("The end of a child process before its answer is reported with its exit code or signal") {
   CHECK_THAT(failure("exit 3"), ContainsSubstring("ended with exit code 3"));
   CHECK_THAT(failure("read line; exit 0"), ContainsSubstring("ended with exit code 0"));
   CHECK_THAT(failure("kill -SEGV $$"), ContainsSubstring("was ended by signal 11 (Segmentation fault)"));
@@ -69,17 +69,17 @@ TEST_CASE("A child process that ends instead of answering says how") {
              ContainsSubstring("exit code 134") && ContainsSubstring("Aborted"));
   CHECK_THAT(failure("no_such_program_here"), ContainsSubstring("there is no such command"));
   CHECK_THAT(failure("read line; printf 'half an answer'"), ContainsSubstring("ended with exit code 0"));
-  // It has started another one that holds its streams.
+  // A process that it started keeps its streams open.
   CHECK_THAT(failure("sleep 30 & exit 4"), ContainsSubstring("ended with exit code 4"));
 }
 
-TEST_CASE("A child process that closes its streams but lives is given up", "[slow]") {
+TEST_CASE("A child process that closes its streams without ending is an error", "[slow]") {
   CHECK_THAT(failure("exec >&-; sleep 30"), ContainsSubstring("closed its standard output"));
   CHECK_THAT(failure("exec <&-; sleep 30", 10.0, std::string(1'000'000, 'x') + "\n"),
              ContainsSubstring("closed its standard input"));
 }
 
-TEST_CASE("A child process is waited for no longer than its time limit", "[slow]") {
+TEST_CASE("A child process that does not answer within the time limit is an error", "[slow]") {
   const auto start = std::chrono::steady_clock::now();
   CHECK_THAT(failure("sleep 30", 0.2), ContainsSubstring("did not answer within 0.2 s"));
   CHECK_THAT(failure("read line; sleep 30", 0.2), ContainsSubstring("did not answer within 0.2 s"));
@@ -88,7 +88,7 @@ TEST_CASE("A child process is waited for no longer than its time limit", "[slow]
   CHECK(seconds_since(start) < 5.0);
 }
 
-TEST_CASE("A child process that writes without end, or out of turn, is refused") {
+TEST_CASE("A child process that writes without end or out of turn is an error") {
   CHECK_THAT(failure("yes | tr -d '\\n'"),
              ContainsSubstring("wrote a line of more than 1048576 bytes, which begins with: yyy"));
   ChildProcess talker(shell("while read line; do echo one; echo two; done"), "");
@@ -99,7 +99,7 @@ TEST_CASE("A child process that writes without end, or out of turn, is refused")
   CHECK_THAT(failure("echo early; cat", 0.5, std::string(1'000'000, 'x') + "\n"), ContainsSubstring("early"));
 }
 
-TEST_CASE("A command that does not exist, and a folder that does not, are said at the start") {
+TEST_CASE("A missing command or folder is reported at the start") {
   CHECK_THROWS_WITH(ChildProcess({"no_such_program_here"}, ""),
                     ContainsSubstring("can't be started: there is no such command"));
   CHECK_THROWS_WITH(ChildProcess({"./none"}, ""), ContainsSubstring("there is no such command"));
@@ -108,7 +108,7 @@ TEST_CASE("A command that does not exist, and a folder that does not, are said a
   CHECK_THROWS_WITH(ChildProcess({"/"}, ""), ContainsSubstring("can't be started: Permission denied"));
 }
 
-TEST_CASE("A program beside its folder's own files is found relative to the folder") {
+TEST_CASE("A program with a relative path is found in the folder of the process") {
   const testing::TemporaryFolder folder;
   const std::string script = folder.write("answer.sh", "#!/bin/sh\nread line; echo \"$1 $line\"\n");
   std::filesystem::permissions(script, std::filesystem::perms::owner_all);
@@ -116,7 +116,7 @@ TEST_CASE("A program beside its folder's own files is found relative to the fold
   CHECK(process.exchange("you\n", 10.0) == "to you");
 }
 
-TEST_CASE("All processes that a child has started end with it") {
+TEST_CASE("All processes that a child started end with it") {
   const testing::TemporaryFolder folder;
   pid_t grandchild = 0;
   {
@@ -125,7 +125,7 @@ TEST_CASE("All processes that a child has started end with it") {
     grandchild = std::stoi(testing::read_file(folder.file("child")));
     CHECK(::kill(grandchild, 0) == 0);
   }
-  // Whoever adopts it reaps it; a zombie has no command line.
+  // Another process adopts and reaps it; a zombie has no command line.
   const std::string command_line = "/proc/" + std::to_string(grandchild) + "/cmdline";
   CHECK(comes_true([&] { return !std::filesystem::exists(command_line) || testing::read_file(command_line).empty(); }));
 }
@@ -136,14 +136,14 @@ TEST_CASE("Children do not inherit one another's pipes, nor files that are open"
   ChildProcess first(shell("while read line; do echo $line; done; echo end > ended"), folder.path());
   CHECK(first.exchange("a\n", 10.0) == "a");
   ChildProcess second(shell("read line; echo $(ls /proc/$$/fd | wc -l)"), "");
-  // 0, 1, 2 and what the shell has of its own for $(...).
+  // 0, 1, 2 and the shell's own descriptors for $(...).
   CHECK(std::stoi(second.exchange("\n", 10.0)) <= 5);
   first.close(5.0);
   CHECK(std::filesystem::exists(folder.file("ended")));
   ::close(open_file);
 }
 
-TEST_CASE("A child that is closed has its time to end, and no more") {
+TEST_CASE("A closed child has the grace time to end and is killed afterwards") {
   const testing::TemporaryFolder folder;
   ChildProcess quick(shell("read a; echo 1; cat > /dev/null; sleep 0.1; touch ended"), folder.path());
   CHECK(quick.exchange("\n", 10.0) == "1");
@@ -169,7 +169,7 @@ TEST_CASE("Waiting for a child ends when the program is asked to end") {
   CHECK(seconds_since(start) < 5.0);
 }
 
-TEST_CASE("Of a flood of lines the last ones are kept, each as far as it can be shown") {
+TEST_CASE("Of many lines the last ones are kept, in printable form") {
   LineTail tail;
   CHECK(tail.empty());
   CHECK(tail.text("  ").empty());

@@ -8,7 +8,7 @@
 namespace evbench::process {
 
 namespace {
-constexpr double kEndGrace = 1.0;  ///< [s] for a process that has given its last answer
+constexpr double kEndGrace = 1.0;  ///< [s] for a process to end after its last answer
 }
 
 Dialogue::Dialogue(const ProcessOptions& options, const std::string& place, const std::string& folder)
@@ -25,17 +25,19 @@ Dialogue::~Dialogue() {
   if (finished_ && failure_.empty()) process_->close(kEndGrace);
 }
 
-std::string Dialogue::tell(Line& line) {
+std::string Dialogue::send(Line& line) {
   if (!failure_.empty()) throw ProcessError(failure_);
   line.push_back('\n');
   return process_->exchange({line.data(), line.size()}, timeout_);
 }
 
-void Dialogue::refuse(const Json& error) { throw ProcessError("says: " + printable(text(error, {"error"}), 1000)); }
+void Dialogue::refuse(const Json& error) {
+  throw ProcessError("reports an error: " + printable(text(error, {"error"}), 1000));
+}
 
 void Dialogue::fail(const std::string& what, const std::string& about) {
   if (failure_.empty()) {
-    failure_ = fmt::format("{}: the process \"{}\" {}; it had been told {}", place_, command_, what, about);
+    failure_ = fmt::format("{}: the process \"{}\" {}; last message to it: {}", place_, command_, what, about);
     const std::string last = errors();
     failure_ +=
         last.empty() ? "; it wrote nothing to its standard error" : "; the last lines of its standard error:" + last;
@@ -50,7 +52,7 @@ Json Dialogue::open(Json greeting, std::initializer_list<std::string> keys) {
   Line line;
   const std::string text_of_it = dump_json(complete);
   line.append(text_of_it);
-  return ask(line, "what it takes part in", [&](const Json& answer) {
+  return ask(line, "the opening message", [&](const Json& answer) {
     const Json& version = require(answer, "evbench");
     if (version != kVersion) {
       throw MessageError(fmt::format("evbench: it speaks version {} of the protocol; expected {}",

@@ -12,27 +12,27 @@
 
 namespace evbench::process {
 
-/// The version of protocol.md: told by both sides before all else, and the same.
+/// Version of the protocol (docs/reference/process_protocol.md). Both sides send it first; it must be the same.
 inline constexpr int kVersion = 1;
 
-/// evbench's side of a dialogue with a process, in lock-step: a line is told, a line answers. Whatever goes wrong is a
-/// ProcessError whose sentence names the process, what it was told, what went wrong, and the last lines of its standard
-/// error; the process is then killed, and asking again throws the same.
+/// evbench's side of the protocol with a process, in lock-step: one line out, one line back. Every failure is a
+/// ProcessError whose sentence names the process, the failure, the last message and the last lines of its standard
+/// error. The process is then killed, and every further call throws the same error.
 class Dialogue {
  public:
-  /// Starts the process in options.folder. `place` is where the options stand, `folder` what they are relative to.
-  /// Throws InputError for options that make no sense.
+  /// Starts the process in options.folder. `place` is the place of the options for messages, `folder` the base of their
+  /// relative paths. Throws InputError for invalid options.
   Dialogue(const ProcessOptions& options, const std::string& place, const std::string& folder);
 
-  /// A process that has been asked to finish has a second to end.
+  /// A process that has answered finish() gets a second to end.
   ~Dialogue();
 
-  /// Tells `line`, a JSON object; read(answer) makes of the answer, a JSON object, what is returned, and throws
-  /// MessageError for one that makes no sense. `about` says in messages what was told: "the batch until 0.3 s".
+  /// Sends `line`, a JSON object, and returns read(answer) of the answer, a JSON object. `read` throws MessageError for
+  /// an invalid answer. `about` names the message in errors: "the batch until 0.3 s".
   template <class Read>
   auto ask(Line& line, const std::string& about, Read read) {
     try {
-      const Json answer = parse_object(tell(line));
+      const Json answer = parse_object(send(line));
       if (const Json* error = find(answer, "error")) refuse(*error);
       return read(answer);
     } catch (const ProcessError& error) {
@@ -42,11 +42,11 @@ class Dialogue {
     }
   }
 
-  /// The first exchange: `greeting` is completed with the version; the answer must have the same. Of the answer, `keys`
-  /// may be there besides "evbench" and "name".
+  /// The first exchange: sends `greeting` with the version; the answer must have the same version. The answer may have
+  /// the keys "evbench", "name" and `keys`.
   Json open(Json greeting, std::initializer_list<std::string> keys = {});
 
-  /// The process' own name, the command's text where it has told none.
+  /// The name that the process gave itself; without one, the command.
   const std::string& name() const { return name_; }
 
   /// The last exchange: {"finish": true}.
@@ -55,14 +55,14 @@ class Dialogue {
     Line line;
     fmt::format_to(std::back_inserter(line), "{{\"finish\":true}}");
     finished_ = true;
-    return ask(line, "that this is the end", read);
+    return ask(line, "the finish message", read);
   }
 
-  /// The last lines of its standard error, for a log; empty when there are none.
+  /// The last lines of its standard error, for the log; empty when there are none.
   std::string errors() const;
 
  private:
-  std::string tell(Line& line);
+  std::string send(Line& line);
   [[noreturn]] static void refuse(const Json& error);
   [[noreturn]] void fail(const std::string& what, const std::string& about);
 

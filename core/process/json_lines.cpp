@@ -20,14 +20,14 @@ std::string shown(const Json& value) { return printable(printable_json(value), 1
   throw MessageError(fmt::format("{}: expected {}, found {}", place.text(), expected, shown(found)));
 }
 
-/// [track, numbers...]: the numbers, the track's place among them being of no use.
+/// Reads [track, numbers...]. The first element of the result, in the track's place, is unused.
 std::vector<double> track_row(const Json& value, const char* names, TrackId& track, const Place& place) {
   std::vector<double> row = numbers(value, names, place);
   track = integer(value[0], place);
   return row;
 }
 
-/// Calls read(item, place) for each item of a list.
+/// Calls read(item, place) for each item of a list and returns the results.
 template <class Read>
 auto each(const Json& value, const char* key, Read read) {
   std::vector<decltype(read(value, Place{key}))> result;
@@ -36,15 +36,14 @@ auto each(const Json& value, const char* key, Read read) {
   return result;
 }
 
-/// The protocol's own names, which stay whatever people are shown.
+/// The names in the protocol; independent of the names shown to users.
 template <class Value>
 using Names = std::vector<std::pair<std::string, Value>>;
 
-const Names<TrackingState> kTrackingStates = {{"no_map", TrackingState::no_map},
-                                              {"tracking", TrackingState::tracking},
-                                              {"standing_still", TrackingState::standing_still},
-                                              {"degraded", TrackingState::degraded},
-                                              {"lost", TrackingState::lost}};
+const Names<TrackingState> kTrackingStates = {
+    {"no_map", TrackingState::no_map},         {"tracking", TrackingState::tracking},
+    {"stationary", TrackingState::stationary}, {"standing_still", TrackingState::stationary},  // before version 1.0
+    {"degraded", TrackingState::degraded},     {"lost", TrackingState::lost}};
 
 template <class Value>
 Value named(const Json& value, const Place& place, const Names<Value>& names) {
@@ -109,7 +108,7 @@ double number(const Json& value, const Place& place) {
 }
 
 std::int64_t integer(const Json& value, const Place& place) {
-  if (value.is_number_float()) {  // 7.0 is what some libraries write of an integer
+  if (value.is_number_float()) {  // some libraries write integers as 7.0
     const double result = value.get<double>();
     if (!(std::abs(result) <= 9007199254740992.0) || result != std::floor(result)) {
       unexpected(value, "an integer", place);

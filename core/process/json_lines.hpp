@@ -19,43 +19,44 @@
 #include "core/support/json.hpp"
 #include "core/plugin/status.hpp"
 
-// The messages of protocol.md, one JSON object a line. Numbers are written in the shortest form that reads as the same
-// number again.
+// Writes and reads the messages of docs/reference/process_protocol.md, one JSON object a line. Numbers are written in
+// the shortest form that reads back as the same number.
 
 namespace evbench::process {
 
-/// A message that is not what it should be: what() says where in it, what was found and what was expected.
+/// An invalid message: what() names the place in it, what was found and what was expected.
 class MessageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// Written.
+// Writing.
 
 using Line = fmt::memory_buffer;
 
 /// [[t, x, y, p], ...], t in seconds.
 void write_events(Line& line, std::span<const Event> events);
 
-/// "until": ..., "observations": ..., "ended": ...; what is not finite is left out, and counted in the result.
+/// Writes "until": ..., "observations": ..., "ended": ...; leaves out values that are not finite and returns their
+/// number.
 int write_batch(Line& line, const TrackBatch& batch);
 
-/// One feedback, an object.
+/// One feedback as an object.
 void write_feedback(Line& line, const Feedback& feedback);
 
-// Read. Each throws MessageError.
+// Reading. Each function throws MessageError.
 
-/// A line as a JSON object.
+/// Parses a line as a JSON object.
 Json parse_object(const std::string& line);
 
-/// Throws for a key that is not among the known ones, naming the nearest.
+/// Throws for an unknown key, with the nearest known one.
 void check_keys(const Json& object, const std::vector<std::string>& known);
 
-/// The value of a key; nullptr where there is none.
+/// The value of a key; nullptr if it is missing. require() throws instead.
 const Json* find(const Json& object, const char* key);
 const Json& require(const Json& object, const char* key);
 
-/// Where a value stands: the key, and the place in its list.
+/// Place of a value: the key and the index in its list.
 struct Place {
   const char* key;
   std::optional<std::size_t> index = {};
@@ -76,7 +77,7 @@ StampedPose pose(const Json& value, const Place& place);
 /// A list of those, times strictly increasing.
 std::vector<StampedPose> poses(const Json& value, const char* key);
 
-/// [t, px ... qw] or [t, px ... qw, ωx, ωy, ωz, νx, νy, νz]: the velocity is none for the former.
+/// [t, px ... qw] or [t, px ... qw, ωx, ωy, ωz, νx, νy, νz]; without the last six, the velocity is none.
 struct MovingPose {
   StampedPose pose;
   std::optional<Vector6> velocity;

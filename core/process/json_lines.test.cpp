@@ -26,7 +26,7 @@ std::string refusal(const std::string& json, Read read) {
 
 }  // namespace
 
-TEST_CASE("Observations read as the same numbers that were written") {
+TEST_CASE("Observations are read back as the numbers that were written") {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   TrackBatch batch;
@@ -78,7 +78,7 @@ TEST_CASE("Events are written in seconds that are exact to the microsecond") {
   CHECK(text_of(none) == "[]");
 }
 
-TEST_CASE("Feedback that is written reads as what it was") {
+TEST_CASE("Feedback is read back as it was written") {
   Feedback feedback;
   feedback.t = 0.25;
   feedback.state = TrackingState::degraded;
@@ -112,7 +112,7 @@ TEST_CASE("Feedback that is written reads as what it was") {
   CHECK_FALSE(parse_object(text_of(without)).contains("newest"));
 }
 
-TEST_CASE("A message that is not what it should be is refused by a sentence that says where") {
+TEST_CASE("An invalid message is refused by a sentence that names the place") {
   CHECK_THROWS_WITH(parse_object("Hello"), ContainsSubstring("expected one JSON object a line, found Hello"));
   CHECK_THROWS_WITH(parse_object("{\"a\": NaN}"), ContainsSubstring("JSON has no NaN"));
   CHECK_THROWS_WITH(parse_object("[1]"), ContainsSubstring("expected a JSON object, found [1]"));
@@ -136,14 +136,14 @@ TEST_CASE("A message that is not what it should be is refused by a sentence that
   CHECK_THAT(refusal("\"lots\"", tracking_state), ContainsSubstring("unknown state \"lots\"; did you mean \"lost\"?"));
   CHECK_THAT(refusal("[1,2]", covariance), ContainsSubstring("144 numbers"));
   CHECK_THAT(refusal("[[0.2,0.1,\"x\"]]", degraded_spans), ContainsSubstring("a span that ends after it begins"));
-  const auto online = [](const Json& value) { poses(value, "online"); };
-  CHECK_THAT(refusal("[[0,0,0,0,0,0,0,0.9]]", online), ContainsSubstring("online[0]: the quaternion's norm is 0.9"));
-  CHECK_THAT(refusal("[[0,0,0,0,0,0,0,1],[0,0,0,0,0,0,0,1]]", online),
-             ContainsSubstring("online[1]: time 0 s is not after"));
+  const auto causal = [](const Json& value) { poses(value, "causal"); };
+  CHECK_THAT(refusal("[[0,0,0,0,0,0,0,0.9]]", causal), ContainsSubstring("causal[0]: the quaternion's norm is 0.9"));
+  CHECK_THAT(refusal("[[0,0,0,0,0,0,0,1],[0,0,0,0,0,0,0,1]]", causal),
+             ContainsSubstring("causal[1]: time 0 s is not after"));
 }
 
 TEST_CASE("A whole number with a decimal point is an integer, as numeric libraries write them") {
   CHECK(integer(parse_json("7.0"), {"track"}) == 7);
   CHECK(integer(parse_json("-7"), {"track"}) == -7);
-  CHECK(pose(parse_json("[1,2,3,4,0,0,0,1.0005]"), {"online"}).T.q.norm() == Approx(1.0).epsilon(1e-15));
+  CHECK(pose(parse_json("[1,2,3,4,0,0,0,1.0005]"), {"causal"}).T.q.norm() == Approx(1.0).epsilon(1e-15));
 }

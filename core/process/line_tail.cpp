@@ -11,7 +11,7 @@ std::string printable(std::string_view text, std::size_t length) {
   std::ranges::replace_if(
       result, [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f; }, '?');
   if (text.size() > length) {
-    // Not within a character of UTF-8.
+    // Do not cut within a UTF-8 character.
     while (!result.empty() && (static_cast<unsigned char>(text[result.size()]) & 0xC0U) == 0x80U) result.pop_back();
     result += "...";
   }
@@ -21,7 +21,7 @@ std::string printable(std::string_view text, std::size_t length) {
 void LineTail::add(std::string_view part) {
   while (!part.empty()) {
     const std::size_t end = std::min(part.find('\n'), part.size());
-    // One byte more than is shown tells that there was more.
+    // One byte more than is shown, so that printable() marks the cut.
     current_ += part.substr(0, std::min(end, kLength + 1 - std::min(current_.size(), kLength + 1)));
     if (end == part.size()) return;
     part.remove_prefix(end + 1);

@@ -7,26 +7,26 @@
 
 namespace evbench {
 
-/// The last lines of a text that comes in parts, however long it gets.
+/// Keeps the last lines of a text that arrives in parts, in bounded memory.
 class LineTail {
  public:
-  static constexpr std::size_t kLines = 20, kLength = 500;  ///< kept: lines, and bytes of each
+  static constexpr std::size_t kLines = 20, kLength = 500;  ///< kept lines, and kept bytes of each
 
   void add(std::string_view part);
 
   bool empty() const { return lines_.empty() && current_.empty(); }
 
-  /// The lines kept, each after `indent` and with a newline before it; what can't be printed is shown as "?".
-  /// Of lines that are not kept, a first line tells the number.
+  /// The kept lines, each preceded by a newline and `indent`; unprintable characters are shown as "?". If lines were
+  /// dropped, the first line gives their number.
   std::string text(std::string_view indent) const;
 
  private:
   std::deque<std::string> lines_;
-  std::string current_;      ///< has no newline yet
+  std::string current_;      ///< the unfinished line
   std::size_t dropped_ = 0;  ///< lines
 };
 
-/// A text's beginning, for messages: at most `length` bytes, what can't be printed shown as "?".
+/// The beginning of a text for messages: at most `length` bytes, unprintable characters shown as "?".
 std::string printable(std::string_view text, std::size_t length);
 
 }  // namespace evbench

@@ -18,7 +18,8 @@ bool is_text(const Json& value) {
   return value.is_string() && value.get_ref<const std::string&>().find('\0') == std::string::npos;
 }
 
-/// What may name a file in a command: roughly, for the shell's; what does not exist is none anyway.
+/// The words of a command that may name files. Approximate for shell commands; the caller ignores files that do not
+/// exist.
 std::vector<std::string> possible_names(const Json& command) {
   std::vector<std::string> names;
   if (command.is_array()) {
@@ -40,10 +41,10 @@ std::vector<std::string> possible_names(const Json& command) {
 
 void ProcessOptions::declare(OptionSet& set) {
   set.add("command", command, "the program and its arguments, a list of texts, or one text for the shell").required();
-  set.add("folder", folder, "where it runs, relative to the config's folder").folder();
+  set.add("folder", folder, "working directory, relative to the config's folder").folder();
   set.add("files", more_files, "further files that its result depends on (modules, weights), relative to `folder`");
-  set.add("timeout", timeout, "how long it may take for an answer [s]").range(0.001, 1e6);
-  set.add("options", options, "told to the process as they are");
+  set.add("timeout", timeout, "time limit for each answer [s]").range(0.001, 1e6);
+  set.add("options", options, "passed to the process unchanged");
 }
 
 std::vector<std::string> ProcessOptions::files() const {

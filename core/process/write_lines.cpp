@@ -12,7 +12,7 @@ void put(Line& line, fmt::format_string<Values...> format, Values&&... values) {
   fmt::format_to(std::back_inserter(line), format, std::forward<Values>(values)...);
 }
 
-/// A list whose items `write` writes.
+/// Writes a list; `write` writes an item.
 template <class Items, class Write>
 void put_list(Line& line, const Items& items, Write write) {
   const char* separator = "[";
@@ -44,7 +44,7 @@ void put_newest(Line& line, const ControlState& state) {
 }  // namespace
 
 void write_events(Line& line, std::span<const Event> events) {
-  // Divided, not multiplied by 1e-6: so that 12345 µs read as 0.012345 s.
+  // Divided, not multiplied by 1e-6, so that 12345 µs are written as 0.012345 s.
   put_list(line, events,
            [&](const Event& e) { put(line, "[{},{},{},{}]", static_cast<double>(e.t) / 1e6, e.x, e.y, e.on ? 1 : 0); });
 }
@@ -69,7 +69,7 @@ void write_feedback(Line& line, const Feedback& feedback) {
   if (usable) put_newest(line, *feedback.newest);
   if (usable && feedback.covariance && feedback.covariance->allFinite()) {
     put(line, ",\"covariance\":[");
-    put_numbers(line, feedback.covariance->data(), 144);  // symmetric: by rows is by columns
+    put_numbers(line, feedback.covariance->data(), 144);  // symmetric: row-major equals column-major
     put(line, "]");
   }
   put(line, ",\"outliers\":");

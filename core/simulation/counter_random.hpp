@@ -5,8 +5,8 @@
 
 namespace evbench {
 
-/// Random numbers by hashing a counter: the n-th draw of a stream is known without the ones before, so that streams
-/// (one a pixel) need no state but their counter and do not depend on the order in which threads serve them. The hash
+/// Random numbers by hashing a counter. The n-th draw of a stream is known without the draws before it, so that streams
+/// (one per pixel) need no state but their counter and do not depend on the order in which threads serve them. The hash
 /// is splitmix64's (Steele et al. 2014) over key + n · golden ratio.
 class CounterRandom {
  public:

@@ -72,13 +72,13 @@ Vector3 point_in(const Box& box, Random& random) {
   return point;
 }
 
-StandingBox::StandingBox(const Box& volume, Random& random) : centre(point_in(volume, random)) {
+UprightBox::UprightBox(const Box& volume, Random& random) : centre(point_in(volume, random)) {
   const double edge = volume.sizes().mean();
   for (double& h : half) h = 0.5 * edge * random.uniform(0.05, 0.2);
   turn = Eigen::AngleAxisd(random.uniform(0.0, 2.0 * M_PI), Vector3::UnitY());
 }
 
-Vector3 StandingBox::point_on_face(Random& random) const {
+Vector3 UprightBox::point_on_face(Random& random) const {
   const auto axis = static_cast<Eigen::Index>(random.index(3));
   Vector3 local;
   for (Eigen::Index i = 0; i < 3; ++i) local[i] = half[i] * random.uniform(-1.0, 1.0);

@@ -9,7 +9,7 @@
 
 namespace evbench {
 
-/// Where things must stand so that a camera sees them on its path.
+/// Where objects must be so that a camera sees them on its path.
 struct SceneLayout {
   SE3 frame;  ///< T_world_scene: mean position and mean orientation of the camera, z ahead
   PoseTrajectory path;
@@ -21,19 +21,19 @@ struct SceneLayout {
   Eigen::AlignedBox3d viewed_volume(double near, double far) const;
 
   /// The rectangle, in the scene's frame, that the views cover on the plane z = depth. Rays that run along the plane or
-  /// away from it are cut at five times the depth, which keeps the rectangle where the camera mostly looks.
+  /// away from it are cut at five times the depth, which keeps the rectangle where the camera mostly points.
   Eigen::AlignedBox3d viewed_rectangle(double depth) const;
 };
 
 Vector3 point_in(const Eigen::AlignedBox3d& box, Random& random);
 
 /// A box turned about the vertical axis (y) of the scene's frame.
-struct StandingBox {
+struct UprightBox {
   Vector3 centre, half;  ///< half: of the edges
   Eigen::Quaterniond turn;
 
   /// Its centre in the volume, with edges of 5 to 20 % of the volume's mean edge.
-  StandingBox(const Eigen::AlignedBox3d& volume, Random& random);
+  UprightBox(const Eigen::AlignedBox3d& volume, Random& random);
 
   Vector3 point_on_face(Random& random) const;
 };

@@ -59,9 +59,9 @@ Motion robot_arm(const MotionOptions& options, std::uint64_t seed) {
     const double a = kTurn * t / options.period + phase;
     const Vector3 p = options.amplitude * Vector3(std::cos(a), 0.7 * std::sin(a), 0.3 * std::sin(2.0 * a + 0.5));
     const Vector3 view = Vector3(0.0, 0.0, options.distance) - p;
-    const Eigen::Quaterniond look = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), view);
+    const Eigen::Quaterniond facing = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), view);
     const Vector3 roll(0.0, 0.0, options.rotation_amplitude * std::sin(a + 1.0));
-    return SE3{look * so3::exp(roll), p};
+    return SE3{facing * so3::exp(roll), p};
   };
 }
 
@@ -78,7 +78,7 @@ std::vector<StampedPose> knots_of(const PoseTrajectory& file, double rate) {
   return knots;
 }
 
-/// The motion's own time, which runs at the pace that the options say.
+/// The motion's own time, which runs at the pace in the options.
 class PaceClock {
  public:
   PaceClock(const std::vector<double>& pace, double duration)
@@ -133,16 +133,16 @@ void MotionOptions::declare(OptionSet& set) {
       .range(0.0, 1.5);
   set.add("max_frequency", max_frequency, "fastest sinusoid of smooth_random [Hz]").range(0.0, 1e3).above(0.0);
   set.add("period", period, "time after which robot_arm repeats [s]").above(0.0);
-  set.add("distance", distance, "distance of the point that robot_arm looks at [m]").above(0.0);
+  set.add("distance", distance, "distance of the point that robot_arm faces [m]").above(0.0);
   set.add("trajectory", trajectory, "path of a trajectory to follow: its poses are joined by a smooth (C2) spline")
       .path();
   set.add("trajectory_quaternion", trajectory_quaternion, {kQuaternionOrderNames.begin(), kQuaternionOrderNames.end()},
-          "order of its quaternion's columns; auto: as their names or number tell");
+          "order of its quaternion's columns; auto: from their names or number");
   set.add("start", start, "where in the trajectory to begin, after its first pose [s]").range(0.0);
   set.add("knot_rate", knot_rate, "poses of the trajectory that are used [Hz]; fewer smooth its noise; 0: all")
       .range(0.0, 1e4);
   set.add("scale", scale, "factor on the trajectory's positions").above(0.0);
-  set.add("pace", pace, "how fast it is run through, [at the beginning, at the end]: a slowing camera is [4, 0.5]")
+  set.add("pace", pace, "speed of the motion, [at the beginning, at the end]; [4, 0.5]: the camera slows down")
       .size(2)
       .range(1e-3, 1e3);
   set.add("hold", hold, "spans without any motion [from, to, from, to, ...] [s]");

@@ -37,11 +37,11 @@ struct MotionOptions {
 /// - robot_arm: a closed path (a tilted figure with ratios 1:1:2) that repeats every period, the camera turned to a
 ///   point at `distance` in front of the path's centre, with a gentle roll;
 /// - trajectory: the poses of a file (relative to `folder`), sampled at knot_rate and joined by a spline (PoseSpline).
-///   What joins them must be no back-end's motion model, which it would favour.
-/// Each is run through faster or slower by `pace`, which goes from its first value to its second over the sequence, by
-/// the same factor each second.
+///   The spline is not the motion model of a back-end, which it would favour.
+/// `pace` is the speed at which a motion is run through: it changes from its first value to its second over the
+/// sequence, by the same factor each second.
 /// Throws InputError, naming `place`, when a trajectory file is missing, too short for `duration` [s], or damaged. What
-/// was assumed of it is added to `remarks`, where they are asked for.
+/// was assumed about it is added to `remarks`, if they are given.
 Motion make_motion(const MotionOptions& options, double duration, std::uint64_t seed, const std::string& folder,
                    const std::string& place, std::vector<std::string>* remarks = nullptr);
 

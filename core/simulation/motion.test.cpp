@@ -61,7 +61,7 @@ TEST_CASE("The robot arm's motion repeats after its period") {
   CHECK(se3::log(motion(1.3).inverse() * motion(7.3)).norm() < 1e-9);
 }
 
-TEST_CASE("A pace takes the camera the same way in another time, and a falling one slows it down") {
+TEST_CASE("A pace takes the camera along the same path in another time, and a falling one slows it down") {
   MotionOptions options;
   const Motion usual = motion_of(options);
   options.pace = {2.0, 2.0};
@@ -93,7 +93,7 @@ TEST_CASE("A trajectory file is followed, with continuous velocity") {
   }
 }
 
-TEST_CASE("A flight through few poses of a trajectory has no jump of acceleration at them") {
+TEST_CASE("A motion through few poses of a trajectory has no jump of acceleration at them") {
   const testing::TemporaryFolder folder;
   write_file(folder.file("path.txt"), format_tum(sample_motion(motion_of({}), 10.0, 50.0)));
   MotionOptions options;

@@ -25,8 +25,7 @@ class Random {
   /// Standard normal, by Marsaglia's polar method.
   double normal();
 
-  /// Of a vector's coordinates the last is drawn first: always in this order, which that of a function's arguments is
-  /// not.
+  /// The last coordinate of a vector is drawn first. The order is fixed, unlike that of a function's arguments.
   Vector2 uniform2(const Vector2& from, const Vector2& to);
   Vector3 uniform3(const Vector3& from, const Vector3& to);
   Vector2 normal2();

@@ -10,7 +10,7 @@
 namespace evbench {
 
 void SceneOptions::declare(OptionSet& set) {
-  set.add("kind", kind, "what the camera looks at").choices({"volume", "plane", "boxes", "frustum"});
+  set.add("kind", kind, "scene in view of the camera").choices({"volume", "plane", "boxes", "frustum"});
   set.add("points", points, "number of dots (not frustum)").range(1, 1e6);
   set.add("near", near, "smallest depth of dots seen from the path [m]").above(0.0);
   set.add("far", far, "largest depth of dots seen from the path [m]").above(0.0);
@@ -40,7 +40,7 @@ Scene::Scene(const SceneOptions& options, const Camera& camera, const Motion& mo
   const SceneLayout layout(camera, sample_motion(motion, duration, 10.0));
   const Eigen::AlignedBox3d box = options.kind == "plane" ? layout.viewed_rectangle(0.5 * (options.near + options.far))
                                                           : layout.viewed_volume(options.near, options.far);
-  std::vector<StandingBox> boxes;
+  std::vector<UprightBox> boxes;
   if (options.kind == "boxes") {
     for (int i = 0; i < options.boxes; ++i) boxes.emplace_back(box, random);
   }

@@ -26,20 +26,20 @@ struct SceneOptions {
 std::optional<Vector2> visible_pixel(const Camera& camera, const SE3& T_world_camera, const Vector3& point,
                                      double border);
 
-/// What there is to see: dots, placed where the camera looks during the motion.
+/// The visible features of a scene: dots, placed in the camera's view during the motion.
 /// - volume: dots anywhere in the box that the views between the depths near and far fill;
-/// - plane: dots on the plane that the mean view direction meets at right angles half way between near and far;
-/// - boxes: dots on the faces of boxes that stand in that volume;
-/// - frustum: no dots beforehand; each new feature is a point at a random pixel at a random depth between near and far.
+/// - plane: dots on the plane at right angles to the mean view direction, half way between near and far;
+/// - boxes: dots on the faces of boxes in that volume;
+/// - frustum: no fixed dots; each new feature is a point at a random pixel at a random depth between near and far.
 class Scene {
  public:
   /// Throws InputError unless near < far.
   Scene(const SceneOptions& options, const Camera& camera, const Motion& motion, double duration, Random random);
 
-  /// Is nothing of the scene between the camera at T_world_camera and a point?
+  /// Is the point unoccluded by the scene for a camera at T_world_camera?
   using Visibility = std::function<bool(const SE3& T_world_camera, const Vector3& point)>;
 
-  /// The given dots, world frame, of surfaces that hide what is behind them.
+  /// The given dots, world frame, on surfaces that hide what is behind them.
   Scene(std::vector<Vector3> points, const Camera& camera, Visibility unoccluded);
 
   /// visible_pixel() where nothing is in front of the point.
@@ -48,8 +48,9 @@ class Scene {
   /// All dots, world frame; empty for frustum.
   const std::vector<Vector3>& points() const { return points_; }
 
-  /// A point for a new track that the camera sees at T, `border` [px] inside the image, and that no other track
-  /// observes at time t; none when there is none. The caller says with occupy() how long the track will observe it.
+  /// A point for a new track: the camera sees it at T, `border` [px] inside the image, and no other track observes it
+  /// at time t; none if there is no such point. The caller then states with occupy() how long the track will observe
+  /// it.
   struct Pick {
     Vector3 position;
     std::optional<std::size_t> point;  ///< index in points(); none for frustum

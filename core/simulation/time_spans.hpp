@@ -17,9 +17,8 @@ std::vector<TimeSpan> parse_time_spans(const std::vector<double>& list, const st
 std::vector<TimeSpan> merge_time_spans(std::vector<TimeSpan> a, const std::vector<TimeSpan>& b,
                                        const std::string& place, double gap);
 
-/// A clock that stops: it runs with the time, stands still inside the given spans, and slows down and speeds up
-/// smoothly (once continuously differentiable rate) over `ramp` [s] on either side. A motion that is read by it comes
-/// to rest.
+/// A clock that runs with time but stops inside the given spans. It slows down and speeds up smoothly (once
+/// continuously differentiable rate) over kRamp [s] on either side. A motion that is read by it comes to rest.
 class StoppingClock {
  public:
   static constexpr double kRamp = 0.2;

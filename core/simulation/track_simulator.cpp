@@ -19,7 +19,7 @@ namespace {
 constexpr double kRebirth = 0.02;  // [s] within which a new track takes an ended one's place
 constexpr double kRetry = 0.05;    // [s] until a birth is tried again when nothing is in view
 
-/// An offset over the image: what an outlier or a drifting track does besides, or instead of, following its point.
+/// An offset over the image, added to the motion of its point (drifting track) or in place of it (outlier).
 struct ImageMotion {
   Vector2 velocity = Vector2::Zero();   // [px/s]
   Vector2 amplitude = Vector2::Zero();  // [px]
@@ -157,18 +157,18 @@ void check_interval(const std::vector<double>& interval, const std::string& plac
 }  // namespace
 
 void TrackOptions::declare(OptionSet& set) {
-  set.add("alive", alive, "tracks alive at any time, as far as there is something to see").range(1, 1e5);
+  set.add("alive", alive, "number of tracks alive at any time, if the camera sees enough points").range(1, 1e5);
   set.add("lifetime", lifetime, "smallest and largest lifetime of a track [s]").above(0.0).size(2);
   set.add("rate", rate, "smallest and largest mean update rate of a track [Hz]").range(0.1, 1e5).size(2);
   set.add("noise", noise, "standard deviation of the pixel noise, each axis [px]").range(0.0);
   set.add("wander", wander,
-          "standard deviation of a slow error besides: each track wanders about its point, each axis [px]")
+          "standard deviation of an additional slow error: each track drifts about its point, each axis [px]")
       .range(0.0);
-  set.add("wander_time", wander_time, "time in which that is forgotten, exp(-dt/wander_time) [s]").above(0.0);
+  set.add("wander_time", wander_time, "correlation time of that error, exp(-dt/wander_time) [s]").above(0.0);
   set.add("quantisation", quantisation, "pixels are rounded to multiples of this [px]; 0: not rounded").range(0.0);
   set.add("outlier_share", outlier_share, "share of the tracks that move independently of the scene").range(0.0, 1.0);
   set.add("outlier_speed", outlier_speed, "mean speed of those [px/s]").range(0.0);
-  set.add("drift_share", drift_share, "share of the tracks that slide off their point").range(0.0, 1.0);
+  set.add("drift_share", drift_share, "share of the tracks that drift off their point").range(0.0, 1.0);
   set.add("drift_speed", drift_speed, "speed of those relative to the point [px/s]").range(0.0);
   set.add("dropout_rate", dropout_rate, "gaps in a track per second [Hz]").range(0.0, 1e4);
   set.add("dropout_length", dropout_length, "smallest and largest length of such a gap [s]").range(0.0).size(2);

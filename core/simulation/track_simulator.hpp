@@ -30,7 +30,7 @@ struct TrackOptions {
 enum class TrackKind {
   inlier,   ///< follows a point of the scene
   outlier,  ///< moves over the image independently of the scene
-  drift,    ///< begins on a point and slides off slowly
+  drift,    ///< begins on a point and drifts off slowly
 };
 
 struct SimulatedTracks {
@@ -42,13 +42,13 @@ struct SimulatedTracks {
   std::vector<Track> tracks;  ///< by id: ids are 0, 1, 2, ... in the order in which tracks begin
 };
 
-/// Makes what an asynchronous feature tracker would report: at any time about `alive` tracks, each updated at its own
-/// irregular times (gaps of 0.4 to 1.6 mean gaps), with noise and quantisation, until its lifetime is over or it leaves
-/// the image; then another begins elsewhere, with an id of its own (a dot that is seen again is a new track). Times are
-/// whole microseconds, as those of events are. `sigma` of an observation is √(noise² + quantisation²/12), at least 0.1
-/// px, and with `wander` the root of the sum of both squares (track_wander.hpp). The same arguments give the same
-/// bytes. Throws InputError, naming `place`, for options that contradict one another and when the camera sees no point
-/// of the scene at any time.
+/// Simulates the output of an asynchronous feature tracker. At any time there are about `alive` tracks, each updated at
+/// its own irregular times (gaps of 0.4 to 1.6 mean gaps), with noise and quantisation, until its lifetime is over or
+/// it leaves the image; then another begins elsewhere, with an id of its own (a dot that is seen again is a new track).
+/// Times are whole microseconds, as those of events are. `sigma` of an observation is √(noise² + quantisation²/12), at
+/// least 0.1 px, and with `wander` the root of the sum of both squares (track_wander.hpp). The same arguments give the
+/// same bytes. Throws InputError, naming `place`, for options that contradict one another and if the camera sees no
+/// point of the scene at any time.
 SimulatedTracks simulate_tracks(const TrackOptions& options, const Camera& camera, const Motion& motion, Scene& scene,
                                 double duration, std::uint64_t seed, const std::string& place);
 

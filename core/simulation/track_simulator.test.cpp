@@ -169,7 +169,7 @@ TEST_CASE("No two tracks follow the same dot at the same time") {
   }
 }
 
-TEST_CASE("Tracks that wander are off by as much as is stated, and what they are off by is forgotten in time") {
+TEST_CASE("Tracks with a slow error deviate as much as their sigma states, with the stated correlation time") {
   Sequence plain, wandering;
   for (Sequence* s : {&plain, &wandering}) {
     s->options.lifetime = {4.0, 4.0};

@@ -13,7 +13,7 @@ namespace {
 const Registration<Source, EventSimulation> event_simulation_registration(
     "event_simulation", "simulated events of a rendered scene, with ground truth", 2);
 
-/// A pixel takes some 300 bytes.
+/// A pixel takes about 300 bytes.
 constexpr std::int64_t kMostPixels = 4'000'000;
 
 const SourceContext& check_sensor(const EventSimulation::Options& options, const SourceContext& context) {
@@ -30,23 +30,23 @@ const SourceContext& check_sensor(const EventSimulation::Options& options, const
 
 void EventSimulation::Options::declare(OptionSet& set) {
   SimulatedSequence::Options::declare(set);
-  set.group("scene", scene, "what it looks at");
+  set.group("scene", scene, "scene in view of the camera");
   set.group("rendering", rendering, "how the scene becomes intensities");
   set.group("simulator", simulator, "how intensities become events");
 }
 
 EventSimulation::EventSimulation(const Options& options, const SourceContext& context)
     : SimulatedSequence(options, check_sensor(options, context)),
-      look_(options.scene),
+      scene_options_(options.scene),
       folder_(context.folder),
       place_(context.place + ".scene"),
       rendering_(options.rendering),
       simulator_(options.simulator) {
-  parse_time_spans(simulator_.outages, context.place + ".simulator.outages");  // what is wrong is told at once
-  check_rendered_scene(look_, camera(), motion(), duration(), place_);
-  if (!look_.picture.empty()) {
-    add_file(resolve_path(look_.picture, folder_));
-    drawn_scene();  // a picture that can't be read is told at once
+  parse_time_spans(simulator_.outages, context.place + ".simulator.outages");  // reports errors now
+  check_rendered_scene(scene_options_, camera(), motion(), duration(), place_);
+  if (!scene_options_.picture.empty()) {
+    add_file(resolve_path(scene_options_.picture, folder_));
+    drawn_scene();  // reports an unreadable picture now
   }
   const auto features = [this] {
     return Scene(scene().features, camera(), [truth = truth()](const SE3& T_world_camera, const Vector3& point) {
@@ -59,7 +59,7 @@ EventSimulation::EventSimulation(const Options& options, const SourceContext& co
 std::shared_ptr<const RenderedScene> EventSimulation::drawn_scene() const {
   std::call_once(drawn_, [this] {
     scene_ = std::make_shared<const RenderedScene>(
-        make_rendered_scene(look_, camera(), motion(), duration(), random(Part::scene), folder_, place_));
+        make_rendered_scene(scene_options_, camera(), motion(), duration(), random(Part::scene), folder_, place_));
   });
   return scene_;
 }

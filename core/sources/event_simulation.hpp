@@ -11,8 +11,8 @@
 
 namespace evbench {
 
-/// A simulated recording of an event camera: events, made while they are read; the tracks are those of the scene's
-/// features.
+/// A simulated recording of an event camera. The events are simulated while they are read; the tracks are those of the
+/// scene's features.
 class EventSimulation : public SimulatedSequence {
  public:
   struct Options : SimulatedSequence::Options {
@@ -35,12 +35,11 @@ class EventSimulation : public SimulatedSequence {
   const RenderedScene& scene() const { return *drawn_scene(); }
 
  private:
-  /// Drawn when it is needed first: that takes its time, and who plans a sweep, or reads events that were recorded, has
-  /// no use for it.
+  /// Made on first use: it takes time, and neither planning a sweep nor reading recorded events needs it.
   std::shared_ptr<const RenderedScene> drawn_scene() const;
 
-  RenderedSceneOptions look_;
-  std::string folder_, place_;  ///< of its picture; for messages
+  RenderedSceneOptions scene_options_;
+  std::string folder_, place_;  ///< folder of the picture; place in messages
   RenderingOptions rendering_;
   SimulatorOptions simulator_;
   mutable std::once_flag drawn_;

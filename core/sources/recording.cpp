@@ -27,7 +27,7 @@ PoseTrajectory shifted(const PoseTrajectory& trajectory, double offset) {
   return PoseTrajectory(std::move(poses));
 }
 
-/// A recording of which only the folder is there, e.g. with a file of tracks.
+/// A recording with nothing but its folder, e.g. with a file of tracks.
 class NoEvents : public EventReader {
  public:
   explicit NoEvents(const ReadOptions& options) {
@@ -57,35 +57,34 @@ void Recording::Options::declare(OptionSet& set) {
           "calibration file, instead of the folder's: calib.txt (fx fy cx cy k1 k2 p1 p2 k3), YAML of Kalibr, ROS or "
           "OpenCV")
       .path();
-  set.add("camera", camera, "which one of a named calibration that holds several, e.g. cam1");
+  set.add("camera", camera, "which camera of a named calibration with several, e.g. cam1");
   set.add("ground_truth", ground_truth,
           "ground truth file, instead of the folder's: TUM, EuRoC, KITTI, RobotEvt, or named columns")
       .path();
   set.add("ground_truth_format", ground_truth_format, {kPoseFormatNames.begin(), kPoseFormatNames.end()},
-          "its format, or that of groundtruth.txt; auto: as the columns' names or number tell");
+          "its format, or that of groundtruth.txt; auto: from the columns' names or number");
   set.add("ground_truth_quaternion", ground_truth_quaternion,
           {kQuaternionOrderNames.begin(), kQuaternionOrderNames.end()},
-          "order of its quaternion's columns; auto: as their names or the format tell");
+          "order of its quaternion's columns; auto: from their names or the format");
   set.add("ground_truth_times", ground_truth_times, "file with its times, one a line, where it has none (KITTI)")
       .path();
   set.add("ground_truth_time_unit", ground_truth_time_unit, {kTimeUnitNames.begin(), kTimeUnitNames.end()},
-          "unit of its times; auto: as the column's name says, or seconds, from 1e17 on nanoseconds");
-  set.add("width", width, "sensor's width, where neither recording nor calibration say it [px]; 0: 240").range(0, 1e5);
+          "unit of its times; auto: from the column's name, or seconds, from 1e17 on nanoseconds");
+  set.add("width", width, "sensor's width, if neither recording nor calibration states it [px]; 0: 240").range(0, 1e5);
   set.add("height", height, "sensor's height, likewise [px]; 0: 180").range(0, 1e5);
-  set.add("distortion", distortion, "lens model of a calibration that does not say it")
+  set.add("distortion", distortion, "lens model of a calibration that does not state it")
       .choices({"none", "radial_tangential", "equidistant"});
   set.add("time_range", time_range,
           "part of the sequence that is used, [from, to] [s]; empty: the ground truth's, or, without one, all events'")
       .size(2)
       .rising();
   set.require_one_of({"dataset", "folder", "events", "calibration"});
-  set.add("columns", columns, "of a text of events or rows of HDF5, e.g. \"t_us,x,y,p\"; empty: as the file looks");
-  set.add("topic", topic, "of a bag, group of an HDF5 file: whose events; empty: the only one, or the first");
-  set.add(
-      "ground_truth_topic", ground_truth_topic,
-      "of a bag: whose poses are the ground truth; empty: the only one's, or those of the event camera by its name");
+  set.add("columns", columns, "columns of a text of events or rows of HDF5, e.g. \"t_us,x,y,p\"; empty: detected");
+  set.add("topic", topic, "topic of a bag or group of an HDF5 file with the events; empty: the only one, or the first");
+  set.add("ground_truth_topic", ground_truth_topic,
+          "topic of a bag with the ground truth poses; empty: the only one, or the event camera's by its name");
   set.add("camera_info_topic", camera_info_topic,
-          "of a bag: whose camera info is the calibration; empty: the event camera's, by its size and name");
+          "topic of a bag with the camera info; empty: the event camera's, by its size and name");
   set.add("lenient", lenient, "go on however many of the events have to be left out");
   set.add("time_offset", time_offset, "added to the ground truth's times to get the sequence's [s]");
 }
@@ -113,8 +112,8 @@ Recording::Recording(const Options& options, const SourceContext& context) : pla
     resolved.ground_truth_times = resolve_path(options.ground_truth_times, context.folder);
   }
   if (!options.ground_truth.empty()) resolved.ground_truth = resolve_path(options.ground_truth, context.folder);
-  const auto usual = [&](const char* name, bool said, std::string& path) {  // whose format the options say
-    if (path.empty() && said && std::filesystem::exists(folder + "/" + name)) path = folder + "/" + name;
+  const auto usual = [&](const char* name, bool stated, std::string& path) {  // if the options state its format
+    if (path.empty() && stated && std::filesystem::exists(folder + "/" + name)) path = folder + "/" + name;
   };
   usual("calib.txt", options.distortion != Options().distortion, resolved.calibration);
   usual("groundtruth.txt",
@@ -144,14 +143,14 @@ std::vector<std::string> Recording::event_files() const {
   return files_of_events(events_);
 }
 
-/// Of the folder, or where there is none, of the file of events.
+/// Reads what the folder, or without one the file of events, contains.
 Recording::Own Recording::find_own(const Options& options, const std::string& folder) {
   Own own;
   const bool find_camera = options.calibration.empty(), find_truth = options.ground_truth.empty();
   const std::string path = folder.empty() ? events_ : folder;
   if (path != events_) find_info(own);
   if (path.empty()) return own;
-  if (path == folder && !std::filesystem::is_directory(folder)) return own;  // what is missing of it is told
+  if (path == folder && !std::filesystem::is_directory(folder)) return own;  // what is missing of it is reported later
   const bool has_events = holds_events(path);
   if (!has_events && !find_camera && !find_truth) return own;
   const auto reader = has_events ? open_events(path, read_options_)
@@ -163,7 +162,8 @@ Recording::Own Recording::find_own(const Options& options, const std::string& fo
   if (path == events_) own.info = info;
   if (info.start && info.end && info.count && info.guessed_time_unit) {
     const auto duration = static_cast<double>(*info.end) - static_cast<double>(*info.start);
-    if (const auto doubt = doubtful_rate(*info.count, duration, *info.guessed_time_unit)) remarks_.push_back(*doubt);
+    if (const auto warning = implausible_rate(*info.count, duration, *info.guessed_time_unit))
+      remarks_.push_back(*warning);
   }
   for (const auto& [key, text] : info.metadata) {
     if (key == "remark" && find_truth) remarks_.push_back(text);
@@ -172,11 +172,11 @@ Recording::Own Recording::find_own(const Options& options, const std::string& fo
         key == kTopicChoice || (key == kCameraInfoIn && find_camera) || (key == kGroundTruthIn && find_truth);
     if (topic) remarks_.push_back(fmt::format("{}: {}", key, text));
   }
-  files_ = reader->files_beside();
+  files_ = reader->companion_files();
   return own;
 }
 
-/// Of events that are not the folder's.
+/// Reads the headers of events that are not the folder's.
 void Recording::find_info(Own& own) const {
   if (!events_.empty() && holds_events(events_)) own.info = open_events(events_, read_options_)->info();
 }
@@ -199,17 +199,17 @@ void Recording::set_camera(const Options& options, const std::string& folder, co
                     place_, folder.empty() ? events_ : folder, own.unusable.empty() ? "" : " (" + own.unusable + ")",
                     folder.empty() ? std::filesystem::path(events_).parent_path().string() : folder));
   }
-  const bool said = camera_.width > 0 && camera_.height > 0;
-  if (!said) {
+  const bool stated = camera_.width > 0 && camera_.height > 0;
+  if (!stated) {
     const bool usual = own.info.width <= 0 || own.info.height <= 0;
     camera_.width = usual ? kUsualWidth : own.info.width;
     camera_.height = usual ? kUsualHeight : own.info.height;
   }
   check_sizes(options, own.info);
-  const bool assumed = !said || (guess && options.calibration.empty());
+  const bool assumed = !stated || (guess && options.calibration.empty());
   if (assumed && !own.info.format.empty()) {
     size_assumption_ =
-        fmt::format("nothing says the sensor's size, {}x{} pixels is assumed; source.width and source.height say it",
+        fmt::format("nothing states the sensor's size, {}x{} pixels is assumed; source.width and source.height set it",
                     camera_.width, camera_.height);
     remarks_.push_back(size_assumption_);
   }
@@ -222,7 +222,7 @@ void Recording::set_camera(const Options& options, const std::string& folder, co
   }
 }
 
-/// Recording, options and calibration are of one sensor.
+/// Checks that recording, options and calibration are of one sensor.
 void Recording::check_sizes(const Options& options, const StreamInfo& recording) const {
   const auto require = [&](const char* whose, int width, int height) {
     if (options.width == 0 || (width == options.width && height == options.height)) return;
@@ -264,7 +264,7 @@ void Recording::set_time_range(const std::vector<double>& range, const Own& own)
   if (range_.to < start || range_.from > end) {
     throw InputError(fmt::format("{}.time_range: {} to {} s does not meet the ground truth, whose times {}", place_,
                                  range_.from, range_.to,
-                                 times_beside(start, end, range_.from, range_.to, "ground_truth_time_unit")));
+                                 times_outside(start, end, range_.from, range_.to, "ground_truth_time_unit")));
   }
   if (range_.from < start || range_.to > end) {
     remarks_.push_back(fmt::format("the ground truth covers {:.3f} to {:.3f} s of {:.3f} to {:.3f} s", start, end,
@@ -272,7 +272,7 @@ void Recording::set_time_range(const std::vector<double>& range, const Own& own)
   }
 }
 
-/// From the first event to the last, which are looked for where the file's header does not say when they are.
+/// From the first event to the last, which are searched for if the file's header does not state their times.
 TimeRange Recording::time_of_events(const StreamInfo& info) const {
   std::optional<std::int64_t> first = info.start, last = info.end;
   if (!first || !last) {

@@ -10,13 +10,14 @@ namespace evbench {
 
 /// A recorded sequence: calibration and, where it is known, ground truth. The tracks come from a front-end.
 ///
-/// A `folder` is a recording's (core/events/recording_files.hpp): events, and what lies beside them or is in them,
-/// calibration and ground truth (core/events/companions/), e.g. calib.txt and groundtruth.txt of the Event-Camera
-/// Dataset; each can be missing, and be named instead. A `dataset` is the folder of a public one that `evbench dataset
-/// get` fetched. Without a folder, `events` is asked for what isn't named. The sensor's size is the recording's own, or
-/// what the options, the calibration or what lies beside the events say, in this order; where nothing says it, it is
-/// assumed. Throws InputError for files that are missing or damaged, where two of them say different sizes, for a time
-/// range that is empty or that the ground truth does not meet, and when nothing says how long the sequence is.
+/// A `folder` is a recording's folder (core/events/recording_files.hpp): events, and calibration and ground truth in
+/// them or in files next to them (core/events/companions/), e.g. calib.txt and groundtruth.txt of the Event-Camera
+/// Dataset. Each can be missing, and be named by an option instead. A `dataset` is the folder of a public one that
+/// `evbench dataset get` fetched. Without a folder, what is not named is taken from `events`. The sensor's size is the
+/// recording's own, or that of the options, the calibration or the files next to the events, in this order; if none
+/// states it, it is assumed. Throws InputError for files that are missing or damaged, for two of them that state
+/// different sizes, for a time range that is empty or does not meet the ground truth, and if nothing determines how
+/// long the sequence is.
 class Recording : public Source {
  public:
   struct Options {
@@ -50,7 +51,7 @@ class Recording : public Source {
   std::vector<std::string> remarks() const override { return remarks_; }
 
  private:
-  /// What events and what lies beside them say.
+  /// What events and the files next to them contain.
   struct Own {
     std::optional<Camera> camera;
     std::optional<PoseTrajectory> ground_truth;

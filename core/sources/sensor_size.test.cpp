@@ -54,7 +54,8 @@ std::vector<Event> events_given_by(const Source& source) {
 
 }  // namespace
 
-TEST_CASE("The size that a recording says goes before the usual one, and unequal ones are refused with both") {
+TEST_CASE(
+    "The size that a recording states takes precedence over the usual one, and unequal ones are refused with both") {
   const Folder folder;
   const Recording own = folder.open(R"("events": "said.evb", "calibration": "calib.txt")");
   CHECK(own.camera().width == 346);
@@ -72,7 +73,7 @@ TEST_CASE("The size that a recording says goes before the usual one, and unequal
                     ContainsSubstring("expected both or none"));
 }
 
-TEST_CASE("A size that nothing says is assumed, told, and an event outside it is an error that says so") {
+TEST_CASE("A size that nothing states is assumed and reported, and an event outside it is an error that says so") {
   const Folder folder;
   for (const char* events : {"events.txt", "unsaid.evb"}) {
     CAPTURE(events);
@@ -82,18 +83,18 @@ TEST_CASE("A size that nothing says is assumed, told, and an event outside it is
     CHECK_THAT(assumed.size_assumption(), ContainsSubstring("240x180 pixels is assumed"));
     CHECK_THAT(assumed.remarks().front(), ContainsSubstring("240x180 pixels is assumed"));
     CHECK_THROWS_WITH(events_given_by(assumed), ContainsSubstring("pixel (345, 259)") && ContainsSubstring("240x180") &&
-                                              ContainsSubstring("source.width"));
+                                                    ContainsSubstring("source.width"));
     CHECK(events_given_by(folder.open(files + R"(, "lenient": true)")).size() == 1);
-    const Recording said = folder.open(files + R"(, "width": 346, "height": 260)");
-    CHECK(said.size_assumption().empty());
-    CHECK(events_given_by(said).back() == kCorner);
+    const Recording stated = folder.open(files + R"(, "width": 346, "height": 260)");
+    CHECK(stated.size_assumption().empty());
+    CHECK(events_given_by(stated).back() == kCorner);
   }
 }
 
-TEST_CASE("A front-end gets no event outside its camera, whatever a source says of its size") {
-  class Stranger : public Source {
+TEST_CASE("A front-end gets no event outside its camera, whatever size a source states") {
+  class OtherSource : public Source {
    public:
-    explicit Stranger(Camera camera, StreamInfo info) : camera_(std::move(camera)), info_(std::move(info)) {}
+    explicit OtherSource(Camera camera, StreamInfo info) : camera_(std::move(camera)), info_(std::move(info)) {}
     const Camera& camera() const override { return camera_; }
     TimeRange time_range() const override { return {0.0, 2.0}; }
     const PoseTrajectory& ground_truth() const override { return truth_; }
@@ -128,12 +129,13 @@ TEST_CASE("A front-end gets no event outside its camera, whatever a source says 
   Camera camera;
   camera.width = 240;
   camera.height = 180;
-  CHECK(events_given_by(Stranger(camera, {})).size() == 1);
+  CHECK(events_given_by(OtherSource(camera, {})).size() == 1);
   StreamInfo larger;
   larger.width = 346;
   larger.height = 260;
-  CHECK_THROWS_WITH(events_given_by(Stranger(camera, larger)), ContainsSubstring("240x180") && ContainsSubstring("346x260"));
-  CHECK_THROWS_WITH(events_given_by(Stranger({}, larger)), ContainsSubstring("has no sensor size"));
+  CHECK_THROWS_WITH(events_given_by(OtherSource(camera, larger)),
+                    ContainsSubstring("240x180") && ContainsSubstring("346x260"));
+  CHECK_THROWS_WITH(events_given_by(OtherSource({}, larger)), ContainsSubstring("has no sensor size"));
 }
 
 TEST_CASE("A bag that says its sensor's size runs with a text calibration, as its messages have it") {

@@ -13,7 +13,7 @@
 
 namespace evbench {
 
-/// What all simulated sequences are, from 0 to `duration`, whatever the camera sees: camera, motion, ground truth, and
+/// Base of all simulated sequences, from 0 to `duration`, whatever the camera sees: camera, motion, ground truth, and
 /// feature tracks with known association. Equal options and seed give equal bytes.
 class SimulatedSequence : public Source {
  public:
@@ -34,8 +34,8 @@ class SimulatedSequence : public Source {
   std::optional<std::span<const TrackObservation>> true_tracks() const override { return tracks().observations; }
   std::vector<std::string> files() const override { return files_; }
 
-  /// Made when they are asked for first: a front-end that reads events has no use for them, and what hides what takes
-  /// its time. Throws InputError where the options can't be met.
+  /// Made on first use: a front-end that reads events does not need them, and occlusion tests take time. Throws
+  /// InputError if the options can't be met.
   const SimulatedTracks& tracks() const;
 
  protected:
@@ -47,7 +47,7 @@ class SimulatedSequence : public Source {
 
   double duration() const { return duration_; }
   const Motion& motion() const { return motion_; }
-  /// `scene`: makes what is seen, when tracks are asked for; `place`: where the options stand, for messages.
+  /// `scene`: makes the scene when tracks are requested; `place`: of the options, for messages.
   void make_tracks_of(std::function<Scene()> scene, const TrackOptions& options, const std::string& place);
   const std::vector<std::string>& motion_remarks() const { return motion_remarks_; }  ///< on its file, if it has one
   void add_file(const std::string& path) { files_.push_back(path); }

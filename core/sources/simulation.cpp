@@ -16,7 +16,7 @@ const Registration<Source, Simulation> simulation_registration("simulation",
 
 void Simulation::Options::declare(OptionSet& set) {
   SimulatedSequence::Options::declare(set);
-  set.group("scene", scene, "what it looks at");
+  set.group("scene", scene, "scene in view of the camera");
 }
 
 Simulation::Simulation(const Options& options, const SourceContext& context) : SimulatedSequence(options, context) {
@@ -24,7 +24,7 @@ Simulation::Simulation(const Options& options, const SourceContext& context) : S
     return Scene(scene, camera(), motion(), duration(), random(Part::scene));
   };
   make_tracks_of(make_scene, options.tracks, context.place + ".tracks");
-  tracks();  // what can't be simulated is to be told now
+  tracks();  // reports now what can't be simulated
 }
 
 std::vector<std::string> Simulation::remarks() const {

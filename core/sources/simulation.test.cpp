@@ -42,7 +42,7 @@ TEST_CASE("The same seed gives the same bytes and another seed gives others") {
   CHECK(format_tum(a.ground_truth()) != format_tum(c.ground_truth()));
 }
 
-TEST_CASE("The source's own seed goes before the run's") {
+TEST_CASE("The source's own seed takes precedence over the run's") {
   const std::string config = R"({"duration": 1, "seed": 3})";
   CHECK(format_tracks(*simulate(config, 1).true_tracks()) == format_tracks(*simulate(config, 2).true_tracks()));
 }

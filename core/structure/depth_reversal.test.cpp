@@ -4,7 +4,7 @@
 
 namespace evbench {
 
-TEST_CASE("Depth reversal leaves the image of a short motion nearly as it is") {
+TEST_CASE("Depth reversal leaves the image of a short motion nearly unchanged") {
   InitialGuess guess;
   guess.T1 = se3::exp((Vector6() << 0.01, -0.02, 0.005, 0.0, 0.0, 0.0).finished());
   guess.T1.p = {0.06, -0.04, 0.01};

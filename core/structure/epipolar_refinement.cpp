@@ -13,8 +13,8 @@ namespace {
 using Vector5 = Eigen::Matrix<double, 5, 1>;
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
-/// Derivative of the Sampson distance's norm in normalised coordinates is left out: the norm changes little over a
-/// step.
+/// Normal equations of the Sampson distances. The derivative of their normalisation is neglected, because it changes
+/// little over a step.
 struct Linearisation {
   Matrix5 H = Matrix5::Zero();
   Vector5 g = Vector5::Zero();

@@ -11,8 +11,8 @@
 namespace evbench {
 namespace {
 
-constexpr double kStand = 10.0;  ///< [s] in which slow motion is to be seen
-constexpr double kLead = 1.0;    ///< [s] from the first view to now, while nothing moves
+constexpr double kStationaryWindow = 10.0;  ///< [s] of the past in which even slow motion is visible
+constexpr double kLead = 1.0;               ///< [s] from the first view to now during a stationary period
 
 double median_depth(const TwoViewCandidate& candidate) {
   std::vector<double> depths;
@@ -73,11 +73,11 @@ double TrackMatches::median_motion() const {
 
 Initialiser::Attempt Initialiser::attempt(const TrackBuffer& tracks, double t) {
   const TrackMatches matches = match(tracks, t);
-  return matches.reason.empty() ? explain(matches) : Attempt{matches.reason, {}};
+  return matches.reason.empty() ? solve(matches) : Attempt{matches.reason, {}};
 }
 
 TrackMatches Initialiser::match(const TrackBuffer& tracks, double t) {
-  pass_stand(tracks, t);
+  skip_stationary_period(tracks, t);
   TrackMatches now;
   std::size_t common = 0;
   for (const bool or_nearest : {false, true}) {
@@ -100,17 +100,17 @@ TrackMatches Initialiser::match(const TrackBuffer& tracks, double t) {
   return none;
 }
 
-/// Nothing has moved for a while: the first view is one of a short time ago.
-void Initialiser::pass_stand(const TrackBuffer& tracks, double t) {
+/// If nothing has moved for a while, sets the first view to a short time ago.
+void Initialiser::skip_stationary_period(const TrackBuffer& tracks, double t) {
   if (!reference_ || t - *reference_ < kLead) return;
-  const double known = t - 0.5 * options_.window;  // from both sides
-  TrackMatches before = matches_between(tracks, t - kStand, known, options_.window);
-  if (!are_enough(before)) before = matches_between(tracks, t - kStand, known, {options_.window, true});
+  const double known = t - 0.5 * options_.window;  // until then windows have observations on both sides
+  TrackMatches before = matches_between(tracks, t - kStationaryWindow, known, options_.window);
+  if (!are_enough(before)) before = matches_between(tracks, t - kStationaryWindow, known, {options_.window, true});
   if (!are_enough(before)) return;
   if (before.median_motion() < options_.two_view.threshold_px) reference_ = t - kLead;
 }
 
-Initialiser::Attempt Initialiser::explain(const TrackMatches& matches) const {
+Initialiser::Attempt Initialiser::solve(const TrackMatches& matches) const {
   const TwoViewResult result = relative_pose(matches.first, matches.second, camera_, options_.two_view);
   Attempt attempt{result.reason, {}};
   for (const TwoViewCandidate& candidate : result.candidates) {

@@ -15,7 +15,7 @@ using evbench::testing::PointScene;
 
 namespace {
 
-/// Observations at 200 Hz, each track with a phase of its own, for 0 ≤ t ≤ duration, in time order.
+/// Observations at 200 Hz with a random phase per track, for 0 ≤ t ≤ duration, in time order.
 template <class Motion>
 TrackBuffer tracks_of(PointScene scene, const Motion& motion, double duration, double noise, std::uint64_t seed) {
   Random random(seed);
@@ -102,7 +102,7 @@ TEST_CASE("the first view moves on when its tracks have ended") {
   CHECK(initialiser.reference_time() == 0.55);
 }
 
-TEST_CASE("tracks in view that are not common to both views are told apart from those that are") {
+TEST_CASE("tracks in view and tracks common to both views are counted separately in the reason") {
   TrackBuffer tracks;
   const auto see = [&](TrackId id, double from, double to) {
     for (double t = from; t < to; t += 0.01) tracks.add(std::vector{TrackObservation{id, t, {50.0, 50.0}, 1.0}});

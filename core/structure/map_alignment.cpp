@@ -20,16 +20,16 @@ using Matrix7 = Eigen::Matrix<double, 7, 7>;
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 
 constexpr std::size_t kEnough = 8;           ///< landmarks
-constexpr std::size_t kLeastPart = 3;        ///< one in so many of those that are in both maps
+constexpr std::size_t kLeastPart = 3;        ///< at least one in this many common landmarks must agree
 constexpr double kScaleSigma = 0.03;         ///< of the transform, relative, at most
 constexpr double kLeastError = 0.5;          ///< [px], of a landmark in the images, at least
-constexpr double kSameDepth = 1.3;           ///< times as far at most
-constexpr double kRough = 6.0, kFine = 3.0;  ///< [px] off at most, of a sample's alignment and of the refined one
+constexpr double kSameDepth = 1.3;           ///< maximum ratio of depths
+constexpr double kRough = 6.0, kFine = 3.0;  ///< [px] maximum error, of a sample's alignment and of the refined one
 
 /// A landmark of both maps.
 struct Pair {
   Vector3 here, there;
-  std::vector<const SE3*> views;  ///< that have it in their image
+  std::vector<const SE3*> views;  ///< that have it in view
 };
 
 std::vector<Pair> pairs_of(std::span<const Landmark> map, std::span<const SE3> views, std::span<const Landmark> other,
@@ -51,7 +51,7 @@ std::vector<Pair> pairs_of(std::span<const Landmark> map, std::span<const SE3> v
   return pairs;
 }
 
-/// In a view that has the pair.
+/// Does the pair agree in this view?
 bool agrees(const Pair& pair, const SE3& view, const Similarity& X, const PinholeCamera& camera, double px) {
   const SE3 T = view.inverse();
   const Vector3 here = T * pair.here, there = T * (X * pair.there);
@@ -59,12 +59,12 @@ bool agrees(const Pair& pair, const SE3& view, const Similarity& X, const Pinhol
   return (camera.project(there) - camera.project(here)).norm() < px;
 }
 
-/// Roughly, in its middle view.
+/// Does the pair agree roughly in its middle view?
 bool agrees_roughly(const Pair& pair, const Similarity& X, const PinholeCamera& camera) {
   return agrees(pair, *pair.views[pair.views.size() / 2], X, camera, kRough);
 }
 
-/// In most views.
+/// Does the pair agree in most of its views?
 bool agrees_finely(const Pair& pair, const Similarity& X, const PinholeCamera& camera) {
   const auto count = static_cast<std::size_t>(
       std::ranges::count_if(pair.views, [&](const SE3* view) { return agrees(pair, *view, X, camera, kFine); }));
@@ -81,7 +81,7 @@ std::vector<const Pair*> agreeing(std::span<const Pair> pairs, const Similarity&
   return result;
 }
 
-/// Through three pairs. Those on a line leave a rotation open: then few others agree.
+/// The similarity through three pairs. Collinear ones leave a rotation free; then few other pairs agree.
 std::optional<Similarity> through(const std::array<const Pair*, 3>& sample) {
   Matrix3 here, there;
   for (int i = 0; i < 3; ++i) {
@@ -95,10 +95,10 @@ std::optional<Similarity> through(const std::array<const Pair*, 3>& sample) {
   return Similarity{scale, {Eigen::Quaterniond(R).normalized(), M.topRightCorner<3, 1>()}};
 }
 
-/// The one of many samples with which most pairs agree.
+/// RANSAC: the similarity of the sample with which most pairs agree.
 std::optional<Similarity> by_samples(std::span<const Pair> pairs, const PinholeCamera& camera) {
   constexpr int kSamples = 400;
-  std::mt19937 random(1);  // the same for the same maps
+  std::mt19937 random(1);  // deterministic
   const auto draw = [&] { return &pairs[random() % pairs.size()]; };
   std::optional<Similarity> best;
   std::size_t most = kEnough - 1;
@@ -115,7 +115,8 @@ std::optional<Similarity> by_samples(std::span<const Pair> pairs, const PinholeC
   return best;
 }
 
-/// Of (rotation, translation, log scale), X ← Exp(δ) X: by the distances in the images, a pair's as one observation.
+/// Normal equations of (rotation, translation, log scale), X ← Exp(δ) X, of the image distances; each pair counts as
+/// one observation.
 struct NormalEquations {
   Matrix7 H = Matrix7::Zero();
   Vector7 g = Vector7::Zero();

@@ -11,10 +11,10 @@ namespace {
 
 using testing::PointScene;
 
-/// How the earlier map's world lies in the later one's.
+/// Transform from the earlier map's world to the later one's.
 const Similarity kTruth = {2.5, {so3::exp({0.4, -0.2, 0.6}), {3.0, -1.0, 0.5}}};
 
-/// A camera that moves to the right, and two maps of what it sees, each with errors along the rays of its own.
+/// A camera that moves to the right, and two maps of its scene; the later one has errors along the rays.
 struct Maps {
   std::vector<SE3> views;
   std::vector<Landmark> now, before;
@@ -32,7 +32,7 @@ struct Maps {
 
   std::optional<MapAlignment> align() const { return align_maps(now, views, before, testing::davis()); }
 
-  /// By how much a point before the camera is displaced.
+  /// Displacement of a point in front of the camera.
   double error(const MapAlignment& found) const {
     const Vector3 point(0.1, 0.2, 2.0);
     return (found.transform * (kTruth.inverse() * point) - point).norm();
@@ -41,7 +41,7 @@ struct Maps {
 
 }  // namespace
 
-TEST_CASE("A similarity and its inverse carry points and poses there and back") {
+TEST_CASE("A similarity and its inverse transform points and poses there and back") {
   const Vector3 point(0.3, -2.0, 1.0);
   const SE3 pose{so3::exp({0.1, 0.2, -0.3}), {1.0, 2.0, 3.0}};
   CHECK((kTruth.inverse() * (kTruth * point) - point).norm() < 1e-12);
@@ -49,7 +49,7 @@ TEST_CASE("A similarity and its inverse carry points and poses there and back") 
   CHECK(((kTruth * pose) * (2.5 * point) - kTruth * (pose * point)).norm() < 1e-12);
 }
 
-TEST_CASE("Two maps of the same landmarks are aligned exactly where both are exact") {
+TEST_CASE("Two exact maps of the same landmarks are aligned exactly") {
   for (const PointScene scene : {PointScene::volume, PointScene::plane}) {
     const Maps maps(scene, 0.5, 0.0);
     const auto found = maps.align();
@@ -60,7 +60,7 @@ TEST_CASE("Two maps of the same landmarks are aligned exactly where both are exa
   }
 }
 
-TEST_CASE("Uncertain distances from a short baseline, and wrong landmarks, are borne") {
+TEST_CASE("Alignment is robust against uncertain distances from a short baseline and wrong landmarks") {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Maps maps(PointScene::volume, 0.3, 0.02, 60, seed);
     Random random(seed);
@@ -74,13 +74,13 @@ TEST_CASE("Uncertain distances from a short baseline, and wrong landmarks, are b
   }
 }
 
-TEST_CASE("Maps with nothing in common are not aligned, nor those with too little") {
-  Maps strangers(PointScene::volume, 0.5, 0.0, 60);
+TEST_CASE("Maps with nothing or too little in common are not aligned") {
+  Maps unrelated(PointScene::volume, 0.5, 0.0, 60);
   Random random(7);
-  for (Landmark& landmark : strangers.before) {
+  for (Landmark& landmark : unrelated.before) {
     landmark.position = random.uniform3({-2.0, -2.0, 1.0}, {2.0, 2.0, 3.0});
   }
-  CHECK_FALSE(strangers.align());
+  CHECK_FALSE(unrelated.align());
 
   Maps few(PointScene::volume, 0.5, 0.0);
   few.before.resize(7);
@@ -89,7 +89,7 @@ TEST_CASE("Maps with nothing in common are not aligned, nor those with too littl
   CHECK_FALSE(align_maps(few.now, {}, few.before, testing::davis()));
 }
 
-TEST_CASE("From a single view the scale stays unknown, and there is no alignment") {
+TEST_CASE("A single view leaves the scale unknown and gives no alignment") {
   CHECK_FALSE(Maps(PointScene::volume, 0.0, 0.0).align());
 }
 

@@ -17,10 +17,10 @@ namespace {
 
 using Matrix6x3 = Eigen::Matrix<double, 6, 3>;
 
-constexpr double kBehind = 30.0;        ///< [px] what a point behind the camera counts as
-constexpr double kLeastInverse = 0.01;  ///< no point is farther than a hundred times the median distance
+constexpr double kBehind = 30.0;        ///< [px] error assigned to a point behind the camera
+constexpr double kLeastInverse = 0.01;  ///< points are at most a hundred times the median distance away
 
-/// By a step in the plane across its direction, and one of its inverse distance.
+/// Moves a point by a step in the tangent plane of its direction and in its inverse distance.
 InversePoint moved(const InversePoint& point, const Vector3& step) {
   return {(point.direction + tangent_plane(point.direction) * step.head<2>()).normalized(), point.inverse + step.z()};
 }
@@ -30,13 +30,13 @@ InversePoint to_inverse(const Vector3& position) {
   return {position / distance, 1.0 / distance};
 }
 
-void normalise(ViewsExplained& explained) {
+void normalise(ViewsEstimate& estimate) {
   std::vector<double> inverse;
-  for (const InversePoint& point : explained.points) inverse.push_back(point.inverse);
+  for (const InversePoint& point : estimate.points) inverse.push_back(point.inverse);
   const double unit = median(std::move(inverse));
   if (!(unit > 0.0)) return;
-  for (InversePoint& point : explained.points) point.inverse /= unit;
-  for (SE3& T : explained.poses) T.p *= unit;
+  for (InversePoint& point : estimate.points) point.inverse /= unit;
+  for (SE3& T : estimate.poses) T.p *= unit;
 }
 
 }  // namespace
@@ -72,10 +72,10 @@ TrackViews TrackViews::of(const TrackBuffer& tracks, std::vector<double> times, 
   return result;
 }
 
-/// The normal equations of all poses but the first and of all points, at an explanation.
+/// The normal equations at an estimate, of all points and all poses but the first.
 class MultiView::Step {
  public:
-  Step(const MultiView& problem, const ViewsExplained& at) : views_(problem.views_.times.size()) {
+  Step(const MultiView& problem, const ViewsEstimate& at) : views_(problem.views_.times.size()) {
     const BoundedLoss loss{at.width};
     cameras_.assign(views_, Matrix6::Zero());
     camera_gradients_.assign(views_, Vector6::Zero());
@@ -103,7 +103,7 @@ class MultiView::Step {
     }
   }
 
-  /// The step, with the diagonal enlarged by this share. False where the system can't be solved.
+  /// The step with a damped diagonal (relative to it). False if the system can't be solved.
   bool solve(double damping, std::vector<Vector6>& poses, std::vector<Vector3>& points) const {
     const Reduced reduced = reduce(damping);
     const Eigen::LDLT<Eigen::MatrixXd> factor(reduced.S);
@@ -120,19 +120,20 @@ class MultiView::Step {
     return true;
   }
 
-  /// [px], of one coordinate; freedom that the unknowns take is not among the errors.
+  /// Standard deviation of the errors of one coordinate [px], corrected for the degrees of freedom of the unknowns.
   double noise() const {
     const double freedom =
         2.0 * weights_ - 6.0 * static_cast<double>(views_ - 1) - 3.0 * static_cast<double>(points_.size());
     return std::sqrt(squares_ / std::max(freedom, 1.0));
   }
 
-  /// Standard deviation of each point's inverse distance for unit noise when one camera's distance is given.
-  std::vector<double> inverse_sigmas(std::size_t held, const Vector3& way) const {
+  /// Standard deviation of each point's inverse distance for unit noise, with the distance of one camera (`held`) fixed
+  /// along `direction`.
+  std::vector<double> inverse_sigmas(std::size_t held, const Vector3& direction) const {
     Reduced reduced = reduce(0.0);
     constexpr double kTight = 1e6;
     Vector6 along = Vector6::Zero();
-    along.tail<3>() = way;
+    along.tail<3>() = direction;
     const double stiffness = kTight * reduced.S.diagonal().segment<6>(row(held)).tail<3>().maxCoeff();
     reduced.S.block<6, 6>(row(held), row(held)) += stiffness * along * along.transpose();
     const Eigen::MatrixXd covariance =
@@ -158,7 +159,7 @@ class MultiView::Step {
     Vector3 g = Vector3::Zero();
     std::vector<Coupling> couplings;
   };
-  /// What is left when the points are eliminated.
+  /// The reduced system after elimination of the points.
   struct Reduced {
     Eigen::MatrixXd S;
     Eigen::VectorXd g;
@@ -201,29 +202,29 @@ class MultiView::Step {
   double weights_ = 0.0, squares_ = 0.0;
 };
 
-std::vector<double> MultiView::squared_errors(const ViewsExplained& explained, std::size_t track) const {
+std::vector<double> MultiView::squared_errors(const ViewsEstimate& estimate, std::size_t track) const {
   std::vector<double> result;
   for (std::size_t v = 0; v < views_.times.size(); ++v) {
     if (!views_.places[track][v]) continue;
-    const auto error = image_error(explained.poses[v], explained.points[track], *views_.places[track][v], camera_);
+    const auto error = image_error(estimate.poses[v], estimate.points[track], *views_.places[track][v], camera_);
     result.push_back(error ? error->squaredNorm() : kBehind * kBehind);
   }
   return result;
 }
 
-void MultiView::take_cost(ViewsExplained& explained) const {
-  const BoundedLoss loss{explained.width};
-  explained.cost = 0.0;
+void MultiView::update_cost(ViewsEstimate& estimate) const {
+  const BoundedLoss loss{estimate.width};
+  estimate.cost = 0.0;
   for (std::size_t i = 0; i < views_.tracks.size(); ++i) {
-    for (const double squared : squared_errors(explained, i)) explained.cost += loss(squared);
+    for (const double squared : squared_errors(estimate, i)) estimate.cost += loss(squared);
   }
 }
 
-std::optional<ViewsExplained> MultiView::start(const InitialGuess& guess, double width) const {
+std::optional<ViewsEstimate> MultiView::start(const InitialGuess& guess, double width) const {
   std::map<TrackId, InversePoint> known;
   for (const Landmark& landmark : guess.landmarks) known[landmark.track] = to_inverse(landmark.position);
   const Vector6 motion = se3::log(guess.T1) / (guess.t1 - guess.t0);
-  ViewsExplained result;
+  ViewsEstimate result;
   for (std::size_t v = 0; v < views_.times.size(); ++v) {
     std::vector<InversePoint> points;
     std::vector<Vector2> pixels;
@@ -253,33 +254,33 @@ std::optional<ViewsExplained> MultiView::start(const InitialGuess& guess, double
   }
   normalise(result);
   result.width = width;
-  take_cost(result);
+  update_cost(result);
   return result;
 }
 
-void MultiView::refine(ViewsExplained& explained, double width, int iterations) const {
+void MultiView::refine(ViewsEstimate& estimate, double width, int iterations) const {
   constexpr double kConverged = 1e-4, kMaxDamping = 1e6;
   double damping = 1e-3;
-  explained.width = width;
-  take_cost(explained);
+  estimate.width = width;
+  update_cost(estimate);
   std::vector<Vector6> poses;
   std::vector<Vector3> points;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    const Step step(*this, explained);
+    const Step step(*this, estimate);
     bool lower = false;
     while (!lower && damping < kMaxDamping) {
       if (step.solve(damping, poses, points)) {
-        ViewsExplained next = explained;
+        ViewsEstimate next = estimate;
         for (std::size_t v = 1; v < next.poses.size(); ++v) next.poses[v] = next.poses[v] * se3::exp(poses[v]);
         for (std::size_t i = 0; i < next.points.size(); ++i) {
           next.points[i] = moved(next.points[i], points[i]);
           next.points[i].inverse = std::max(next.points[i].inverse, kLeastInverse);
         }
-        take_cost(next);
-        lower = next.cost < explained.cost;
+        update_cost(next);
+        lower = next.cost < estimate.cost;
         if (lower) {
-          const bool converged = explained.cost - next.cost < kConverged * explained.cost;
-          explained = std::move(next);
+          const bool converged = estimate.cost - next.cost < kConverged * estimate.cost;
+          estimate = std::move(next);
           damping = std::max(0.1 * damping, 1e-9);
           if (converged) iterations = 0;
         }
@@ -287,29 +288,29 @@ void MultiView::refine(ViewsExplained& explained, double width, int iterations) 
       if (!lower) damping = 10.0 * damping;
     }
     if (!lower) break;
-    normalise(explained);
+    normalise(estimate);
   }
 }
 
-std::vector<double> MultiView::distance_sigmas(const ViewsExplained& explained) const {
-  const Step step(*this, explained);
+std::vector<double> MultiView::distance_sigmas(const ViewsEstimate& estimate) const {
+  const Step step(*this, estimate);
   std::size_t farthest = 0;
-  for (std::size_t v = 1; v < explained.poses.size(); ++v) {
-    if (explained.poses[v].p.norm() > explained.poses[farthest].p.norm()) farthest = v;
+  for (std::size_t v = 1; v < estimate.poses.size(); ++v) {
+    if (estimate.poses[v].p.norm() > estimate.poses[farthest].p.norm()) farthest = v;
   }
-  if (farthest == 0) return std::vector<double>(explained.points.size(), std::numeric_limits<double>::infinity());
+  if (farthest == 0) return std::vector<double>(estimate.points.size(), std::numeric_limits<double>::infinity());
   constexpr double kLeastNoise = 0.5;
   const double noise = std::max(step.noise(), kLeastNoise * views_.sigma);
-  const SE3& T = explained.poses[farthest];
+  const SE3& T = estimate.poses[farthest];
   std::vector<double> sigmas = step.inverse_sigmas(farthest, T.q.conjugate() * T.p.normalized());
-  for (std::size_t i = 0; i < sigmas.size(); ++i) sigmas[i] *= noise / std::abs(explained.points[i].inverse);
+  for (std::size_t i = 0; i < sigmas.size(); ++i) sigmas[i] *= noise / std::abs(estimate.points[i].inverse);
   return sigmas;
 }
 
-std::vector<double> MultiView::errors(const ViewsExplained& explained) const {
+std::vector<double> MultiView::errors(const ViewsEstimate& estimate) const {
   std::vector<double> result;
   for (std::size_t i = 0; i < views_.tracks.size(); ++i) {
-    const std::vector<double> squared = squared_errors(explained, i);
+    const std::vector<double> squared = squared_errors(estimate, i);
     double sum = 0.0;
     for (const double s : squared) sum += std::sqrt(s);
     result.push_back(sum / static_cast<double>(squared.size()));

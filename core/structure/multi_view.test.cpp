@@ -19,7 +19,7 @@ constexpr int kIterations = 20;
 
 SE3 moving(double t) { return {so3::exp(Vector3(0.05 * t, -0.1 * t, 0.1 * t)), Vector3(0.5 * t, 0.1 * t, 0.1 * t)}; }
 
-/// 50 tracks over a second, and what the two ends of it say about them.
+/// 50 tracks over a second, and the two-view guess of its first and last view.
 struct Sequence {
   TrackBuffer tracks;
   InitialGuess guess;  ///< the truth
@@ -48,27 +48,27 @@ double angle(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).
 
 }  // namespace
 
-TEST_CASE("Views are explained by the motion and the points that made them, in spite of outlier tracks") {
+TEST_CASE("Motion and points are recovered from several views despite outlier tracks") {
   const Sequence sequence(0.5, 8);
   const MultiView views(sequence.views(), davis());
   InitialGuess rough = sequence.guess;
   rough.T1.p += Vector3(0.05, -0.05, 0.03);
   for (Landmark& landmark : rough.landmarks) landmark.position *= 1.0 + 0.2 * std::sin(landmark.track);
-  auto explained = views.start(rough, kWidth);
-  REQUIRE(explained);
-  views.refine(*explained, kWidth, kIterations);
-  views.refine(*explained, 1.0, kIterations);  // a loss as narrow as the noise
-  CHECK(angle(explained->poses.back().p, moving(1.0).p) < 0.05);
-  CHECK(explained->poses.back().q.angularDistance(moving(1.0).q) < 0.01);
-  const std::vector<double> errors = views.errors(*explained);
+  auto estimate = views.start(rough, kWidth);
+  REQUIRE(estimate);
+  views.refine(*estimate, kWidth, kIterations);
+  views.refine(*estimate, 1.0, kIterations);  // a loss as narrow as the noise
+  CHECK(angle(estimate->poses.back().p, moving(1.0).p) < 0.05);
+  CHECK(estimate->poses.back().q.angularDistance(moving(1.0).q) < 0.01);
+  const std::vector<double> errors = views.errors(*estimate);
   CHECK(*std::max_element(errors.begin() + 8, errors.end()) < 1.0);
-  const double unit = explained->points[20].position().norm() / sequence.guess.landmarks[20].position.norm();
-  for (std::size_t i = 8; i < explained->points.size(); ++i) {
-    CHECK((explained->points[i].position() / unit - sequence.guess.landmarks[i].position).norm() < 0.4);
+  const double unit = estimate->points[20].position().norm() / sequence.guess.landmarks[20].position.norm();
+  for (std::size_t i = 8; i < estimate->points.size(); ++i) {
+    CHECK((estimate->points[i].position() / unit - sequence.guess.landmarks[i].position).norm() < 0.4);
   }
 }
 
-TEST_CASE("The reversed scene is clearly worse once the motion is long") {
+TEST_CASE("The depth-reversed scene costs clearly more once the motion is long") {
   const Sequence sequence(0.5, 4);
   const MultiView views(sequence.views(), davis());
   auto truth = views.start(sequence.guess, kWidth);
@@ -83,21 +83,21 @@ TEST_CASE("The reversed scene is clearly worse once the motion is long") {
   CHECK(reversed->cost > 1.2 * truth->cost);
 }
 
-TEST_CASE("The structure is as uncertain as the noise makes it") {
+TEST_CASE("The uncertainty of the structure follows from the noise") {
   std::vector<double> sigmas;
   for (const double noise : {0.3, 0.6}) {
     const Sequence sequence(noise);
     const MultiView views(sequence.views(), davis());
-    auto explained = views.start(sequence.guess, kWidth);
-    REQUIRE(explained);
-    views.refine(*explained, kWidth, kIterations);
-    sigmas.push_back(median(views.distance_sigmas(*explained)));
+    auto estimate = views.start(sequence.guess, kWidth);
+    REQUIRE(estimate);
+    views.refine(*estimate, kWidth, kIterations);
+    sigmas.push_back(median(views.distance_sigmas(*estimate)));
   }
   CHECK(sigmas[0] > 0.0);
   CHECK(sigmas[1] == Approx(2.0 * sigmas[0]).epsilon(0.3));
 }
 
-TEST_CASE("No more tracks are looked at than asked for, those seen most first") {
+TEST_CASE("At most the requested number of tracks is used, those with most views first") {
   Sequence sequence(0.0);
   for (const double t : {0.0, 0.25, 0.5}) {
     const TrackObservation z{99, t, {100.0, 100.0}, 1.0};
@@ -109,7 +109,7 @@ TEST_CASE("No more tracks are looked at than asked for, those seen most first") 
   CHECK(TrackViews::of(sequence.tracks, {0.0, 0.25, 0.5, 1.0}, 0.1, 20).tracks.size() == 20);
 }
 
-TEST_CASE("A camera is found by what it sees, though a quarter of it is wrong") {
+TEST_CASE("Resection finds the camera although a quarter of the observations is wrong") {
   Random random(5);
   std::vector<InversePoint> points;
   std::vector<Vector2> pixels;

@@ -8,8 +8,8 @@
 
 namespace evbench {
 
-/// A point by its direction from the world's origin and its inverse distance along it: the point direction/inverse,
-/// which may lie as far away as it likes.
+/// A point as direction from the world's origin and inverse distance: the point direction/inverse, which may be at any
+/// distance.
 struct InversePoint {
   Vector3 direction = Vector3::UnitZ();
   double inverse = 1.0;
@@ -17,8 +17,8 @@ struct InversePoint {
   Vector3 position() const { return direction / inverse; }
 };
 
-/// The loss of Geman and McClure, c²/2 e²/(e² + c²), of a distance, and the weight that it has in least squares: what
-/// is far off counts the same wherever it is.
+/// The loss of Geman and McClure, c²/2 e²/(e² + c²), as a function of e², and its weight in least squares. It is
+/// bounded: all gross errors cost the same.
 struct BoundedLoss {
   double width = 1.0;  ///< c
 
@@ -29,7 +29,7 @@ struct BoundedLoss {
   }
 };
 
-/// A point's image minus where it was observed [px], with its derivatives.
+/// Reprojection error of a point, predicted minus observed pixel [px], with its derivatives.
 struct PointImage {
   Vector2 error = Vector2::Zero();
   Eigen::Matrix<double, 2, 6> pose = Eigen::Matrix<double, 2, 6>::Zero();  ///< T ← T Exp(δ)
@@ -42,7 +42,7 @@ inline Vector3 seen_from(const SE3& T, const InversePoint& point) {
   return T.q.conjugate() * (point.direction - point.inverse * T.p);
 }
 
-/// None behind the camera.
+/// Reprojection error [px]; none behind the camera.
 inline std::optional<Vector2> image_error(const SE3& T, const InversePoint& point, const Vector2& pixel,
                                           const PinholeCamera& camera) {
   constexpr double kNear = 1e-3;

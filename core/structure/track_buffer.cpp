@@ -13,14 +13,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr auto by_time = [](const TrackObservation& a, const TrackObservation& b) { return a.t < b.t; };
 
-/// A straight line through observations, its times relative to t.
+/// A straight line through observations, with times relative to t.
 struct Line {
   Vector2 at_t = Vector2::Zero(), slope = Vector2::Zero();
 
   Vector2 at(double dt) const { return at_t + slope * dt; }
 };
 
-/// The weighted least squares line; a constant when the times don't span one.
+/// The weighted least-squares line; constant if all times are equal.
 Line line_through(std::span<const TrackObservation> observations, std::span<const double> weights, double t) {
   double sum = 0.0, time = 0.0;
   Vector2 mean = Vector2::Zero();
@@ -43,8 +43,7 @@ Line line_through(std::span<const TrackObservation> observations, std::span<cons
   return {mean - slope * time, slope};
 }
 
-/// Robust line: reweighted by the distance from the coordinate-wise trend, so that single jumps of a tracker do no
-/// harm.
+/// Robust line fit: iteratively reweighted by the distances from the line, against single jumps of a tracker.
 Vector2 robust_line_at(std::span<const TrackObservation> observations, double t) {
   std::vector<double> weights(observations.size(), 1.0);
   Line line = line_through(observations, weights, t);
@@ -69,12 +68,12 @@ std::span<const TrackObservation> within(std::span<const TrackObservation> all, 
   return {begin, std::upper_bound(begin, all.end(), bound, by_time)};
 }
 
-/// The observations of a slow tracker that are nearest to t: none where far more time passes between them than between
-/// those before and after them.
+/// The two observations nearest to t, for slowly observed tracks. Empty if the gap between them is far longer than
+/// those around them.
 std::span<const TrackObservation> nearest_two(std::span<const TrackObservation> all, double t) {
   constexpr double kFarthest = 1.0;  // [s]
   constexpr double kUnusual = 4.0;
-  constexpr std::ptrdiff_t kBeside = 2;
+  constexpr std::ptrdiff_t kNeighbours = 2;
   TrackObservation bound;
   bound.t = t;
   auto begin = std::lower_bound(all.begin(), all.end(), bound, by_time), end = begin;
@@ -84,7 +83,8 @@ std::span<const TrackObservation> nearest_two(std::span<const TrackObservation> 
     if (std::min(before, after) > kFarthest) return {};
     before < after ? --begin : ++end;
   }
-  const auto first = begin - std::min(kBeside, begin - all.begin()), last = end + std::min(kBeside, all.end() - end);
+  const auto first = begin - std::min(kNeighbours, begin - all.begin()),
+             last = end + std::min(kNeighbours, all.end() - end);
   const double between = (end - 1)->t - begin->t, rest = (last - 1)->t - first->t - between;
   const auto steps = static_cast<double>(last - first - 2);
   return between * steps <= kUnusual * rest ? std::span(begin, end) : std::span<const TrackObservation>();
@@ -128,16 +128,16 @@ std::vector<TrackId> TrackBuffer::alive(double t, double margin) const {
 std::optional<Vector2> TrackBuffer::position(TrackId track, double t, const PlaceWindow& window) const {
   const std::span<const TrackObservation> all = observations(track);
   std::span<const TrackObservation> near = within(all, t - 0.5 * window.length, t + 0.5 * window.length);
-  double beside = 0.25 * window.length;
+  double margin = 0.25 * window.length;
   if (window.or_nearest && near.size() < 2) {
     if (const auto pair = nearest_two(all, t); pair.size() == 2) {
       near = pair;
-      beside = std::max(beside, pair.back().t - pair.front().t);
+      margin = std::max(margin, pair.back().t - pair.front().t);
     }
   }
   if (near.empty()) return std::nullopt;
   if (near.front().t == near.back().t && near.front().t != t) return std::nullopt;
-  if (near.front().t > t + beside || near.back().t < t - beside) return std::nullopt;
+  if (near.front().t > t + margin || near.back().t < t - margin) return std::nullopt;
   return robust_line_at(near, t);
 }
 

@@ -10,17 +10,17 @@
 
 namespace evbench {
 
-/// Of the observations that give a track's place at a time.
+/// Selects the observations that give a track's position at a time.
 struct PlaceWindow {
-  double length;  ///< [s], the time in its middle
-  /// Where fewer than two are in it, the two nearest: of slow trackers, and in slow motion.
+  double length;  ///< [s], centred at the time
+  /// If fewer than two are within, use the two nearest: for slow trackers and slow motion.
   bool or_nearest;
 
   PlaceWindow(double seconds, bool nearest = false) : length(seconds), or_nearest(nearest) {}
 };
 
-/// Track observations so far, by track. Every query is deterministic: tracks come in the order of their ids,
-/// a track's observations in the order of their times.
+/// All track observations so far, by track. Queries are deterministic: tracks are in the order of their ids,
+/// observations of a track in time order.
 class TrackBuffer {
  public:
   /// Adds observations in any order; those of a removed track, and those that are not finite, are ignored.
@@ -36,14 +36,14 @@ class TrackBuffer {
   /// Tracks whose span of time, widened by `margin` [s] at both ends, contains t.
   std::vector<TrackId> alive(double t, double margin = 0.0) const;
 
-  /// Where a track is at time t [px]: a robust straight line through its observations in the window, read at t; this
-  /// averages quantisation and noise without the lag of a mean. The two nearest, where they are asked for, are none
-  /// farther than 1 s, and none between which more than four times as much time passes as between those around them.
-  /// The line needs observations that bracket t, or end no farther from it than a quarter of the window, or the time
-  /// between those two; a single observation at t itself will do. None where the track doesn't cover t.
+  /// Position of a track at time t [px]: a robust straight line through its observations in the window, evaluated at t.
+  /// It averages quantisation and noise without the lag of a mean. The two nearest observations (or_nearest) are used
+  /// only within 1 s of t, and only if the gap between them is at most four times those around them. The observations
+  /// must bracket t or come within a quarter of the window of it (or within the gap of the two nearest); a single
+  /// observation at t suffices. None if the track doesn't cover t.
   std::optional<Vector2> position(TrackId track, double t, const PlaceWindow& window) const;
 
-  /// Removes a track (an outlier); whatever comes of it later is ignored.
+  /// Removes a track (an outlier); its later observations are ignored.
   void remove(TrackId track);
 
   /// Drops a track's observations; later ones are kept again.

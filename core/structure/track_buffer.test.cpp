@@ -14,7 +14,7 @@ TrackObservation observation(TrackId id, double t, double x, double y) { return 
 
 }  // namespace
 
-TEST_CASE("a track's observations come in the order of their times, however they arrive") {
+TEST_CASE("a track's observations are in time order, in whatever order they are added") {
   TrackBuffer buffer;
   buffer.add(std::vector{observation(7, 0.2, 2, 0), observation(3, 0.1, 1, 1), observation(7, 0.1, 1, 0)});
   const auto track = buffer.observations(7);
@@ -27,7 +27,7 @@ TEST_CASE("a track's observations come in the order of their times, however they
   CHECK(buffer.alive(0.15, 0.06) == std::vector<TrackId>{3, 7});
 }
 
-TEST_CASE("a forgotten track begins anew, a removed one does not") {
+TEST_CASE("a forgotten track accepts new observations, a removed one does not") {
   TrackBuffer buffer;
   buffer.add(std::vector{observation(1, 0.1, 1, 0), observation(2, 0.5, 2, 0), observation(3, 0.9, 3, 0)});
   buffer.forget_ended_before(0.5);
@@ -47,7 +47,7 @@ TEST_CASE("observations that are not finite never enter the buffer") {
   CHECK(buffer.empty());
 }
 
-TEST_CASE("a removed track is forgotten and stays away") {
+TEST_CASE("a removed track has no observations and accepts none") {
   TrackBuffer buffer;
   buffer.add(std::vector{observation(1, 0.1, 2, 0), observation(2, 0.1, 2, 0)});
   buffer.remove(1);
@@ -56,7 +56,7 @@ TEST_CASE("a removed track is forgotten and stays away") {
   CHECK(buffer.ids() == std::vector<TrackId>{2});
 }
 
-TEST_CASE("a track's place at a time is the line through its observations there") {
+TEST_CASE("a track's position at a time is the line through its observations there") {
   TrackBuffer buffer;
   std::vector<TrackObservation> observations;
   for (int i = 0; i < 40; ++i) {
@@ -76,7 +76,7 @@ TEST_CASE("a track's place at a time is the line through its observations there"
   CHECK(buffer.position(1, 0.39, 0.1));
 }
 
-TEST_CASE("a single observation gives the place at its own time only") {
+TEST_CASE("a single observation gives the position at its own time only") {
   TrackBuffer buffer;
   buffer.add(std::vector{observation(1, 0.5, 10, 20)});
   REQUIRE(buffer.position(1, 0.5, 0.05));
@@ -84,7 +84,7 @@ TEST_CASE("a single observation gives the place at its own time only") {
   CHECK_FALSE(buffer.position(1, 0.51, 0.05));
 }
 
-TEST_CASE("a slow tracker's place at a time is the line through its nearest observations") {
+TEST_CASE("a slow tracker's position at a time is the line through its nearest observations") {
   TrackBuffer buffer;
   std::vector<TrackObservation> observations;
   const auto at = [](double t) { return Vector2(10.0 + 4.0 * t, 20.0 - 3.0 * t); };
@@ -98,8 +98,8 @@ TEST_CASE("a slow tracker's place at a time is the line through its nearest obse
     REQUIRE(place);
     CHECK((*place - at(t)).norm() < 1e-9);
   }
-  CHECK(buffer.position(1, -0.15, {0.1, true}));        // less than one of its steps before it begins
-  CHECK_FALSE(buffer.position(1, -0.25, {0.1, true}));  // and more
+  CHECK(buffer.position(1, -0.15, {0.1, true}));        // less than one observation interval before its beginning
+  CHECK_FALSE(buffer.position(1, -0.25, {0.1, true}));  // more than one
   CHECK_FALSE(buffer.position(1, 2.26, {0.1, true}));
   CHECK_FALSE(buffer.position(1, 3.4, {0.1, true}));
 }

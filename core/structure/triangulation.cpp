@@ -13,13 +13,13 @@ namespace {
 
 double angle(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-/// The views of one point, as it is seen from a fixed set of cameras.
+/// Observations of one point from several cameras.
 struct Views {
   std::vector<SE3> T_camera_world;
   std::span<const Vector2> pixels;
   const PinholeCamera& camera;
 
-  /// Σ ‖reprojection error‖²; infinite when the point is not in front of every camera.
+  /// Σ ‖reprojection error‖²; infinite if the point is not in front of every camera.
   double cost(const Vector3& point) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -85,10 +85,10 @@ double largest_angle(const std::vector<Vector3>& rays) {
 }  // namespace
 
 void TriangulationOptions::declare(OptionSet& set) {
-  set.add("min_parallax_deg", min_parallax_deg, "largest angle between the rays to a landmark, at least [deg]")
+  set.add("min_parallax_deg", min_parallax_deg, "minimum of the largest angle between two rays to a landmark [deg]")
       .range(0.0, 90.0);
-  set.add("max_rms_px", max_rms_px, "root mean square reprojection error of a landmark, at most [px]").above(0.0);
-  set.add("iterations", iterations, "Levenberg-Marquardt iterations, at most").range(0, 100);
+  set.add("max_rms_px", max_rms_px, "maximum root mean square reprojection error of a landmark [px]").above(0.0);
+  set.add("iterations", iterations, "maximum number of Levenberg-Marquardt iterations").range(0, 100);
 }
 
 std::string to_string(Triangulation::State state) {

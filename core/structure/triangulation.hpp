@@ -10,9 +10,9 @@
 namespace evbench {
 
 struct TriangulationOptions {
-  double min_parallax_deg = 1.0;  ///< largest angle between two rays must reach this
-  double max_rms_px = 3.0;        ///< root mean square of the reprojection error's norm
-  int iterations = 10;            ///< of Levenberg-Marquardt, at most
+  double min_parallax_deg = 1.0;  ///< minimum of the largest angle between two rays
+  double max_rms_px = 3.0;        ///< maximum root mean square of the reprojection error's norm
+  int iterations = 10;            ///< maximum of Levenberg-Marquardt
 
   void declare(OptionSet& set);
 };
@@ -21,13 +21,13 @@ struct Triangulation {
   enum class State {
     ok,
     too_few_views,  ///< fewer than two
-    not_finite,     ///< NaN or infinity in, or no solution
+    not_finite,     ///< input with NaN or infinity, or no solution
     low_parallax,   ///< the rays are parallel within min_parallax_deg: a point at infinity
     behind_camera,  ///< of at least one view
     large_error,    ///< rms_px above max_rms_px
   };
   State state = State::too_few_views;
-  Vector3 point = Vector3::Zero();  ///< world frame; of use with ok and large_error only
+  Vector3 point = Vector3::Zero();  ///< world frame; valid for ok and large_error only
   double parallax_deg = 0.0;        ///< largest angle between two rays (to within a factor two from below, exact for 2)
   double rms_px = 0.0;              ///< of the reprojection error's norm
   double min_depth = 0.0;           ///< smallest z in a camera

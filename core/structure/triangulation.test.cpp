@@ -53,7 +53,7 @@ TEST_CASE("a point is triangulated from noisy pixels to the accuracy that the ba
   CHECK(result.rms_px == Approx(1.0).epsilon(0.4));
 }
 
-TEST_CASE("what cannot be triangulated says why") {
+TEST_CASE("a failed triangulation gives its reason") {
   const auto poses = to_the_side(3, 0.1);
   const Vector3 point(0.3, -0.2, 2.5);
   SECTION("one view") {

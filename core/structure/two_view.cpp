@@ -52,7 +52,7 @@ struct Hypothesis {
   SE3 T_first_second;
 };
 
-/// All relative poses that the two models give, good and bad.
+/// All relative poses that the two models give, without any test.
 std::vector<Hypothesis> hypotheses(const Matches& matches) {
   const PinholeCamera& camera = matches.camera;
   const cv::Matx33d K(camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0);
@@ -82,8 +82,8 @@ std::vector<Hypothesis> hypotheses(const Matches& matches) {
   return result;
 }
 
-/// Triangulates every match and judges it.
-TwoViewCandidate judge(const Hypothesis& hypothesis, const Matches& matches) {
+/// Triangulates every match and counts the inliers.
+TwoViewCandidate score_candidate(const Hypothesis& hypothesis, const Matches& matches) {
   TwoViewCandidate result;
   result.model = hypothesis.model;
   result.T_first_second = hypothesis.T_first_second;
@@ -110,12 +110,12 @@ TwoViewCandidate judge(const Hypothesis& hypothesis, const Matches& matches) {
   return result;
 }
 
-/// Refined on its inliers, twice because they change; the better of before and after.
+/// Refines a candidate on its inliers, twice because they change; keeps the previous one if it has more inliers.
 TwoViewCandidate refined(TwoViewCandidate candidate, const Matches& matches) {
   for (int round = 0; round < 2; ++round) {
     const SE3 T = refine_relative_pose(candidate.T_first_second, matches.first, matches.second, candidate.inlier,
                                        matches.camera, 0.5 * matches.options.threshold_px);
-    TwoViewCandidate next = judge({candidate.model, T}, matches);
+    TwoViewCandidate next = score_candidate({candidate.model, T}, matches);
     if (next.inliers < candidate.inliers) break;
     candidate = std::move(next);
   }
@@ -132,7 +132,7 @@ bool same_pose(const SE3& a, const SE3& b) {
   return rotation < 1.0 && direction < 5.0;
 }
 
-/// How many matches a rotation alone explains: Wahba's problem, reweighted.
+/// Number of matches that a rotation alone explains: Wahba's problem, iteratively reweighted.
 int explained_by_rotation(const Matches& matches) {
   std::vector<double> weights(matches.size(), 1.0);
   const double limit = 2.0 * matches.options.threshold_px;
@@ -155,7 +155,7 @@ int explained_by_rotation(const Matches& matches) {
   return count;
 }
 
-/// The distinct candidates that explain about as much as the best one, best first.
+/// The distinct candidates with about as many inliers as the best one, best first.
 std::vector<TwoViewCandidate> distinct(const std::vector<TwoViewCandidate>& all, double ambiguity) {
   // Indices, not candidates, are sorted: libstdc++'s stable_sort misaligns the poses in its temporary buffer.
   std::vector<std::size_t> order(all.size());
@@ -175,16 +175,16 @@ std::vector<TwoViewCandidate> distinct(const std::vector<TwoViewCandidate>& all,
 }  // namespace
 
 void TwoViewOptions::declare(OptionSet& set) {
-  set.add("threshold_px", threshold_px, "distance of an inlier from the model [px]").above(0.0);
-  set.add("confidence", confidence, "of RANSAC").range(0.5, 0.999999);
-  set.add("max_iterations", max_iterations, "samples of five matches that RANSAC tries, at most").range(1);
-  set.add("min_inliers", min_inliers, "matches that the relative pose must explain").range(8);
-  set.add("min_inlier_share", min_inlier_share, "the same as a share of all matches").range(0.0, 1.0);
+  set.add("threshold_px", threshold_px, "maximum distance of an inlier from the model [px]").above(0.0);
+  set.add("confidence", confidence, "confidence of RANSAC").range(0.5, 0.999999);
+  set.add("max_iterations", max_iterations, "maximum number of RANSAC samples of five matches").range(1);
+  set.add("min_inliers", min_inliers, "minimum number of inlier matches of the relative pose").range(8);
+  set.add("min_inlier_share", min_inlier_share, "the same as a fraction of all matches").range(0.0, 1.0);
   set.add("min_parallax_deg", min_parallax_deg,
-          "median angle between the rays to a landmark, at least [deg]; 0: "
-          "none, and matches that a rotation explains are not refused")
+          "minimum of the median parallax of the inliers [deg]; 0: none, and "
+          "matches that a rotation explains are accepted")
       .range(0.0, 90.0);
-  set.add("ambiguity", ambiguity, "a second solution stays when it explains this share of what the best one explains")
+  set.add("ambiguity", ambiguity, "a second solution is kept if it has this fraction of the best one's inliers")
       .range(0.0, 1.0);
 }
 
@@ -206,7 +206,7 @@ TwoViewResult relative_pose(std::span<const Vector2> first, std::span<const Vect
   std::vector<TwoViewCandidate> all;
   try {
     for (const Hypothesis& hypothesis : hypotheses(matches)) {
-      TwoViewCandidate candidate = judge(hypothesis, matches);
+      TwoViewCandidate candidate = score_candidate(hypothesis, matches);
       if (candidate.inliers >= static_cast<int>(kFewestMatches)) all.push_back(refined(std::move(candidate), matches));
     }
   } catch (const cv::Exception& e) {
@@ -223,7 +223,7 @@ TwoViewResult relative_pose(std::span<const Vector2> first, std::span<const Vect
   if (explained < needed) {
     return {{}, fmt::format("{} of {} matches explained, {} needed", explained, first.size(), needed)};
   }
-  // The best explanation must show the parallax: a worse one that does only fits noise.
+  // The best candidate must have the parallax: a worse one that has it only fits noise.
   if (all.front().median_parallax_deg < options.min_parallax_deg) {
     return {{},
             fmt::format("median parallax {:.2f} deg, {:.2f} needed", all.front().median_parallax_deg,

@@ -11,18 +11,18 @@
 namespace evbench {
 
 struct TwoViewOptions {
-  double threshold_px = 1.5;      ///< RANSAC: distance of an inlier from its model
+  double threshold_px = 1.5;      ///< RANSAC: maximum distance of an inlier from its model
   double confidence = 0.9999;     ///< RANSAC
-  int max_iterations = 1000;      ///< RANSAC, of five points
-  int min_inliers = 12;           ///< matches that a candidate must explain
-  double min_inlier_share = 0.5;  ///< the same as a share of all matches
-  double min_parallax_deg = 4.0;  ///< median angle between the rays to a point; 0: none, and a rotation may explain it
-  double ambiguity = 0.75;        ///< a candidate stays when it explains this share of what the best one explains
+  int max_iterations = 1000;      ///< RANSAC, samples of five points
+  int min_inliers = 12;           ///< minimum number of inliers
+  double min_inlier_share = 0.5;  ///< the same as a fraction of all matches
+  double min_parallax_deg = 4.0;  ///< minimum median parallax; 0: none, and a pure rotation is accepted
+  double ambiguity = 0.75;        ///< a candidate is kept if it has this fraction of the best one's inliers
 
   void declare(OptionSet& set);
 };
 
-/// One explanation of the matches: a relative pose with the points that it implies.
+/// A candidate for the relative pose, with the triangulated points.
 struct TwoViewCandidate {
   enum class Model { five_point, homography };
   Model model = Model::five_point;
@@ -36,17 +36,17 @@ struct TwoViewCandidate {
 
 struct TwoViewResult {
   std::vector<TwoViewCandidate> candidates;  ///< best first; distinct
-  std::string reason;                        ///< why there is none
+  std::string reason;                        ///< why there is no candidate
 };
 
 /// Relative pose from matched pixels (first[i] and second[i] show the same point).
 ///
-/// Two models compete, for neither does for all scenes: five-point with RANSAC (Nistér 2004), which is ill-conditioned
-/// for planar scenes, and the homography, which holds for planes only and has two solutions there. All that explain
-/// the data about as well are returned, each refined by least squares on the epipolar distance; more views than two
-/// decide between them. None is returned when a rotation alone explains the matches (pure rotation, or no parallax
-/// yet), unless no parallax is asked for: then others decide what the candidates are worth. Deterministic: the RANSAC
-/// of OpenCV draws from a generator with a fixed seed.
+/// Two models compete, because neither suits all scenes: five-point with RANSAC (Nistér 2004), which is ill-conditioned
+/// for planar scenes, and the homography, which is valid for planes only and has two solutions there. All candidates
+/// that fit the data about equally well are returned, each refined by least squares on the epipolar distance; further
+/// views decide between them. None is returned if a rotation alone explains the matches (pure rotation, or no parallax
+/// yet), unless min_parallax_deg is 0: then the caller has to check the candidates. Deterministic: OpenCV's RANSAC
+/// draws from a generator with a fixed seed.
 TwoViewResult relative_pose(std::span<const Vector2> first, std::span<const Vector2> second,
                             const PinholeCamera& camera, const TwoViewOptions& options = {});
 

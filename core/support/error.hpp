@@ -4,16 +4,16 @@
 
 namespace evbench {
 
-/// Bad input from outside: a file, a config, a command line. The message is one sentence that a user can act on:
-/// where (file and line, or place in the JSON), what was found, what was expected. Caught once, in `main`.
-/// Numerical failure is not an error but a `Status` in the results.
+/// Invalid input: a file, a config, a command line. The message is one sentence that a user can act on: the place (file
+/// and line, or place in the JSON), the value found and the one expected. Caught once, in `main`. Numerical failure is
+/// not an error but a `Status` in the results.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Nothing is wrong with the input, but what was to be written can't be: a full disk, a folder that is missing or not
-/// writable. The program's exit code then is another one (README.md).
+/// Output that can't be written: a full disk, a missing or read-only folder. The program's exit code is a different one
+/// (README.md).
 class OutputError : public InputError {
  public:
   using InputError::InputError;

@@ -8,10 +8,10 @@
 namespace evbench {
 namespace {
 
-std::atomic<int> requested = 0;              // the signal that came
+std::atomic<int> requested = 0;              // the received signal
 std::atomic<std::int64_t> requested_at = 0;  // [ns]
 static_assert(std::atomic<int>::is_always_lock_free &&
-              std::atomic<std::int64_t>::is_always_lock_free);  // for a signal's handler
+              std::atomic<std::int64_t>::is_always_lock_free);  // for use in a signal handler
 
 void on_signal(int signal) {
   constexpr std::int64_t kSame = 500'000'000;  // [ns]
@@ -41,7 +41,7 @@ Interruption::Interruption(std::string message) {
     if (before_[i].sa_handler == SIG_IGN) continue;
     struct sigaction action {};
     action.sa_handler = on_signal;
-    action.sa_flags = 0;  // without SA_RESTART: waiting for a pipe ends, too
+    action.sa_flags = 0;  // without SA_RESTART, so that waiting for a pipe ends
     ::sigaction(kSignals[i], &action, nullptr);
   }
 }

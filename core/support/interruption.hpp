@@ -7,7 +7,7 @@
 
 namespace evbench {
 
-/// The program has been asked to end. Its exit code is then 128 + signal, as a shell has it: 130 after Ctrl-C.
+/// The program has been asked to end. Its exit code is 128 + signal, as in a shell: 130 after Ctrl-C.
 class Interrupted : public InputError {
  public:
   Interrupted(const std::string& message, int signal) : InputError(message), signal_(signal) {}
@@ -17,10 +17,10 @@ class Interrupted : public InputError {
   int signal_;
 };
 
-/// While one lives, a signal that asks the program to end (SIGINT by Ctrl-C, SIGTERM, SIGHUP) lets the next
-/// check_interruption() throw, so that what was begun is removed as after an error. Another one, half a second later or
-/// more, ends the program at once; those before are the same, as terminals, shells and `timeout` may each send it. A
-/// signal that was ignored (nohup) stays so. There is one at a time.
+/// Handles signals that ask the program to end (SIGINT by Ctrl-C, SIGTERM, SIGHUP) for its lifetime: the next
+/// check_interruption() throws, so that unfinished output is removed as after an error. A second signal after half a
+/// second or more ends the program at once; earlier ones count as the same, because terminals, shells and `timeout` may
+/// each send one. A signal that was ignored before (nohup) stays ignored. Only one object may exist at a time.
 class Interruption {
  public:
   /// `message`: of the error, e.g. "a.txt: interrupted; nothing was written".
@@ -37,8 +37,8 @@ class Interruption {
   struct sigaction before_[std::size(kSignals)] = {};
 };
 
-/// To be called in every loop that may last: throws Interrupted with the message of the Interruption that lives, once
-/// the program has been asked to end. Who goes on after an InputError must not do so after this one.
+/// Throws Interrupted with the message of the current Interruption once the program has been asked to end. Call it in
+/// every long loop. Code that continues after an InputError must not continue after this one.
 void check_interruption();
 
 }  // namespace evbench

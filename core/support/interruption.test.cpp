@@ -8,7 +8,7 @@
 
 using namespace evbench;
 
-TEST_CASE("A signal that asks to end makes the next check throw, until the interruption is over") {
+TEST_CASE("A signal that asks to end makes checks throw while the interruption exists") {
   {
     const Interruption interruption("a.txt: interrupted");
     CHECK_NOTHROW(check_interruption());
@@ -19,7 +19,7 @@ TEST_CASE("A signal that asks to end makes the next check throw, until the inter
   CHECK_NOTHROW(check_interruption());
 }
 
-TEST_CASE("What is thrown then knows the signal, and is told from bad input") {
+TEST_CASE("The exception knows the signal and is distinct from invalid input") {
   const Interruption interruption("a.txt: interrupted");
   std::raise(SIGTERM);
   try {
@@ -30,7 +30,7 @@ TEST_CASE("What is thrown then knows the signal, and is told from bad input") {
   }
 }
 
-TEST_CASE("A signal that was ignored stays so, also afterwards, the others are as before") {
+TEST_CASE("An ignored signal stays ignored, and the other handlers are restored afterwards") {
   const auto before = std::signal(SIGHUP, SIG_IGN);
   const auto terminate = std::signal(SIGTERM, SIG_DFL);
   {
@@ -42,7 +42,7 @@ TEST_CASE("A signal that was ignored stays so, also afterwards, the others are a
   CHECK(std::signal(SIGTERM, terminate) == SIG_DFL);
 }
 
-TEST_CASE("A signal that comes twice at once is one signal") {
+TEST_CASE("A signal sent twice at once counts as one signal") {
   const Interruption interruption("a.txt: interrupted");
   std::raise(SIGTERM);
   std::raise(SIGTERM);
@@ -50,7 +50,7 @@ TEST_CASE("A signal that comes twice at once is one signal") {
   CHECK_THROWS_WITH(check_interruption(), "a.txt: interrupted");
 }
 
-TEST_CASE("A signal that comes again later ends the program", "[slow]") {
+TEST_CASE("A second signal later ends the program", "[slow]") {
   const pid_t child = ::fork();
   REQUIRE(child >= 0);
   if (child == 0) {

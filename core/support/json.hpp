@@ -8,18 +8,18 @@
 
 namespace evbench {
 
-// Parsing and printing, compiled once: each costs a source that does it by itself seconds of compiling.
+// Parsing and printing, compiled once: each takes seconds to compile in a source.
 
-/// Throws Json::parse_error where the text is no JSON.
+/// Parses JSON. Throws Json::parse_error for invalid text.
 Json parse_json(std::string_view text);
 
-/// Where the text is no JSON, what is returned is_discarded().
+/// The same; for invalid text the result is_discarded().
 Json try_parse_json(std::string_view text);
 
-/// `indent`: blanks a level; −1: all on one line. Throws Json::type_error for text that is not UTF-8.
+/// Prints JSON. `indent`: blanks per level; −1: one line. Throws Json::type_error for text that is not UTF-8.
 std::string dump_json(const Json& json, int indent = -1);
 
-/// What is not UTF-8 is replaced by U+FFFD.
+/// The same on one line, with invalid UTF-8 replaced by U+FFFD.
 std::string printable_json(const Json& json);
 
 }  // namespace evbench

@@ -4,7 +4,7 @@
 
 namespace evbench {
 
-/// Keys keep the order in which they were added. Its members: core/support/json.hpp.
+/// JSON whose keys keep their order of insertion. Include core/support/json.hpp to use its members.
 using Json = nlohmann::ordered_json;
 
 }  // namespace evbench

@@ -5,7 +5,7 @@
 
 namespace evbench {
 
-/// What nlohmann's JSON library says of an error, without the tag that it begins with ("[json.exception...] ").
+/// The message of an error of nlohmann's JSON library, without the leading tag ("[json.exception...] ").
 inline std::string json_reason(const std::exception& error) {
   const std::string message = error.what();
   const std::size_t end = message.starts_with('[') ? message.find("] ") : std::string::npos;

@@ -7,7 +7,7 @@
 
 namespace evbench {
 
-/// The value below which this share of them lies, 0 ≤ share < 1. Precondition: not empty.
+/// The quantile `share` of the values, 0 ≤ share < 1. Precondition: not empty.
 inline double order_statistic(std::vector<double> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
   std::ranges::nth_element(values, at);

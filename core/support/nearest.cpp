@@ -28,7 +28,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// As many as one cares to read: those that `name` is a part of, then those with the smallest edit distance.
+/// The most similar candidates in a readable number: those that contain `name`, then those with the smallest edit
+/// distance.
 constexpr std::size_t kMostNames = 30, kSimilarNames = 6;
 
 std::vector<std::string> most_similar(const std::string& name, std::span<const std::string> candidates) {
@@ -50,8 +51,8 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-/// The shortest path, as "ate.trans_m.rmse", that has all parts of this one in their order, as "ate.rmse", and others
-/// between them; of equally long ones the first.
+/// The shortest path (e.g. "ate.trans_m.rmse") that contains all parts of this one (e.g. "ate.rmse") in their order;
+/// the first of equally long ones.
 std::string fuller_path(const std::string& path, std::span<const std::string> candidates) {
   const std::vector<std::string> parts = parts_of(path);
   std::string best;
@@ -82,7 +83,7 @@ std::string nearest_name(const std::string& name, std::span<const std::string> c
       best_distance = distance;
     }
   }
-  constexpr std::size_t kSlip = 2;  // of the fingers
+  constexpr std::size_t kSlip = 2;  // typing errors
   if (!best.empty() && best_distance <= kSlip) return best;
   const std::string fuller = fuller_path(name, candidates);
   return fuller.empty() ? best : fuller;

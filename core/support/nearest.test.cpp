@@ -6,7 +6,7 @@
 
 using namespace evbench;
 
-TEST_CASE("The nearest name is the one with the fewest edits, if it can be meant") {
+TEST_CASE("The nearest name is the one with the fewest edits, if it is similar enough") {
   const std::vector<std::string> names = {"duration", "seed", "camera"};
   CHECK(nearest_name("duratoin", names) == "duration");
   CHECK(nearest_name("sed", names) == "seed");
@@ -21,7 +21,7 @@ TEST_CASE("A suggestion offers the nearest name, or all of them") {
   CHECK(suggestion("geman_mcclure", names) == "; known: huber, cauchy");
 }
 
-TEST_CASE("Of many names a suggestion offers those that have the word in them, then the nearest") {
+TEST_CASE("A suggestion from many names offers those that contain the word, then the nearest") {
   std::vector<std::string> names = {"ate.rmse", "times.max", "rpe.rmse"};
   for (int i = 0; i < 60; ++i) names.push_back("a rather long name, number " + std::to_string(i));
   CHECK(suggestion("zzzz", {names.data(), 2}) == "; known: ate.rmse, times.max");
@@ -30,7 +30,7 @@ TEST_CASE("Of many names a suggestion offers those that have the word in them, t
   CHECK(many.size() < 250);
 }
 
-TEST_CASE("A path in which parts are missing stands for the shortest, first one that has them") {
+TEST_CASE("A path with missing parts matches the shortest, first one that contains its parts") {
   const std::vector<std::string> names = {"common.ate.trans_m.rmse", "ate.trans_m.rmse", "ate.rot_deg.rmse",
                                           "times.max"};
   CHECK(nearest_name("ate.rmse", names) == "ate.trans_m.rmse");

@@ -10,7 +10,7 @@
 
 using namespace evbench;
 
-TEST_CASE("Each piece of work is done once, whatever the number of threads") {
+TEST_CASE("Each work item is done once, with any number of threads") {
   const tbb::global_control four(tbb::global_control::max_allowed_parallelism, 4);
   CHECK(processors() == 4);
   for (const int threads : {0, 1, 3, 100}) {

@@ -5,7 +5,7 @@
 
 namespace evbench {
 
-/// The peak resident memory of the process so far, as the kernel counts it [MiB]; 0 where it can't be told.
+/// Peak resident memory of the process so far, from the kernel [MiB]; 0 if unknown.
 inline double peak_memory_mib() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {

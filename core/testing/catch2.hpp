@@ -1,6 +1,6 @@
 #pragma once
 
-// Catch2, of either version that distributions have: tests are written in the words of version 3.
+// Catch2 version 2 or 3, whichever the distribution has. Tests use the names of version 3.
 #if __has_include(<catch2/catch_all.hpp>)
 #include <catch2/catch_all.hpp>
 

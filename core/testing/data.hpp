@@ -5,13 +5,13 @@
 
 namespace evbench::testing {
 
-/// The path of a file below the folder that an environment variable names (EVBENCH_DATA: real recordings;
-/// EVBENCH_PROBLEMS: back-end problems). None, with a line that the test runner counts as skipped, when the variable is
-/// not set; a test failure when it is set and the file is missing.
+/// The path of a file in the folder that an environment variable names (EVBENCH_DATA: real recordings;
+/// EVBENCH_PROBLEMS: back-end problems). If the variable is not set: none, and a line that marks the test as skipped.
+/// If it is set and the file is missing, the test fails.
 std::optional<std::string> data_file(const std::string& name);
 std::optional<std::string> problem_file(const std::string& name);
 
-/// A folder of this test's own that is removed with the object.
+/// A temporary folder that is removed with the object.
 class TemporaryFolder {
  public:
   TemporaryFolder();

@@ -22,12 +22,12 @@ Eigen::Matrix<double, M, N> central_differences(Function f, double h = 1e-3) {
   return J;
 }
 
-/// Random tangents: rotation angles all over [0, π], some of them tiny, zero, or next to π.
+/// Random tangents with rotation angles in [0, π], some of them tiny, zero, or close to π.
 class RandomTangents {
  public:
   Vector3 direction() {
     Vector3 v;
-    for (double& x : v) x = normal_(generator_);  // one after the other: the order of arguments is the compiler's
+    for (double& x : v) x = normal_(generator_);  // in sequence: arguments have no fixed order of evaluation
     return v.normalized();
   }
   double uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(generator_); }
@@ -36,7 +36,7 @@ class RandomTangents {
       case 0: return 0.0;
       case 1: return uniform(0.0, 1e-9);
       case 2: return uniform(0.0, 1e-4);
-      case 3: return M_PI - uniform(2e-3, 1e-2);  // a difference's step must not wrap around
+      case 3: return M_PI - uniform(2e-3, 1e-2);  // the step of a difference must not wrap around
       case 4: return 1.0 + uniform(-1e-3, 1e-3);  // where the series meets the closed form
       default: return uniform(0.0, M_PI - 1e-2);
     }
@@ -58,7 +58,7 @@ class RandomTangents {
   std::normal_distribution<double> normal_;
 };
 
-/// Largest difference, relative to the size of the expected matrix where that is above one.
+/// Largest difference, relative to the largest expected entry if that is above one.
 template <class A, class B>
 double relative_error(const A& actual, const B& expected) {
   return (actual - expected).cwiseAbs().maxCoeff() / std::max(1.0, expected.cwiseAbs().maxCoeff());

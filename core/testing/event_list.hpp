@@ -7,10 +7,10 @@
 
 namespace evbench::testing {
 
-/// Events in memory, which must outlive it, as a recording.
+/// A recording of events in memory, which must outlive it.
 class EventList : public EventReader {
  public:
-  /// The sensor's size [px]; so many events at a time.
+  /// `width` and `height` of the sensor [px]; returns `chunk` events at a time.
   EventList(const std::vector<Event>& events, int width, int height, std::size_t chunk = 10'000)
       : events_(events), chunk_(chunk) {
     info_.width = width;

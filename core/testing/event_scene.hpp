@@ -12,9 +12,9 @@
 
 namespace evbench::testing {
 
-/// A wall of outlines, 2 m before the camera's path, as an event camera of 240 x 180 pixels sees it: an outline is made
-/// of points, and a point emits an event when its image comes into another pixel. Quickly made, and of events as they
-/// may be that no sensor model would give: for tests.
+/// A test source: events of a camera with 240 x 180 pixels that moves in front of a wall with outlines, at 2 m
+/// distance. An outline consists of points, and a point emits an event when its image enters another pixel. Fast to
+/// compute, and tests can add or remove events.
 class EventScene : public Source {
  public:
   using Motion = std::function<SE3(double)>;  ///< T_world_camera at t [s]
@@ -33,7 +33,7 @@ class EventScene : public Source {
     truth_ = PoseTrajectory(std::move(poses));
   }
 
-  /// Quadrangles of all kinds over the wall.
+  /// Random quadrangles on the wall.
   static std::vector<Outline> quadrangles(int count, std::uint64_t seed, double size = 0.2) {
     Random random(seed);
     std::vector<Outline> result;
@@ -58,7 +58,7 @@ class EventScene : public Source {
 
   bool silence_is_known() const override { return silence_is_known_; }
 
-  /// It may go on after its last event.
+  /// Makes it a recording that may continue after its last event.
   void cut_off() { silence_is_known_ = false; }
 
   /// Adds events, in any order.
@@ -66,7 +66,7 @@ class EventScene : public Source {
     list.insert(list.end(), more.begin(), more.end());
     std::ranges::stable_sort(list, {}, &Event::t);
   }
-  /// Takes those between two times [s] away.
+  /// Removes the events between two times [s].
   void silence(double from, double to) {
     std::erase_if(list, [&](const Event& event) {
       const auto t = static_cast<double>(event.t);
@@ -74,7 +74,7 @@ class EventScene : public Source {
     });
   }
 
-  std::vector<Event> list;  ///< in time order, unless a test wants them otherwise
+  std::vector<Event> list;  ///< in time order, unless a test changes it
 
  private:
   static std::vector<Vector3> points_of(const std::vector<Outline>& outlines) {
@@ -107,7 +107,7 @@ class EventScene : public Source {
           if (x >= 0 && y >= 0 && x < camera_.width && y < camera_.height) pixel = y * camera_.width + x;
         }
         if (pixel >= 0 && pixel_of[i] >= 0 && pixel != pixel_of[i]) {
-          // Within the step in an order of their own.
+          // A pseudo-random order within the step.
           const auto within = static_cast<std::int64_t>((i * 7919) % static_cast<std::size_t>(kStep));
           list.push_back({t + within, static_cast<std::uint16_t>(pixel % camera_.width),
                           static_cast<std::uint16_t>(pixel / camera_.width), i % 2 == 0});
@@ -124,7 +124,7 @@ class EventScene : public Source {
   PoseTrajectory truth_;
 };
 
-/// Swings to and fro, with a little rotation: as a hand moves a camera before a wall.
+/// Oscillates with a little rotation, like a hand-held camera in front of a wall.
 inline SE3 swing(double t) {
   Vector6 twist;
   twist << 0.06 * std::sin(1.1 * t), 0.08 * std::sin(0.9 * t + 0.5) - 0.08 * std::sin(0.5), 0.05 * std::sin(1.3 * t),

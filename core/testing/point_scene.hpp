@@ -9,7 +9,7 @@
 
 namespace evbench::testing {
 
-/// Gaussian noise of a pixel.
+/// Gaussian noise of a pixel position [px].
 inline Vector2 noise(double sigma, Random& random) {
   const double x = random.normal();
   return sigma * Vector2(x, random.normal());
@@ -24,7 +24,7 @@ inline bool in_davis_image(const Vector2& pixel) {
 
 enum class PointScene { volume, plane };
 
-/// Points about 2 m before a camera at the origin that looks along z: in a volume, or on a slightly tilted plane.
+/// Points about 2 m in front of a camera at the origin with z forward: in a volume, or on a slightly tilted plane.
 inline std::vector<Vector3> scene_points(PointScene scene, int count, Random& random, double width = 2.6) {
   std::vector<Vector3> points;
   for (int i = 0; i < count; ++i) {

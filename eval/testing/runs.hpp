@@ -4,15 +4,15 @@
 #include <optional>
 #include <string>
 
+#include "core/support/json.hpp"
 #include "core/testing/data.hpp"
 #include "eval/find_runs.hpp"
 #include "eval/scores.hpp"
 #include "eval/testing/trajectories.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench::testing {
 
-/// Real scores, but for the ATE.
+/// Real scores with another ATE.
 inline Json scores_with(double ate, const std::string& alignment = "sim3") {
   const PoseTrajectory truth = sample(wavy_pose, 100, 0.01);
   ScoreOptions options;
@@ -41,7 +41,7 @@ inline Json run(const std::string& experiment, const std::string& label, const J
   return json;
 }
 
-/// Runs below a folder of results, as `evbench run` leaves them.
+/// A folder of runs, as `evbench run` writes it.
 struct Results {
   TemporaryFolder folder;
   void add(const std::string& name, const std::string& content) const {
@@ -53,7 +53,7 @@ struct Results {
     add(name, metrics);
     folder.write(name + "/config.json", dump_json(config));
   }
-  /// A run of this label and seed on the data of that seed, of an ATE; none: it failed.
+  /// Adds a run of this label and seed on the data of that seed, with an ATE; none: it failed.
   void add_seed(const std::string& label, int seed, std::optional<double> ate, double frame = 0.1,
                 const std::string& motion = "arm") const {
     Json json = run("arm", label, ate ? scores_with(*ate) : Json(), ate ? "ok" : "failed");
@@ -63,7 +63,7 @@ struct Results {
         {{"seed", seed},
          {"source", {{"type", "simulation"}, {"motion", motion}}},
          {"frontend", {{"type", "oracle"}}},
-         {"backend", {{"type", label}, {"frame_duration", frame}}}});
+         {"backend", {{"type", label}, {"batch_duration", frame}}}});
   }
   std::vector<RunRecord> find() const { return find_runs(std::vector{folder.path()}); }
 };

@@ -22,7 +22,7 @@ PoseTrajectory sample(const Motion& motion, int count, double step = 0.01, doubl
   return PoseTrajectory(std::move(poses));
 }
 
-/// The poses seen from another world: moved by `transform`'s inverse, so that aligning finds `transform`.
+/// The poses in another world frame: moved by `transform`'s inverse, so that alignment gives `transform`.
 inline PoseTrajectory seen_from(const PoseTrajectory& trajectory, const Similarity& transform) {
   const Similarity inverse = transform.inverse();
   std::vector<StampedPose> poses;
@@ -30,7 +30,7 @@ inline PoseTrajectory seen_from(const PoseTrajectory& trajectory, const Similari
   return PoseTrajectory(std::move(poses));
 }
 
-/// Errors of a few centimetres and degrees that are the same each time.
+/// Reproducible errors of a few centimetres and degrees.
 inline PoseTrajectory disturbed(const PoseTrajectory& trajectory, double size = 0.02) {
   std::vector<StampedPose> poses;
   for (const StampedPose& pose : trajectory.poses()) {

@@ -1,17 +1,17 @@
-"""The loop of a back-end or front-end in Python for evbench (core/process/protocol.md), to be imported.
+"""The loop of a back-end or front-end in Python for evbench (docs/reference/process_protocol.md), to be imported.
 
     import evbench_process
     hello = evbench_process.hello()             # camera, options, seed, ...
     def take(message): ...                      # returns the answer, a dictionary
-    def finish(): ...                           # likewise the last one
+    def finish(): ...                           # returns the last answer
     evbench_process.serve("my name", take, finish)
 """
 import json, sys
 
-answers, sys.stdout = sys.stdout, sys.stderr  # so that print() writes to the log, and not between the answers
+answers, sys.stdout = sys.stdout, sys.stderr  # print() writes to the log, not between the answers
 
 def hello():
-    """What evbench says first; to be called once, before serve()."""
+    """Reads the opening message of evbench; call it once, before serve()."""
     return json.loads(sys.stdin.readline())
 
 def say(answer): print(json.dumps(answer), file=answers, flush=True)

@@ -1,4 +1,4 @@
-"""A back-end for evbench (core/process/protocol.md): frames of observations, a map from two views, resection."""
+"""A back-end for evbench (docs/reference/process_protocol.md): batches of observations, an initial map from two views, resection."""
 import os, sys
 import numpy as np
 
@@ -22,7 +22,7 @@ def triangulate(views):  # linear, of [(pose, ray), ...]
     return X[:3] / X[3]
 
 def two_views(a, b):  # eight points, RANSAC: the pose of b if a's is HOME, the points, and which are in front of both
-    N = np.diag([2, 2, 1])  # so that all columns are of about one magnitude
+    N = np.diag([2, 2, 1])  # gives all columns about the same magnitude
     rows, results = np.array([np.kron(N @ [*q, 1], N @ [*p, 1]) for p, q in zip(a, b)]), []
     fits = [np.linalg.svd(rows[random.choice(len(a), 8, replace=False)])[2][8] for _ in range(100)]
     best = min(fits, key=lambda E: np.median(np.abs(rows @ E)))
@@ -55,19 +55,19 @@ def resect(frame, pose):  # Gauss-Newton on the reprojection errors with Huber's
         outliers.append(known[i]), points.pop(known[i])
     return pose
 
-def locate(track):  # a landmark, from up to 16 of the poses that saw it, if their views differ by 2 degrees
+def locate(track):  # triangulates a landmark from up to 16 poses, if their views differ by 2 degrees
     seen = [i for i, frame in enumerate(frames) if track in frame]
     views = [(poses[seen[i]], frames[seen[i]][track]) for i in {j * (len(seen) - 1) // 15: 0 for j in range(16)}]
     rays = [R.T @ [*x, 1] / np.linalg.norm([*x, 1]) for (R, _), x in views]
     X = triangulate(views) if min(rays[0] @ ray for ray in rays) < np.cos(0.035) else None
     if X is not None and track not in outliers and all((R @ X + t)[2] > 0 for (R, t), _ in views): points[track] = X
 
-def refine(rounds):  # points and poses in turn
+def refine(rounds):  # points and poses alternately
     for _ in range(rounds):
         for k in list(points): locate(k)
         poses[:] = [resect(frame, pose) or pose for frame, pose in zip(frames, poses)]
 
-def start():  # a first map from the oldest frame and the newest, once their images are far enough apart
+def start():  # an initial map from the oldest and the newest frame, once their images differ enough
     both = sorted(frames[0].keys() & frames[-1].keys())
     if len(both) < 15: del frames[:-1], times[:-1]
     a, b = (np.array([frame[k] for k in both]).reshape(-1, 2) for frame in (frames[0], frames[-1]))
@@ -95,7 +95,7 @@ def state():
     return "tracking" if poses else "no_map"
 
 def take(message):
-    online, dropped = [], len(outliers)
+    causal, dropped = [], len(outliers)
     for track, t, u, v, _ in message["observations"]:
         ray = t, (u - c["cx"]) / c["fx"], (v - c["cy"]) / c["fy"]
         sums.setdefault(int(t / width), {}).setdefault(track, []).append(ray)
@@ -103,9 +103,9 @@ def take(message):
         centre = (i + 0.5) * width
         lines = {k: np.array(x) - [centre, 0, 0] for k, x in sums.pop(i).items()}  # where each track is at that time:
         step(centre, {k: np.polyfit(x[:, 0], x[:, 1:], 1)[1] for k, x in lines.items() if x[0, 0] < 0 < x[-1, 0]})
-        online += [stamped(times[-1], poses[-1])] if poses else []
-    newest = {"newest": online[-1]} if online else {}
-    return {"state": state(), "online": online, "outliers": outliers[dropped:], **newest}
+        causal += [stamped(times[-1], poses[-1])] if poses else []
+    newest = {"newest": causal[-1]} if causal else {}
+    return {"state": state(), "causal_poses": causal, "outliers": outliers[dropped:], **newest}
 
 def finish():
     refine(3)

@@ -1,4 +1,4 @@
-"""A front-end for evbench (core/process/protocol.md): follows the centres of dots from window to window of events."""
+"""A front-end for evbench (docs/reference/process_protocol.md): tracks the centres of dots from one window of events to the next."""
 import os, sys
 import numpy as np
 
@@ -11,7 +11,7 @@ options = {"window": 0.01, "radius": 6.0, "sigma": 0.4, "most": 60, **hello["opt
 window, radius = options["window"], options["radius"]
 tracks, made = {}, 0  # number -> [centre, velocity in pixels a window, quiet windows]
 
-def centre_near(place, xy, on):  # of a dot: its leading edge and its trailing one make events of opposite polarity
+def centre_near(place, xy, on):  # of a dot: its leading and trailing edges cause events of opposite polarity
     for _ in range(2):
         near = np.square(xy - place).sum(axis=1) < radius**2
         bright, dark = near & on, near & ~on
@@ -34,7 +34,7 @@ def follow(t, xy, on):  # one window that ends at t: observations and ended trac
             tracks[number] = [centre + velocity, velocity, quiet + 1]
         elif found is not None:
             tracks[number] = [found, 0.5 * velocity + 0.5 * (found - centre) if quiet == 0 else velocity, 0]
-            # The centre is that of the middle of the window.
+            # The centre is at the middle of the window; extrapolate it to its end.
             observations.append([number, t, *(found + velocity / 2), options["sigma"]])
     counts = np.histogram2d(*xy[free].T, bins=size // 8, range=[[0, size[0]], [0, size[1]]])[0]
     for cell in np.argsort(-counts, axis=None)[: options["most"] - len(tracks)]:

@@ -5,7 +5,7 @@
 
 using namespace evbench;
 
-TEST_CASE("The back-end does what evbench asks of every back-end") {
+TEST_CASE("The back-end passes evbench's conformance battery") {
   const Plugins plugins = registered_plugins();
   for (const battery::Check& check : battery::backend_checks(plugins, "spline_map")) {
     INFO(check.name);

@@ -12,8 +12,8 @@
 
 namespace spline_map {
 
-/// The segments of a spline as Ceres is about to evaluate it. Ceres writes the values to be evaluated into the knots
-/// and calls this; the cost functions of observations then share what is the same for a whole segment.
+/// The prepared segments of a spline for one evaluation by Ceres. Ceres writes the values into the knots and calls
+/// this; the cost functions of observations then share the terms that are the same for a whole segment.
 class PreparedSegments : public ceres::EvaluationCallback {
  public:
   /// Segments from `first` on. The spline must outlive this and keep its number of knots.
@@ -27,8 +27,7 @@ class PreparedSegments : public ceres::EvaluationCallback {
   std::vector<SplineSegment> segments_;
 };
 
-/// Jacobians with respect to a knot are those of its tangent in the first six of seven columns, as KnotManifold
-/// expects.
+/// Manifold of a knot. Jacobians with respect to a knot have those of its tangent in the first six of seven columns.
 class KnotManifold : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 7; }
@@ -43,7 +42,7 @@ class KnotManifold : public ceres::Manifold {
 Vector2 reprojection_error(const SE3& T, const Vector3& landmark, const Vector2& pixel,
                            const evbench::PinholeCamera& camera);
 
-/// Reprojection error over sigma of a landmark (last block) from a place in a segment of four knots.
+/// Reprojection error over sigma of a landmark (last block) from a position in a segment of four knots.
 class ReprojectionCost : public ceres::SizedCostFunction<2, 7, 7, 7, 7, 3> {
  public:
   /// `segment` is prepared from the knots that are the parameters.
@@ -60,7 +59,7 @@ class ReprojectionCost : public ceres::SizedCostFunction<2, 7, 7, 7, 7, 3> {
   const evbench::PinholeCamera& camera_;
 };
 
-/// The same from a pose that is held.
+/// The same from a fixed pose.
 class HeldReprojectionCost : public ceres::SizedCostFunction<2, 3> {
  public:
   HeldReprojectionCost(const SE3& T, const evbench::TrackObservation& z, const evbench::PinholeCamera& camera)
@@ -86,7 +85,7 @@ class AccelerationCost : public ceres::SizedCostFunction<6, 7, 7, 7> {
   double rotation_, translation_;  ///< weights of d_2 − d_1
 };
 
-/// (Log(R_priorᵀ R), p − p_prior)/sigma of the pose at the beginning of a segment: holds the world frame.
+/// (Log(R_priorᵀ R), p − p_prior)/sigma of the pose at the beginning of a segment: fixes the world frame.
 class PoseAnchorCost : public ceres::SizedCostFunction<6, 7, 7, 7, 7> {
  public:
   PoseAnchorCost(const SE3& T, double sigma) : T_(T), weight_(1.0 / sigma) {}
@@ -97,8 +96,8 @@ class PoseAnchorCost : public ceres::SizedCostFunction<6, 7, 7, 7, 7> {
   double weight_;
 };
 
-/// log(distance/expected)/sigma of the camera's positions at two times: holds the scale. A position is linear in the
-/// knots, so it takes as many knots as the two times depend on, with a weight for each.
+/// log(distance/expected)/sigma of the camera's positions at two times: fixes the scale. A position is linear in the
+/// knots, so the cost has a weight for each knot that the two times depend on.
 class BaselineCost : public ceres::CostFunction {
  public:
   /// `weights`: of each parameter block's position in p(t1) − p(t0).

@@ -87,7 +87,7 @@ TEST_CASE("Jacobians of the reprojection cost agree with central differences") {
   }
 }
 
-TEST_CASE("A landmark behind the camera has a constant error and no slope") {
+TEST_CASE("A landmark behind the camera has a constant error and zero Jacobians") {
   const Vector3 landmark(0.1, 0.2, -1.0);
   const HeldReprojectionCost cost(SE3{}, {0, 0.0, {100.0, 80.0}, 1.0}, camera);
   const Evaluated at = evaluate(cost, {landmark.data()}, 0);
@@ -100,7 +100,7 @@ TEST_CASE("Jacobians of the penalty on accelerations agree with central differen
   for (int i = 0; i < 100; ++i) check_knots<6>(AccelerationCost(0.5, 2.0, 0.3), testing::random_knots<3>(generator, i));
 }
 
-TEST_CASE("A motion of constant velocity costs nothing") {
+TEST_CASE("A motion of constant velocity has zero cost") {
   std::array<Knot, 3> knots;
   const Vector6 step = (Vector6() << 0.1, -0.2, 0.3, 1.0, 2.0, 3.0).finished();
   for (std::size_t k = 1; k < 3; ++k) knots[k] = knots[k - 1].moved(step);

@@ -11,19 +11,19 @@
 
 namespace spline_map {
 
-/// A track that is a point of the map. Observations are in time order, none before the spline's start.
+/// A track that is a landmark of the map. Observations are in time order, none before the spline's start.
 struct MappedTrack {
   Vector3 position = Vector3::Zero();  ///< world frame
   std::vector<evbench::TrackObservation> observations;
 };
 
-/// By track, in the order of the ids: whatever goes over it is deterministic.
+/// Landmarks by track, in the order of the ids, so that iteration is deterministic.
 using Landmarks = std::map<evbench::TrackId, MappedTrack>;
 
 /// Mean norm of a landmark's reprojection error over all its observations [px].
 double mean_error(const MappedTrack& landmark, const Spline& spline, const evbench::PinholeCamera& camera);
 
-/// The point of a track seen from the spline; observations before its start are left out, of many a sample is taken.
+/// Triangulates a track from the spline. Observations before its start are ignored, many observations are subsampled.
 evbench::Triangulation triangulate_track(std::span<const evbench::TrackObservation> observations, const Spline& spline,
                                          const evbench::PinholeCamera& camera,
                                          const evbench::TriangulationOptions& options);

@@ -7,12 +7,12 @@
 
 namespace spline_map {
 
-std::vector<MotionDensity> learn_densities(const Spline& spline, double t_end, double radius,
-                                           const MotionDensity& expected, double weight) {
+std::vector<MotionDensity> estimate_densities(const Spline& spline, double t_end, double radius,
+                                              const MotionDensity& expected, double weight) {
   const std::vector<Knot>& knots = spline.knots();
   const std::size_t count = knots.size();
   const double cube = spline.spacing() * spline.spacing() * spline.spacing();
-  // Sums over the knots before each one; only knots that two others enclose have an acceleration.
+  // Prefix sums over the knots; only inner knots have an acceleration.
   std::vector<MotionDensity> sums(count + 1, {0.0, 0.0});
   std::vector<double> numbers(count + 1, 0.0);
   for (std::size_t k = 0; k < count; ++k) {

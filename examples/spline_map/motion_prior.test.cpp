@@ -7,7 +7,7 @@ using namespace spline_map;
 
 namespace {
 
-/// Random walks of the velocity with these densities an axis.
+/// A random walk of the velocity with these densities per axis.
 Spline random_motion(const MotionDensity& density, int knots, std::mt19937_64& generator) {
   Spline spline(0.0, 0.1, SE3{});
   std::normal_distribution<double> normal;
@@ -22,18 +22,18 @@ Spline random_motion(const MotionDensity& density, int knots, std::mt19937_64& g
 
 }  // namespace
 
-TEST_CASE("Densities of a random motion are found again, each in its own stretch") {
+TEST_CASE("The densities of a random motion are recovered, each in its own period") {
   std::mt19937_64 generator(7);
   const MotionDensity calm{0.01, 0.1};
   const Spline spline = random_motion(calm, 2000, generator);
-  const auto learnt = learn_densities(spline, 1e9, 50.0, {1.0, 1.0}, 1.0);
-  CHECK(learnt[1000].rotation == Approx(calm.rotation).epsilon(0.2));
-  CHECK(learnt[1000].translation == Approx(calm.translation).epsilon(0.2));
+  const auto estimated = estimate_densities(spline, 1e9, 50.0, {1.0, 1.0}, 1.0);
+  CHECK(estimated[1000].rotation == Approx(calm.rotation).epsilon(0.2));
+  CHECK(estimated[1000].translation == Approx(calm.translation).epsilon(0.2));
 }
 
-TEST_CASE("Without knots to learn from, what is expected stays") {
+TEST_CASE("Without knots to estimate from, the expected densities remain") {
   const Spline spline(0.0, 0.1, SE3{});
-  for (const MotionDensity& density : learn_densities(spline, -1.0, 1.0, {0.3, 0.7}, 2.0)) {
+  for (const MotionDensity& density : estimate_densities(spline, -1.0, 1.0, {0.3, 0.7}, 2.0)) {
     CHECK(density.rotation == Approx(0.3));
     CHECK(density.translation == Approx(0.7));
   }

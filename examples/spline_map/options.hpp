@@ -37,47 +37,51 @@ struct Options {
   SolverOptions solver(int most_iterations, double tolerance) const {
     return {loss, loss_width, most_iterations, tolerance};
   }
-  /// Of a spline that is an estimate up to t_end.
+  /// The densities of a spline that is estimated up to t_end.
   std::vector<MotionDensity> densities(const Spline& spline, double t_end) const {
-    return learn_densities(spline, t_end, density_radius, {rotation_density, translation_density}, density_weight);
+    return estimate_densities(spline, t_end, density_radius, {rotation_density, translation_density}, density_weight);
   }
 
   void declare(evbench::OptionSet& set) {
     set.add("knot_spacing", knot_spacing, "time between two knots of the spline [s]").range(0.005, 2.0);
     set.add("rotation_density", rotation_density,
-            "power spectral density of the white noise that angular accelerations are taken for, before any is seen: "
+            "expected power spectral density of the angular acceleration (white noise), before any data: "
             "smaller is smoother [rad^2/s^3]")
         .above(0.0);
     set.add("translation_density", translation_density,
-            "the same of linear accelerations; a unit is the median depth of the first map [units^2/s^3]")
+            "the same for linear acceleration; a unit is the median depth of the initial map [units^2/s^3]")
         .above(0.0);
     set.add("density_weight", density_weight,
-            "the densities are learnt from the estimated motion; those expected count like this many knots")
+            "weight of the expected densities in those estimated from the motion [knots]")
         .above(0.0);
-    set.add("density_radius", density_radius, "learnt from knots this far to both sides [s]").above(0.0);
+    set.add("density_radius", density_radius,
+            "the densities at a knot are estimated from the knots within this time [s]")
+        .above(0.0);
     set.add("update_period", update_period, "time between two estimates while running [s]").range(0.005, 1.0);
-    set.add("window", window, "knots of the newest seconds are optimised while running, older ones held [s]")
+    set.add("window", window, "length of the sliding window: knots within are optimised, older ones fixed [s]")
         .above(0.0);
-    set.add("held_window", held_window, "time before the window whose observations still hold landmarks in place [s]")
+    set.add("held_window", held_window, "time before the window whose observations still constrain landmarks [s]")
         .range(0.0);
-    set.add("iterations", iterations, "iterations of an update, at most").range(1);
-    set.add("final_iterations", final_iterations, "iterations over everything at the end, at most; 0: none").range(0);
+    set.add("iterations", iterations, "maximum number of iterations of an update").range(1);
+    set.add("final_iterations", final_iterations, "maximum number of iterations over everything at the end; 0: none")
+        .range(0);
     set.add("loss", loss, "robust loss of reprojection errors").choices({"none", "huber", "cauchy"});
-    set.add("loss_width", loss_width, "reprojection error where the loss turns from quadratic [sigmas]").above(0.0);
+    set.add("loss_width", loss_width, "width of the robust loss [sigmas]").above(0.0);
     set.add("outlier_px", outlier_px, "tracks with a larger mean reprojection error are removed [px]").above(0.0);
     set.group("initialiser", initialiser, "two-view initialisation");
-    set.add("max_initial_error", max_initial_error, "a first map with a larger median error is not taken [px]")
+    set.add("max_initial_error", max_initial_error, "an initial map with a larger median error is rejected [px]")
         .above(0.0);
     set.add("ambiguity_ratio", ambiguity_ratio,
-            "when the second-best first map costs less than this times the best one's, wait for more data")
+            "wait for more data while the second-best initial map costs less than this times the best one")
         .range(1.0);
     set.group("triangulation", triangulation, "when a track becomes a landmark");
-    set.add("min_observations", min_observations, "observations that a track needs to become a landmark").range(2);
+    set.add("min_observations", min_observations, "minimum number of observations of a landmark").range(2);
     set.add("min_track_time", min_track_time,
-            "time that these must span: over a short time, an outlier fits any motion [s]")
+            "minimum time span of these: over a short time, an outlier fits any motion [s]")
         .range(0.0);
     set.add("min_landmarks", min_landmarks, "with fewer landmarks in view, the estimate is degraded").range(3);
-    set.add("lost_landmarks", lost_landmarks, "with fewer than these, only the penalty on accelerations carries it")
+    set.add("lost_landmarks", lost_landmarks,
+            "with fewer landmarks in view, the motion prior alone carries the estimate")
         .range(1);
   }
 };

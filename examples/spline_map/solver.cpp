@@ -14,8 +14,8 @@
 namespace spline_map {
 namespace {
 
-constexpr double kAnchorSigma = 1e-4;   // [rad, units, log] of the gauge: far below what data tell, well conditioned
-constexpr std::size_t kMostDense = 60;  // knots; above, the reduced matrix is worth a sparse factorisation
+constexpr double kAnchorSigma = 1e-4;   // [rad, units, log] of the gauge: far below the noise, well conditioned
+constexpr std::size_t kMostDense = 60;  // knots; above, a sparse factorisation of the reduced matrix is faster
 constexpr std::size_t kSegmentKnots = 4;
 
 std::unique_ptr<ceres::LossFunction> make_loss(const SolverOptions& options) {
@@ -34,7 +34,7 @@ ceres::Problem::Options problem_options(ceres::EvaluationCallback* callback) {
   return options;
 }
 
-/// One solve: the Ceres problem and everything that it refers to. It works on the spline's own knots.
+/// One solve: the Ceres problem and everything that it refers to. It changes the spline's knots in place.
 class Solve {
  public:
   Solve(Spline& spline, const evbench::PinholeCamera& camera, const SolveScope& scope, const SolverOptions& options)
@@ -60,13 +60,13 @@ class Solve {
   const evbench::PinholeCamera& camera_;
   const SolveScope& scope_;
   const SolverOptions& options_;
-  std::size_t first_segment_;  ///< the first that depends on a variable knot
+  std::size_t first_segment_;  ///< the first segment that depends on a variable knot
   std::unique_ptr<ceres::LossFunction> loss_;
   KnotManifold manifold_;
   std::deque<AccelerationCost> accelerations_;
   std::unique_ptr<PoseAnchorCost> pose_anchor_;
   std::unique_ptr<BaselineCost> baseline_;
-  std::deque<ReprojectionCost> costs_;  // deques: what they hold stays where it is
+  std::deque<ReprojectionCost> costs_;  // deques: addresses of elements stay valid
   std::deque<HeldReprojectionCost> held_costs_;
   std::vector<std::pair<evbench::TrackId, Vector3>> positions_;
   PreparedSegments segments_;

@@ -7,8 +7,9 @@
 
 namespace spline_map {
 
-/// What holds the seven freedoms of monocular vision: the pose at the spline's start, and the distance of the camera's
-/// positions at two times. Without a scale the penalty on accelerations would shrink the world to a point.
+/// Gauge: fixes the seven gauge freedoms of monocular vision by the pose at the spline's start and the distance of the
+/// camera's positions at two times. Without a fixed scale the penalty on accelerations would shrink the world to a
+/// point.
 struct Gauge {
   SE3 first;                    ///< pose at the spline's start
   double from = 0.0, to = 0.0;  ///< [s]
@@ -17,15 +18,15 @@ struct Gauge {
 
 struct SolverOptions {
   std::string loss = "cauchy";
-  double loss_width = 2.0;  ///< whitened reprojection error where the loss turns from quadratic [sigmas]
+  double loss_width = 2.0;  ///< width of the loss of whitened reprojection errors [sigmas]
   int iterations = 10;
   double tolerance = 1e-5;  ///< relative decrease of the cost below which a solve has converged
 };
 
-/// Which part of the spline a solve changes.
+/// The part of the spline that a solve changes.
 struct SolveScope {
-  std::size_t first_knot = 0;  ///< older knots are held
-  double held_from = 0.0;      ///< [s] older observations than this don't count
+  std::size_t first_knot = 0;  ///< older knots are fixed
+  double held_from = 0.0;      ///< [s] older observations are ignored
 };
 
 struct SolveReport {
@@ -34,10 +35,10 @@ struct SolveReport {
   int knots = 0, landmarks = 0, observations = 0, iterations = 0;
 };
 
-/// Least squares over the knots from scope.first_knot on and all landmarks that these see: every observation at its own
-/// time under a robust loss, a penalty on the acceleration at each knot by its density, the gauge where the first knots
-/// are variable. Observations from held knots hold their landmarks in place. Ceres: Levenberg-Marquardt on the Schur
-/// complement, one thread, so that it is deterministic. `densities` has one for each knot.
+/// Least squares over the knots from scope.first_knot on and all landmarks in view from them. Terms: every observation
+/// at its own time under a robust loss, a penalty on the acceleration at each knot by its density (`densities`, one per
+/// knot), and the gauge if the first knots are variable. Observations from fixed knots constrain their landmarks.
+/// Ceres: Levenberg-Marquardt on the Schur complement in one thread, so that it is deterministic.
 SolveReport solve(Spline& spline, Landmarks& landmarks, const std::vector<MotionDensity>& densities,
                   const evbench::PinholeCamera& camera, const Gauge& gauge, const SolveScope& scope,
                   const SolverOptions& options);

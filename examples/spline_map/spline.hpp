@@ -8,7 +8,7 @@
 
 namespace spline_map {
 
-/// A cubic B-spline with knots at even distances in time. Segment s lies between start + s·spacing and
+/// A cubic B-spline with knots evenly spaced in time. Segment s is between start + s·spacing and
 /// start + (s + 1)·spacing, and depends on the knots s to s + 3.
 class Spline {
  public:
@@ -23,15 +23,15 @@ class Spline {
 
   std::vector<Knot>& knots() { return knots_; }
   const std::vector<Knot>& knots() const { return knots_; }
-  /// The time at which knot k has its greatest weight.
+  /// The time at which knot k has its largest weight.
   double knot_time(std::size_t k) const { return start_ + (static_cast<double>(k) - 1.0) * spacing_; }
 
-  /// Adds knots that go on with the last step until the spline covers t.
+  /// Adds knots that repeat the last step (constant velocity) until the spline covers t.
   void extend_to(double t);
-  /// Removes segments that begin at or after t, but the first.
+  /// Removes segments that begin at or after t, except the first.
   void cut(double t);
 
-  /// The segment that holds t, the nearest one for times outside, and the place in it: in [0, 1] for t within.
+  /// The segment that contains t (the nearest one for times outside) and the position u in it: in [0, 1] for t within.
   struct Place {
     std::size_t segment = 0;
     double u = 0.0;

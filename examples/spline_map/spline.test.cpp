@@ -7,7 +7,7 @@ using namespace spline_map;
 
 namespace {
 
-/// A turn about a fixed axis while the position moves straight: a spline of even steps is exactly that.
+/// Rotation about a fixed axis and straight translation: a spline with even steps represents it exactly.
 Spline even_motion(const Vector6& step, int knots) {
   Spline spline(2.0, 0.1, SE3{});
   spline.knots().resize(1);
@@ -17,7 +17,7 @@ Spline even_motion(const Vector6& step, int knots) {
 
 }  // namespace
 
-TEST_CASE("A spline of even steps moves evenly, and its velocity is theirs") {
+TEST_CASE("A spline with even steps has constant velocity") {
   const Vector6 step = (Vector6() << 0.0, 0.0, 0.05, 0.1, 0.2, 0.0).finished();
   const Spline spline = even_motion(step, 10);
   CHECK(spline.start() == 2.0);
@@ -32,7 +32,7 @@ TEST_CASE("A spline of even steps moves evenly, and its velocity is theirs") {
   }
 }
 
-TEST_CASE("A spline goes on as it moved last, leaving what it covered as it was, and can be cut again") {
+TEST_CASE("Extending a spline continues its last step without changing the covered part, and it can be cut again") {
   std::mt19937_64 generator(8);
   Spline spline(0.0, 0.1, SE3{});
   for (const Knot& knot : testing::random_knots<6>(generator, 3)) spline.knots().push_back(knot);

@@ -22,7 +22,7 @@ using Support = evbench::TrackingMonitor::Support;
 const evbench::Registration<evbench::BackEnd, SplineMap> registration(
     "spline_map", "continuous time with a cubic B-spline over a sliding window (Mueggler et al. 2018)");
 
-constexpr double kLongestSilence = 0.2;  // [s] without observations: from then on the estimate is carried
+constexpr double kLongestSilence = 0.2;  // [s] without observations, after which the motion model carries the estimate
 constexpr double kAlive = 0.1;           // [s] after its last observation a track may still become a landmark
 constexpr double kBetweenTries = 0.1;    // [s] between two attempts to locate a track
 constexpr int kFinalRounds = 3;          // of solving and removing outliers
@@ -31,8 +31,8 @@ constexpr double kSmallestStep = 1e-6;   // [s]
 }  // namespace
 
 SplineMap::SplineMap(const Options& options, const evbench::BackEndContext& context)
-    : options_(options), context_(context), first_map_(options, context_.camera), monitor_(context.patience) {
-  FLAGS_minloglevel = google::GLOG_ERROR;  // what Ceres warns of is in its summaries, and no news for a console
+    : options_(options), context_(context), initial_map_(options, context_.camera), monitor_(context.patience) {
+  FLAGS_minloglevel = google::GLOG_ERROR;  // Ceres' warnings are in its summaries, not for the console
 }
 
 void SplineMap::advance(const evbench::TrackBatch& batch) {
@@ -50,7 +50,7 @@ void SplineMap::advance(const evbench::TrackBatch& batch) {
   }
 }
 
-/// Observations up to t, no later ones: the estimate at a time depends on what was seen until then.
+/// Uses only observations up to t, so that the estimate at a time is causal.
 void SplineMap::update(double t) {
   const auto start = std::chrono::steady_clock::now();
   take_observations(t);
@@ -66,7 +66,7 @@ void SplineMap::update(double t) {
     add_landmarks(t);
     watch(from, t);
   }
-  if (mapped_ && !monitor_.lost()) context_.online({{t, spline_.pose(t)}, t});
+  if (mapped_ && !monitor_.lost()) context_.publish({{t, spline_.pose(t)}, t});
   updates_.push_back({t, evbench::seconds_since(start), report.knots, report.landmarks, report.observations,
                       report.iterations, report.usable ? std::optional(report.cost) : std::nullopt});
 }
@@ -87,7 +87,7 @@ void SplineMap::take_observations(double t) {
 }
 
 void SplineMap::initialise(double t) {
-  std::optional<FirstMap> first = first_map_.attempt(tracks_, t);
+  std::optional<InitialMap> first = initial_map_.attempt(tracks_, t);
   if (!first) return;
   mapped_ = true;
   spline_ = std::move(first->spline);
@@ -98,7 +98,7 @@ void SplineMap::initialise(double t) {
     landmark.observations = observations_of(track);
     tracks_.forget(track);
   }
-  context_.log(fmt::format("{:.3f} s: first map: {} landmarks, median parallax {:.1f} deg, from {:.3f} s", t,
+  context_.log(fmt::format("{:.3f} s: initial map: {} landmarks, median parallax {:.1f} deg, from {:.3f} s", t,
                            landmarks_.size(), first->parallax_deg, spline_.start()));
   spline_.extend_to(t);
   remove_outliers(spline_.start());
@@ -137,7 +137,7 @@ void SplineMap::add_landmarks(double t) {
   }
 }
 
-/// Those that the spline covers.
+/// The observations that the spline covers.
 std::vector<TrackObservation> SplineMap::observations_of(TrackId track) const {
   const auto all = tracks_.observations(track);
   return {std::ranges::lower_bound(all, spline_.start(), {}, &TrackObservation::t), all.end()};
@@ -149,15 +149,16 @@ void SplineMap::add_landmark(TrackId track, const Vector3& position) {
   tried_at_.erase(track);
 }
 
-/// Of the landmarks seen since a time. One that only stands at a wrong place is moved.
+/// Removes the outliers among the landmarks seen since a time. One that fits after a new triangulation is moved
+/// instead.
 void SplineMap::remove_outliers(double since) {
-  evbench::TriangulationOptions anew = options_.triangulation;
-  anew.min_parallax_deg = 0.1;
+  evbench::TriangulationOptions relaxed = options_.triangulation;
+  relaxed.min_parallax_deg = 0.1;
   std::vector<TrackId> outliers;
   for (auto& [track, landmark] : landmarks_) {
     if (landmark.observations.empty() || landmark.observations.back().t < since) continue;
     if (mean_error(landmark, spline_, context_.camera) <= options_.outlier_px) continue;
-    const evbench::Triangulation again = triangulate_track(landmark.observations, spline_, context_.camera, anew);
+    const evbench::Triangulation again = triangulate_track(landmark.observations, spline_, context_.camera, relaxed);
     if (again.ok()) landmark.position = again.point;
     if (again.ok() && mean_error(landmark, spline_, context_.camera) <= options_.outlier_px) continue;
     outliers.push_back(track);
@@ -169,7 +170,8 @@ void SplineMap::remove_outliers(double since) {
   }
 }
 
-/// A live track that has not been observed of late is where it was; but silence of all of them tells nothing.
+/// Reports the support of the estimate. A live track without recent observations is at its last position, but if no
+/// track has recent observations, nothing is known.
 void SplineMap::watch(double from, double t) {
   const auto seen = std::ranges::count_if(landmarks_, [&](const auto& entry) {
     const auto& [track, landmark] = entry;
@@ -188,7 +190,7 @@ void SplineMap::watch(double from, double t) {
   if (monitor_.lost()) lose();
 }
 
-/// What the data never saw is not kept.
+/// Drops the part of the estimate that no data support.
 void SplineMap::lose() {
   context_.log(fmt::format("{:.3f} s: lost: {}", monitor_.status().time, monitor_.status().reason));
   newest_ = std::clamp(monitor_.status().time, spline_.start(), newest_);
@@ -202,13 +204,13 @@ void SplineMap::finish() {
   const bool more = !pending_.empty() && pending_.back().t > newest_;
   if (more && !monitor_.lost()) update(pending_.back().t);
   if (!mapped_) {
-    monitor_.fail(until_, "no first map: " + first_map_.reason());
+    monitor_.fail(until_, "no initial map: " + initial_map_.reason());
     return;
   }
   if (options_.final_iterations > 0) solve_everything();
 }
 
-/// Tracks that ended before they could be located, by the better estimate of now.
+/// Triangulates tracks that ended too early, with the improved final estimate.
 void SplineMap::locate_the_rest() {
   for (const TrackId track : tracks_.ids()) {
     const auto observations = tracks_.observations(track);
@@ -253,7 +255,7 @@ evbench::Feedback SplineMap::feedback(const evbench::FeedbackNeeds& needs) {
   return result;
 }
 
-/// Of the landmark's uncertainty alone, seen from T: poses held, and the newest observations of many.
+/// Covariance from the landmark's uncertainty alone, seen from T: with fixed poses and the newest observations only.
 Eigen::Matrix2d SplineMap::prediction_covariance(const MappedTrack& landmark, const SE3& T) const {
   constexpr std::size_t kMost = 50;
   const auto& all = landmark.observations;

@@ -9,17 +9,17 @@
 #include "core/plugin/backend.hpp"
 #include "core/plugin/tracking_monitor.hpp"
 #include "core/structure/track_buffer.hpp"
-#include "first_map.hpp"
+#include "initial_map.hpp"
 #include "options.hpp"
 
 namespace spline_map {
 
-/// Continuous-time structure from motion with a cubic B-spline (Mueggler et al., T-RO 2018): every observation counts
+/// Continuous-time structure from motion with a cubic B-spline (Mueggler et al., T-RO 2018): every observation enters
 /// at its own time.
 ///
-/// While running, an estimate is made every update period: the spline is extended at constant velocity, the knots of
-/// the newest seconds and the landmarks that they see are optimised, older knots are held; then tracks become landmarks
-/// or are removed. finish() optimises everything. World frame and unit of length: first_map.hpp.
+/// Every update period the spline is extended at constant velocity, the knots of the sliding window and the landmarks
+/// in view are optimised with older knots fixed, then tracks become landmarks or are removed. finish() optimises
+/// everything. World frame and unit of length: initial_map.hpp.
 class SplineMap : public evbench::BackEnd {
  public:
   using Options = spline_map::Options;
@@ -55,12 +55,12 @@ class SplineMap : public evbench::BackEnd {
 
   Options options_;
   evbench::BackEndContext context_;
-  FirstMapFinder first_map_;
+  InitialMapFinder initial_map_;
   evbench::TrackingMonitor monitor_;
 
   std::deque<evbench::TrackObservation> pending_;  ///< later than the newest estimate
-  evbench::TrackBuffer tracks_;                    ///< those that are no landmarks (yet), and removed ones' ids
-  std::map<evbench::TrackId, double> tried_at_;    ///< [s] the last vain attempt to locate a track
+  evbench::TrackBuffer tracks_;                    ///< tracks that are not landmarks (yet), and the ids of removed ones
+  std::map<evbench::TrackId, double> tried_at_;    ///< [s] last failed attempt to triangulate a track
   std::deque<evbench::TrackEnd> ending_;           ///< later than the newest estimate
   std::set<evbench::TrackId> live_;                ///< tracks that have begun and not ended
   std::vector<evbench::TrackId> new_outliers_;

@@ -20,7 +20,7 @@ SE3 circling(double t) {
 }
 SE3 resting(double) { return {}; }
 
-/// 50 points, each observed at about 70 Hz at times of its own, 0.5 px noise.
+/// 50 points, each observed at about 70 Hz at individual times, 0.5 px noise.
 std::vector<TrackObservation> observe(SE3 (*motion)(double), double duration) {
   std::mt19937_64 generator(9);
   std::normal_distribution<double> noise(0.0, 0.5);
@@ -39,7 +39,7 @@ std::vector<TrackObservation> observe(SE3 (*motion)(double), double duration) {
 
 struct Run {
   std::unique_ptr<SplineMap> backend;
-  std::vector<evbench::StampedPose> online;
+  std::vector<evbench::StampedPose> causal;
 };
 
 /// Feeds the observations in exchanges of `chunk` seconds until `end`.
@@ -47,8 +47,8 @@ Run run(const std::vector<TrackObservation>& observations, double end, double ch
   Run result;
   evbench::BackEndContext context;
   context.camera = camera;
-  auto online = std::make_shared<std::vector<evbench::StampedPose>>();
-  context.online = [online](const evbench::StampedPose& pose) { online->push_back(pose); };
+  auto causal = std::make_shared<std::vector<evbench::StampedPose>>();
+  context.publish = [causal](const evbench::StampedPose& pose) { causal->push_back(pose); };
   result.backend = std::make_unique<SplineMap>(Options{}, context);
   auto next = observations.begin();
   for (double until = chunk; until < end + 0.5 * chunk; until += chunk) {
@@ -62,13 +62,13 @@ Run run(const std::vector<TrackObservation>& observations, double end, double ch
     }
   }
   result.backend->finish();
-  result.online = *online;
+  result.causal = *causal;
   return result;
 }
 
 void check_finite_and_ordered(const Run& run) {
   double before = -1.0;
-  for (const auto& poses : {run.online, run.backend->trajectory().poses()}) {
+  for (const auto& poses : {run.causal, run.backend->trajectory().poses()}) {
     before = -1.0;
     for (const auto& [t, T] : poses) {
       REQUIRE(T.p.allFinite());
@@ -81,11 +81,11 @@ void check_finite_and_ordered(const Run& run) {
 
 }  // namespace
 
-TEST_CASE("A moving camera's trajectory is found up to scale") {
+TEST_CASE("The trajectory of a moving camera is estimated up to scale") {
   const Run result = run(observe(circling, 2.0), 2.0);
   REQUIRE(result.backend->status().state == RunState::ok);
   check_finite_and_ordered(result);
-  CHECK(result.online.size() > 20);
+  CHECK(result.causal.size() > 20);
   CHECK(result.backend->map().size() == 50);
   const double t0 = result.backend->trajectory().start();
   const SE3 truth0 = circling(t0).inverse(), own0 = result.backend->pose(t0)->inverse();
@@ -110,7 +110,7 @@ TEST_CASE("Without a map there is a reason: nothing observed, one track, a camer
   }
 }
 
-TEST_CASE("A gap is told as degraded, and the end of all observations as lost") {
+TEST_CASE("A gap is reported as degraded, and the end of all observations as lost") {
   auto observations = observe(circling, 3.0);
   std::erase_if(observations, [](const TrackObservation& z) { return z.t > 1.5 && z.t < 1.9; });
   const Run gap = run(observations, 3.0);
@@ -124,7 +124,7 @@ TEST_CASE("A gap is told as degraded, and the end of all observations as lost") 
   CHECK(ended.backend->trajectory().end() < 1.7);
 }
 
-TEST_CASE("Wild tracks are removed, and nothing becomes infinite") {
+TEST_CASE("Outlier tracks are removed, and the estimate stays finite") {
   auto observations = observe(circling, 2.0);
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const auto x = static_cast<double>(i);
@@ -136,12 +136,12 @@ TEST_CASE("Wild tracks are removed, and nothing becomes infinite") {
   for (const evbench::Landmark& landmark : result.backend->map()) CHECK(landmark.track % 4 != 0);
 }
 
-TEST_CASE("The pieces in which observations come don't matter, to the last bit") {
+TEST_CASE("The size of the batches does not change the result, to the last bit") {
   const auto observations = observe(circling, 1.5);
   const Run a = run(observations, 1.5, 0.01), b = run(observations, 1.5, 0.01), c = run(observations, 1.5, 0.3);
   for (const Run* other : {&b, &c}) {
-    REQUIRE(other->online.size() == a.online.size());
-    for (std::size_t i = 0; i < a.online.size(); ++i) CHECK(other->online[i].T.p == a.online[i].T.p);
+    REQUIRE(other->causal.size() == a.causal.size());
+    for (std::size_t i = 0; i < a.causal.size(); ++i) CHECK(other->causal[i].T.p == a.causal[i].T.p);
     CHECK(other->backend->pose(1.0)->p == a.backend->pose(1.0)->p);
   }
 }

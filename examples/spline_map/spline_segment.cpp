@@ -54,7 +54,7 @@ SE3 SplineSegment::pose(double u, Jacobians& jacobians) const {
   const BasisWeights weights(u);
   std::array<Eigen::Quaterniond, 3> factors;
   for (std::size_t j = 0; j < 3; ++j) factors[j] = so3::exp(weights.cumulative[j] * steps_[j]);
-  // What comes after a factor carries the factor's increment to the end: (Exp(..)..)ᵀ.
+  // The later factors transform a factor's increment to the end: (Exp(..)..)ᵀ.
   Matrix3 after = Matrix3::Identity();
   for (auto& block : jacobians.rotation) block.setZero();
   for (std::size_t j = 3; j-- > 0;) {

@@ -12,8 +12,8 @@ using evbench::Vector2;
 using evbench::Vector3;
 using evbench::Vector6;
 
-/// A control point of the spline: rotation and position of the camera in the world (x y z w; x y z), in memory as Ceres
-/// wants it. Its tangent is (φ, δ): R ← R Exp(φ), p ← p + δ, the increment of the position in the world frame.
+/// A control point of the spline: rotation and position of the camera in the world (x y z w; x y z), in Ceres' memory
+/// layout. Its tangent is (φ, δ): R ← R Exp(φ), p ← p + δ, the increment of the position in the world frame.
 struct Knot {
   double values[7] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
 
@@ -41,10 +41,10 @@ struct BasisWeights {
 ///
 /// Split representation, SO(3) × R³ (Sommer et al. 2020, Ovrén and Forssén 2019), not SE(3) (Mueggler et al. 2018):
 ///   R(u) = R_0 Exp(B̃_1 d_1) Exp(B̃_2 d_2) Exp(B̃_3 d_3), d_j = Log(R_{j−1}ᵀ R_j);   p(u) = Σ_j B_j p_j.
-/// A camera's position is then a polynomial of its own and does not bend when it turns; derivatives of the position
-/// are constants; and the acceleration that is penalised is the real one.
+/// The camera's position is then a polynomial that does not depend on its rotation, derivatives of the position are
+/// constants, and the penalised acceleration is the true one.
 ///
-/// What depends on the knots alone is computed once here, and shared by all observations in the segment.
+/// Terms that depend only on the knots are computed once and shared by all observations in the segment.
 class SplineSegment {
  public:
   SplineSegment() = default;

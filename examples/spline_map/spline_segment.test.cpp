@@ -44,7 +44,7 @@ TEST_CASE("Jacobians of a segment's pose agree with central differences") {
   }
 }
 
-TEST_CASE("A segment's velocity is the derivative of its pose, and neighbours meet smoothly") {
+TEST_CASE("A segment's velocity is the derivative of its pose, and neighbouring segments join smoothly") {
   std::mt19937_64 generator(2);
   for (int i = 0; i < 100; ++i) {
     const auto knots = testing::random_knots<5>(generator, i);

@@ -29,7 +29,7 @@ inline Vector3 random_vector(std::mt19937_64& generator, double size) {
   return {x, y, coordinate(generator)};
 }
 
-/// Neighbouring knots turn by up to about 2 rad; by nothing or next to nothing in some of the draws.
+/// Random knots; neighbours are rotated by up to about 2 rad, in some draws by zero or almost zero.
 template <std::size_t N>
 std::array<Knot, N> random_knots(std::mt19937_64& generator, int draw) {
   const double turn = draw % 4 == 0 ? 0.0 : draw % 4 == 1 ? 1e-6 : draw % 4 == 2 ? 0.1 : 1.2;

@@ -5,15 +5,15 @@
 #include <utility>
 
 #include "core/geometry/seen_point.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 #include "core/support/median.hpp"
 #include "frontends/haste/tracking/alignment.hpp"
-#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench::haste {
 namespace {
 
-/// Those whose displacements one motion explains with that of a first one: at first the smallest that explains this
-/// alone, then what fits all that are near. In ascending order.
+/// The landmarks whose displacements agree with one camera motion. It begins as the smallest motion that explains the
+/// first landmark, then is refitted to all that agree. Indices in ascending order.
 std::vector<std::size_t> agreeing_with(std::size_t first, std::span<const Displaced> seen,
                                        std::span<const Matrix26> by_motion) {
   constexpr double kUsual = 0.15;  // [rad, median depths]
@@ -39,7 +39,7 @@ std::vector<std::size_t> agreeing_with(std::size_t first, std::span<const Displa
 
 std::optional<Vector2> most_like(const Template& look, std::span<const Event> events, const Vector2& about, int reach,
                                  double similarity) {
-  constexpr int kStep = 2;  // [px] between places that are compared at first
+  constexpr int kStep = 2;  // [px] between positions in the first pass
   const Pixel place{static_cast<int>(std::lround(about.x())), static_cast<int>(std::lround(about.y()))};
   std::vector<Alignment> places = align_around(look, events, place, reach, kStep);
   std::erase_if(places, [](const Alignment& seen) { return seen.event_count < kWindowSize; });
@@ -56,7 +56,7 @@ std::vector<Displaced> displaced_together(std::span<const Displaced> seen, const
   if (seen.size() < kEnough) return {};
   std::vector<double> depths;
   for (const Displaced& one : seen) depths.push_back(one.point.z());
-  const double unit = median(std::move(depths));  // of length
+  const double unit = median(std::move(depths));  // unit of length
   std::vector<Matrix26> by_motion;
   for (const Displaced& one : seen) {
     const Vector3 point = one.point / unit;

@@ -16,7 +16,7 @@ namespace {
 
 const PinholeCamera kCamera{200.0, 200.0, 120.0, 90.0};
 
-/// Landmarks near and far all over the image, so many, as a camera sees them that is moved from where it is supposed.
+/// `count` landmarks near and far all over the image, seen by a camera that is off its expected pose by `motion`.
 std::vector<Displaced> displaced(std::size_t count, const SE3& motion, std::uint64_t seed = 1) {
   Random random(seed);
   std::vector<Displaced> result;
@@ -29,7 +29,7 @@ std::vector<Displaced> displaced(std::size_t count, const SE3& motion, std::uint
   return result;
 }
 
-/// Others, whose looks are anywhere within 20 px.
+/// Others, whose matches are anywhere within 20 px.
 void add_chance(std::vector<Displaced>& seen, std::size_t count, std::uint64_t seed) {
   Random random(seed);
   for (Displaced one : displaced(count, {}, seed + 1)) {
@@ -61,7 +61,7 @@ Template look_of(const Lines& lines) {
 
 }  // namespace
 
-TEST_CASE("A look is found far from where it is expected, as far as it is looked for") {
+TEST_CASE("A template is found off its expected position within the reach of the search") {
   const Vector2 place(120.0, 90.0), there = place + Vector2(13.0, -9.0);
   const std::vector<Event> seen = events_of(haste::testing::corner_lines(), there);
   const Template corner = look_of(haste::testing::corner_lines());
@@ -72,7 +72,7 @@ TEST_CASE("A look is found far from where it is expected, as far as it is looked
   CHECK_FALSE(most_like(corner, std::span(seen).first(100), place, 20, 0.45));
 }
 
-TEST_CASE("Most that one motion of the camera displaced are told, each by its distance, without those elsewhere") {
+TEST_CASE("Most landmarks that one camera motion displaces are returned with their displacements, without the others") {
   const std::vector<Displaced> moved = displaced(12, turned_and_moved());
   const auto length = [](const Displaced& one) { return one.displacement.norm(); };
   REQUIRE(length(std::ranges::max(moved, {}, length)) > length(std::ranges::min(moved, {}, length)) + 8.0);
@@ -84,13 +84,13 @@ TEST_CASE("Most that one motion of the camera displaced are told, each by its di
   CHECK(wrong <= 1);
 }
 
-TEST_CASE("Where most are in their places, a few that are elsewhere move nothing") {
+TEST_CASE("Where most landmarks are at their expected positions, a few that are not count as chance") {
   std::vector<Displaced> seen = displaced(10, {});
   add_chance(seen, 2, 4);
   CHECK(displaced_together(seen, kCamera, 4.0).empty());
 }
 
-TEST_CASE("Few that one motion displaced are chance, and so are few of many") {
+TEST_CASE("A few landmarks displaced by one motion are chance, and so is a small share of many") {
   CHECK(displaced_together(displaced(5, turned_and_moved()), kCamera, 4.0).empty());
   std::vector<Displaced> seen = displaced(6, turned_and_moved());
   CHECK(displaced_together(seen, kCamera, 4.0).size() == 6);
@@ -100,7 +100,7 @@ TEST_CASE("Few that one motion displaced are chance, and so are few of many") {
   CHECK(displaced_together(displaced(12, {}), kCamera, 4.0).empty());  // as expected
 }
 
-TEST_CASE("By chance hardly any are displaced as by one motion") {
+TEST_CASE("Random displacements are hardly ever taken for one motion") {
   int found = 0;
   constexpr int kTimes = 200;
   for (int i = 0; i < kTimes; ++i) {

@@ -9,7 +9,7 @@
 namespace evbench::haste {
 
 void Guidance::receive(const Feedback& feedback) {
-  reliable_ = feedback.state == TrackingState::tracking || feedback.state == TrackingState::standing_still;
+  reliable_ = feedback.state == TrackingState::tracking || feedback.state == TrackingState::stationary;
   world_ = feedback.world;
   const bool usable = reliable_ || (degraded_ && feedback.state == TrackingState::degraded);
   correction_ = {};
@@ -29,7 +29,7 @@ void Guidance::correct(std::span<const Sighting> sightings) {
   constexpr std::size_t kEnough = 8;
   constexpr int kIterations = 4;
   constexpr double kWidth = 1.0;  // [px] where the Cauchy loss turns from quadratic
-  constexpr double kHold = 1e-3;  // damping, for what they don't determine
+  constexpr double kHold = 1e-3;  // damping, for directions that the landmarks do not determine
   correction_ = {};
   if (!newest_) return;
   struct Seen {

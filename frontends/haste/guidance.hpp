@@ -9,37 +9,37 @@
 
 namespace evbench::haste {
 
-/// What the back-end knows, carried forward to the present: its newest state goes on with constant velocity, and is
-/// corrected by what the trackers see since.
+/// Predicts where landmarks are in the image now, from the back-end's feedback: its newest state is extrapolated with
+/// constant velocity and corrected by the trackers' current positions.
 class Guidance {
  public:
-  /// `degraded`: also while the back-end is.
+  /// `degraded`: also predicts while the back-end is degraded.
   Guidance(const Camera& camera, bool degraded) : camera_(camera), degraded_(degraded) {}
 
   void receive(const Feedback& feedback);
 
-  /// Whether the motion is known well enough to predict anything.
+  /// Whether the motion is known well enough to predict.
   bool available() const { return newest_.has_value(); }
-  /// Whether observations have determined it, not a motion model alone: what contradicts it is wrong.
+  /// Whether observations determine the motion, and not a motion model alone: a track that contradicts it is wrong.
   bool reliable() const { return reliable_; }
 
-  /// The number of the world that all of it is in.
+  /// The number of the world (map) that all positions are given in.
   std::size_t world() const { return world_; }
 
-  /// A landmark, where a tracker has it.
+  /// A landmark at its tracker's position.
   struct Sighting {
     TrackId track;
     double t;       ///< [s]
     Vector2 pixel;  ///< [px], raw
   };
-  /// Turns and shifts the predicted motion so that it fits what is seen now, by robust least squares; as it is with too
-  /// few landmarks.
+  /// Fits the predicted pose to the trackers' current positions by robust least squares. With too few landmarks the
+  /// prediction stays as it is.
   void correct(std::span<const Sighting> sightings);
 
   /// T_world_camera at t [s]. Precondition: available().
   SE3 pose(double t) const { return extrapolate(*newest_, t - newest_->t).T * correction_; }
 
-  /// Of a landmark that is expected in view, world frame.
+  /// The position of a landmark that is expected in view, world frame.
   std::optional<Vector3> position(TrackId track) const;
 
   /// Where a landmark's image is expected at t.
@@ -47,10 +47,10 @@ class Guidance {
     Vector2 pixel;       ///< [px], raw
     Matrix2 covariance;  ///< [px²]
   };
-  /// None: the back-end doesn't expect it in view, or it is behind the camera.
+  /// None where the back-end does not expect the landmark in view, or where it is behind the camera.
   std::optional<Prediction> predict(TrackId track, double t) const;
 
-  /// All that may be in view.
+  /// All landmarks that may be in view.
   const std::map<TrackId, ExpectedFeature>& expected() const { return expected_; }
 
  private:
@@ -62,8 +62,8 @@ class Guidance {
   std::map<TrackId, ExpectedFeature> expected_;
 };
 
-/// How the surroundings of a point look from another pose: the image about it turns by `angle` [rad, from x to y] and
-/// grows by `scale`, for a surface that faces the camera.
+/// How the appearance of a point's surroundings changes from one pose to another: the image around the point turns by
+/// `angle` [rad, from x to y] and grows by `scale`, for a surface that faces the camera.
 struct AppearanceChange {
   double angle = 0.0, scale = 1.0;
 };

@@ -39,7 +39,7 @@ Feedback feedback(int count, const Vector6& velocity = Vector6::Zero()) {
   return result;
 }
 
-/// The landmarks as they are seen from a pose at t [s].
+/// The landmarks as seen from a pose at t [s].
 std::vector<Guidance::Sighting> sightings(const Camera& camera, const Feedback& known, const SE3& T, double t) {
   std::vector<Guidance::Sighting> result;
   for (const ExpectedFeature& feature : known.expected) {
@@ -50,7 +50,7 @@ std::vector<Guidance::Sighting> sightings(const Camera& camera, const Feedback& 
 
 }  // namespace
 
-TEST_CASE("What the back-end knows is carried on with constant velocity") {
+TEST_CASE("The back-end's state is extrapolated with constant velocity") {
   const Camera camera = pinhole();
   Guidance guidance(camera, true);
   CHECK_FALSE(guidance.available());
@@ -70,7 +70,7 @@ TEST_CASE("What the back-end knows is carried on with constant velocity") {
   CHECK_FALSE(guidance.predict(3, 1.1));  // not expected in view
 }
 
-TEST_CASE("A back-end that does not track predicts nothing, but for a degraded one where that is wanted") {
+TEST_CASE("A back-end that does not track predicts nothing, but a degraded one does where the option is set") {
   const Camera camera = pinhole();
   for (const bool degraded : {false, true}) {
     Guidance guidance(camera, degraded);
@@ -100,7 +100,7 @@ TEST_CASE("A landmark behind the camera is not predicted") {
   CHECK(guidance.position(0));
 }
 
-TEST_CASE("The predicted motion is turned and shifted to fit what is seen, one stray among it or not") {
+TEST_CASE("The predicted pose is fitted to the observed landmarks, with or without an outlier") {
   const Camera camera = pinhole();
   const Feedback known = feedback(10);
   const SE3 truth = turned(0.03, {0.04, -0.02, 0.03});
@@ -113,7 +113,7 @@ TEST_CASE("The predicted motion is turned and shifted to fit what is seen, one s
     const SE3 left = truth.inverse() * guidance.pose(1.05);
     CHECK(left.p.norm() < 0.01);
     CHECK(se3::log(left).head<3>().norm() < 0.005);
-    // Of the next feedback it is not known yet whether it is off.
+    // New feedback resets the correction.
     guidance.receive(known);
     CHECK(guidance.pose(1.05).p.norm() == 0.0);
   }
@@ -130,13 +130,13 @@ TEST_CASE("Seven sightings are too few to correct the predicted motion by, eight
   CHECK(guidance.pose(1.0).p.norm() == 0.0);
   guidance.correct(seen);
   CHECK((guidance.pose(1.0).p - truth.p).norm() < 0.005);
-  // Sightings of what nobody expects do not count.
+  // Sightings of landmarks that are not expected do not count.
   for (Guidance::Sighting& sighting : seen) sighting.track += 100;
   guidance.correct(seen);
   CHECK(guidance.pose(1.0).p.norm() == 0.0);
 }
 
-TEST_CASE("The look of a point turns against the camera, and grows as it comes nearer") {
+TEST_CASE("The appearance of a point turns against the camera, and grows as it comes nearer") {
   const Vector3 point(0.3, -0.2, 2.0);
   const AppearanceChange same = appearance_change({}, {}, point);
   CHECK(same.angle == Approx(0.0).margin(1e-9));
@@ -147,7 +147,7 @@ TEST_CASE("The look of a point turns against the camera, and grows as it comes n
   const AppearanceChange near = appearance_change({}, turned(0.0, {0.0, 0.0, 1.0}), point);
   CHECK(near.angle == Approx(0.0).margin(1e-6));
   CHECK(near.scale == Approx(2.0).epsilon(1e-3));
-  // Behind the camera there is no look.
+  // Behind the camera there is no appearance.
   const AppearanceChange behind = appearance_change({}, turned(0.0, {0.0, 0.0, 3.0}), point);
   CHECK(behind.scale == 1.0);
 }

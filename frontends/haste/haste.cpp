@@ -45,7 +45,7 @@ Haste::Haste(const Options& options, const FrontEndContext& context)
 }
 
 void Haste::take(std::span<const Event> events) {
-  constexpr double kSilence = 0.1;  // [s], longer than from one tick to the next: an end of it is at the front
+  constexpr double kSilence = 0.1;  // [s], longer than a tick, so that a silence can end only at the first event
   if (seconds(events.front().t) - last_event_ > kSilence) doubt_trackers();
   last_event_ = seconds(events.back().t);
   recent_.add(events);
@@ -65,7 +65,7 @@ void Haste::observe(const Change& change) {
   track.pixel = change.after.position;
   const double sigma = options_.score_sigma ? sigma_.next(change.scores) : options_.sigma;
   TrackObservation z{track.id, seconds(change.after.t), place_of(change, options_.place), sigma};
-  const double told = std::max(seconds(change.t_event), clock_) - options_.delay;  // what stands for times up to then
+  const double told = std::max(seconds(change.t_event), clock_) - options_.delay;  // published up to here
   if (z.t <= told) ++late_;
   z.t = std::max({z.t, told, track.told + kLeastStep});
   if (track.probation > 0) {
@@ -90,7 +90,7 @@ void Haste::observe(const Change& change) {
     lost_.forget(track.id);
   }
   track.told = z.t;
-  told_.add(z);
+  delayed_.add(z);
 }
 
 bool Haste::is_as_expected(TrackId track, const Vector2& pixel, double t) const {
@@ -98,13 +98,13 @@ bool Haste::is_as_expected(TrackId track, const Vector2& pixel, double t) const 
   return expected && (pixel - expected->pixel).norm() < options_.guidance.tolerance;
 }
 
-void Haste::look() {
+void Haste::on_tick() {
   end_wanderers();
   end_strangers();
   end_trackers();
   correct_guidance();
   if (options_.guidance.veto) veto_strays();
-  if (last_event_ <= looked_) return;  // nothing is seen in which there was nothing before
+  if (last_event_ <= looked_) return;  // no new events to search in
   looked_ = clock_;
   if (options_.guidance.reacquire) {
     reacquire();
@@ -123,7 +123,7 @@ void Haste::correct_guidance() {
   guidance_.correct(sightings);
 }
 
-/// New features where there are too few, some of which are lost landmarks.
+/// Detects new features where there are too few; some of them are lost landmarks.
 void Haste::replenish() {
   const auto wanted = static_cast<std::size_t>(options_.tracks);
   if (trackers_.size() >= wanted || 5 * recent_.events().size() < static_cast<std::size_t>(options_.detection.events)) {
@@ -144,7 +144,7 @@ void Haste::replenish() {
   }
 }
 
-/// With the events that have been around there of late, so that it need not wait for its window to be full.
+/// Fills the tracker's window with the recent events around it, so that it starts at once.
 void Haste::begin(Tracker tracker, const Track& track) {
   for (const Event& event : recent_.window(track.pixel)) tracker.push(event);
   const bool runs = tracker.running();
@@ -162,7 +162,7 @@ FeedbackNeeds Haste::needs() const {
 
 void Haste::receive(const Feedback& feedback) {
   guidance_.receive(feedback);
-  if (feedback.state == TrackingState::no_map) lost_.forget_world(feedback.world);  // where there was a map, it is gone
+  if (feedback.state == TrackingState::no_map) lost_.forget_world(feedback.world);  // a map that there was is gone
   if (!options_.guidance.outliers || feedback.outliers.empty()) return;
   for (const std::int64_t tracker : trackers_.ids()) {
     const Track& track = tracks_.at(tracker);

@@ -17,9 +17,10 @@
 
 namespace evbench::haste {
 
-/// Tracks features in the events themselves, each asynchronously by hypotheses about its motion (Alzugaray and Chli,
-/// 3DV 2019 and BMVC 2020), detects new ones where there are too few, and looks for lost landmarks where the back-end
-/// expects them: the front-end of Algorithm 1 of Liu et al., ICRA 2022. Throws InputError for a source without events.
+/// Tracks features directly in the events, each one asynchronously by hypotheses about its motion (Alzugaray and Chli,
+/// 3DV 2019 and BMVC 2020). Detects new features where there are too few, and searches for lost landmarks where the
+/// back-end expects them. The front-end of Algorithm 1 of Liu et al., ICRA 2022. Throws InputError for a source without
+/// events.
 class Haste : public EventFrontEnd {
  public:
   using Options = haste::Options;
@@ -34,28 +35,28 @@ class Haste : public EventFrontEnd {
 
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-  /// What a tracker is followed for.
+  /// The feature track that a tracker makes observations of, and its bookkeeping.
   struct Track {
     TrackId id;
-    double odometer;                     ///< the image's way when the tracker last changed its state [px]
-    Vector2 pixel = Vector2::Zero();     ///< newest place [px]
-    int probation = 0;                   ///< changes of state until a found landmark's track goes on
-    bool at_corner = false;              ///< it was found as a corner, not by its template
-    bool displaced = false;              ///< it was found with displaced ones, and not where it is expected since
-    double told = -kInfinity;            ///< [s] of its last observation
-    double found = -kInfinity;           ///< likewise, when the tracker was last found to follow something
-    Vector2 from = pixel;                ///< where it was then [px],
-    double way = 0.0;                    ///< how far it has gone since [px],
-    Eigen::AlignedBox2d visited{pixel};  ///< and where it has been
-    int looked_at = 0;                   ///< times that it was compared with lost landmarks
-    std::int64_t doubted = -1;  ///< events that its tracker had when the sensor fell silent; then it is looked at
+    double odometer;                     ///< value of odometer_ when the tracker last changed its state [px]
+    Vector2 pixel = Vector2::Zero();     ///< newest position [px]
+    int probation = 0;                   ///< changes of state until a re-acquired landmark's track goes on
+    bool at_corner = false;              ///< it was re-acquired as a corner, not by its template
+    bool displaced = false;              ///< re-acquired off its expected position; not back there yet
+    double told = -kInfinity;            ///< [s] time of its last observation
+    double found = -kInfinity;           ///< [s] when the tracker was last confirmed to follow something
+    Vector2 from = pixel;                ///< its position then [px]
+    double way = 0.0;                    ///< path length since then [px]
+    Eigen::AlignedBox2d visited{pixel};  ///< bounding box of its positions since then
+    int looked_at = 0;                   ///< number of comparisons with lost landmarks
+    std::int64_t doubted = -1;  ///< its tracker's event count when the sensor fell silent; −1: no check pending
   };
 
-  /// Why tracks end.
+  /// Why a track ends.
   enum class End { border, spread, edge, starvation, crowding, veto, outlier, wandering, silence, recognised };
 
   void take(std::span<const Event> events) override;
-  void look() override;
+  void on_tick() override;
   double complete() const override { return clock_ - options_.delay; }
   void observe(const Change& change);
   bool is_as_expected(TrackId track, const Vector2& pixel, double t) const;
@@ -86,11 +87,11 @@ class Haste : public EventFrontEnd {
   std::map<std::int64_t, Track> tracks_;  ///< by tracker
   Guidance guidance_;
   LostLandmarks lost_;
-  std::vector<Change> changes_;  ///< of the events at hand
-  double looked_;                ///< [s] when landmarks and features were last looked for in new events,
-  double detected_;              ///< and when features were
+  std::vector<Change> changes_;  ///< of the current events
+  double looked_;                ///< [s] when landmarks and features were last searched for in new events
+  double detected_;              ///< [s] when features were last detected
   double last_event_;            ///< [s]
-  double odometer_ = 0.0;        ///< the image's way: the trackers' mean one [px]
+  double odometer_ = 0.0;        ///< path length of the image: the trackers' mean [px]
   TrackId next_id_ = 0;
   std::array<std::size_t, static_cast<std::size_t>(End::recognised) + 1> ended_{};  ///< by End
   struct Finds {

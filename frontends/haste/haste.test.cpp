@@ -5,12 +5,12 @@
 
 #include "core/support/error.hpp"
 #include "core/testing/catch2.hpp"
+#include "core/testing/collect_tracks.hpp"
 #include "core/testing/event_scene.hpp"
-#include "core/testing/told_tracks.hpp"
 
 using namespace evbench;
 using namespace evbench::haste;
-using evbench::testing::all_told;
+using evbench::testing::collect_tracks;
 using evbench::testing::EventScene;
 using evbench::testing::same;
 using evbench::testing::swing;
@@ -22,13 +22,13 @@ const EventScene& scene() {
   return result;
 }
 
-/// All that it tells, asked every `interval` [s].
+/// All observations that it publishes when polled every `interval` [s].
 TrackBatch track(const Source& source, const Options& options = {}, double interval = 0.01, std::size_t most = 0) {
   Haste haste(options, {source, 0, ""});
-  return all_told(haste, source, interval, most);
+  return collect_tracks(haste, source, interval, most);
 }
 
-/// Median distance of the observations from where the track's first observation, a point of the wall, is by then [px].
+/// Median distance of the observations from where the wall point of the track's first observation is by then [px].
 double median_error(const EventScene& source, const std::vector<TrackObservation>& observations) {
   std::map<TrackId, Vector3> points;
   std::vector<double> errors;
@@ -47,7 +47,7 @@ double median_error(const EventScene& source, const std::vector<TrackObservation
 
 }  // namespace
 
-TEST_CASE("Points of a wall are followed as the camera moves, between the states closer than at the new ones") {
+TEST_CASE("Points of a wall are tracked as the camera moves, more accurately between states than at the new ones") {
   const TrackBatch refined = track(scene());
   std::map<TrackId, int> tracks;
   for (const TrackObservation& z : refined.observations) ++tracks[z.track];
@@ -60,13 +60,13 @@ TEST_CASE("Points of a wall are followed as the camera moves, between the states
   CHECK(median_error(scene(), track(scene(), leading).observations) > error);
 }
 
-TEST_CASE("Tracks do not depend on how they are asked for", "[slow]") {
+TEST_CASE("Tracks do not depend on how often they are polled", "[slow]") {
   const TrackBatch usual = track(scene());
   CHECK(same(usual, track(scene(), {}, 0.037)));
   CHECK(same(usual, track(scene(), {}, 0.01, 7)));
 }
 
-TEST_CASE("Observations come in time order, and not later than the delay but for those that are counted", "[slow]") {
+TEST_CASE("Observations come in time order, no later than the delay except for those that are counted", "[slow]") {
   Options prompt;
   prompt.delay = 0.0;
   for (const Options& options : {Options(), prompt}) {
@@ -99,7 +99,7 @@ TEST_CASE("Features are spread over the image and keep their distance") {
   CHECK(top < 3 * count / 4);
 }
 
-TEST_CASE("A standing camera starves nobody, and its tracks go on when it moves", "[slow]") {
+TEST_CASE("Tracks of a stationary camera do not starve, and go on when it moves", "[slow]") {
   const auto motion = [](double t) { return swing(t < 0.5 ? t : std::max(0.5, t - 3.0)); };
   const EventScene source(motion, 4.5, EventScene::quadrangles(150, 1));
   const TrackBatch all = track(source);
@@ -113,7 +113,7 @@ TEST_CASE("A standing camera starves nobody, and its tracks go on when it moves"
   CHECK(go_on > 20);
 }
 
-TEST_CASE("A tracker in a place where nothing happens any more is starved by the others' motion") {
+TEST_CASE("A tracker without events starves when the others move") {
   EventScene source(swing, 1.5, EventScene::quadrangles(150, 1));
   std::erase_if(source.list, [](const Event& event) { return event.t > 700'000 && event.x < 80; });
   Haste haste({}, {source, 0, ""});
@@ -139,7 +139,7 @@ TEST_CASE("A recording without events in the time range is refused with the time
                         Catch::Matchers::ContainsSubstring("its first one is at 10."));
 }
 
-TEST_CASE("Events that had to be left out are counted in the remarks") {
+TEST_CASE("Events that are left out are counted in the remarks") {
   EventScene source(swing, 0.5, EventScene::quadrangles(20, 1));
   source.list[100].x = 240;
   source.list[200].t = 0;
@@ -166,7 +166,7 @@ TEST_CASE("Borders that leave nothing of the image are refused") {
                     Catch::Matchers::ContainsSubstring("frontend.life.border: 90 px"));
 }
 
-TEST_CASE("What is no source of events is refused with a sentence") {
+TEST_CASE("A source without events is refused with a sentence") {
   class Nothing : public EventScene {
    public:
     Nothing() : EventScene(swing, 0.01, {}) {}

@@ -14,7 +14,7 @@
 namespace evbench::haste {
 namespace {
 
-/// [s] The events that a tracker looks at stand for the time of the middle one.
+/// [s] The time of a tracker's window is that of its middle event.
 double middle_of(std::span<const Event> window) { return seconds(window[window.size() / 2].t); }
 
 }  // namespace
@@ -54,7 +54,7 @@ std::vector<LostLandmarks::Candidate> LostLandmarks::expected_in_view(const Guid
   return result;
 }
 
-/// At no place yet.
+/// The landmark with its expected template; its position is not set yet.
 LostLandmarks::Found LostLandmarks::as_expected(TrackId track, const Lost& lost, const Guidance& guidance,
                                                 double t) const {
   const AppearanceChange change = appearance_change(lost.T_world_camera, guidance.pose(t), *guidance.position(track));
@@ -87,12 +87,12 @@ std::vector<LostLandmarks::Found> LostLandmarks::find(const Guidance& guidance, 
   return result;
 }
 
-/// Where the events `about` a place look most like it, if nothing else in reach looks as much so.
+/// The position around `about` where the events match the template best, if no second one in reach matches as well.
 std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const Lost& lost, const Guidance& guidance,
                                                             const Vector2& about, const RecentEvents& recent) const {
-  constexpr double kBeside = 3.0;      // [px] a second place is farther than this from the best one,
+  constexpr double kBeside = 3.0;      // [px] a second match is farther than this from the best one
   constexpr double kAmbiguous = 0.95;  // and as good if its score is more than this share of the best one
-  constexpr double kNearest = 2.0;     // [px] looked at anyway
+  constexpr double kNearest = 2.0;     // [px] least search radius
   const double t = middle_of(recent.window(about));
   const auto expected = guidance.predict(track, t);
   if (!expected) return std::nullopt;
@@ -104,7 +104,7 @@ std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const
   const std::vector<Alignment> places = align_around(found.look, recent.events(), place, radius);
   const auto best = std::ranges::max_element(places, {}, &Alignment::score);
   if (best == places.end() || best->event_count < kWindowSize || best->score < options_.similarity) return std::nullopt;
-  // One at the edge of what was looked at is no maximum.
+  // A match at the edge of the searched area is no maximum.
   if (std::abs(best->x - place.x) == radius || std::abs(best->y - place.y) == radius) return std::nullopt;
   for (const Alignment& other : places) {
     const bool beside = std::hypot(other.x - best->x, other.y - best->y) > kBeside;
@@ -117,10 +117,10 @@ std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const
 std::vector<LostLandmarks::Found> LostLandmarks::find_displaced(const Guidance& guidance, double t,
                                                                 const RecentEvents& recent, const Tracked& tracked,
                                                                 const Camera& camera) {
-  constexpr double kPause = 0.05, kQuietPause = 0.2;  // [s] to the next look; where most are where they should be,
-  constexpr std::ptrdiff_t kEnough = 5;               // and so many
-  constexpr std::size_t kMost = 40;                   // looked for at a time
-  constexpr double kApart = 5.0;                      // [px]: nearer, two landmarks are one corner's
+  constexpr double kPause = 0.05, kQuietPause = 0.2;  // [s] to the next search; where most are as expected
+  constexpr std::ptrdiff_t kEnough = 5;               // and at least so many of them
+  constexpr std::size_t kMost = 40;                   // searched for at a time
+  constexpr double kApart = 5.0;                      // [px]: two landmarks nearer than this are at one corner
   if (t < next_displaced_ || !guidance.available() || recent.events().empty() || options_.displacement == 0) return {};
   forget_before(t - options_.memory);
   next_displaced_ = t + kPause;
@@ -130,7 +130,7 @@ std::vector<LostLandmarks::Found> LostLandmarks::find_displaced(const Guidance& 
   std::vector<Found> looks;
   const std::size_t count = std::min(candidates.size(), kMost);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto& [track, about, tried] = candidates[i * candidates.size() / count];  // lost long ago as well as of late
+    const auto& [track, about, tried] = candidates[i * candidates.size() / count];  // both recently and long lost ones
     const double middle = middle_of(recent.window(about));
     const auto expected = guidance.predict(track, middle);
     if (!expected) continue;
@@ -171,7 +171,7 @@ std::optional<LostLandmarks::Found> LostLandmarks::recognise(const Vector2& abou
 
 std::optional<TrackId> LostLandmarks::at_corner(const Vector2& corner, const Guidance& guidance, double t,
                                                 const Tracked& tracked) const {
-  constexpr double kPlace = 0.5;  // [px] between a corner as it is found and the point that was tracked
+  constexpr double kPlace = 0.5;  // [px] between a detected corner and the tracked point
   std::optional<TrackId> result;
   for (const auto& [track, feature] : guidance.expected()) {
     const std::optional<Guidance::Prediction> expected = guidance.predict(track, t);

@@ -12,69 +12,69 @@
 
 namespace evbench::haste {
 
-/// Landmarks whose trackers have ended, to be found again where the back-end expects them: by how they looked then, or,
-/// where that is not known or not found, as corners.
+/// Re-acquires landmarks whose trackers have ended. Searches where the back-end expects them: by the template that the
+/// tracker had or, where there is none or it is not found, as corners.
 class LostLandmarks {
  public:
   explicit LostLandmarks(const GuidanceOptions& options) : options_(options) {}
 
-  /// The landmark of a track that ended at t [s]: its template, turned by `angle` [rad], was seen from where the
-  /// guidance has the camera then.
+  /// Stores the landmark of a track that ended at t [s]. Its template `look`, turned by `angle` [rad], was seen from
+  /// the guidance's camera pose at that time.
   void remember(TrackId track, double t, const Template& look, double angle, const Guidance& guidance);
-  /// Whether any is of another world than this one.
+  /// Whether any stored landmark is of another world than `world`.
   bool has_of_another(std::size_t world) const {
     return std::ranges::any_of(lost_, [&](const auto& entry) { return entry.second.world != world; });
   }
   void forget(TrackId track) { lost_.erase(track); }
-  /// Those of this world, whose map is gone: from where they were seen is not known any more.
+  /// Removes the landmarks of a world whose map is gone: the poses that they were seen from are no longer known.
   void forget_world(std::size_t world) {
     std::erase_if(lost_, [&](const auto& entry) { return entry.second.world == world; });
   }
-  /// One that was found and turned out to be another: it is left alone for a while. It need not be remembered.
+  /// Backs off after a re-acquired landmark turned out to be another one: it is not searched for during a pause. It
+  /// need not be stored.
   void disappoint(TrackId track, double t);
 
-  /// A landmark that has been found.
+  /// A landmark that is re-acquired.
   struct Found {
     TrackId track;
     Vector2 pixel;  ///< [px]
-    Template look;  ///< as it is expected now
+    Template look;  ///< its template as it is expected now
   };
-  /// What has a tracker.
+  /// What trackers follow already.
   struct Tracked {
     std::vector<TrackId> tracks;
     std::vector<Vector2> places;  ///< [px]
     bool has(TrackId track) const { return std::ranges::find(tracks, track) != tracks.end(); }
   };
-  /// Looks for some of the landmarks in view at t, in turn, those first that were not looked for the longest. None
-  /// that is tracked, or expected within `distance` of what is [px].
+  /// Searches for some of the landmarks in view at t, in turn, beginning with those not searched for the longest.
+  /// Leaves out landmarks that are tracked, or expected within `distance` [px] of a tracked one.
   std::vector<Found> find(const Guidance& guidance, double t, const RecentEvents& recent, const Tracked& tracked,
                           double distance, const Camera& camera);
 
-  /// Where the camera is not where the back-end has it, one motion of it displaces most of them: those that agree on
-  /// one, if they are enough of those that are seen at all. Looks now and then.
+  /// Finds landmarks that are displaced together, as happens when the back-end's camera pose is off: those that agree
+  /// on one camera motion, if they are a large enough share of all that match anywhere. Searches at intervals.
   std::vector<Found> find_displaced(const Guidance& guidance, double t, const RecentEvents& recent,
                                     const Tracked& tracked, const Camera& camera);
 
-  /// The landmark of another world than this one that is seen about a place [px] by its look alone, which the camera
-  /// may have turned: it may be anywhere. None of those that are tracked; none where two look as much so.
+  /// Recognises a landmark of another world than `world` around a position [px] by its template alone, whatever the
+  /// image position and rotation. Leaves out landmarks that are tracked. None where two match about equally well.
   std::optional<Found> recognise(const Vector2& about, std::size_t world, const RecentEvents& recent, double t,
                                  const Tracked& tracked);
 
-  /// The landmark that a corner [px] seen at t is, if it is one that nobody tracks: the only such one that is expected
-  /// there. None where two are.
+  /// The untracked landmark that is expected at a corner [px] detected at t. None where two are expected there.
   std::optional<TrackId> at_corner(const Vector2& corner, const Guidance& guidance, double t,
                                    const Tracked& tracked) const;
 
  private:
   struct Lost {
     double t;      ///< [s] when it was lost
-    double tried;  ///< [s] when it was last looked for, or will be next
+    double tried;  ///< [s] time of the last search for it, or of the next one
     Template look;
     double angle;
     SE3 T_world_camera;
     std::size_t world;
   };
-  /// One that is in view, as far as is known.
+  /// A landmark that is predicted in view.
   struct Candidate {
     TrackId track;
     Vector2 expected;  ///< [px]
@@ -91,8 +91,8 @@ class LostLandmarks {
 
   GuidanceOptions options_;
   std::map<TrackId, Lost> lost_;
-  double next_displaced_ = 0.0;           ///< [s] when displaced ones are looked for next
-  std::map<TrackId, double> left_alone_;  ///< no corner is taken for it until then [s]
+  double next_displaced_ = 0.0;           ///< [s] time of the next search for displaced ones
+  std::map<TrackId, double> left_alone_;  ///< no corner is associated with it until then [s]
 };
 
 }  // namespace evbench::haste

@@ -22,7 +22,7 @@ const Vector2 kExpected(120.0, 90.0);  // [px] where the landmark is predicted
 
 using Lines = std::vector<std::pair<Vector2, Vector2>>;
 
-/// A row of upright lines 8 px apart: as good 8 px beside as where it is.
+/// A row of upright lines 8 px apart: it matches equally well 8 px off.
 Lines fence() {
   Lines lines;
   for (int k = -8; k <= 8; ++k) lines.push_back({{8.0 * k, -8.0}, {8.0 * k, 8.0}});
@@ -38,7 +38,7 @@ std::vector<Event> events(const Lines& lines, const Vector2& place, double angle
   return pattern.events(0.1, seed);
 }
 
-/// As a tracker has learnt it that looked at them.
+/// The template that a tracker on these lines has learnt.
 Template look(const Lines& lines) {
   Tracker tracker({}, {0, kExpected, 0.0});
   for (const Event& event : events(lines, kExpected, 0.0, 6)) tracker.push(event);
@@ -46,7 +46,7 @@ Template look(const Lines& lines) {
   return tracker.learnt_template();
 }
 
-/// A landmark that is expected at kExpected, lost at 0 s, and what is seen of late.
+/// A landmark that was lost at 0 s and is expected at kExpected, and recent events.
 struct Setting {
   Camera camera;
   GuidanceOptions options;
@@ -91,7 +91,7 @@ struct Setting {
 
 }  // namespace
 
-TEST_CASE("A lost landmark is found where it is, beside the place where it is expected") {
+TEST_CASE("A lost landmark is found at its true position, off the expected one") {
   const Setting setting;
   const Vector2 place = kExpected + Vector2(2.0, -1.0);
   const auto found = setting.find(corner_lines(), events(corner_lines(), place));
@@ -101,17 +101,17 @@ TEST_CASE("A lost landmark is found where it is, beside the place where it is ex
   CHECK(found.front().look.mass() > 0.0);
 }
 
-TEST_CASE("What looks otherwise is not taken for a lost landmark") {
+TEST_CASE("Events that do not match a lost landmark's template are not taken for it") {
   const Setting setting;
   const Lines other{{{-12, 3}, {-3, 12}}, {{3, -12}, {12, -3}}, {{4, 12}, {12, 4}}};
   CHECK(setting.find(corner_lines(), events(other, kExpected)).empty());
-  // Too few events to say.
+  // Too few events to decide.
   std::vector<Event> few = events(corner_lines(), kExpected);
   few.resize(kWindowSize / 2);
   CHECK(setting.find(corner_lines(), few).empty());
 }
 
-TEST_CASE("A look that is as good in two places is taken for none") {
+TEST_CASE("A template that matches two positions equally well is not found") {
   Setting setting;
   setting.covariance = 25.0 * Matrix2::Identity();
   for (std::uint64_t seed = 10; seed < 20; ++seed) {
@@ -119,12 +119,12 @@ TEST_CASE("A look that is as good in two places is taken for none") {
     CAPTURE(seed);
     setting.options.search = 11;
     CHECK(setting.find(fence(), seen).empty());
-    setting.options.search = 5;  // there is no second place in reach
+    setting.options.search = 5;  // no second match in reach
     CHECK(setting.find(fence(), seen).size() == 1);
   }
 }
 
-TEST_CASE("The best place at the edge of what is searched is none, and how far is searched is as uncertain as it is") {
+TEST_CASE("A match at the edge of the search is none, and the search reaches as far as the prediction is uncertain") {
   Setting setting;
   const auto at = [&](double x) { return events(corner_lines(), kExpected + Vector2(x, 0.0)); };
   REQUIRE(setting.options.search == 4);
@@ -138,16 +138,16 @@ TEST_CASE("The best place at the edge of what is searched is none, and how far i
   CHECK(setting.find(corner_lines(), at(7.0)).size() == 1);
 }
 
-TEST_CASE("A lost landmark is looked for as it looks from where the camera is now") {
+TEST_CASE("A lost landmark is searched for by its template as warped to the current pose") {
   Setting setting;
   Vector6 roll = Vector6::Zero();
   roll.z() = 1.0;
-  setting.T_now = se3::exp(roll);  // the image turns the other way
+  setting.T_now = se3::exp(roll);  // the image turns in the other direction
   CHECK(setting.find(corner_lines(), events(corner_lines(), kExpected, -1.0)).size() == 1);
   CHECK(setting.find(corner_lines(), events(corner_lines(), kExpected, 0.0)).empty());
 }
 
-TEST_CASE("A lost landmark is not looked for where something is tracked, nor near the border, nor without a motion") {
+TEST_CASE("A lost landmark is not searched for near a tracked one, near the border, or without a motion estimate") {
   Setting setting;
   const std::vector<Event> seen = events(corner_lines(), kExpected);
   LostLandmarks lost = setting.lost(corner_lines());
@@ -163,13 +163,13 @@ TEST_CASE("A lost landmark is not looked for where something is tracked, nor nea
   CHECK(setting.find(lost, events(corner_lines(), {10.0, 90.0}), 0.4).empty());
 }
 
-TEST_CASE("A lost landmark is forgotten in time, when it goes on, and is left alone for a while after a mistake") {
+TEST_CASE("A lost landmark is forgotten after a time or when it goes on, and not searched for soon after a mistake") {
   Setting setting;
   setting.options.memory = 2.0;
   const std::vector<Event> seen = events(corner_lines(), kExpected);
   LostLandmarks lost = setting.lost(corner_lines());
   CHECK(setting.find(lost, seen, 0.1).size() == 1);
-  CHECK(setting.find(lost, seen, 0.11).empty());  // just looked for
+  CHECK(setting.find(lost, seen, 0.11).empty());  // just searched for
   lost.disappoint(kTrack, 0.2);
   CHECK(setting.find(lost, seen, 0.6).empty());
   CHECK(setting.find(lost, seen, 0.8).size() == 1);
@@ -178,11 +178,11 @@ TEST_CASE("A lost landmark is forgotten in time, when it goes on, and is left al
   LostLandmarks other = setting.lost(corner_lines());
   other.forget(kTrack);
   CHECK(setting.find(other, seen).empty());
-  other.remember(kTrack, 0.0, Template{}, 0.0, setting.guidance_at({}));  // one that has learnt nothing
+  other.remember(kTrack, 0.0, Template{}, 0.0, setting.guidance_at({}));  // an empty template
   CHECK(setting.find(other, seen).empty());
 }
 
-TEST_CASE("Lost landmarks that are displaced together are found, those that are where they should be are not") {
+TEST_CASE("Lost landmarks that are displaced together are found, those at their expected positions are not") {
   const Setting setting;
   Feedback feedback;
   feedback.state = TrackingState::tracking;
@@ -212,7 +212,7 @@ TEST_CASE("Lost landmarks that are displaced together are found, those that are 
       lost.remember(static_cast<TrackId>(i), 0.0, look(corner_lines()), 0.0, guidance);
     }
     auto found = lost.find_displaced(guidance, 0.1, recent, {}, setting.camera);
-    CHECK(lost.find_displaced(guidance, 0.11, recent, {}, setting.camera).empty());  // just looked for
+    CHECK(lost.find_displaced(guidance, 0.11, recent, {}, setting.camera).empty());  // just searched for
     return found;
   };
   const Vector2 aside(11.0, 6.0);
@@ -225,7 +225,7 @@ TEST_CASE("Lost landmarks that are displaced together are found, those that are 
   CHECK(find(never, aside).empty());
 }
 
-TEST_CASE("After a loss a landmark of before is recognised by its look, wherever and however turned it is") {
+TEST_CASE("After tracking is lost, an earlier landmark is recognised wherever it is and however it is turned") {
   const Setting setting;
   const std::size_t now = 1;  // the number of the world
   const Vector2 place(60.0, 50.0);
@@ -239,14 +239,14 @@ TEST_CASE("After a loss a landmark of before is recognised by its look, wherever
     CHECK(found->track == kTrack);
     CHECK((found->pixel - place).norm() <= 1.5);
     CHECK(found->look.mass() > 0.0);
-    CHECK_FALSE(lost.recognise(place, 0, recent, 0.1, {}));                // it is of this world
-    CHECK_FALSE(lost.recognise(place, now, recent, 0.1, {{kTrack}, {}}));  // it has a tracker
-    CHECK_FALSE(lost.recognise({200.0, 150.0}, now, recent, 0.1, {}));     // nothing is seen there
+    CHECK_FALSE(lost.recognise(place, 0, recent, 0.1, {}));                // the landmark is of this world
+    CHECK_FALSE(lost.recognise(place, now, recent, 0.1, {{kTrack}, {}}));  // the landmark has a tracker
+    CHECK_FALSE(lost.recognise({200.0, 150.0}, now, recent, 0.1, {}));     // no events there
     CHECK_FALSE(lost.recognise(place, now, recent, 100.0, {}));            // longer ago than it is remembered
   }
 }
 
-TEST_CASE("Of two landmarks that look the same none is recognised") {
+TEST_CASE("Of two landmarks with the same template none is recognised") {
   const Setting setting;
   LostLandmarks lost = setting.lost(corner_lines());
   CHECK(lost.has_of_another(1));
@@ -258,7 +258,7 @@ TEST_CASE("Of two landmarks that look the same none is recognised") {
   CHECK_FALSE(lost.recognise(kExpected, 1, recent, 0.1, {}));
 }
 
-TEST_CASE("What was lost in a map that is gone is neither looked for nor recognised") {
+TEST_CASE("A landmark of a map that is gone is neither searched for nor recognised") {
   const Setting setting;
   LostLandmarks lost = setting.lost(corner_lines());
   const std::vector<Event> seen = events(corner_lines(), kExpected);
@@ -272,7 +272,7 @@ TEST_CASE("What was lost in a map that is gone is neither looked for nor recogni
   CHECK_FALSE(lost.recognise(kExpected, 1, recent, 0.2, {}));
 }
 
-TEST_CASE("A landmark of another world is not looked for where this one's map expects it") {
+TEST_CASE("A landmark of another world is not searched for where this world's map expects it") {
   const Setting setting;
   LostLandmarks lost = setting.lost(corner_lines());
   RecentEvents recent(15'000);

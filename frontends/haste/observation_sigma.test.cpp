@@ -3,13 +3,13 @@
 
 #include "core/support/median.hpp"
 #include "core/testing/catch2.hpp"
+#include "core/testing/collect_tracks.hpp"
 #include "core/testing/event_scene.hpp"
-#include "core/testing/told_tracks.hpp"
 #include "frontends/haste/haste.hpp"
 
 using namespace evbench;
 using namespace evbench::haste;
-using evbench::testing::all_told;
+using evbench::testing::collect_tracks;
 using evbench::testing::EventScene;
 using evbench::testing::swing;
 
@@ -22,12 +22,12 @@ const EventScene& sigma_scene() {
 
 std::vector<TrackObservation> observations(const Options& options) {
   Haste haste(options, {sigma_scene(), 0, ""});
-  return all_told(haste, sigma_scene()).observations;
+  return collect_tracks(haste, sigma_scene()).observations;
 }
 
 }  // namespace
 
-TEST_CASE("Observations that are said to be known less well are farther from where their points are") {
+TEST_CASE("Observations with a larger sigma have larger errors") {
   Options options;
   options.score_sigma = true;
   std::map<TrackId, Vector3> points;
@@ -53,7 +53,7 @@ TEST_CASE("Observations that are said to be known less well are farther from whe
   CHECK(median(vague) > 1.4 * median(sharp));
 }
 
-TEST_CASE("All observations are said to be known as well where scores are not asked") {
+TEST_CASE("All observations have the same sigma where scores are not used") {
   Options options;
   options.score_sigma = false;
   const auto all = observations(options);

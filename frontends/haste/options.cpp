@@ -11,13 +11,13 @@ void LifeOptions::declare(OptionSet& set) {
       .range(-1.0, 1.0);
   set.add("border", border, "it comes this near to the image's border [px]").range(0.0, 1000.0);
   set.add("starvation", starvation,
-          "the others have moved by this much (mean) since it last changed its state [px]: a standing camera starves "
-          "nobody; 0: never")
+          "the others have moved by this much (mean) since it last changed its state [px]: no track of a stationary "
+          "camera starves; 0: never")
       .range(0.0, 10000.0);
   set.add("crowding", crowding, "an older one is this near [px]; 0: never").range(0.0, 1000.0);
   set.add("recognition", recognition,
-          "what it sees after the whole sensor has told nothing for 0.1 s looks less like its template than this "
-          "[cosine]: the camera has moved meanwhile; 0: never")
+          "after the whole sensor had no events for 0.1 s, its events match its template less than this [cosine]: the "
+          "camera has moved meanwhile; 0: never")
       .range(0.0, 1.0);
 }
 
@@ -25,37 +25,37 @@ void GuidanceOptions::declare(OptionSet& set) {
   set.add("outliers", outliers, "tracks that the back-end holds for outliers end");
   set.add("veto", veto, "tracks end that are far from where the back-end expects their landmarks");
   set.add("reacquire", reacquire,
-          "landmarks that come back into view are looked for where they are expected, and their tracks go on");
+          "landmarks that come back into view are searched for at their expected positions; their tracks go on");
   set.add("gate", gate, "far is more than this [standard deviations of what is expected]").above(0.0);
   set.add("veto_distance", veto_distance, "and more than this [px]").range(0.0, 1000.0);
-  set.add("search", search, "a landmark is looked for within this of its expected place along each axis, at most [px]")
+  set.add("search", search, "a landmark is searched for within this of its expected position along each axis [px]")
       .range(1, 50);
-  set.add("similarity", similarity, "it is found where the events look at least this much like its template [cosine]")
+  set.add("similarity", similarity, "it is found where the events match its template at least this well [cosine]")
       .range(0.0, 1.0);
   set.add("displacement", displacement,
-          "where landmarks are displaced together, as the camera is not where the back-end has it, they are looked "
-          "for within this of their expected places along each axis, now and then [px]; 0: never")
+          "landmarks that are displaced together, because the back-end's camera pose is off, are searched for "
+          "within this of their expected positions along each axis, at intervals [px]; 0: never")
       .range(0, 100);
   set.add("recognition", recognition,
-          "after a loss, until the camera has been found in the world of before, new trackers go on with the tracks "
-          "of landmarks that the events look at least this much like, wherever they are [cosine]; not without "
-          "reacquire")
+          "after tracking is lost, until the camera is relocalised in the earlier world, a new tracker goes on with "
+          "the track of a landmark whose template the events match at least this well, wherever it is [cosine]; not "
+          "without reacquire")
       .range(0.0, 1.0);
   set.add("probation", probation,
-          "changes of state through which a found one must be where it is expected before its track goes on; else "
-          "it is another track")
+          "changes of state through which a re-acquired landmark must be where it is expected before its track goes "
+          "on; else it becomes another track")
       .range(1, 1000);
-  set.add("tolerance", tolerance, "and how far off that is meanwhile, at most [px]").above(0.0);
-  set.add("memory", memory, "landmarks are looked for that were lost less than this ago [s]").range(0.0, 1e6);
+  set.add("tolerance", tolerance, "how far off its expected position it may be meanwhile [px]").above(0.0);
+  set.add("memory", memory, "landmarks that were lost less than this ago are searched for [s]").range(0.0, 1e6);
   set.add("corners", corners,
           "a landmark that isn't found by its template, or has none, is taken to be the corner that is detected near "
           "its expected place, on probation, if no other lost one is expected there; not without reacquire");
   set.add("degraded", degraded,
-          "landmarks are looked for while the back-end is degraded, too, and a motion model carries the estimate");
+          "landmarks are also searched for while the back-end is degraded and a motion model carries the estimate");
 }
 
 void Options::declare(OptionSet& set) {
-  set.add("tracks", tracks, "trackers alive, as far as there is something to track").range(1, 100'000);
+  set.add("tracks", tracks, "trackers alive, at most").range(1, 100'000);
   set.add("threads", threads,
           "threads that trackers are spread over; 0: one a processor; they do not change what is tracked")
       .range(0, 1024);
@@ -75,12 +75,12 @@ void Options::declare(OptionSet& set) {
           "where a tracker that changes its state is observed: at the new state, which leads by half a step; half-way "
           "between the old and the new one; where a paraboloid through its hypotheses' scores is highest");
   set.add("delay", delay,
-          "an observation stands for the middle of the events that a tracker looks at, and is told this much later; "
-          "one that comes later still counts as of then [s]")
+          "an observation has the time of the middle event of the tracker's window and is published this much later; "
+          "one that comes later still gets a time that is not published yet [s]")
       .range(0.0, 1.0);
   set.group("detection", detection, "new features");
   set.group("life", life, "when trackers are given up");
-  set.group("guidance", guidance, "what is made of the back-end's knowledge");
+  set.group("guidance", guidance, "how the back-end's feedback is used");
 }
 
 }  // namespace evbench::haste

@@ -18,7 +18,7 @@ struct LifeOptions {
   void declare(OptionSet& set);
 };
 
-/// What is made of the back-end's knowledge.
+/// How the back-end's feedback is used.
 struct GuidanceOptions {
   bool outliers = true;
   bool veto = true;

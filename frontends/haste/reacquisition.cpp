@@ -4,18 +4,18 @@
 #include "core/events/event_time.hpp"
 #include "frontends/haste/haste.hpp"
 
-// Landmarks whose trackers have ended are found again: where they are expected, displaced together, by their look alone
-// after a loss, or as a corner.
+// Re-acquires landmarks whose trackers have ended: where they are expected, displaced together, by their template alone
+// after tracking is lost, or as a corner.
 namespace evbench::haste {
 
-/// As the landmark that it is looks now, where it is one.
+/// Stores the track's template where the track is of a landmark.
 void Haste::remember(const Track& track, const Tracker& tracker) {
   const bool itself = track.probation == 0 && !track.displaced && guidance_.position(track.id);
   if (!options_.guidance.reacquire || !itself) return;
   lost_.remember(track.id, clock_, tracker.learnt_template(), tracker.state().angle, guidance_);
 }
 
-/// Landmarks that come back into view, as long as there is room for them.
+/// Searches for landmarks that come back into view, as long as there are trackers left.
 void Haste::reacquire() {
   if (trackers_.size() >= static_cast<std::size_t>(2 * options_.tracks)) return;
   const auto found = lost_.find(guidance_, clock_, recent_, tracked(), options_.life.crowding + 1.0, camera_);
@@ -26,8 +26,8 @@ void Haste::reacquire() {
   }
 }
 
-/// Where the camera has turned unnoticed; trackers that are there are on these landmarks. Whether they are what they
-/// seem is for the back-end to say.
+/// Where the camera has turned unnoticed. Trackers that are there already follow these landmarks. The back-end confirms
+/// or rejects the re-association.
 void Haste::reacquire_displaced() {
   if (trackers_.size() >= static_cast<std::size_t>(2 * options_.tracks)) return;
   for (const LostLandmarks::Found& landmark : lost_.find_displaced(guidance_, clock_, recent_, tracked(), camera_)) {
@@ -42,8 +42,8 @@ void Haste::reacquire_displaced() {
   }
 }
 
-/// After a loss new trackers may be on landmarks of the map that there was, wherever these are now: a few of them are
-/// compared at a time.
+/// After tracking is lost, new trackers may be on landmarks of the earlier map, wherever these are now. Compares a few
+/// trackers at a time.
 void Haste::recognise() {
   constexpr std::size_t kAtATime = 4;
   constexpr int kTimes = 3;
@@ -67,7 +67,7 @@ void Haste::recognise() {
   }
 }
 
-/// Those with a template have been looked for by it before.
+/// Landmarks with a template were searched for by it before.
 std::optional<TrackId> Haste::lost_landmark_at(const Vector2& corner) const {
   const std::span<const Event> window = recent_.window(corner);
   if (!options_.guidance.reacquire || !options_.guidance.corners || window.empty()) return std::nullopt;

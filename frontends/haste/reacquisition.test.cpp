@@ -7,7 +7,7 @@
 #include "core/testing/event_scene.hpp"
 #include "frontends/haste/haste.hpp"
 
-// Guided by hand: a back-end that knows the motion, and says of landmarks what a test wants.
+// The feedback is made by hand: it has the true motion, and of landmarks what a test needs.
 using namespace evbench;
 using namespace evbench::haste;
 using evbench::testing::EventScene;
@@ -16,7 +16,7 @@ using evbench::testing::swing;
 namespace {
 
 constexpr double kStep = 0.01;     // [s] between two exchanges
-constexpr TrackId kKnown = 1'000;  // the first landmark's track: none that haste begins has such an id
+constexpr TrackId kKnown = 1'000;  // the first landmark's track; haste gives no such id
 
 const EventScene& lost_scene() {
   static const EventScene result(swing, 1.0, EventScene::quadrangles(150, 1));
@@ -25,7 +25,7 @@ const EventScene& lost_scene() {
 
 using Landmarks = std::map<TrackId, Vector3>;
 
-/// The points of the wall at which tracks begin when nothing is known, by the ids that they then have.
+/// The points of the wall at which tracks begin without feedback, by the ids that they then have.
 const Landmarks& beginnings() {
   static const Landmarks result = [] {
     Landmarks points;
@@ -44,7 +44,7 @@ const Landmarks& beginnings() {
   return result;
 }
 
-/// The same as landmarks that a back-end has had before, each `offset` [px] beside.
+/// The same as earlier landmarks of a back-end, each off by `offset` [px].
 Landmarks known(double offset = 0.0, TrackId first = kKnown) {
   const double aside = offset * EventScene::kDistance / lost_scene().camera().pinhole.fx;
   Landmarks result;
@@ -76,8 +76,8 @@ struct Told {
   }
 };
 
-/// All that it tells when it gets feedback from `from` [s] on, which says that places are known to `sigma` [px], after
-/// one of this state, if there is one.
+/// All observations that it publishes with feedback from `from` [s] on. `sigma` [px]: the positions' uncertainty in the
+/// feedback. One feedback of `state`, if there is one, comes first.
 Told track(const Options& options, const Landmarks& landmarks, TrackingState state = TrackingState::tracking,
            double sigma = 0.5, double from = kStep, std::optional<TrackingState> before = std::nullopt) {
   Haste haste(options, {lost_scene(), 0, ""});
@@ -97,7 +97,7 @@ Told track(const Options& options, const Landmarks& landmarks, TrackingState sta
   return told;
 }
 
-/// Of an observation, from where its landmark is [px].
+/// Distance of an observation from its landmark [px].
 double error(const Landmarks& landmarks, const TrackObservation& z) {
   return (lost_scene().camera().project(swing(z.t).inverse() * landmarks.at(z.track)) - z.pixel).norm();
 }
@@ -125,7 +125,7 @@ TEST_CASE("A corner that is detected where a landmark without a template is expe
   CHECK(track(without_corners(), landmarks).of_known() == 0);
 }
 
-TEST_CASE("A corner that is not where its landmark is expected after all becomes a track of its own") {
+TEST_CASE("A corner that turns out not to be at its landmark's expected position becomes a track of its own") {
   Options options;
   options.guidance.corners = true;
   options.guidance.tolerance = 2.0;
@@ -135,7 +135,7 @@ TEST_CASE("A corner that is not where its landmark is expected after all becomes
   CHECK_FALSE(told.observations.empty());
 }
 
-TEST_CASE("No corner is taken for one of two landmarks that are expected there") {
+TEST_CASE("A corner is not associated where two landmarks are expected") {
   Landmarks landmarks = known();
   landmarks.merge(known(1.0, 2 * kKnown));
   Options options;
@@ -144,7 +144,7 @@ TEST_CASE("No corner is taken for one of two landmarks that are expected there")
   CHECK(told.of_known() == 0);
 }
 
-TEST_CASE("Landmarks are found again while the back-end is degraded, unless that is switched off or it is lost") {
+TEST_CASE("Landmarks are re-acquired while the back-end is degraded, unless that is switched off or tracking is lost") {
   Options on;
   on.guidance.corners = true;
   on.guidance.degraded = true;
@@ -155,7 +155,7 @@ TEST_CASE("Landmarks are found again while the back-end is degraded, unless that
   CHECK(track(on, known(), TrackingState::lost).of_known() == 0);
 }
 
-TEST_CASE("What was lost in a map that makes way is not looked for in the next one", "[slow]") {
+TEST_CASE("A landmark of a map that is replaced is not searched for in the next one", "[slow]") {
   Options options;
   options.life.border = 40.0;  // trackers end where what they were on is still in view
   const auto finds = [&](TrackingState before) {
@@ -182,11 +182,10 @@ TEST_CASE("Trackers far from where landmarks are expected end, but not while a m
              Catch::Matchers::ContainsSubstring(" 0 far from where they were expected"));
 }
 
-TEST_CASE("Lost landmarks that are displaced together are told as what they seem to be, unless that is switched off",
-          "[slow]") {
+TEST_CASE("Lost landmarks that are displaced together are re-associated, unless that is switched off", "[slow]") {
   Landmarks landmarks = beginnings();
   for (auto& [id, position] : landmarks) {
-    if (id % 2 != 0) position.x() += 0.1;  // 10 px; the others tell where the camera is
+    if (id % 2 != 0) position.x() += 0.1;  // 10 px; the others determine the camera's pose
   }
   Options on;
   on.life.border = 40.0;  // trackers end where what they were on is still in view

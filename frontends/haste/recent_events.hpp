@@ -22,10 +22,10 @@ class RecentEvents {
     events_.insert(events_.end(), events.begin(), events.end());
   }
 
-  /// At most the number asked for.
+  /// At most the requested number.
   std::span<const Event> events() const { return std::span(events_).last(std::min(count_, events_.size())); }
 
-  /// Those from which on a tracker there has its window full [px]; all, where they are too few.
+  /// The newest events that fill the window of a tracker at `pixel` [px]; all, where they are too few.
   std::span<const Event> window(const Vector2& pixel) const;
 
  private:

@@ -10,25 +10,25 @@
 namespace evbench::haste {
 namespace {
 
-constexpr int kStep = 2;             ///< [px] between places that are compared at first,
-constexpr int kTurn = 3;             ///< and steps of angle between turns
-constexpr int kTurns = 3;            ///< so many to either side
-constexpr std::size_t kBest = 3;     ///< looks that are then compared at all places in between
-constexpr double kAmbiguous = 0.95;  ///< what is more than this share as like as the best is as good
+constexpr int kStep = 2;             ///< [px] between positions in the first pass
+constexpr int kTurn = 3;             ///< steps of angle between orientations
+constexpr int kTurns = 3;            ///< orientations to either side
+constexpr std::size_t kBest = 3;     ///< templates that are then compared at all positions in between
+constexpr double kAmbiguous = 0.95;  ///< a score above this share of the best one counts as equally good
 
-/// A place of a look, and how like it is.
+/// A position of a template, and its score.
 struct Candidate {
   const KnownLook* known;
   GridState place;
   double likeness = 0.0;
 };
 
-/// What is seen about a place, turned by every angle that is asked for: made once, for many looks.
+/// The events around a position as patches turned by every requested angle: made once, for many templates.
 class Sights {
  public:
   Sights(std::span<const Event> window, const GridState& about) : window_(window), about_(about) {}
 
-  /// The look where it is most like what is seen.
+  /// The position and orientation at which the template matches best.
   Candidate best(const KnownLook& known) {
     Candidate result{&known, about_};
     const int usual = static_cast<int>(std::lround(known.angle / kAngleStep / kTurn));

@@ -9,23 +9,23 @@
 
 namespace evbench::haste {
 
-/// How a landmark looked when it was tracked: its template, turned by `angle` [rad].
+/// A landmark's appearance when it was tracked: its template, turned by `angle` [rad].
 struct KnownLook {
   TrackId track = 0;
   const Template* look = nullptr;
   double angle = 0.0;
 };
 
-/// The one of the landmarks that is seen at a place.
+/// The landmark that is recognised at a position.
 struct Recognised {
   TrackId track = 0;
   Vector2 pixel = Vector2::Zero();  ///< where it is [px]
   double angle = 0.0;               ///< by which its template is turned now [rad]
 };
 
-/// Compares what is seen within 3 px of a place with all the looks, turned by up to 36° more or less than they were, by
-/// the events (in time order) that fill a tracker's window there. None whose likeness is at least `similarity`; none
-/// where another is nearly as like.
+/// Compares the events within 3 px of a position with all templates, each turned by up to 36° either way from its
+/// stored angle. `window`: the events (in time order) that fill a tracker's window there. None where no score reaches
+/// `similarity`, or where a second landmark scores nearly as well.
 std::optional<Recognised> recognise(std::span<const KnownLook> looks, std::span<const Event> window,
                                     const Vector2& about, double similarity);
 

@@ -9,11 +9,11 @@
 #include "frontends/haste/haste.hpp"
 #include "frontends/haste/tracking/alignment.hpp"
 
-// A tracker ends where what it follows can't be told from its surroundings, or is not what it was.
+// A tracker ends where its pattern cannot be distinguished from the surroundings, or is no longer the same.
 namespace evbench::haste {
 
-/// A camera that stood still goes on to see what it saw; one that told nothing meanwhile sees something else, of which
-/// trackers would make the old landmarks.
+/// Marks all trackers for a check after a silence of the whole sensor. A stationary camera still sees the same patterns
+/// after it. A camera that moved meanwhile sees others, which trackers would take for the old landmarks.
 void Haste::doubt_trackers() {
   for (auto& [id, track] : tracks_) {
     const Tracker& tracker = trackers_.tracker(id);
@@ -23,7 +23,7 @@ void Haste::doubt_trackers() {
   }
 }
 
-/// As soon as their windows are of new events.
+/// Ends mismatched tracks after a silence, as soon as their windows hold only new events.
 void Haste::end_strangers() {
   for (const std::int64_t id : trackers_.ids()) {
     const Tracker& tracker = trackers_.tracker(id);
@@ -41,13 +41,13 @@ void Haste::end_strangers() {
   }
 }
 
-/// Within a tick, no camera goes far to and fro, and what it sees goes about the same way everywhere: a tracker has
-/// been in the box between where it was and where it is, but for the small steps to and fro that each makes, and goes
-/// with the others. A burst of noise takes each of them somewhere else. What one told since the last tick is then no
-/// observation, and its way none of the image's.
+/// Ends erratic trackers. Within a tick no camera moves far to and fro, and the image moves about equally everywhere.
+/// So a tracker stays within the box between its old and its new position, but for small steps to and fro, and moves
+/// with the others. A burst of noise takes each tracker elsewhere. The observations of an erratic tracker since the
+/// last tick are dropped, and its path does not count as motion of the image.
 void Haste::end_wanderers() {
-  constexpr double kAside = 4.0;        // [px] by which the box that it has been in is longer than what it moved
-  constexpr double kFromOthers = 0.05;  // of the image's width; 0.03 at its border in a turn by 660 degrees a second
+  constexpr double kAside = 4.0;        // [px] by which the box of its positions may exceed its displacement
+  constexpr double kFromOthers = 0.05;  // of the image's width; a turn at 660 degrees/s makes 0.03 at its border
   constexpr std::size_t kEnough = 5;
   std::vector<double> x, y;
   for (const auto& [tracker, track] : tracks_) {
@@ -101,8 +101,8 @@ void Haste::end_trackers() {
   }
 }
 
-/// Trackers far from where their landmarks are expected; but when many are, it is the expectation that is wrong, and it
-/// may well be where a motion model alone makes it.
+/// Ends trackers far from where their landmarks are expected. Where many are, the expectation is wrong instead, which
+/// is likely where it comes from a motion model alone.
 void Haste::veto_strays() {
   if (!guidance_.reliable()) return;
   const GuidanceOptions& guidance = options_.guidance;
@@ -123,7 +123,8 @@ void Haste::veto_strays() {
   for (const std::int64_t tracker : strays) end(tracker, End::veto);
 }
 
-/// One whose track is the back-end's landmark is remembered as it looks now, unless it is not that any more.
+/// Ends a tracker. Where its track is one of the back-end's landmarks, its template is stored, unless it follows
+/// something else by now.
 void Haste::end(std::int64_t tracker, End why) {
   const auto found = tracks_.find(tracker);
   const Track& track = found->second;
@@ -131,12 +132,12 @@ void Haste::end(std::int64_t tracker, End why) {
   if (track.probation > 0) {
     lost_.disappoint(track.id, clock_);
   } else {
-    // Nothing of this has been told that is younger than the delay, however the run exchanges.
-    const bool doubted = track.doubted >= 0;  // it ends before it could be looked at
+    // Observations newer than the delay are not published yet, whatever the exchange interval.
+    const bool doubted = track.doubted >= 0;  // it ends before it could be checked
     if (why == End::wandering || why == End::silence || doubted) {
-      told_.take_back(track.id, std::max(track.found, clock_ - options_.delay));
+      delayed_.take_back(track.id, std::max(track.found, clock_ - options_.delay));
     }
-    told_.end({track.id, clock_});
+    delayed_.end({track.id, clock_});
     if (track.displaced && why == End::outlier) lost_.disappoint(track.id, clock_);
     const bool itself = !doubted && (why == End::border || why == End::starvation);
     if (itself) remember(track, trackers_.tracker(tracker));

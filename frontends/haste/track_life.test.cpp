@@ -8,7 +8,7 @@
 #include "frontends/haste/haste.hpp"
 #include "frontends/haste/tracking/testing/event_patterns.hpp"
 
-// Why and when tracks end, as whoever takes the observations sees it.
+// Why and when tracks end, as seen by the receiver of the observations.
 using namespace evbench;
 using namespace evbench::haste;
 using evbench::haste::testing::EventPattern;
@@ -23,7 +23,7 @@ const EventScene& life_scene() {
   return result;
 }
 
-/// A front-end, and what it has told so far.
+/// A front-end, and the observations that it has published so far.
 struct Followed {
   Haste haste;
   TrackBatch batch = {};
@@ -59,7 +59,8 @@ struct Followed {
   }
 };
 
-/// What a back-end that knows the truth says at t [s]: a landmark for each of these observations, where it is seen.
+/// The feedback of a back-end that knows the truth at t [s]: a landmark for each of these observations, where it is
+/// seen.
 Feedback truth(double t, const std::vector<TrackObservation>& observed) {
   Feedback feedback;
   feedback.t = t;
@@ -76,7 +77,7 @@ Feedback truth(double t, const std::vector<TrackObservation>& observed) {
   return feedback;
 }
 
-/// Eight tracks as they are at 0.5 s, which without any feedback would live for a while yet.
+/// Eight tracks at 0.5 s, which without feedback go on after it.
 std::vector<TrackObservation> eight() {
   Followed told({}, life_scene());
   told.go_on_to(0.5);
@@ -97,7 +98,7 @@ void shift(ExpectedFeature& feature, const Vector2& by) {
 
 constexpr const char* kVetoed = "far from where they were expected";
 
-/// A square of 8 px that moves over the image, without anything else.
+/// A square of 8 px that moves over the image, and nothing else.
 std::vector<Event> square(const std::function<Vector2(double)>& place, std::uint64_t seed) {
   EventPattern pattern;
   pattern.lines = {{{-4, -4}, {4, -4}}, {{4, -4}, {4, 4}}, {{4, 4}, {-4, 4}}, {{-4, 4}, {-4, -4}}};
@@ -109,7 +110,7 @@ std::vector<Event> square(const std::function<Vector2(double)>& place, std::uint
 
 }  // namespace
 
-TEST_CASE("A track that the back-end holds for an outlier ends, and is observed no more") {
+TEST_CASE("A track that the back-end rejects as an outlier ends and is not observed any more") {
   Followed told({}, life_scene());
   told.go_on_to(0.5);
   const TrackId outlier = eight()[3].track;
@@ -132,14 +133,14 @@ TEST_CASE("A track that the back-end holds for an outlier ends, and is observed 
   CHECK(other.ended_as("as outliers") == 0);
 }
 
-TEST_CASE("A tracker far from where its landmark is expected is vetoed, but if most are, it is the expectation's fault",
+TEST_CASE("A tracker far from its landmark's expected position is vetoed, unless most are and the expectation is wrong",
           "[slow]") {
   for (const int far : {0, 1, 8}) {
     Followed told({}, life_scene());
     told.go_on_to(0.5);
     const std::vector<TrackObservation> observed = eight();
     Feedback feedback = truth(0.5, observed);
-    for (int i = 0; i < far; ++i) {  // hither and thither, as no motion of the camera would
+    for (int i = 0; i < far; ++i) {  // in directions that no camera motion explains
       shift(feedback.expected[static_cast<std::size_t>(i)], {i % 2 == 0 ? 20.0 : -20.0, i % 4 < 2 ? 20.0 : -20.0});
     }
     told.haste.receive(feedback);
@@ -150,7 +151,7 @@ TEST_CASE("A tracker far from where its landmark is expected is vetoed, but if m
   }
 }
 
-TEST_CASE("Nothing is vetoed where that is switched off, nor by a back-end that is lost") {
+TEST_CASE("Nothing is vetoed where that is switched off or the back-end has lost tracking") {
   for (const bool lost : {false, true}) {
     Options options;
     options.guidance.veto = lost;
@@ -165,9 +166,7 @@ TEST_CASE("Nothing is vetoed where that is switched off, nor by a back-end that 
   }
 }
 
-TEST_CASE(
-    "Few trackers are taken for wanderers that step to and fro where they follow, as noise and haste make them do",
-    "[slow]") {
+TEST_CASE("Few trackers that step to and fro under noise and fast motion are taken for erratic ones", "[slow]") {
   constexpr double kNoise = 6e6;  // [events/s]
   const auto fast = [](double t) { return swing(6.0 * t); };
   EventScene source(fast, 0.6, EventScene::quadrangles(150, 1));
@@ -186,7 +185,7 @@ TEST_CASE(
   CHECK(10 * told.ended_as("wandering in noise") < std::ssize(told.ended));
 }
 
-TEST_CASE("Trackers that a burst of noise takes along end, and are observed nowhere it took them") {
+TEST_CASE("Trackers that a burst of noise displaces end, without observations at the displaced positions") {
   EventScene source(swing, 1.0, EventScene::quadrangles(150, 1));
   Random random(3);
   std::vector<Event> burst(300'000);
@@ -210,7 +209,7 @@ TEST_CASE("Trackers that a burst of noise takes along end, and are observed nowh
   CHECK(told.alive.size() > 40);
 }
 
-TEST_CASE("After a silence trackers go on before what they saw, and end before something else", "[slow]") {
+TEST_CASE("After a silence trackers go on where they see the same pattern, and end where they see another", "[slow]") {
   const auto standing = [](double t) { return swing(t < 0.5 ? t : std::max(0.5, t - 0.5)); };
   const EventScene still(standing, 1.3, EventScene::quadrangles(150, 1));
   const auto shifting = [](double t) {  // by 50 px during the silence
@@ -242,11 +241,11 @@ TEST_CASE("After a silence trackers go on before what they saw, and end before s
   CHECK(different.ended > 15);
 }
 
-TEST_CASE("While nothing is told nothing new is found", "[slow]") {
+TEST_CASE("Without events no new feature is found", "[slow]") {
   EventScene quiet(swing, 2.2, EventScene::quadrangles(150, 1));
   quiet.silence(1.0, 2.0);
   Options options;
-  options.life.curvature = 0.9;  // trackers end as soon as they run: features are always wanted
+  options.life.curvature = 0.9;  // trackers end as soon as they run, so that features are always needed
   Followed told(options, quiet);
   const auto detected = [&] { return std::stoi(told.haste.remarks().at(0)); };
   told.go_on_to(1.05);
@@ -257,7 +256,7 @@ TEST_CASE("While nothing is told nothing new is found", "[slow]") {
   CHECK(detected() > before);
 }
 
-TEST_CASE("A tracker on a hot pixel ends, as it does not go along with the image") {
+TEST_CASE("A tracker on a hot pixel ends, as it does not move with the image") {
   EventScene source(swing, 1.0, EventScene::quadrangles(150, 1));
   std::erase_if(source.list, [](const Event& event) { return event.x < 80; });
   std::vector<Event> hot;
@@ -268,7 +267,7 @@ TEST_CASE("A tracker on a hot pixel ends, as it does not go along with the image
   CHECK(told.ended_as("starved") > 0);
 }
 
-TEST_CASE("Of two trackers that come upon one another the younger ends") {
+TEST_CASE("Of two trackers that meet the newer one ends") {
   EventScene source(swing, 1.5, {});
   const auto from = [](double x, double t) { return Vector2(120.0 + x * std::max(0.0, 1.0 - t / 0.9), 90.0); };
   source.add(square([&](double t) { return from(-25.0, t); }, 1));
@@ -286,7 +285,7 @@ TEST_CASE("Of two trackers that come upon one another the younger ends") {
   CHECK_FALSE(told.ended_at.contains(older));
 }
 
-TEST_CASE("A tracker that comes near the image's border ends there") {
+TEST_CASE("A tracker near the image's border ends") {
   EventScene source(swing, 1.5, {});
   source.add(square([](double t) { return Vector2(120.0 + 110.0 * t, 90.0); }, 1));
   Options options;

@@ -5,8 +5,8 @@
 
 namespace evbench {
 
-/// Hands on the tracks that the source itself knows: association without error. Throws InputError for a source that
-/// knows none, such as a recording.
+/// Passes on the tracks that the source itself knows: association without error. Throws InputError for a source without
+/// true tracks, such as a recording.
 class Oracle : public FrontEnd {
  public:
   static constexpr bool reads_events = false;

@@ -27,7 +27,7 @@ class FakeSource : public Source {
 
 }  // namespace
 
-TEST_CASE("The oracle hands on the source's tracks up to the time asked for, each once") {
+TEST_CASE("The oracle passes on the source's tracks up to the time asked for, each once") {
   FakeSource source;
   source.tracks = {{0, 0.1, {1, 1}, 1.0}, {1, 0.2, {2, 2}, 1.0}, {0, 0.3, {3, 3}, 1.0}};
   const auto oracle =

@@ -10,8 +10,8 @@
 namespace evbench::process {
 namespace {
 
-const Registration<FrontEnd, ProcessFrontEnd> registration("process",
-                                                           "a command in any language (core/process/protocol.md)");
+const Registration<FrontEnd, ProcessFrontEnd> registration(
+    "process", "a command in any language (docs/reference/process_protocol.md)");
 
 double seconds(const Event& event) { return static_cast<double>(event.t) / 1e6; }  // as write_events()
 
@@ -58,7 +58,7 @@ FeedbackNeeds read_needs(const Json& value) {
 
 void ProcessFrontEnd::Options::declare(OptionSet& set) {
   ProcessOptions::declare(set);
-  set.add("chunk", chunk, "events told at once, at most").range(1, 1000000);
+  set.add("chunk", chunk, "most events in a message").range(1, 1000000);
 }
 
 ProcessFrontEnd::ProcessFrontEnd(const Options& options, const FrontEndContext& context)
@@ -84,7 +84,7 @@ void ProcessFrontEnd::open(const Options& options, const FrontEndContext& contex
 
 bool ProcessFrontEnd::advance(const Horizon& horizon, TrackBatch& batch) {
   const auto reached = [&] { return horizon.observations > 0 && observations_.size() >= horizon.observations; };
-  while (!finished_ && !reached() && (seen_ < horizon.t || !seen_any_)) tell_chunk(horizon.t);
+  while (!finished_ && !reached() && (seen_ < horizon.t || !seen_any_)) send_chunk(horizon.t);
   if (!finished_ && seen_ >= range_.to) finish();
 
   batch.until = reached() ? std::min(horizon.t, observations_[horizon.observations - 1].t) : horizon.t;
@@ -97,11 +97,11 @@ bool ProcessFrontEnd::advance(const Horizon& horizon, TrackBatch& batch) {
   return !finished_ || !observations_.empty() || !ends_.empty();
 }
 
-/// False when there are no more.
+/// False if there are no more.
 bool ProcessFrontEnd::read_events() {
   if (!stream_) return false;
-  events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(told_));
-  told_ = 0;
+  events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(sent_));
+  sent_ = 0;
   std::vector<Event> more;
   if (!stream_->read(more)) {
     stream_.reset();
@@ -111,18 +111,18 @@ bool ProcessFrontEnd::read_events() {
   return true;
 }
 
-/// Tells the next events: those of one time together, so that all of the time told has been told.
-void ProcessFrontEnd::tell_chunk(double until) {
-  std::size_t end = told_;
+/// Sends the next events. Events of the same time are sent together, so that `until` is complete.
+void ProcessFrontEnd::send_chunk(double until) {
+  std::size_t end = sent_;
   while (true) {
     if (end == events_.size()) {
-      const std::size_t count = end - told_;
+      const std::size_t count = end - sent_;
       if (!read_events()) break;
-      end = told_ + count;
+      end = sent_ + count;
       continue;
     }
     if (seconds(events_[end]) > until) break;
-    if (end - told_ >= chunk_ && events_[end].t != events_[end - 1].t) {
+    if (end - sent_ >= chunk_ && events_[end].t != events_[end - 1].t) {
       until = seconds(events_[end - 1]);
       break;
     }
@@ -130,7 +130,7 @@ void ProcessFrontEnd::tell_chunk(double until) {
   }
   Line line;
   fmt::format_to(std::back_inserter(line), "{{\"until\":{},\"events\":", until);
-  write_events(line, std::span(events_).subspan(told_, end - told_));
+  write_events(line, std::span(events_).subspan(sent_, end - sent_));
   if (needs_.any) {
     fmt::format_to(std::back_inserter(line), ",\"feedback\":[{}]",
                    std::string_view(feedback_.data(), feedback_.size()));
@@ -139,7 +139,7 @@ void ProcessFrontEnd::tell_chunk(double until) {
   line.push_back('}');
   dialogue_.ask(line, fmt::format("the events until {} s", until),
                 [&](const Json& answer) { take_answer(answer, until); });
-  told_ = end;
+  sent_ = end;
   seen_ = until;
   seen_any_ = true;
 }
@@ -199,9 +199,9 @@ void ProcessFrontEnd::finish() {
   finished_ = true;
   dialogue_.finish([this](const Json& answer) {
     check_keys(answer, {"remarks"});
-    const Json* const told = find(answer, "remarks");
-    for (std::size_t i = 0; told != nullptr && i < list(*told, {"remarks"}).size(); ++i) {
-      remarks_.push_back(text((*told)[i], {"remarks", i}));
+    const Json* const given = find(answer, "remarks");
+    for (std::size_t i = 0; given != nullptr && i < list(*given, {"remarks"}).size(); ++i) {
+      remarks_.push_back(text((*given)[i], {"remarks", i}));
     }
   });
   if (const std::string errors = dialogue_.errors(); !errors.empty()) {

@@ -47,19 +47,19 @@ std::vector<Event> some_events() {
 
 const char* const kBegin = R"(
 import json, sys
-def hear(): return json.loads(sys.stdin.readline())
-def say(x): print(json.dumps(x), flush=True)
-hello = hear()
+def receive(): return json.loads(sys.stdin.readline())
+def send(x): print(json.dumps(x), flush=True)
+hello = receive()
 )";
 
-/// Each event is an observation of a track of its own, which ends with it; lines told go to the standard error.
+/// Each event is an observation of a track of its own, which ends with it; received lines go to the standard error.
 const char* const kEach = R"(
-say({"evbench": 1, "name": "each", "needs": ["expected"]})
+send({"evbench": 1, "name": "each", "needs": ["expected"]})
 print(json.dumps(hello), file=sys.stderr)
-while "finish" not in (m := hear()):
+while "finish" not in (m := receive()):
   print(json.dumps({**m, "events": m["events"][:2]}), file=sys.stderr)
-  say({"observations": [[x, t, x, y, 0.5] for t, x, y, p in m["events"]], "ended": [[x, t] for t, x, y, p in m["events"]]})
-say({"remarks": ["that was all"]})
+  send({"observations": [[x, t, x, y, 0.5] for t, x, y, p in m["events"]], "ended": [[x, t] for t, x, y, p in m["events"]]})
+send({"remarks": ["that was all"]})
 )";
 
 class Session {
@@ -110,8 +110,9 @@ class Session {
 /// Of a process that answers `answer`, Python, to each chunk.
 std::string failure(const std::string& answer) {
   try {
-    Session("say({'evbench': 1})\ni = 0\nwhile 'finish' not in (m := hear()):\n  t = m['until']\n  i += 1\n  say(" +
-            answer + ")\nsay({})")
+    Session(
+        "send({'evbench': 1})\ni = 0\nwhile 'finish' not in (m := receive()):\n  t = m['until']\n  i += 1\n  send(" +
+        answer + ")\nsend({})")
         .go(0.25);
   } catch (const ProcessError& error) {
     return error.what();
@@ -138,7 +139,7 @@ TEST_CASE("A front-end process gets every event once, however they are cut, and 
   CHECK_THAT(session.remarks(), ContainsSubstring("front-end process: each") && ContainsSubstring("that was all"));
 }
 
-TEST_CASE("A front-end process is told camera, range and seed") {
+TEST_CASE("A front-end process receives camera, range and seed") {
   const Session session(kEach);
   session.go(1.0);
   CHECK_THAT(session.remarks(),
@@ -159,7 +160,7 @@ TEST_CASE("An exchange every so many observations ends with the last of them") {
   CHECK(result.until[1] == 0.100001);
 }
 
-TEST_CASE("A front-end process is told the feedback that it needs") {
+TEST_CASE("A front-end process receives the feedback that it needs") {
   const Session session(kEach);
   CHECK(session.frontend->needs().any);
   CHECK(session.frontend->needs().expected);
@@ -173,23 +174,23 @@ TEST_CASE("A front-end process is told the feedback that it needs") {
   session.frontend->receive(feedback);
   session.frontend->receive(feedback);
   session.frontend->advance({1.0}, batch);
-  const std::string told = R"({"t": 0.5, "state": "tracking", "world": 0, "outliers": [], )"
+  const std::string sent = R"({"t": 0.5, "state": "tracking", "world": 0, "outliers": [], )"
                            R"("expected": [[4, 1, 2, 3, 10.5, 20.25, 1, 0, 1]]})";
   CHECK_THAT(session.remarks(),
-             ContainsSubstring("\"feedback\": []") && ContainsSubstring("\"feedback\": [" + told + ", " + told + "]"));
+             ContainsSubstring("\"feedback\": []") && ContainsSubstring("\"feedback\": [" + sent + ", " + sent + "]"));
 }
 
-TEST_CASE("A front-end process hears that time goes on where there are no events") {
+TEST_CASE("A front-end process receives the time also where there are no events") {
   const Session session(kEach, 5000, {{500000, 1, 1, true}});
   CHECK(session.go(0.1).observations.size() == 1);
   CHECK_THAT(session.remarks(), ContainsSubstring(R"({"until": 0.1, "events": [], "feedback": []})"));
 }
 
-TEST_CASE("Each way in which a front-end process can answer wrongly is a sentence") {
+TEST_CASE("Every wrong answer of a front-end process is reported by a sentence") {
   CHECK(failure("{'observations': [[1, t, 5, 5, 1]]}").empty());
   CHECK_THAT(failure("{}"),
              ContainsSubstring("config.json: frontend: the process \"/usr/bin/python3 frontend.py\" answered "
-                               "wrongly: \"observations\" is missing in {}; it had been told the events until "
+                               "wrongly: \"observations\" is missing in {}; last message to it: the events until "
                                "0.25 s"));
   CHECK_THAT(failure("{'observations': [], 'end': []}"),
              ContainsSubstring("unknown key \"end\"; did you mean \"ended\"?"));
@@ -207,9 +208,9 @@ TEST_CASE("Each way in which a front-end process can answer wrongly is a sentenc
              ContainsSubstring("expected a time from its last observation on"));
   CHECK_THAT(failure("{'observations': [[1, t, float('inf'), 5, 1]]}"),
              ContainsSubstring("JSON has no NaN and no Infinity"));
-  CHECK_THAT(failure("{'error': 'too dark'}"), ContainsSubstring("says: too dark"));
+  CHECK_THAT(failure("{'error': 'too dark'}"), ContainsSubstring("reports an error: too dark"));
   CHECK_THAT(failure("exit(5)"), ContainsSubstring("ended with exit code 5"));
-  CHECK_THROWS_WITH(Session("say({'evbench': 1, 'needs': ['all']})"),
+  CHECK_THROWS_WITH(Session("send({'evbench': 1, 'needs': ['all']})"),
                     ContainsSubstring("needs[0]: expected \"feedback\""));
 }
 

@@ -22,14 +22,14 @@ const Registration<FrontEnd, Recorded> registration("recorded",
 void Recorded::Options::declare(OptionSet& set) {
   set.add("tracks", tracks, "path of the track file").required().path();
   set.add("ends", ends,
-          "path of a file of where tracks end (id t [s]), which may go on later; empty: each with its last observation")
+          "path of a file with the ends of tracks (id t [s]), which may continue later; empty: at their last "
+          "observations")
       .path();
-  set.add(
-      "columns", columns,
-      "order of the file's columns, e.g. \"t x y - id\", - being one that is not read; empty: as a line of names says, "
-      "id t x y, or HASTE's t x y theta id");
+  set.add("columns", columns,
+          "order of the file's columns, e.g. \"t x y - id\", - for one that is not read; empty: from a line of names, "
+          "id t x y, or HASTE's t x y theta id");
   set.add("time_unit", time_unit, {kTimeUnitNames.begin(), kTimeUnitNames.end()},
-          "unit of the file's times; auto: as the column's name says (t_us), or seconds, from 1e17 on nanoseconds");
+          "unit of the file's times; auto: from the column's name (t_us), or seconds, from 1e17 on nanoseconds");
   set.add("sigma", sigma, "standard deviation of an observation [px]").range(1e-6, 1e6);
   set.add("outside", outside, "what to do with observations outside the image").choices({"keep", "drop"});
   set.add("min_track_length", min_track_length, "tracks with fewer observations are left out").range(1);
@@ -58,7 +58,7 @@ Recorded::Recorded(const Options& options, const FrontEndContext& context)
   if (first > range.to || last < range.from) {
     throw InputError(fmt::format("{}: no observation is left between {} and {} s, the source's time range: times {}",
                                  path_, range.from, range.to,
-                                 times_beside(first, last, range.from, range.to, "time_unit")));
+                                 times_outside(first, last, range.from, range.to, "time_unit")));
   }
   const auto beyond = [&](const TrackObservation& o) { return o.t < range.from || o.t > range.to; };
   remark(static_cast<std::int64_t>(std::erase_if(observations_, beyond)),

@@ -6,9 +6,9 @@
 
 namespace evbench {
 
-/// Tracks from a file (see core/data/tracks.hpp), in the source's time range. Lines out of order and
-/// duplicates are put right and reported by remarks(), as are observations outside the image and tracks of one
-/// observation. Throws InputError for a file that is missing or damaged and when no observation is left.
+/// Tracks from a file (see core/data/tracks.hpp), in the source's time range. Lines out of order and duplicates are
+/// corrected and reported by remarks(), as are observations outside the image and tracks of one observation. Throws
+/// InputError for a file that is missing or damaged and if no observation is left.
 class Recorded : public FrontEnd {
  public:
   static constexpr bool reads_events = false;

@@ -121,7 +121,7 @@ TEST_CASE("Recorded tracks that are missing, or of another time, are refused") {
   CHECK_THROWS_WITH(open("{}", folder, source), ContainsSubstring("\"tracks\" is missing"));
 }
 
-TEST_CASE("Tracks in another unit of time are diagnosed, and read when it is said") {
+TEST_CASE("Tracks in another unit of time are diagnosed, and read when it is stated") {
   const testing::TemporaryFolder folder;
   folder.write("tracks.txt", "1 100000 10 10\n1 900000 11 10\n");
   const FakeSource source({0.0, 1.0});

@@ -12,9 +12,9 @@ std::int64_t microseconds_of(double seconds) { return std::llround(1e6 * seconds
 
 void BatchOptions::declare(OptionSet& set) {
   set.add("duration", duration, "a batch ends after this time [s]").range(1e-4, 10.0);
-  set.add("events", events, "and before that when it has so many events; 0: no matter how many").range(0, 100'000'000);
+  set.add("events", events, "or earlier when it has so many events; 0: any number").range(0, 100'000'000);
   set.add("motion", motion,
-          "and before that when the image has moved by this, going by the last batch [px, mean]; 0: no matter how far")
+          "or earlier when the image has moved by this, at the last batch's speed [px, mean]; 0: by any distance")
       .range(0.0, 1000.0);
 }
 
@@ -22,7 +22,7 @@ Batches::Batches(const BatchOptions& options, double slice, std::int64_t from)
     : options_(options), slice_(slice), end_(from), longest_(options.duration) {}
 
 void Batches::learn(bool found) {
-  constexpr double kShortest = 0.125;  // of the duration: what fails there, too, is not short of brevity
+  constexpr double kShortest = 0.125;  // of the duration: what fails there, too, is not too long
   if (found) {
     longest_ = std::min(options_.duration, 2.0 * longest_);
   } else {
@@ -38,13 +38,13 @@ std::optional<Batch> Batches::next(std::int64_t until) {
   std::int64_t to = from + microseconds_of(duration);
   const auto most = static_cast<std::ptrdiff_t>(options_.events);
   if (most > 0 && events_.end() - first >= most) to = std::min(to, first[most - 1].t + 1);
-  constexpr std::int64_t kShortest = 1000;  // [µs]: a batch of events that all come at once would not get on
+  constexpr std::int64_t kShortest = 1000;  // [µs]: without it, events that all come at once would stop the batches
   to = std::max(to, end_ + kShortest);
   if (to > until) {
     events_.erase(events_.begin(), std::ranges::lower_bound(events_, end_ - shared_, {}, &Event::t));
     return std::nullopt;
   }
-  if (from < 2 * end_ - to) {  // it has become shorter still: its last slice is to begin at the last one's end or later
+  if (from < 2 * end_ - to) {  // its last slice must not begin before the last one's end
     from = 2 * end_ - to;
     first = std::ranges::lower_bound(events_, from, {}, &Event::t);
   }

@@ -20,23 +20,23 @@ struct BatchOptions {
   void declare(OptionSet& set);
 };
 
-/// Events in batches, of which each begins with the last slice of the one before, or with the end of that where it is
-/// much shorter: what was found there is where the next one goes on. Each ends after the one before. Batches follow one
-/// another in time, whether there are events or not.
+/// Divides events into batches. Each batch begins with the last slice of the previous one, so that tracks go on from
+/// there; a much shorter batch begins with the end of that slice. Each batch ends after the previous one. Batches
+/// follow one another in time, whether there are events or not.
 class Batches {
  public:
   /// `from` [µs]: where the first one begins. `slice`: the share that two batches have in common.
   Batches(const BatchOptions& options, double slice, std::int64_t from);
 
-  /// The next ones, in time order, not before those that were added.
+  /// Adds events, in time order, not before those that were added earlier.
   void add(std::span<const Event> events) { events_.insert(events_.end(), events.begin(), events.end()); }
 
-  /// The image moves at this speed [px/s], for batches that end by motion.
+  /// Sets the expected speed of the image [px/s], for batches that end by motion.
   void expect(double speed) { speed_ = speed; }
 
-  /// Whether the last one's motion was found. Where it was not, the next one is half as long, down to about an eighth
-  /// of the duration, then as long as ever; where it was, the next one may be twice as long: what is too much motion
-  /// for a batch is not for a part of it.
+  /// Adapts the length of the next batch. Where the last one's motion was not found, the next one is half as long, down
+  /// to about an eighth of the duration, and then of full length again: motion that is too large for a batch is not for
+  /// a part of it. Where it was found, the next one may be twice as long.
   void learn(bool found);
 
   /// The next batch, if it ends at or before `until` [µs], up to which all events have been added; valid until the
@@ -47,7 +47,7 @@ class Batches {
   BatchOptions options_;
   double slice_;
   std::int64_t end_;         ///< [µs] of the last one
-  std::int64_t shared_ = 0;  ///< [µs] before that, from where on the next one may begin
+  std::int64_t shared_ = 0;  ///< [µs] before that; the next one begins there at the earliest
   double speed_ = 0.0;       ///< [px/s]
   double longest_;           ///< [s] of the next one
   double last_ = 0.0;        ///< [s] how long the last one was

@@ -8,8 +8,8 @@
 
 namespace evbench::str {
 
-/// The motion of a model that moves the landmarks in view as the back-end's newest pose and velocity will; none where
-/// it tells no velocity, or fewer than eight landmarks.
+/// The motion of a model that moves the landmarks in view as the back-end's newest pose and velocity predict. None
+/// where the feedback has no velocity, or fewer than eight landmarks.
 std::optional<Matrix3> expected_motion(const Feedback& feedback, MotionModel model);
 
 }  // namespace evbench::str

@@ -10,15 +10,15 @@ void PatchOptions::declare(OptionSet& set) {
           "what chance gives to 1")
       .range(0.0, 1.0);
   set.add("anchor_fit", anchor_fit,
-          "a track is where the events fit that were around it when it was anchored, if they fit so well; else it is "
-          "anchored anew; 1: a chain from batch to batch alone")
+          "a track is placed by the events that were around it when it was anchored, if they fit so well; else it gets "
+          "a new anchor; 1: a chain from batch to batch alone")
       .range(0.0, 1.0);
   set.add("border", border, "a track ends where it comes this near to the image's border [px]").range(0.0, 1000.0);
   set.add("crowding", crowding, "and where an older one is this near [px]; 0: never").range(0.0, 1000.0);
 }
 
 void Options::declare(OptionSet& set) {
-  set.add("tracks", tracks, "tracks alive, as far as there is something to track").range(1, 100'000);
+  set.add("tracks", tracks, "tracks alive, at most").range(1, 100'000);
   set.add("sigma", sigma, "standard deviation of an observation [px]").range(1e-6, 1e6);
   set.add("interval", interval, "a track is observed at events of it that are about this far apart, within a batch [s]")
       .range(1e-4, 10.0);

@@ -26,7 +26,7 @@ Eigen::Vector2f moved(const Eigen::Vector2f& ray, const Matrix3& A, double dt) {
   return {x[0], y[0]};
 }
 
-/// All points of a cloud `dt` [s] later, whatever their times, which remain.
+/// Moves all points of a cloud by `dt` [s] under the motion A; their times stay.
 void move(EventCloud& cloud, const Matrix3& A, double dt) {
   EventCloud at_once = cloud;
   std::ranges::fill(at_once.t, static_cast<float>(-dt));
@@ -45,7 +45,7 @@ Str::Str(const Options& options, const FrontEndContext& context)
   check_border(options.patch.border, camera_, context.place + ".patch.border");
 }
 
-void Str::look() {
+void Str::on_tick() {
   while (const auto batch = batches_.next(microseconds(clock_))) process(*batch);
 }
 
@@ -57,9 +57,9 @@ void Str::process(const Batch& batch) {
   batches_.expect(0.0);
   batches_.learn(found.good() || found.state == Registration::State::too_few_events);
   if (found.state == Registration::State::too_few_events) {
-    for (Track& track : tracks_) track.t = batch.to;  // the camera stands still, or nearly: they are where they were
+    for (Track& track : tracks_) track.t = batch.to;  // the camera is nearly stationary: the tracks stay
   } else {
-    go_on(batch, found);  // also with a motion that is not to be believed: each track's own events decide
+    go_on(batch, found);  // also with an unreliable motion: each track's own events decide
   }
   if (found.good()) {
     expected_ = found.A;
@@ -83,7 +83,7 @@ void Str::go_on(const Batch& batch, const Registration& registration) {
     if (!crowded && go_on(track, batch, registration)) {
       alive.push_back(track);
     } else {
-      told_.end({track.id, seconds(batch.to - 1)});
+      delayed_.end({track.id, seconds(batch.to - 1)});
     }
   }
   tracks_ = std::move(alive);
@@ -133,13 +133,12 @@ bool Str::go_on(Track& track, const Batch& batch, const Registration& registrati
   return true;
 }
 
-/// The track's place at the reference time, corrected by how its anchor, which is there too, lies on the last slice: a
-/// chain alone would add up what each link is off. Where the anchor fits no more it is made anew, of the events that
-/// have been aligned.
+/// The track's position at the reference time, corrected by aligning its anchor with the last slice: a chain alone
+/// would accumulate the errors of its links. Where the anchor no longer fits, a new one is made of the aligned events.
 Eigen::Vector2f Str::anchored(Track& track, const Matrix3& A, const Eigen::Vector2f& place, double duration) {
   Aligner& aligner = registrar_.aligner();
   const double gate = options_.registration.alignment.last_gate;
-  // What moves the anchor and not the targets is a velocity, too, if all of it is seen half a batch earlier.
+  // Moving the anchor but not the targets is also a velocity, if the whole anchor is seen half a batch earlier.
   const auto early = static_cast<float>(-0.5 * duration);
   EventCloud earlier = track.anchor;
   move(earlier, A, static_cast<double>(early));
@@ -147,7 +146,7 @@ Eigen::Vector2f Str::anchored(Track& track, const Matrix3& A, const Eigen::Vecto
   Alignment found;
   if (earlier.size() > 0) found = aligner.align(earlier, MotionModel::translation, A, duration, gate);
   if (found.converged && found.fit >= options_.patch.anchor_fit) {
-    double late = 0.0;  // when the targets have been seen
+    double late = 0.0;  // mean time of the targets
     const std::vector<Match>& matches = aligner.match(earlier, found.A, gate);
     for (const Match& m : matches) late += static_cast<double>(aligner.targets().t[m.target]);
     late /= static_cast<double>(std::max<std::size_t>(matches.size(), 1));
@@ -166,7 +165,7 @@ Eigen::Vector2f Str::anchored(Track& track, const Matrix3& A, const Eigen::Vecto
   return place;
 }
 
-/// Between what the last batch has told and `until` [µs], at the times of events that are near to the track by then.
+/// Observes between the last batch's observations and `until` [µs], at the times of events near the track.
 void Str::observe_between(const Track& track, const Batch& batch, const Eigen::Vector2f& place, const Matrix3& A,
                           std::int64_t reference, std::int64_t until) {
   constexpr std::ptrdiff_t kTried = 2000;  // events
@@ -180,8 +179,8 @@ void Str::observe_between(const Track& track, const Batch& batch, const Eigen::V
                          [&](const Event& e) { return (Vector2(e.x, e.y) - there).norm() < options_.patch.radius; });
     if (event == last || event->t <= told || event->t >= until) continue;
     told = event->t;
-    told_.add({track.id, seconds(told), pixel_of(moved(place, A, 1e-6 * static_cast<double>(told - reference))),
-               options_.sigma});
+    delayed_.add({track.id, seconds(told), pixel_of(moved(place, A, 1e-6 * static_cast<double>(told - reference))),
+                  options_.sigma});
   }
 }
 
@@ -189,14 +188,14 @@ void Str::observe(Track& track, const Eigen::Vector2f& ray, std::int64_t t) {
   track.ray = ray;
   track.t = t;
   track.pixel = pixel_of(ray);
-  told_.add({track.id, seconds(t), track.pixel, options_.sigma});
+  delayed_.add({track.id, seconds(t), track.pixel, options_.sigma});
 }
 
 Vector2 Str::pixel_of(const Eigen::Vector2f& ray) const {
   return camera_.project(Vector3(static_cast<double>(ray.x()), static_cast<double>(ray.y()), 1.0));
 }
 
-/// New tracks where there are too few: corners of the image of the last slice, compensated to its middle.
+/// Adds tracks where there are too few: corners of the image of the last slice, compensated to its middle.
 void Str::replenish(const Batch& batch, const Registration& registration) {
   const auto wanted = static_cast<std::size_t>(options_.tracks);
   if (tracks_.size() >= wanted) return;

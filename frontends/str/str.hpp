@@ -11,10 +11,10 @@
 
 namespace evbench::str {
 
-/// Spatiotemporal registration, after the description in Liu, Parra and Chin, CVPR 2021, of which there is no public
-/// code: batches of events are registered as point clouds under a motion model, and the events that correspond,
-/// chained from batch to batch, are the tracks. As a model of a few parameters does not hold for all depths, each
-/// track's surroundings are registered once more, by translation. Throws InputError for a source without events.
+/// Spatiotemporal registration after Liu, Parra and Chin, CVPR 2021 (from the description; there is no public code).
+/// Batches of events are registered as point clouds under a motion model. Corresponding events, chained from batch to
+/// batch, are the tracks. As a model of a few parameters does not hold for all depths, the surroundings of each track
+/// are registered once more, by translation. Throws InputError for a source without events.
 class Str : public EventFrontEnd {
  public:
   using Options = str::Options;
@@ -28,14 +28,14 @@ class Str : public EventFrontEnd {
   std::vector<std::string> counts() const override;
   struct Track {
     TrackId id;
-    Eigen::Vector2f ray;     ///< where it is (x, y, 1)
-    std::int64_t t;          ///< [µs], when
+    Eigen::Vector2f ray;     ///< its position (x, y, 1)
+    std::int64_t t;          ///< [µs], of the position
     Vector2 pixel;           ///< raw
-    EventCloud anchor = {};  ///< events that were around it once, where they are now
+    EventCloud anchor = {};  ///< events around it when it was anchored, moved to now
   };
 
   void take(std::span<const Event> events) override { batches_.add(events); }
-  void look() override;
+  void on_tick() override;
   double complete() const override { return complete_; }
   void process(const Batch& batch);
   void go_on(const Batch& batch, const Registration& registration);

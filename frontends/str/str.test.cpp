@@ -5,20 +5,20 @@
 
 #include "core/geometry/so3.hpp"
 #include "core/testing/catch2.hpp"
+#include "core/testing/collect_tracks.hpp"
 #include "core/testing/event_scene.hpp"
-#include "core/testing/told_tracks.hpp"
 #include "frontends/str/expected_motion.hpp"
 
 using namespace evbench;
 using namespace evbench::str;
-using evbench::testing::all_told;
+using evbench::testing::collect_tracks;
 using evbench::testing::EventScene;
 using evbench::testing::same;
 using evbench::testing::swing;
 
 namespace {
 
-/// Faster than a hand.
+/// Faster than hand-held motion.
 SE3 brisk(double t) { return swing(3.0 * t); }
 
 const EventScene& scene() {
@@ -31,13 +31,13 @@ struct Tracked {
   std::vector<std::string> remarks;
 };
 
-/// All that it tells, asked every `interval` [s].
+/// All observations that it publishes when polled every `interval` [s].
 Tracked track(const Source& source, const Options& options = {}, double interval = 0.01, std::size_t most = 0) {
   Str str(options, {source, 0, ""});
-  return {all_told(str, source, interval, most), str.remarks()};
+  return {collect_tracks(str, source, interval, most), str.remarks()};
 }
 
-/// How far the observations are from where their track's first one, a point of the wall, is by then [px]; sorted.
+/// Distances of the observations from where the wall point of their track's first one is by then [px]; sorted.
 std::vector<double> track_errors(const EventScene& source, const std::function<SE3(double)>& motion,
                                  const std::vector<TrackObservation>& observations) {
   std::map<TrackId, Vector3> points;
@@ -55,14 +55,14 @@ std::vector<double> track_errors(const EventScene& source, const std::function<S
   return errors;
 }
 
-/// Their median [px].
+/// The median of these errors [px].
 double median_error(const EventScene& source, const std::function<SE3(double)>& motion,
                     const std::vector<TrackObservation>& observations) {
   const std::vector<double> errors = track_errors(source, motion, observations);
   return errors[errors.size() / 2];
 }
 
-/// The share of the observations that are farther off than this [px].
+/// The share of the observations with a larger error than this [px].
 double share_off(const EventScene& source, const std::function<SE3(double)>& motion,
                  const std::vector<TrackObservation>& observations, double pixels) {
   const std::vector<double> errors = track_errors(source, motion, observations);
@@ -78,7 +78,7 @@ std::size_t track_count(const TrackBatch& batch) {
 
 }  // namespace
 
-TEST_CASE("Points of a wall are followed from batch to batch, each observed at an event's time") {
+TEST_CASE("Points of a wall are tracked from batch to batch, each observed at an event's time") {
   const TrackBatch all = track(scene()).all;
   CHECK(track_count(all) > 60);
   CHECK(all.observations.size() > 900);
@@ -91,10 +91,10 @@ TEST_CASE("Points of a wall are followed from batch to batch, each observed at a
     last[z.track] = z.t;
     times.insert(z.t);
   }
-  CHECK(times.size() > all.observations.size() / 2);  // their own
+  CHECK(times.size() > all.observations.size() / 2);  // each its own
 }
 
-TEST_CASE("A chain of batches slides, anchored to what was around it once, a track stays where it is", "[slow]") {
+TEST_CASE("A chain of batches drifts, and an anchored track does not", "[slow]") {
   Options chained;
   chained.patch.anchor_fit = 1.0;
   const double anchored = median_error(scene(), brisk, track(scene()).all.observations);
@@ -102,7 +102,7 @@ TEST_CASE("A chain of batches slides, anchored to what was around it once, a tra
   CHECK(median_error(scene(), brisk, track(scene(), chained).all.observations) > 1.5 * anchored);
 }
 
-TEST_CASE("What str tells does not depend on how it is asked, by duration and by count", "[slow]") {
+TEST_CASE("Tracks of str do not depend on how often they are polled, with batches by duration and by count", "[slow]") {
   Options by_count;
   by_count.batch.events = 15'000;
   for (const Options& options : {Options(), by_count}) {
@@ -131,7 +131,7 @@ TEST_CASE("Batches by count are shorter where there are more events") {
   CHECK(count > scene().list.size() / 2000);
 }
 
-TEST_CASE("Tracks of a camera that stands still go on when it moves", "[slow]") {
+TEST_CASE("Tracks of a stationary camera go on when it moves", "[slow]") {
   const auto motion = [](double t) { return brisk(t < 0.4 ? t : std::max(0.4, t - 0.6)); };
   const EventScene source(motion, 1.4, EventScene::quadrangles(150, 1));
   const TrackBatch all = track(source).all;
@@ -144,14 +144,13 @@ TEST_CASE("Tracks of a camera that stands still go on when it moves", "[slow]") 
             lives, [](const auto& life) { return life.second.first < 0.4 && life.second.second > 1.2; }) > 10);
 }
 
-TEST_CASE("Where the motion is fast from the beginning and turns round, few and many edges tell the truth or nothing",
-          "[slow]") {
+TEST_CASE("Under fast motion that reverses, with few or many edges, tracks are right or there are none", "[slow]") {
   const auto motion = [](double t) {
     return SE3{so3::exp({0.0, 0.5 * std::sin(6.0 * t), 0.1 * std::sin(6.0 * t)}), Vector3::Zero()};
   };
   const int edges = GENERATE(30, 150);
   CAPTURE(edges);
-  const EventScene source(motion, 0.6, EventScene::quadrangles(edges, 1));  // turns at 0.26 s
+  const EventScene source(motion, 0.6, EventScene::quadrangles(edges, 1));  // reverses at 0.26 s
   const Tracked told = track(source);
   INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
   CHECK(track_count(told.all) > 40);
@@ -160,7 +159,7 @@ TEST_CASE("Where the motion is fast from the beginning and turns round, few and 
   CHECK(told.remarks.at(0).find(" 0 poor") == std::string::npos);  // the first batch: 60 px of motion that changes
 }
 
-TEST_CASE("A structure that moves on its own leaves the tracks of all else where they are", "[slow]") {
+TEST_CASE("A structure that moves on its own does not disturb the other tracks", "[slow]") {
   EventScene source = scene();
   const EventScene other(
       [](double t) {
@@ -175,7 +174,7 @@ TEST_CASE("A structure that moves on its own leaves the tracks of all else where
   CHECK(share_off(source, brisk, all.observations, 2.0) < 0.05);
 }
 
-TEST_CASE("A source whose events stop, flicker or come all at once neither stops str nor keeps it", "[slow]") {
+TEST_CASE("Events that stop, flicker or come all at once neither break nor block str", "[slow]") {
   EventScene silent = scene();
   silent.silence(0.2, 0.4);
   CHECK(track(silent).remarks.at(0).find(" 0 with too few events") == std::string::npos);

@@ -10,7 +10,8 @@
 namespace evbench::gp_map {
 namespace {
 
-/// The share of `step` that lowers the landmark's own cost below `cost`, tried by halving; 0: none. Lowers `cost`.
+/// Line search along `step`: returns the share of it that lowers the landmark's own cost below `cost`, found by
+/// halving, or 0 if none does. Updates `cost`.
 double descend(const LandmarkViews& views, const Vector3& start, const Vector3& step, double share, double& cost) {
   constexpr int kHalvings = 6;
   for (int i = 0; i < kHalvings; ++i, share *= 0.5) {
@@ -22,7 +23,8 @@ double descend(const LandmarkViews& views, const Vector3& start, const Vector3& 
   return 0.0;
 }
 
-/// `size`: of the step, relative to the landmark's distance.
+/// Moves a landmark along `step`, then by Gauss-Newton steps, while its own cost decreases. `size`: of the step,
+/// relative to the landmark's distance.
 Vector3 refine_landmark(const LandmarkViews& views, Vector3 position, const Vector3& step, double size) {
   constexpr double kLargestStep = 0.3;
   constexpr int kIterations = 2;
@@ -39,7 +41,7 @@ Vector3 refine_landmark(const LandmarkViews& views, Vector3 position, const Vect
 
 }  // namespace
 
-void Engine::set_state(int i, const double* delta) {
+void Engine::set_state_increment(int i, const double* delta) {
   const Vector12 now = Eigen::Map<const Vector12>(delta);
   const Vector12 before = points_.state_delta(i);
   state_change_ = size_of_state(i, now - before);
@@ -47,7 +49,7 @@ void Engine::set_state(int i, const double* delta) {
   points_.set_state_delta(graph_, i, now);
 }
 
-void Engine::set_landmark(int j, const double* delta, int slot) {
+void Engine::set_landmark_increment(int j, const double* delta, int slot) {
   const Vector3 now = Eigen::Map<const Vector3>(delta);
   const Vector3 before = points_.landmark_delta(j);
   const double size = size_of_landmark(j, now - before);
@@ -58,27 +60,27 @@ void Engine::set_landmark(int j, const double* delta, int slot) {
   points_.set_landmark_delta(graph_, j, now);
 }
 
-/// What landmarks that came back have taught about older stages may change by this before these are solved anew
-/// [standard deviations of their noise]: as much as `solve_tolerance` is worth, in cost.
+/// Older stages are solved again when returned landmarks change the mean of their noise by more than this [standard
+/// deviations of that noise]. In cost this is worth as much as `solve_tolerance`.
 constexpr double kNoiseTolerance = 0.3;
 
-/// Changes that may wait [tolerances of what is skipped for good].
+/// Deferred changes below this wait for a later update [multiples of the tolerance].
 constexpr double kSmall = 30.0;
 
-/// Solves back from the root through the stages. All stages that were redone are solved; older ones as long as the
-/// change of the separator, added up over the updates since the stage was last solved, is above the tolerance: so what
-/// is skipped stays bounded however long it goes on. Beyond depth_ changes wait for an update that reaches farther back
-/// as long as they are small: every landmark that comes back changes all of history, a little. Where the separator has
-/// changed since is not known then, so all stages are solved.
+/// Solves back from the root through the stages. All redone stages are solved. Older stages are solved while the change
+/// of their separator, summed over the updates since the stage was last solved, exceeds the tolerance; this bounds the
+/// skipped change over any number of updates. Beyond depth_ stages small changes are deferred to an update that reaches
+/// farther back, because every returned landmark changes the whole history a little. After a deferral the changes of
+/// the separators are unknown, so all stages are solved.
 void Engine::solve_back(UpdateSummary& summary) {
   const Root& root = factorisation_.root();
   const int newest = factorisation_.done();
   slot_change_.assign(index(Root::slot_of_row(root.stride()) + 1), 0.0);
-  set_state(newest, delta_.data() + Root::row_of_state(newest));
+  set_state_increment(newest, delta_.data() + Root::row_of_state(newest));
   int landmarks = 0;
   for (int slot = 0; slot < root.slots(); ++slot) {
     if (root.occupant(slot) < 0) continue;
-    set_landmark(root.occupant(slot), delta_.data() + Root::row_of_slot(slot), slot);
+    set_landmark_increment(root.occupant(slot), delta_.data() + Root::row_of_slot(slot), slot);
     ++landmarks;
   }
   clear_returns(newest + 1);
@@ -98,14 +100,14 @@ void Engine::solve_back(UpdateSummary& summary) {
       for (std::size_t i = 0; i < conditional.landmarks.size(); ++i) {
         const int j = conditional.landmarks[i], row = conditional.rows[i], slot = Root::slot_of_row(row);
         if (factorisation_.eliminated_at(j) == k) {
-          set_landmark(j, delta_.data() + row, slot);
+          set_landmark_increment(j, delta_.data() + row, slot);
         } else {
-          Vector3& before = factorisation_.returns().find(j, k)->delta_before;  // it came back later
+          Vector3& before = factorisation_.returns().find(j, k)->delta_before;  // the landmark returned later
           const Vector3 now = Eigen::Map<const Vector3>(delta_.data() + row);
           slot_change_[index(slot)] = size_of_landmark(j, now - std::exchange(before, now));
         }
       }
-      if (conditional.state >= 0) set_state(conditional.state, delta_.data() + conditional.rows.back());
+      if (conditional.state >= 0) set_state_increment(conditional.state, delta_.data() + conditional.rows.back());
     }
     for (const int slot : stage.entered_slots) slot_change_[index(slot)] = 0.0;
     for (auto move = stage.moved.rbegin(); move != stage.moved.rend(); ++move) {
@@ -116,7 +118,7 @@ void Engine::solve_back(UpdateSummary& summary) {
   waiting_ = 0.0;
 }
 
-/// Landmarks that came back before stage k are in no slot before it.
+/// Landmarks that returned before stage k have no slot in the layout before it.
 void Engine::clear_returns(int k) {
   const Returns& returns = factorisation_.returns();
   for (int i = returns.first_after(k - 1); i < returns.size() && returns[i].before == k; ++i) {
@@ -124,7 +126,7 @@ void Engine::clear_returns(int k) {
   }
 }
 
-/// The largest change among what stage k is solved from: state k and the landmarks alive after it.
+/// The largest change in the separator of stage k: state k and the landmarks alive after it.
 double Engine::separator_change(int k) const {
   const int slots = Root::slot_of_row(factorisation_.stage(k).conditionals.back().extent);
   double change = state_change_;
@@ -132,15 +134,15 @@ double Engine::separator_change(int k) const {
   return change;
 }
 
-/// Landmarks that have moved a lot are solved for by themselves, given the poses as they are now: back towards where
-/// they were as far as their own cost asks for it, then by Gauss-Newton steps of 3 unknowns. A landmark seen with
-/// little parallax easily overshoots, through the camera even, and this costs no new factorisation as damping would.
-/// The result becomes its linearisation point with the next update.
+/// Refines each landmark with a large change by itself, with the present poses fixed: a line search along its step by
+/// its own cost, then Gauss-Newton steps of 3 unknowns. A landmark seen with little parallax easily overshoots, even to
+/// behind the camera. Unlike damping, this needs no new factorisation. The result becomes its linearisation point in
+/// the next update.
 void Engine::refine_landmarks() {
   for (Change& change : changes_) {
     const int j = change.variable.index;
     if (change.variable.kind != Variable::Kind::landmark || !(change.size > options_.check_step)) continue;
-    if (factorisation_.in_base(change.variable)) continue;  // its own cost isn't known any more
+    if (factorisation_.in_base(change.variable)) continue;  // its own cost is no longer known
     const Vector3 before = change.before.head<3>();
     const Vector3 start = points_.landmark(j) + before;
     const Vector3 step = points_.landmark_delta(j) - before;
@@ -150,8 +152,8 @@ void Engine::refine_landmarks() {
   }
 }
 
-/// Whether the last solve raised the cost of the intervals around states that changed a lot (elsewhere the linear model
-/// is trusted, which is what the thresholds of relinearisation are for).
+/// Did the last solve raise the cost of the intervals around states with a large change? Elsewhere the linear model is
+/// accurate enough: the thresholds of relinearisation ensure this.
 bool Engine::raises_cost() {
   concerned_.clear();
   const int newest = static_cast<int>(graph_.states.size()) - 1;
@@ -172,7 +174,7 @@ bool Engine::raises_cost() {
   return !(after <= before * (1.0 + kRounding));
 }
 
-/// Of some intervals, and the priors of landmarks that changed.
+/// The cost of some intervals plus the priors of all changed variables.
 double Engine::concerned_cost(const std::vector<int>& intervals) const {
   double cost = 0.0;
   for (const int k : intervals) cost += interval_cost(graph_, k);
@@ -187,7 +189,7 @@ double Engine::concerned_cost(const std::vector<int>& intervals) const {
   return cost;
 }
 
-/// Exchanges the increments with those of before the last solve, of which each variable was part once.
+/// Exchanges the increments with those before the last solve. Each variable is in changes_ once.
 void Engine::swap_changes() {
   factorisation_.swap_known();
   for (Change& change : changes_) {
@@ -204,7 +206,7 @@ void Engine::swap_changes() {
   }
 }
 
-/// Half of the last solve's step, in the same direction.
+/// Halves the step of the last solve.
 void Engine::halve_changes() {
   for (const Change& change : changes_) {
     const int i = change.variable.index;

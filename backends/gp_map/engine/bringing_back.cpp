@@ -5,7 +5,7 @@
 
 #include "backends/gp_map/engine/factorisation.hpp"
 
-// Landmarks that come back into the root after they were eliminated: the mathematics is in returns.hpp and engine.md.
+// Returns of eliminated landmarks to the root; returns.hpp and docs/algorithms/smoother.md have the derivation.
 namespace evbench::gp_map {
 
 int Factorisation::oldest_redone(int first, const FactorGraph& graph) const {
@@ -20,14 +20,14 @@ int Factorisation::oldest_redone(int first, const FactorGraph& graph) const {
     const int start = earlier >= 0 ? returns_[earlier].before : seen.empty() ? first : seen.front();
     if (start > done || start >= first) continue;
     first = start;
-    i = returns_.size();  // more returns may be concerned
+    i = returns_.size();  // more returns may be affected
   }
   return first;
 }
 
-/// Landmarks that had come back after the last stage that is still done will come back now. Those that are still in the
-/// root now, or that have not been seen, will not leave it: if they have moved since they came back, all stages are to
-/// be redone that know them. Returns the oldest of these.
+/// Takes back the returns after the last stage that is still done. Landmarks that a done stage eliminated return again.
+/// The others are still in the root or not observed yet and do not leave it; if the linearisation point of one of them
+/// has moved since its return, all stages that contain it must be redone. Returns the oldest of these.
 int Factorisation::take_back_returns(const FactorGraph& graph) {
   std::vector<Return> taken = returns_.take_after(done_);
   std::ranges::move(taken_back_, std::back_inserter(taken));
@@ -52,7 +52,7 @@ int Factorisation::take_back_returns(const FactorGraph& graph) {
   return oldest;
 }
 
-/// Brings landmarks back into the root as it is now. If that can't be done, the stage that has to be redone instead.
+/// Returns landmarks to the present root. If this is impossible, the result is the stage that must be redone instead.
 std::optional<int> Factorisation::bring_all_back(const FactorGraph& graph, const LinearisationPoints& points) {
   const int before = returns_.size();
   for (auto i = taken_back_.begin(); i != taken_back_.end(); ++i) {
@@ -67,7 +67,8 @@ std::optional<int> Factorisation::bring_all_back(const FactorGraph& graph, const
   return std::nullopt;
 }
 
-/// What the stages know of the landmarks that have just come back: the returns from this position on.
+/// Adds the information of the stages about the landmarks that have just returned: the returns from position `first`
+/// on.
 void Factorisation::add_returned_factors(int first) {
   const int count = returns_.size() - first;
   if (count == 0) return;
@@ -81,7 +82,7 @@ void Factorisation::add_returned_factors(int first) {
   root_.add_factor(R, mean);
 }
 
-/// A landmark that had come back in a stage that is being redone.
+/// Returns a landmark that had already returned in a stage that is being redone. False if this is impossible.
 bool Factorisation::bring_back_again(Return&& known, const LinearisationPoints& points) {
   auto& checkpoints = known.checkpoints;
   while (!checkpoints.empty() && checkpoints.back().stage > done_) checkpoints.pop_back();
@@ -100,8 +101,8 @@ bool Factorisation::bring_back_again(Return&& known, const LinearisationPoints& 
   return true;
 }
 
-/// Landmarks that come back for the first time since they were eliminated, in one walk. If that can't be done for some
-/// of them, the stage that has to be redone.
+/// Returns landmarks that are re-acquired for the first time since their elimination, in one walk. If some of them
+/// cannot return, the result is the stage that must be redone.
 std::optional<int> Factorisation::walk_and_bring_back(const FactorGraph& graph, const LinearisationPoints& points) {
   std::vector<Return> coming;
   std::vector<int> rows;
@@ -144,11 +145,11 @@ std::optional<int> Factorisation::walk_and_bring_back(const FactorGraph& graph, 
     }
     if (snapshots_.contains(k) && k >= done_ - kThinnedUpTo) keep_checkpoints(k, walk, coming);
   }
-  std::vector<int> ids(coming.size(), -1);  // of those that have come back
+  std::vector<int> ids(coming.size(), -1);  // of the returned landmarks
   std::optional<int> failed;
   for (int i = 0; i < count; ++i) {
     const int id = coming[index(i)].id, from = coming[index(i)].from;
-    Walk own(walk, i, from, root_.stride());  // which may have grown for those before it
+    Walk own(walk, i, from, root_.stride());  // the root may have grown for the landmarks before
     for (int e = 0; e < i; ++e) {
       if (ids[index(e)] >= 0) own.pass.sum(ids[index(e)]) = walk.square.block<3, 3>(3 * e, 3 * i);
     }
@@ -170,7 +171,7 @@ std::optional<int> Factorisation::walk_and_bring_back(const FactorGraph& graph, 
   return failed;
 }
 
-/// The walk as it is after stage k, for each of its landmarks; those before it in the order come back before it.
+/// Stores the walk after stage k for each of its landmarks. Landmarks earlier in the order return earlier.
 void Factorisation::keep_checkpoints(int k, Walk& walk, std::vector<Return>& coming) const {
   const int rows = stages_[index(k)].conditionals.back().extent, count = static_cast<int>(coming.size());
   for (int i = 0; i < count; ++i) {

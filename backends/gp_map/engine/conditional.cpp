@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kMaxPivots = 3 * kMaxPivotLandmarks + 12;
 
-/// Copies a symmetric matrix's columns `indices` into A and clears them there, rows and columns.
+/// Copies the columns `indices` of a symmetric matrix into A and clears these rows and columns.
 void take_columns(Root& root, std::span<const int> indices, int n, double* A) {
   const std::ptrdiff_t stride = root.stride();
   double* H = root.H();

@@ -6,7 +6,7 @@
 #include "core/geometry/solve_symmetric.hpp"
 #include "core/testing/catch2.hpp"
 
-// Whether the engine's covariances say how large its errors are, and whether it ends at the optimum.
+// Do the engine's covariances match its errors, and does it end at the optimum?
 namespace evbench::gp_map {
 namespace {
 
@@ -20,11 +20,11 @@ constexpr int kSeeds = 10, kOracleSeeds = 2;
 constexpr int kSeeds = 200, kOracleSeeds = 10;
 #endif
 
-/// Not from 1: of seeds 1 to 200 one state (at 0.95 s) has small errors by chance, NEES 10.98 of [11.03, 13.02]. Over
-/// 1,000 other seeds its mean is 11.93.
+/// Seeds start here and not at 1: of seeds 1 to 200 one state (at 0.95 s) has small errors by chance, NEES 10.98 of
+/// [11.03, 13.02]. Over 1,000 other seeds its mean is 11.93.
 constexpr int kFirstSeed = 1001;
 
-/// The standard normal's quantile that is exceeded in absolute value with probability p.
+/// The quantile of the standard normal distribution that is exceeded in absolute value with probability p.
 double two_sided_quantile(double p) {
   double low = 0.0, high = 10.0;
   for (int i = 0; i < 60; ++i) {
@@ -34,8 +34,8 @@ double two_sided_quantile(double p) {
   return low;
 }
 
-/// Where means over all seeds of χ² variables lie, all of so many of them (Bonferroni), with a probability of at least
-/// 95 % (Wilson-Hilferty).
+/// Range that contains `figures` means of χ² variables over all seeds with a probability of at least 95 % (Bonferroni,
+/// Wilson-Hilferty).
 struct Band {
   double low, high;
   Band(int freedom, std::size_t figures) {
@@ -56,7 +56,7 @@ double normalised(const Eigen::Matrix<double, N, 1>& error, const Eigen::Matrix<
   return error.dot(solve_symmetric(covariance, error));
 }
 
-/// At some steps of the drawn trajectory, after all updates and without a final optimisation.
+/// NEES at some steps of the drawn trajectory, after all updates and without a final optimisation.
 std::vector<Nees> mean_nees(const DrawnOptions& options, const std::vector<int>& steps) {
   std::vector<Nees> mean(steps.size());
   for (int seed = kFirstSeed; seed < kFirstSeed + kSeeds; ++seed) {
@@ -84,8 +84,8 @@ void check_within(const Band& band, const char* name, double nees) {
   CHECK(nees < band.high);
 }
 
-/// The first of the steps has its own 95 % bands; the others share one, as one of many figures may well be outside its
-/// own by chance.
+/// The first step has its own 95 % bands. The others share one, because one of many figures is easily outside its own
+/// band by chance.
 void check_consistency(const DrawnOptions& options, const std::vector<int>& steps) {
   const std::vector<Nees> nees = mean_nees(options, steps);
   for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -106,8 +106,8 @@ std::vector<int> control_states() {
   return steps;
 }
 
-/// Amid the newest interval, and the steps inside the first one, where little but the interpolation is uncertain, and
-/// inside one 1.5 s old.
+/// The middle of the newest interval, the steps inside the first interval, where most of the uncertainty is that of the
+/// interpolation, and the steps inside one 1.5 s old.
 std::vector<int> between_states() {
   std::vector<int> steps = {kNewest - DrawnProblem::kSteps / 2};
   for (const int start : {0, 29 * DrawnProblem::kSteps}) {
@@ -118,23 +118,22 @@ std::vector<int> between_states() {
 
 }  // namespace
 
-TEST_CASE("Errors of control states are as large as their covariances say, with landmark priors", "[slow]") {
+TEST_CASE("Errors of control states match their covariances, with landmark priors", "[slow]") {
   check_consistency({.gauge = Gauge::landmark_priors}, control_states());
 }
 
-TEST_CASE("Errors of control states are as large as their covariances say, in the gauge of the scale anchor",
-          "[slow]") {
+TEST_CASE("Errors of control states match their covariances, in the gauge of the scale anchor", "[slow]") {
   check_consistency({.gauge = Gauge::scale_anchor}, control_states());
 }
 
-TEST_CASE("Errors between control states are as large as their covariances say", "[slow]") {
+TEST_CASE("Errors between control states match their covariances", "[slow]") {
   for (const Gauge gauge : {Gauge::landmark_priors, Gauge::scale_anchor}) {
     check_consistency({.gauge = gauge, .observed = DrawnOptions::Observed::at_states}, between_states());
   }
 }
 
-#if !defined(EVBENCH_SANITIZED)  // whose few seeds could not show it
-TEST_CASE("Errors are seen to be too large for their covariances when pixels are 10 % noisier than stated", "[slow]") {
+#if !defined(EVBENCH_SANITIZED)  // too few seeds to show it
+TEST_CASE("Errors are too large for their covariances when pixels are 10 % noisier than stated", "[slow]") {
   for (const Gauge gauge : {Gauge::landmark_priors, Gauge::scale_anchor}) {
     const Nees nees = mean_nees({.gauge = gauge, .noise_scale = 1.1}, {kNewest})[0];
     CHECK(nees.joint > Band(12, 1).high);
@@ -142,7 +141,7 @@ TEST_CASE("Errors are seen to be too large for their covariances when pixels are
 }
 #endif
 
-TEST_CASE("After its final iterations the engine's trajectory is the oracle's within 1 % of its standard deviation",
+TEST_CASE("After its final iterations the engine's trajectory equals the oracle's within 1 % of its standard deviation",
           "[slow]") {
   for (const Gauge gauge : {Gauge::landmark_priors, Gauge::scale_anchor}) {
     for (int seed = kFirstSeed; seed < kFirstSeed + kOracleSeeds; ++seed) {

@@ -4,8 +4,8 @@
 
 #include "backends/gp_map/engine/engine.hpp"
 
-// Marginal covariances by solving for unit right-hand sides through the factor: forward from the stage in which the
-// variable is eliminated (before that the right-hand side is zero) to the root, and back to that stage only.
+// Marginal covariances. Unit right-hand sides are solved through the factor: forward from the stage that eliminates the
+// variable (before it the right-hand side is zero) to the root, and back to that stage only.
 namespace evbench::gp_map {
 namespace {
 
@@ -40,7 +40,8 @@ std::optional<Factorisation::Unknown> Factorisation::find_landmark(int j) const 
   return std::nullopt;
 }
 
-/// Columns of H⁻¹, all in one go: each comes in with the stage of its unknown and is read where each unknown is.
+/// Columns of H⁻¹ in one pass. Each column starts at the stage of its unknown and is read at the stages of all
+/// unknowns.
 Eigen::MatrixXd Factorisation::covariance(std::span<const Unknown> unknowns) const {
   const int first = unknowns.front().stage, columns = static_cast<int>(unknowns.size()), stride = root_.stride();
   Buffer x(index(stride * columns), 0.0), z;
@@ -90,7 +91,7 @@ Eigen::MatrixXd Factorisation::covariance(std::span<const Unknown> unknowns) con
   return 0.5 * (result + result.transpose());
 }
 
-/// Of everything in the root, in its layout; zero where nobody is.
+/// The covariance of all variables in the root, in its layout; zero for free slots.
 Eigen::MatrixXd Factorisation::root_covariance() const {
   const int n = factor_.row_of_states() + 12;
   Eigen::MatrixXd half = Eigen::MatrixXd::Identity(n, n);  // L⁻¹
@@ -105,9 +106,9 @@ Eigen::MatrixXd Factorisation::root_covariance() const {
   return result;
 }
 
-/// S: second moments of everything in the root's layout and, after that, by id of the μ of landmarks that came back.
-/// μ = L⁻ᵀ (Rᵀ δ − mean − ...), but counted with a covariance that is less by what the noise of the stages before has
-/// by itself: with it that noise can be taken for independent (in the mean it is Z μ).
+/// Adds the moments of one return's μ to S. S holds second moments: of the root's variables in its layout and, after
+/// them, by id, of the μ of returned landmarks. μ = L⁻ᵀ (Rᵀ δ − mean − ...). Its covariance is reduced by the share
+/// that the noise of the earlier stages has by itself. This noise, of mean Z μ, can then be treated as independent.
 void Factorisation::add_return_moments(int position, Eigen::MatrixXd& S) const {
   const Return& e = returns_[position];
   MatrixX3 W = MatrixX3::Zero(S.rows(), 3);
@@ -129,9 +130,8 @@ void Factorisation::add_return_moments(int position, Eigen::MatrixXd& S) const {
   S.block<3, 3>(row, row) = 0.5 * (own + own.transpose());
 }
 
-/// Σ of what is left in the root gives that of what a conditional took out: with X = A L⁻¹, δ_p = L⁻ᵀ y − Xᵀ δ_r and
-/// Σ_rp = −Σ_rr X, Σ_pp = (L Lᵀ)⁻¹ − Xᵀ Σ_rp. Landmarks that came back are more of the rest, with −Zᵀ for their rows of
-/// A.
+/// The covariance Σ of the remaining root gives that of the variables of a conditional: with X = A L⁻¹, δ_p = L⁻ᵀ y −
+/// Xᵀ δ_r and Σ_rp = −Σ_rr X, Σ_pp = (L Lᵀ)⁻¹ − Xᵀ Σ_rp. Returned landmarks extend the rest; their rows of A are −Zᵀ.
 std::vector<Matrix24> Factorisation::chain(int first) const {
   std::vector<Matrix24> result(index(std::max(0, done_ - first + 1)));
   const int size = root_.stride() + 3 * returns_.ids();
@@ -208,10 +208,10 @@ Eigen::MatrixXd Factorisation::image_in_root(std::span<const int> rows, const Ei
   return X.transpose() * X;
 }
 
-/// Factorises what has changed or was damped, as it is at the present linearisation points.
+/// Factorises everything that has changed or was damped, without damping, at the present linearisation points.
 bool Engine::factorise_undamped() {
   const int states = static_cast<int>(graph_.states.size());
-  if (restart_ < states || factorisation_.done() >= states || damped_) {  // or states were taken back
+  if (restart_ < states || factorisation_.done() >= states || damped_) {  // or states were removed
     if (factorisation_.redo(restart_, graph_, points_, 0.0)) return false;
     restart_ = states;
     damped_ = factorisation_.factorise_root(points_, 0.0).has_value();  // if it failed, there is no factor to use

@@ -118,7 +118,7 @@ int cholesky(double* L, int ldl, int p, double tolerance) {
 }
 
 int cholesky_blocked(double* L, int ldl, int n, double tolerance) {
-  // Pivots are judged against the diagonal before anything was eliminated.
+  // Pivots are compared with the diagonal before any elimination.
   Buffer original(index(n));
   for (int i = 0; i < n; ++i) original[index(i)] = L[static_cast<std::ptrdiff_t>(i) * ldl + i];
   for (int j = 0; j < n; j += kBlock) {

@@ -25,7 +25,7 @@ using Buffer = std::vector<double, CacheLineAllocator<double>>;
 inline constexpr int kPadding = 8;
 inline int padded(int n) { return (n + kPadding - 1) / kPadding * kPadding; }
 
-/// Operands as Eigen sees them, for what Eigen does as fast as kernels of our own would (bench/micro/engine_micro.cpp).
+/// Operands as Eigen maps, for operations that Eigen does as fast as own kernels would (bench/micro/engine_micro.cpp).
 inline auto as_matrix(const double* A, int rows, int columns, int stride) {
   return Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>(A, rows, columns, Eigen::OuterStride<>(stride));
 }
@@ -35,8 +35,8 @@ inline auto as_matrix(double* A, int rows, int columns, int stride) {
 inline auto as_vector(double* x, int size) { return Eigen::Map<Eigen::VectorXd>(x, size); }
 inline auto as_vector(const double* x, int size) { return Eigen::Map<const Eigen::VectorXd>(x, size); }
 
-// All matrices are stored by columns with a leading dimension; of symmetric ones the lower triangle is valid, and the
-// 8 × 8 blocks on the diagonal may hold anything above it.
+// All matrices are stored by columns with a leading dimension. Of symmetric matrices the lower triangle is valid; the 8
+// × 8 blocks on the diagonal may contain anything above it.
 
 /// C −= A Aᵀ: C n × n symmetric, A n × p, n padded.
 void subtract_outer_product(double* C, int ldc, const double* A, int lda, int n, int p);
@@ -55,7 +55,7 @@ int cholesky(double* L, int ldl, int p, double tolerance);
 /// The same, blocked, for n × n with n padded.
 int cholesky_blocked(double* L, int ldl, int n, double tolerance);
 
-/// Pivots must stand above this share of their diagonal element: what is left of it in double precision.
+/// Pivots must exceed this share of their diagonal element; smaller ones are rounding errors in double precision.
 inline constexpr double kPivotTolerance = 1e-13;
 
 }  // namespace evbench::gp_map

@@ -13,7 +13,7 @@ Matrix lower(const Matrix& m) { return m.triangularView<Eigen::Lower>(); }
 
 }  // namespace
 
-TEST_CASE("Dense kernels do what Eigen does, at sizes on both sides of their blocks") {
+TEST_CASE("Dense kernels agree with Eigen, at sizes on both sides of their blocks") {
   std::srand(1);
   for (const int n : {8, 16, 24, 32, 48, 56, 104, 208}) {
     for (const int p : {1, 3, 12, 20, 36}) {

@@ -31,24 +31,24 @@ Engine::Engine(FactorGraph graph, const EngineOptions& options)
 void Engine::add_state(const ControlState& guess) {
   graph_.add_state(guess);
   points_.add_state(guess);
-  touch(static_cast<int>(graph_.states.size()) - 1);
+  mark_dirty(static_cast<int>(graph_.states.size()) - 1);
 }
 
 void Engine::add_pose_prior(const PosePrior& prior) {
   graph_.pose_priors.push_back(prior);
-  touch(prior.state);
+  mark_dirty(prior.state);
 }
 
 void Engine::add_velocity_prior(const VelocityPrior& prior) {
   graph_.velocity_priors.push_back(prior);
-  touch(prior.state);
+  mark_dirty(prior.state);
 }
 
 void Engine::anchor_scale(const Vector3& origin, std::vector<int> landmarks) {
-  touch_landmarks(graph_.anchor.landmarks);
+  mark_landmarks_dirty(graph_.anchor.landmarks);
   graph_.anchor_scale(origin, std::move(landmarks));
   factorisation_.renew_anchor();
-  touch_landmarks(graph_.anchor.landmarks);
+  mark_landmarks_dirty(graph_.anchor.landmarks);
 }
 
 int Engine::add_landmark(const Vector3& guess, const LandmarkPrior& prior) {
@@ -65,7 +65,7 @@ bool Engine::add_observation(int landmark, const Observation& observation) {
 bool Engine::insert(int landmark, const Observation& observation) {
   const bool sound = std::isfinite(observation.t) && observation.pixel.allFinite() &&
                      std::isfinite(observation.inverse_sigma) && graph_.landmarks[index(landmark)].alive;
-  if (!sound || factorisation_.is_forgotten(landmark)) return false;
+  if (!sound || factorisation_.is_marginalised(landmark)) return false;
   const int k = graph_.interval_of(observation.t);
   if (k <= factorisation_.base() || !graph_.add_observation(landmark, observation)) return false;
   points_.invalidate(k);
@@ -88,7 +88,7 @@ void Engine::remove_newest_state() {
   graph_.remove_newest_state();
   points_.remove_newest_state();
   std::erase(candidates_, Variable{Variable::Kind::state, newest});
-  touch(newest);
+  mark_dirty(newest);
 }
 
 void Engine::set_qc(int k, const Vector6& qc, double expansion) {
@@ -96,21 +96,21 @@ void Engine::set_qc(int k, const Vector6& qc, double expansion) {
   graph_.qcs[index(k)] = qc;
   graph_.expansions[index(k)] = expansion;
   points_.invalidate(k);
-  touch(k);
+  mark_dirty(k);
 }
 
 void Engine::drop_prior(int landmark) {
   FactorGraph::Landmark& known = graph_.landmarks[index(landmark)];
-  if (known.intervals.empty() || factorisation_.is_forgotten(landmark)) return;
+  if (known.intervals.empty() || factorisation_.is_marginalised(landmark)) return;
   if (factorisation_.in_base({Variable::Kind::landmark, landmark})) return;
   known.prior = {};
-  touch_landmarks({&landmark, 1});
+  mark_landmarks_dirty({&landmark, 1});
 }
 
 void Engine::remove_landmark(int landmark) {
-  touch_observations(landmark);
+  mark_observations_dirty(landmark);
   const std::vector<int>& anchors = graph_.anchor.landmarks;
-  if (std::ranges::find(anchors, landmark) != anchors.end()) touch_landmarks(anchors);
+  if (std::ranges::find(anchors, landmark) != anchors.end()) mark_landmarks_dirty(anchors);
   graph_.remove_landmark(landmark);
 }
 
@@ -120,17 +120,17 @@ void Engine::remove_observations(int landmark, double from) {
   for (const int k : seen) {
     if (graph_.states[index(k)].t < from) continue;
     points_.invalidate(k);
-    touch(k);
+    mark_dirty(k);
   }
   graph_.remove_observations(landmark, from);
 }
 
 void Engine::scale_sigmas(int landmark, double scale) {
-  touch_observations(landmark);
+  mark_observations_dirty(landmark);
   graph_.scale_sigmas(landmark, scale);
 }
 
-bool Engine::place_state(int i, const ControlState& estimate) {
+bool Engine::set_state(int i, const ControlState& estimate) {
   if (i <= factorisation_.base()) return false;
   const Variable variable{Variable::Kind::state, i};
   const ControlState& point = points_.state(i);
@@ -141,25 +141,25 @@ bool Engine::place_state(int i, const ControlState& estimate) {
   return true;
 }
 
-bool Engine::place_landmark(int landmark, const Vector3& position) {
+bool Engine::set_landmark(int landmark, const Vector3& position) {
   const Variable variable{Variable::Kind::landmark, landmark};
-  if (factorisation_.in_base(variable) || factorisation_.is_forgotten(landmark)) return false;
+  if (factorisation_.in_base(variable) || factorisation_.is_marginalised(landmark)) return false;
   if (factorisation_.returns().last_of(landmark) != nullptr) return false;
   points_.set_landmark_delta(graph_, landmark, position - points_.landmark(landmark));
   move(variable);
   return true;
 }
 
-/// What is said of a landmark's observations changes.
-void Engine::touch_observations(int landmark) {
-  touch_landmarks({&landmark, 1});
+/// Marks everything dirty that depends on a landmark's observations.
+void Engine::mark_observations_dirty(int landmark) {
+  mark_landmarks_dirty({&landmark, 1});
   for (const int k : graph_.landmarks[index(landmark)].intervals) points_.invalidate(k);
 }
 
-/// The factors of these landmarks change.
-void Engine::touch_landmarks(std::span<const int> landmarks) {
+/// Marks the stages dirty in which these landmarks enter.
+void Engine::mark_landmarks_dirty(std::span<const int> landmarks) {
   for (const int j : landmarks) {
-    if (!graph_.landmarks[index(j)].intervals.empty()) touch(graph_.landmarks[index(j)].intervals.front());
+    if (!graph_.landmarks[index(j)].intervals.empty()) mark_dirty(graph_.landmarks[index(j)].intervals.front());
   }
 }
 
@@ -180,8 +180,9 @@ double Engine::size_of_state(int i, const Vector12& delta) const {
   return std::max(rotation, translation / points_.nearest(i));
 }
 
-/// √(|δ|/d · |δ⊥|/d), the largest of the first and the last camera that see it: the error of linear projection is of
-/// second order, a change of distance times a change of direction. Poses aren't known better than this parallax.
+/// √(|δ|/d · |δ⊥|/d), the larger value of the first and the last camera that see the landmark. The error of a
+/// linearised projection is of second order: a change of distance times a change of direction. The direction counts as
+/// at least 1 % of the change, because poses are not known better than such a parallax.
 double Engine::size_of_landmark(int j, const Vector3& delta) const {
   const auto& seen = graph_.landmarks[index(j)].intervals;
   if (seen.empty()) return 0.0;
@@ -209,7 +210,7 @@ int Engine::first_stage(const Variable& variable) {
 }
 
 void Engine::move(const Variable& variable) {
-  touch(first_stage(variable));
+  mark_dirty(first_stage(variable));
   if (variable.kind == Variable::Kind::state) {
     const Vector12 delta = points_.state_delta(variable.index);
     points_.move_state(graph_, variable.index);
@@ -223,7 +224,7 @@ void Engine::move(const Variable& variable) {
 }
 
 /// Marginalises the states older than the lag.
-void Engine::forget_old() {
+void Engine::marginalise_old() {
   const double from = graph_.states.back().t - options_.lag;
   const int last = static_cast<int>(graph_.states.size()) - 2;  // the newest interval is always estimated
   int oldest = factorisation_.base() + 1;
@@ -232,16 +233,16 @@ void Engine::forget_old() {
   const int before = factorisation_.base();
   const int base = factorisation_.marginalise(oldest);
   for (int k = before + 1; k <= base; ++k) {
-    graph_.forget_interval(k);
+    graph_.drop_observations(k);
     points_.errors().settle(k);
   }
   std::erase_if(candidates_, [&](const Variable& v) {
-    return v.kind == Variable::Kind::state ? v.index < base : factorisation_.is_forgotten(v.index);
+    return v.kind == Variable::Kind::state ? v.index < base : factorisation_.is_marginalised(v.index);
   });
 }
 
-/// Moves the linearisation points that are too far from the estimate, and in the stages that are then redone those that
-/// are somewhat far.
+/// Moves the linearisation points that are too far from the estimate. In stages that are redone anyway a lower
+/// threshold applies.
 void Engine::choose_points() {
   const auto size = [&](const Variable& v) {
     return v.kind == Variable::Kind::state ? size_of_state(v.index, points_.state_delta(v.index))
@@ -258,14 +259,14 @@ void Engine::choose_points() {
   const auto move_if_far = [&](const Variable& variable) {
     if (size(variable) > options_.relinearise_redone) move(variable);
   };
-  // Nothing moved here can touch an older stage: a state comes in with its own stage, a landmark with its first one or
-  // where it came back.
+  // None of these moves affects an older stage: a state enters with its own stage, a landmark with its first stage or
+  // where it returned.
   Returns& returns = factorisation_.returns();
   for (int i = returns.first_after(restart_ - 1); i < returns.size(); ++i) {
     const Variable landmark{Variable::Kind::landmark, returns[i].landmark};
     if (first_stage(landmark) == returns[i].before) move_if_far(landmark);
   }
-  const int newest = static_cast<int>(graph_.states.size()) - 1;  // stages may be done of one that was taken back
+  const int newest = static_cast<int>(graph_.states.size()) - 1;  // done stages may include that of a removed state
   for (int k = std::max(restart_, 0); k <= std::min(factorisation_.done(), newest); ++k) {
     move_if_far({Variable::Kind::state, k});
     for (const int j : factorisation_.stage(k).entered) move_if_far({Variable::Kind::landmark, j});
@@ -280,7 +281,7 @@ UpdateSummary Engine::update() {
 
 UpdateSummary Engine::settle() { return update_back(kAll); }
 
-/// Solves back so many stages where the estimate has changed.
+/// One update that solves back at most `depth` stages that were not redone.
 UpdateSummary Engine::update_back(int depth) {
   depth_ = depth;
   UpdateSummary summary;
@@ -312,7 +313,7 @@ UpdateSummary Engine::update_back(int depth) {
     restart_ = first;
   }
   summary.damping = damping;
-  // Damped stages are not those of the problem: the next update redoes them.
+  // Damped stages are not those of the actual problem: the next update redoes them.
   restart_ = damping == 0.0 ? static_cast<int>(graph_.states.size()) : first;
   for (const Change& change : changes_) {
     const Variable& v = change.variable;
@@ -321,13 +322,13 @@ UpdateSummary Engine::update_back(int depth) {
     if (size > options_.relinearise) candidates_.push_back(v);
   }
   candidates_.insert(candidates_.end(), refined_.begin(), refined_.end());
-  if (options_.lag > 0.0 && damping == 0.0) forget_old();
+  if (options_.lag > 0.0 && damping == 0.0) marginalise_old();
   summary.stages = static_cast<int>(factorisation_.stages_done() - stages);
   summary.linearised = static_cast<int>(points_.linearised_observations() - linearised);
   return summary;
 }
 
-/// Factorises and solves back; what could not be determined is held. False when that doesn't help.
+/// Factorises and solves back. Undetermined variables are regularised. False if this does not help.
 bool Engine::solve(double damping, UpdateSummary& summary) {
   changes_.clear();
   refined_.clear();
@@ -345,12 +346,12 @@ bool Engine::solve(double damping, UpdateSummary& summary) {
       solve_back(summary);
       return true;
     }
-    if (factorisation_.is_held(*singular)) {
+    if (factorisation_.is_regularised(*singular)) {
       summary.reason = "the normal equations are singular or indefinite at " + singular->name();
       return false;
     }
     summary.reason = singular->name() + " is not determined by its observations and priors";
-    factorisation_.hold(*singular);
+    factorisation_.regularise(*singular);
     restart_ = factorisation_.done() + 1;
   }
   return false;
@@ -359,10 +360,11 @@ bool Engine::solve(double damping, UpdateSummary& summary) {
 Engine::OptimiseSummary Engine::optimise(int max_iterations, double relative_tolerance) {
   OptimiseSummary summary;
   summary.initial_cost = summary.final_cost = evaluate(graph_).total();
-  constexpr double kDampingOfSteps = 1e-3;  ///< up to which a small decrease means a minimum, not a short step
+  constexpr double kDampingOfSteps = 1e-3;  ///< below it a small decrease means a minimum, not a short step
   constexpr double kMaxDamping = 1e8, kRounding = 1e-11;
-  constexpr double kLeastShare = 1.0 / 16.0;  ///< of a step, halved until it lowers the cost; then damping, which holds
-                                              ///< back the slow modes most, where a shorter step keeps its direction
+  // The smallest share of a step that is tried, by halving, before damping takes over. Damping slows the slow modes
+  // most; a shorter step keeps its direction.
+  constexpr double kLeastShare = 1.0 / 16.0;
   double damping = 0.0;
   while (summary.iterations < max_iterations && !summary.converged) {
     for (int i = 0; i < static_cast<int>(graph_.states.size()); ++i) points_.move_state(graph_, i);
@@ -394,7 +396,7 @@ Engine::OptimiseSummary Engine::optimise(int max_iterations, double relative_tol
       }
     }
     if (accepted || summary.converged) continue;
-    if (first_damping == 0.0) break;  // no damping at all helps
+    if (first_damping == 0.0) break;  // no damping helps
     damping = 0.0;
   }
   restart_ = damping == 0.0 ? static_cast<int>(graph_.states.size()) : 0;

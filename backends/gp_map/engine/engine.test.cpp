@@ -27,7 +27,7 @@ TEST_CASE("Optimising with the engine ends where the batch solver ends") {
   }
 }
 
-TEST_CASE("Covariances of the engine are those of the batch solver") {
+TEST_CASE("Covariances of the engine equal those of the batch solver") {
   const auto path = evbench::testing::problem_file("small.txt.gz");
   if (!path) return;
   Engine engine(to_graph(read_problem(*path)), {});
@@ -69,7 +69,7 @@ TEST_CASE("Covariances of the engine are those of the batch solver") {
   }
 }
 
-TEST_CASE("A landmark's mean reprojection error is kept to within a third of a pixel, whatever happened meanwhile") {
+TEST_CASE("A landmark's mean reprojection error is kept to within a third of a pixel through updates and removals") {
   const testing::DrawnProblem problem({.pixel_sigma = 1.0}, 1);
   Engine engine = problem.solve_incrementally();
   engine.remove_landmark(3);
@@ -87,7 +87,7 @@ TEST_CASE("A landmark's mean reprojection error is kept to within a third of a p
   }
 }
 
-TEST_CASE("The newest states after each observation are those of an update with the same observations") {
+TEST_CASE("After each observation the newest states equal those of an update with the same observations") {
   const auto path = evbench::testing::problem_file("small.txt.gz");
   if (!path) return;
   const FactorGraph all = to_graph(read_problem(*path));
@@ -104,20 +104,20 @@ TEST_CASE("The newest states after each observation are those of an update with 
   next.t += dt;
   next.T = next.T * se3::exp(dt * next.velocity);
   one_by_one.add_state(next);
-  Engine at_once = one_by_one, asked = one_by_one;
-  REQUIRE(asked.open_newest());
+  Engine at_once = one_by_one, queried = one_by_one;
+  REQUIRE(queried.open_newest());
   int live = 0;
   const IntervalObservations& interval = all.intervals[kStates];
   for (const auto& group : interval.groups()) {
     for (int i = group.begin; i < group.end; ++i) {
       const Observation& z = interval.all()[index(i)];
       if (start.landmarks[index(group.landmark)].intervals.empty()) continue;
-      if (live % 3 == 0) CHECK(asked.newest_covariance());  // what is asked for changes nothing
+      if (live % 3 == 0) CHECK(queried.newest_covariance());  // queries change nothing
       const bool followed = one_by_one.observe(group.landmark, z);
-      CHECK(asked.observe(group.landmark, z) == followed);
+      CHECK(queried.observe(group.landmark, z) == followed);
       if (!followed) continue;
       for (const std::size_t k : {kStates - 1, kStates}) {
-        CHECK(asked.graph().states[k].T.p == one_by_one.graph().states[k].T.p);
+        CHECK(queried.graph().states[k].T.p == one_by_one.graph().states[k].T.p);
       }
       at_once.add_observation(group.landmark, z);
       ++live;
@@ -135,7 +135,8 @@ TEST_CASE("The newest states after each observation are those of an update with 
   CHECK(live > 50);
 }
 
-TEST_CASE("With a lag the newest state stays that of full history within its uncertainty, and old intervals are gone") {
+TEST_CASE(
+    "With a lag the newest state agrees with full history within its uncertainty, and old intervals are dropped") {
   const auto path = evbench::testing::problem_file("small.txt.gz");
   if (!path) return;
   const FactorGraph all = to_graph(read_problem(*path));
@@ -177,12 +178,12 @@ TEST_CASE("With a lag the newest state stays that of full history within its unc
   const Matrix24 joint = *full.neighbours(static_cast<int>(all.states.size()) - 2);
   const Vector6 apart = se3::log(full.graph().states.back().T.inverse() * lag.graph().states.back().T);
   const Matrix6 pose = joint.block<6, 6>(12, 12);
-  CHECK(apart.dot(solve_symmetric(pose, apart)) < 6.0);  // its mean if it were as far as the truth
+  CHECK(apart.dot(solve_symmetric(pose, apart)) < 6.0);  // the mean if it were as far off as the truth
   CHECK(lag.neighbours(first));
   CHECK_FALSE(lag.neighbours(first - 1));
 }
 
-TEST_CASE("What is not determined is named and held, and the rest is solved") {
+TEST_CASE("An undetermined variable is named and regularised, and the rest is solved") {
   Engine engine({200.0, 200.0, 120.0, 90.0}, Vector6::Constant(0.2), RobustLoss());
   engine.add_state({});
   engine.add_pose_prior({0, SE3(), Vector6::Constant(0.01)});

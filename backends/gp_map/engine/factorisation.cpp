@@ -9,8 +9,8 @@
 namespace evbench::gp_map {
 namespace {
 
-/// How far apart the snapshots of the root are that are kept, by age in stages: restarts go back a few stages most of
-/// the time, and memory must grow slowly with the length of history.
+/// Spacing of the stored snapshots of the root by their age in stages: most restarts go back a few stages, and memory
+/// must grow slowly with the length of the history.
 int snapshot_spacing(int age) {
   if (age < 8) return 2;
   if (age < 32) return 4;
@@ -60,26 +60,27 @@ std::optional<int> Factorisation::eliminated_at(int j) const {
   return stage;
 }
 
-void Factorisation::hold(const Variable& variable) {
+void Factorisation::regularise(const Variable& variable) {
   if (variable.kind == Variable::Kind::landmark) {
-    landmarks_[index(variable.index)].held = true;
+    landmarks_[index(variable.index)].regularised = true;
   } else {
-    if (held_states_.size() <= index(variable.index)) held_states_.resize(index(variable.index) + 1, false);
-    held_states_[index(variable.index)] = true;
+    if (regularised_states_.size() <= index(variable.index))
+      regularised_states_.resize(index(variable.index) + 1, false);
+    regularised_states_[index(variable.index)] = true;
   }
 }
 
-bool Factorisation::is_held(const Variable& variable) const {
+bool Factorisation::is_regularised(const Variable& variable) const {
   const std::size_t i = index(variable.index);
-  if (variable.kind == Variable::Kind::landmark) return landmarks_[i].held;
-  return i < held_states_.size() && held_states_[i];
+  if (variable.kind == Variable::Kind::landmark) return landmarks_[i].regularised;
+  return i < regularised_states_.size() && regularised_states_[i];
 }
 
 std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph, LinearisationPoints& points,
                                             double damping) {
   const int newest = static_cast<int>(graph.states.size()) - 1;
-  if (done_ > newest) first = std::min(first, newest + 1);  // states were taken back
-  first = std::min(first, place_anchor(graph));
+  if (done_ > newest) first = std::min(first, newest + 1);  // states were removed
+  first = std::min(first, update_anchor_stage(graph));
   first = go_back_to(first, graph);
   stages_.resize(graph.states.size());
   while (const std::optional<int> earlier = bring_all_back(graph, points)) {
@@ -88,7 +89,7 @@ std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph,
   if (returns_.first_after(done_) < returns_.size()) first = done_ + 1;
   for (int k = done_ + 1; k <= newest; ++k) {
     if (const auto singular = do_stage(k, graph, points, damping)) {
-      done_ = k;  // nothing after it is usable, and it itself must be redone
+      done_ = k;  // later stages are unusable, and this one must be redone
       go_back_to(k, graph);
       return singular;
     }
@@ -101,9 +102,9 @@ std::optional<Variable> Factorisation::redo(int first, const FactorGraph& graph,
   return std::nullopt;
 }
 
-/// Finds the stage that adds the scale anchor: none any more once it has become part of the base. Returns the oldest
-/// stage that has to be redone for that, as it may have moved without a change of the stages it moved from or to.
-int Factorisation::place_anchor(const FactorGraph& graph) {
+/// Finds the stage that adds the scale anchor; none once the anchor is part of the base. Returns the oldest stage that
+/// must be redone for it: the anchor may have moved between two stages that have not changed themselves.
+int Factorisation::update_anchor_stage(const FactorGraph& graph) {
   const int before = anchor_stage_;
   anchor_stage_ = -1;
   for (const int j : graph.anchor.landmarks) {
@@ -115,8 +116,8 @@ int Factorisation::place_anchor(const FactorGraph& graph) {
   return std::max(base_ + 1, older < 0 ? std::max(before, anchor_stage_) : older);
 }
 
-/// Makes the root what it was before stage `first` or an earlier one. Returns the oldest stage that will not be what it
-/// was: an older one if landmarks have moved.
+/// Resets the root to its content before stage `first` or an earlier one. Returns the oldest stage that will change: an
+/// older one if landmarks have moved.
 int Factorisation::go_back_to(int first, const FactorGraph& graph) {
   if (first > done_) return first;
   const int before = done_;
@@ -130,7 +131,7 @@ int Factorisation::go_back_to(int first, const FactorGraph& graph) {
     root_.restore(snapshots_.rbegin()->second);
     done_ = snapshots_.rbegin()->first;
   }
-  // The stages to come need not meet them again: their observations may be gone.
+  // The redone stages may not contain these landmarks again: their observations may be gone.
   for (int k = done_ + 1; k <= before; ++k) {
     for (const Conditional& conditional : stage(k).conditionals) {
       for (const int j : conditional.landmarks) {
@@ -215,7 +216,7 @@ std::optional<Variable> Factorisation::eliminate_finished(int k, const Linearisa
   damp({Variable::Kind::state, k - 1}, points, damping);
   Stage& stage = stages_[index(k)];
   std::span<const int> rest = finished_;
-  stage.conditionals.resize(rest.size() / kMaxPivotLandmarks + 1);  // not cleared: their memory is used again
+  stage.conditionals.resize(rest.size() / kMaxPivotLandmarks + 1);  // not cleared: their memory is reused
   for (Conditional& conditional : stage.conditionals) {
     const bool last = &conditional == &stage.conditionals.back();
     const auto chunk = rest.first(last ? rest.size() : kMaxPivotLandmarks);
@@ -229,7 +230,7 @@ std::optional<Variable> Factorisation::eliminate_finished(int k, const Linearisa
 }
 
 double Factorisation::damping_of(const Variable& variable, double damping) const {
-  return is_held(variable) ? std::max(damping, kHoldDamping) : damping;
+  return is_regularised(variable) ? std::max(damping, kRegularisingDamping) : damping;
 }
 
 void Factorisation::damp(const Variable& variable, const LinearisationPoints& points, double damping) {
@@ -305,7 +306,7 @@ void Factorisation::thin_snapshots(int newest) {
   }
 }
 
-/// Those of a landmark in the base may all have been forgotten or removed.
+/// All intervals of a landmark in the base may have been marginalised or removed.
 int Factorisation::last_interval(int j, const FactorGraph& graph) const {
   const auto& seen = graph.landmarks[index(j)].intervals;
   return seen.empty() ? base_ : seen.back();
@@ -316,7 +317,7 @@ int Factorisation::marginalise(int stage) {
   if (snapshot == snapshots_.begin() || (--snapshot)->first <= base_) return base_;
   for (int k = base_ + 1; k <= snapshot->first; ++k) {
     for (const Conditional& conditional : stages_[index(k)].conditionals) {
-      for (const int j : conditional.landmarks) landmarks_[index(j)].forgotten = true;
+      for (const int j : conditional.landmarks) landmarks_[index(j)].marginalised = true;
     }
     stages_[index(k)] = Stage();
   }

@@ -10,10 +10,10 @@ namespace {
 constexpr double kStep = 0.1;  ///< [s] between states
 
 /// A camera that moves sideways at 0.5 m/s past landmarks without priors; exact observations, guesses 10 % too far.
-class Flight {
+class Session {
  public:
-  /// The scale anchor is held loosely, so that the covariance shows how often it counts.
-  explicit Flight(const EngineOptions& options = {}) : engine(empty_graph(), options) {
+  /// The scale anchor has a large sigma, so that the covariance shows how often it counts.
+  explicit Session(const EngineOptions& options = {}) : engine(empty_graph(), options) {
     ControlState first;
     first.velocity = motion();
     engine.add_state(first);
@@ -45,8 +45,8 @@ class Flight {
     next.T = next.T * se3::exp(dt * next.velocity);
     engine.add_state(next);
   }
-  /// A state more, with two observations of each of the first `count` landmarks.
-  void fly(int count = kSeen) {
+  /// Adds a state with two observations of each of the first `count` landmarks.
+  void advance(int count = kSeen) {
     add_state();
     for (int j = 0; j < count; ++j) {
       for (const double back : {0.05, 0.0}) REQUIRE(engine.add_observation(j, observation(j, newest() - back)));
@@ -57,7 +57,7 @@ class Flight {
   Engine engine;
 };
 
-/// That the engine's stages are those of its factors: redoing all of them changes nothing.
+/// The engine's stages match its factors: redoing all of them changes nothing.
 void check_nothing_is_stale(Engine& engine) {
   const FactorGraph before = engine.graph();
   const auto now = engine.neighbours(static_cast<int>(before.states.size()) - 2);
@@ -70,103 +70,103 @@ void check_nothing_is_stale(Engine& engine) {
 
 }  // namespace
 
-TEST_CASE("The scale anchor counts once, whenever its landmarks come in or go") {
-  Flight flight(testing::linear_options());
-  for (int k = 0; k < 3; ++k) flight.fly();
-  flight.engine.anchor_scale({0.0, 0.0, -1.0}, {0, 1, 11});
-  flight.engine.update();
-  check_nothing_is_stale(flight.engine);
-  for (int k = 0; k < 6; ++k) flight.fly(k < 3 ? 10 : 5);
-  flight.engine.update();
-  flight.fly();
-  const double first_seen = flight.newest();
-  REQUIRE(flight.engine.add_observation(11, Flight::observation(11, first_seen)));
-  flight.engine.update();
-  check_nothing_is_stale(flight.engine);
-  flight.fly();
-  flight.engine.update();
-  flight.engine.remove_landmark(11);
-  flight.engine.update();
-  check_nothing_is_stale(flight.engine);
+TEST_CASE("The scale anchor counts once, in whatever order its landmarks enter and leave") {
+  Session session(testing::linear_options());
+  for (int k = 0; k < 3; ++k) session.advance();
+  session.engine.anchor_scale({0.0, 0.0, -1.0}, {0, 1, 11});
+  session.engine.update();
+  check_nothing_is_stale(session.engine);
+  for (int k = 0; k < 6; ++k) session.advance(k < 3 ? 10 : 5);
+  session.engine.update();
+  session.advance();
+  const double first_seen = session.newest();
+  REQUIRE(session.engine.add_observation(11, Session::observation(11, first_seen)));
+  session.engine.update();
+  check_nothing_is_stale(session.engine);
+  session.advance();
+  session.engine.update();
+  session.engine.remove_landmark(11);
+  session.engine.update();
+  check_nothing_is_stale(session.engine);
 }
 
 TEST_CASE("A scale anchor that has been marginalised is not added again") {
   EngineOptions lagged = testing::linear_options();
   lagged.lag = 0.3;
-  Flight flight(lagged), full(testing::linear_options());
-  for (Flight* f : {&flight, &full}) {
-    f->fly();
-    f->fly();
+  Session session(lagged), full(testing::linear_options());
+  for (Session* f : {&session, &full}) {
+    f->advance();
+    f->advance();
     f->engine.update();
     f->engine.anchor_scale({0.0, 0.0, -1.0}, {0, 1, 2});
   }
   for (int k = 0; k < 12; ++k) {
-    for (Flight* f : {&flight, &full}) {
-      f->fly();
+    for (Session* f : {&session, &full}) {
+      f->advance();
       f->engine.update();
     }
   }
-  REQUIRE(flight.engine.first_state() > 5);
+  REQUIRE(session.engine.first_state() > 5);
   const int newest = static_cast<int>(full.engine.graph().states.size()) - 1;
   const Matrix24 expected = *full.engine.neighbours(newest - 1);
-  CHECK((*flight.engine.neighbours(newest - 1) - expected).norm() < 1e-3 * expected.norm());
+  CHECK((*session.engine.neighbours(newest - 1) - expected).norm() < 1e-3 * expected.norm());
 }
 
-TEST_CASE("Without its last landmark there is no scale anchor, and what held the scale otherwise goes on holding it") {
-  Flight flight;
-  for (int k = 0; k < 5; ++k) flight.fly();
-  flight.engine.anchor_scale({0.0, 0.0, -1.0}, {0, 1});
-  flight.engine.update();
-  flight.engine.remove_landmark(0);
-  flight.engine.remove_landmark(1);
-  CHECK(flight.engine.graph().anchor.landmarks.empty());
-  const UpdateSummary update = flight.engine.update();
+TEST_CASE("The scale anchor ends with its last landmark, and the other factors on the scale remain") {
+  Session session;
+  for (int k = 0; k < 5; ++k) session.advance();
+  session.engine.anchor_scale({0.0, 0.0, -1.0}, {0, 1});
+  session.engine.update();
+  session.engine.remove_landmark(0);
+  session.engine.remove_landmark(1);
+  CHECK(session.engine.graph().anchor.landmarks.empty());
+  const UpdateSummary update = session.engine.update();
   CHECK_FALSE(update.rejected);
   CHECK(update.reason.empty());
-  check_nothing_is_stale(flight.engine);
+  check_nothing_is_stale(session.engine);
 }
 
-TEST_CASE("A gap longer than the lag leaves the newest interval to be estimated, however often it is updated") {
+TEST_CASE("After a gap longer than the lag the newest interval is still estimated, however often it is updated") {
   EngineOptions lagged;
   lagged.lag = 0.3;
-  Flight flight(lagged);
+  Session session(lagged);
   for (int k = 0; k < 6; ++k) {
-    flight.fly();
-    flight.engine.update();
+    session.advance();
+    session.engine.update();
   }
   for (int k = 0; k < 3; ++k) {
-    flight.add_state(5.0);
-    for (int i = 0; i < 4; ++i) flight.engine.update();
-    CHECK(flight.engine.first_state() + 1 < static_cast<int>(flight.engine.graph().states.size()));
-    CHECK(flight.engine.neighbours(static_cast<int>(flight.engine.graph().states.size()) - 2));
+    session.add_state(5.0);
+    for (int i = 0; i < 4; ++i) session.engine.update();
+    CHECK(session.engine.first_state() + 1 < static_cast<int>(session.engine.graph().states.size()));
+    CHECK(session.engine.neighbours(static_cast<int>(session.engine.graph().states.size()) - 2));
   }
-  flight.engine.remove_newest_state();
-  flight.engine.update();
-  flight.engine.update();
-  flight.add_state();
-  CHECK_FALSE(flight.engine.update().rejected);
+  session.engine.remove_newest_state();
+  session.engine.update();
+  session.engine.update();
+  session.add_state();
+  CHECK_FALSE(session.engine.update().rejected);
 }
 
-TEST_CASE("A covariance asked for between a change and its update doesn't keep the update from being complete") {
-  Flight flight;
+TEST_CASE("A covariance query between a change and its update does not make the update incomplete") {
+  Session session;
   for (int k = 0; k < 20; ++k) {
-    flight.fly(k < 3 ? Flight::kLandmarks : Flight::kSeen);
-    flight.engine.update();
+    session.advance(k < 3 ? Session::kLandmarks : Session::kSeen);
+    session.engine.update();
   }
-  Observation wrong = Flight::observation(11, 0.25);  // of a landmark that says little about the newest state
+  Observation wrong = Session::observation(11, 0.25);  // of a landmark that affects the newest state little
   wrong.pixel += Vector2(3.0, -2.0);
-  REQUIRE(flight.engine.add_observation(11, wrong));
-  Engine asked = flight.engine;
-  REQUIRE(asked.neighbours(19));
-  const Vector3 before = asked.graph().landmarks[11].position;
-  asked.update();
-  flight.engine.update();
-  const Vector3 &a = asked.graph().landmarks[11].position, &b = flight.engine.graph().landmarks[11].position;
+  REQUIRE(session.engine.add_observation(11, wrong));
+  Engine queried = session.engine;
+  REQUIRE(queried.neighbours(19));
+  const Vector3 before = queried.graph().landmarks[11].position;
+  queried.update();
+  session.engine.update();
+  const Vector3 &a = queried.graph().landmarks[11].position, &b = session.engine.graph().landmarks[11].position;
   CHECK((b - before).norm() > 1e-3);
   CHECK((a - b).norm() < 1e-4);
 }
 
-TEST_CASE("A covariance asked for after states were taken back is of those that are left") {
+TEST_CASE("A covariance query after the removal of states covers the remaining ones") {
   Engine engine = testing::DrawnProblem({.qc = 0.01, .pixel_sigma = 0.5}, 1).solve_incrementally();
   for (int taken = 0; taken < 3; ++taken) engine.remove_newest_state();
   const std::vector<Matrix24> chain = engine.chain_covariances(1);
@@ -177,37 +177,37 @@ TEST_CASE("A covariance asked for after states were taken back is of those that 
   for (std::size_t k = 0; k < chain.size(); ++k) CHECK((chain[k] - after[k]).norm() < 0.1 * after[k].norm());
 }
 
-TEST_CASE("What the newest states learnt one observation at a time reaches the older ones with the update") {
+TEST_CASE("Updates of the newest states by single observations reach the older ones with the next update") {
   EngineOptions options;
   options.grace = 10;
-  Flight flight(options);
-  const int known = flight.engine.add_landmark(Flight::landmark(0), {Flight::landmark(0), 1e-4});
+  Session session(options);
+  const int known = session.engine.add_landmark(Session::landmark(0), {Session::landmark(0), 1e-4});
   const auto see_known = [&](double t) {
-    Observation z = Flight::observation(0, t);
+    Observation z = Session::observation(0, t);
     if (t > 0.9) z.pixel.y() += 30.0;  // moves the newest states, not the landmark
     return z;
   };
   for (int k = 0; k < 10; ++k) {
-    flight.fly(0);
-    if (k < 4) REQUIRE(flight.engine.add_observation(known, see_known(flight.newest())));
-    flight.engine.update();
+    session.advance(0);
+    if (k < 4) REQUIRE(session.engine.add_observation(known, see_known(session.newest())));
+    session.engine.update();
   }
-  flight.add_state();
-  Engine at_once = flight.engine;
+  session.add_state();
+  Engine at_once = session.engine;
   for (const double back : {0.09, 0.06, 0.03}) {
-    REQUIRE(flight.engine.observe(known, see_known(flight.newest() - back)));
-    REQUIRE(at_once.add_observation(known, see_known(flight.newest() - back)));
+    REQUIRE(session.engine.observe(known, see_known(session.newest() - back)));
+    REQUIRE(at_once.add_observation(known, see_known(session.newest() - back)));
   }
-  flight.engine.update();
+  session.engine.update();
   at_once.update();
   for (std::size_t k = 0; k < at_once.graph().states.size(); ++k) {
-    const SE3 &a = flight.engine.graph().states[k].T, &b = at_once.graph().states[k].T;
+    const SE3 &a = session.engine.graph().states[k].T, &b = at_once.graph().states[k].T;
     CAPTURE(k);
     CHECK((a.p - b.p).norm() < 1e-4);
   }
 }
 
-TEST_CASE("A singular system has no covariance, the first time and the second") {
+TEST_CASE("A singular system has no covariance, neither in the first query nor in the second") {
   Engine engine({200.0, 200.0, 120.0, 90.0}, Vector6::Ones(), {});
   ControlState state;
   engine.add_state(state);
@@ -216,15 +216,15 @@ TEST_CASE("A singular system has no covariance, the first time and the second") 
   for (int i = 0; i < 3; ++i) CHECK_FALSE(engine.neighbours(0));
   engine.update();
   for (int i = 0; i < 2; ++i) {
-    const auto held = engine.neighbours(0);
-    if (held) CHECK(held->allFinite());
+    const auto regularised = engine.neighbours(0);
+    if (regularised) CHECK(regularised->allFinite());
   }
 }
 
 TEST_CASE("A landmark that one observation left undetermined weighs no more than others once it is determined") {
   constexpr int kStates = 8, kNear = 6, kFirst = 3;  // the landmark at the edge is seen from state kFirst on
   const auto play = [&](bool each) {
-    Engine engine(Flight::empty_graph(), testing::linear_options());
+    Engine engine(Session::empty_graph(), testing::linear_options());
     for (int j = 0; j < kNear; ++j) {
       const Vector3 x(0.3 * (j % 3) - 0.3, 0.4 * (j / 3) - 0.2, 2.0 + 0.3 * j);
       engine.add_landmark(x, {x, 1.0});
@@ -234,8 +234,8 @@ TEST_CASE("A landmark that one observation left undetermined weighs no more than
     for (int k = 0; k < kStates; ++k) {
       ControlState state;
       state.t = kStep * k;
-      state.T.p = state.t * Flight::motion().tail<3>();
-      state.velocity = Flight::motion();
+      state.T.p = state.t * Session::motion().tail<3>();
+      state.velocity = Session::motion();
       engine.add_state(state);
       if (k == 0) {
         engine.add_pose_prior({0, state.T, Vector6::Constant(0.01)});

@@ -6,16 +6,16 @@
 
 namespace evbench::gp_map {
 
-/// The observations of one landmark with the poses that they were made from, for moving the landmark while these stay.
-/// The poses are the graph's when this was made; of the graph itself a reference is kept.
+/// The observations of one landmark with the poses at which they were made, for moving the landmark while the poses
+/// stay fixed. The poses are copied at construction; a reference to the graph is kept.
 class LandmarkViews {
  public:
   LandmarkViews(const FactorGraph& graph, int landmark);
 
-  /// ½ Σ ρ of the landmark's observations and prior if it were at this position.
+  /// ½ Σ ρ of the landmark's observations and prior for the landmark at this position.
   double cost(const Vector3& position) const;
 
-  /// H and g of the same with respect to the landmark alone.
+  /// H and g of this cost with respect to the landmark alone.
   struct System {
     Matrix3 H = Matrix3::Zero();
     Vector3 g = Vector3::Zero();
@@ -23,7 +23,7 @@ class LandmarkViews {
   System linearise(const Vector3& position) const;
 
  private:
-  /// As many of an interval's observations as there are lanes.
+  /// Up to kLanes observations of one interval.
   struct View {
     Matrix3 R;  ///< (R, p): from the world into the camera at the interval's first state
     Vector3 p;

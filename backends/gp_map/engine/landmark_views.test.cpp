@@ -21,7 +21,7 @@ const std::vector<RobustLoss> kLosses = {RobustLoss(), RobustLoss(RobustLoss::Ki
 
 }  // namespace
 
-TEST_CASE("A landmark's views cost what its observations and its prior do, wherever it is moved") {
+TEST_CASE("The cost of a landmark's views equals that of its observations and its prior, at any position") {
   for (const RobustLoss& loss : kLosses) {
     const FactorGraph graph = solved_problem(loss);
     for (int j = 0; j < static_cast<int>(graph.landmarks.size()); ++j) {

@@ -9,7 +9,8 @@
 
 namespace evbench::gp_map {
 
-/// The bits of a Lane's doubles, and its comparisons' results; and where a sum may wrap round, as NaN's bits do.
+/// The bits of a Lane's doubles, also the results of comparisons; WrappingBits where a sum may wrap around, as NaN's
+/// bits do.
 using LaneBits [[gnu::vector_size(8 * kLanes)]] = std::int64_t;
 using WrappingBits [[gnu::vector_size(8 * kLanes)]] = std::uint64_t;
 

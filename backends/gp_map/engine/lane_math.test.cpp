@@ -10,7 +10,7 @@
 namespace evbench::gp_map {
 namespace {
 
-/// Values of all magnitudes, of which a multiple of kLanes.
+/// Values of all magnitudes; their number is a multiple of kLanes.
 std::vector<double> all_magnitudes() {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> exponent(-1074.0, 1024.0), mantissa(1.0, 2.0), moderate(-60.0, 10.0);
@@ -29,7 +29,7 @@ double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<do
 
 }  // namespace
 
-TEST_CASE("log1p of lanes is the library's within 2 ulp, for every magnitude") {
+TEST_CASE("log1p of lanes agrees with the library's within 2 ulp, for every magnitude") {
   const std::vector<double> values = all_magnitudes();
   double worst = 0.0;
   for (std::size_t i = 0; i < values.size(); i += kLanes) {
@@ -44,7 +44,7 @@ TEST_CASE("log1p of lanes is the library's within 2 ulp, for every magnitude") {
   CHECK(std::isnan(log1p(broadcast(std::numeric_limits<double>::quiet_NaN()))[0]));
 }
 
-TEST_CASE("A robust loss of lanes is the loss of each") {
+TEST_CASE("A robust loss of lanes equals the loss of each lane") {
   const std::vector<double> values = all_magnitudes();
   for (const RobustLoss& loss :
        {RobustLoss(), RobustLoss(RobustLoss::Kind::huber, 1.5), RobustLoss(RobustLoss::Kind::cauchy, 2.0, 0.3)}) {

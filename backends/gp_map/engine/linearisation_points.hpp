@@ -9,11 +9,11 @@
 
 namespace evbench::gp_map {
 
-/// Where the factors are linearised, the increment that each variable has from there, and the linearised intervals of
-/// the recent past. The graph holds the estimate: estimate = point ⊕ increment for every variable, always.
+/// The linearisation points of all variables, the increments from there, and the linearised intervals of the recent
+/// past. The graph contains the estimates: estimate = point ⊕ increment for every variable at all times.
 class LinearisationPoints {
  public:
-  /// `kept`: how many of the newest intervals keep their linearisation.
+  /// `kept`: number of newest intervals whose linearisation is kept.
   explicit LinearisationPoints(int kept) : kept_(kept) {}
 
   void add_state(const ControlState& state);
@@ -29,23 +29,23 @@ class LinearisationPoints {
   void set_state_delta(FactorGraph& graph, int i, const Vector12& delta);
   void set_landmark_delta(FactorGraph& graph, int j, const Vector3& delta);
 
-  /// Makes the estimate the linearisation point.
+  /// Moves the linearisation point to the estimate.
   void move_state(const FactorGraph& graph, int i);
   void move_landmark(const FactorGraph& graph, int j);
 
-  /// The factors of interval k changed.
+  /// The factors of interval k have changed.
   void invalidate(int k);
 
   /// Interval k, linearised at the points; valid until the next call.
   const IntervalLinearisation& interval(const FactorGraph& graph, int k);
 
-  /// The distance from state i of the nearest landmark observed in an interval beside it, when that was linearised
-  /// last; infinite without any.
+  /// Distance from state i to the nearest landmark observed in an adjacent interval, as of its last linearisation;
+  /// infinite without landmarks.
   double nearest(int i) const {
     return index(i) + 1 < nearest_.size() ? std::min(nearest_[index(i)], nearest_[index(i) + 1]) : nearest_[index(i)];
   }
 
-  /// As of when each interval was linearised last.
+  /// Reprojection errors as of the last linearisation of each interval.
   ReprojectionErrors& errors() { return errors_; }
 
   std::int64_t linearised_observations() const { return linearised_observations_; }

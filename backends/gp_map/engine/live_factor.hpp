@@ -7,43 +7,44 @@
 
 namespace evbench::gp_map {
 
-/// One observation, linearised: whitened residual and its derivatives by landmark and by both states of its interval.
+/// One linearised observation: whitened residual and its derivatives by the landmark and by both states of its
+/// interval.
 struct ObservationRows {
   Vector2 e = Vector2::Zero();
   Matrix23 landmark = Matrix23::Zero();
   Eigen::Matrix<double, 2, 24> states = Eigen::Matrix<double, 2, 24>::Zero();
 };
 
-/// The factor of what is alive while an interval (n, n+1) is open: the root after stage n with state n+1 besides, and
-/// the right-hand side as one more row. An observation changes it by two rotations of a vector through its columns, in
-/// O(rows²), and both newest states are solved from its last rows alone.
+/// The factor of everything alive while an interval (n, n+1) is open: the root after stage n extended by state n+1,
+/// with the right-hand side as one more row. An observation updates it by two rotations of a vector through its
+/// columns, in O(rows²). Both newest states are solved from its last rows alone.
 class LiveFactor {
  public:
-  /// `open`: the motion prior of the open interval and what else has been observed in it so far. False when singular.
+  /// Builds the factor. `open`: the motion prior of the open interval and its observations so far. False if singular.
   bool build(const Root& root, int newest, const IntervalLinearisation& open);
 
-  /// Whether it is that of the interval that ends in this state.
+  /// Does it belong to the interval that ends in this state?
   bool is_of(int newest) const { return newest_ == newest; }
   void drop() { newest_ = -1; }
 
-  /// Whether a landmark was in the root from which it was built. The root may have become another one since.
+  /// Was a landmark in the root from which the factor was built? The root may have changed since.
   bool has(int landmark) const { return slot_of(landmark) < static_cast<int>(occupants_.size()); }
 
-  /// An observation of a landmark that it has.
+  /// Adds an observation of a landmark that it has.
   void add(int landmark, const ObservationRows& rows, double weight);
 
   /// The increments of states n and n+1.
   Vector24 solve_states() const;
 
  private:
-  /// Where it was in that root; beyond all slots where it was not.
+  /// The landmark's slot in that root; beyond all slots if it was not there.
   int slot_of(int landmark) const {
     return static_cast<int>(std::ranges::find(occupants_, landmark) - occupants_.begin());
   }
 
   int newest_ = -1;
   RootFactor factor_;
-  std::vector<int> occupants_;  ///< of that root's slots
+  std::vector<int> occupants_;  ///< of the slots of that root
   Buffer v_, w_;
 };
 

@@ -6,7 +6,7 @@
 #include "backends/gp_map/factors.hpp"
 #include "core/geometry/lie_coefficients.hpp"
 
-/// Observations of one interval, kLanes at a time: the camera's motion up to each, and each one's residual.
+/// Geometry of the observations of one interval, kLanes at a time: the camera's motion up to each, and its residual.
 namespace evbench::gp_map::lanes {
 
 /// b, c, and their derivatives with respect to z = θ².
@@ -44,7 +44,8 @@ Coefficients series(Lane z) {
   return r;
 }
 
-/// How the coefficients are computed for all observations of an interval: by the largest rotation angle in it.
+/// Method of computing the coefficients for all observations of an interval, chosen by the largest rotation angle in
+/// it.
 enum class Range { small, medium, any };
 
 template <Range range>
@@ -65,7 +66,7 @@ Coefficients coefficients(Lane z) {
 
 inline Lane3 lane3(const Vector3& v) { return {broadcast(v.x()), broadcast(v.y()), broadcast(v.z())}; }
 
-/// What all observations of an interval share.
+/// The parameters that all observations of an interval share.
 struct Interval {
   explicit Interval(const GpInterval& interval)
       : t0(interval.t0()),
@@ -92,11 +93,11 @@ void with_range_of(const GpInterval& interval, Call call) {
   call.template operator()<Range::any>();
 }
 
-/// The measured values of one observation of each lane's landmark; `present` is 0 in a lane without one.
+/// One observation per lane; `present` is 0 in a lane without one.
 struct Measured {
   Lane t{}, u{}, v{}, inverse_sigma{}, present{};
 
-  /// In a lane without observation t must lie in the interval all the same.
+  /// Sets t of all lanes: it must be in the interval even in a lane without observation.
   explicit Measured(double t0) : t(broadcast(t0)) {}
 
   void set(std::size_t lane, const Observation& z) {
@@ -115,7 +116,7 @@ inline std::array<Lane, 3> hermite_basis(const Interval& interval, Lane t) {
   return {interval.dt * s * rest * rest, s * s * (3.0 - 2.0 * s), -interval.dt * s * s * rest};
 }
 
-/// ξ(τ) = (φ, ρ), and what its exponential is put together from.
+/// ξ(τ) = (φ, ρ) and the terms of its exponential.
 struct Tangent {
   Lane3 phi, rho, u1, u2;  ///< u1 = φ × ρ, u2 = φ × u1
   Coefficients k;
@@ -135,7 +136,7 @@ Tangent tangent(const Interval& interval, const std::array<Lane, 3>& basis) {
   return g;
 }
 
-/// Exp(ξ) as it moves points.
+/// Exp(ξ), applied to points and directions.
 struct Motion {
   Lane3 phi, translation;
   Lane s1, b;
@@ -147,7 +148,7 @@ struct Motion {
     return d - s1 * d1 + b * cross(phi, d1);
   }
 
-  /// A direction in the camera at τ, turned into the frame of the first state: R D.
+  /// Rotates a direction in the camera at τ into the frame of the first state: R D.
   Lane3 turn_back(const Lane3& D) const {
     const Lane3 c1 = cross(phi, D);
     return D + s1 * c1 + b * cross(phi, c1);
@@ -159,7 +160,7 @@ inline Motion motion(const Tangent& g) { return {g.phi, g.rho + g.k.b * g.u1 + g
 /// The whitened residual of the point q in the camera; behind it both components are 2 fx/σ, constant.
 struct Residual {
   LaneBits in_front;
-  Lane x, y, inverse_z;  ///< in front: where q is projected to in normalised coordinates
+  Lane x, y, inverse_z;  ///< in front: the projection of q in normalised coordinates
   Lane e0, e1, square;
 };
 

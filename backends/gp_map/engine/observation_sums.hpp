@@ -3,20 +3,20 @@
 #include "backends/gp_map/engine/lane_loss.hpp"
 #include "backends/gp_map/engine/observation_geometry.hpp"
 
-/// Sums of JᵀJ and Jᵀe over observations, kLanes landmarks at a time: the inner part of linearise_interval, which has
-/// the derivation.
+/// Sums of JᵀJ and Jᵀe over observations, kLanes landmarks at a time: the inner loop of linearise_interval(), which
+/// documents the derivation.
 namespace evbench::gp_map::lanes {
 
 inline constexpr int kPairs = 21;  ///< of a symmetric 6 × 6
 
-/// What all observations of the interval share.
+/// The data that all observations of the interval share.
 struct Shared {
   const RobustLoss& loss;
   const PinholeCamera& camera;
   Interval interval;
 };
 
-/// Sums over the interval, kept by lane and added up at the end.
+/// Sums over the interval, by lane; the lanes are added up at the end.
 struct IntervalSums {
   std::array<std::array<Lane, kPairs>, 6> yy{};  ///< (ϖ_0 ϖ_0), (ξ_1 ϖ_0), (ξ_1 ξ_1), (w_1 ϖ_0), (w_1 ξ_1), (w_1 w_1)
   std::array<Lane, 18> gradient_y{};
@@ -31,7 +31,8 @@ struct LandmarkSums {
   std::array<std::array<Lane, 3>, 3> mm{};  ///< lower triangle
   std::array<Lane, 3> gradient{};
   std::array<std::array<Lane, 18>, 3> my{};
-  Lane error{}, behind{};  ///< [px] of reprojection; how many have the landmark behind the camera
+  Lane error{},
+      behind{};  ///< [px] sum of reprojection errors; number of observations with the landmark behind the camera
 };
 
 /// A row of the Jacobians of (m, ξ) for one component of the residual.
@@ -57,7 +58,7 @@ inline Row row(const Tangent& g, const Lane3& q, const Lane3& D) {
   return {{d_m.x, d_m.y, d_m.z}, {left.x, left.y, left.z, -h.x, -h.y, -h.z}};
 }
 
-/// Adds one observation of each lane, JᵀJ and Jᵀe by blocks.
+/// Adds JᵀJ and Jᵀe of one observation per lane, by blocks.
 inline void accumulate(const std::array<Row, 2>& rows, const std::array<Lane, 3>& basis, const std::array<Lane, 2>& e,
                        Lane weight, LandmarkSums& landmark, IntervalSums& sums) {
   std::array<Lane, 6> Ge;
@@ -89,7 +90,7 @@ inline void accumulate(const std::array<Row, 2>& rows, const std::array<Lane, 3>
   }
 }
 
-/// Adds an observation of the landmark m = T_0⁻¹ l of each lane.
+/// Adds one observation of the landmark m = T_0⁻¹ l of each lane.
 template <Range range>
 void add_observation(const Shared& shared, const Lane3& m, const Measured& z, LandmarkSums& landmark,
                      IntervalSums& sums) {

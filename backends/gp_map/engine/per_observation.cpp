@@ -21,7 +21,7 @@ ObservationRows linearise(const GpInterval& interval, const GpInterval::Derivati
 
 }  // namespace
 
-/// Builds the open interval's factor, from the root of the last update.
+/// Builds the factor of the open interval from the root of the last update.
 bool Engine::open_newest() {
   const int newest = static_cast<int>(graph_.states.size()) - 1;
   if (live_.is_of(newest)) return true;
@@ -36,7 +36,7 @@ bool Engine::open_newest() {
 
 bool Engine::observe(int landmark, const Observation& observation) {
   const int newest = static_cast<int>(graph_.states.size()) - 1;
-  // An observation of something else is part of the next update.
+  // Other observations take effect with the next update.
   const bool live = graph_.interval_of(observation.t) == newest && open_newest() && live_.has(landmark);
   if (!insert(landmark, observation) || !live) return false;
   const ObservationRows rows = linearise(*live_interval_, live_derivatives_, graph_.camera, points_.landmark(landmark),
@@ -44,7 +44,7 @@ bool Engine::observe(int landmark, const Observation& observation) {
   live_.add(landmark, rows, graph_.loss.weight(rows.e.squaredNorm()));
   const Vector24 delta = live_.solve_states();
   if (!delta.allFinite()) return false;
-  // What older states are solved from has changed.
+  // The separator of older states has changed.
   factorisation_.stage(newest - 1).skipped +=
       size_of_state(newest - 1, delta.head<12>() - points_.state_delta(newest - 1));
   points_.set_state_delta(graph_, newest - 1, delta.head<12>());

@@ -8,10 +8,10 @@
 #include "backends/gp_map/testing/rounding.hpp"
 #include "core/testing/catch2.hpp"
 
-// 5,000 random sequences of everything that can be done to the engine, sensible or not, compared with the batch solver,
-// with redoing everything, or with full history. EVBENCH_RANDOM_SEQUENCES sets their number (./test.sh long: 100,000),
-// EVBENCH_RANDOM_FIRST the number of the first one: so that many can be spread over processes, and one that failed be
-// repeated alone.
+// 5,000 random sequences of all operations of the engine, sensible or not, compared with the batch solver, with redoing
+// everything, or with full history. EVBENCH_RANDOM_SEQUENCES sets their number (./test.sh long: 100,000),
+// EVBENCH_RANDOM_FIRST the number of the first one. So many sequences can be spread over processes, and a failed one
+// can be repeated alone.
 namespace evbench::gp_map {
 namespace {
 
@@ -22,14 +22,14 @@ using testing::RoundingBound;
 using testing::SessionOptions;
 
 constexpr int kSequences = 5000;
-constexpr int kFew = 200;  ///< sequences, of which no share is asked for
+constexpr int kFew = 200;  ///< sequences; shares are not checked below this number
 
 int from_environment(const char* name, int otherwise) {
   const char* value = std::getenv(name);
   return value == nullptr ? otherwise : std::atoi(value);
 }
 
-/// Calls play(seed) for each sequence of a fifth of them all; seeds of the fifths are apart.
+/// Calls play(seed) for each sequence of a fifth of them all. The seeds of the fifths do not overlap.
 template <class Play>
 void play_fifth(int fifth, Play play) {
   constexpr int kApart = 100'000'000;
@@ -41,7 +41,7 @@ void play_fifth(int fifth, Play play) {
   }
 }
 
-/// Thresholds and sizes of caches that differ from one sequence to the next.
+/// Thresholds and cache sizes that differ between sequences.
 EngineOptions draw_options(EngineOptions options, std::uint64_t seed) {
   options.grace = 1 + static_cast<int>(seed % 3);
   options.kept_intervals = seed % 2 == 0 ? 64 : 3;
@@ -50,10 +50,10 @@ EngineOptions draw_options(EngineOptions options, std::uint64_t seed) {
   return options;
 }
 
-/// Equal to 1e-7, or in a few ill-conditioned problems as far as rounding lets them be.
+/// Checks equality to 1e-7, or to the bound of rounding in a few ill-conditioned problems.
 class Agreement {
  public:
-  /// States of one linear problem from `first` on, solved in two ways.
+  /// Compares the states from `first` on of one linear problem, solved by two methods.
   void check(const FactorGraph& a, const FactorGraph& b, int first, const RandomSession& session) {
     ++compared_;
     std::vector<RoundingBound> bounds;
@@ -72,11 +72,11 @@ class Agreement {
     }
   }
 
-  /// That this was a test at all: most sequences were compared, nearly all of them to 1e-7.
+  /// Most sequences must have been compared, nearly all of them to 1e-7; otherwise the test shows nothing.
   void check_shares(int all) const {
     if (all < kFew) return;
     CHECK(compared_ > 0.3 * all);
-    // Of few that are compared, as many as chance draws of a thousandth: its mean and three of Poisson's deviations.
+    // In few comparisons chance may exceed the share: allowed are a thousandth and three Poisson deviations.
     const double usual = 1e-3 * compared_;
     CHECK(ill_conditioned_ < std::max(2e-3 * compared_, usual + 3.0 * std::sqrt(usual)));
   }
@@ -107,30 +107,30 @@ bool compare_with_batch(std::uint64_t seed) {
   return true;
 }
 
-/// Two halves of the same, to be run in parallel.
+/// One of two halves, to be run in parallel.
 void compare_all_with_batch(int fifth) {
   int converged = 0, all = 0;
   play_fifth(fifth, [&](std::uint64_t seed) {
     ++all;
     if (compare_with_batch(seed)) ++converged;
   });
-  // The others have landmarks that nothing determines, and take more than 25 iterations.
+  // The others have undetermined landmarks and take more than 25 iterations.
   CHECK((all < kFew || converged > 0.6 * all));
 }
 
 }  // namespace
 
-TEST_CASE("Whatever is done to the engine, optimise() ends no higher than the batch solver that starts there, half 1",
+TEST_CASE("After random operations optimise() ends no higher than the batch solver that starts there, half 1",
           "[random]") {
   compare_all_with_batch(0);
 }
 
-TEST_CASE("Whatever is done to the engine, optimise() ends no higher than the batch solver that starts there, half 2",
+TEST_CASE("After random operations optimise() ends no higher than the batch solver that starts there, half 2",
           "[random]") {
   compare_all_with_batch(1);
 }
 
-TEST_CASE("Redoing only what changed gives the states of redoing everything, and of a new engine, in linear problems",
+TEST_CASE("In linear problems, redoing only what changed gives the states of redoing everything and of a new engine",
           "[random]") {
   Agreement agreement;
   int all = 0;
@@ -142,12 +142,12 @@ TEST_CASE("Redoing only what changed gives the states of redoing everything, and
     session.update();
     Engine& engine = session.engine();
     const FactorGraph before = engine.graph();
-    engine.add_velocity_prior({0, Vector6::Zero(), Vector6::Constant(1e12)});  // concerns the oldest stage
+    engine.add_velocity_prior({0, Vector6::Zero(), Vector6::Constant(1e12)});  // affects the oldest stage
     const UpdateSummary redone = engine.update();
     CHECK(redone.first_stage == 0);
     Engine fresh(session.linear_problem(), options);  // has linearised nothing yet
     const UpdateSummary first = fresh.update();
-    // What is held depends on when.
+    // Which variables are regularised depends on when they are solved.
     if (session.undetermined() || !redone.reason.empty() || !first.reason.empty()) return;
     agreement.check(before, engine.graph(), 0, session);
     agreement.check(before, fresh.graph(), 0, session);
@@ -155,7 +155,7 @@ TEST_CASE("Redoing only what changed gives the states of redoing everything, and
   agreement.check_shares(2 * all);
 }
 
-TEST_CASE("One observation linearised close before the camera costs the digits that rounding explains, and no others") {
+TEST_CASE("An observation linearised close to the camera loses the digits that rounding explains, and no others") {
   int compared = 0, beyond_usual = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     CAPTURE(seed);
@@ -181,9 +181,9 @@ TEST_CASE("One observation linearised close before the camera costs the digits t
   CHECK(beyond_usual > 0);
 }
 
-TEST_CASE("With a lag the states are those of full history as long as the problem is linear", "[random]") {
+TEST_CASE("With a lag the states equal those of full history in linear problems", "[random]") {
   Agreement agreement;
-  int forgot = 0, all = 0;
+  int marginalised = 0, all = 0;
   play_fifth(3, [&](std::uint64_t seed) {
     ++all;
     SessionOptions options{.engine = draw_options(linear_options(), seed), .anchor = false, .full_twin = true};
@@ -192,14 +192,14 @@ TEST_CASE("With a lag the states are those of full history as long as the proble
     play(session);
     session.update();
     if (session.undetermined()) return;
-    forgot += session.engine().first_state() > 0 ? 1 : 0;
+    marginalised += session.engine().first_state() > 0 ? 1 : 0;
     agreement.check(session.engine().graph(), session.twin().graph(), session.engine().first_state(), session);
   });
   agreement.check_shares(all);
-  CHECK((all < kFew || forgot > 0.1 * all));
+  CHECK((all < kFew || marginalised > 0.1 * all));
 }
 
-TEST_CASE("With a lag, whatever is done, no more is kept than the lag and the spacing of snapshots ask for",
+TEST_CASE("With a lag no more is kept than the lag and the spacing of snapshots require, after random operations",
           "[random]") {
   play_fifth(4, [](std::uint64_t seed) {
     SessionOptions options{.engine = draw_options({}, seed)};

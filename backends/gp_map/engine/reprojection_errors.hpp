@@ -6,20 +6,20 @@
 
 namespace evbench::gp_map {
 
-/// The mean reprojection error of each landmark over all its observations, those that have been marginalised included:
-/// kept as sums by interval, which cost nothing to renew where an interval is linearised anyway.
+/// The mean reprojection error of each landmark over all its observations, including marginalised ones. It is kept as
+/// sums by interval, which cost nothing to update where an interval is linearised anyway.
 class ReprojectionErrors {
  public:
-  /// The sums of an interval, as it has been linearised.
+  /// Sets the sums of an interval from its linearisation.
   void set(int k, const std::vector<IntervalLinearisation::Coupling>& couplings);
-  /// The same at a graph's estimate.
+  /// Computes them at a graph's estimate.
   void take(const FactorGraph& graph, int k);
-  /// The interval has been taken back.
+  /// The interval has been removed.
   void remove(int k);
-  /// The interval doesn't change any more: only the means have it.
+  /// The interval no longer changes: only the means keep it.
   void settle(int k);
 
-  /// [px]; infinite when an observation has the landmark behind the camera, 0 without observations.
+  /// [px]; infinite if an observation has the landmark behind the camera, 0 without observations.
   double mean(int landmark) const;
 
  private:

@@ -116,7 +116,7 @@ void BackwardPass::shift(const ReturnRows& stage, double* z, int pivots) {
       as_matrix(stage.Zt.data(), static_cast<int>(mu.rows()), pivots, stage.stride).transpose() * mu;
 }
 
-/// A second column has the change of μ.
+/// The second column is the change of μ.
 void EstimatePass::start(const Returns& returns) {
   Eigen::MatrixXd g = Eigen::MatrixXd::Zero(3 * returns.size(), 2);
   g.col(0) = returns.means();

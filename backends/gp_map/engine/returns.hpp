@@ -10,14 +10,14 @@
 
 namespace evbench::gp_map {
 
-/// Of a landmark, for up to 24 right-hand sides.
+/// Three values of a landmark for each of up to 24 right-hand sides.
 using Known3 = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 24>;
 using MatrixX3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-/// What the noise of a stage has to do with landmarks that came back later (see Returns): Zᵀ, 3 rows for each of them.
+/// Coupling of a stage's noise with landmarks that returned later (see Returns): Zᵀ, 3 rows for each of them.
 struct ReturnRows {
   std::vector<int> ids;
-  Buffer Zt;       ///< by columns, of which there are as many as the stage has pivots
+  Buffer Zt;       ///< by columns, one per pivot of the stage
   int stride = 0;  ///< padded; rows beyond those in use are zero
 
   void clear();
@@ -27,23 +27,23 @@ struct ReturnRows {
 struct Return;
 class Returns;
 
-/// Right-hand sides on their way forward through the stages, across the returns.
+/// Carries right-hand sides forward through the stages, across the returns.
 class ForwardPass {
  public:
-  /// From this stage on.
+  /// Starts at this stage.
   ForwardPass(const Returns& returns, int stage, int columns);
-  /// Of another one's right-hand sides these columns, which are zero before this later stage.
+  /// Takes these columns of another pass; they are zero before this later stage.
   ForwardPass(const ForwardPass& all, int stage, int column, int columns);
 
-  /// z: what the stage's pivots took of the right-hand sides, pivots × columns.
+  /// z: the part of the right-hand sides that the stage's pivots took, pivots × columns.
   void add(const ReturnRows& stage, const double* z, int pivots);
-  /// Crosses the returns before stage k; x in the root's layout there, with this stride between right-hand sides.
+  /// Crosses the returns before stage k. x is in the root's layout there, with this stride between right-hand sides.
   void cross(int k, double* x, int stride);
 
   int first() const { return first_; }  ///< position of the first return that may be crossed
   auto g() const { return g_.topRows(3 * (next_ - first_)); }
-  auto sum(int id) { return sums_.middleRows<3>(3 * id); }  ///< Σ Zᵀ z with the noise that the return has to do with
-  /// As it was before the returns before stage k; g begins with what it was then.
+  auto sum(int id) { return sums_.middleRows<3>(3 * id); }  ///< Σ Zᵀ z over the noise that is coupled with the return
+  /// Restores the state before the returns before stage k; g begins with its values then.
   void resume(int k, const Eigen::Ref<const Eigen::MatrixXd>& g);
 
  private:
@@ -53,34 +53,34 @@ class ForwardPass {
   Buffer product_;
 };
 
-/// The way back of right-hand sides: solves for μ, the latest return first.
+/// Carries right-hand sides backward: solves for μ, the latest return first.
 class BackwardPass {
  public:
-  /// g: of the returns from position `first` on, with a column for each right-hand side; those before are not met.
+  /// g: of the returns from position `first` on, a column per right-hand side. Earlier returns are not reached.
   void start(const Returns& returns, int first, Eigen::MatrixXd g);
-  /// Crosses the returns before stage k; x in the root's layout there, with this stride between right-hand sides.
+  /// Crosses the returns before stage k. x is in the root's layout there, with this stride between right-hand sides.
   void cross(const Returns& returns, int k, const double* x, int stride);
   /// z += Z μ, pivots × columns.
   void shift(const ReturnRows& stage, double* z, int pivots);
 
  protected:
-  /// The return to cross next, if it is before stage k; null: none.
+  /// The next return to cross, if it is before stage k; null: none.
   const Return* next(const Returns& returns, int k) const;
   /// Crosses it: `known` is Rᵀ x there.
   void cross(const Return& last, Known3 known);
-  /// μ of what the stage has to do with.
+  /// μ of the returns that are coupled with the stage.
   const Eigen::MatrixXd& gather(const ReturnRows& stage);
 
   int next_ = 0;
 
  private:
   int first_ = 0;
-  Eigen::MatrixXd g_;         ///< increased by what later returns have explained
+  Eigen::MatrixXd g_;         ///< increased by the contributions of later returns
   Eigen::MatrixXd mu_;        ///< by id
-  Eigen::MatrixXd gathered_;  ///< of a stage
+  Eigen::MatrixXd gathered_;  ///< of one stage
 };
 
-/// The estimate's way back, which keeps what is known of each return for the next time.
+/// The backward pass of the estimate. It stores the known values of each return for the next pass.
 class EstimatePass : private BackwardPass {
  public:
   void start(const Returns& returns);
@@ -88,11 +88,11 @@ class EstimatePass : private BackwardPass {
   void cross(Returns& returns, int k, const double* delta);
   /// z += Z μ.
   void shift(const ReturnRows& stage, double* z, int pivots);
-  /// Exchanges what was kept with what it has replaced.
+  /// Exchanges the stored values with those that they replaced.
   void swap_known(Returns& returns) const;
 
-  /// How much what is known of the returns changes the noise of the stages that have not been shifted yet [standard
-  /// deviations, its norm over all of them].
+  /// Change of the noise of the stages that have not been shifted yet, due to the known values of the returns [standard
+  /// deviations, norm over all of them].
   double change() const { return std::sqrt(std::max(0.0, change2_)); }
 
  private:
@@ -102,9 +102,9 @@ class EstimatePass : private BackwardPass {
 
 /// Eliminated landmarks carried forward together, 3 columns each: ℓ = xᵀ δ_root + Σ_k Z_kᵀ (y_k + w_k).
 struct Walk {
-  /// From this stage on, x with this many rows.
+  /// Starts at this stage; x has this many rows.
   Walk(const Returns& returns, int stage, int rows, int landmarks);
-  /// One landmark of a walk, which began at this stage; x with this many rows, not fewer.
+  /// One landmark of a walk, which began at this stage; x has this many rows, not fewer than before.
   Walk(const Walk& all, int landmark, int stage, int rows);
 
   ForwardPass pass;
@@ -113,46 +113,46 @@ struct Walk {
   Eigen::VectorXd with_y;  ///< Σ Zᵀ y
 };
 
-/// A landmark that had been eliminated and came back into the root.
+/// A landmark that was eliminated and has returned to the root.
 struct Return {
-  /// The walk up to an earlier stage, so that the landmark can come back there instead.
+  /// The walk up to an earlier stage, so that the landmark can return there instead.
   struct Checkpoint {
     int stage = 0;
     MatrixX3 x;
     Matrix3 square;
     Vector3 with_y;
-    std::vector<std::pair<int, Matrix3>> sums;  ///< by the ids of returns that had not been crossed
+    std::vector<std::pair<int, Matrix3>> sums;  ///< by the ids of returns that were not crossed yet
   };
 
   int id = 0;
   int landmark = 0;
-  int from = 0;                         ///< the stage that had eliminated it
-  int before = 0;                       ///< it is in the root again from before this stage on
-  int slot = 0;                         ///< there
-  int first = 0;                        ///< position of the first return that its walk crossed
+  int from = 0;                         ///< the stage that eliminated it
+  int before = 0;                       ///< it is in the root again before this stage
+  int slot = 0;                         ///< its slot there
+  int first = 0;                        ///< position of the first return crossed by its walk
   MatrixX3 g;                           ///< row f of L, transposed, from `first` on
   Matrix3 L;                            ///< and its diagonal block
   MatrixX3 R;                           ///< in the root's layout
   Vector3 mean = Vector3::Zero();       ///< L⁻¹ Σ Zᵀ w = Rᵀ δ − mean
   std::vector<Checkpoint> checkpoints;  ///< by stage
 
-  /// Of the landmark's linearisation point since it came back from what it was before.
+  /// Change of the landmark's linearisation point since its return.
   Vector3 offset = Vector3::Zero();
-  Vector3 known_before = Vector3::Zero();  ///< the last time but one
+  Vector3 known_before = Vector3::Zero();  ///< the same at the solve before
   Vector3 known = Vector3::Zero();         ///< Rᵀ δ − mean when the stages before were last solved
-  Vector3 delta_before = Vector3::Zero();  ///< increment of the eliminated self when it was last solved for
+  Vector3 delta_before = Vector3::Zero();  ///< increment of the eliminated landmark when it was last solved for
 };
 
-/// Landmarks that were seen again long after they had been eliminated. Be w = Lᵀ δ_p + Aᵀ δ_r − y the noise of a stage:
-/// given the root after it, of zero mean and unit covariance, independent from stage to stage. Carried forward through
-/// the stages, an eliminated landmark is a linear function of the root and of such noise (Walk). With that,
-/// p(ℓ | root) comes into the root as a factor, and the root is what it would be had the landmark never left. Older
-/// stages stay as they are, but their noise is not of zero mean any more: given ℓ and the root it is Z μ.
+/// Landmarks that are re-acquired long after their elimination. Let w = Lᵀ δ_p + Aᵀ δ_r − y be the noise of a stage:
+/// given the root after it, w has zero mean and unit covariance and is independent of other stages. Carried forward
+/// through the stages, an eliminated landmark is a linear function of the root and of this noise (Walk). So p(ℓ | root)
+/// enters the root as a factor, and the root becomes what it would be if the landmark had never left. Older stages stay
+/// unchanged, but the mean of their noise is no longer zero: given ℓ and the root it is Z μ.
 ///
 /// For all returns f, in their order: K_ef = Σ_k Z_ekᵀ Z_fk (over the stages before the earlier one), K = L Lᵀ by
 /// blocks of 3. L⁻¹ Σ Zᵀ w, again of unit covariance, is known from the root's variables at each return: Rᵀ δ − mean.
-/// Then μ = L⁻ᵀ (Rᵀ δ − mean). Whatever is carried forward across a return, with z where a walk has Z, adds R g to its
-/// x, g = L⁻¹ Σ Zᵀ z. For a later return this g is its row of L, for y the mean.
+/// Then μ = L⁻ᵀ (Rᵀ δ − mean). A right-hand side that is carried forward across a return, with z in place of a walk's
+/// Z, adds R g to its x, with g = L⁻¹ Σ Zᵀ z. For a later return this g is its row of L, for y the mean.
 class Returns {
  public:
   const Return& operator[](int position) const { return returns_[index(position)]; }
@@ -162,7 +162,7 @@ class Returns {
   /// The position of the first return before a stage later than this.
   int first_after(int stage) const;
   Eigen::VectorXd means() const;
-  /// The return of a landmark that this stage had eliminated before.
+  /// The return of a landmark that stage `from` had eliminated.
   Return* find(int landmark, int from);
   /// The last return of a landmark; null: none.
   Return* last_of(int landmark);
@@ -170,11 +170,12 @@ class Returns {
   int new_id();
   void free_id(int id) { free_.push_back(id); }
 
-  /// The landmark has come back with this walk, which has crossed all others, into this slot; R has `extent` rows.
-  /// Null, and nothing done, when the others leave too little unknown of it to tell that from rounding.
+  /// Adds the return of a landmark with this walk, which has crossed all others, into the landmark's slot; R has
+  /// `extent` rows. Returns null and does nothing if the other returns leave too little of it unknown to be
+  /// distinguished from rounding.
   Return* append(Return&& result, const Walk& walk, int extent);
 
-  /// Takes out those before stages later than `done`, in order.
+  /// Removes and returns those before stages later than `done`, in order.
   std::vector<Return> take_after(int done);
 
   /// Drops checkpoints before this stage.
@@ -182,7 +183,7 @@ class Returns {
 
  private:
   std::vector<Return> returns_;  ///< by stage
-  std::vector<int> free_;        ///< ids to use again
+  std::vector<int> free_;        ///< ids for reuse
   int ids_ = 0;
 };
 

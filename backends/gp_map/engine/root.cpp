@@ -120,7 +120,7 @@ void Root::add_landmark_factor(std::span<const int> landmarks, const AnchorLinea
 }
 
 void Root::clear() {
-  forget_occupants();
+  clear_occupants();
   std::ranges::fill(H_, 0.0);
   std::ranges::fill(b_, 0.0);
   reserve(extent());
@@ -157,7 +157,7 @@ void Root::Snapshot::shift(int row, int size, const double* shift) {
 
 void Root::restore(const Snapshot& from) {
   const int used = extent();
-  forget_occupants();
+  clear_occupants();
   top_ = from.top;
   const int n = extent();
   reserve(n);
@@ -192,7 +192,7 @@ void Root::reserve(int rows) {
   stride_ = stride;
 }
 
-void Root::forget_occupants() {
+void Root::clear_occupants() {
   for (int slot = 0; slot < top_; ++slot) {
     const int landmark = occupant_[index(slot)];
     if (landmark >= 0) slot_of_[index(landmark)] = -1;

@@ -10,9 +10,9 @@
 
 namespace evbench::gp_map {
 
-/// Adds damping to `rows` rows of H from `row` on, and b so that they are pulled towards the increments `now`: to each
-/// three rows (a point, a rotation, ...) λ times their largest diagonal element, so that no direction of the three is
-/// preferred, with a floor for those about which nothing is known.
+/// Adds damping to `rows` rows of H from `row` on, and to b so that they are pulled towards the increments `now`. Every
+/// three rows (a point, a rotation, ...) get λ times their largest diagonal element, so that no direction of the three
+/// is preferred, with a floor for undetermined ones.
 inline void add_damping(double* H, std::ptrdiff_t stride, double* b, int row, int rows, double lambda,
                         const double* now) {
   constexpr double kFloor = 1e-6;
@@ -26,17 +26,17 @@ inline void add_damping(double* H, std::ptrdiff_t stride, double* b, int row, in
   }
 }
 
-/// A landmark has been given another, lower slot.
+/// The move of a landmark to another, lower slot.
 struct SlotMove {
   int from = 0, to = 0;
 };
 
 /// The trailing dense part of the factorisation: information matrix H and right-hand side b (H δ = b) of the newest two
-/// states and of the landmarks that are alive there, after everything older has been eliminated.
+/// states and of the live landmarks, after everything older has been eliminated.
 ///
-/// Layout: state k occupies 12 rows from 12 (k mod 2) on, a landmark 3 rows in a slot of its own. It keeps that slot
-/// until too many below it are free: close_holes().
-/// Invariant: rows and columns of a place that nothing occupies are zero.
+/// Layout: state k occupies 12 rows from 12 (k mod 2) on, a landmark the 3 rows of its slot. It keeps that slot until
+/// too many lower slots are free: close_holes().
+/// Invariant: rows and columns without a variable are zero.
 class Root {
  public:
   static int row_of_state(int state) { return 12 * (state % 2); }
@@ -58,9 +58,9 @@ class Root {
 
   /// Gives a landmark the lowest free slot.
   int enter(int landmark);
-  void leave(int landmark);  ///< its rows have been cleared by an elimination
-  /// Moves landmarks from the highest slots to free ones where these have become many: whatever is as large as the root
-  /// is dear, by its square. Tells the moves in their order.
+  void leave(int landmark);  ///< after an elimination has cleared its rows
+  /// Moves landmarks from the highest slots to free ones if there are many of these: the cost grows with the square of
+  /// the root's size. Returns the moves in their order.
   void close_holes(std::vector<SlotMove>& moves);
 
   void add_state(int state, const Matrix12& H, const Vector12& b);
@@ -83,7 +83,7 @@ class Root {
     std::vector<int> occupant;
     Buffer H, b;
 
-    /// b −= H(:, row...) shift: the increments of these rows are counted from a point that lies `shift` further.
+    /// b −= H(:, row...) shift: moves the linearisation point of these rows by `shift`.
     void shift(int row, int size, const double* shift);
   };
   void save(Snapshot& to) const;
@@ -92,14 +92,14 @@ class Root {
  private:
   void reserve(int rows);
   void move(int from, int to);
-  void forget_occupants();
+  void clear_occupants();
 
   int top_ = 0, stride_ = 0;
   Buffer H_, b_;
   std::vector<int> occupant_, slot_of_;
 };
 
-/// What belongs to landmarks that were moved, in right-hand sides in the root's layout: to their new places, and back.
+/// Moves the rows of moved landmarks, in right-hand sides in the root's layout, to their new slots, and back.
 inline void follow_moves(std::span<const SlotMove> moves, double* x, int stride, int columns) {
   for (const auto [from, to] : moves) {
     for (int c = 0; c < columns; ++c, x += stride) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kLandmarks = 20;
 
-/// What the root says of each pair of landmarks, of each with the states, and of each alone, by landmark.
+/// The content of the root for each pair of landmarks, each landmark with the states, and each alone, by landmark.
 std::map<std::pair<int, int>, Eigen::MatrixXd> content(const Root& root) {
   const int n = root.extent();
   Eigen::MatrixXd H = as_matrix(root.column(0), n, n, root.stride());
@@ -33,7 +33,7 @@ std::map<std::pair<int, int>, Eigen::MatrixXd> content(const Root& root) {
   return result;
 }
 
-/// Takes a landmark out as an elimination does.
+/// Removes a landmark as an elimination does.
 void remove(Root& root, int landmark) {
   const int row = Root::row_of_slot(root.slot_of(landmark));
   for (int i = row; i < row + 3; ++i) {
@@ -46,7 +46,7 @@ void remove(Root& root, int landmark) {
 
 }  // namespace
 
-TEST_CASE("Landmarks that are moved to lower slots keep what is known of them") {
+TEST_CASE("Landmarks that are moved to lower slots keep their information") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Random random(seed);
     Root root;
@@ -66,11 +66,11 @@ TEST_CASE("Landmarks that are moved to lower slots keep what is known of them") 
     for (int j = 0; j < kLandmarks; ++j) slot[j] = root.slot_of(j);
     std::vector<double> x(static_cast<std::size_t>(2 * root.stride()));
     std::iota(x.begin(), x.end(), 0.0);
-    for (int s = 0; s < root.slots(); ++s) {  // zero where nothing is, as the root is
+    for (int s = 0; s < root.slots(); ++s) {  // free slots are zero, as in the root
       if (root.occupant(s) >= 0) continue;
       for (const int column : {0, root.stride()}) std::fill_n(x.begin() + column + Root::row_of_slot(s), 3, 0.0);
     }
-    const std::vector<double> as_it_was = x;
+    const std::vector<double> original = x;
 
     std::vector<SlotMove> moves;
     root.close_holes(moves);
@@ -85,7 +85,7 @@ TEST_CASE("Landmarks that are moved to lower slots keep what is known of them") 
       for (const int column : {0, root.stride()}) {
         for (int i = 0; i < 3; ++i) {
           CHECK(x[static_cast<std::size_t>(column + Root::row_of_slot(root.slot_of(j)) + i)] ==
-                as_it_was[static_cast<std::size_t>(column + Root::row_of_slot(slot[j]) + i)]);
+                original[static_cast<std::size_t>(column + Root::row_of_slot(slot[j]) + i)]);
         }
       }
     }
@@ -94,7 +94,7 @@ TEST_CASE("Landmarks that are moved to lower slots keep what is known of them") 
       if (slot[j] < 0) continue;
       const auto at = static_cast<std::size_t>(Root::row_of_slot(slot[j]));
       CHECK(std::equal(x.begin() + static_cast<long>(at), x.begin() + static_cast<long>(at) + 3,
-                       as_it_was.begin() + static_cast<long>(at)));
+                       original.begin() + static_cast<long>(at)));
     }
   }
 }

@@ -7,22 +7,22 @@
 
 namespace evbench::gp_map {
 
-/// The Cholesky factor of the root, H = L Lᵀ. Its rows are in another order than the root's: landmarks by their slots,
-/// 3 rows each (a unit diagonal for a slot that nobody has), then one or two states, 12 rows each, then padding. So
-/// what eliminating the landmarks leaves of the newest states stands in the last rows.
+/// The Cholesky factor of the root, H = L Lᵀ. Its rows have another order than the root's: landmarks by slot, 3 rows
+/// each (a unit diagonal for a free slot), then one or two states, 12 rows each, then padding. So the last rows are the
+/// factor of the newest states after elimination of the landmarks.
 class RootFactor {
  public:
-  /// Takes H and b of the root's landmarks and of state `oldest`; of the states after it, zeros.
+  /// Loads H and b of the root's landmarks and of state `oldest`; zeros for the states after it.
   void load(const Root& root, int oldest, int states);
 
   int row_of_slot(int slot) const { return 3 * slot; }
   int row_of_states() const { return 3 * slots_; }
-  /// Where a row of the root's landmarks or of state `oldest` stands here.
+  /// The row here of a row of the root's landmarks or of state `oldest`.
   int row_of_root_row(int row) const {
     const int in_slots = row - Root::row_of_slot(0);
     return in_slots >= 0 ? in_slots : row_of_states() + row - state_in_root_;
   }
-  int size() const { return size_; }  ///< rows, padded; in each column there is room for kPadding more
+  int size() const { return size_; }  ///< rows, padded; each column has room for kPadding more
   double* column(int c) { return L_.data() + static_cast<std::ptrdiff_t>(c) * stride(); }
   const double* column(int c) const { return L_.data() + static_cast<std::ptrdiff_t>(c) * stride(); }
   int stride() const { return size_ + kPadding; }
@@ -32,7 +32,7 @@ class RootFactor {
     add_damping(L_.data(), stride(), b_.data(), row, rows, lambda, now);
   }
 
-  /// L from H. Returns the first row that is not determined, −1: none.
+  /// Factorises H into L. Returns the first row that is not determined, −1: none.
   int factorise();
 
   /// x ← L⁻¹ x and x ← L⁻ᵀ x.
@@ -41,7 +41,7 @@ class RootFactor {
   /// X ← L⁻¹ X, where the rows of X before `first` are zero.
   void solve_forward(Eigen::Ref<Eigen::MatrixXd> X, int first) const;
 
-  /// What belongs to the landmarks and to state `oldest`, from one layout to the other.
+  /// Copies the rows of the landmarks and of state `oldest` from one layout to the other.
   void copy_from_root(const double* root, double* x) const;
   void copy_to_root(const double* x, double* root) const;
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kAlive = 24;
 constexpr int kLife = 20;   ///< intervals in which a landmark is observed
-constexpr int kEnters = 5;  ///< with this observation
+constexpr int kEnters = 5;  ///< the landmark enters with this observation
 constexpr double kLandmarkSigma = 0.1;
 constexpr int kWidth = 240, kHeight = 180;
 
@@ -23,7 +23,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 DrawnProblem::DrawnProblem(const DrawnOptions& options, std::uint64_t seed)
     : options_(options), random_(seed), qc_(Vector6::Constant(options.qc)) {
-  pose_prior_.sigma.setConstant(1e-5);  // tight: else all error would be that of the first pose
+  pose_prior_.sigma.setConstant(1e-5);  // tight: otherwise the error of the first pose would dominate
   velocity_prior_.velocity << 0.0, 0.0, 0.0, 0.8, 0.0, 0.1;
   velocity_prior_.sigma.setConstant(0.05);
   draw_trajectory();
@@ -97,7 +97,7 @@ void DrawnProblem::draw_landmark(int first, int last) {
   if (landmark.observations.size() >= kEnters) landmarks_.push_back(landmark);
 }
 
-/// The engine anchors the scale that the guesses have: it has to be the true one, but for what the anchor's sigma says.
+/// The engine anchors the scale of the guesses: it has to be the true one, but for a deviation of the anchor's sigma.
 void DrawnProblem::draw_anchor() {
   const double drawn = random_.normal();
   for (std::size_t j = 0; j < landmarks_.size(); ++j) {

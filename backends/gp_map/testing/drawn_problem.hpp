@@ -12,11 +12,11 @@ namespace evbench::gp_map::testing {
 struct DrawnOptions {
   enum class Gauge {
     landmark_priors,  ///< every landmark has a prior
-    scale_anchor,     ///< none has, the scale anchor holds the scale
+    scale_anchor,     ///< none has, the scale anchor fixes the scale
   };
   enum class Observed {
     at_states,       ///< at the times of control states
-    between_states,  ///< at times between them, from the interpolated pose, as the factors have it
+    between_states,  ///< at times between them, from the interpolated pose, as in the factors
   };
   Gauge gauge = Gauge::landmark_priors;
   Observed observed = Observed::between_states;
@@ -25,14 +25,14 @@ struct DrawnOptions {
   double noise_scale = 1.0;  ///< true pixel noise over the stated one
 };
 
-/// A problem whose unknowns and measurements are drawn from the very densities that the factors state, so that the
-/// error of an estimate must be as large as its covariance says. 60 control states in 3 s, 24 landmarks alive, each
-/// observed once an interval for at most a second. The noise is small: depths of landmarks seen with little parallax
-/// are far from Gaussian otherwise, which no covariance describes.
+/// A problem whose unknowns and measurements are drawn from exactly the densities of the factors, so that the errors of
+/// an estimate must match its covariance. 60 control states in 3 s, 24 live landmarks, each observed once an interval
+/// for at most a second. The noise is small: otherwise the depths of landmarks with little parallax would be far from
+/// Gaussian, which no covariance describes.
 class DrawnProblem {
  public:
   static constexpr int kStates = 60;
-  static constexpr int kSteps = 4;  ///< an interval's, of the drawn trajectory
+  static constexpr int kSteps = 4;  ///< steps of the drawn trajectory in an interval
   static constexpr double kInterval = 0.05, kStep = kInterval / kSteps;
 
   DrawnProblem(const DrawnOptions& options, std::uint64_t seed);
@@ -40,7 +40,7 @@ class DrawnProblem {
   /// The trajectory at i kStep, i ≤ (kStates − 1) kSteps.
   const ControlState& truth(int i) const { return truth_[index(i)]; }
 
-  /// Feeds all of it, one update a control state. A landmark enters with its fifth observation.
+  /// Feeds the problem to an engine, one update a control state. A landmark enters with its fifth observation.
   Engine solve_incrementally(const EngineOptions& options = {}) const;
 
  private:

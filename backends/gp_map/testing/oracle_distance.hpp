@@ -9,16 +9,16 @@
 
 namespace evbench::gp_map::testing {
 
-/// The largest, over all control states, of the difference between an estimate and the batch solver's optimum, in
-/// standard deviations: of one component of pose or velocity, and whitened by the state's covariance (a norm of 12).
+/// The largest difference over all control states between an estimate and the batch solver's optimum, in standard
+/// deviations: of one component of pose or velocity, and whitened by the state's covariance (a norm of 12).
 struct OracleDistance {
   double component = 0.0;
   double whitened = 0.0;
 };
 
-/// The oracle starts from the estimate and goes on until nothing is gained. Standard deviations are computed of every
-/// n-th state, which takes long in large problems, and used up to the next one: they change slowly. Infinite when the
-/// oracle fails.
+/// The oracle starts from the estimate and runs to convergence. Standard deviations are computed for every n-th state,
+/// because this takes long in large problems, and used up to the next one: they change slowly. Infinite if the oracle
+/// fails.
 inline OracleDistance distance_from_oracle(const FactorGraph& estimate, int every = 1) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   FactorGraph optimum = estimate;

@@ -28,7 +28,7 @@ void require_finite(const FactorGraph& graph) {
   REQUIRE(finite);
 }
 
-/// Up to rounding, whatever the units of its rows.
+/// Up to rounding, for any units of its rows.
 void require_positive_definite(const Eigen::MatrixXd& covariance) {
   REQUIRE(covariance.allFinite());
   REQUIRE(covariance.diagonal().minCoeff() > 0.0);
@@ -83,7 +83,8 @@ void RandomSession::operate() {
   if (which < 0.52) return remove_observations();
   if (which < 0.53) return scale_sigmas();
   if (which < 0.65) {
-    if (const auto seen = look()) give(seen->landmark, seen->observation);  // whether it was eliminated or removed
+    if (const auto seen = draw_observation())
+      give(seen->landmark, seen->observation);  // also if it was eliminated or removed
   } else if (which < 0.73) {
     refused();
   } else if (which < 0.75) {
@@ -138,11 +139,11 @@ void RandomSession::add_state() {
   ControlState next = last;
   next.t += dt;
   next.T = dt > 1.0 ? true_pose(next.t) : last.T * se3::exp(dt * last.velocity);
-  if (chance(0.5)) update();  // then observations may be taken in one by one
+  if (chance(0.5)) update();  // then observations may be added one by one
   state_guesses_.push_back(next);
   engine_.add_state(next);
   if (twin_) twin_->add_state(next);
-  const double share = chance(0.1) ? 0.0 : 0.8;  // sometimes nothing is seen
+  const double share = chance(0.1) ? 0.0 : 0.8;  // sometimes nothing is observed
   const int count = static_cast<int>(truth_.size());
   for (int j = std::max(0, count - 7); j < count; ++j) {
     if (chance(share)) observe(j, last.t, next.t);
@@ -176,7 +177,7 @@ int RandomSession::add_close_landmark(double depth) {
   return j;
 }
 
-/// None when it is not before the camera.
+/// None if it is not in front of the camera.
 std::optional<Observation> RandomSession::measure(int landmark, double t) {
   const Vector3 q = true_pose(t).inverse() * truth_[index(landmark)];
   if (q.z() < 0.1) return std::nullopt;
@@ -184,7 +185,7 @@ std::optional<Observation> RandomSession::measure(int landmark, double t) {
   return Observation{t, kCamera.project(q) + noise, 1.0};
 }
 
-std::optional<RandomSession::Seen> RandomSession::look() {
+std::optional<RandomSession::Seen> RandomSession::draw_observation() {
   const std::size_t states = graph().states.size();
   if (truth_.empty() || states < 2) return std::nullopt;
   const int j = any_landmark();
@@ -201,7 +202,7 @@ void RandomSession::observe(int landmark, double from, double to) {
   if (second) give(landmark, *second);
 }
 
-/// One by one or for the next update. Whether it was accepted.
+/// Adds an observation, one by one or for the next update. Returns whether it was accepted.
 bool RandomSession::give(int landmark, const Observation& observation) {
   const int before = graph().observation_count();
   bool accepted;
@@ -219,14 +220,14 @@ bool RandomSession::give(int landmark, const Observation& observation) {
   return accepted;
 }
 
-/// Of any landmark, ended, eliminated and removed ones too.
+/// Of any landmark, also of ended, eliminated and removed ones.
 void RandomSession::late_observation() {
   const double to = random_.uniform(0.0, newest());
   observe(any_landmark(), chance(0.3) ? 0.0 : 0.5 * to, to);
 }
 
 void RandomSession::remove_landmark(int landmark) {
-  if (twin_) {  // what has been marginalised can't be taken back
+  if (twin_) {  // marginalised observations cannot be removed
     const auto& seen = twin_->graph().landmarks[index(landmark)].intervals;
     if (!seen.empty() && seen.front() <= engine_.first_state()) return;
     twin_->remove_landmark(landmark);
@@ -237,7 +238,7 @@ void RandomSession::remove_landmark(int landmark) {
 void RandomSession::remove_observations() {
   const double marginalised = graph().states[index(engine_.first_state())].t;
   const double from = chance(0.2) ? 0.0 : random_.uniform(0.0, newest());
-  if (twin_ && from <= marginalised) return;  // what has been marginalised can't be taken back
+  if (twin_ && from <= marginalised) return;  // marginalised observations cannot be removed
   const int j = any_landmark();
   engine_.remove_observations(j, from);
   if (twin_) twin_->remove_observations(j, from);
@@ -254,7 +255,8 @@ void RandomSession::scale_sigmas() {
   engine_.scale_sigmas(j, scale);
 }
 
-/// Moves the estimate of a state and of a landmark, and with it where they are linearised; not of what is marginalised.
+/// Moves the estimates of a state and of a landmark, and with them their linearisation points, unless they are
+/// marginalised.
 void RandomSession::place() {
   const auto away = [&](const Vector3& from) -> Vector3 {
     return from + 0.1 * random_.uniform3({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
@@ -263,16 +265,16 @@ void RandomSession::place() {
   ControlState state = graph().states[i];
   state.T.p = away(state.T.p);
   state.velocity.tail<3>() = away(state.velocity.tail<3>());
-  if (engine_.place_state(static_cast<int>(i), state)) {
+  if (engine_.set_state(static_cast<int>(i), state)) {
     state_guesses_[i] = state;
-    if (twin_) CHECK(twin_->place_state(static_cast<int>(i), state));
+    if (twin_) CHECK(twin_->set_state(static_cast<int>(i), state));
   } else {
     CHECK(static_cast<int>(i) <= engine_.first_state());
   }
-  if (twin_) return require_finite(graph());  // which of the two may move a landmark that came back, differs
+  if (twin_) return require_finite(graph());  // the engines differ in which returned landmarks they may move
   const int j = any_landmark();
   const Vector3 position = away(graph().landmarks[index(j)].position);
-  if (engine_.place_landmark(j, position)) landmark_guesses_[index(j)] = position;
+  if (engine_.set_landmark(j, position)) landmark_guesses_[index(j)] = position;
   require_finite(graph());
 }
 
@@ -293,7 +295,7 @@ void RandomSession::refused() {
   CHECK_FALSE(engine_.observe(j, {newest(), {120.0, kNaN}, 1.0}));
 }
 
-/// Behind the camera or nearly at infinity, with a prior or not, seen anywhere in the image.
+/// A landmark behind the camera or nearly at infinity, with or without a prior, observed anywhere in the image.
 void RandomSession::degenerate_landmark() {
   if (graph().states.size() < 2) return;
   const SE3 T = true_pose(newest());
@@ -305,7 +307,7 @@ void RandomSession::degenerate_landmark() {
   give(j, {time_in(graph().states[graph().states.size() - 2].t, newest()), pixel, 1.0});
 }
 
-/// Some landmarks hold the scale from now on: observed or not yet.
+/// Anchors the scale of some landmarks, observed or not.
 void RandomSession::anchor_scale() {
   std::vector<int> anchors;
   for (int j = static_cast<int>(truth_.size()) - 1; j >= 0 && anchors.size() < 5; --j) {

@@ -15,38 +15,40 @@ EngineOptions linear_options();
 struct SessionOptions {
   EngineOptions engine;
   bool anchor = true;       ///< the scale anchor is set and loses landmarks
-  bool full_twin = false;   ///< a second engine, of full history, is given all that the first one accepted
-  bool covariances = true;  ///< are asked for in between
+  bool full_twin = false;   ///< a second engine with full history gets everything that the first one accepted
+  bool covariances = true;  ///< are queried in between
 };
 
-/// A small world and an engine that is told about it in every way possible, sensible or not. What holds whatever is
-/// done is checked after every operation: estimates and covariances are finite, covariances positive definite,
-/// impossible requests refused.
+/// A small world and an engine that gets random operations, sensible or not. After every operation it checks what must
+/// always hold: estimates and covariances are finite, covariances are positive definite, and impossible requests are
+/// refused.
 class RandomSession {
  public:
   RandomSession(std::uint64_t seed, const SessionOptions& options);
 
-  /// Short ones mostly, 1 in 50 is long.
+  /// A number of operations: small mostly, large for 1 in 50.
   int draw_length();
   void operate();
   void update();
   void check_covariances();
-  /// One that the newest state observes and that is guessed, and so linearised, this deep [m] before it. Its number.
+  /// Adds a landmark that the newest state observes and whose guess, and so its linearisation point, is this deep [m]
+  /// in front of it. Returns its index.
   int add_close_landmark(double depth);
 
   Random& random() { return random_; }
   Engine& engine() { return engine_; }
   const Engine& twin() const { return *twin_; }
-  bool undetermined() const { return undetermined_; }  ///< something was held in some update
-  /// What a linear session has solved: the problem (the twin's if there is one) with all variables at their guesses.
+  bool undetermined() const { return undetermined_; }  ///< a variable was regularised in some update
+  /// The problem that a linear session has solved (the twin's if there is one), with all variables at their guesses.
   FactorGraph linear_problem() const;
 
-  /// Of a random landmark at a random time in the newest interval; none when it is not in view or there is no interval.
+  /// An observation of a random landmark at a random time in the newest interval; none if the landmark is not in view
+  /// or there is no interval.
   struct Seen {
     int landmark = 0;
     Observation observation;
   };
-  std::optional<Seen> look();
+  std::optional<Seen> draw_observation();
 
  private:
   const FactorGraph& graph() const { return engine_.graph(); }

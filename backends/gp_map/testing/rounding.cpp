@@ -9,7 +9,7 @@
 namespace evbench::gp_map::testing {
 namespace {
 
-using Real = long double;  ///< what is measured here is the rounding of double
+using Real = long double;  ///< the rounding of double is measured here
 using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
@@ -67,7 +67,7 @@ struct DenseSystem {
 }  // namespace
 
 std::vector<RoundingBound> rounding_bounds(const FactorGraph& graph) {
-  constexpr double kRounding = 1.1e-16, kGrowth = 10.0;  // u and c; up to 2.3 u was seen in 12,156 random problems
+  constexpr double kRounding = 1.1e-16, kGrowth = 10.0;  // u and c; at most 2.3 u in 12,156 random problems
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const DenseSystem system(graph);
   const Vector D = system.H.diagonal().cwiseSqrt();

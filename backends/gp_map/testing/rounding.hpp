@@ -6,14 +6,14 @@
 
 namespace evbench::gp_map::testing {
 
-/// How far a state may be from the solution of its linear problem for no other reason than rounding.
+/// Largest deviation of a state from the solution of its linear problem due to rounding alone.
 struct RoundingBound {
   double position = 0.0;  ///< [m]
   double velocity = 0.0;  ///< [rad/s, m/s] norm of 6
 };
 
-/// Of every state of the problem H δ = −g linearised at the graph's estimates, without a scale anchor. Infinite when H
-/// is not positive definite as rounded.
+/// Bounds for every state of the problem H δ = −g linearised at the graph's estimates, without a scale anchor. Infinite
+/// if H is not positive definite as rounded.
 ///
 /// A Cholesky factorisation in any order solves (H + E) δ' = −g with |E_ij| ≤ c u √(H_ii H_jj) (Demmel 1989; Higham,
 /// Accuracy and Stability of Numerical Algorithms, section 10.1). With H = D K D, K of unit diagonal, and Σ = H⁻¹:

@@ -36,9 +36,9 @@ TrackedScene::TrackedScene(double duration, const char* options, std::uint64_t s
 Run run(const TrackedScene& scene, const RunOptions& options) {
   BackEndContext context;
   context.camera = scene.camera();
-  std::vector<StampedPose> online;
-  context.online = [&](const StampedPose& pose) {  // not those that are told anew
-    if (online.empty() || pose.t > online.back().t) online.push_back(pose);
+  std::vector<StampedPose> causal;
+  context.publish = [&](const StampedPose& pose) {  // not those that are published again
+    if (causal.empty() || pose.t > causal.back().t) causal.push_back(pose);
   };
   Run result;
   result.backend = std::make_unique<GpMap>(read_options<Options>(parse_json(options.backend), "backend"), context);
@@ -50,7 +50,7 @@ Run run(const TrackedScene& scene, const RunOptions& options) {
     result.backend->advance(batch);
   }
   result.backend->finish();
-  result.online = PoseTrajectory(std::move(online));
+  result.causal = PoseTrajectory(std::move(causal));
   const PoseTrajectory own = result.backend->trajectory();
   if (own.empty()) return result;
   std::vector<StampedPose> poses;

@@ -12,10 +12,10 @@
 
 namespace evbench::gp_map::testing {
 
-/// A camera of 240 × 180 pixels that moves in front of a volume of points, with the tracks that it would see.
+/// A camera of 240 × 180 pixels that moves in front of a volume of points, with simulated tracks.
 class TrackedScene {
  public:
-  /// `options`: {"motion": {...}, "scene": {...}, "tracks": {...}} over the defaults here.
+  /// `options`: {"motion": {...}, "scene": {...}, "tracks": {...}}; they override the defaults here.
   explicit TrackedScene(double duration, const char* options = "{}", std::uint64_t seed = 1);
 
   PinholeCamera camera() const { return camera_.pinhole; }
@@ -38,8 +38,8 @@ struct RunOptions {
 
 struct Run {
   std::unique_ptr<GpMap> backend;
-  PoseTrajectory online;
-  Scores scores;  ///< of the final trajectory at 100 Hz; empty when there is none
+  PoseTrajectory causal;
+  Scores scores;  ///< of the final trajectory at 100 Hz; empty if there is none
 };
 
 Run run(const TrackedScene& scene, const RunOptions& options = {});

@@ -11,9 +11,10 @@
 
 namespace evbench {
 
-/// AEDAT 4.0 of iniVation's DV: packets of several streams (events, frames, IMU, triggers), plain, LZ4 or Zstandard,
-/// each a FlatBuffer; an XML text that says what the streams are, and a table of all packets at the end, which need not
-/// be there. https://docs.inivation.com/software/software-advanced-usage/file-formats/aedat-4.0.html
+/// AEDAT 4.0 of iniVation's DV. A file has packets of several streams (events, frames, IMU, triggers), each a
+/// FlatBuffer, plain or compressed with LZ4 or Zstandard; an XML text that describes the streams; and an optional table
+/// of all packets at the end.
+/// https://docs.inivation.com/software/software-advanced-usage/file-formats/aedat-4.0.html
 class Aedat4Reader : public EventReader {
  public:
   Aedat4Reader(std::unique_ptr<ByteSource> file, const ReadOptions& options);
@@ -27,13 +28,13 @@ class Aedat4Reader : public EventReader {
   enum class Compression { none, lz4, zstd };
   struct Stream {
     std::string type;                           ///< four characters, e.g. EVTS
-    std::map<std::string, std::string> fields;  ///< keys of its node, those of "info" below it as well
-    std::int64_t packets = 0, elements = 0;     ///< by the table at the end
+    std::map<std::string, std::string> fields;  ///< keys of its XML node and of "info" below it
+    std::int64_t packets = 0, elements = 0;     ///< from the table at the end
     std::string name() const;
   };
   struct Packet {
     std::uint64_t offset = 0;
-    std::int64_t end = 0;  ///< [µs] of its last event
+    std::int64_t end = 0;  ///< [µs] time of its last event
   };
 
   void read_header();
@@ -49,10 +50,10 @@ class Aedat4Reader : public EventReader {
   StreamInfo info_;
   Compression compression_ = Compression::none;
   std::map<std::int32_t, Stream> streams_;
-  std::map<std::int32_t, std::vector<Packet>> packets_;  ///< of the streams of events
-  std::map<std::int32_t, std::int64_t> starts_;          ///< [µs] likewise
+  std::map<std::int32_t, std::vector<Packet>> packets_;  ///< by stream; of event streams only
+  std::map<std::int32_t, std::int64_t> starts_;          ///< [µs] first event of the stream
   std::int32_t stream_ = 0;
-  std::uint64_t begin_ = 0, end_ = 0;  ///< of the packets in the file
+  std::uint64_t begin_ = 0, end_ = 0;  ///< byte range of the packets
   std::uint64_t at_ = 0;
   std::vector<std::byte> packed_, data_;
 };

@@ -10,8 +10,8 @@
 
 namespace evbench {
 
-/// A table of a FlatBuffer (https://flatbuffers.dev/internals/), read without trust: what lies outside of the bytes is
-/// as if it were not there.
+/// A table of a FlatBuffer (https://flatbuffers.dev/internals/). The bytes are not trusted: what lies outside of them
+/// counts as absent.
 class FlatTable {
  public:
   /// The root of a size-prefixed buffer with this identifier.
@@ -31,7 +31,8 @@ class FlatTable {
     return place == 0 || place + sizeof(T) > bytes_.size() ? otherwise : load<T>(bytes_.data() + place);
   }
 
-  /// The elements of a vector of structs, or the characters of a string; empty without the field, none when it is cut.
+  /// The elements of a vector of structs, or the characters of a string. Empty if the field is absent, none if it is
+  /// cut.
   std::optional<std::span<const std::byte>> elements(std::size_t field, std::size_t size) const {
     const std::size_t offset = find(field), place = follow(offset);
     if (offset == 0) return std::span<const std::byte>();
@@ -45,7 +46,7 @@ class FlatTable {
     return {reinterpret_cast<const char*>(characters.data()), characters.size()};
   }
 
-  /// A table of a vector of tables, by the place of its element among those of `elements(field, 4)`.
+  /// A table of a vector of tables. `element`: one of the elements of `elements(field, 4)`.
   std::optional<FlatTable> table(std::span<const std::byte> element) const {
     const std::size_t place = follow(static_cast<std::size_t>(element.data() - bytes_.data()));
     return place == 0 ? std::nullopt : at(bytes_, place);
@@ -64,7 +65,7 @@ class FlatTable {
     return table;
   }
 
-  /// Of a field; 0: it isn't there.
+  /// Position of a field; 0: absent.
   std::size_t find(std::size_t field) const {
     const std::size_t entry = fields_ + 2 * (field + 2);
     if (field + 2 >= count_ || entry + 2 > bytes_.size()) return 0;
@@ -72,7 +73,7 @@ class FlatTable {
     return offset == 0 || place_ + offset > bytes_.size() ? 0 : place_ + offset;
   }
 
-  /// Where the offset at this place points to; 0: nowhere.
+  /// Target of the offset at this position; 0: none.
   std::size_t follow(std::size_t place) const {
     if (place == 0 || place + 4 > bytes_.size()) return 0;
     const std::size_t target = place + load<std::uint32_t>(bytes_.data() + place);

@@ -9,8 +9,8 @@
 
 namespace evbench {
 
-/// Takes little-endian fields from bytes. What isn't there reads as zero or empty, and ok() is false from then on: a
-/// parser asks once, at its end. Lengths are compared with what is left before anything is allocated.
+/// Reads little-endian fields from bytes. A field beyond the end reads as zero or empty, and ok() is false from then
+/// on, so a parser checks once, at its end. Lengths are compared with what is left before anything is allocated.
 class ByteCursor {
  public:
   explicit ByteCursor(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -33,7 +33,7 @@ class ByteCursor {
     return {reinterpret_cast<const char*>(characters.data()), characters.size()};
   }
 
-  /// To the next multiple of `unit` bytes, counted from `base`.
+  /// Advances to the next multiple of `unit` bytes, counted from `base`.
   void align(std::size_t unit, std::size_t base) { bytes((unit - (at_ - base) % unit) % unit); }
 
   bool ok() const { return ok_; }

@@ -10,10 +10,10 @@
 
 namespace evbench {
 
-/// The reader of a file that is a header and then a stream for a decoder. Seeking back reads from the beginning.
+/// Reads a file that consists of a header and a stream for a decoder. Seeking back reads from the beginning.
 class DecodedReader : public EventReader {
  public:
-  /// `begin`: of the stream, behind the header.
+  /// `begin`: offset of the stream, after the header.
   DecodedReader(std::unique_ptr<ByteSource> source, std::uint64_t begin, std::unique_ptr<EventDecoder> decoder,
                 StreamInfo info, const ReadOptions& options);
 
@@ -34,8 +34,8 @@ class DecodedReader : public EventReader {
   Faults faults_;
 
   std::vector<std::byte> buffer_;
-  std::size_t used_ = 0, filled_ = 0;  ///< of the buffer
-  std::uint64_t offset_;               ///< of the buffer's end in the source
+  std::size_t used_ = 0, filled_ = 0;  ///< positions in the buffer
+  std::uint64_t offset_;               ///< position of the buffer's end in the source
   bool ended_ = false;
 };
 

@@ -10,11 +10,11 @@
 
 namespace evbench {
 
-/// Turns a stream of bytes, given piece by piece, into events. Whatever the bytes are, a decoder neither crashes nor
-/// allocates: what makes no sense is a fault.
+/// Decodes a stream of bytes, passed in parts, into events. Whatever the bytes are, a decoder neither crashes nor
+/// allocates: bytes that make no sense are a fault.
 class EventDecoder {
  public:
-  /// Events that one record may hold at most: there is no progress with less room.
+  /// Most events of one record: with less room a decoder makes no progress.
   static constexpr std::size_t kMostOfRecord = 32;
 
   struct Progress {
@@ -23,20 +23,20 @@ class EventDecoder {
 
   virtual ~EventDecoder() = default;
 
-  /// Decodes the whole records at the beginning of `in` as long as there is room for kMostOfRecord in `out`. What it
-  /// leaves of `in` is to be given again, with more behind it. `offset`: of `in` in the stream, for messages.
+  /// Decodes the whole records at the beginning of `in` while `out` has room for kMostOfRecord. Pass the rest of `in`
+  /// again, followed by more bytes. `offset`: position of `in` in the stream, for messages.
   virtual Progress decode(std::span<const std::byte> in, std::uint64_t offset, std::span<Event> out,
                           Faults& faults) = 0;
 
-  /// At the end of the stream: what decode() has left, with room for kMostOfRecord; returns the number of events. A
-  /// fault, where records have a fixed length.
+  /// Decodes what decode() has left at the end of the stream; returns the number of events. `out` has room for
+  /// kMostOfRecord. A rest is a fault where records have a fixed length.
   virtual std::size_t finish(std::span<const std::byte> in, std::uint64_t offset, std::span<Event> out, Faults& faults);
 
-  /// What follows is the beginning of the stream.
+  /// The next bytes are the beginning of the stream.
   virtual void reset() = 0;
 };
 
-/// Appends the events of a packet, all of whose records are whole.
+/// Appends the events of a packet, which consists of whole records.
 void decode_packet(EventDecoder& decoder, std::span<const std::byte> packet, std::vector<Event>& events,
                    Faults& faults);
 

@@ -10,8 +10,8 @@
 
 namespace evbench {
 
-/// Writes an event as two words of 64 bits: compilers vectorise loops of this well, and those that set one member after
-/// the other not.
+/// Writes an event as two words of 64 bits: compilers vectorise loops of this, but not loops that set one member after
+/// the other.
 /// `pixel`: x | y << 16 | on << 32.
 inline void store_event(std::uint64_t t, std::uint64_t pixel, Event* event) {
   static_assert(std::endian::native == std::endian::little && offsetof(Event, t) == 0 && offsetof(Event, x) == 8 &&

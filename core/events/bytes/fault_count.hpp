@@ -6,13 +6,13 @@
 
 namespace evbench {
 
-/// Counts one kind of fault while a piece of a stream is decoded: cheaper than a Faults::add for each.
+/// Counts one kind of fault while a part of a stream is decoded: cheaper than a Faults::add for each.
 class FaultCount {
  public:
   void add(std::uint64_t offset) {
     if (count_++ == 0) first_ = offset;
   }
-  /// `unit`: of the offsets, e.g. "byte".
+  /// `unit`: what the offsets count, e.g. "byte".
   void report(Faults& faults, const char* kind, const char* unit = "byte") const {
     if (count_ > 0) faults.add(kind, fmt::format("{} {}", unit, first_), count_);
   }

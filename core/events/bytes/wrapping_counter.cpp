@@ -6,7 +6,7 @@
 
 namespace evbench {
 
-/// Forwards or backwards, whichever is nearer.
+/// The smaller step, forwards or backwards.
 std::int64_t WrappingCounter::step_from(std::int64_t time, std::uint32_t value) const {
   const std::int64_t ahead = (value - static_cast<std::uint32_t>(time)) & mask_;
   return ahead > range_ / 2 ? ahead - range_ : ahead;
@@ -20,29 +20,29 @@ std::int64_t WrappingCounter::update_unusual(std::uint32_t value, std::uint64_t 
   }
   const auto is_near = [&](std::int64_t step) { return std::abs(step) <= near_; };
   const std::int64_t step = step_from(run_.time, value), step_before = step_from(before_jump_.time, value);
-  if (doubted_words_ > 0 && is_near(step_before) &&
+  if (pending_words_ > 0 && is_near(step_before) &&
       !(is_near(step) && run_.time + step == before_jump_.time + step_before)) {
-    if (!jump_is_told_) wrong_words_.add(jump_);
+    if (!jump_is_reported_) wrong_words_.add(jump_);
     run_ = {before_jump_.start, before_jump_.time + step_before};
-    doubted_words_ = 0;
+    pending_words_ = 0;
   } else if (is_near(step)) {
     run_.time += step;
-    doubted_words_ = std::max(doubted_words_ - 1, 0);
+    pending_words_ = std::max(pending_words_ - 1, 0);
   } else {
     jump(value, place);
   }
-  settled_ = doubted_words_ == 0;
+  settled_ = pending_words_ == 0;
   return run_.time;
 }
 
 void WrappingCounter::jump(std::uint32_t value, std::uint64_t place) {
-  if (doubted_words_ == 0) {
+  if (pending_words_ == 0) {
     before_jump_ = run_;
-    doubted_words_ = kDoubtedWords;
+    pending_words_ = kPendingWords;
     jump_ = place;
-    jump_is_told_ = false;
+    jump_is_reported_ = false;
   } else {
-    --doubted_words_;
+    --pending_words_;
   }
   const std::int64_t counter = run_.time & mask_, ahead = (value - counter) & mask_;
   const std::int64_t longest_gap = std::min(range_ / 4, run_.time - run_.start);
@@ -53,7 +53,7 @@ void WrappingCounter::jump(std::uint32_t value, std::uint64_t place) {
   run_.time += value - counter;
   run_.start = run_.time;
   steps_back_.add(place);
-  jump_is_told_ = true;
+  jump_is_reported_ = true;
 }
 
 void WrappingCounter::report(Faults& faults, const char* unit) {

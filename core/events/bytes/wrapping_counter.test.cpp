@@ -47,7 +47,7 @@ void check_fine(const Outcome& outcome) {
 
 }  // namespace
 
-TEST_CASE("A counter counts on over the end of its range, also where it begins near it") {
+TEST_CASE("A counter is unwrapped at the end of its range, also if it begins near it") {
   for (const std::uint32_t first : {0u, 500u, 1000u, 1023u}) {
     const Outcome outcome = count(words(first, 1024) + words(0, 1024) + words(0, 10));
     check_fine(outcome);
@@ -90,7 +90,7 @@ TEST_CASE("Words left over from before do not make everything after them late") 
   }
 }
 
-TEST_CASE("A counter that begins anew in the middle is a fault, and its times are its own") {
+TEST_CASE("A counter that restarts in the middle is a fault, and its times are taken as they are") {
   const Outcome outcome = count(words(0, 1024) + words(0, 500) + words(0, 200));
   CHECK(outcome.steps_back == 1);
   CHECK(outcome.times.back() == 1024 + 199);
@@ -121,7 +121,7 @@ TEST_CASE("Two wrong words, one after the other, are recovered from") {
   CHECK(count(all).times.back() == 999);
 }
 
-TEST_CASE("Rare words are not taken for a return from a jump when the counter has gone round") {
+TEST_CASE("Rare words are not taken for a return from a jump when the counter has wrapped") {
   const Outcome outcome = count(words(0, 1024, 30) + words(6, 1024, 30) + words(12, 1024, 30));
   check_fine(outcome);
   CHECK(outcome.times.back() == 2 * 1024 + 12 + 33 * 30);

@@ -10,7 +10,7 @@
 
 namespace evbench {
 
-/// A .zip: its files by name. Nothing is unpacked but what is read, piece by piece; links and folders are no files.
+/// A .zip archive: its files by name. Only what is read is unpacked, in parts. Links and folders do not count as files.
 /// Throws BadArchive (core/io/archive.hpp).
 class ZipArchive {
  public:
@@ -19,10 +19,10 @@ class ZipArchive {
   const std::string& path() const { return path_; }
   const std::vector<std::string>& files() const { return files_; }
 
-  /// The files of this name, in whatever folders.
+  /// The files of this name in any folder.
   std::vector<std::string> find(const std::string& name) const;
 
-  /// A file's content as it is unpacked. Going back in it begins anew. `file`: one of files().
+  /// A file's content, unpacked while it is read. Seeking back restarts from the beginning. `file`: one of files().
   std::unique_ptr<ByteSource> open(const std::string& file) const;
 
  private:
@@ -30,10 +30,10 @@ class ZipArchive {
   std::vector<std::string> files_;
 };
 
-/// Does a file begin like one that gzip, bzip2, xz or zstd compressed?
+/// Does a file begin like one compressed with gzip, bzip2, xz or zstd?
 bool is_compressed_file(std::span<const std::byte> head);
 
-/// Its content, as a ZipArchive's file. Throws BadArchive.
+/// Its content, unpacked like that of a ZipArchive's file. Throws BadArchive.
 std::unique_ptr<ByteSource> open_compressed_file(const std::string& path);
 
 }  // namespace evbench

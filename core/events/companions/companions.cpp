@@ -16,7 +16,7 @@ namespace {
 constexpr auto kDataSets = {ecd_companions,  dsec_companions, tumvie_companions,
                             m3ed_companions, eds_companions,  mvsec_companions};
 
-/// A reader that stands in for another, with what lies beside its events.
+/// A reader with the calibration, ground truth and sensor size of its companion files.
 class AccompaniedReader : public EventReader {
  public:
   AccompaniedReader(std::unique_ptr<EventReader> reader, Companions companions,
@@ -28,17 +28,19 @@ class AccompaniedReader : public EventReader {
   const Faults& faults() const override { return reader_->faults(); }
   std::optional<PoseTrajectory> ground_truth() override;
   std::optional<Camera> calibration() override;
-  std::vector<std::string> files_beside() const override { return {files_beside_.begin(), files_beside_.end()}; }
+  std::vector<std::string> companion_files() const override {
+    return {companion_files_.begin(), companion_files_.end()};
+  }
 
  private:
   void find_sensor(const ReadOptions& options);
   void take_metadata();
   std::unique_ptr<EventReader> reader_;
-  Companions companions_;  ///< those that stand in for what the reader doesn't have
+  Companions companions_;  ///< what the reader itself doesn't have
   std::shared_ptr<const RecordingFiles> files_;
   StreamInfo info_;
-  std::size_t taken_;  ///< of the reader's metadata
-  std::set<std::string> files_beside_;
+  std::size_t taken_;  ///< entries of the reader's metadata already copied
+  std::set<std::string> companion_files_;
 };
 
 AccompaniedReader::AccompaniedReader(std::unique_ptr<EventReader> reader, Companions companions,
@@ -52,25 +54,25 @@ AccompaniedReader::AccompaniedReader(std::unique_ptr<EventReader> reader, Compan
     try {
       return get().has_value();
     } catch (const InputError&) {
-      return true;  // what is wrong with it is told to whoever asks for it
+      return true;  // broken: reported when it is read
     }
   };
   if (companions_.calibration && has_own([&] { return reader_->calibration(); })) companions_.calibration.reset();
   if (companions_.ground_truth && has_own([&] { return reader_->ground_truth(); })) companions_.ground_truth.reset();
   take_metadata();
-  const bool said = options.width > 0 && options.height > 0;
-  if (!said && (info_.size_assumed || info_.width <= 0 || info_.height <= 0)) find_sensor(options);
-  const auto tell = [&](const char* what, const auto& found) {
+  const bool stated = options.width > 0 && options.height > 0;
+  if (!stated && (info_.size_assumed || info_.width <= 0 || info_.height <= 0)) find_sensor(options);
+  const auto note = [&](const char* what, const auto& found) {
     if (found) info_.metadata.emplace_back(what, fmt::format("{} ({})", fmt::join(found->names, ", "), found->whose));
   };
-  tell("calibration", companions_.calibration);
-  tell("ground truth", companions_.ground_truth);
+  note("calibration", companions_.calibration);
+  note("ground truth", companions_.ground_truth);
   if (companions_.ground_truth && !companions_.ground_truth->remark.empty()) {
     info_.metadata.emplace_back("remark", companions_.ground_truth->remark);
   }
 }
 
-/// What the reader has said since: of its calibration and ground truth only when it is asked for them.
+/// Copies the reader's new metadata: it describes calibration and ground truth only once they have been read.
 void AccompaniedReader::take_metadata() {
   const auto& metadata = reader_->info().metadata;
   info_.metadata.insert(info_.metadata.end(), metadata.begin() + static_cast<std::ptrdiff_t>(taken_), metadata.end());
@@ -83,7 +85,7 @@ std::optional<Camera> AccompaniedReader::calibration() {
     take_metadata();
     return own;
   }
-  for (const std::string& name : companions_.calibration->names) files_beside_.insert(files_->path(name));
+  for (const std::string& name : companions_.calibration->names) companion_files_.insert(files_->path(name));
   return companions_.calibration->read(info_.width, info_.height);
 }
 
@@ -93,7 +95,7 @@ std::optional<PoseTrajectory> AccompaniedReader::ground_truth() {
     take_metadata();
     return own;
   }
-  for (const std::string& name : companions_.ground_truth->names) files_beside_.insert(files_->path(name));
+  for (const std::string& name : companions_.ground_truth->names) companion_files_.insert(files_->path(name));
   PoseFile file = companions_.ground_truth->read();
   for (std::string& text : file.remarks) {
     std::pair<std::string, std::string> remark("remark", std::move(text));
@@ -102,7 +104,7 @@ std::optional<PoseTrajectory> AccompaniedReader::ground_truth() {
   return std::move(file.trajectory);
 }
 
-/// A size that the calibration says is better than one that was assumed, but not than what an option says.
+/// A size in the calibration takes precedence over an assumed one, but not over an option.
 void AccompaniedReader::find_sensor(const ReadOptions& options) {
   int width = 0, height = 0;
   std::string whose = "the calibration's";
@@ -114,7 +116,7 @@ void AccompaniedReader::find_sensor(const ReadOptions& options) {
       height = camera.height;
     }
   } catch (const InputError&) {
-    // Told to whoever asks for the calibration.
+    // Reported when the calibration is read.
   }
   if (width <= 0 && info_.width <= 0 && companions_.sensor) {
     width = companions_.sensor->width;
@@ -130,7 +132,7 @@ void AccompaniedReader::find_sensor(const ReadOptions& options) {
   info_.metadata.emplace_back("sensor size", whose);
 }
 
-/// "left" or "right", whichever comes last as a whole word; "" without one.
+/// "left" or "right", whichever is the last whole word; "" without one.
 std::string side_in(const std::string& name) {
   constexpr const char* kDelimiters = "_-./ ";
   std::string side;
@@ -143,7 +145,7 @@ std::string side_in(const std::string& name) {
   return side;
 }
 
-/// As the topic says; where it says nothing the file's name, and then its folder.
+/// From the topic; if it says nothing, from the file's name, and then from its folder's.
 bool is_right(const std::filesystem::path& events, const std::string& topic) {
   for (const std::string& name : {topic, events.filename().string(), events.parent_path().filename().string()}) {
     if (const std::string side = side_in(name); !side.empty()) return side == "right";
@@ -160,7 +162,7 @@ std::string EventsPlace::name_before(const std::string& end) const {
 
 std::string only(const RecordingFiles& files, const std::vector<std::string>& names) {
   if (names.size() == 1) return names.front();
-  throw InputError(fmt::format("{}: lies beside {}; expected the sequence's own alone", files.path(names.back()),
+  throw InputError(fmt::format("{}: is next to {}; expected the sequence's own alone", files.path(names.back()),
                                fmt::join(names.begin(), names.end() - 1, ", ")));
 }
 

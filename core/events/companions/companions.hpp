@@ -12,19 +12,19 @@
 
 namespace evbench {
 
-/// What lies beside a recording's events in files of its own, as public data sets lay it there.
+/// Calibration, ground truth and sensor size from files next to a recording's events, as public data sets lay them out.
 struct Companions {
   struct Calibration {
     std::vector<std::string> names;  ///< of files, relative to the recording's folder
     std::string whose;               ///< e.g. "cam0, DSEC's left event camera"
-    /// Sensor [px] for a file that doesn't say it. Throws InputError, naming file and key.
+    /// `width`, `height`: sensor [px] for a file that does not state it. Throws InputError, naming file and key.
     std::function<Camera(int width, int height)> read;
   };
   struct GroundTruth {
     std::vector<std::string> names;
-    std::string whose;  ///< the body that the poses are of
+    std::string whose;  ///< the body that the poses describe
     std::function<PoseFile()> read;
-    std::string remark = {};  ///< a sentence where that isn't the camera
+    std::string remark = {};  ///< a sentence if that body is not the camera
   };
   struct Sensor {
     int width, height;  ///< [px]
@@ -32,15 +32,15 @@ struct Companions {
   };
   std::optional<Calibration> calibration;
   std::optional<GroundTruth> ground_truth;
-  std::optional<Sensor> sensor;  ///< of the data set, where nothing else says it
+  std::optional<Sensor> sensor;  ///< the data set's, if nothing else states it
 };
 
-/// `topic` as in ReadOptions: whose events.
+/// `topic`: of the events, as in ReadOptions.
 Companions find_companions(const std::shared_ptr<const RecordingFiles>& files, const std::string& topic);
 
-/// The reader with what lies beside its events where it has no calibration or ground truth itself; their poses, and the
-/// sensor's size where it was only assumed and no option says it. Metadata says what is from where: "calibration",
-/// "ground truth", "remark"; what was assumed in reading the ground truth is a remark as soon as it was asked for.
+/// Adds to a reader the calibration and the ground truth of its companion files where it has none itself, and the
+/// sensor's size where it was only assumed and no option states it. Metadata states the origin: "calibration", "ground
+/// truth", "remark". Assumptions made in reading the ground truth become remarks once it is read.
 std::unique_ptr<EventReader> with_companions(std::unique_ptr<EventReader> reader,
                                              const std::shared_ptr<const RecordingFiles>& files,
                                              const ReadOptions& options);

@@ -28,7 +28,7 @@ std::string metadata(const EventReader& reader, const std::string& key) {
 
 Matrix3 quarter_turn() { return Eigen::AngleAxisd(M_PI_2, Vector3::UnitZ()).toRotationMatrix(); }
 
-/// One of testing::write_data_sets with a file of it written anew.
+/// A data set of testing::write_data_sets with one of its files rewritten.
 std::string with_file(const TemporaryFolder& folder, const std::string& set, const std::string& name,
                       const std::string& content) {
   const fs::path path = folder.file("changed");
@@ -49,7 +49,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-/// What is asked for is refused, and the events can be read.
+/// Checks that calibration or ground truth is refused, and that the events can be read.
 template <class T>
 void check_refused(const std::string& path, const std::string& name, const std::string& message,
                    std::optional<T> (EventReader::*ask)()) {
@@ -83,10 +83,10 @@ TEST_CASE("DSEC's folder gives the left camera's events and calibration, however
   }
   const auto right = open_events(folder.file("dsec/nested/events/right/events.h5"));
   CHECK(right->calibration()->pinhole.fx == 503.0);
-  CHECK(right->files_beside() == std::vector<std::string>{folder.file("dsec/nested/calibration/cam_to_cam.yaml")});
+  CHECK(right->companion_files() == std::vector<std::string>{folder.file("dsec/nested/calibration/cam_to_cam.yaml")});
 }
 
-TEST_CASE("TUM-VIE's motion capture is led to the event camera by its calibrations") {
+TEST_CASE("TUM-VIE's motion capture is transformed to the event camera by its calibrations") {
   const TemporaryFolder folder;
   if (!testing::write_data_sets(folder)) return;
   const auto reader = open_events(folder.file("tumvie/mocap-desk"));
@@ -104,10 +104,10 @@ TEST_CASE("TUM-VIE's motion capture is led to the event camera by its calibratio
   CHECK(poses[1].T.p.isApprox(Vector3(1, 1.9, 3.2)));
   CHECK(poses[1].T.R().isApprox(quarter_turn() * Eigen::AngleAxisd(M_PI, Vector3::UnitX()).toRotationMatrix(), 1e-12));
   CHECK(metadata(*reader, "remark").empty());
-  CHECK(reader->files_beside().size() == 3);
+  CHECK(reader->companion_files().size() == 3);
 }
 
-TEST_CASE("TUM-VIE's motion capture without its calibrations stays that of the markers, which is said") {
+TEST_CASE("TUM-VIE's motion capture without its calibrations stays that of the markers, and a remark says so") {
   const TemporaryFolder folder;
   if (!testing::write_data_sets(folder)) return;
   fs::remove(folder.file("tumvie/mocap-desk/mocap-imu-calibrationA.json"));
@@ -120,7 +120,7 @@ TEST_CASE("TUM-VIE's motion capture without its calibrations stays that of the m
   CHECK_THAT(metadata(*reader, "remark"), ContainsSubstring("T_world_marker"));
 }
 
-TEST_CASE("M3ED's poses are turned round, and led to the right camera where its events are read") {
+TEST_CASE("M3ED's poses are inverted, and transformed to the right camera if its events are read") {
   const TemporaryFolder folder;
   if (!testing::write_data_sets(folder)) return;
   const auto left = open_events(folder.file("m3ed/falcon"));
@@ -141,7 +141,7 @@ TEST_CASE("M3ED's poses are turned round, and led to the right camera where its 
   const auto text = open_events(copy);
   REQUIRE(text->ground_truth());
   CHECK(text->ground_truth()->poses()[1].T.p.isApprox(Vector3(1, 2.1, 3)));
-  CHECK(text->files_beside().size() == 2);
+  CHECK(text->companion_files().size() == 2);
   fs::rename(folder.file("m3ed/falcon/falcon_data.h5"), folder.file("m3ed/other.h5"));
   const auto alone = open_events(copy);
   CHECK(alone->ground_truth()->poses()[1].T.p.isApprox(Vector3(1, 2, 3)));
@@ -150,7 +150,7 @@ TEST_CASE("M3ED's poses are turned round, and led to the right camera where its 
   CHECK_THROWS_WITH(open_events(copy)->ground_truth(), ContainsSubstring("falcon_data.h5"));
 }
 
-TEST_CASE("MVSEC's poses and Kalibr's calibration are found beside its events") {
+TEST_CASE("MVSEC's poses and Kalibr's calibration are found next to its events") {
   const TemporaryFolder folder;
   if (!testing::write_data_sets(folder)) return;
   const auto left = open_events(folder.file("mvsec/flying1"));
@@ -169,7 +169,7 @@ TEST_CASE("MVSEC's poses and Kalibr's calibration are found beside its events") 
   CHECK_THAT(metadata(*alone, "remark"), ContainsSubstring("left camera"));
 }
 
-TEST_CASE("Of several of Kalibr's calibrations the scenario's own is taken, and none where that is not to be told") {
+TEST_CASE("Of several of Kalibr's calibrations the scenario's own is taken, and none if that is not known") {
   const TemporaryFolder folder;
   if (!testing::write_data_sets(folder)) return;
   const std::string flying = folder.file("mvsec/flying1/camchain-imucam-flying.yaml"),
@@ -179,16 +179,15 @@ TEST_CASE("Of several of Kalibr's calibrations the scenario's own is taken, and 
   CHECK(open_events(folder.file("mvsec/flying1"))->calibration()->pinhole.fx == 220.0);
   fs::rename(flying, folder.file("mvsec/flying1/camchain-imucam-walking.yaml"));
   const auto reader = open_events(folder.file("mvsec/flying1"), {.topic = "davis/right"});
-  CHECK_THROWS_WITH(reader->calibration(), ContainsSubstring("walking.yaml: lies beside camchain-imucam-driving.yaml"));
-  CHECK_THROWS_WITH(reader->ground_truth(),
-                    ContainsSubstring("walking.yaml: lies beside camchain-imucam-driving.yaml"));
+  CHECK_THROWS_WITH(reader->calibration(), ContainsSubstring("walking.yaml: is next to camchain-imucam-driving.yaml"));
+  CHECK_THROWS_WITH(reader->ground_truth(), ContainsSubstring("walking.yaml: is next to camchain-imucam-driving.yaml"));
   CHECK(reader->info().width == 346);
   CHECK(read_all(*reader).size() == 100);
 
   write_file(folder.file("eds/peanuts/camchain-other.yaml"),
              testing::read_file(folder.file("eds/peanuts/camchain-calib.yaml")));
   const auto eds = open_events(folder.file("eds/peanuts"));
-  CHECK_THROWS_WITH(eds->calibration(), ContainsSubstring("camchain-other.yaml: lies beside camchain-calib.yaml"));
+  CHECK_THROWS_WITH(eds->calibration(), ContainsSubstring("camchain-other.yaml: is next to camchain-calib.yaml"));
   CHECK(eds->info().width == 640);
 }
 
@@ -227,13 +226,13 @@ TEST_CASE("A file in left/ belongs to the folder above, one in a folder of anoth
   CHECK(open_events(folder.file("halves"))->calibration());
   CHECK(open_events(folder.file("halves/left/events.h5"))->calibration());
   fs::rename(folder.file("halves"), folder.file("my_events"));
-  CHECK(open_events(folder.file("my_events/left/events.h5"))->files_beside().empty());
+  CHECK(open_events(folder.file("my_events/left/events.h5"))->companion_files().empty());
   CHECK(open_events(folder.file("my_events/left/events.h5"))->calibration());
   fs::rename(folder.file("my_events/left"), folder.file("my_events/bleft"));
   CHECK_FALSE(open_events(folder.file("my_events/bleft/events.h5"))->calibration());
 }
 
-TEST_CASE("A sensor's size that an option says goes before that of what lies beside the events") {
+TEST_CASE("An option for the sensor's size takes precedence over the files next to the events") {
   const TemporaryFolder folder;
   if (!testing::write_data_sets(folder)) return;
   const auto both = open_events(folder.file("dsec/seq"), {.width = 1280, .height = 720});
@@ -264,7 +263,7 @@ TEST_CASE("EDS has its event camera second in Kalibr's calibration, and its sens
   CHECK_FALSE(without->calibration());
 }
 
-TEST_CASE("A native copy is taken first, with what it holds itself, and without it what lies beside it") {
+TEST_CASE("A native copy is taken first, with its own metadata, and with files next to it for what it lacks") {
   const TemporaryFolder folder;
   if (!testing::write_data_sets(folder)) return;
   const auto write = [&](const RecordingHeader& header, const std::string& name) {
@@ -283,7 +282,7 @@ TEST_CASE("A native copy is taken first, with what it holds itself, and without 
   write(header, "dsec/seq/events.evb");
   const auto own = open_events(folder.file("dsec/seq"));
   CHECK(own->calibration()->pinhole.fx == 100.0);
-  CHECK(own->files_beside().empty());
+  CHECK(own->companion_files().empty());
   fs::create_directories(folder.file("alone"));
   write(header, "alone/events.evb");
   CHECK(read_all(*open_events(folder.file("alone"))).size() == 1);
@@ -343,7 +342,7 @@ TEST_CASE("Calibrations that are broken are refused with the file, the key, and 
   refused("tumvie/mocap-desk", json, "[]", "has no value0");
   refused("tumvie/mocap-desk", json, replaced(tumvie, "\"fx\": 1002", "\"fx\": \"x\""), "intrinsics: fx: is \"x\"");
   refused("tumvie/mocap-desk", json, replaced(tumvie, ", [1280, 720], [1280, 720]", ""), "resolution");
-  refused("tumvie/mocap-desk", "camera-calibrationB.json", tumvie, "lies beside camera-calibrationA.json");
+  refused("tumvie/mocap-desk", "camera-calibrationB.json", tumvie, "is next to camera-calibrationA.json");
 }
 
 TEST_CASE("Ground truths that are broken are refused with the file, the place, and what was expected", "[slow]") {

@@ -5,7 +5,7 @@
 namespace evbench {
 namespace {
 
-/// Kalibr's calibrations; where some are of the events' scenario, only those: outdoor_day of outdoor_day1_data.hdf5.
+/// Kalibr's calibrations; if some are of the events' scenario, only those: outdoor_day of outdoor_day1_data.hdf5.
 std::vector<std::string> find_chains(const EventsPlace& place) {
   const std::string before = "camchain-imucam-", end = ".yaml", sequence = place.name_before("_data.hdf5");
   const auto all = place.files->matching("camchain-imucam*.yaml");

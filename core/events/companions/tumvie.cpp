@@ -6,7 +6,7 @@
 namespace evbench {
 namespace {
 
-/// Basalt's.
+/// A pose in Basalt's JSON.
 SE3 read_pose(const Field& pose) {
   const Eigen::Quaterniond q(pose.at("qw").number(), pose.at("qx").number(), pose.at("qy").number(),
                              pose.at("qz").number());
@@ -30,12 +30,12 @@ Camera read_camera(const Field& calibration, std::size_t index) {
                         checked_side(resolution.place(), size[1]));
 }
 
-/// Of the calibrations A and B each sequence has one.
+/// Each sequence has either calibration A or B.
 Field read_calibration(const RecordingFiles& files, const std::vector<std::string>& names) {
   return files.get(only(files, names), [](const std::string& path) { return Field::read_json(path).at("value0"); });
 }
 
-/// Where the archive of poses was unpacked: beside the events, or in a folder of its own.
+/// Where the archive of poses was unpacked: next to the events, or into a folder of its own.
 std::string find_poses(const EventsPlace& place) {
   const std::string sequence = place.name_before(place.right ? "-events_right.h5" : "-events_left.h5");
   for (const std::string& name : {std::string("mocap_data.txt"), sequence + "-vi_gt_data/mocap_data.txt"}) {

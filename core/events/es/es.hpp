@@ -8,8 +8,8 @@
 
 namespace evbench {
 
-/// Event Stream version 2 with DVS or ATIS events. Coordinates are given as the file has them; the programs that write
-/// such files count y from below. Throws InputError for other versions and kinds, and for a sensor without pixels.
+/// Event Stream version 2 with DVS or ATIS events. Throws InputError for other versions and kinds, and for a sensor
+/// without pixels.
 std::unique_ptr<EventReader> open_es(std::unique_ptr<ByteSource> source, const ReadOptions& options);
 
 EventFormat es_format();

@@ -10,8 +10,8 @@ EventDecoder::Progress EsDecoder::decode(std::span<const std::byte> in, std::uin
 
 template <EsDecoder::Kind kind>
 EventDecoder::Progress EsDecoder::decode_as(std::span<const std::byte> in, std::span<Event> out) {
-  // The first byte's upper bits are a time difference, its lower ones flags. The longest difference is none, but
-  // overflows: in ATIS streams as many as the flags say, in DVS streams one or, with flag 0, none (a reset).
+  // The upper bits of the first byte are a time difference, the lower ones flags. The longest difference is no event
+  // but overflows: in ATIS streams as many as the flags say, in DVS streams one or, with flag 0, none (a reset).
   constexpr int kFlagBits = kind == Kind::dvs ? 1 : 2;
   constexpr std::uint32_t kFlags = (1u << kFlagBits) - 1, kLongest = 0xFFu >> kFlagBits;
   constexpr std::size_t kRecord = 5;

@@ -4,15 +4,15 @@
 
 namespace evbench {
 
-/// Event Stream version 2: five bytes an event, times as differences, longer differences by overflow bytes.
+/// Event Stream version 2: five bytes an event, times as differences, longer differences by overflow bytes. Files
+/// number the rows from the bottom of the sensor; events have them from the top.
 /// https://github.com/neuromorphic-paris/event_stream
-/// Its rows are numbered from the sensor's bottom; events have them from the top, as everywhere.
 class EsDecoder final : public EventDecoder {
  public:
-  /// ATIS streams hold exposure measurements (threshold crossings) between the events, which are passed over.
+  /// ATIS streams also have exposure measurements (threshold crossings), which are skipped.
   enum class Kind { dvs, atis };
 
-  /// `height` of the sensor [px]; events below row 0 get one of at least `height`.
+  /// `height`: the sensor's [px]. Events below row 0 get a row of at least `height`.
   EsDecoder(Kind kind, int height) : kind_(kind), top_(static_cast<std::uint16_t>(height - 1)) {}
   Progress decode(std::span<const std::byte> in, std::uint64_t offset, std::span<Event> out, Faults& faults) override;
   void reset() override { time_ = 0; }

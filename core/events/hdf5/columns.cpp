@@ -13,10 +13,10 @@ namespace evbench::hdf5 {
 namespace {
 
 constexpr double kMostTime = 2e18;    ///< [µs], so that neither an offset nor a zero makes it overflow
-constexpr std::size_t kBlock = 1024;  ///< events at a time: what is between columns and events stays in the first cache
+constexpr std::size_t kBlock = 1024;  ///< events at a time: intermediate values stay in the first-level cache
 
-/// Columns in one type each, so that a loop for each column is vectorised; there are too many combinations of types for
-/// a loop of their own.
+/// Columns converted to one type each, so that a loop for each column is vectorised: there are too many combinations of
+/// types for a loop each.
 struct Block {
   std::array<std::int64_t, kBlock> t;
   std::array<std::uint16_t, kBlock> x, y;
@@ -82,7 +82,7 @@ bool is_minus_one(Number number) {
   }
 }
 
-/// Breaks the times of those that are no polarity.
+/// Marks events broken whose polarity is none.
 void read_polarities(const ColumnView& column, std::size_t count, Darker darker, std::uint8_t* p, std::int64_t* t) {
   const bool zero = darker != Darker::minus_one, minus_one = darker != Darker::zero;
   for_each(column, count, [=](std::size_t i, auto number) {
@@ -92,7 +92,7 @@ void read_polarities(const ColumnView& column, std::size_t count, Darker darker,
   });
 }
 
-/// Breaks the times of those that are no pixel's coordinate.
+/// Marks events broken whose coordinates are no pixel's.
 void read_pixels(const ColumnView& column, std::size_t count, std::uint16_t* pixels, std::int64_t* t) {
   for_each(column, count, [=](std::size_t i, auto number) {
     using Number = decltype(number);

@@ -10,10 +10,10 @@
 
 namespace evbench::hdf5 {
 
-/// The time of an event whose x, y or t is no pixel or no time, and of one whose polarity is none.
+/// Times that mark a broken event: its x, y or t is no pixel or no time, or its polarity is none.
 inline constexpr std::int64_t kBroken = std::numeric_limits<std::int64_t>::min(), kNoPolarity = kBroken + 1;
 
-/// Where a column stands in what has been read: it is all of it, or every n-th number of rows of n.
+/// Where a column is in the values read: it is all of them, or every n-th number of rows of n.
 struct ColumnView {
   const Values* values = nullptr;
   std::size_t first = 0, step = 1;
@@ -23,17 +23,17 @@ struct ColumnViews {
   ColumnView x, y, t, p;
 };
 
-/// What the numbers of t count, and what is added to them.
+/// Unit of the numbers of t, and the offset that is added to them.
 struct TimeScale {
   TimeUnit unit = TimeUnit::microseconds;
   std::int64_t offset = 0;  ///< [µs]
 };
 
-/// What stands for darker, where 1 is brighter. −1 may be stored as the largest number of an unsigned type of 8, 16, 32
-/// or 64 bits. Unsaid: no event has told it as yet, and either counts.
+/// The number for darker, where 1 is brighter. −1 may be stored as the largest number of an unsigned type of 8, 16, 32
+/// or 64 bits. Unsaid: no event has shown it so far, and either is accepted.
 enum class Darker { unsaid, zero, minus_one };
 
-/// Finds out which one it is: what most numbers are.
+/// Finds the number for darker: the one that most events have.
 class DarkerCount {
  public:
   void add(const ColumnView& p, std::size_t count);
@@ -43,10 +43,10 @@ class DarkerCount {
   std::size_t zeros_ = 0, minus_ones_ = 0;
 };
 
-/// Columns of whatever types to events. False when there are broken ones.
+/// Converts columns of any types to events. False if some are broken.
 bool to_events(const ColumnViews& columns, const TimeScale& scale, Darker darker, std::span<Event> events);
 
-/// [µs]; the largest leave room for an offset and a zero. `row` counts from the view's first.
+/// The time of a row [µs]; at most so large that an offset and a zero can be added. `row` counts from the view's first.
 std::int64_t to_time(const ColumnView& t, std::size_t row, const TimeScale& scale);
 
 double to_double(const ColumnView& column, std::size_t row);

@@ -20,7 +20,7 @@ static_assert(sizeof(hid_t) == sizeof(std::int64_t));
 constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 48;  // of a data set
 constexpr std::uint64_t kMostColumns = 1 << 20;                 // where single rows are read
 
-/// Innermost reason of the library's last error.
+/// The innermost reason of the library's last error.
 std::string reason() {
   std::string text = "unknown reason";
   const auto visit = [](unsigned, const H5E_error2_t* error, void* data) -> herr_t {
@@ -97,14 +97,14 @@ void check_filters(hid_t properties, const std::string& name) {
     if (H5Zfilter_avail(filter) <= 0) {
       throw InputError(
           fmt::format("{}: is compressed with HDF5 filter {} ({}), which is not installed; plugins are "
-                      "looked for in HDF5_PLUGIN_PATH",
+                      "searched for in HDF5_PLUGIN_PATH",
                       name, filter, filter_hint(filter)));
     }
   }
 }
 
-/// A chunk is decompressed as a whole: two fit in the cache, so that reading in parts decompresses it once. Without
-/// compression there is no cache: what passes through it is only copied once more.
+/// A chunk is decompressed as a whole. Two fit in the cache, so that reading in parts decompresses a chunk once.
+/// Without compression there is no cache: it would only add a copy.
 void set_cache(hid_t creation, hid_t access, std::size_t number_size, const std::string& name) {
   constexpr std::uint64_t kMostCachedBytes = 256u << 20;
   if (H5Pget_layout(creation) != H5D_CHUNKED) return;
@@ -121,7 +121,7 @@ void set_cache(hid_t creation, hid_t access, std::size_t number_size, const std:
   H5Pset_chunk_cache(access, 521, compressed ? std::max<std::size_t>(1u << 20, 2 * bytes) : 0, 1.0);
 }
 
-/// What read(to) reads; none where it is no single string.
+/// Reads a string by read(to); none if it is not a single string.
 template <class Read>
 std::optional<std::string> read_text(hid_t type, hid_t space, const std::string& name, Read read) {
   constexpr std::size_t kMost = 4096;
@@ -140,7 +140,7 @@ std::optional<std::string> read_text(hid_t type, hid_t space, const std::string&
   return result.c_str();  // up to the padding
 }
 
-/// "x, y, p, t": of a compound's numbers.
+/// "x, y, p, t": the numbers of a compound.
 std::string member_names(hid_t type) {
   std::vector<std::string> names;
   for (int i = 0; i < H5Tget_nmembers(type); ++i) {
@@ -151,7 +151,7 @@ std::string member_names(hid_t type) {
   return fmt::to_string(fmt::join(names, ", "));
 }
 
-/// Metavision's filter, which only its own plugin decompresses.
+/// Is the data set compressed by Metavision's filter? Only its own plugin decompresses it.
 bool is_ecf(hid_t dataset) {
   constexpr H5Z_filter_t kEcf = 0x8ECF;
   const Handle creation(H5Dget_create_plist(dataset), close_properties);
@@ -195,7 +195,7 @@ herr_t add_object(hid_t, const char* name, const ObjectInfo* info, void* data) {
 }  // namespace
 
 void start_library() {
-  static const bool left_alone = H5dont_atexit() >= 0;  // fails when another part of the program was first: so be it
+  static const bool left_alone = H5dont_atexit() >= 0;  // fails if another part of the program was first: no harm
   static_cast<void>(left_alone);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }

@@ -8,12 +8,12 @@
 
 namespace evbench::hdf5 {
 
-/// To be called before anything else is asked of the library; may be called again. The library keeps its errors to
-/// itself (they are put into our messages) and leaves alone, when the program ends, what could not be closed: after a
-/// full disk it would crash there.
+/// Call it before any other use of the library; further calls do nothing. The library then prints no errors (they are
+/// part of our messages) and, when the program ends, does not close what could not be closed before: after a full disk
+/// it would crash there.
 void start_library();
 
-/// An identifier of the HDF5 library and how to close it.
+/// An identifier of the HDF5 library and the function that closes it.
 class Handle {
  public:
   using Closer = int (*)(std::int64_t);
@@ -30,7 +30,7 @@ class Handle {
   Closer close_ = nullptr;
 };
 
-/// Numbers as the file has them (in this machine's byte order).
+/// Numbers as in the file, in this machine's byte order.
 class Values {
  public:
   enum class Type { u8, i8, u16, i16, u32, i32, u64, i64, f32, f64 };
@@ -67,13 +67,13 @@ class Values {
 class Dataset {
  public:
   std::uint64_t rows() const { return shape_.empty() ? 1 : shape_[0]; }
-  std::uint64_t columns() const;  ///< numbers a row
+  std::uint64_t columns() const;  ///< numbers per row
   const std::vector<std::uint64_t>& shape() const { return shape_; }
   std::string describe() const;                      ///< e.g. "uint16", "float64 x 4"
   const std::string& name() const { return name_; }  ///< file and path, for messages
   bool is_floating() const { return type_ == Values::Type::f32 || type_ == Values::Type::f64; }
 
-  /// Rows first ... first + count - 1. Throws InputError when the file is broken there.
+  /// Reads rows first ... first + count - 1. Throws InputError if the file is broken there.
   void read(std::uint64_t first, std::uint64_t count, Values& values) const;
   /// All numbers of a small data set; throws InputError when there are more than `most`.
   std::vector<double> read_all(std::uint64_t most = kMostNumbers) const;
@@ -88,8 +88,8 @@ class Dataset {
   Values::Type type_ = Values::Type::u8;
 };
 
-/// An HDF5 file. The library's errors become InputErrors; a filter (compression) that it lacks is named with the Debian
-/// package that has it. The library serialises its calls: readers of several threads wait for one another.
+/// An HDF5 file. The library's errors become InputErrors; for a missing filter (compression) the error names the Debian
+/// package that has it. The library serialises its calls: readers in several threads wait for one another.
 class File {
  public:
   explicit File(std::string path);
@@ -98,15 +98,15 @@ class File {
     std::string path;  ///< without a leading slash
     bool is_dataset = false;
   };
-  /// What is in the file, sorted; soft and external links are not followed.
+  /// All objects in the file, sorted; soft and external links are not followed.
   const std::vector<Object>& objects() const { return objects_; }
   bool has_dataset(const std::string& path) const;
 
   Dataset dataset(const std::string& path) const;
   std::string text(const std::string& path) const;  ///< of a data set that is one string
-  /// An attribute of a group ("" is the root) of up to 16 integers; none when there isn't such a one.
+  /// An attribute of a group ("" is the root) of up to 16 integers; empty if there is none.
   std::vector<int> attribute(const std::string& group, const std::string& name) const;
-  /// Likewise one that is a string, of a group or data set; empty when there isn't such a one.
+  /// A string attribute of a group or data set; empty if there is none.
   std::string text_attribute(const std::string& object, const std::string& name) const;
   const std::string& path() const { return path_; }
 

@@ -11,7 +11,7 @@ namespace {
 constexpr H5Z_filter_t kLzf = 32000, kZstd = 32015;
 constexpr std::size_t kMostChunkBytes = 256u << 20;  ///< of a chunk
 
-/// Puts what a filter has made in the place of what it was given.
+/// Replaces a filter's input buffer by its result.
 std::size_t replace(std::span<const std::byte> out, std::size_t* buffer_size, void** buffer) {
   void* const memory = H5allocate_memory(std::max<std::size_t>(out.size(), 1), false);
   if (memory == nullptr) return 0;
@@ -26,7 +26,7 @@ std::span<const std::byte> input(std::size_t bytes, void* const* buffer) {
   return {static_cast<const std::byte*>(*buffer), bytes};
 }
 
-// Exceptions must not pass through the library, which is C; 0 is an error, as compressing always is: the library then
+// Exceptions must not pass through the library, which is C. 0 is an error. Compressing always is one: the library then
 // leaves a chunk as it is.
 
 std::size_t lzf_filter(unsigned flags, std::size_t count, const unsigned values[], std::size_t bytes,
@@ -83,7 +83,7 @@ std::optional<std::vector<std::byte>> decompress_lzf(std::span<const std::byte> 
       std::copy_n(to - distance, length, to);
     } else {
       const std::byte* const from = to - distance;
-      for (std::size_t i = 0; i < length; ++i) to[i] = from[i];  // a copy of what it makes itself
+      for (std::size_t i = 0; i < length; ++i) to[i] = from[i];  // it may copy its own output
     }
     made += length;
   }

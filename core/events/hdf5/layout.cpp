@@ -20,7 +20,7 @@ std::string join(const std::string& group, const std::string& name) {
   return group.empty() ? name : group + "/" + name;
 }
 
-/// The first of these that is in the file.
+/// The first of these paths that is in the file.
 std::string first_of(const File& file, const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     if (file.has_dataset(path)) return path;
@@ -95,8 +95,9 @@ EventOrder find_order(const EventLayout& layout, const Dataset& rows, const Even
   const std::string place = rows.name();
   const std::size_t columns = asked.empty() ? 4 : asked.size();
   if (rows.shape().size() != 2 || rows.columns() != columns) {
-    throw InputError(fmt::format("{}: is {}; expected rows of {} numbers: {}", place, rows.describe(), columns,
-                                 asked.empty() ? "time, x, y and polarity" : to_string(asked)));
+    throw InputError(
+        fmt::format("{}: is {}; expected rows of {} numbers: {}", place, rows.describe(), columns,
+                    asked.empty() ? "time, x, y and polarity (--columns names others)" : to_string(asked)));
   }
   const EventOrder x_y_t_p{x, y, t, p};
   if (!asked.empty()) return asked;
@@ -114,7 +115,7 @@ EventOrder find_order(const EventLayout& layout, const Dataset& rows, const Even
 }
 
 TimeUnit find_time_unit(const File& file, const EventLayout& layout) {
-  const auto said = [&](const std::string& object, std::initializer_list<const char*> names) {
+  const auto stated_unit = [&](const std::string& object, std::initializer_list<const char*> names) {
     for (const char* name : names) {
       const std::string text = file.text_attribute(object, name);
       if (text.empty()) continue;
@@ -126,9 +127,9 @@ TimeUnit find_time_unit(const File& file, const EventLayout& layout) {
     }
     return TimeUnit::unsaid;
   };
-  const TimeUnit unit = said(layout.times(), {"unit", "units", "Unit", "Units", "time_unit", "time_units"});
+  const TimeUnit unit = stated_unit(layout.times(), {"unit", "units", "Unit", "Units", "time_unit", "time_units"});
   if (unit != TimeUnit::unsaid) return unit;
-  return said(layout.is_rows() ? parent(layout.group) : layout.group, {"time_unit", "time_units"});
+  return stated_unit(layout.is_rows() ? parent(layout.group) : layout.group, {"time_unit", "time_units"});
 }
 
 std::optional<std::pair<int, int>> find_sensor_size(const File& file, const std::string& group) {

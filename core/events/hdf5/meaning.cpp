@@ -44,24 +44,25 @@ Sample take_sample(const EventTable& table) {
   return sample;
 }
 
-/// Of the same unit as the times.
+/// In the unit of the times.
 double read_offset(const File& file, const EventLayout& layout) {
   if (layout.offset.empty()) return 0.0;
   const Dataset dataset = file.dataset(layout.offset);
   return dataset.first(0);
 }
 
-/// Of all but the earliest and latest tenth of the sample, so that single broken times do not count. Microseconds that
-/// are taken for seconds make a million times fewer events a second.
+/// Checks a guessed unit by the rate of all events but those of the earliest and latest tenth of the sample, so that
+/// single broken times do not count. Microseconds that are taken for seconds make a million times fewer events a
+/// second.
 void check_rate(const EventTable& table, const Sample& sample, TimeUnit unit) {
   const double fewest = unit == TimeUnit::seconds ? 100.0 : 1.0;  // events a second
   const double duration = 1e6 / per_second(unit) * (sample.quantile(0.9) - sample.quantile(0.1));
   const auto count = static_cast<std::int64_t>(table.rows());
-  const auto doubt = doubtful_rate(count, duration, unit);
-  if (doubt && static_cast<double>(count) < fewest * 1e-6 * duration) {
+  const auto warning = implausible_rate(count, duration, unit);
+  if (warning && static_cast<double>(count) < fewest * 1e-6 * duration) {
     throw InputError(
         fmt::format("{}: {}; --columns t_{},x,y,p (source.columns in a run's config) takes them as they are",
-                    table.times().name(), *doubt, kTimeUnitNames[index(unit)]));
+                    table.times().name(), *warning, kTimeUnitNames[index(unit)]));
   }
 }
 

@@ -9,15 +9,15 @@ namespace evbench::hdf5 {
 /// What the numbers of a table of events mean.
 struct Meaning {
   TimeScale scale;
-  std::string unit_origin;  ///< what tells the unit of time, for people
+  std::string unit_origin;  ///< how the unit of time is known, for messages
   bool unit_is_guessed = false;
   Darker darker = Darker::unsaid;
 };
 
-/// The unit of time is the one that is asked for, that an attribute says (find_time_unit()), or by the look of the
-/// times: seconds where they have fractions, otherwise microseconds. An offset is in that unit, too. What stands for
-/// darker is told by samples from the beginning, the middle and the end. Throws InputError where times are too late for
-/// the unit that they look like, or their events fewer than one a second.
+/// The time unit is the one that is asked for, or that an attribute states (find_time_unit()); otherwise it follows
+/// from the times: seconds if they have fractions, otherwise microseconds. An offset has the same unit. The number for
+/// darker is found from samples at the beginning, the middle and the end. Throws InputError if times are too late for
+/// the unit that was guessed, or if it gives implausibly few events per second.
 Meaning find_meaning(const File& file, const EventLayout& layout, const EventTable& table, TimeUnit asked);
 
 }  // namespace evbench::hdf5

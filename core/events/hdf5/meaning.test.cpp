@@ -46,7 +46,7 @@ double seconds_of(const std::string& path, const std::string& columns = "") {
 
 }  // namespace
 
-TEST_CASE("HDF5 times are of the unit that is asked for, that an attribute says, or that they look like") {
+TEST_CASE("HDF5 times are of the unit that is asked for, that an attribute says, or that fits them") {
   const testing::TemporaryFolder folder;
   CHECK(seconds_of(write_times<std::int64_t>(folder, 0, 1000)) == Approx(2).margin(0.01));
   CHECK(seconds_of(write_times<double>(folder, 0.25, 0.001)) == Approx(2).margin(0.01));
@@ -60,7 +60,7 @@ TEST_CASE("HDF5 times are of the unit that is asked for, that an attribute says,
   CHECK(reader->info().start == 1'700'000'000'000'001);
 }
 
-TEST_CASE("HDF5 times that can't be of the unit that they look like are refused with the option that says it") {
+TEST_CASE("HDF5 times that can't be of the unit that was guessed are refused with the option that says it") {
   const testing::TemporaryFolder folder;
   const std::string nanoseconds = write_times<std::int64_t>(folder, 1'500'000'000'000'000'000, 1e6);
   CHECK_THROWS_WITH(open_events(nanoseconds),
@@ -158,7 +158,7 @@ TEST_CASE("Metavision's HDF5 is refused by its name") {
   CHECK_THROWS_WITH(open_events(folder.file("plain.h5")), Catch::Matchers::ContainsSubstring("is a compound type"));
 }
 
-TEST_CASE("HDF5 files of strangers are read right, or refused") {
+TEST_CASE("HDF5 files from other sources are read correctly, or refused") {
   if (const auto path = testing::data_file("cases/hdf5_polarity/p_wrap32.h5")) {
     const auto events = read_all(*open_events(*path));
     CHECK(events.size() == 20'000);

@@ -96,14 +96,14 @@ void Hdf5Reader::describe(const ReadOptions& options) {
   find_sensor(options);
 }
 
-/// From the calibration or an attribute of the file; otherwise what the user says, or the data set is known to have.
+/// The size from the calibration or an attribute of the file; otherwise from the options, or as known of the data set.
 void Hdf5Reader::find_sensor(const ReadOptions& options) {
   const std::string group = layout_.is_rows() ? "" : layout_.group;
   std::optional<Camera> camera;
   try {
     camera = calibration();
   } catch (const InputError&) {
-    // Told to whoever asks for the calibration.
+    // Reported when the calibration is read.
   }
   if (camera) {
     info_.width = camera->width;
@@ -134,7 +134,7 @@ bool Hdf5Reader::read(std::vector<Event>& events) {
   return false;
 }
 
-/// Some rows from the next on: so many that what a call of the library costs does not count.
+/// Loads rows from the next one on: so many that the cost of a call of the library does not matter.
 void Hdf5Reader::load() {
   const std::uint64_t most = layout_.is_rows() ? 1 << 14 : 1 << 17;
   table_.read(next_, std::min(length_, (next_ / most + 1) * most), loaded_);
@@ -145,20 +145,20 @@ void Hdf5Reader::load() {
 }
 
 void Hdf5Reader::drop_broken(std::uint64_t row, std::vector<Event>& events) {
-  const auto tell = [&](const std::string& kind, const auto& is_wrong) {
+  const auto report = [&](const std::string& kind, const auto& is_wrong) {
     const auto first = std::ranges::find_if(events, is_wrong);
     if (first == events.end()) return;
     const std::string where = fmt::format("row {}", row + static_cast<std::uint64_t>(first - events.begin()));
     faults_.add(kind, where, std::ranges::count_if(events, is_wrong));
   };
-  tell("events whose x, y or t is no pixel or no time", [](const Event& event) { return event.t == kBroken; });
-  tell(
+  report("events whose x, y or t is no pixel or no time", [](const Event& event) { return event.t == kBroken; });
+  report(
       fmt::format("events whose polarity is neither {} nor 1", meaning_.darker == hdf5::Darker::minus_one ? "-1" : "0"),
       [](const Event& event) { return event.t == kNoPolarity; });
   std::erase_if(events, [](const Event& event) { return event.t <= kNoPolarity; });
 }
 
-/// By the index of milliseconds where it agrees with the times, by bisection of the times elsewhere.
+/// By the index of milliseconds where it agrees with the times, otherwise by bisection of the times.
 void Hdf5Reader::seek(std::int64_t t) {
   faults_ = opening_faults_;
   const auto may_start_at = [&](std::uint64_t row) { return row == 0 || (row <= length_ && time(row - 1) < t); };
@@ -180,7 +180,7 @@ void Hdf5Reader::seek(std::int64_t t) {
   next_ = after;
 }
 
-/// M3ED: group calib beside the columns.
+/// M3ED: the group calib next to the columns.
 std::optional<Camera> Hdf5Reader::calibration() {
   const std::string group = layout_.group + "/calib/";
   const auto place = [&](const char* name) { return fmt::format("{}: /{}{}", file_.path(), group, name); };
@@ -207,7 +207,7 @@ std::optional<Camera> Hdf5Reader::calibration() {
                         checked_side(place("resolution"), size[0]), checked_side(place("resolution"), size[1]));
 }
 
-/// The signature stands at the beginning, or after a user's block of 512, 1024, ... bytes.
+/// The signature is at the beginning, or after a user block of 512, 1024, ... bytes.
 bool has_signature(std::span<const std::byte> head) {
   constexpr unsigned char kSignature[] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1A, '\n'};
   for (std::size_t at = 0; at + 8 <= head.size(); at = at == 0 ? 512 : 2 * at) {

@@ -11,7 +11,7 @@ namespace evbench {
 /// for files that are broken or have no events.
 std::unique_ptr<EventReader> open_hdf5(const std::string& path, const ReadOptions& options);
 
-/// Opens after a trial.
+/// The format. It opens a file after a trial.
 EventFormat hdf5_format();
 
 }  // namespace evbench

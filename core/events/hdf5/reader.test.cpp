@@ -125,7 +125,7 @@ TEST_CASE("A wrong index of milliseconds does not mislead seeking") {
   CHECK(events.front() == nth(1667));
 }
 
-TEST_CASE("MVSEC's rows of doubles are read, with the ground truth in the file beside it") {
+TEST_CASE("MVSEC's rows of doubles are read, with the ground truth in the file next to it") {
   const testing::TemporaryFolder folder;
   constexpr double kStart = 1506117912.0;
   {
@@ -191,7 +191,7 @@ TEST_CASE("M3ED's cameras are chosen by name and bring their calibration") {
   check_recording(read_all(*right));
 }
 
-TEST_CASE("Events beside a calibration that cannot be used are read, it is refused when it is asked for") {
+TEST_CASE("Events with an unusable calibration are read, and the calibration is refused when it is requested") {
   const testing::TemporaryFolder folder;
   const std::string path = folder.file("spot.h5");
   {

@@ -9,24 +9,24 @@
 
 namespace evbench::hdf5 {
 
-/// The numbers of a file's events: in columns of their own, or in rows. Moved, not copied.
+/// A file's events as numbers: in separate columns, or in rows. Moved, not copied.
 class EventTable {
  public:
-  /// `asked`: the order of rows, find_order()'s. Throws InputError for other shapes.
+  /// `asked`: the order of rows, as in find_order(). Throws InputError for other shapes.
   EventTable(const File& file, const EventLayout& layout, const EventOrder& asked);
 
   std::uint64_t rows() const { return length_; }      ///< of the shortest column
-  std::uint64_t surplus() const { return surplus_; }  ///< rows that the longest has besides
-  const EventOrder& order() const { return order_; }  ///< of rows; empty: columns of their own
+  std::uint64_t surplus() const { return surplus_; }  ///< additional rows of the longest
+  const EventOrder& order() const { return order_; }  ///< of rows; empty: separate columns
   const Dataset& times() const { return order_.empty() ? t_ : all_; }
 
-  /// Some rows, from `begin` to `end`.
+  /// Rows from `begin` to `end`.
   struct Piece {
     Values x, y, t, p, all;
     std::uint64_t begin = 0, end = 0;
   };
   void read(std::uint64_t begin, std::uint64_t end, Piece& piece) const;
-  /// Of columns of their own only these two.
+  /// Of separate columns only these two.
   void read_times_and_polarities(std::uint64_t begin, std::uint64_t end, Piece& piece) const;
   /// From a row of the piece on.
   ColumnViews views(const Piece& piece, std::uint64_t row) const;

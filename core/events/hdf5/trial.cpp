@@ -10,9 +10,9 @@
 namespace evbench::hdf5 {
 namespace {
 
-/// `what`: as the program has it behind the file.
+/// `what`: the program's arguments after the file.
 void try_file(const std::string& path, const std::vector<std::string>& what) {
-  constexpr double kMostSeconds = 100.0;  // by the clock; the program's own limit is one of processor time
+  constexpr double kMostSeconds = 100.0;  // wall-clock time; the program itself limits its processor time
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error).replace_filename("evbench-hdf5-trial");
   if (!std::filesystem::exists(program, error)) return;

@@ -8,7 +8,7 @@ using namespace evbench;
 
 namespace {
 
-/// A group with events, in the library's old kind of groups: their names stand in a "HEAP".
+/// A group with events, in the library's old kind of groups: their names are in a "HEAP".
 std::string write_events(const testing::TemporaryFolder& folder) {
   const std::string path = folder.file("events.h5");
   const hsize_t rows = 3;

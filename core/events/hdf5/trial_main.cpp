@@ -1,6 +1,6 @@
-// evbench-hdf5-trial FILE events TOPIC COLUMNS, or FILE datasets NAME...: once it is told a line, reads these of an
-// HDF5 file as far as trial.hpp says, then answers with a line, whatever is to be said of the file. No answer: the HDF5
-// library crashed, or took too long.
+// evbench-hdf5-trial FILE events TOPIC COLUMNS, or FILE datasets NAME...: waits for a line, reads these parts of an
+// HDF5 file as trial.hpp says, and answers with a line, whatever the file is like. No answer: the HDF5 library crashed
+// or took too long.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -15,7 +15,7 @@
 
 namespace {
 
-void look_through(evbench::EventReader& reader) {
+void exercise(evbench::EventReader& reader) {
   constexpr std::int64_t kPlaces = 8;
   const std::int64_t start = reader.info().start.value_or(0), end = reader.info().end.value_or(0);
   std::vector<evbench::Event> events;
@@ -38,16 +38,16 @@ int main(int argc, char** argv) {
   if (words.size() < 3 || std::getchar() == EOF) return 2;
   try {
     if (words[1] == "events" && words.size() == 4) {
-      look_through(*evbench::open_hdf5(words[0], {.topic = words[2], .columns = words[3]}));
+      exercise(*evbench::open_hdf5(words[0], {.topic = words[2], .columns = words[3]}));
     } else {
       const evbench::hdf5::File file(words[0]);
       for (const std::string& name : std::span(words).subspan(2)) {
         file.dataset(name).read_all();
       }
     }
-  } catch (const std::exception&) {  // is for the reader to say
+  } catch (const std::exception&) {  // the reader reports it
   }
   std::puts("");
   std::fflush(stdout);
-  ::_exit(0);  // without the library's own end, which may crash, too
+  ::_exit(0);  // skips the library's own cleanup, which may crash, too
 }

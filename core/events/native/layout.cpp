@@ -34,7 +34,7 @@ Word pack_word(const Event& event, std::int64_t base, unsigned x_bits, unsigned 
   return static_cast<Word>(word << 1) | static_cast<Word>(event.on);
 }
 
-/// `count` words into events.
+/// Unpacks `count` words into events.
 template <class Word>
 void unpack_words(const std::byte* words, std::size_t count, std::int64_t base, unsigned x_bits, unsigned y_bits,
                   Event* out) {

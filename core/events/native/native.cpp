@@ -58,7 +58,7 @@ void NativeReader::read_header() {
 }
 
 void NativeReader::read_index() {
-  // In this order nothing overflows, whatever the header says.
+  // In this order nothing overflows, whatever the header states.
   const std::uint64_t index_size = std::uint64_t{header_.chunks} * sizeof(Chunk), size = bytes_.size();
   if (header_.index_offset > size || index_size > size - header_.index_offset ||
       header_.metadata_size != size - header_.index_offset - index_size) {
@@ -124,7 +124,7 @@ bool NativeReader::is_intact(std::size_t number) {
   return false;
 }
 
-/// The pages read so far go back to the kernel a MiB at a time: each time, the processor forgets where pages are.
+/// Returns the pages read so far to the kernel, at least a MiB at a time: each call flushes address translations.
 void NativeReader::hold(std::size_t offset, std::size_t size) {
   constexpr std::size_t kMost = 1 << 20;
   if (!mapping_) return;

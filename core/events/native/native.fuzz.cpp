@@ -9,8 +9,8 @@ using namespace evbench;
 
 namespace {
 
-/// Puts the checksums right, as no mutation would, so that what is behind them is reached. Every other chunk keeps its
-/// own, which most likely is wrong.
+/// Corrects the checksums, as no mutation would, so that the code behind them is reached. Every other chunk keeps its
+/// own checksum, which most likely is wrong.
 void repair(std::vector<std::byte>& bytes) {
   native::Header header;
   if (bytes.size() < sizeof header) return;

@@ -14,16 +14,16 @@
 
 namespace evbench {
 
-/// Reads evbench's own cache format (layout.hpp): mapped into memory, 4 or 8 bytes an event, every chunk's
-/// checksum compared the first time that it is read. What has been read is given back to the kernel: memory does not
-/// grow with the file.
+/// Reads evbench's own cache format (layout.hpp): mapped into memory, 4 or 8 bytes an event. A chunk's checksum is
+/// verified when it is read first. Pages that have been read are returned to the kernel: memory does not grow with the
+/// file.
 ///
 /// Throws InputError for a file that is truncated, of another version, or whose header or index is damaged. A damaged
 /// chunk is a fault (reader.hpp): its events are left out.
 class NativeReader : public EventReader {
  public:
   explicit NativeReader(const std::string& path, const ReadOptions& options = {});
-  /// Of bytes that somebody else keeps; `name` is for messages.
+  /// Reads bytes that the caller keeps; `name` is for messages.
   NativeReader(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options = {});
 
   const StreamInfo& info() const override { return info_; }
@@ -51,17 +51,17 @@ class NativeReader : public EventReader {
   std::vector<native::Chunk> chunks_;
   std::vector<bool> verified_;                 ///< by chunk
   std::size_t next_ = 0;                       ///< chunk
-  std::size_t held_begin_ = 0, held_end_ = 0;  ///< bytes of the mapping that the kernel hasn't got back
+  std::size_t held_begin_ = 0, held_end_ = 0;  ///< bytes of the mapping not yet returned to the kernel
   StreamInfo info_;
   std::optional<Camera> calibration_;
   std::optional<PoseTrajectory> ground_truth_;
   Faults faults_, opening_faults_;
 };
 
-/// Writes it. Times must not go back.
+/// Writes the native format. Times must not decrease.
 class NativeWriter : public EventWriter {
  public:
-  /// `name`: what messages call the file; empty: the path.
+  /// `name`: the file's, for messages; empty: the path.
   NativeWriter(const std::string& path, const RecordingHeader& header, const std::string& name = {});
   ~NativeWriter() override;
   NativeWriter(const NativeWriter&) = delete;

@@ -27,7 +27,7 @@ NativeWriter::NativeWriter(const std::string& path, const RecordingHeader& heade
   if (file_ == nullptr) throw OutputError(fmt::format("{}: can't be written: {}", name_, std::strerror(errno)));
   header_.width = static_cast<std::uint32_t>(header.width);
   header_.height = static_cast<std::uint32_t>(header.height);
-  put(bytes_of(native::Header{}));  // its place; without magic until all is written
+  put(bytes_of(native::Header{}));  // reserves its place; without magic bytes until all is written
 }
 
 NativeWriter::~NativeWriter() {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kDatRecord = 8;
 
-/// Lines of a header, none that names an encoding of RAW files, then bytes that are no text.
+/// Header lines, none of which names an encoding of RAW files, then bytes that are no text.
 bool is_dat(std::span<const std::byte> head) {
   if (head.size() < 2 || head[0] != std::byte{'%'}) return false;
   try {

@@ -5,8 +5,8 @@
 
 namespace evbench {
 
-/// Records of Prophesee's DAT files: 32 bits of time [µs], 32 bits of pixel and polarity. Times count on over the end
-/// of their 32 bits (71 min).
+/// Records of Prophesee's DAT files: 32 bits of time [µs], 32 bits of pixel and polarity. The 32-bit time (71 min) is
+/// unwrapped.
 class DatDecoder final : public EventDecoder {
  public:
   /// Bits of x, y, polarity: 9, 8, 1 in version 1 (ATIS), 14, 14, 4 in version 2.

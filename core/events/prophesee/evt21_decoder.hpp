@@ -9,7 +9,8 @@ namespace evbench {
 /// https://docs.prophesee.ai/stable/data/encoding_formats/evt21.html
 class Evt21Decoder final : public EventDecoder {
  public:
-  /// Of a word's 32-bit halves: cameras of the first generation ("endianness=legacy") send the one with the type first.
+  /// Order of a word's 32-bit halves: cameras of the first generation ("endianness=legacy") send the half with the type
+  /// first.
   enum class Order { low_half_first, high_half_first };
 
   explicit Evt21Decoder(Order order) : order_(order) {}

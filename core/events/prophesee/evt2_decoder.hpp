@@ -5,8 +5,8 @@
 
 namespace evbench {
 
-/// Prophesee's EVT 2.0: 32-bit words, an event each but for the high bits of time. Times count on over the end of their
-/// 34 bits (4.8 h). Events before the first time are faults; triggers and vendors' words are passed over.
+/// Prophesee's EVT 2.0: 32-bit words, an event each but for the high bits of time. The 34-bit time (4.8 h) is
+/// unwrapped. Events before the first time are faults; triggers and vendors' words are skipped.
 /// https://docs.prophesee.ai/stable/data/encoding_formats/evt2.html
 class Evt2Decoder final : public EventDecoder {
  public:

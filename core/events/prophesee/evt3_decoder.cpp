@@ -48,7 +48,7 @@ void Evt3Decoder::set_time_high(std::uint32_t value, std::uint64_t place) {
   has_time_ = true;
 }
 
-/// Up to the words from which on time and row are known.
+/// Skips words until time and row are known.
 std::size_t Evt3Decoder::find_state(std::span<const std::byte> in, std::uint64_t offset, Faults& faults) {
   FaultCount early;
   std::size_t at = 0;
@@ -69,7 +69,7 @@ std::size_t Evt3Decoder::find_state(std::span<const std::byte> in, std::uint64_t
 EventDecoder::Progress Evt3Decoder::decode(std::span<const std::byte> in, std::uint64_t offset, std::span<Event> out,
                                            Faults& faults) {
   constexpr std::size_t kMostOfWord = 12;
-  constexpr std::uint32_t kFarRight = 0x7000;  // a vector that runs on for ever stays outside of every sensor
+  constexpr std::uint32_t kFarRight = 0x7000;  // an endless vector stays outside of every sensor
   const std::size_t begin = has_time_ && has_row_ ? 0 : find_state(in, offset, faults);
   FaultCount unknown;
   const std::byte* at = in.data() + begin;

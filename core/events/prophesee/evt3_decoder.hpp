@@ -6,8 +6,8 @@
 namespace evbench {
 
 /// Prophesee's EVT 3.0, as in RAW files and in the packets of event_camera_msgs: 16-bit words that change a state
-/// (time, row, base column) or give events. Times count on over the end of their 24 bits (16.8 s). Before the first
-/// time and row are known, events are faults; triggers and vendors' words are passed over.
+/// (time, row, base column) or give events. The 24-bit time (16.8 s) is unwrapped. Before the first time and row are
+/// known, events are faults; triggers and vendors' words are skipped.
 /// https://docs.prophesee.ai/stable/data/encoding_formats/evt3.html
 class Evt3Decoder final : public EventDecoder {
  public:

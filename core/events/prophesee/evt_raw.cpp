@@ -14,7 +14,7 @@
 namespace evbench {
 namespace {
 
-/// Of a RAW file: "2", "2.1" or "3", whatever it is in others; empty when the header names none.
+/// The encoding of a RAW file: "2", "2.1" or "3", or the text of another one; empty if the header names none.
 std::string encoding(const PropheseeHeader& header) {
   const std::string format = header.value("format"), version = header.value("evt");
   if (format == "EVT2" || version == "2.0" || version == "2") return "2";
@@ -23,8 +23,8 @@ std::string encoding(const PropheseeHeader& header) {
   return format.empty() ? version : format;
 }
 
-/// Of any encoding, those that evbench does not read, too: a comment of a text may look like the name of one, but text
-/// has no bytes below tabs.
+/// Recognises RAW files of any encoding, including those that evbench does not read. A comment of a text file may look
+/// like the name of an encoding, but text has no bytes below tabs.
 bool is_raw(std::span<const std::byte> head) {
   if (head.size() < 2 || head[0] != std::byte{'%'}) return false;
   try {

@@ -40,9 +40,9 @@ using Words64 = std::vector<std::uint64_t>;
 
 }  // namespace
 
-// The other program (expelliarmus) takes each step back of the low bits of time for a wrap, besides the ones that the
-// camera's own high bits tell: 4096 us too many each time. It steps back 11 times in this file, 9 times by a few
-// microseconds and twice at the high bits' change, so that 8.8 ms appear as 53.9 ms.
+// The other program (expelliarmus) takes each step back of the low bits of time for a wrap, in addition to the wraps in
+// the camera's own high bits: 4096 us too many each time. Time steps back 11 times in this file, 9 times by a few
+// microseconds and twice at a change of the high bits, so that 8.8 ms appear as 53.9 ms.
 TEST_CASE("A real EVT 3 recording decodes event by event to what another program makes of it, but for its wraps") {
   const auto raw = data_file("formats/expelliarmus/evt3_sample.raw");
   const auto npy = data_file("formats/expelliarmus/evt3_sample.npy");

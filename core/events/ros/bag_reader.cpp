@@ -17,14 +17,14 @@ namespace evbench::ros {
 namespace {
 
 constexpr std::uint32_t kMostSide = 1 << 16;
-constexpr std::int64_t kPause = 250'000'000;  ///< [ns] between packets: what they count may have gone round
+constexpr std::int64_t kPause = 250'000'000;  ///< [ns] between packets: the counter of their times may have wrapped
 
 constexpr const char *kPoseType = "geometry_msgs/PoseStamped", *kCameraInfoType = "sensor_msgs/CameraInfo";
 constexpr TopicKind kEvents{"events", "--topic (source.topic in a run's config)"},
     kPoses{"poses", "--ground-truth-topic (source.ground_truth_topic in a run's config)"},
     kCameraInfos{"camera infos", "--camera-info-topic (source.camera_info_topic in a run's config)"};
 
-/// Of one of the types, those without messages last.
+/// Topics of one of the types, those without messages last.
 std::vector<Candidate> candidates_of(const std::vector<Topic>& topics, std::initializer_list<std::string_view> types) {
   std::vector<Candidate> candidates;
   for (const Topic& topic : topics) {
@@ -73,11 +73,11 @@ class BagReader : public EventReader {
  private:
   std::optional<std::int64_t> next_message(std::vector<Event>& events);
   void choose_topic();
-  void look_at_first();
+  void read_first_message();
   void rewind();
   void restart();
   void synchronise(std::int64_t t, const std::string& where);
-  void tell(const std::string& key, const std::string& text);
+  void note(const std::string& key, const std::string& text);
   std::vector<std::optional<CameraInfo>> first_infos(const std::vector<Candidate>& candidates);
   std::string mismatch(const std::optional<CameraInfo>& info) const;
   template <class Take>
@@ -90,12 +90,12 @@ class BagReader : public EventReader {
   std::unique_ptr<MessageSource> source_;
   Faults open_faults_;  ///< found when the container was opened
   std::vector<Topic> topics_;
-  Topic topic_;  ///< whose events
+  Topic topic_;  ///< of the events
   StreamInfo info_;
   EventPacketDecoder decoder_;
   EventArray array_;
   std::uint64_t messages_ = 0;
-  bool encoding_told_ = false;
+  bool encoding_is_noted_ = false;
   bool camera_time_ = false;        ///< times are the camera's, not ROS's
   std::int64_t stamp_ = 0;          ///< of the last packet [ns]
   std::int64_t ros_minus_own_ = 0;  ///< ROS time of the camera's zero [µs]
@@ -115,13 +115,13 @@ BagReader::BagReader(const std::string& path, const std::string& format, const R
   info_.format = format;
   info_.topics = descriptions(topics_);
   choose_topic();
-  // A name that there is not is told at once.
+  // A name that does not exist is reported at once.
   const auto check = [&](const TopicKind& kind, const char* type, const std::string& name) {
     if (!name.empty()) choose(path, kind, with_messages(topics_, type), name, topic_.name);
   };
   check(kPoses, kPoseType, options.ground_truth_topic);
   check(kCameraInfos, kCameraInfoType, options.camera_info_topic);
-  look_at_first();
+  read_first_message();
 }
 
 void BagReader::choose_topic() {
@@ -130,19 +130,19 @@ void BagReader::choose_topic() {
   for (Candidate& candidate : candidates) candidate.text = describe(candidate.topic);
   const std::size_t chosen = choose_events(path_, topics_, candidates, options_.topic);
   topic_ = candidates[chosen].topic;
-  tell("events in", topic_.name);
+  note("events in", topic_.name);
   const bool several = candidates.size() > 1 && candidates[1].topic.count != 0;
-  if (several && options_.topic.empty()) tell(kTopicChoice, choice_text(kEvents, candidates, chosen));
+  if (several && options_.topic.empty()) note(kTopicChoice, choice_text(kEvents, candidates, chosen));
 }
 
-/// A further line of the metadata, once.
-void BagReader::tell(const std::string& key, const std::string& text) {
+/// Adds a line to the metadata, once.
+void BagReader::note(const std::string& key, const std::string& text) {
   std::pair line(key, text);
   if (std::ranges::count(info_.metadata, line) == 0) info_.metadata.push_back(std::move(line));
 }
 
-/// What only messages say: sensor, encoding, time.
-void BagReader::look_at_first() {
+/// Finds what only messages contain: sensor, encoding, time.
+void BagReader::read_first_message() {
   source_->select(topic_.connections);
   std::vector<Event> events;
   while (events.empty() && next_message(events)) {
@@ -153,7 +153,7 @@ void BagReader::look_at_first() {
   if (camera_time_ && !events.empty()) {
     ros_minus_own_ = stamp_ / 1000 - events.front().t;
     zero_is_known_ = true;
-    tell("ROS time of the camera's zero [us]", fmt::to_string(ros_minus_own_));
+    note("ROS time of the camera's zero [us]", fmt::to_string(ros_minus_own_));
   }
   rewind();
 }
@@ -171,7 +171,7 @@ void BagReader::restart() {
   messages_ = 0;
 }
 
-/// Appends a message's events and returns the number of them; none at the end.
+/// Appends a message's events and returns their number; none at the end.
 std::optional<std::int64_t> BagReader::next_message(std::vector<Event>& events) {
   check_interruption();  // messages without events may be many
   const auto message = source_->next();
@@ -201,8 +201,8 @@ std::optional<std::int64_t> BagReader::next_message(std::vector<Event>& events) 
     if (turns_ != 0) {
       for (std::size_t i = before; i < events.size(); ++i) events[i].t += turns_;
     }
-    if (!encoding_told_) tell("encoding", packet->encoding);
-    encoding_told_ = true;
+    if (!encoding_is_noted_) note("encoding", packet->encoding);
+    encoding_is_noted_ = true;
   } else {
     if (!parse_event_array(message->data, message->wire, array_)) {
       faults_.add("broken messages", where);
@@ -220,8 +220,8 @@ std::optional<std::int64_t> BagReader::next_message(std::vector<Event>& events) 
   return static_cast<std::int64_t>(events.size() - before);
 }
 
-/// The camera's 24 bits of time do not say how often they have gone round while nothing was read; the packet's stamp
-/// does, but for a camera that was restarted meanwhile.
+/// The camera's 24 bits of time do not show how often they have wrapped while nothing was read. The packet's stamp
+/// does, unless the camera was restarted in the meantime.
 void BagReader::synchronise(std::int64_t t, const std::string& where) {
   constexpr std::int64_t kTurn = std::int64_t{1} << 24, kMostDrift = 1'000'000;  // [µs]
   synchronised_ = true;
@@ -241,8 +241,8 @@ bool BagReader::read(std::vector<Event>& events) {
   return !events.empty();
 }
 
-/// By the time of recording, and by the packets' stamps for how often the camera's 24 bits of time have gone round;
-/// from the beginning where the events found are later than t.
+/// Seeks by the time of recording, and finds from the packets' stamps how often the camera's 24 bits of time have
+/// wrapped. Starts from the beginning if the events found are later than t.
 void BagReader::seek(std::int64_t t) {
   constexpr std::int64_t kMargin = 100'000;  // [µs]
   rewind();
@@ -266,14 +266,14 @@ void BagReader::seek(std::int64_t t) {
 /// Calls take(message) for the messages of some connections, until it returns false.
 template <class Take>
 void BagReader::for_each(const std::set<std::uint32_t>& connections, Take take) {
-  Faults ignored(path_, false);  // of the container: they are counted when its events are read
+  Faults ignored(path_, false);  // of the container: they are counted when events are read
   const auto source = open_(ignored);
   source->select(connections);
   for (auto message = source->next(); message && take(*message); message = source->next()) {
   }
 }
 
-/// Sorted by their own times: several publishers' are recorded in another order.
+/// Poses are sorted by their own times: those of several publishers are recorded in another order.
 std::optional<PoseTrajectory> BagReader::ground_truth() {
   const auto candidates = with_messages(topics_, kPoseType);
   const auto chosen = choose(path_, kPoses, candidates, options_.ground_truth_topic, topic_.name);
@@ -304,14 +304,14 @@ std::optional<PoseTrajectory> BagReader::ground_truth() {
   }
   poses.resize(kept);
   if (poses.empty()) return std::nullopt;
-  tell(kGroundTruthIn, topic.name);
+  note(kGroundTruthIn, topic.name);
   if (candidates.size() > 1 && options_.ground_truth_topic.empty()) {
-    tell(kTopicChoice, choice_text(kPoses, candidates, *chosen));
+    note(kTopicChoice, choice_text(kPoses, candidates, *chosen));
   }
   return PoseTrajectory(std::move(poses), path_);
 }
 
-/// Of each candidate the first message of a calibrated camera, or else the last that is whole.
+/// For each candidate the first message of a calibrated camera, or else the last one that is whole.
 std::vector<std::optional<CameraInfo>> BagReader::first_infos(const std::vector<Candidate>& candidates) {
   std::set<std::uint32_t> connections;
   for (const Candidate& candidate : candidates) connections.merge(std::set(candidate.topic.connections));
@@ -329,7 +329,7 @@ std::vector<std::optional<CameraInfo>> BagReader::first_infos(const std::vector<
   return infos;
 }
 
-/// Why a message cannot be the calibration of the events' camera; "" when it can.
+/// Why a message cannot be the calibration of the events' camera; "" if it can.
 std::string BagReader::mismatch(const std::optional<CameraInfo>& info) const {
   if (!info) return "none of its messages is whole";
   if (!is_calibrated(*info)) return "is of a camera that is not calibrated: its focal lengths are 0, as all of K";
@@ -352,15 +352,15 @@ std::optional<Camera> BagReader::calibration() {
   const auto chosen = choose(path_, kCameraInfos, candidates, options_.camera_info_topic, topic_.name);
   if (!chosen) {
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      tell(kUnusableCalibration, fmt::format("{} {}", candidates[i].text, faults[i]));
+      note(kUnusableCalibration, fmt::format("{} {}", candidates[i].text, faults[i]));
     }
     return std::nullopt;
   }
   const Candidate& candidate = candidates[*chosen];
   if (!candidate.fits) throw InputError(fmt::format("{}: {} {}", path_, candidate.text, faults[*chosen]));
-  tell(kCameraInfoIn, candidate.text);
+  note(kCameraInfoIn, candidate.text);
   if (candidates.size() > 1 && options_.camera_info_topic.empty()) {
-    tell(kTopicChoice, choice_text(kCameraInfos, candidates, *chosen));
+    note(kTopicChoice, choice_text(kCameraInfos, candidates, *chosen));
   }
   return camera_of(*infos[*chosen], path_ + ": " + candidate.topic.name, info_.width, info_.height);
 }

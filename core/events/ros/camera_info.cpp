@@ -14,7 +14,11 @@ bool is_calibrated(const CameraInfo& info) {
 }
 
 Camera camera_of(const CameraInfo& info, const std::string& topic, int width, int height) {
-  const auto side = [&](std::uint32_t said, int usual) { return said > 0 ? checked_side(topic, said) : usual; };
+  const auto side = [&](std::uint32_t stated, int usual) { return stated > 0 ? checked_side(topic, stated) : usual; };
+  if (info.is_partial) {
+    throw InputError(
+        fmt::format("{}: is of a binned image or of a region of interest; expected one of the whole sensor", topic));
+  }
   const DistortionModel distortion = named_distortion(topic + ": distortion_model", info.distortion_model);
   const bool bends = std::ranges::any_of(info.D, [](double coefficient) { return coefficient != 0.0; });
   if (distortion == DistortionModel::none && bends) {

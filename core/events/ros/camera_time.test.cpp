@@ -5,7 +5,7 @@
 using namespace evbench;
 using namespace evbench::testing::bag_writer;
 
-// Times of EVT 3 in bags: the camera's own 24 bits, which have gone round unseen where packets pause.
+// Times of EVT 3 in bags: the camera's own 24 bits, which wrap unnoticed where packets pause.
 
 namespace {
 
@@ -46,7 +46,7 @@ std::string write_bag(const testing::TemporaryFolder& folder, const std::vector<
 
 }  // namespace
 
-TEST_CASE("Packets that pause, for longer than the camera's time goes round too, have their own times") {
+TEST_CASE("Packets that pause, also for longer than the camera's time takes to wrap, have their own times") {
   const testing::TemporaryFolder folder;
   const std::string path = write_bag(folder, camera_packets({{0, 14}, {17, 18}, {23, 24}, {50, 51}, {100, 110}}));
   const std::vector<Event> all = testing::read_all(path);

@@ -36,7 +36,7 @@ std::optional<Message> ChunkOrder::next() {
   return first.content.messages[first.next].message;
 }
 
-/// Behind the message that was given.
+/// Moves on after a message that was returned.
 void ChunkOrder::advance() {
   auto first = open_.extract(open_.begin());
   Open& chunk = first.mapped();
@@ -75,7 +75,7 @@ void ChunkOrder::open(const Closed& closed) {
   while (bytes_ > most_bytes_ && open_.size() > 1) close_last();
 }
 
-/// The one that is needed last; what comes next in it is known from now on, so that it is loaded once more for that.
+/// Closes the chunk that is needed last. Its next message is known from now on, so that it is loaded only once more.
 void ChunkOrder::close_last() {
   const auto last = std::prev(open_.end());
   closed_.push({last->first, last->second.chunk, last->second.next, true});

@@ -27,43 +27,43 @@ struct Chunk {
   }
 };
 
-/// What a chunk holds of the selected connections.
+/// A chunk's messages of the selected connections.
 struct LoadedChunk {
   struct Entry {
     std::int64_t t = 0;  ///< log time [ns]
     Message message;
   };
-  std::vector<std::byte> bytes;  ///< that the messages lie in
+  std::vector<std::byte> bytes;  ///< the data of the messages
   std::vector<Entry> messages;
 };
 
-/// The messages of chunks in the order of their log times; equal times in the file's order. Chunks may lie in any order
-/// and overlap: those that overlap are kept in memory, up to `most_bytes` of them, beyond which the one that is needed
-/// last is loaded again later.
+/// The messages of chunks in the order of their log times; equal times in the file's order. Chunks may be in any order
+/// and overlap. Overlapping chunks are kept in memory, up to `most_bytes` of them; beyond that, the chunk that is
+/// needed last is dropped and loaded again later.
 class ChunkOrder {
  public:
-  /// Fills an empty LoadedChunk, in the file's order; what is broken is left out and added to the faults.
+  /// Fills an empty LoadedChunk, in the file's order; broken content is left out and added to the faults.
   using Load = std::function<void(const Chunk& chunk, LoadedChunk& content)>;
 
   static constexpr std::size_t kMostBytes = std::size_t{512} << 20;
 
-  /// `faults` outlive it.
+  /// `faults` must outlive it.
   ChunkOrder(Load load, Faults& faults, std::size_t most_bytes = kMostBytes);
 
-  /// Begins anew, with the first message at or after a time [ns].
+  /// Restarts with the first message at or after a time [ns].
   void begin(const std::vector<Chunk>& chunks, std::int64_t from = std::numeric_limits<std::int64_t>::min());
 
-  /// None at the end. Its data is valid until the next call.
+  /// The next message; none at the end. Its data is valid until the next call.
   std::optional<Message> next();
 
  private:
-  /// Log time and offset of the chunk: of what comes next in a chunk.
+  /// Position of a chunk's next message: its log time, and the chunk's offset.
   using Place = std::pair<std::int64_t, std::uint64_t>;
   struct Closed {
     Place place;
     Chunk chunk;
-    std::size_t given = 0;  ///< of its messages
-    bool again = false;     ///< it was loaded before
+    std::size_t given = 0;  ///< messages already returned
+    bool again = false;     ///< has been loaded before
     bool operator>(const Closed& other) const { return place > other.place; }
   };
   struct Open {
@@ -84,8 +84,8 @@ class ChunkOrder {
   std::int64_t from_ = 0;
   std::priority_queue<Closed, std::vector<Closed>, std::greater<>> closed_;
   std::map<Place, Open> open_;
-  bool given_ = false;  ///< the next message of the first open chunk
-  LoadedChunk spare_;   ///< memory of one that was closed
+  bool given_ = false;  ///< the next message of the first open chunk has been returned
+  LoadedChunk spare_;   ///< memory of a closed one, for reuse
 };
 
 }  // namespace evbench::ros

@@ -8,7 +8,7 @@
 namespace evbench {
 namespace {
 
-/// Words of polarity, valid bit and place, then of time: libcaer's polarity event.
+/// libcaer's polarity event: a word of polarity, valid bit and pixel, then a word of time.
 void decode_libcaer(std::span<const std::byte> bytes, std::int64_t base, const std::string& where,
                     std::vector<Event>& events, Faults& faults) {
   constexpr std::size_t kSize = 8;
@@ -29,7 +29,7 @@ void decode_libcaer(std::span<const std::byte> bytes, std::int64_t base, const s
   if (!bytes.empty()) faults.add("packets that end within an event", where);
 }
 
-/// The high four bits of a word say what the others are.
+/// The highest four bits of a word are its type.
 void decode_libcaer_cmp(std::span<const std::byte> bytes, std::int64_t base, const std::string& where,
                         std::vector<Event>& events, Faults& faults) {
   WrappingCounter counter{12, 4096};

@@ -6,7 +6,7 @@
 
 using namespace evbench;
 
-/// The first byte says how the rest is serialised; the packet is decoded as what it says, and as each encoding.
+/// The first byte selects the serialisation of the rest; the packet is decoded as its own encoding and as each other.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const auto bytes = std::as_bytes(std::span(data, size)).subspan(1);

@@ -13,7 +13,7 @@
 namespace evbench {
 
 /// The payload of event_camera_msgs/EventPacket. Encodings:
-///   evt3         Prophesee's words; times are the sensor's own and count on over packets
+///   evt3         Prophesee's words; times are the sensor's own and continue from packet to packet
 ///   libcaer      8 bytes an event, as libcaer has them; times are time_base and 31 bits of µs
 ///   libcaer_cmp  16-bit words like EVT 3 with rows and columns exchanged; times are time_base and 24 bits of µs
 /// Others (mono, trigger) are counted as faults and left out.

@@ -30,8 +30,8 @@ std::int64_t log_time(std::span<const std::byte> message) {
   return mcap_time(load<std::uint64_t>(message.data() + 2 + 4));
 }
 
-/// Calls take(op, data) for records that follow one another. False where one is broken: that, or all from there on,
-/// is left out.
+/// Calls take(op, data) for consecutive records. False if one is broken: that record, or all from there on, is left
+/// out.
 template <class Op, class Take>
 bool for_records(std::span<const std::byte> records, Op message, Take take) {
   bool whole = true;
@@ -76,7 +76,7 @@ McapBag::McapBag(std::unique_ptr<ByteSource> file, Faults& faults)
   }
 }
 
-/// The record at an offset, with its data as far as `most` bytes. False when it isn't whole.
+/// Reads the record at an offset, with its data up to `most` bytes. False if it isn't whole.
 bool McapBag::read_record(std::uint64_t offset, Record& record, std::uint64_t most) {
   std::byte head[kRecordHeader + kMessageHeader];
   const std::size_t there = file_->read(offset, head);
@@ -92,7 +92,7 @@ bool McapBag::read_record(std::uint64_t offset, Record& record, std::uint64_t mo
   return true;
 }
 
-/// What the end of the file says of topics, counts and chunks.
+/// Reads topics, counts and chunks from the summary at the end of the file.
 bool McapBag::read_summary() {
   std::byte footer[kFooter];
   if (file_->size() < kMagicSize + kFooter) return false;
@@ -113,7 +113,7 @@ bool McapBag::read_summary() {
   return counted && at == end && !channels_.empty();
 }
 
-/// Takes what a record says of the file. False when it is broken.
+/// Parses a record that describes the file. False if it is broken.
 bool McapBag::parse(Op op, std::span<const std::byte> data) {
   ByteCursor cursor(data);
   switch (op) {
@@ -152,7 +152,7 @@ bool McapBag::parse(Op op, std::span<const std::byte> data) {
   return cursor.ok();
 }
 
-/// By the records' lengths. Where a record is broken, it goes on with the next chunk of the index.
+/// Finds chunks by the records' lengths. After a broken record it continues with the next chunk of the index.
 void McapBag::find_chunks() {
   std::size_t named = 0;
   Record record;
@@ -187,7 +187,7 @@ void McapBag::find_chunks() {
   }
 }
 
-/// A message that is in no chunk: those that follow one another are loaded as if they were one.
+/// Adds a message outside of chunks: consecutive ones are loaded as if they were a chunk.
 void McapBag::add_message(std::uint64_t offset, const Record& record) {
   constexpr std::uint64_t kMostRun = 4 << 20;
   if (record.data.size() < kMessageHeader) {
@@ -205,7 +205,7 @@ void McapBag::add_message(std::uint64_t offset, const Record& record) {
   chunks_.back().add_time(log_time(record.data));
 }
 
-/// What the beginning of a chunk says.
+/// Reads the times at the beginning of a chunk.
 bool McapBag::read_times(std::span<const std::byte> data, ros::Chunk& chunk) {
   ByteCursor cursor(data);
   chunk.start = mcap_time(cursor.get<std::uint64_t>());
@@ -213,7 +213,7 @@ bool McapBag::read_times(std::span<const std::byte> data, ros::Chunk& chunk) {
   return cursor.ok();
 }
 
-/// Reads a chunk for what the summary would say. False for one without messages.
+/// Reads a chunk for what the summary lacks. False for one without messages.
 bool McapBag::scan(ros::Chunk& chunk) {
   std::vector<std::byte> bytes;
   for_records(unpack(chunk, bytes), Op::message, [&](Op op, std::span<const std::byte> data) {
@@ -240,7 +240,7 @@ void McapBag::load_chunk(const ros::Chunk& chunk, ros::LoadedChunk& content) {
   if (!whole) faults_.add("chunks with broken records", fmt::format("byte {}", chunk.offset));
 }
 
-/// A chunk's records, in `bytes`. None where it is broken: a fault.
+/// A chunk's records, in `bytes`. None if it is broken: a fault.
 std::span<const std::byte> McapBag::unpack(const ros::Chunk& chunk, std::vector<std::byte>& bytes) {
   bytes.resize(static_cast<std::size_t>(std::min(chunk.size, kMostMcapBytes)));
   if (bytes.size() == chunk.size && file_->read(chunk.offset, bytes) == bytes.size()) {
@@ -251,7 +251,7 @@ std::span<const std::byte> McapBag::unpack(const ros::Chunk& chunk, std::vector<
   return {};
 }
 
-/// `bytes`: the chunk's record, which is replaced where it is compressed.
+/// `bytes`: the chunk's record, which is replaced if it is compressed.
 std::optional<std::span<const std::byte>> McapBag::decompress(std::vector<std::byte>& bytes) {
   ByteCursor cursor(bytes);
   cursor.bytes(kRecordHeader + 2 * 8);  // first and last time

@@ -14,8 +14,9 @@
 
 namespace evbench {
 
-/// MCAP, ROS 2's container (https://mcap.dev/spec): records, most of them in chunks (plain, lz4, zstd), with topics,
-/// counts and an index of chunks at the end. Without that end all is read once for topics and times.
+/// MCAP, ROS 2's container (https://mcap.dev/spec): records, most of them in chunks (plain, lz4, zstd), and a summary
+/// at the end with topics, counts and an index of chunks. Without the summary the whole file is read once for topics
+/// and times.
 class McapBag : public ros::MessageSource {
  public:
   McapBag(std::unique_ptr<ByteSource> file, Faults& faults);
@@ -71,7 +72,7 @@ class McapBag : public ros::MessageSource {
   std::set<std::uint64_t> index_;                  ///< offsets of chunks
   std::uint64_t end_ = 0;                          ///< of the records with messages
   std::uint64_t run_ = 0;                          ///< offset of the last run
-  std::vector<ros::Chunk> chunks_;                 ///< and runs of messages that are in none, each as if it were one
+  std::vector<ros::Chunk> chunks_;                 ///< and runs of messages outside of chunks, each as one
   std::vector<ros::Connection> connections_;
   std::set<std::uint32_t> selected_;
   std::vector<std::byte> data_;  ///< of the last record of the file

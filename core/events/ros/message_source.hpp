@@ -19,9 +19,9 @@ namespace evbench::ros {
 struct Connection {
   std::uint32_t id = 0;
   std::string topic;
-  std::string type;                    ///< ROS 1's way, "geometry_msgs/PoseStamped"
+  std::string type;                    ///< ROS 1's spelling, "geometry_msgs/PoseStamped"
   std::optional<std::uint64_t> count;  ///< of messages
-  bool readable = true;                ///< false: serialised in a way that evbench doesn't know
+  bool readable = true;                ///< false: in a serialisation that evbench doesn't read
 };
 
 struct Message {
@@ -30,27 +30,27 @@ struct Message {
   std::span<const std::byte> data;  ///< valid until the next call
 };
 
-/// The messages of a bag, whatever its container. Throws InputError for what is no such file; what is broken within is
-/// a fault and passed over, and a file that is cut short ends there.
+/// The messages of a bag, whatever its container. Throws InputError for a file that is no bag. Broken content is a
+/// fault and skipped; a file that is cut short ends there.
 class MessageSource {
  public:
   virtual ~MessageSource() = default;
   virtual const std::vector<Connection>& connections() const = 0;
-  /// Only these will be given, from the beginning on.
+  /// Restricts next() to these connections, from the beginning on.
   virtual void select(std::set<std::uint32_t> connections) = 0;
   /// The next message, in the order of the times of recording (log time); none at the end.
   virtual std::optional<Message> next() = 0;
-  /// Goes on with the first message that was recorded at or after t [ns].
+  /// Continues with the first message that was recorded at or after t [ns].
   virtual void seek(std::int64_t t) = 0;
 };
 
-/// Opens a container; what is broken in it will be added to the faults, which outlive it.
+/// Opens a container. Broken content is added to the faults, which must outlive it.
 using OpenSource = std::function<std::unique_ptr<MessageSource>(Faults&)>;
 
-/// "geometry_msgs/msg/PoseStamped" is "geometry_msgs/PoseStamped".
+/// A type in ROS 1's spelling: "geometry_msgs/PoseStamped" for "geometry_msgs/msg/PoseStamped".
 std::string plain_type(std::string type);
 
-/// The reader of events in a bag. `open` is called again for ground truth and for calibration.
+/// The reader of events in a bag. Calls `open` again for ground truth and for calibration.
 ///
 /// Times of dvs_msgs, and of packets from iniVation's cameras, are ROS times; those of EVT 3 packets are the camera's
 /// own, and ground truth is then given in the camera's time, by the stamp of the first packet (good to the latency of

@@ -7,10 +7,10 @@
 namespace evbench::ros {
 namespace {
 
-/// What says that it is little-endian, and options, as that of padding; alignment counts from behind it.
+/// Header of CDR: that it is little-endian, and options, e.g. of padding. Alignment counts from behind it.
 constexpr std::size_t kCdrHeader = 4;
 
-/// The fields of a message.
+/// Reads the fields of a message.
 class Fields {
  public:
   Fields(std::span<const std::byte> data, Wire wire) : cursor_(data), wire_(wire) {
@@ -47,7 +47,7 @@ class Fields {
   bool little_endian_ = true;
 };
 
-/// Events of ROS 1: 13 bytes each, x y seconds nanoseconds polarity.
+/// Parses events of ROS 1: 13 bytes each, x y seconds nanoseconds polarity.
 void load_events(std::span<const std::byte> bytes, std::vector<Event>& events) {
   constexpr std::size_t kSize = 13;
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -122,6 +122,13 @@ std::optional<CameraInfo> parse_camera_info(std::span<const std::byte> data, Wir
   for (double& value : info.D) value = fields.get<double>();
   for (double& value : info.K) value = fields.get<double>();
   if (!fields.ok()) return std::nullopt;
+  constexpr int kRectification = 9 + 12;  // R, P
+  for (int i = 0; i < kRectification; ++i) fields.get<double>();
+  const auto binning_x = fields.get<std::uint32_t>(), binning_y = fields.get<std::uint32_t>();
+  const auto x = fields.get<std::uint32_t>(), y = fields.get<std::uint32_t>();
+  const auto height = fields.get<std::uint32_t>(), width = fields.get<std::uint32_t>();
+  const bool is_region = x > 0 || y > 0 || (height > 0 && height < info.height) || (width > 0 && width < info.width);
+  info.is_partial = fields.ok() && (binning_x > 1 || binning_y > 1 || is_region);
   return info;
 }
 

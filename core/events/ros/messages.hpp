@@ -38,13 +38,16 @@ struct CameraInfo {
   std::string distortion_model;
   std::vector<double> D;
   std::array<double, 9> K{};
+  /// The image is only a part of the sensor or has fewer pixels (region of interest, binning); K is of the whole
+  /// sensor.
+  bool is_partial = false;
 };
 
 // Each returns nothing when the message is broken.
 std::optional<EventPacket> parse_event_packet(std::span<const std::byte> data, Wire wire);
 bool parse_event_array(std::span<const std::byte> data, Wire wire, EventArray& array);
 
-/// geometry_msgs/PoseStamped; none, too, for NaN and quaternions that are no rotation.
+/// geometry_msgs/PoseStamped; none also for NaN and quaternions that are no rotation.
 std::optional<StampedPose> parse_pose_stamped(std::span<const std::byte> data, Wire wire);
 
 std::optional<CameraInfo> parse_camera_info(std::span<const std::byte> data, Wire wire);

@@ -33,12 +33,12 @@ bool parse_fields(std::span<const std::byte> header, BagRecord& record) {
   return cursor.ok();
 }
 
-/// [ns], from seconds and nanoseconds.
+/// Time [ns] from seconds and nanoseconds.
 std::int64_t bag_time(std::uint64_t time) {
   return static_cast<std::int64_t>((time & 0xFFFF'FFFF) * 1'000'000'000 + (time >> 32));
 }
 
-/// Calls take(record, data) for the records of a chunk. False where one is broken, which is the end.
+/// Calls take(record, data) for the records of a chunk. Stops at a broken one and returns false.
 template <class Take>
 bool for_records(std::span<const std::byte> chunk, Take take) {
   BagRecord record;
@@ -83,7 +83,7 @@ RosBag::RosBag(std::unique_ptr<ByteSource> file, Faults& faults)
   std::ranges::sort(connections_, {}, &Connection::id);
 }
 
-/// False when it isn't whole.
+/// False if the record isn't whole.
 bool RosBag::read_record(std::uint64_t offset, BagRecord& record) {
   std::byte length[4];
   if (file_->read(offset, length) != 4) return false;
@@ -103,7 +103,7 @@ bool RosBag::read_data(const BagRecord& record, std::vector<std::byte>& data) {
   return file_->read(record.data, data) == data.size();
 }
 
-/// Connections and chunks, as listed at the end of the bag.
+/// Reads connections and chunks from the list at the end of the bag.
 bool RosBag::read_index(std::uint64_t offset, std::uint32_t chunks, Index& index) {
   BagRecord record;
   if (offset > file_->size()) return false;
@@ -125,7 +125,7 @@ bool RosBag::read_index(std::uint64_t offset, std::uint32_t chunks, Index& index
   return index.size() == chunks;
 }
 
-/// Where a record is broken, it goes on with the next chunk of the index.
+/// After a broken record it continues with the next chunk of the index.
 void RosBag::find_chunks(const Index& index, std::uint64_t end) {
   BagRecord record;
   std::size_t named = 0;
@@ -159,7 +159,7 @@ void RosBag::find_chunks(const Index& index, std::uint64_t end) {
   }
 }
 
-/// Reads a chunk for what an index would say. False for one without messages.
+/// Reads a chunk for what an index would contain. False for one without messages.
 bool RosBag::scan(Chunk& chunk) {
   std::vector<std::byte> content;
   if (!unpack(chunk.offset, content)) return false;
@@ -192,7 +192,7 @@ void RosBag::count(std::uint32_t id, std::uint64_t messages) {
   }
 }
 
-/// What a chunk's record holds. False where that is broken: a fault.
+/// Unpacks a chunk's record. False if it is broken: a fault.
 bool RosBag::unpack(std::uint64_t offset, std::vector<std::byte>& chunk) {
   BagRecord record;
   bool whole = false;

@@ -34,15 +34,14 @@ struct BagRecord {
   unsigned op() const { return number<std::uint8_t>("op"); }
 };
 
-/// ROS's bag format 2.0 (http://wiki.ros.org/Bags/Format/2.0). Read by ourselves, as librosbag_storage 1.15 refuses
-/// bags that are cut short or were not closed, reads where the index and the lengths within headers point to without
-/// comparing that with what there is, and allocates what a length says: of 20,000 copies of a bag of 15 kB with one to
-/// four bytes changed, 396 ended the program with SIGSEGV and 145 made it allocate more than 256 MiB. To guard it, one
-/// would have to parse every record before; this reader is no more than that, and as fast
-/// (bench/micro/bag_reading.cpp).
+/// ROS's bag format 2.0 (http://wiki.ros.org/Bags/Format/2.0). Chunks are found by the lengths of the records, and
+/// their times by the index. A chunk that the index does not name is read for its times first; without an index all
+/// chunks are.
 ///
-/// Chunks are found by the lengths of the records, and their times by the index; a chunk that the index does not name,
-/// and all where there is none, are read for it first.
+/// It is used in place of librosbag_storage 1.15, which refuses bags that are cut short or were not closed, follows the
+/// offsets of the index and the lengths in headers without checks, and allocates what a length states. Of 20,000 copies
+/// of a bag of 15 kB with one to four bytes changed, 396 ended the program with SIGSEGV and 145 made it allocate more
+/// than 256 MiB. This reader is as fast (bench/micro/bag_reading.cpp).
 class RosBag : public ros::MessageSource {
  public:
   RosBag(std::unique_ptr<ByteSource> file, Faults& faults);

@@ -33,8 +33,8 @@ bool is_zstd(std::span<const std::byte> head) {
   return head.size() >= 4 && load<std::uint32_t>(head.data()) == 0xFD2FB528u;
 }
 
-/// One file of a recording, unpacked if need be: what is open needs no name, so that it goes with the program, however
-/// that ends.
+/// One file of a recording, unpacked if it is compressed. The unpacked file is unlinked once it is open, so that it
+/// vanishes with the program, however that ends.
 std::unique_ptr<MessageSource> open_file(const std::string& recorded, Faults& faults) {
   std::optional<UnpackedFile> unpacked;
   if (is_zstd(head_of(recorded))) unpacked.emplace(recorded);
@@ -45,8 +45,8 @@ std::unique_ptr<MessageSource> open_file(const std::string& recorded, Faults& fa
   throw InputError(fmt::format("{}: is neither SQLite nor MCAP", recorded));
 }
 
-/// A ROS 2 recording of one or several files, read one after the other as metadata.yaml lists them. Topics are what it
-/// says, too; each file has its own ids for them.
+/// A ROS 2 recording of one or several files, read one after the other as metadata.yaml lists them. Topics are those of
+/// metadata.yaml, too; each file has its own ids for them.
 class Ros2Folder : public MessageSource {
  public:
   Ros2Folder(const std::string& folder, Faults& faults);
@@ -73,11 +73,11 @@ class Ros2Folder : public MessageSource {
   Faults& faults_;
   Ros2Metadata metadata_;
   std::set<std::uint32_t> selected_;
-  std::size_t file_ = 0;                 ///< next one to be opened
+  std::size_t file_ = 0;                 ///< next file to open
   std::optional<std::int64_t> from_;     ///< time sought [ns]
-  std::unique_ptr<MessageSource> open_;  ///< stays so until another one is opened: unpacking takes a while
+  std::unique_ptr<MessageSource> open_;  ///< stays open until another one is opened: unpacking takes a while
   std::size_t open_file_ = 0;
-  std::map<std::string, Faults::Fault> opening_;     ///< what was found when it was opened
+  std::map<std::string, Faults::Fault> opening_;     ///< faults found when it was opened
   bool reading_ = false;                             ///< the open file
   std::map<std::uint32_t, std::uint32_t> topic_of_;  ///< by the open file's id
   std::vector<std::byte> unpacked_;
@@ -116,7 +116,7 @@ bool Ros2Folder::open_next() {
   return false;
 }
 
-/// What is found is kept apart: it is to be told as often as the file is begun.
+/// Opens the next file. The faults found are kept apart: they are reported whenever reading of the file begins.
 void Ros2Folder::open(std::size_t file) {
   const Faults before = faults_;
   open_.reset();
@@ -164,7 +164,7 @@ std::optional<Message> Ros2Folder::next() {
   return std::nullopt;
 }
 
-/// False when it can't be.
+/// False if it fails.
 bool Ros2Folder::unpack(Message& message) {
   constexpr std::size_t kMostFileBytes = 256 << 20;
   if (!metadata_.messages_compressed) return true;

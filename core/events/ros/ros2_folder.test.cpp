@@ -200,7 +200,7 @@ TEST_CASE("A compressed file of a ROS 2 recording is unpacked once, and leaves n
   check_events(*reader);
 }
 
-TEST_CASE("Faults found when a file of a ROS 2 recording is opened are told each time it is read") {
+TEST_CASE("Faults found when a file of a ROS 2 recording is opened are reported each time it is read") {
   const testing::TemporaryFolder folder;
   folder.write("a_0.mcap", mcap_of(0, kPackets));  // without a summary
   folder.write("metadata.yaml", metadata({"a_0.mcap"}));

@@ -57,13 +57,13 @@ class SqliteBag : public MessageSource {
   bool whole_ = true;  ///< no pages are missing
   std::vector<Connection> connections_;
   std::set<std::uint32_t> selected_;
-  Statement order_, message_;  ///< rows by their times, which SQLite sorts on disk where it has no index; one row
+  Statement order_, message_;  ///< row ids by time, sorted on disk if there is no index; one row
   std::int64_t from_ = 0;      ///< [ns]
   bool ended_ = false;
 };
 
-/// SQLite's URI of a file that is only read. Without a journal beside it nothing is locked, so that folders that cannot
-/// be written will do.
+/// SQLite's URI of a file that is only read. If there is no journal next to it, nothing is locked: read-only folders
+/// work.
 std::string uri(const std::string& path) {
   std::string result = "file://";  // no host
   for (const char c : std::filesystem::absolute(path).string()) {
@@ -77,8 +77,8 @@ std::string uri(const std::string& path) {
   return result + (journal ? "?mode=ro" : "?mode=ro&immutable=1");
 }
 
-/// How many of its pages a file is short of; SQLite takes those that it doesn't look at for zeros. 0 where a journal
-/// may have them.
+/// How many of its pages a file lacks; SQLite reads pages that are missing as zeros if it does not check them. 0 if a
+/// journal may have them.
 std::uint64_t missing_pages(const std::string& path) {
   // Big-endian: the size of a page (1: 64 KiB) at byte 16, their number at byte 28.
   std::array<std::byte, 32> header{};
@@ -96,7 +96,7 @@ std::uint64_t missing_pages(const std::string& path) {
 
 SqliteBag::SqliteBag(const std::string& path, Faults& faults, bool count) : path_(path), faults_(faults) {
   constexpr int kMostMessageBytes = 256 << 20;  // of a message
-  constexpr int kSteps = 10'000;                // of SQLite's machine between two looks for an interruption
+  constexpr int kSteps = 10'000;                // of SQLite's machine between two checks for an interruption
   sqlite3* database = nullptr;
   const int result = sqlite3_open_v2(uri(path).c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
   database_.reset(database);
@@ -127,7 +127,7 @@ Statement SqliteBag::prepare(const std::string& query) {
   return Statement(statement);
 }
 
-/// False at the end, and where the file is broken: a fault.
+/// False at the end, and if the file is broken: a fault.
 bool SqliteBag::step(sqlite3_stmt* statement) {
   const int result = sqlite3_step(statement);
   check_interruption();
@@ -154,7 +154,7 @@ void SqliteBag::read_topics() {
   }
 }
 
-/// Of several topics SQLite has to read half of the file for that; of one it has an index.
+/// SQLite has to read half of the file to count the messages of several topics; for one it has an index.
 void SqliteBag::count_messages() {
   for (Connection& connection : connections_) connection.count = 0;
   const Statement counts =
@@ -169,7 +169,7 @@ void SqliteBag::count_messages() {
   }
 }
 
-/// A file that is cut short lacks some of its index of times, too: it is read in the order of its rows.
+/// A file that is cut short also lacks part of its index of times: it is read in the order of its rows.
 std::optional<Message> SqliteBag::next() {
   if (ended_) return std::nullopt;
   if (!order_) {

@@ -15,7 +15,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// Letters and digits, in lower case.
+/// Words of letters and digits, in lower case.
 Words words_of(const std::string& name) {
   Words words(1);
   for (const char c : name) {
@@ -32,7 +32,7 @@ Words words_of(const std::string& name) {
 /// "/davis/left/" of "/davis/left/events".
 std::string namespace_of(const std::string& name) { return name.substr(0, name.rfind('/') + 1); }
 
-/// As drivers and their users call them: davis, davis346, dvs, event_camera, ...
+/// Is the word a usual name of an event camera? davis, davis346, dvs, event_camera, ...
 bool names_event_camera(const Words& words) {
   constexpr std::array kBeginnings{"davis", "dvs", "dvx", "event", "prophesee", "metavision", "evk", "celex", "atis"};
   return std::ranges::any_of(words, [&](const std::string& word) {
@@ -40,7 +40,7 @@ bool names_event_camera(const Words& words) {
   });
 }
 
-/// How much a topic looks like the event camera's; more is more.
+/// How likely a topic is the event camera's; more is more likely.
 auto likeness(const std::string& name, const std::string& events_topic) {
   const Words words = words_of(name), events = words_of(events_topic);
   const auto in_common =
@@ -96,7 +96,7 @@ std::optional<std::size_t> choose(const std::string& path, const TopicKind& kind
   const std::size_t best = *std::ranges::max_element(fitting, {}, like);
   if (std::ranges::count(fitting, like(best), like) > 1) {
     throw InputError(
-        fmt::format("{}: has {} in several topics, and no name tells which are those of the camera of {}: "
+        fmt::format("{}: has {} in several topics, and no name shows which belong to the camera of {}: "
                     "{}; expected one to be named by {}",
                     path, kind.what, events_topic, texts(candidates), kind.option));
   }

@@ -60,7 +60,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("What is taken of several topics of poses is said, an option chooses, what nothing tells apart is an error") {
+TEST_CASE("A choice among topics of poses is reported, an option makes it, and indistinguishable topics are an error") {
   const testing::TemporaryFolder folder;
   const std::vector<std::string> bodies{"/vicon/box/pose", "/vicon/davis/pose"};
   auto reader = open_bag(folder, {}, bodies);
@@ -130,6 +130,16 @@ TEST_CASE("A camera info is checked as a calibration file is") {
     CHECK_THROWS_AS(read("plumb_bob", {0.1, wrong, 0.3, 0.4, 0.5}), InputError);
     CHECK_THROWS_AS(read("plumb_bob", {}, {wrong, 0, 120, 0, 198, 90, 0, 0, 1}), InputError);
     CHECK_THROWS_AS(read("plumb_bob", {}, {199, 0, wrong, 0, 198, 90, 0, 0, 1}), InputError);
+  }
+  CHECK_THROWS_WITH(read("plumb_bob", {}, {199, 0, 120, 0, 198, 90, 0, 0, 2}),
+                    ContainsSubstring("is no camera matrix"));
+  const std::string whole = camera_info(240, 180);
+  const std::size_t binning = whole.size() - 200 + 21 * sizeof(double);  // behind R and P; then the region of interest
+  for (const std::size_t field : {binning, binning + 4, binning + 8, binning + 12, binning + 16, binning + 20}) {
+    std::string partial = whole;
+    partial[field] = 2;
+    CHECK_THROWS_WITH(open_bag(folder, {{"/davis/left/camera_info", partial}}, {})->calibration(),
+                      ContainsSubstring("/davis/left/camera_info: is of a binned image or of a region of interest"));
   }
   CHECK_THROWS_WITH(read("plumb_bob", {}, {0, 0, 120, 0, 0, 90, 0, 0, 1}), ContainsSubstring("fx fy cx cy 0 0 120 90"));
   CHECK_THROWS_WITH(read("plumb_bob", {}, {199, 0, 300, 0, 198, 90, 0, 0, 1}), ContainsSubstring("240x180"));

@@ -24,7 +24,7 @@ struct BagMessage {
   std::int64_t t = 0;  ///< log time [ns]
   std::string data;
 };
-/// What an index says of a chunk.
+/// A chunk's entry in an index.
 struct BagIndexEntry {
   std::uint64_t offset = 0;
   std::int64_t start = 0, end = 0;  ///< [ns]
@@ -65,7 +65,7 @@ inline std::string bag_record(const std::vector<std::pair<std::string, std::stri
 }
 inline std::string op(unsigned char code) { return std::string(1, static_cast<char>(code)); }
 
-/// A bag whose chunks lie in the file as given. `lie` changes what the index says; an offset of 0 leaves a chunk out.
+/// A bag with its chunks in the given order. `lie` changes the index; an offset of 0 leaves a chunk out of it.
 inline std::string bag_of(const std::vector<BagConnection>& connections,
                           const std::vector<std::vector<BagMessage>>& chunks, bool indexed = true,
                           const std::function<void(std::vector<BagIndexEntry>&)>& lie = {}) {

@@ -10,7 +10,7 @@ namespace evbench::testing {
 
 /// Small recordings as `evbench dataset get` leaves those of public data sets, written by Python's h5py and as text in
 /// folders below `folder`: dsec/seq, dsec/nested, tumvie/mocap-desk, m3ed/falcon, mvsec/flying1, eds/peanuts. Each has
-/// 100 events, 1 ms apart. False, and a line that says so, without h5py.
+/// 100 events, 1 ms apart. Without h5py it warns and returns false.
 inline bool write_data_sets(const TemporaryFolder& folder) {
   const char* const script = R"PY(
 import os, sys, h5py, numpy as np

@@ -14,7 +14,7 @@
 
 namespace evbench {
 
-/// A file of a new identity for each input: libraries keep what they know of a file that they have open.
+/// A new file for each input: libraries keep the state of files that they have open.
 class FuzzFile {
  public:
   FuzzFile(const std::uint8_t* data, std::size_t size)
@@ -33,15 +33,20 @@ class FuzzFile {
   std::string path_;
 };
 
-/// Any bytes as a file of a format that a library reads by its path: passed over unless the format recognises it.
+/// Reads any bytes as a file of a format that a library reads by its path; skipped unless the format recognises them.
 inline int fuzz_file(const std::uint8_t* data, std::size_t size, const EventFormat& format) {
   constexpr std::size_t kHead = 1 << 16;
   const auto head = std::as_bytes(std::span(data, std::min(size, kHead)));
   if (head.empty() || !format.recognises("fuzz", head)) return 0;
   const FuzzFile file(data, size);
-  try {
-    exercise(*format.open(file.path(), {}));
-  } catch (const InputError&) {
+  for (const char* const columns : {"", "x,y,t_us,p"}) {
+    if (*columns != '\0' && !format.has_columns) continue;
+    ReadOptions options;
+    options.columns = columns;
+    try {
+      exercise(*format.open(file.path(), options));
+    } catch (const InputError&) {
+    }
   }
   return 0;
 }

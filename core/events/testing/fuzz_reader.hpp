@@ -10,7 +10,8 @@
 
 namespace evbench {
 
-/// Uses all of a reader. Twice from the beginning there are the same events, or the program ends as a finding.
+/// Uses all functions of a reader. Reading twice from the beginning must give the same events: otherwise the program
+/// ends, as a finding.
 inline void exercise(EventReader& reader) {
   constexpr std::int64_t kBeginning = std::numeric_limits<std::int64_t>::min();
   std::int64_t first = 0, last = 0;
@@ -34,7 +35,7 @@ inline void exercise(EventReader& reader) {
   reader.calibration();
 }
 
-/// Any bytes as a recording: read, or refused.
+/// Reads any bytes as a recording; they may be refused.
 template <class Open>
 int fuzz_reader(const std::uint8_t* data, std::size_t size, Open open) {
   try {

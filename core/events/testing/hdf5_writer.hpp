@@ -27,7 +27,7 @@ class Hdf5Writer {
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
 
-  /// A filter is in chunks; a negative one stands for chunks without a filter.
+  /// A filter implies chunks; a negative one means chunks without a filter.
   template <class Number>
   void add(const std::string& path, const std::vector<Number>& numbers, hsize_t columns = 0, H5Z_filter_t filter = 0) {
     const hsize_t rows = numbers.size() / std::max<hsize_t>(columns, 1);
@@ -77,7 +77,7 @@ class Hdf5Writer {
     H5Tclose(type);
   }
 
-  /// Puts bytes in the place of a column's first chunk, as they are.
+  /// Replaces a column's first chunk by these bytes, as they are.
   void write_chunk(const std::string& path, const std::vector<char>& bytes) {
     const hid_t set = H5Dopen2(file_, path.c_str(), H5P_DEFAULT);
     const hsize_t first = 0;

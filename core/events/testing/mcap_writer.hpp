@@ -53,7 +53,8 @@ inline std::string mcap(const std::string& records) {
   return magic + record(1, text("") + text("test")) + records;
 }
 
-/// With a summary: what describes topics, an index of the parts that are chunks, and how many messages channels have.
+/// With a summary: the descriptions of topics, an index of the parts that are chunks, and the message counts of
+/// channels.
 inline std::string closed_mcap(const std::vector<std::string>& parts, const std::string& topics,
                                const std::vector<std::pair<std::uint16_t, std::uint64_t>>& counts) {
   std::string file = mcap(""), index, channels;

@@ -35,7 +35,7 @@ std::string data_of(const std::vector<T>& numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T)};
 }
 
-/// Of an EventReader or EventStream.
+/// All events of an EventReader or EventStream.
 template <class Source>
 std::vector<Event> read_all(Source& source) {
   std::vector<Event> all;
@@ -43,15 +43,15 @@ std::vector<Event> read_all(Source& source) {
   return all;
 }
 
-/// In the order of the faults' names.
+/// Counts in the order of the names of the faults.
 inline std::vector<std::int64_t> fault_counts(const EventReader& reader) {
   std::vector<std::int64_t> counts;
   for (const auto& [kind, fault] : reader.faults().all()) counts.push_back(fault.count);
   return counts;
 }
 
-/// A file cut at many places, and with bytes changed, is either refused or read: no crash, no more events than
-/// 32 a byte, and none but the whole file's when it is cut.
+/// A file that is cut at many places, or has bytes changed, is either refused or read: without a crash, with at most 32
+/// events a byte, and only with events of the whole file if it is cut.
 template <class Open>
 void check_survives(const std::string& content, Open open) {
   const auto read = [&](const std::string& bytes) {

@@ -31,7 +31,7 @@ inline Sums sums(const std::vector<Event>& events) {
   return sums;
 }
 
-/// After a seek, reading gives the end of the recording, from the first event at or after t on at the latest.
+/// After a seek, reading gives the end of the recording, starting at the first event at or after t or before it.
 inline void check_seeking(const std::string& path) {
   const auto reader = open_events(path);
   const std::vector<Event> all = read_all(*reader);
@@ -49,8 +49,8 @@ inline void check_seeking(const std::string& path) {
   }
 }
 
-/// A file cut short anywhere is refused with a sentence, or gives the beginning of its events and a fault; an error in
-/// strict mode.
+/// A file that is cut short anywhere is refused with a sentence, or gives the beginning of its events and a fault; an
+/// error in strict mode.
 inline void check_truncation(const TemporaryFolder& folder, const std::string& path, std::size_t places) {
   const std::string whole = read_file(path);
   const std::vector<Event> all = read_all(path);

@@ -51,8 +51,8 @@ StreamInfo info_of(const TextLayout& layout, const ReadOptions& options) {
   return info;
 }
 
-/// The Event-Camera Dataset, whose text says no size, was recorded with a DAVIS 240C. Whether this may be one of its
-/// recordings is told by the calibration's principal point: those of other sensors lie elsewhere.
+/// The Event-Camera Dataset, whose text states no size, was recorded with a DAVIS 240C. The calibration's principal
+/// point shows whether this may be one of its recordings: that of other sensors is elsewhere.
 bool may_be_davis240(const RecordingFiles& files) {
   constexpr double kTolerance = 25.0;  // [px] from the middle
   if (!files.has("calib.txt")) return false;
@@ -61,11 +61,11 @@ bool may_be_davis240(const RecordingFiles& files) {
     const PinholeCamera camera = files.get("calib.txt", middle);
     return std::abs(camera.cx - 119.5) < kTolerance && std::abs(camera.cy - 89.5) < kTolerance;
   } catch (const InputError&) {
-    return false;  // told to whoever asks for the calibration
+    return false;  // reported when the calibration is read
   }
 }
 
-/// Width and height of the first picture in images/; none where there is no PNG.
+/// Width and height of the first picture in images/; none if there is no PNG.
 std::optional<std::pair<int, int>> picture_size(const RecordingFiles& files) {
   // PNG: signature, then the header's length and name, width and height, big-endian.
   constexpr std::string_view kSignature("\x89PNG\r\n\x1A\n\0\0\0\x0DIHDR", 16);
@@ -84,12 +84,12 @@ std::optional<std::pair<int, int>> picture_size(const RecordingFiles& files) {
   return std::pair(side(16), side(20));
 }
 
-/// Where neither the text nor an option says it.
+/// Used if neither the text nor an option states the size.
 void find_sensor(const RecordingFiles& files, StreamInfo& info) {
   if (info.width > 0 || info.height > 0) return;
   if (const auto size = picture_size(files)) {
     std::tie(info.width, info.height) = *size;
-    info.metadata.emplace_back("sensor size", "that of the pictures beside the events");
+    info.metadata.emplace_back("sensor size", "that of the pictures next to the events");
   } else if (may_be_davis240(files)) {
     info.width = 240;
     info.height = 180;
@@ -98,7 +98,7 @@ void find_sensor(const RecordingFiles& files, StreamInfo& info) {
   }
 }
 
-/// How many pictures images.txt names, and when.
+/// How many pictures images.txt names, and their times.
 std::string pictures_text(const RecordingFiles& files) {
   std::int64_t count = 0;
   double first = 0.0, last = 0.0;  // [s]
@@ -130,11 +130,11 @@ std::unique_ptr<EventReader> open_ecd_text(const std::string& path, const ReadOp
   const TextLayout layout = find_layout(*source, options);
   StreamInfo info = info_of(layout, options);
   if (layout.width == 0) find_sensor(files, info);
-  std::vector<std::string> beside;
+  std::vector<std::string> companions;
   for (const char* name : {"calib.txt", "groundtruth.txt", "images.txt", "imu.txt"}) {
-    if (files.has(name) && files.path(name) != path) beside.emplace_back(name);
+    if (files.has(name) && files.path(name) != path) companions.emplace_back(name);
   }
-  if (!beside.empty()) info.metadata.emplace_back("beside the events", fmt::to_string(fmt::join(beside, ", ")));
+  if (!companions.empty()) info.metadata.emplace_back("companion files", fmt::to_string(fmt::join(companions, ", ")));
   if (files.has("images.txt")) info.metadata.emplace_back("pictures", pictures_text(files));
   return std::make_unique<DecodedReader>(std::move(source), layout.begin, std::make_unique<EventTextDecoder>(layout),
                                          std::move(info), options);

@@ -13,8 +13,8 @@ namespace evbench {
 /// units. info().metadata says what was found.
 std::unique_ptr<EventReader> open_text(std::unique_ptr<ByteSource> source, const ReadOptions& options);
 
-/// A text file, a folder with events.txt, or a .zip with events.txt somewhere. What lies beside it belongs to it:
-/// calib.txt (calibration), groundtruth.txt, and images/, whose size is the sensor's where the text doesn't say it.
+/// A text file, a folder with events.txt, or a .zip with events.txt in any folder. Files next to it belong to it:
+/// calib.txt (calibration), groundtruth.txt, and images/, whose size is the sensor's if the text doesn't state it.
 std::unique_ptr<EventReader> open_ecd_text(const std::string& path, const ReadOptions& options);
 
 EventFormat ecd_text_format();

@@ -93,7 +93,7 @@ TEST_CASE("Real excerpts of the Event-Camera Dataset are read to their last line
   }
 }
 
-TEST_CASE("Ground truth, calibration and the pictures' size are found beside real events") {
+TEST_CASE("Ground truth, calibration and the pictures' size are found next to real events") {
   const auto path = data_file("slider_depth/events_chunk.txt");
   if (!path) return;
   const auto reader = open_events(*path);
@@ -105,7 +105,7 @@ TEST_CASE("Ground truth, calibration and the pictures' size are found beside rea
   CHECK(reader->ground_truth()->size() > 100);
 }
 
-TEST_CASE("Both orders, all separators, and names of columns are found out and said") {
+TEST_CASE("Both orders, all separators, and names of columns are detected and reported") {
   const struct {
     const char* content;
     const char* columns;
@@ -217,7 +217,7 @@ TEST_CASE("Text that may be of either order, or of another one, asks for the col
                                                Catch::Matchers::ContainsSubstring("give --columns"));
 }
 
-TEST_CASE("Columns that are asked for stand in place of those that are found, or named in the file") {
+TEST_CASE("Requested columns replace those that are detected, or named in the file") {
   const std::string content = "96 133 3.811 1 9\n127 171 3.82 0 9\n";  // y x t[ms] p
   CHECK_THROWS_WITH(text(content), Catch::Matchers::ContainsSubstring("has 5 columns"));
   for (const std::string header : {"", "a b c d e\n"}) {
@@ -244,7 +244,7 @@ TEST_CASE("Names that may mean two columns are quoted, unless one is left out of
   CHECK_THROWS_WITH(text("sec nsec x y p\n1 500 5 7 1\n"), ContainsSubstring("the time in one column"));
 }
 
-TEST_CASE("Without pictures a calibration that fits the Event-Camera Dataset's sensor tells its size") {
+TEST_CASE("Without pictures a calibration that fits the Event-Camera Dataset's sensor determines its size") {
   const TemporaryFolder folder;
   folder.write("events.txt", kRecording[0].second);
   const auto width = [&](const std::string& calibration, const ReadOptions& options = {}) {
@@ -257,7 +257,7 @@ TEST_CASE("Without pictures a calibration that fits the Event-Camera Dataset's s
   CHECK(width("no numbers\n") == 0);
 }
 
-TEST_CASE("A sensor's size that an option says goes before that of the pictures") {
+TEST_CASE("An option for the sensor's size takes precedence over the pictures") {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder.file("images"));
   for (const auto& [name, content] : kRecording) folder.write(name, content);
@@ -268,7 +268,7 @@ TEST_CASE("A sensor's size that an option says goes before that of the pictures"
   CHECK(ecd_metadata(*reader, "sensor size").empty());
 }
 
-TEST_CASE("The pictures' times beside the events are told") {
+TEST_CASE("The times of the pictures next to the events are reported") {
   const TemporaryFolder folder;
   folder.write("events.txt", kRecording[0].second);
   folder.write("images.txt", "0.5 images/a.png\n0.75 images/b.png\n");
@@ -294,7 +294,7 @@ TEST_CASE("The sensor's size before the events is read") {
   CHECK(text("0.1 1 2 1\n", {.width = 240, .height = 180})->info().width == 240);
 }
 
-TEST_CASE("Long files are read across the borders of pieces, and from the beginning after seeking") {
+TEST_CASE("Long files are read across the borders of chunks, and from the beginning after seeking") {
   std::string content;
   std::vector<Event> expected;
   for (int i = 0; i < 60'000; ++i) {
@@ -353,7 +353,7 @@ TEST_CASE("A recording is read alike from a folder, a zip, and a zip of a folder
     CHECK((read_all(*reader) == kTwo));
     CHECK(reader->info().width == 240);
     CHECK(reader->info().height == 180);
-    CHECK(ecd_metadata(*reader, "beside the events") == "calib.txt, groundtruth.txt");
+    CHECK(ecd_metadata(*reader, "companion files") == "calib.txt, groundtruth.txt");
     CHECK_THROWS_WITH(open_events(folder.file(name), {.topic = "/left"}),
                       Catch::Matchers::ContainsSubstring("no topics or groups"));
     REQUIRE(reader->calibration());

@@ -17,7 +17,7 @@ namespace {
 using Column = EventColumn;
 
 constexpr std::size_t kLongestLine = 1 << 16;
-// How far behind a line's beginning parse_common may look: half of it for where a column begins, half for the column.
+// How far after a line's beginning parse_common may read: half of it for where a column begins, half for the column.
 constexpr std::ptrdiff_t kReach = 160;
 constexpr std::uint64_t kPowers[] = {1, 10, 100, 1000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
 constexpr double kLatestTime = 9e18;  // [us], about what 64 bits hold
@@ -33,7 +33,7 @@ Digits read_digits(const char* at) {
   const std::uint64_t others = ((digits + 0x7676767676767676u) | digits) & 0x8080808080808080u;
   const auto count = static_cast<unsigned>(std::countr_zero(others)) / 8;  // 8 when there are no others
   if (count == 0) return {};
-  digits <<= 8 * (8 - count);  // as if zeros stood before
+  digits <<= 8 * (8 - count);  // as if zeros came first
   // Pairs, fours, all eight: each step adds to a half of a group ten, a hundred, ten thousand times the other.
   digits = (digits * ((std::uint64_t{10} << 8) + 1)) >> 8 & 0x00FF00FF00FF00FFu;
   digits = (digits * ((std::uint64_t{100} << 16) + 1)) >> 16 & 0x0000FFFF0000FFFFu;
@@ -43,7 +43,7 @@ Digits read_digits(const char* at) {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';'; }
 
-/// At most 16 digits, and moves on.
+/// Parses at most 16 digits, and moves on.
 bool read_integer(const char*& at, std::uint64_t& value) {
   Digits digits = read_digits(at);
   at += digits.count;
@@ -55,7 +55,7 @@ bool read_integer(const char*& at, std::uint64_t& value) {
   return true;
 }
 
-/// [us].
+/// Time [µs].
 bool read_seconds(const char*& at, std::int64_t& t) {
   constexpr std::uint64_t kMostSeconds = 1'000'000'000'000;
   constexpr int kMostFurther = 16;
@@ -93,7 +93,7 @@ bool read_polarity(const char*& at, bool& on) {
   return *at == '0' || *at == '1' ? (++at, true) : false;
 }
 
-/// Any number of the unit; integers exactly.
+/// Time from any number of the unit; integers exactly.
 bool parse_time(std::string_view text, TimeUnit unit, std::int64_t& t) {
   std::int64_t integer = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), integer);
@@ -124,7 +124,7 @@ bool parse_polarity(std::string_view text, bool& on) {
 
 }  // namespace
 
-/// A line as nearly all are: plain decimals, no more columns. Moves behind the line's end; false leaves it to
+/// Parses a line as nearly all are: plain decimals, no more columns. Moves to the next line; false leaves the line to
 /// parse_any.
 bool EventTextDecoder::parse_common(const char*& at, Event& event) const {
   const char* next = at;
@@ -149,7 +149,7 @@ bool EventTextDecoder::parse_common(const char*& at, Event& event) const {
   return true;
 }
 
-/// Where microseconds were taken for whole numbers, a fraction says that they are not.
+/// Whole numbers were taken for microseconds: a fraction shows that they are not.
 bool EventTextDecoder::contradicts_guess(std::string_view time) const {
   return layout_.unit_is_guessed && layout_.unit == TimeUnit::microseconds && is_fractional(time);
 }
@@ -162,7 +162,7 @@ bool EventTextDecoder::has_contradicting_time(std::string_view line) const {
   return false;
 }
 
-/// Everything that is an event.
+/// Parses any line that is an event.
 bool EventTextDecoder::parse_any(std::string_view line, Event& event) const {
   for (const Column column : layout_.columns) {
     const std::string_view text = next_column(line);

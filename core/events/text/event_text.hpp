@@ -5,13 +5,13 @@
 
 namespace evbench {
 
-/// Lines of text, an event each. Times are rounded to microseconds. Blank lines and comments (# or %) are passed over;
+/// Lines of text, an event each. Times are rounded to microseconds. Blank lines and comments (# or %) are skipped;
 /// lines that are no event, or longer than 64 KiB, are faults.
 class EventTextDecoder final : public EventDecoder {
  public:
   explicit EventTextDecoder(TextLayout layout) : layout_(std::move(layout)), line_(layout_.lines) {}
   Progress decode(std::span<const std::byte> in, std::uint64_t offset, std::span<Event> out, Faults& faults) override;
-  /// The last line may have no end.
+  /// The last line may lack its line break.
   std::size_t finish(std::span<const std::byte> in, std::uint64_t offset, std::span<Event> out,
                      Faults& faults) override;
   void reset() override;

@@ -40,14 +40,14 @@ void read_size(std::string_view line, TextLayout& layout) {
   layout.height = height;
 }
 
-/// Takes the columns' order, and the unit of time where it is said.
+/// Takes over the columns' order, and the unit of time if it is stated.
 void take(const EventColumns& named, TextLayout& layout) {
   layout.columns = named.order;
   layout.unit_is_guessed = named.unit == TimeUnit::unsaid;
   if (!layout.unit_is_guessed) layout.unit = named.unit;
 }
 
-/// Up to a thousand lines that are `columns` numbers each.
+/// Up to a thousand lines of `columns` numbers each.
 std::vector<EventRow> read_rows(std::string_view text, std::size_t columns) {
   constexpr std::size_t kRows = 1000;
   std::vector<EventRow> rows;
@@ -66,7 +66,7 @@ std::vector<EventRow> read_rows(std::string_view text, std::size_t columns) {
   return rows;
 }
 
-/// Without a name that says it.
+/// Finds the unit from the times if no name states it.
 TimeUnit find_unit(std::span<const EventRow> rows, const EventOrder& order, const std::string& place) {
   const std::size_t time = index(std::ranges::find(order, Column::t) - order.begin());
   const bool fractions = std::ranges::any_of(rows, [&](const EventRow& row) { return row.have_fractions[time]; });

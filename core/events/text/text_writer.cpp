@@ -31,7 +31,7 @@ TextWriter::~TextWriter() {
 
 void TextWriter::fail() const {
   const int error = errno;
-  check_interruption();  // it may have waited for a pipe's reader
+  check_interruption();  // the write may have waited for a pipe's reader
   throw OutputError(fmt::format("{}: can't be written: {}", name_, std::strerror(error)));
 }
 
@@ -49,7 +49,7 @@ void TextWriter::put_buffer() {
     const ssize_t written = ::write(file_, left.data(), left.size());
     if (written < 0) fail();
     left.remove_prefix(static_cast<std::size_t>(written));
-    check_interruption();  // which is why a part was written, where a pipe is full
+    check_interruption();  // why only a part was written, if a pipe is full
   }
   buffer_.clear();
 }

@@ -8,11 +8,11 @@
 
 namespace evbench {
 
-/// The Event-Camera Dataset's events.txt: `t x y p`, seconds with six decimals, polarity 0 or 1; before them comments
-/// that say so, and the sensor's size where it is known.
+/// The Event-Camera Dataset's events.txt: `t x y p`, seconds with six decimals, polarity 0 or 1. Comments before the
+/// events state this, and the sensor's size if it is known.
 class TextWriter : public EventWriter {
  public:
-  /// `name`: what messages call the file.
+  /// `name`: the file's, for messages.
   TextWriter(const std::string& path, std::string name, const RecordingHeader& header = {});
   ~TextWriter() override;
   TextWriter(const TextWriter&) = delete;

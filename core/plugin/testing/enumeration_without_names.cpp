@@ -1,4 +1,4 @@
-// Does not compile, with a sentence: an option that is an enumeration, without names.
+// Must not compile: an enumeration option without names.
 #include "core/plugin/options.hpp"
 
 enum class Loss { none, huber };

@@ -1,4 +1,4 @@
-// Libraries with something wrong, for library.test.cpp: what each is, a macro says.
+// Faulty libraries for library.test.cpp; a macro selects the fault.
 #include <cstdlib>
 #include <stdexcept>
 

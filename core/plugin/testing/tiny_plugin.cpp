@@ -1,4 +1,4 @@
-// A plugin of its own library, for library.test.cpp: back-ends that estimate nothing.
+// Back-ends in a shared library for library.test.cpp; they estimate nothing.
 #include "core/plugin/registration.hpp"
 #include "core/support/error.hpp"
 
@@ -12,7 +12,7 @@ class Tiny : public evbench::BackEnd {
   };
 
   Tiny(const Options& options, const evbench::BackEndContext& context) {
-    if (options.count == 0) throw evbench::InputError(context.place + ".count: 0 says nothing; expected more");
+    if (options.count == 0) throw evbench::InputError(context.place + ".count: is 0; expected at least 1");
     status_.reason = std::to_string(options.count);
   }
 

@@ -1,4 +1,4 @@
-// Does not compile, with a sentence: an option of a type that none can have.
+// Must not compile: an option of an unsupported type.
 #include "core/plugin/options.hpp"
 
 void declare(evbench::OptionSet& set, unsigned& count) { set.add("count", count, "how many"); }

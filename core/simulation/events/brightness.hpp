@@ -4,11 +4,11 @@
 
 namespace evbench {
 
-/// What falls on the pixels: log intensity over time, interval by interval, so that whoever makes it may choose
+/// The light that falls on the pixels: log intensity over time, interval by interval. An implementation may choose
 /// intervals in which it changes little.
 class Brightness {
  public:
-  /// An interval is divided into so many parts, at whose ends single pixels can be asked for.
+  /// An interval is divided into this many parts; at their ends single pixels can be queried.
   static constexpr int kParts = 32;
 
   virtual ~Brightness() = default;
@@ -16,10 +16,10 @@ class Brightness {
   virtual int width() const = 0;
   virtual int height() const = 0;
 
-  /// Begins (again) at time t [s].
+  /// Starts, or restarts, at time t [s].
   virtual void start(double t) = 0;
 
-  /// Goes on to the next interval, which begins where the last one ended; returns its end [s], at most `limit`.
+  /// Advances to the next interval, which begins where the last one ended; returns its end [s], at most `limit`.
   virtual double advance(double limit) = 0;
 
   /// Log intensity of all pixels at the interval's end, by rows.

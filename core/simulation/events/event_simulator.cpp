@@ -18,15 +18,15 @@ constexpr std::size_t kChunk = 16384;
 /// A line that is wrong by less than this share of the threshold is good enough, however slowly the intensity changes.
 constexpr double kNegligible = 0.005;
 
-/// A pixel's way through an interval: halved until straight lines are good enough.
-class Way {
+/// A pixel's path through an interval, which is halved until straight lines are good enough.
+class PixelPath {
  public:
-  Way(const Brightness& brightness, const SimulatorOptions& options, double from, double to, int x, int y)
+  PixelPath(const Brightness& brightness, const SimulatorOptions& options, double from, double to, int x, int y)
       : brightness_(brightness), options_(options), from_(from), length_(to - from), x_(x), y_(y) {
     negligible_ = kNegligible * std::min(options.sensor.threshold_on, options.sensor.threshold_off);
   }
 
-  /// From part `first`, where the pixel is, to part `last` with log intensity L.
+  /// Advances the pixel from part `first`, where it is, to part `last` with log intensity L.
   void advance(Pixel& pixel, int first, int last, double L, std::vector<Event>& events) const {
     if (last - first == 1 || !pixel.fires(time(last), L)) {
       pixel.advance(options_.sensor, time(last), L, events);
@@ -61,8 +61,7 @@ void SimulatorOptions::declare(OptionSet& set) {
   set.add("time_accuracy", time_accuracy, "error of event times from straight lines in log intensity [s]")
       .range(1e-7, 1.0);
   set.add("threads", threads, "threads; 0: one a processor; they do not change the events").range(0, 1024);
-  set.add("outages", outages,
-          "spans in which the read-out tells nothing, while pixels go on [from, to, from, to, ...] [s]");
+  set.add("outages", outages, "spans without read-out, during which pixels go on [from, to, from, to, ...] [s]");
 }
 
 EventSimulator::EventSimulator(std::unique_ptr<Brightness> brightness, const SimulatorOptions& options, double duration,
@@ -118,7 +117,7 @@ void EventSimulator::step() {
   parallel_for(options_.threads, info_.height, [this](int y) { advance_row(y); });
   t_ = interval_end_;
   for (std::vector<Event>& row : rows_) {
-    std::ranges::copy_if(row, std::back_inserter(waiting_), [this](const Event& event) { return is_told(event); });
+    std::ranges::copy_if(row, std::back_inserter(waiting_), [this](const Event& event) { return is_read_out(event); });
     row.clear();
   }
   // Jitter is at most four standard deviations, and times are rounded.
@@ -139,20 +138,20 @@ void EventSimulator::advance_row(int y) {
 void EventSimulator::advance_pixel(int x, int y, std::vector<Event>& events) {
   const std::size_t pixel = index(y) * index(info_.width) + index(x);
   const std::size_t before = events.size();
-  const Way way(*brightness_, options_, t_, interval_end_, x, y);
-  way.advance(pixels_[pixel], 0, Brightness::kParts, brightness_->image()[pixel], events);
+  const PixelPath path(*brightness_, options_, t_, interval_end_, x, y);
+  path.advance(pixels_[pixel], 0, Brightness::kParts, brightness_->image()[pixel], events);
   for (std::size_t i = before; i < events.size(); ++i) {
     events[i].x = static_cast<std::uint16_t>(x);
     events[i].y = static_cast<std::uint16_t>(y);
   }
 }
 
-bool EventSimulator::is_told(const Event& event) const {
+bool EventSimulator::is_read_out(const Event& event) const {
   const double t = seconds(event.t);
   return std::ranges::none_of(outages_, [t](const TimeSpan& span) { return t >= span.from && t < span.to; });
 }
 
-/// Makes the waiting events before a time [s] ready.
+/// Makes the waiting events before a time [s] ready for reading.
 void EventSimulator::release(double until) {
   const auto key = [](const Event& event) { return std::tuple(event.t, event.y, event.x); };
   std::ranges::stable_sort(waiting_, {}, key);

@@ -235,17 +235,17 @@ TEST_CASE("A simulation can be used as a recording: in a range of time, and agai
   CHECK(chunk.front() == *std::ranges::find_if(all, [](const Event& event) { return event.t >= 250000; }));
 }
 
-TEST_CASE("In an outage nothing is told, and everything else is as without it") {
+TEST_CASE("An outage has no events, and everything else is as without it") {
   SimulatorOptions options;
   options.sensor.jitter = 100e-6;
   auto all = simulate(30, 20, 2e-3, 0.5, options, waves);
   options.outages = {0.1, 0.2, 0.25, 0.3};
-  const auto told = simulate(30, 20, 2e-3, 0.5, options, waves);
+  const auto with_outages = simulate(30, 20, 2e-3, 0.5, options, waves);
   const auto is_in_outage = [](const Event& event) {
     return (event.t >= 100'000 && event.t < 200'000) || (event.t >= 250'000 && event.t < 300'000);
   };
   CHECK(std::erase_if(all, is_in_outage) > 1000);
-  CHECK(told == all);
+  CHECK(with_outages == all);
   options.outages = {0.1, 0.2, 0.15};
   CHECK_THROWS_WITH(simulate(30, 20, 2e-3, 0.5, options, waves),
                     Catch::Matchers::ContainsSubstring("simulator.outages"));

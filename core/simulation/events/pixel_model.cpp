@@ -9,7 +9,7 @@
 namespace evbench {
 namespace {
 
-/// What a pixel draws; each has a stream of its own.
+/// What a pixel draws at random; each has a stream of its own.
 enum class Draw : std::uint64_t { thresholds, kind, noise, jitter };
 
 CounterRandom stream(std::uint64_t seed, std::uint64_t index, Draw draw) {
@@ -64,8 +64,7 @@ bool Pixel::fires(double t, double L) const {
 }
 
 Pixel::Quiet Pixel::quiet() const {
-  constexpr double kLongest =
-      0.05;  // [s] that the leak is thought ahead, and the share of the threshold that it may take
+  constexpr double kLongest = 0.05;  // [s] that the leak is predicted, and the share of the threshold that it may take
   constexpr double kShare = 0.1, kMargin = 1e-5;  // margin: more than is lost by rounding
   constexpr float kFar = std::numeric_limits<float>::infinity();
   if (blind_) return {-kFar, kFar, std::nextafter(blind_until_, t_)};
@@ -85,7 +84,7 @@ void Pixel::advance(const SensorOptions& options, double t, double L, std::vecto
   run(options, t, L, events);
 }
 
-/// Without noise.
+/// advance() between noise events.
 void Pixel::run(const SensorOptions& options, double t, double L, std::vector<Event>& events) {
   const double slope = t > t_ ? (L - L_) / (t - t_) : 0.0;
   while (true) {

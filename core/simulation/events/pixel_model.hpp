@@ -8,7 +8,7 @@
 
 namespace evbench {
 
-/// The pixels of an event camera. Rates are of one pixel.
+/// Options of the pixels of an event camera. Rates are per pixel.
 struct SensorOptions {
   double threshold_on = 0.2, threshold_off = 0.2;
   double threshold_mismatch = 0.02;
@@ -27,24 +27,24 @@ struct SensorOptions {
 /// - Its thresholds differ from the nominal ones by Gaussian mismatch (at least a tenth of the nominal one remains).
 /// - The junction leak of its reset switch moves the remembered L, so that ON events come at leak_rate on average even
 ///   when nothing changes.
-/// - Noise makes events of random polarity, a Poisson process of noise_rate (of hot_rate in a hot pixel); they
-///   reset the pixel as others do.
+/// - Noise makes events of random polarity, a Poisson process of noise_rate (of hot_rate in a hot pixel); they reset
+///   the pixel as other events do.
 /// - The times of all its events are off by Gaussian jitter of at most four standard deviations, but remain in order.
 class Pixel {
  public:
-  /// `index`: which one, for its own streams of random numbers. It begins at time t [s] with L settled; if it leaks,
-  /// somewhere on the way to its next leak event.
+  /// `index`: of the pixel, for its own streams of random numbers. It begins at time t [s] with L settled; if it leaks,
+  /// at a random time before its next leak event.
   Pixel(const SensorOptions& options, std::uint64_t seed, std::uint64_t index, double t, double L);
 
-  /// L goes in a straight line from where it was to L at time t [s]: appends the events on the way, without x and y.
+  /// L changes in a straight line to its value at time t [s]: appends the events in between, without x and y.
   void advance(const SensorOptions& options, double t, double L, std::vector<Event>& events);
 
-  /// Would it emit an event on that way?
+  /// Would advance() emit an event?
   bool fires(double t, double L) const;
 
   double log_intensity() const { return L_; }
 
-  /// Where L may go, and how long, before the pixel has to be told: until then nothing happens, and skip() tells it.
+  /// Range of L, and time, in which the pixel needs no update: nothing happens there, and skip() replaces advance().
   struct Quiet {
     float low, high;  ///< exclusive
     double until;     ///< [s]; inclusive
@@ -53,7 +53,7 @@ class Pixel {
   };
   Quiet quiet() const;
 
-  /// L is what it is at time t, and nothing happened on the way (see Quiet).
+  /// Sets L at time t, after a change in which nothing happened (see Quiet).
   void skip(double t, double L) {
     if (!blind_) reference_ -= leak_ * (t - t_);
     t_ = t;
@@ -67,7 +67,7 @@ class Pixel {
 
   double t_, L_;             ///< now
   double reference_;         ///< remembered log intensity
-  double blind_until_;       ///< [s]; the reference is taken then; in the past when it has been
+  double blind_until_;       ///< [s]; the reference is set then; in the past if it has been
   double next_noise_;        ///< [s]
   std::int64_t newest_ = 0;  ///< time of the newest event [µs]
   std::uint64_t seed_, index_;

@@ -16,8 +16,7 @@ constexpr int kStride = 4;                           // [px] between probes
 void RenderingOptions::declare(OptionSet& set) {
   set.add("max_displacement", max_displacement, "largest motion of a point over the image between renderings [px]")
       .range(0.01, 10.0);
-  set.add("blur", blur, "standard deviation of what a pixel averages over: its area and the optics [px]")
-      .range(0.2, 20.0);
+  set.add("blur", blur, "standard deviation of a pixel's average over its area and the optics [px]").range(0.2, 20.0);
 }
 
 SceneBrightness::SceneBrightness(const Camera& camera, std::shared_ptr<const RenderedScene> scene, Motion motion,
@@ -58,7 +57,7 @@ double SceneBrightness::advance(double limit) {
   return to_;
 }
 
-/// The largest of a probe over the image [px], when the camera has moved there.
+/// The largest displacement of a probe over the image [px], once the camera has moved to the pose.
 double SceneBrightness::displacement(const SE3& T_world_camera) const {
   const SE3 T_camera_world = T_world_camera.inverse();
   double largest = 0.0;
@@ -70,7 +69,7 @@ double SceneBrightness::displacement(const SE3& T_world_camera) const {
   return std::sqrt(largest);
 }
 
-/// From the last interval's length on, by the ratio of displacements.
+/// Starts from the last interval's length and scales it by the ratio of displacements.
 double SceneBrightness::choose_end(double limit) const {
   constexpr int kAttempts = 8;
   double length = last_length_;

@@ -17,11 +17,11 @@ struct RenderingOptions {
   void declare(OptionSet& set);
 };
 
-/// What a camera sees of a scene along a motion. An interval is as long as lets no point of the scene move by more than
-/// max_displacement over the image (as far as every fourth pixel of every fourth row tells), at most 10 ms.
+/// The scene that a camera sees along a motion. An interval is as long as no point of the scene moves by more than
+/// max_displacement over the image (tested at every fourth pixel of every fourth row), at most 10 ms.
 class SceneBrightness : public Brightness {
  public:
-  /// `threads`: 0: one a processor.
+  /// `threads`: 0: one per processor.
   SceneBrightness(const Camera& camera, std::shared_ptr<const RenderedScene> scene, Motion motion,
                   const RenderingOptions& options, int threads);
 

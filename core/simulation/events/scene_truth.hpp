@@ -9,21 +9,21 @@
 
 namespace evbench {
 
-/// What is true of a simulated recording, at any time t [s] of it.
+/// The truth about a simulated recording at any time t [s]: pose, depth, tracks.
 class SceneTruth {
  public:
   SceneTruth(const Camera& camera, std::shared_ptr<const RenderedScene> scene, Motion motion);
 
   SE3 pose(double t) const { return motion_(t); }  ///< T_world_camera
 
-  /// Along the camera's z [m], at a raw pixel; none where the lens model has no inverse or nothing is there.
+  /// Depth along the camera's z [m] at a raw pixel; none if the lens model has no inverse there or nothing is seen.
   std::optional<double> depth(const Vector2& pixel, double t) const;
 
   /// The point of the scene at a raw pixel, world frame; none as above.
   std::optional<Vector3> point(const Vector2& pixel, double t) const;
 
   /// The raw pixel at which a point of the scene (world frame) is seen: its true track. None outside the image or less
-  /// than `border` [px] inside it, and where something is in front.
+  /// than `border` [px] inside it, and if the point is occluded.
   std::optional<Vector2> pixel(const Vector3& point, double t, double border = 0.0) const;
 
   /// Is nothing in front of the point?

@@ -20,7 +20,7 @@ constexpr double kWhite = 235.0;
 
 using Polygon = std::vector<Vector2>;
 
-/// Vertices at angles of equal distance, the radii taken in turn.
+/// Vertices at equal angles, with the radii in turn.
 Polygon star(const Vector2& centre, int vertices, const std::vector<double>& radii, double angle) {
   Polygon polygon;
   for (int i = 0; i < vertices; ++i) {
@@ -48,7 +48,7 @@ void fill(cv::Mat& picture, const Polygon& polygon, double grey) {
 
 cv::Mat blank(int side) { return {side, side, CV_8U, cv::Scalar(kWhite)}; }
 
-/// A place in each square of a grid, so that something of this radius stays within the square.
+/// A place in each square of a grid, so that an object of this radius stays within the square.
 std::vector<Vector2> places(int side, double square, double radius, Random& random) {
   std::vector<Vector2> result;
   const int count = std::max(1, static_cast<int>(side / square));

@@ -12,15 +12,15 @@ namespace evbench {
 /// A picture to put on a surface: grey values of 8 bits, as displays show them.
 struct Pattern {
   cv::Mat picture;
-  std::vector<Vector2> features;  ///< places that can be tracked, in the picture's pixels (its first one's centre is 0)
+  std::vector<Vector2> features;  ///< locations that can be tracked [px of the picture], first pixel's centre at 0
 };
 
-/// Dark discs of this diameter, on white, at random places but apart: one a square of three diameters. Features: their
-/// centres.
+/// Dark discs of this diameter on white, at random places but apart: one in each square of three diameters. Features:
+/// their centres.
 Pattern draw_dots(int side, double diameter, Random& random);
 
-/// Dark discs, triangles, squares, hexagons, stars and L shapes of about this size, of different greys, on white, one
-/// a square of 1.6 sizes.
+/// Dark discs, triangles, squares, hexagons, stars and L shapes of about this size and of different greys on white, one
+/// in each square of 1.6 sizes.
 Pattern draw_shapes(int side, double size, Random& random);
 
 /// Polygons of random grey that cover one another like fallen leaves, from `smallest` to 16 times that in diameter,

@@ -15,11 +15,11 @@
 namespace evbench {
 namespace {
 
-constexpr double kLayoutRate = 10.0;  ///< of the poses that a scene is laid out before [Hz]
+constexpr double kLayoutRate = 10.0;  ///< of the poses for the layout of a scene [Hz]
 
 using Box = Eigen::AlignedBox3d;
 
-/// A pattern and how large it is on the surfaces [m].
+/// A pattern and its size on the surfaces [m].
 struct Print {
   Pattern pattern;
   Vector2 size;
@@ -28,13 +28,13 @@ struct Print {
   }
 };
 
-/// How many pixels of the image the smallest detail of a kind measures at mean depth, unless the options say it.
+/// Size in the image [px] of the smallest detail of a kind at mean depth, unless the options state it.
 double detail_pixels(const std::string& kind) {
   if (kind == "dots") return 7.0;
   return kind == "shapes" ? 40.0 : 5.0;
 }
 
-/// A print `width` [m] wide, as far as there is room for its texels: half a pixel each where the camera is nearest.
+/// A print `width` [m] wide, as far as its texels allow: half a pixel each where the camera is nearest.
 Print make_print(const RenderedSceneOptions& options, const Camera& camera, double width, Random& random,
                  const std::string& folder) {
   if (!options.picture.empty()) {
@@ -55,8 +55,8 @@ Print make_print(const RenderedSceneOptions& options, const Camera& camera, doub
   return {std::move(pattern), Vector2::Constant(side * texel)};
 }
 
-/// What cannot stand in the camera's way: boxes around the path are drawn again.
-bool clear_of_path(const StandingBox& box, const SceneLayout& layout, double distance) {
+/// Is the box clear of the path? Boxes that are not are drawn again.
+bool clear_of_path(const UprightBox& box, const SceneLayout& layout, double distance) {
   return std::ranges::all_of(layout.path.poses(), [&](const StampedPose& pose) {
     const Vector3 local = box.turn.conjugate() * (layout.frame.inverse() * pose.T.p - box.centre);
     return ((local.cwiseAbs() - box.half).cwiseMax(0.0)).norm() > distance;
@@ -69,7 +69,7 @@ std::vector<Surface> boxes_in_room(const RenderedSceneOptions& options, const Sc
   std::vector<Surface> surfaces;
   for (int i = 0; i < options.boxes; ++i) {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      const StandingBox box(volume, random);
+      const UprightBox box(volume, random);
       if (!clear_of_path(box, layout, 0.5 * options.near)) continue;
       surfaces.push_back({Surface::Kind::box, layout.frame * SE3{box.turn, box.centre}, box.half});
       break;
@@ -82,7 +82,7 @@ std::vector<Surface> boxes_in_room(const RenderedSceneOptions& options, const Sc
   return surfaces;
 }
 
-/// Any that lets the face lie within the print; for a face that is as large, the print's middle.
+/// A random offset at which the face lies within the print; for a face as large as the print, the print's middle.
 Vector2 offset_on_print(const Surface& surface, int face, const Print& print, Random& random) {
   Vector2 offset;
   for (Eigen::Index i = 0; i < 2; ++i) {
@@ -93,7 +93,7 @@ Vector2 offset_on_print(const Surface& surface, int face, const Print& print, Ra
   return offset;
 }
 
-/// Throws InputError where the path comes so near to the plane, or behind it, that there is nothing to see.
+/// Throws InputError where the path comes so near to the plane, or behind it, that nothing is visible.
 void check_before_plane(double depth, const SceneLayout& layout, const Motion& motion, double duration,
                         const std::string& place) {
   constexpr double kRate = 50.0, kNearest = 0.02;  // [Hz]; share of the depth
@@ -131,11 +131,11 @@ void add_features(const Surface& surface, int face, const Print& print, std::vec
 }  // namespace
 
 void RenderedSceneOptions::declare(OptionSet& set) {
-  set.add("kind", kind, "what the camera looks at").choices({"plane", "dots", "shapes", "boxes"});
-  set.add("near", near, "smallest depth seen from the path [m]; planes are half way").above(0.0);
+  set.add("kind", kind, "scene in view of the camera").choices({"plane", "dots", "shapes", "boxes"});
+  set.add("near", near, "smallest depth seen from the path [m]; planes are in the middle").above(0.0);
   set.add("far", far, "largest depth seen from the path [m]").above(0.0);
   set.add("boxes", boxes, "number of boxes").range(0, 1e4);
-  set.add("detail", detail, "size of dots, of shapes, of the finest texture [m]; 0: what suits the camera").range(0.0);
+  set.add("detail", detail, "size of dots, of shapes, of the finest texture [m]; 0: from the camera").range(0.0);
   set.add("black", black, "intensity of black on the surfaces, that of white being 1: the contrast").range(1e-3, 0.99);
   set.add("picture", picture, "path of a picture to put on the surfaces instead; empty: none").path();
   set.add("picture_width", picture_width, "its width on a surface, after which it is mirrored [m]").above(0.0);

@@ -24,7 +24,7 @@ struct RenderedSceneOptions {
   void declare(OptionSet& set);
 };
 
-/// Surfaces to render and what is printed on them.
+/// Surfaces to render, and the picture on them.
 struct RenderedScene {
   std::vector<Surface> surfaces;
   Texture texture;
@@ -32,19 +32,19 @@ struct RenderedScene {
   std::vector<Vector3> features;
 };
 
-/// A scene where the camera looks during the motion:
+/// A scene in the camera's view during the motion:
 /// - dots: dark dots on a white plane;
 /// - shapes: dark geometric shapes on a white plane;
 /// - plane: a plane with a picture, or with fallen leaves (see draw_leaves);
-/// - boxes: boxes with that in a room with that, between the depths near and far from the path.
-/// Planes meet the mean view direction at right angles half way between near and far.
+/// - boxes: boxes in a room, both with such a picture, between the depths near and far from the path.
+/// Planes are at right angles to the mean view direction, half way between near and far.
 /// Throws InputError, naming `place`, as check_rendered_scene() does, and for a picture that can't be read (relative to
 /// `folder`).
 RenderedScene make_rendered_scene(const RenderedSceneOptions& options, const Camera& camera, const Motion& motion,
                                   double duration, Random random, const std::string& folder, const std::string& place);
 
-/// Throws InputError, naming `place`, unless near < far, and where the motion leads to or behind the plane: all that
-/// can be wrong without a picture, in no time.
+/// Throws InputError, naming `place`, unless near < far, and if the motion leads to or behind the plane. Needs no
+/// picture and takes no time.
 void check_rendered_scene(const RenderedSceneOptions& options, const Camera& camera, const Motion& motion,
                           double duration, const std::string& place);
 

@@ -10,10 +10,10 @@
 namespace evbench {
 namespace {
 
-/// Axes of a pixel's footprint that differ by less than this are taken as equal, of their squares.
+/// Axes of a pixel's footprint whose squares differ by less than this are taken as equal.
 constexpr double kRound = 1.25;
 
-/// The number's bits behind the binary point, mirrored at it: van der Corput's sequence.
+/// The bits of the number mirrored at the binary point: van der Corput's sequence.
 double van_der_corput(int i) {
   double value = 0.0;
   for (double digit = 0.5; i > 0; i /= 2, digit *= 0.5) value += digit * (i % 2);
@@ -82,7 +82,7 @@ void Renderer::render(const SE3& T_world_camera, int threads, Frame& frame) cons
   });
 }
 
-/// Of a row, with the rows above and below.
+/// Marks the edges of a row by the rows above and below.
 void Renderer::mark_edges(int y, const std::vector<std::uint8_t>& even, Frame& frame) const {
   const int width = camera_.width, top = std::max(y - 1, 0), bottom = std::min(y + 1, camera_.height - 1);
   const auto index_of = [width](int x, int v) {

@@ -9,7 +9,7 @@
 
 namespace evbench {
 
-/// A picture by a renderer; all by rows.
+/// A rendered image; all fields by rows.
 struct Frame {
   std::vector<float> log_intensity;
   std::vector<Hit> hits;           ///< of the pixels' centres; surface −1 where there is nothing
@@ -18,20 +18,20 @@ struct Frame {
 
 /// Renders log intensity by casting rays through a camera with lens. A pixel's intensity is averaged with a Gaussian of
 /// standard deviation `blur` [px] (a pixel's area and the optics): by a sample of the blurred texture (several in a
-/// line where it is foreshortened), or, where a neighbour sees another face, by 32 rays. Nothing moves in jumps, then,
-/// when the camera moves.
+/// line where it is foreshortened), or, where a neighbour sees another face, by 32 rays. The image therefore changes
+/// smoothly as the camera moves.
 class Renderer {
  public:
-  /// The surfaces' texture is where they have no end, too.
+  /// Keeps pointers to `surfaces` and `texture`. Surfaces without end have the texture everywhere.
   Renderer(const Camera& camera, const std::vector<Surface>& surfaces, const Texture& texture, double blur);
 
   const Camera& camera() const { return camera_; }
   View view(const SE3& T_world_camera) const { return {*surfaces_, T_world_camera}; }
 
-  /// `threads`: 0: one a processor.
+  /// `threads`: 0: one per processor.
   void render(const SE3& T_world_camera, int threads, Frame& frame) const;
 
-  /// One pixel of a picture; `edge` as in Frame.
+  /// One pixel of an image; `edge` as in Frame.
   float pixel(const View& view, std::size_t index, bool edge) const;
 
   /// x and y of the ray (x, y, 1) of a pixel's centre; NaN where the lens model has no inverse: such a pixel sees

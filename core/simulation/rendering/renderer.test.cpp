@@ -83,7 +83,7 @@ TEST_CASE("An edge is seen through the lens") {
   }
 }
 
-TEST_CASE("A pattern that is much finer than the pixels is an even grey, whichever way the camera moves") {
+TEST_CASE("A pattern that is much finer than the pixels is an even grey, however the camera moves") {
   const auto surfaces = wall();
   const Texture texture = checkers(1);  // 0.2 px
   const Renderer renderer(camera(), surfaces, texture, 0.45);

@@ -8,20 +8,21 @@
 
 namespace evbench {
 
-/// A grey picture on a surface, which it covers by being mirrored at its edges again and again, without seams: linear
-/// intensity, with a pyramid of pictures blurred twice as much each for looking at it from afar.
+/// A grey picture on a surface, which it covers without seams by being mirrored at its edges repeatedly. Values are
+/// linear intensity; a pyramid of pictures, each blurred twice as much, serves views from afar.
 class Texture {
  public:
   /// `picture`: grey values of 8 bits as displays show them (gamma 2.2), any size; scaled to powers of two, at least 8
   /// and at most 8192. `size`: of the picture on the surface [m]; its top left corner is at (0, 0).
-  /// `black`: intensity of grey value 0, if that of 255 is 1: no ink is black, and no photodiode without dark current.
+  /// `black`: intensity of grey value 0, if that of 255 is 1. No ink is black, and no photodiode is without dark
+  /// current.
   Texture(const cv::Mat& picture, const Vector2& size, double black);
 
-  /// Intensity in (0, 1] at a place [m], averaged with a Gaussian of this variance [m²]; where that is less than a
-  /// texel can show, with the least that it can.
+  /// Intensity in (0, 1] at a place [m], averaged with a Gaussian of this variance [m²], at least with the smallest
+  /// that a texel can show.
   float sample(const Vector2& place, double variance) const;
 
-  /// Of the whole picture.
+  /// Mean intensity of the whole picture.
   float mean() const { return mean_; }
 
  private:
@@ -33,8 +34,9 @@ class Texture {
     float at(const Vector2& place) const;  ///< bilinear
   };
 
-  /// The first has the picture's texels and, as they and the bilinear interpolation blur by themselves, a variance of
-  /// 1/4 texel²; the second has the same texels and a variance of 1 texel²; from then on both double in width.
+  /// The first level has the picture's texels and a variance of 1/4 texel², the blur of texels and bilinear
+  /// interpolation themselves. The second has the same texels and a variance of 1 texel². From then on both double in
+  /// width.
   std::vector<Level> pyramid_;
   double per_texel_square_ = 0.0;  ///< one over the square of a texel's larger side [1/m²]
   float mean_ = 0.0F;

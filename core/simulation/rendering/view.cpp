@@ -12,7 +12,7 @@ namespace {
 constexpr double kNearest = 1e-6;  // [m]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// How a ray (x, y, 1) goes along an axis.
+/// Component of a ray (x, y, 1) along an axis.
 inline double along(const Matrix3& R, Eigen::Index axis, double x, double y) {
   return R(axis, 0) * x + (R(axis, 1) * y + R(axis, 2));
 }
@@ -81,8 +81,8 @@ void View::hit_together(std::span<const Vector2> rays, std::span<Hit> hits) cons
   }
 }
 
-/// Whether the sphere around the box and then the slabs' widest intervals can be met by a ray whose x and y are no
-/// farther from the middle one's than the beam's radius.
+/// Can a ray whose x and y are no farther from the middle one's than the beam's radius meet the sphere around the box,
+/// and then the widest intervals of its slabs?
 bool View::may_reach(const Seen& seen, const Beam& beam) {
   constexpr double kRounding = 1e-9;
   if (seen.tangent > 0.0) {

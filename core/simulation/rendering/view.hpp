@@ -9,7 +9,7 @@
 
 namespace evbench {
 
-/// A thing with the scene's texture on it.
+/// An object with the scene's texture on it.
 struct Surface {
   enum class Kind {
     plane,  ///< z = 0 of its frame, without end
@@ -26,7 +26,7 @@ struct Surface {
                                  Vector2::Zero(), Vector2::Zero(), Vector2::Zero()};
 };
 
-/// What a ray meets first.
+/// What a ray hits first.
 struct Hit {
   int surface = -1, face = 0;
   double depth = 0.0;  ///< along the camera's z [m]
@@ -39,8 +39,8 @@ class View {
  public:
   View(const std::vector<Surface>& surfaces, const SE3& T_world_camera);
 
-  /// The nearest surface on each ray, given by its x and y; surface −1 where it leaves the scene, or is NaN. Rays that
-  /// follow one another share the search for surfaces near them: they had best be close together.
+  /// The nearest surface on each ray, given by its x and y; surface −1 where it leaves the scene, or is NaN.
+  /// Consecutive rays share the search for surfaces near them, so keep them close together.
   void hit(std::span<const Vector2> rays, std::span<Hit> hits) const;
   Hit hit(const Vector2& ray) const;
 
@@ -59,9 +59,9 @@ class View {
     Vector3 low, high;  ///< from the camera to the faces −half and +half, along the surface's axes
     Vector3 centre;     ///< in the camera's frame
     double radius;      ///< of the sphere around a box
-    double tangent;     ///< from the camera to where a ray touches that; 0 within it
+    double tangent;     ///< length from the camera to its tangent point on the sphere; 0 inside
   };
-  static constexpr std::size_t kTogether = 32;  ///< as many as an edge asks for
+  static constexpr std::size_t kTogether = 32;  ///< as many as an edge needs
 
   /// Rays whose x and y are no farther from those of the middle one than the radius.
   struct Beam {

@@ -36,8 +36,8 @@ Alignment align(const Template& wanted, std::span<const Event> events, const Gri
 
 std::vector<Alignment> align_around(const Template& wanted, std::span<const Event> events, const Pixel& about,
                                     int radius, int step) {
-  // A cell of a patch holds as many events as its pixel has seen, wherever the patch is: so each event is taken once,
-  // for all places in range of it that are not full yet.
+  // A cell of a patch holds as many events as its pixel has had, wherever the patch is. So each event is processed
+  // once, for all positions in range of it that are not full yet.
   struct Sum {
     double product = 0.0;
     int square = 0, count = 0;

@@ -27,7 +27,7 @@ Template seen_at(const Vector2& position) {
 
 }  // namespace
 
-TEST_CASE("A template is found where its pattern is, among all places around, turned as it is") {
+TEST_CASE("A template matches best at its pattern's position and angle") {
   const Template wanted = seen_at({60, 50});
   const double turn = 3 * kAngleStep;
   const std::vector<Event> events = still({104, 83}, turn).events(0.02, 2);
@@ -50,7 +50,7 @@ TEST_CASE("A template is found where its pattern is, among all places around, tu
   CHECK(align(wanted, events, {98, 77, 3}).score < 0.6);
 }
 
-TEST_CASE("Many places at once are what they are one by one, those without a full window and at the border too") {
+TEST_CASE("Many positions at once give the same as one by one, also without a full window and at the border") {
   const Template wanted = seen_at({60, 50});
   const std::vector<Event> events = still({15, 83}, 0.0).events(0.02, 2);
   for (const auto& [radius, step] : {std::pair(8, 1), std::pair(20, 2), std::pair(7, 3), std::pair(0, 1)}) {

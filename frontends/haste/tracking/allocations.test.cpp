@@ -10,7 +10,7 @@
 #include "frontends/haste/tracking/testing/event_patterns.hpp"
 #include "frontends/haste/tracking/tracker_set.hpp"
 
-// All that this program allocates is counted; not where a sanitizer does so.
+// Counts all allocations of this program, except where a sanitizer replaces them.
 #if !defined(EVBENCH_SANITIZED)
 
 namespace {

@@ -37,7 +37,7 @@ TEST_CASE("The refined position is no more than a pixel away, and the midpoint w
   CHECK(refined_position(flat) == Vector2(50.5, 40));
 }
 
-TEST_CASE("Scores tell how little they fall along the direction along which they fall least") {
+TEST_CASE("The weakest curvature is the scores' fall in the direction of the smallest fall") {
   const Scores peak =
       with_scores([](double x, double y) { return 10.0 - 2.0 * x * x - 2.0 * x * y - 2.0 * y * y; }).scores;
   CHECK(peak.weakest_curvature() == Approx(0.2));  // 2 lower at (1, -1), of 10
@@ -48,7 +48,7 @@ TEST_CASE("Scores tell how little they fall along the direction along which they
   CHECK(Scores().weakest_curvature() == 0.0);
 }
 
-TEST_CASE("Scores tell how uncertain their maximum is, as the inverse of how they fall about it") {
+TEST_CASE("The flatness is the uncertainty of the scores' maximum, the inverse of their curvature") {
   const Scores peak = with_scores([](double x, double y) { return 10.0 - x * x - 2.5 * y * y; }).scores;
   CHECK(peak.flatness() == Approx(5.0 + 2.0));  // their second derivatives are 2 and 5, of 10
   const Scores turned =
@@ -59,7 +59,7 @@ TEST_CASE("Scores tell how uncertain their maximum is, as the inverse of how the
   CHECK(std::isinf(Scores().flatness()));
 }
 
-TEST_CASE("Scores tell the best, the worst and their spread, of either sign") {
+TEST_CASE("Scores have a best, a worst and a spread, of either sign") {
   Scores scores;
   CHECK(scores.spread() == 0.0);
   scores.of.fill(2.0);

@@ -9,11 +9,11 @@
 namespace evbench::haste {
 
 /// Scores of the variants haste_difference and haste_difference_star: −Σ over the patch of (template − model)², where
-/// the model of a hypothesis is what it sees of the window, both with the mass of a full window. With t = the
+/// the model of a hypothesis is the window's events in its patch, both with the mass of a full window. With t = the
 /// template's cells and m = the model's,
 ///   Σ (t − m)² = Σ t² − 2 Σ t m + Σ m²,
-/// and an event changes Σ t m and Σ m² by what is in its four cells. All are integers, so that what an event adds and
-/// later takes away is nothing, and a hypothesis' model survives a change of state that leaves the hypothesis in place.
+/// and an event changes Σ t m and Σ m² in its four cells alone. All are integers, so that an event takes away exactly
+/// what it added, and a hypothesis' model survives a change of state that leaves the hypothesis in place.
 class Difference {
  public:
   /// follow_template: the template is the newest at each event, not that of the last change of state

@@ -16,8 +16,8 @@ constexpr int patch_cell(int x, int y) { return y * kPatchStride + x; }
 /// An event's weights in the four cells around it have this sum: integers, so that sums of them are exact in any order.
 inline constexpr int kUnit = 1024;
 
-/// Where an event falls in a patch: bilinear weights of the cells (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1) around
-/// its place there, which is rounded to 1/32 of a cell.
+/// An event's position in a patch: bilinear weights of the cells (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1) around
+/// it, rounded to 1/32 of a cell.
 struct Footprint {
   int cell = 0;                  ///< patch_cell(x, y)
   std::array<int, 4> weights{};  ///< sum kUnit; all zero outside the patch
@@ -31,7 +31,7 @@ Footprint footprint(int dx, int dy, int angle);
 /// The footprints of all events that can fall into a patch, for one angle.
 class Footprints {
  public:
-  /// So far an event can be from the tracker, along each axis, and be in the patch of one of its hypotheses [px].
+  /// The largest distance along each axis [px] at which an event can be in the patch of one of a tracker's hypotheses.
   static constexpr int kReach = 22;
 
   /// The table's rows and columns: a tracker's neighbours see one more.
@@ -40,12 +40,12 @@ class Footprints {
   /// The table of an angle, in steps; all are made at the first call.
   static const Footprints& of(int angle);
 
-  /// The index of an event (dx, dy) px from the tracker; out of reach that of one which is in no hypothesis' patch.
+  /// The index of an event (dx, dy) px from the tracker; out of reach, an index that is in no hypothesis' patch.
   static constexpr int place(int dx, int dy) {
     const bool reached = dx >= -kReach && dx <= kReach && dy >= -kReach && dy <= kReach;
     return reached ? (dy + kReach + 1) * kSide + (dx + kReach + 1) : kSide + 1;
   }
-  /// What is to be added to an event's place for its place seen from a tracker that is moved by a step.
+  /// Added to an event's index, this gives its index as seen from a tracker that is moved by a step.
   static constexpr int shift(const Step& step) { return -(step.y * kSide + step.x); }
 
   /// Places [begin, end) of a row of the table: outside of them nothing is inside the patch.

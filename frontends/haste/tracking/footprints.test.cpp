@@ -7,7 +7,7 @@
 using namespace evbench;
 using namespace evbench::haste;
 
-TEST_CASE("An upright patch sees an event in the cell as far from its middle as the event is from the tracker") {
+TEST_CASE("In an upright patch an event is in the cell as far from the middle as the event is from the tracker") {
   const Footprint f = footprint(3, -4, 0);
   CHECK(f.cell == patch_cell(kPatchRadius + 3, kPatchRadius - 4));
   CHECK(f.weights == std::array{kUnit, 0, 0, 0});
@@ -17,7 +17,7 @@ TEST_CASE("An upright patch sees an event in the cell as far from its middle as 
   CHECK_FALSE(footprint(-16, 0, 0).inside());
 }
 
-TEST_CASE("A patch that is turned by half a turn sees events on the other side, whichever way it was turned") {
+TEST_CASE("In a patch turned by half a turn events are on the other side, in whichever direction it was turned") {
   for (const int angle : {kAngleSteps / 2, -kAngleSteps / 2, 5 * kAngleSteps / 2}) {
     const Footprint f = footprint(3, -4, angle);
     CHECK(f.cell == patch_cell(kPatchRadius - 3, kPatchRadius + 4));
@@ -43,7 +43,7 @@ TEST_CASE("Weights are bilinear to 1/32 of a cell and their sum is always the sa
   }
 }
 
-TEST_CASE("Tables have the footprints of all places that any hypothesis can see, and nothing beyond") {
+TEST_CASE("Tables have the footprints of all positions in any hypothesis' patch, and nothing beyond") {
   for (const int angle : {0, 11, 44, -3}) {
     const Footprints& table = Footprints::of(angle);
     for (int dy = -40; dy <= 40; ++dy) {

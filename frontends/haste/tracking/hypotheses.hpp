@@ -11,7 +11,7 @@ namespace evbench::haste {
 // constants; the others are TrackerOptions.
 inline constexpr int kPatchSize = 31;                ///< a patch is so many cells wide and high
 inline constexpr int kPatchRadius = kPatchSize / 2;  ///< from its centre's cell to its border's
-inline constexpr int kWindowSize = 193;              ///< events that a tracker looks at
+inline constexpr int kWindowSize = 193;              ///< events in a tracker's window
 inline constexpr int kAngleSteps = 90;               ///< of 4° each make a full turn
 inline constexpr double kAngleStep = 2.0 * 3.14159265358979323846 / kAngleSteps;  ///< [rad]
 
@@ -45,7 +45,7 @@ struct GridState {
   friend bool operator==(const GridState&, const GridState&) = default;
 };
 
-/// A tracker's state for those who use it.
+/// A tracker's state in the interface.
 struct TrackerState {
   std::int64_t t = 0;                  ///< [µs], that of the window's middle event when the state was reached
   Vector2 position = Vector2::Zero();  ///< of the tracked point, raw [px]

@@ -21,9 +21,9 @@ inline Int4 quad(const std::array<int, 4>& weights) {
   return *reinterpret_cast<const Int4At*>(weights.data());
 }
 
-/// A number of each hypothesis. A quad has the three hypotheses that are a step down, none, or up; they come from right
-/// to left, as events' places from left to right. In the last lanes are the two that are turned and the null hypothesis
-/// again.
+/// One number for each hypothesis. A quad holds the three hypotheses that are a step down, none, or up. Quads go from
+/// right to left, as events' indices go from left to right. The last lanes hold the two turned hypotheses and the null
+/// hypothesis again.
 template <class Quad>
 struct Lanes {
   std::array<Quad, 3> quads{};

@@ -8,17 +8,17 @@
 
 namespace evbench::haste {
 
-/// What the hypotheses around a state see of a template at every place where an event may be. A pixel beside is the
-/// next place: nine hypotheses share one table, in which their values for an event are neighbours.
+/// The template's value under each hypothesis around a state, at every position of an event. Neighbouring pixels are
+/// neighbours in the table, so that nine hypotheses share one table and their values for an event are close together.
 class SampleTable {
  public:
   /// Values are samples of the template times the weights' sum (kUnit).
   void make(const HypothesisFootprints& footprints, const QuantisedTemplate& sampled);
 
-  /// Of all events in a window.
+  /// The sum over all events in a window.
   Lanes<Double4> sum(const ScoringInput& input) const;
 
-  /// Of an event's place (Footprints::place).
+  /// The values for an event's index (Footprints::place).
   [[gnu::always_inline]] Lanes<Int4> at(int place) const {
     const int* null = &null_[index(place)];
     Lanes<Int4> result;

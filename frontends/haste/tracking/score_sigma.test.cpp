@@ -36,7 +36,7 @@ TEST_CASE("An observation's sigma is bounded, and the largest where scores have 
   CHECK(sigma.next(peak(9.0)) == 0.25);
 }
 
-TEST_CASE("What is usual follows the tracks") {
+TEST_CASE("The usual flatness follows the tracks") {
   ScoreSigma sigma(0.5);
   for (int i = 0; i < 100; ++i) sigma.next(peak(1.0));
   for (int i = 0; i < 200; ++i) sigma.next(peak(0.5));

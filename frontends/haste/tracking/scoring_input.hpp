@@ -6,10 +6,10 @@
 
 namespace evbench::haste {
 
-/// What hypotheses are scored by: a tracker's window, state and template. Every way of scoring has
-///   start(input)                      at the start, or anew anywhere,
+/// The input of a scoring method: a tracker's window, state and template. Every scoring method has
+///   start(input)                      at the start, or to restart at any state,
 ///   change_to(h, input)               after a change of state to hypothesis h, to which input.grid is set,
-///   update(newest, replaced, input)   after an event has come into the window in the place of another,
+///   update(newest, replaced, input)   after an event has replaced another one in the window,
 ///   raw()                             the scores up to a factor, which is
 ///   unit(input).
 struct ScoringInput {
@@ -17,7 +17,7 @@ struct ScoringInput {
   const GridState& grid;
   const Template& learnt;
 
-  /// Where an event is (Footprints::place).
+  /// An event's index (Footprints::place).
   int place(const Event& event) const { return Footprints::place(event.x - grid.x, event.y - grid.y); }
 };
 

@@ -6,8 +6,8 @@
 
 namespace evbench::haste {
 
-/// Scores of the variant haste_correlation_star: Σ over the window of the template, as it was at the last change of
-/// state, where each hypothesis sees the event.
+/// Scores of the variant haste_correlation_star: the sum over the window's events of the template's value at the event
+/// under each hypothesis. The template is that of the last change of state.
 class StarCorrelation {
  public:
   void start(const ScoringInput& input);

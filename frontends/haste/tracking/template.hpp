@@ -6,21 +6,22 @@
 
 namespace evbench::haste {
 
-/// What a tracker looks for: how many events there are in each cell of a patch that moves and turns with the tracked
-/// point, which is in the middle. A value; a tracker's can be copied, kept, and given to another.
+/// The pattern that a tracker follows: the number of events in each cell of a patch that moves and turns with the
+/// tracked point, which is in the middle. A value type: a tracker's template can be copied, stored and given to another
+/// tracker.
 class Template {
  public:
-  /// The events in a cell; x and y from 0 to kPatchSize − 1.
+  /// The number of events in a cell; x and y from 0 to kPatchSize − 1.
   float at(int x, int y) const { return cells_[index(patch_cell(x, y))]; }
-  /// Of all cells.
+  /// The sum of all cells.
   double mass() const { return mass_; }
   const std::array<float, kPatchCells>& cells() const { return cells_; }  ///< by patch_cell
 
-  /// Spreads so much of an event over the four cells around its place; nothing if that is outside the patch.
+  /// Adds an event with this weight to the four cells around it; nothing if it is outside the patch.
   void add(const Footprints& footprints, int place, float weight);
 
-  /// The same template turned by `angle` [rad] (x towards y) and magnified by `scale` about the middle, its mass as
-  /// before; what comes in from outside the patch is empty. For a point that is seen again from elsewhere.
+  /// The template turned by `angle` [rad] (x towards y) and magnified by `scale` about the middle, with the same mass.
+  /// Cells that come in from outside the patch are empty. For a point that is seen again from another pose.
   Template warped(double angle, double scale) const;
 
  private:

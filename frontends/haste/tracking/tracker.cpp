@@ -19,13 +19,13 @@ Scoring make_scoring(Variant variant) {
   return StarCorrelation();
 }
 
-/// Is the template needed at changes of state only?
+/// Whether the template is needed at changes of state only.
 bool starred(Variant variant) {
   return variant == Variant::haste_correlation_star || variant == Variant::haste_difference_star;
 }
 
 constexpr int kMiddle = kWindowSize / 2;
-constexpr int kMostWaiting = kMiddle;  // that many are still in the window
+constexpr int kMostWaiting = kMiddle;  // these are still in the window
 
 bool weighted(Variant variant) { return variant == Variant::correlation || variant == Variant::haste_correlation; }
 
@@ -35,7 +35,7 @@ float event_weight(Variant variant, int i) { return weighted(variant) ? gaussian
 
 namespace {
 
-/// Events from the window's [begin, end), as much of them as `part` says.
+/// Adds the window's events [begin, end) to the template, weighted by `part`.
 void learn(Template& learnt, const ScoringInput& input, Variant variant, int begin, int end, double part) {
   const Footprints& footprints = Footprints::of(input.grid.angle);
   for (int i = begin; i < end; ++i) {
@@ -77,14 +77,14 @@ Tracker::Update Tracker::take(const Event& event) {
       },
       scoring_);
   if (h != 0) change_to(h);
-  // The window's middle event is learnt; where nothing asks for the template until the next change of state, later on
-  // and together with others, which finds it in the cache.
+  // The window's middle event is added to the template. Where the template is not needed until the next change of
+  // state, this is done later for several events together, while the template is in the cache.
   ++waiting_;
   if (!starred(options_.variant) || waiting_ == kMostWaiting) learn_waiting(kMiddle + 1);
   return h != 0 ? Update::changed : Update::regular;
 }
 
-/// The window's events before `end`, as many as are waiting.
+/// Adds the waiting events, which lie before `end` in the window, to the template.
 void Tracker::learn_waiting(int end) {
   learn(learnt_, input(), options_.variant, end - waiting_, end, options_.template_learning);
   waiting_ = 0;

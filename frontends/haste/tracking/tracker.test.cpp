@@ -65,7 +65,7 @@ Followed follow(const TrackerOptions& options, const EventPattern& pattern, doub
 
 }  // namespace
 
-TEST_CASE("Every variant is the plain transcription, bit by bit, whatever the motion", "[slow]") {
+TEST_CASE("Every variant equals the plain transcription bit by bit, whatever the motion", "[slow]") {
   for (const Variant variant : kVariants) {
     int changes = 0;
     for (std::uint64_t seed = 0; seed < 4; ++seed) {
@@ -132,8 +132,7 @@ TEST_CASE("An event 15 px away is out of range, one nearer is not") {
   CHECK(tracker.event_count() == 2);
 }
 
-TEST_CASE("At the image's border and beyond every variant is the plain transcription, and goes on with what there is",
-          "[slow]") {
+TEST_CASE("At the image's border and beyond every variant equals the plain transcription and goes on", "[slow]") {
   for (const Variant variant : kVariants) {
     EventPattern pattern = moving([](double t) { return PatternPose{{12 - 60 * t, 8 - 20 * t}, 0.0}; });
     compare(options_of(variant), {12, 8, 0}, pattern.events(0.25, 5));
@@ -163,7 +162,7 @@ TEST_CASE("Equal times, events one on another, and a burst at one pixel do no ha
   }
 }
 
-TEST_CASE("A tracker with a kept template stays on its point, where it is found again") {
+TEST_CASE("A tracker with a stored template stays on its point where it is re-acquired") {
   const EventPattern pattern = moving([](double t) { return PatternPose{{80 + 50 * t, 60}, 0.0}; });
   Tracker first({}, {0, {80, 60}, 0.0});
   for (const Event& event : pattern.events(0.2, 1)) first.push(event);

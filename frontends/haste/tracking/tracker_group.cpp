@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kBits = 64;     // of a word
 constexpr int kCellBits = 2;          // cells of 4 × 4 px
 constexpr std::size_t kBatch = 4096;  // events
-constexpr int kSlack = 2;             // [px] that a tracker may go in a batch before it has to look at all the rest
+constexpr int kSlack = 2;             // [px] that a tracker may move in a batch before it checks all remaining events
 constexpr int kNear = kPatchRadius + kSlack;
 
 constexpr int square(int x, int y) { return x * x + y * y; }
@@ -30,7 +30,7 @@ TrackerGroup::TrackerGroup(int width, int height)
 template <class CellChange>
 void TrackerGroup::for_cells_around(const Centre& centre, CellChange change) {
   const auto cell = [](int pixel, int count) { return std::clamp(pixel >> kCellBits, 0, count - 1); };
-  // A tracker far outside is known to the cells at the border, which does no harm.
+  // A tracker far outside is listed in the cells at the border, which does no harm.
   const int left = cell(centre.x - kNear, columns_), right = cell(centre.x + kNear, columns_);
   const int top = cell(centre.y - kNear, rows_), bottom = cell(centre.y + kNear, rows_);
   for (int row = top; row <= bottom; ++row) {
@@ -107,7 +107,7 @@ void TrackerGroup::sort_by_trackers(std::span<const Event> batch) {
   }
 }
 
-/// Hands its events to a tracker. `first`: the place of the batch among those that were pushed.
+/// Passes a tracker its events. `first`: the index of the batch's first event among the pushed ones.
 void TrackerGroup::track(std::size_t slot, std::span<const Event> batch, std::size_t first) {
   Tracker& tracker = *slots_[slot].tracker;
   const Centre centre = centres_[slot];

@@ -9,31 +9,31 @@
 
 namespace evbench::haste {
 
-/// Trackers on a sensor that one thread serves, and which of them an event reaches: a grid over the sensor knows for
-/// each of its cells the trackers that are near, so that the others cost nothing. Events are taken some thousand at a
-/// time, first sorted by trackers and then handed to one tracker after the other, which so stays in the processor's
-/// cache; a tracker that in the meantime has gone farther than the grid allows for looks at all the rest. A tracker's
-/// changes do not depend on what other trackers there are.
+/// The trackers on a sensor that one thread updates. A grid over the sensor holds for each of its cells the trackers
+/// that are near, so that an event costs nothing for the others. Events are processed in batches of some thousand: they
+/// are first sorted by tracker and then passed to one tracker after the other, which so stays in the processor's cache.
+/// A tracker that moves farther in a batch than the grid allows for checks all remaining events. A tracker's changes do
+/// not depend on the other trackers.
 class TrackerGroup {
  public:
   /// A start or a change of state.
   struct Found {
-    std::size_t event;  ///< that led to it: its place among those that were pushed
+    std::size_t event;  ///< index of the pushed event that led to it
     Change change;
   };
 
   TrackerGroup(int width, int height);  ///< of the sensor [px]
 
-  /// Returns its slot, which may be used again once it is removed. Its changes are told as those of `id`.
+  /// Returns the tracker's slot, which may be reused once it is removed. Its changes are reported under `id`.
   std::size_t add(std::int64_t id, Tracker tracker);
   void remove(std::size_t slot);
   const Tracker& tracker(std::size_t slot) const { return *slots_[slot].tracker; }
   std::size_t size() const { return size_; }
 
-  /// Hands events, in time order, to the trackers in whose range they are; those outside the sensor reach none. Nothing
-  /// is allocated once the group has been as busy as it gets.
+  /// Passes events, in time order, to the trackers in whose range they are; those outside the sensor reach none.
+  /// Nothing is allocated once the buffers have reached their largest size.
   void push(std::span<const Event> events);
-  /// By the last push, in no particular order.
+  /// The changes of the last push, in no particular order.
   const std::vector<Found>& found() const { return found_; }
 
  private:

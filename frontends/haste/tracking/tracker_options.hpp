@@ -11,7 +11,7 @@ enum class Variant {
   haste_difference_star,   ///< the same with the template as it was at the last change of state
 };
 
-/// What a tracker can be told; the defaults are those of the published code.
+/// Options of a tracker; the defaults are those of the published code.
 struct TrackerOptions {
   Variant variant = Variant::haste_correlation_star;
   /// The state changes when (best − null) / (best − worst) of the scores is above this.

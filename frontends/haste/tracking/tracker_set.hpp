@@ -9,11 +9,11 @@
 
 namespace evbench::haste {
 
-/// Trackers on a sensor, in groups, each of which a thread can serve: they share nothing. What comes out depends
-/// neither on the number of groups nor on how events are cut into calls.
+/// Trackers on a sensor, in groups that share nothing, so that a thread can update each group. The results depend
+/// neither on the number of groups nor on how events are divided into calls.
 class TrackerSet {
  public:
-  /// Of a sensor [px]. `threads`: 0: one a processor, and never more.
+  /// `width`, `height`: of the sensor [px]. `threads`: 0: one a processor, which is also the most.
   TrackerSet(int width, int height, int threads = 1);
 
   /// Ids count up from 0 and are not used again.
@@ -24,9 +24,9 @@ class TrackerSet {
   std::size_t size() const { return places_.size(); }
   std::vector<std::int64_t> ids() const;  ///< ascending
 
-  /// Hands events, in time order, to the trackers in whose range they are; those outside the sensor reach none. Appends
-  /// the starts and changes of state in the order in which they happened; those of one event in the order of ids. With
-  /// one thread nothing is allocated once the set has been as busy as it gets, and `changes` has room.
+  /// Passes events, in time order, to the trackers in whose range they are; those outside the sensor reach none.
+  /// Appends the starts and changes of state in the order in which they happen; those of one event in the order of ids.
+  /// With one thread nothing is allocated once the buffers have reached their largest size and `changes` has room.
   void push(std::span<const Event> events, std::vector<Change>& changes);
 
  private:

@@ -22,7 +22,7 @@ bool same(const Change& a, const Change& b) {
          a.scores.of == b.scores.of;
 }
 
-/// Many lines all over a 100 × 80 sensor and beyond it, which fly by at `speed` [px/s].
+/// Many lines all over a 100 × 80 sensor and beyond it, which move at `speed` [px/s].
 std::vector<Event> flying_lines(double speed, std::uint64_t seed) {
   Random random(seed);
   EventPattern pattern;
@@ -60,8 +60,7 @@ class BruteForce {
 
 }  // namespace
 
-TEST_CASE(
-    "A set tells what each tracker would if it saw every event, however events are cut, in one thread or in three") {
+TEST_CASE("A set has each tracker's changes on all events, however events are divided, in one thread or in three") {
   const tbb::global_control four(tbb::global_control::max_allowed_parallelism, 4);
   for (const double speed : {50.0, 2000.0}) {
     for (const auto& [cut, threads] : {std::pair(1UL, 1), {777UL, 1}, {777UL, 3}, {100'000UL, 1}, {100'000UL, 3}}) {

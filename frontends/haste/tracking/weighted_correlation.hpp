@@ -10,11 +10,11 @@ namespace evbench::haste {
 /// A Gaussian over the window's events, the middle one weighing most, sigma a sixth of the window; their mean is 1.
 const std::array<float, kWindowSize>& gaussian_weights();
 
-/// Scores of the variants correlation and haste_correlation: Σ over the window of the events' Gaussian weights times
-/// the template where each hypothesis sees the event.
+/// Scores of the variants correlation and haste_correlation: the sum over the window's events of their Gaussian weight
+/// times the template's value at the event under each hypothesis.
 class WeightedCorrelation {
  public:
-  /// resample: the events in the window follow what the template learns (correlation).
+  /// resample: all events in the window are sampled again as the template changes (correlation).
   explicit WeightedCorrelation(bool resample) : resample_(resample) {}
 
   void start(const ScoringInput& input);

@@ -19,8 +19,8 @@ struct CircleFit {
   double covered = 0.0;   ///< share of eight equal sectors of the rim on which at least a sixteenth of the points lies
 };
 
-/// The circle through at least eight points: by the squares of algebraic distances (Kåsa 1976), then by those of
-/// distances from the rim. None where the points do not determine one.
+/// Fits a circle to at least eight points: least squares of the algebraic distances (Kåsa 1976), then of the distances
+/// from the rim. None where the points do not determine a circle.
 std::optional<CircleFit> fit_circle(std::span<const Vector2> points);
 
 }  // namespace evbench::str

@@ -8,7 +8,7 @@
 namespace evbench::str {
 
 void DotOptions::declare(OptionSet& set) {
-  set.add("window", window, "newest events of a dot that tell where it is").range(20, 100'000);
+  set.add("window", window, "newest events of a dot that its position is estimated from").range(20, 100'000);
   set.add("longest_window", longest_window, "which are not older than this [s]").above(0.0);
   set.add("every", every, "events of a dot from one observation of it to the next; 1: each event is one")
       .range(1, 100'000);
@@ -33,7 +33,7 @@ double Dot::rim_distance(const Vector2& pixel, double t) const {
 }
 
 bool Dot::add(const Vector2& pixel, double t) {
-  constexpr double kStopped = 2.0;  // [px] that it would have moved without an event
+  constexpr double kStopped = 2.0;  // [px] predicted motion without an event
   if (velocity_.norm() * (t - newest_) > kStopped) {
     circle_.centre = centre(t);
     velocity_.setZero();
@@ -59,7 +59,7 @@ std::optional<Dot::Sighting> Dot::locate() {
   for (const Seen& seen : window_) middle += seen.t;
   middle /= static_cast<double>(window_.size());
 
-  // Unknowns: centre and radius at the middle, velocity. What is known beforehand: velocity and radius, about.
+  // Unknowns: centre and radius at the middle, velocity. Velocity and radius have priors.
   Vector2 c = centre(middle), v = velocity_;
   double r = circle_.radius;
   const double step = std::max(middle - t_, 1e-4);

@@ -8,7 +8,7 @@
 
 namespace evbench::str {
 
-/// How a dot is followed.
+/// How a dot is tracked.
 struct DotOptions {
   int window = 200;
   double longest_window = 0.1;
@@ -21,31 +21,31 @@ struct DotOptions {
   void declare(OptionSet& set);
 };
 
-/// A round spot that is followed by the events of its rim. As an event lies on the rim and not in the centre, where the
-/// dot is follows from a circle through the newest ones, each moved by the dot's velocity from its own time to the
-/// middle of their times, which the estimate stands for; velocity and radius are estimated along.
+/// A round spot that is tracked by the events of its rim. Its centre comes from a circle through the newest events,
+/// each moved by the dot's velocity from its own time to the middle of their times, which is the time of the estimate.
+/// Velocity and radius are estimated as well.
 class Dot {
  public:
   Dot(const DotOptions& options, const Circle& circle, const Vector2& velocity, double t);
 
-  /// Where its centre is at t [s]: it goes on by at most a pixel without an event, as one that moves makes events.
+  /// Its centre at t [s]. Without an event the prediction moves by at most a pixel, as a moving dot makes events.
   Vector2 centre(double t) const;
-  /// How far from its rim a place is at t [px].
+  /// Distance of a pixel from its rim at t [px].
   double rim_distance(const Vector2& pixel, double t) const;
   double radius() const { return circle_.radius; }
   const Vector2& velocity() const { return velocity_; }  ///< [px/s]
   double newest() const { return newest_; }              ///< [s] of its newest event, or of its beginning
 
-  /// Takes an event of it, in time order. True where an observation is due.
+  /// Adds one of its events, in time order. Returns whether an observation is due.
   bool add(const Vector2& pixel, double t);
 
-  /// A place of its centre at the time of one of its events.
+  /// A position of its centre at the time of one of its events.
   struct Sighting {
     double t;  ///< [s]
     Vector2 centre;
     double residual;  ///< [px] of its events from the rim, root mean square
   };
-  /// From the events at hand; none where they are too few.
+  /// Estimates the centre from the current events; none where they are too few.
   std::optional<Sighting> locate();
 
  private:

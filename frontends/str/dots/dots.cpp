@@ -15,11 +15,11 @@ const evbench::Registration<FrontEnd, Dots> dots_registration(
     "dots", "follows round dots by the events of their rims, found by registering batches of events", 3);
 
 constexpr int kCell = 32;               // [px]
-constexpr std::int64_t kListed = 1000;  // [µs] between two listings of what is near
+constexpr std::int64_t kListed = 1000;  // [µs] between two updates of the lists of near dots
 constexpr double kBorder = 2.0;         // [px] of a rim from the image's border
 constexpr double kApart = 1e-6;         // [s] between two observations of a track, at least
 
-/// How a pixel moves under a batch's motion [px/s].
+/// Velocity of a pixel under a batch's motion [px/s].
 Vector2 image_velocity(const Camera& camera, const Matrix3& A, const Vector2& pixel) {
   constexpr double kStep = 1e-3;  // [s]
   const auto ideal = camera.undistort(pixel);
@@ -46,11 +46,11 @@ void Dots::take(std::span<const Event> events) {
   for (const Event& event : events) take(event);
 }
 
-void Dots::look() {
+void Dots::on_tick() {
   while (const auto batch = batches_.next(microseconds(clock_))) process(*batch);
 }
 
-/// An event is that dot's to whose rim it is nearest, or nobody's.
+/// Assigns an event to the dot whose rim is nearest, or to none.
 void Dots::take(const Event& event) {
   if (event.t >= listed_ + kListed) {
     listed_ = event.t;
@@ -84,11 +84,11 @@ void Dots::observe(Track& track) {
     return;
   }
   TrackObservation z{track.id, sighting->t, sighting->centre, options_.sigma};
-  const double told = std::max(track.dot.newest(), clock_) - options_.delay;  // what stands for times up to then
+  const double told = std::max(track.dot.newest(), clock_) - options_.delay;  // published up to here
   if (z.t <= told) ++late_;
   z.t = std::max({z.t, told, track.told + kApart});
   track.told = z.t;
-  told_.add(z);
+  delayed_.add(z);
 }
 
 bool Dots::leaves(const Dot& dot, double t) const { return !camera_.contains(dot.centre(t), dot.radius() + kBorder); }
@@ -120,10 +120,10 @@ void Dots::process(const Batch& batch) {
   map_.update(dots);
   if (found.good()) find_new(batch, found);
   std::erase_if(free_, [&](const Event& event) { return event.t < batch.to; });
-  listed_ = batch.to - kListed;  // tracks are others now
+  listed_ = batch.to - kListed;  // the tracks have changed
 }
 
-/// Dots that have left, or whose events are missing though the image moves.
+/// Ends dots that have left the image, or that have no events although the image moves.
 void Dots::give_up(const Batch& batch, const Registration& registration) {
   const double end = seconds(batch.to), duration = seconds(batch.to - batch.from);
   for (Track& track : tracks_) {
@@ -140,13 +140,13 @@ void Dots::give_up(const Batch& batch, const Registration& registration) {
   }
   for (const Track& track : tracks_) {
     if (!track.lost) continue;
-    told_.end({track.id, clock_});
+    delayed_.end({track.id, clock_});
     if (options_.life.find_again) out_of_view_.insert(track.id);
   }
   std::erase_if(tracks_, [](const Track& track) { return track.lost; });
 }
 
-/// Clusters of events that are no dot's, in the image that the registration compensates to the batch's end.
+/// Finds new dots: clusters of unassigned events in the image that the registration compensates to the batch's end.
 void Dots::find_new(const Batch& batch, const Registration& registration) {
   std::vector<Event> events;
   for (const Event& event : free_) {
@@ -177,7 +177,7 @@ void Dots::find_new(const Batch& batch, const Registration& registration) {
   }
 }
 
-/// The dot out of view that is expected at a place, and the only one.
+/// The dot out of view that is expected at a position; none where several are.
 std::optional<TrackId> Dots::known_at(const Vector2& pixel) const {
   std::optional<TrackId> result;
   for (const TrackId id : out_of_view_) {

@@ -12,9 +12,9 @@
 
 namespace evbench::str {
 
-/// Follows round dots, as in the first experiment of Liu et al., ICRA 2022: batches of events are registered as point
-/// clouds, dots are clusters of events in the image that the registration compensates; from then on each event of a
-/// dot's rim says where its centre is, at its own time. Throws InputError for a source without events.
+/// Tracks round dots, as in the first experiment of Liu et al., ICRA 2022. Batches of events are registered as point
+/// clouds, and dots are detected as clusters of events in the image that the registration compensates. From then on the
+/// events of a dot's rim give its centre at their own times. Throws InputError for a source without events.
 class Dots : public EventFrontEnd {
  public:
   using Options = DotsOptions;
@@ -27,14 +27,14 @@ class Dots : public EventFrontEnd {
     TrackId id;
     Dot dot;
     double radius;      ///< [px] when it was found
-    double told;        ///< [s] of its last observation
-    double way = 0.0;   ///< [px] the image's, since its last event
-    double seen = 0.0;  ///< [s] of its newest event at the last batch
+    double told;        ///< [s] time of its last observation
+    double way = 0.0;   ///< [px] path length of the image since its last event
+    double seen = 0.0;  ///< [s] time of its newest event at the last batch
     bool lost = false;
   };
 
   void take(std::span<const Event> events) override;
-  void look() override;
+  void on_tick() override;
   double complete() const override { return clock_ - options_.delay; }
   void take(const Event& event);
   void observe(Track& track);
@@ -54,8 +54,8 @@ class Dots : public EventFrontEnd {
   std::optional<Matrix3> last_motion_;
   int columns_, rows_;
   std::vector<std::vector<std::uint32_t>> near_;  ///< by cells of the image: the tracks whose rim may be there
-  std::int64_t listed_;                           ///< [µs] near_ is as of then
-  std::vector<Event> free_;                       ///< events that are no dot's, of the batch at hand
+  std::int64_t listed_;                           ///< [µs] when near_ was updated
+  std::vector<Event> free_;                       ///< the current batch's events that belong to no dot
   TrackId next_id_ = 0;
   std::size_t found_again_ = 0, left_ = 0, misfits_ = 0, starved_ = 0, late_ = 0;
   std::size_t registered_ = 0, unregistered_ = 0;

@@ -4,12 +4,12 @@
 
 #include "core/geometry/so3.hpp"
 #include "core/testing/catch2.hpp"
+#include "core/testing/collect_tracks.hpp"
 #include "core/testing/event_scene.hpp"
-#include "core/testing/told_tracks.hpp"
 
 using namespace evbench;
 using namespace evbench::str;
-using evbench::testing::all_told;
+using evbench::testing::collect_tracks;
 using evbench::testing::EventScene;
 using evbench::testing::same;
 
@@ -41,7 +41,7 @@ std::vector<EventScene::Outline> discs() {
   return result;
 }
 
-/// To and fro along the wall, and a little round.
+/// To and fro along the wall, with a little rotation.
 SE3 sweep(double t) {
   return {so3::exp({0.05 * std::sin(2.0 * t), 0.0, 0.1 * std::sin(1.5 * t)}),
           {0.8 * std::sin(2.5 * t), 0.3 * std::sin(1.7 * t), 0.1 * std::sin(t)}};
@@ -60,10 +60,10 @@ struct ToldDots {
 ToldDots follow_dots(const Source& source, const DotsOptions& options = {}, double interval = 0.01,
                      std::size_t most = 0) {
   Dots dots(options, {source, 0, ""});
-  return {all_told(dots, source, interval, most), dots.remarks()};
+  return {collect_tracks(dots, source, interval, most), dots.remarks()};
 }
 
-/// Which disc an observation is of, and how far from its centre [px].
+/// The disc nearest to an observation, and the distance from its centre [px].
 std::pair<std::size_t, double> nearest_disc(const TrackObservation& z, const std::function<SE3(double)>& motion) {
   const SE3 T_camera_world = motion(z.t).inverse();
   std::pair<std::size_t, double> best{0, 1e9};
@@ -78,7 +78,7 @@ std::pair<std::size_t, double> nearest_disc(const TrackObservation& z, const std
 
 }  // namespace
 
-TEST_CASE("The centres of dots that are all alike are observed, and one that comes back is known again", "[slow]") {
+TEST_CASE("The centres of identical dots are observed, and a dot that comes back is recognised", "[slow]") {
   DotsOptions options;
   options.life.find_again = true;
   const ToldDots told = follow_dots(dots_scene(), options);
@@ -103,7 +103,7 @@ TEST_CASE("The centres of dots that are all alike are observed, and one that com
   CHECK(disc_of.size() < track_of.size() + track_of.size() / 5);  // few dots have a second track
 }
 
-TEST_CASE("By default a dot that comes back is another one: a track that has ended is observed no more", "[slow]") {
+TEST_CASE("By default a dot that comes back gets a new track, and an ended track is not observed any more", "[slow]") {
   const TrackBatch all = follow_dots(dots_scene()).all;
   std::map<TrackId, double> ended;
   for (const TrackEnd& end : all.ended) CHECK(ended.emplace(end.track, end.t).second);
@@ -112,13 +112,13 @@ TEST_CASE("By default a dot that comes back is another one: a track that has end
   }
 }
 
-TEST_CASE("Dots do not depend on how they are asked for", "[slow]") {
+TEST_CASE("Dots do not depend on how often they are polled", "[slow]") {
   const TrackBatch usual = follow_dots(dots_scene()).all;
   CHECK(same(usual, follow_dots(dots_scene(), {}, 0.037).all));
   CHECK(same(usual, follow_dots(dots_scene(), {}, 0.01, 5).all));
 }
 
-TEST_CASE("Dots of a camera that stands still go on when it moves", "[slow]") {
+TEST_CASE("Dots of a stationary camera go on when it moves", "[slow]") {
   const auto motion = [](double t) { return sweep(t < 0.4 ? t : std::max(0.4, t - 0.8)); };
   const EventScene source(motion, 1.8, discs());
   std::map<TrackId, std::pair<double, double>> lives;
@@ -130,7 +130,7 @@ TEST_CASE("Dots of a camera that stands still go on when it moves", "[slow]") {
             lives, [](const auto& life) { return life.second.first < 0.4 && life.second.second > 1.3; }) > 10);
 }
 
-TEST_CASE("A dot that moves on its own is followed, and does not disturb the others", "[slow]") {
+TEST_CASE("A dot that moves on its own is tracked and does not disturb the others", "[slow]") {
   EventScene source = dots_scene();
   // A small one that is drawn across the image, over all others.
   const EventScene alone(
@@ -146,7 +146,7 @@ TEST_CASE("A dot that moves on its own is followed, and does not disturb the oth
   CHECK(errors[errors.size() * 8 / 10] < 0.8);
 }
 
-TEST_CASE("Where nothing is round, nothing is told, and nothing breaks", "[slow]") {
+TEST_CASE("Where nothing is round, no observation is published", "[slow]") {
   const EventScene square(sweep, 0.6, EventScene::quadrangles(40, 1, 0.4));
   CHECK(follow_dots(square).all.observations.size() < 200);
   CHECK(follow_dots(EventScene(sweep, 0.3, {})).all.observations.empty());

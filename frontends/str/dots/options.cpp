@@ -7,15 +7,15 @@ void DotLifeOptions::declare(OptionSet& set) {
   set.add("radius", radius, "its radius has changed by more than this share since it was found").above(0.0);
   set.add("starvation", starvation, "it has no events while the image moves by this [px]").above(0.0);
   set.add("find_again", find_again,
-          "a dot that comes back goes on as the one that it was, after its end, as far as the dots lie on a plane");
-  set.add("search", search, "it is the one that is expected within this of it, if no other one is [px]").above(0.0);
+          "a dot that comes back after its track has ended goes on with that track, if the dots lie on a plane");
+  set.add("search", search, "it is the dot that is expected within this of it, if no other one is [px]").above(0.0);
 }
 
 void DotsOptions::declare(OptionSet& set) {
   set.add("sigma", sigma, "standard deviation of an observation [px]").range(1e-6, 1e6);
   set.add("delay", delay,
-          "an observation stands for the middle of the events that it is made from, and is told this much later; one "
-          "that comes later still counts as of then [s]")
+          "an observation has the time of the middle of its events and is published this much later; one that comes "
+          "later still gets a time that is not published yet [s]")
       .range(0.0, 1.0);
   set.group("batch", batch, "when a batch ends, after which new dots are looked for");
   set.group("registration", registration, "how the motion of a batch is found");

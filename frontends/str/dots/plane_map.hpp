@@ -8,9 +8,8 @@
 
 namespace evbench::str {
 
-/// Where dots lie on the plane that they are taken to be on, to know where those are that are out of view: the
-/// homography from the plane to the image follows from the dots in view. Where these do not lie on a plane, it knows
-/// nothing.
+/// A map of dots on a plane, to predict the image positions of dots that are out of view. The dots in view give the
+/// homography from the plane to the image. Where these do not lie on a plane, there is no prediction.
 class PlaneMap {
  public:
   struct Seen {
@@ -18,16 +17,16 @@ class PlaneMap {
     Vector2 pixel;
   };
 
-  /// The dots in view at one time: finds the homography, and adds those that it has not yet.
+  /// Estimates the homography from the dots in view at one time, and adds new dots to the map.
   void update(std::span<const Seen> dots);
 
-  /// Where a dot that has been seen is now [px]; none where it is not known.
+  /// The current image position of a dot in the map [px]; none where it is not known.
   std::optional<Vector2> pixel(TrackId track) const;
 
   void forget(TrackId track) { places_.erase(track); }
 
  private:
-  std::map<TrackId, Vector2> places_;      ///< on the plane, whose coordinates are the pixels of its beginning
+  std::map<TrackId, Vector2> places_;      ///< on the plane, in pixels of the first image
   std::optional<Matrix3> image_of_plane_;  ///< now
 };
 

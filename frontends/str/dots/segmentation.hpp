@@ -19,8 +19,8 @@ struct SegmentationOptions {
   void declare(OptionSet& set);
 };
 
-/// The circles among places of events that have been moved to one time: clusters of places (in an image of the given
-/// size [px]) whose events lie on a circle that is wholly in the image.
+/// Finds circles among event positions that have been moved to one time: clusters of positions on a circle that is
+/// wholly in an image of the given size [px].
 std::vector<Circle> find_circles(const SegmentationOptions& options, std::span<const Vector2> places, int width,
                                  int height);
 

@@ -32,7 +32,7 @@ MotionTracks::MotionTracks(const Options& options, const FrontEndContext& contex
       registrar_(camera_, options.registration),
       complete_(range_.from) {}
 
-void MotionTracks::look() {
+void MotionTracks::on_tick() {
   while (const auto batch = batches_.next(microseconds(clock_))) process(*batch);
 }
 
@@ -64,7 +64,7 @@ void MotionTracks::process(const Batch& batch) {
   }
 }
 
-/// The points go on to the end of a span of which the motion is known, and through those before of which it is not.
+/// Moves the points through the spans of unknown motion and then to the end of a span of known motion.
 void MotionTracks::move(const Motion& motion) {
   for (const Span& span : unknown_) {
     const double share = (span.middle() - last_->span.middle()) / (motion.span.middle() - last_->span.middle());
@@ -86,23 +86,23 @@ void MotionTracks::carry_on(const Motion& motion) {
       alive.push_back({point.id, ray / ray.z()});
       observe(alive.back(), motion.span.to);
     } else {
-      told_.end({point.id, motion.span.to});
+      delayed_.end({point.id, motion.span.to});
     }
   }
   points_ = std::move(alive);
 }
 
-/// The motion has been unknown for too long.
+/// Ends all points: the motion has been unknown for too long.
 void MotionTracks::interrupt(double t) {
   interrupted_ += points_.empty() ? 0 : 1;
-  for (const Point& point : points_) told_.end({point.id, t});
+  for (const Point& point : points_) delayed_.end({point.id, t});
   points_.clear();
   unknown_.clear();
   last_.reset();
   complete_ = t;
 }
 
-/// New points at the places of a grid that none is near to.
+/// Adds points at the grid positions that no point is near to.
 void MotionTracks::replenish() {
   std::vector<Vector2> taken;
   for (const Point& point : points_) taken.push_back(camera_.project(point.ray));
@@ -120,7 +120,7 @@ void MotionTracks::replenish() {
 }
 
 void MotionTracks::observe(const Point& point, double t) {
-  told_.add({point.id, t, camera_.project(point.ray), options_.sigma});
+  delayed_.add({point.id, t, camera_.project(point.ray), options_.sigma});
 }
 
 std::vector<std::string> MotionTracks::counts() const {

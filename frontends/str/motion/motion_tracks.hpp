@@ -11,12 +11,13 @@
 
 namespace evbench::str {
 
-/// The motion of the image as a whole, by registration of batches of events, told as tracks of points that nothing need
-/// be seen at: a grid of rays that each batch's motion carries on. So any back-end gets a registered motion by the one
-/// interface that there is; the observations at one time have one error in common, which no sigma tells. Each batch
-/// begins where the one before ends, and one that has no one motion is divided into halves, again and again. Where the
-/// image turns round, that leaves spans in which it moves too little to be registered: their motion is taken to change
-/// evenly from that before to that after. Throws InputError for a source without events.
+/// Registers batches of events to one motion of the whole image, and publishes it as tracks of virtual points: a grid
+/// of rays that each batch's motion carries on. So any back-end can use a registered motion through the interface for
+/// tracks. All observations at one time share one error, which their sigmas do not express.
+///
+/// Each batch begins where the previous one ends. A batch without a single motion is divided into halves, repeatedly.
+/// Where the image motion reverses, spans remain in which it is too small to be registered: there it is interpolated
+/// linearly between the motion before and after. Throws InputError for a source without events.
 class MotionTracks : public EventFrontEnd {
  public:
   using Options = MotionTracksOptions;
@@ -34,14 +35,14 @@ class MotionTracks : public EventFrontEnd {
     double from, to;  ///< [s]
     double middle() const { return 0.5 * (from + to); }
   };
-  /// Of the image, in a span of time.
+  /// The motion of the image in a span of time.
   struct Motion {
     Span span;
     Matrix3 A;  ///< [1/s] (motion_model.hpp)
   };
 
   void take(std::span<const Event> events) override { batches_.add(events); }
-  void look() override;
+  void on_tick() override;
   double complete() const override { return complete_; }
   void process(const Batch& batch);
   void move(const Motion& motion);
@@ -54,8 +55,8 @@ class MotionTracks : public EventFrontEnd {
   Batches batches_;
   Registrar registrar_;
   std::vector<Point> points_;
-  std::optional<Motion> last_;  ///< that is known
-  std::vector<Span> unknown_;   ///< since then
+  std::optional<Motion> last_;  ///< the newest known motion
+  std::vector<Span> unknown_;   ///< spans of unknown motion since then
   double complete_;             ///< [s] all observations up to here have been made
   TrackId next_id_ = 0;
   std::size_t registered_ = 0, still_ = 0, divided_ = 0, unregistered_ = 0, interrupted_ = 0;

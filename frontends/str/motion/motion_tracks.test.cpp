@@ -4,18 +4,18 @@
 
 #include "core/geometry/so3.hpp"
 #include "core/testing/catch2.hpp"
+#include "core/testing/collect_tracks.hpp"
 #include "core/testing/event_scene.hpp"
-#include "core/testing/told_tracks.hpp"
 
 using namespace evbench;
 using namespace evbench::str;
-using evbench::testing::all_told;
+using evbench::testing::collect_tracks;
 using evbench::testing::EventScene;
 using evbench::testing::same;
 
 namespace {
 
-/// To and fro, turning round every 0.26 s, first at 0.13 s.
+/// To and fro, reversing every 0.26 s, first at 0.13 s.
 SE3 to_and_fro(double t) { return {so3::exp(Vector3(0.1, 0.25, 0.05) * std::sin(12.0 * t)), Vector3::Zero()}; }
 
 const EventScene& motion_scene() {
@@ -31,10 +31,10 @@ struct ToldMotion {
 ToldMotion follow_motion(const Source& source, const MotionTracksOptions& options = {}, double interval = 0.01,
                          std::size_t most = 0) {
   MotionTracks motion(options, {source, 0, ""});
-  return {all_told(motion, source, interval, most), motion.remarks()};
+  return {collect_tracks(motion, source, interval, most), motion.remarks()};
 }
 
-/// How far each observation is from where the rotation since the track's beginning takes it [px].
+/// Distance of each observation from its first one, moved by the true rotation since then [px].
 std::vector<double> errors(const Source& source, const std::function<SE3(double)>& motion, const TrackBatch& told) {
   std::map<TrackId, Vector3> directions;
   std::vector<double> result;
@@ -49,7 +49,7 @@ std::vector<double> errors(const Source& source, const std::function<SE3(double)
 
 }  // namespace
 
-TEST_CASE("Points are carried by the rotation that the events say, also where it turns round", "[slow]") {
+TEST_CASE("Points move with the rotation that is registered, also where it reverses", "[slow]") {
   const ToldMotion told = follow_motion(motion_scene());
   INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
   const std::vector<double> all = errors(motion_scene(), to_and_fro, told.all);
@@ -59,7 +59,7 @@ TEST_CASE("Points are carried by the rotation that the events say, also where it
   CHECK(told.remarks.at(1).find(" 0 times all ended") != std::string::npos);
 }
 
-TEST_CASE("A batch within which the motion turns round is divided, and tells as much as its parts", "[slow]") {
+TEST_CASE("A batch within which the motion reverses is divided, and is as accurate as its parts", "[slow]") {
   MotionTracksOptions options;
   options.batch.duration = 0.06;
   const ToldMotion told = follow_motion(motion_scene(), options);
@@ -71,17 +71,17 @@ TEST_CASE("A batch within which the motion turns round is divided, and tells as 
   CHECK(told.remarks.at(1).find(" 0 times all ended") != std::string::npos);
 }
 
-TEST_CASE("Points do not depend on how they are asked for", "[slow]") {
+TEST_CASE("Points do not depend on how often they are polled", "[slow]") {
   const TrackBatch usual = follow_motion(motion_scene()).all;
   CHECK(usual.observations.size() > 500);
   CHECK(same(usual, follow_motion(motion_scene(), {}, 0.037).all));
   CHECK(same(usual, follow_motion(motion_scene(), {}, 0.01, 7).all));
 }
 
-TEST_CASE("Points of a camera that stands still stay where they are, and go on when it moves", "[slow]") {
+TEST_CASE("Points of a stationary camera stay at their positions, and go on when it moves", "[slow]") {
   const auto motion = [](double t) {
     return to_and_fro(t < 0.3927 ? t : std::max(0.3927, t - 0.5));
-  };  // stands where it turns
+  };  // stationary where it reverses
   const EventScene source(motion, 1.2, EventScene::quadrangles(150, 1));
   const TrackBatch all = follow_motion(source).all;
   std::map<TrackId, std::pair<double, double>> lives;
@@ -100,7 +100,7 @@ TEST_CASE("Points of a camera that stands still stay where they are, and go on w
   CHECK(off[off.size() / 2] < 2.0);
 }
 
-TEST_CASE("Where events say nothing of a motion for too long, all points end, and others begin after it", "[slow]") {
+TEST_CASE("Where no motion is registered for too long, all points end, and others begin after it", "[slow]") {
   EventScene flickering = motion_scene();
   Random random(1);
   std::vector<Event> noise;
@@ -125,7 +125,7 @@ TEST_CASE("Where events say nothing of a motion for too long, all points end, an
   CHECK(std::ranges::any_of(lives, [](const auto& life) { return life.second.first > 0.7; }));
 }
 
-TEST_CASE("A structure that moves on its own does not carry the points of str_motion away", "[slow]") {
+TEST_CASE("A structure that moves on its own does not disturb the points of str_motion", "[slow]") {
   EventScene source = motion_scene();
   const EventScene other(
       [](double t) {
@@ -142,7 +142,7 @@ TEST_CASE("A structure that moves on its own does not carry the points of str_mo
   CHECK(all[all.size() * 95 / 100] < 6.0);
 }
 
-TEST_CASE("Without events str_motion tells nothing, and a source that has none is refused with a sentence") {
+TEST_CASE("Without events str_motion publishes nothing, and a source that has none is refused with a sentence") {
   const ToldMotion none = follow_motion(EventScene(to_and_fro, 0.3, {}));
   CHECK(none.all.until == 0.3);
   class Nothing : public EventScene {

@@ -1,9 +1,9 @@
 #include "frontends/str/registration/alignment.hpp"
 
-#include "core/geometry/solve_symmetric.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench::str {
 
@@ -74,7 +74,7 @@ double Aligner::mean_motion(const EventCloud& cloud, const Matrix3& A, double du
   return focal_length_ * duration * sum / static_cast<double>(cloud.size());
 }
 
-/// What the matches do to the motion A.
+/// Collects the pull of each match on the motion A.
 void Aligner::pull(const EventCloud& queries, const Matrix3& A) {
   const auto f = static_cast<float>(focal_length_);
   const auto noise = static_cast<float>(options_.edge_noise / focal_length_);

@@ -28,7 +28,7 @@ struct AlignmentOptions {
   void declare(OptionSet& set);
 };
 
-/// A query and the target that is nearest to it under a motion.
+/// A query and its nearest target under a motion.
 struct Match {
   std::uint32_t query, target;
   std::uint32_t cell;          ///< the target's, in the grid
@@ -37,7 +37,7 @@ struct Match {
   Eigen::Vector2f difference;  ///< from the target to it
 };
 
-/// What an alignment found.
+/// The result of an alignment.
 struct Alignment {
   Matrix3 A = Matrix3::Zero();  ///< the motion's matrix [1/s]
   bool converged = false;
@@ -46,19 +46,19 @@ struct Alignment {
   double residual = 0.0;  ///< [px] root mean square of the weighted distances of those that count
 };
 
-/// Finds the motion under which two clouds of events, each event moved by its own time to the reference time, lie on
-/// one another: the nearest target of each query, least squares over the better part of the distances, again and again
-/// (trimmed iterative closest points, Chetverikov et al. 2005), with a robust weight (Cauchy) and, for line distances,
-/// a weight by how the targets lie there, which lets an event slide along an edge. It comes to rest with
-/// `first_queries` of many queries first, and then takes a step or two with all.
+/// Finds the motion that aligns two clouds of events, each event moved by its own time to the reference time. Trimmed
+/// iterative closest points (Chetverikov et al. 2005): the nearest target of each query, then least squares over the
+/// smallest distances, repeatedly. Matches have a robust weight (Cauchy). For line distances they also have a weight by
+/// the local shape of the targets, which lets an event slide along an edge. Where there are many queries, the
+/// iterations converge with `first_queries` of them first, and then take a step or two with all.
 ///
-/// The targets are searched in a grid that is built for a motion, and built again when the motion has moved a target by
-/// more than `stale` since. Distances are always those under the motion at hand.
+/// Targets are searched in a grid that is built for a motion, and rebuilt when the motion has moved a target by more
+/// than `stale` since. Distances are always those under the current motion.
 class Aligner {
  public:
   Aligner(const AlignmentOptions& options, double focal_length) : options_(options), focal_length_(focal_length) {}
 
-  /// Takes the cloud that queries are aligned with. Its content is swapped with the last one's.
+  /// Sets the cloud that queries are aligned with. Its content is swapped with the previous one's.
   void swap_targets(EventCloud& targets);
 
   /// The motion start + Σ θ_k G_k with the generators of `model` that aligns the queries with the targets. `duration`
@@ -69,13 +69,13 @@ class Aligner {
   /// Nearest targets under the motion A, within `gate` [px]; in the order of the queries.
   const std::vector<Match>& match(const EventCloud& queries, const Matrix3& A, double gate);
 
-  /// The fit that queries would have under the motion A if they lay elsewhere: they are turned about the optical axis
-  /// by a radian. Where targets are dense this comes near to the fit of what is aligned.
+  /// The fit that queries have under the motion A by chance: they are turned about the optical axis by a radian. Where
+  /// targets are dense, this is close to the fit of aligned queries.
   double chance_fit(const EventCloud& queries, const Matrix3& A);
 
   const EventCloud& targets() const { return targets_; }
 
-  /// How far the motion A moves the targets, and what they are aligned with, in `duration` [s]: mean [px].
+  /// Mean distance by which the motion A moves the targets and `cloud` in `duration` [s] [px].
   double mean_motion(const EventCloud& cloud, const Matrix3& A, double duration) const;
 
  private:
@@ -97,9 +97,9 @@ class Aligner {
   std::vector<float> target_x_, target_y_;  ///< under the motion that the grid is for
   std::vector<float> query_x_, query_y_;
   std::vector<Match> matches_;
-  /// What a match does to the motion.
+  /// The pull of a match on the motion.
   struct Pull {
-    Eigen::Vector2f difference;  ///< [px] between the query and what it is to come to
+    Eigen::Vector2f difference;  ///< [px] between the query and its target
     float between;               ///< [s] time between the two
     Eigen::Matrix2f weight;
     Eigen::Vector2f at;  ///< the query under the motion

@@ -43,13 +43,13 @@ struct EventCloud {
 /// counted.
 void make_cloud(std::span<const Event> events, const RayTable& rays, std::int64_t reference, EventCloud& cloud);
 
-/// So many of the events, evenly taken; all where they are no more.
+/// `count` of the events, evenly spaced; all where there are no more.
 std::vector<Event> take_evenly(std::span<const Event> events, std::size_t count);
 EventCloud take_evenly(const EventCloud& cloud, std::size_t count);
 
-/// Puts events that are near in the image near to one another, by squares of 8 px, within each in the order that they
-/// had. Where the neighbours of one after the other are looked for, most of what is touched has just been touched: by
-/// order of time, on a large sensor, nearly all of it has to come from memory. `width`, `height` [px]: the sensor's.
+/// Sorts events by image squares of 8 px, in the given order within each. Searches for the neighbours of consecutive
+/// events then use the same memory, which stays in the cache; in time order, on a large sensor, nearly all accesses
+/// would go to main memory. `width`, `height` [px]: of the sensor.
 void sort_by_place(std::vector<Event>& events, int width, int height);
 
 /// The points of a cloud under a motion at the reference time: exp(t A) (x, y, 1), by its series up to the fourth

@@ -9,7 +9,7 @@ namespace evbench::str {
 
 /// How the image moves while a batch of events lasts: a flow of rays (x, y, 1) that is linear in homogeneous
 /// coordinates, d ray/dt = -A ray, with a constant matrix A = Σ θ_k G_k [1/s]. So exp((t - s) A) takes a ray seen at t
-/// to where it is seen at s, up to its length, and all models are handled alike.
+/// to the ray seen at s, up to its length. All models are handled alike.
 enum class MotionModel {
   rotation,     ///< θ = body angular velocity ω of the camera [rad/s], A = ω^
   translation,  ///< θ = image velocity of the two axes [focal lengths/s], reversed

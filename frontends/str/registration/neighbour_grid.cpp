@@ -85,7 +85,7 @@ std::optional<NeighbourGrid::Neighbour> NeighbourGrid::nearest(float x, float y,
   }
   const int column = static_cast<int>(std::floor(u)), row = static_cast<int>(std::floor(v));
   const int rings = static_cast<int>(std::ceil(reach));
-  // Nothing in ring r + 1 is nearer than r cells and the way to the own cell's nearest side.
+  // No point in ring r + 1 is nearer than r cells plus the distance to the own cell's nearest side.
   const float fu = u - static_cast<float>(column), fv = v - static_cast<float>(row);
   const float inset = std::min(std::min(fu, 1.0F - fu), std::min(fv, 1.0F - fv));
   Neighbour best{0, gate * gate, kNowhere};

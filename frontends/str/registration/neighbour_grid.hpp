@@ -9,9 +9,8 @@
 
 namespace evbench::str {
 
-/// Points of two kinds (polarities) in cells, to find the nearest one of a kind and how the points lie there. What
-/// building and asking cost follows from the number of points, not from the area: cells that hold nothing are not
-/// touched.
+/// Points of two kinds (polarities) in cells, to find the nearest point of a kind and the local shape of the points.
+/// The cost of building and searching depends on the number of points, not on the area: empty cells are not touched.
 class NeighbourGrid {
  public:
   /// Takes points; those that are not finite are left out. `cell`: a cell's side, in the points' unit. The last
@@ -27,12 +26,12 @@ class NeighbourGrid {
   /// The nearest point of a kind that is less than `gate` away; none where there is none.
   std::optional<Neighbour> nearest(float x, float y, std::uint8_t kind, float gate) const;
 
-  /// How the points of one kind lie in a cell and those around it.
+  /// The local shape of the points of one kind, in a cell and those around it.
   struct Surroundings {
     Eigen::Vector2f mean;  ///< of the points
     float time = 0.0F;     ///< mean
-    /// noise² (Σ + noise² I)⁻¹ of their covariance Σ: how much it says to be away from the mean, in each direction.
-    /// Across a sharp edge about 1, along it little; little in all directions where points lie everywhere.
+    /// noise² (Σ + noise² I)⁻¹ of their covariance Σ: the weight of a distance from the mean in each direction. About
+    /// 1 across a sharp edge, small along it; small in all directions where points lie everywhere.
     Eigen::Matrix2f weight;
   };
   /// Computed once a build and cell. `noise` is the same for all cells of a build.

@@ -25,11 +25,11 @@ struct Points {
 
 }  // namespace
 
-TEST_CASE("The nearest point of a kind is found, as by looking at all, wherever one asks and however large the cells") {
+TEST_CASE("The nearest point of a kind is that of an exhaustive search, at any position and cell size") {
   const float cell = GENERATE(0.3F, 1.0F, 7.0F);
   Random random(1);
   NeighbourGrid grid;
-  for (int build = 0; build < 3; ++build) {  // what was there before is forgotten
+  for (int build = 0; build < 3; ++build) {  // earlier points are forgotten
     Points points;
     for (int i = 0; i < 300; ++i) {
       points.add(random.uniform(-20.0, 30.0), random.uniform(-5.0, 25.0), static_cast<std::uint8_t>(i % 3 == 0));
@@ -55,7 +55,7 @@ TEST_CASE("The nearest point of a kind is found, as by looking at all, wherever 
   }
 }
 
-TEST_CASE("Away from an edge counts across it and not along it, where points lie everywhere it counts little") {
+TEST_CASE("A distance counts across an edge and not along it, and little where points lie everywhere") {
   NeighbourGrid grid;
   Points edge, everywhere;
   for (int i = 0; i < 200; ++i) edge.add(0.1 * i, 0.05 * i, 1, 0.01 * i);
@@ -77,7 +77,7 @@ TEST_CASE("Away from an edge counts across it and not along it, where points lie
   CHECK(grid.surroundings(amid->cell, 0.4F).weight.trace() < 0.2F);
 }
 
-TEST_CASE("A grid of nothing finds nothing, and points that are not finite are left out") {
+TEST_CASE("An empty grid finds nothing, and points that are not finite are left out") {
   NeighbourGrid grid;
   Points none, odd;
   none.build(grid, 1.0F);

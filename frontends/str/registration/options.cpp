@@ -5,16 +5,16 @@ namespace evbench::str {
 
 void AlignmentOptions::declare(OptionSet& set) {
   set.add("distance", distance, {"point", "line"},
-          "what is made small: how far matched events are apart; or how far across the edge on which they lie");
+          "what is minimised: the distance between matched events, or its part across the edge on which they lie");
   set.add("polarity", polarity, "only events of the same polarity are matched");
   set.add("keep", keep, "share of the matches that count, the nearest ones").range(0.05, 1.0);
   set.add("gate", gate, "events are matched over at most this distance at first [px]").above(0.0).range(0.0, 100.0);
   set.add("last_gate", last_gate, "and over this distance in the end [px]").above(0.0).range(0.0, 100.0);
   set.add("gate_shrinking", gate_shrinking, "by this factor from one iteration to the next").range(0.1, 0.99);
   set.add("robust_scale", robust_scale, "distance at which a match counts half (Cauchy) [px]").above(0.0);
-  set.add("edge_noise", edge_noise, "by how much events lie off an edge, standard deviation [px]").above(0.0);
+  set.add("edge_noise", edge_noise, "distance of events from an edge, standard deviation [px]").above(0.0);
   set.add("cell", cell, "side of the cells in which events are searched [px]").range(0.5, 100.0);
-  set.add("stale", stale, "cells are made anew when the motion has moved an event by more than this since [px]")
+  set.add("stale", stale, "cells are rebuilt when the motion has moved an event by more than this since [px]")
       .range(0.0, 10.0);
   set.add("first_queries", first_queries,
           "events that the first iterations are made with, until these move by less than the tolerance; then all "
@@ -29,19 +29,17 @@ void RegistrationOptions::declare(OptionSet& set) {
           "how the image moves: as the camera rotates; image translation; and rotation about the axis and zoom; any "
           "homography");
   set.add("slice", slice, "the first and the last part of a batch that are aligned, as a share of it").range(0.01, 0.5);
-  set.add("queries", queries, "events of the first slice that are looked for in the last one, at most; 0: all")
-      .range(0);
-  set.add("least_events", least_events, "with fewer events in a slice there is no motion to be found").range(10);
+  set.add("queries", queries, "events of the first slice that are matched with the last one, at most; 0: all").range(0);
+  set.add("least_events", least_events, "with fewer events in a slice no motion is estimated").range(10);
   set.add("least_fit", least_fit,
-          "how well the slices must lie on one another for a motion to be believed: mean weight of the queries, those "
-          "without a match being 0, from 0 for what chance gives to 1")
+          "how well the slices must match for a motion to be accepted: mean weight of the queries, 0 for those without "
+          "a match, from 0 for chance to 1")
       .range(0.0, 1.0);
-  set.add(
-         "halvings", halvings,
-         "where the start fails, the last part of the batch is tried that is the half of the half ... of it, so often, "
-         "then ever longer ones")
+  set.add("halvings", halvings,
+          "where the start fails, the last part of the batch is tried, halved so many times, then parts that double in "
+          "length")
       .range(0, 20);
-  set.add("trusted_motion", trusted_motion, "of these, one that moved by less than this starts no other [px, mean]")
+  set.add("trusted_motion", trusted_motion, "a part that moved by less than this starts no other [px, mean]")
       .range(0.0);
   set.group("alignment", alignment, "how two slices are aligned");
 }

@@ -33,7 +33,7 @@ std::optional<Excerpt> read_excerpt(const std::string& name) {
   return result;
 }
 
-/// Registered from nothing, and by contrast from there: the relative difference of the angular velocities.
+/// Registered without a start, then by contrast from there: the relative difference of the angular velocities.
 double difference(const Excerpt& excerpt, std::int64_t from, std::int64_t to) {
   const auto first = std::ranges::lower_bound(excerpt.events, from, {}, &Event::t);
   const auto last = std::ranges::lower_bound(excerpt.events, to, {}, &Event::t);
@@ -57,7 +57,7 @@ double difference(const Excerpt& excerpt, std::int64_t from, std::int64_t to) {
 
 }  // namespace
 
-TEST_CASE("Real excerpts of a rotating camera: the whole as by contrast within 5 %, parts of 4 px within 10 %",
+TEST_CASE("Registration of real rotations agrees with contrast maximisation: within 5 %, parts of 4 px within 10 %",
           "[slow]") {
   // Parts in which the camera moves 4 px or more: 12 and 8 px in all.
   const auto [name, parts] = GENERATE(std::pair("shapes_rotation", 2), std::pair("dynamic_rotation", 2));

@@ -33,23 +33,23 @@ struct Registration {
   enum class State {
     good,
     too_few_events,  ///< one of the slices has less than `least_events`
-    not_converged,   ///< the iterations did not come to rest
-    poor,            ///< too few events of the first slice found one in the last slice, or no more than by chance
+    not_converged,   ///< the iterations did not converge
+    poor,            ///< too few events of the first slice match one in the last slice, or no more than by chance
   } state = State::too_few_events;
   Matrix3 A = Matrix3::Zero();  ///< of the motion [1/s] (motion_model.hpp)
   std::int64_t reference = 0;   ///< [µs] the batch's middle
   double motion = 0.0;          ///< [px] mean, over the batch
-  double chance = 0.0;          ///< the fit that is to be expected where nothing belongs together
+  double chance = 0.0;          ///< the fit that is expected without any correspondence
   Alignment alignment;
-  bool grown = false;  ///< it was not found from the start that was given
+  bool grown = false;  ///< it was not found from the given start
 
   bool good() const { return state == State::good; }
 
-  /// What is left of a fit of this batch's events without what chance gives: 1 where all fits, 0 where it fits no
-  /// better than anything would. Among dense edges each event has one near it, whatever the motion.
+  /// A fit of this batch's events with the part by chance removed: 1 for a perfect fit, 0 for a fit by chance. Among
+  /// dense edges each event has a near neighbour under any motion.
   double beyond_chance(double fit) const { return chance < 1.0 ? (fit - chance) / (1.0 - chance) : 0.0; }
 
-  /// Is it more to be believed than another one of the same batch?
+  /// Whether it is more reliable than another one of the same batch.
   bool better_than(const Registration& other) const {
     return good() != other.good() ? good() : alignment.fit > other.alignment.fit;
   }
@@ -62,15 +62,15 @@ class Registrar {
  public:
   Registrar(const Camera& camera, const RegistrationOptions& options);
 
-  /// Starts from a motion that is expected; where that fails, or there is none, from nothing (grow()).
+  /// Starts from the expected motion; where that fails or there is none, without a start (grow()).
   Registration align(const Batch& batch, const std::optional<Matrix3>& expected);
 
-  /// From nothing: the last part of the batch that is 2^-halvings of it, then ever longer ones, each started from rest
-  /// and, where the one before moved by more than `trusted_motion`, from its motion: less is noise that would grow. The
-  /// better fit is taken.
+  /// Registers without a start: first the last 2^-halvings of the batch, then parts that double in length. Each part is
+  /// started from rest and also from the previous part's motion where that is more than `trusted_motion`; less is noise
+  /// that would grow. The better fit is taken.
   Registration grow(const Batch& batch);
 
-  /// From a motion, without a second try.
+  /// Registers from a start motion, without a second try.
   Registration try_from(const Batch& batch, const Matrix3& start);
 
   const RayTable& rays() const { return rays_; }

@@ -28,7 +28,7 @@ double relative_error(const Registration& registration, const Vector3& omega) {
   return (Vector3(project_onto(MotionModel::rotation, registration.A)) - omega).norm() / omega.norm();
 }
 
-/// Median of the relative errors of all batches that move by so many pixels; every one must be good.
+/// Median relative error of all batches that move by `pixels`; every one must be registered.
 double median_error(const RotationRecording& recording, double pixels, bool from_nothing) {
   Registrar registrar(recording.camera, {});
   const double duration = pixels / (recording.camera.pinhole.fx * recording.omega.norm());
@@ -48,7 +48,7 @@ double median_error(const RotationRecording& recording, double pixels, bool from
 
 }  // namespace
 
-TEST_CASE("The rotation of a camera is found from slow to violent, from the last motion and from nothing", "[long]") {
+TEST_CASE("The rotation of a camera is found from slow to aggressive, with and without a start", "[long]") {
   const double speed = GENERATE(1.0, 5.0, 20.0);
   const std::string scene = GENERATE("shapes", "plane");
   const RotationRecording recording = simulate_rotation(scene, 240, 180, speed * kAxis, 0.33 / speed, 1);
@@ -59,7 +59,7 @@ TEST_CASE("The rotation of a camera is found from slow to violent, from the last
   }
 }
 
-TEST_CASE("A plane that comes nearer and turns is a motion of four parameters, found with four and with eight") {
+TEST_CASE("An approaching and rotating plane is a motion of four parameters, found with four and with eight") {
   constexpr double kDuration = 0.1;
   const Vector6 twist = (Vector6() << 0.0, 0.0, 1.0, 0.6, -0.4, 0.5).finished();
   const EventScene scene([&](double t) { return se3::exp((t - 0.5 * kDuration) * twist); }, kDuration,
@@ -86,7 +86,7 @@ TEST_CASE("A plane that comes nearer and turns is a motion of four parameters, f
   }
 }
 
-TEST_CASE("Batches with too little in them have no motion, and say so") {
+TEST_CASE("Batches with too few events have no motion, and report it") {
   const EventScene scene(
       [](double t) {
         return SE3{so3::exp(t * kAxis), Vector3::Zero()};
@@ -116,7 +116,7 @@ TEST_CASE("Batches with too little in them have no motion, and say so") {
   CHECK(registrar.align({one_time, 7, 7}, std::nullopt).A.allFinite());
 }
 
-TEST_CASE("A million events in 10 ms are no more than their number") {
+TEST_CASE("A million random events in 10 ms give a finite motion within the iterations") {
   Random random(1);
   std::vector<Event> events(1'000'000);
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -148,7 +148,7 @@ TEST_CASE("The motion is found though half of the pixels flicker") {
   CHECK(relative_error(found, recording.omega) < 0.03);
 }
 
-TEST_CASE("A camera that stands still, but for noise, is not told to move") {
+TEST_CASE("A stationary camera with noise is not estimated to move") {
   Random random(1);
   std::vector<Event> events;
   for (std::int64_t t = 0; t < 50'000; t += 20) {
@@ -160,7 +160,7 @@ TEST_CASE("A camera that stands still, but for noise, is not told to move") {
   CHECK_FALSE(registrar.align({events, 0, 50'000}, std::nullopt).good());
 }
 
-TEST_CASE("A motion that turns round within a batch is not believed, or is small") {
+TEST_CASE("A motion that reverses within a batch is not accepted, or is small") {
   constexpr double kDuration = 0.1;
   const EventScene scene(
       [](double t) {
@@ -169,7 +169,7 @@ TEST_CASE("A motion that turns round within a batch is not believed, or is small
       kDuration, EventScene::quadrangles(150, 1));
   Registrar registrar(scene.camera(), {});
   const Registration found = registrar.align(batch_of(scene.list, 0.0, kDuration), Matrix3(so3::hat(4.0 * kAxis)));
-  // Seen from end to end the camera has not moved; half way it had moved by 40 px.
+  // The camera is where it began; half-way it had moved by 40 px.
   INFO("fit " << found.alignment.fit << ", motion " << found.motion << " px, " << to_string(found.state));
   CHECK((!found.good() || found.motion < 4.0));
 }

@@ -1,5 +1,5 @@
-// The back-end NAME for evbench, all of it: a small one to start from. Every `period` it makes a pose out of the
-// landmarks in sight, then new landmarks out of the poses; the first map is evbench's Initialiser's.
+// The back-end NAME for evbench: a small one to start from. Every `period` it estimates a pose from the landmarks in
+// view, then triangulates new landmarks from the poses. The initial map comes from evbench's Initialiser.
 #include <algorithm>
 #include <chrono>
 #include <deque>
@@ -33,15 +33,16 @@ class ClassName : public evbench::BackEnd {
 
     void declare(OptionSet& set) {
       set.add("period", period, "time between two poses [s]").range(0.001, 1.0);
-      set.add("window", window, "time over which a track's observations give its place [s]").range(0.001, 1.0);
-      set.add("huber_px", huber_px, "error from which on an observation counts less [px]").above(0.0);
-      set.add("outlier_px", outlier_px, "error from which on a track is dropped [px]").above(0.0);
+      set.add("window", window, "time over which a track's position is interpolated from its observations [s]")
+          .range(0.001, 1.0);
+      set.add("huber_px", huber_px, "error above which an observation has less weight [px]").above(0.0);
+      set.add("outlier_px", outlier_px, "error above which a track is dropped as an outlier [px]").above(0.0);
       set.add("clear_parallax_deg", clear_parallax_deg,
-              "parallax with which the better of two first maps is taken [deg]")
+              "parallax above which the better of two initial maps is accepted [deg]")
           .range(0.0);
-      set.add("views", views, "views that landmarks are triangulated from").range(2);
-      set.add("min_landmarks", min_landmarks, "landmarks in sight that a pose needs").range(4);
-      set.group("initialiser", initialiser, "the first map");
+      set.add("views", views, "views from which landmarks are triangulated").range(2);
+      set.add("min_landmarks", min_landmarks, "landmarks in view that a pose needs").range(4);
+      set.group("initialiser", initialiser, "the initial map");
     }
   };
 
@@ -56,7 +57,7 @@ class ClassName : public evbench::BackEnd {
     if (monitor_.lost()) return;
     tracks_.add(batch.observations);
     if (!next_ && !batch.observations.empty()) next_ = batch.observations.front().t + options_.window;
-    // A view is made when observations on both sides of its time are there.
+    // A view needs observations on both sides of its time.
     while (next_ && *next_ + 0.5 * options_.window <= until_ && !monitor_.lost()) {
       step(*next_);
       *next_ += options_.period;
@@ -103,7 +104,7 @@ class ClassName : public evbench::BackEnd {
   TrackBuffer tracks_;
   std::optional<double> next_;  // time of the next view [s]
   double until_ = 0.0;
-  std::deque<View> views_;  // the last ones; before there is a map those since the initialiser's first view
+  std::deque<View> views_;  // the newest ones; before initialisation those since the initialiser's first view
   Points points_;
   Vector6 velocity_ = Vector6::Zero();
   std::vector<StampedPose> trajectory_;
@@ -119,10 +120,10 @@ class ClassName : public evbench::BackEnd {
     for (const TrackId track : tracks_.alive(t, 0.5 * options_.window)) {
       if (const auto pixel = tracks_.position(track, t, options_.window)) view.pixels[track] = *pixel;
     }
-    const bool known = trajectory_.empty() ? find_first_map(std::move(view)) : follow(std::move(view));
+    const bool known = trajectory_.empty() ? find_initial_map(std::move(view)) : follow(std::move(view));
     if (known) {
       trajectory_.push_back({t, views_.back().T});
-      context_.online({trajectory_.back(), t, velocity_});
+      context_.publish({trajectory_.back(), t, velocity_});
     }
     if (!trajectory_.empty()) tracks_.forget_ended_before(t - options_.window);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
@@ -132,7 +133,7 @@ class ClassName : public evbench::BackEnd {
 
   static constexpr int kIterations = 8;
 
-  /// Gauss-Newton on the reprojection errors with a Huber loss, landmarks held; returns the errors [px] by track.
+  /// Gauss-Newton on the reprojection errors with a Huber loss and fixed landmarks; returns the errors [px] by track.
   std::map<TrackId, double> locate(View& view, const Points& points) const {
     std::map<TrackId, double> errors;
     for (int i = 0; i < kIterations; ++i) {
@@ -159,7 +160,7 @@ class ClassName : public evbench::BackEnd {
     return errors;
   }
 
-  /// The landmark of a track from the views that see it.
+  /// Triangulates a track from the views that observe it.
   Triangulation triangulate_from(const std::deque<View>& views, TrackId track) const {
     std::vector<SE3> poses;
     std::vector<Vector2> pixels;
@@ -172,7 +173,7 @@ class ClassName : public evbench::BackEnd {
     return triangulate(poses, pixels, context_.camera, {2.0, options_.outlier_px, 10});
   }
 
-  /// A guess as poses and landmarks make it that are refined in turn, and its mean error.
+  /// An initial guess after alternating refinement of poses and landmarks, and its mean error.
   struct Trial {
     std::deque<View> views;
     Points points;
@@ -187,7 +188,7 @@ class ClassName : public evbench::BackEnd {
     }
     for (int round = 0; round < 10; ++round) {
       double sum = 0.0, count = 0.0;
-      for (std::size_t i = 1; i < trial.views.size(); ++i) {  // the first one is the world
+      for (std::size_t i = 1; i < trial.views.size(); ++i) {  // the first one fixes the world frame
         for (const auto& [track, error] : locate(trial.views[i], trial.points)) {
           sum += std::min(error, options_.outlier_px);
           count += 1.0;
@@ -201,7 +202,7 @@ class ClassName : public evbench::BackEnd {
     return trial;
   }
 
-  bool find_first_map(View view) {
+  bool find_initial_map(View view) {
     const double t = view.t;
     views_.push_back(std::move(view));
     const Initialiser::Attempt attempt = initialiser_.attempt(tracks_, t);
@@ -217,7 +218,7 @@ class ClassName : public evbench::BackEnd {
       if (!known) trials.push_back(std::move(trial));
     }
     std::ranges::sort(trials, {}, &Trial::error);
-    // A scene that is flat or far has two motions that explain it about as well; many views decide between them.
+    // A flat or distant scene allows two motions with similar errors; many views decide between them.
     const bool clear =
         trials.size() == 1 || (trials.size() > 1 && trials[1].error > 1.1 * trials[0].error) ||
         (!trials.empty() && attempt.candidates.front().median_parallax_deg > options_.clear_parallax_deg);
@@ -231,7 +232,7 @@ class ClassName : public evbench::BackEnd {
     trajectory_.pop_back();  // the newest one follows in step()
     monitor_.observe(t, t, TrackingMonitor::Support::full);
     update_map();
-    context_.log("first map at " + std::to_string(t) + " s, landmarks: " + std::to_string(points_.size()));
+    context_.log("initial map at " + std::to_string(t) + " s, landmarks: " + std::to_string(points_.size()));
     return true;
   }
 
@@ -250,7 +251,7 @@ class ClassName : public evbench::BackEnd {
     using Support = TrackingMonitor::Support;
     const bool located = good >= options_.min_landmarks && good > static_cast<int>(bad.size());
     monitor_.observe(before, view.t, located ? Support::full : Support::none,
-                     "landmarks in sight: " + std::to_string(good));
+                     "landmarks in view: " + std::to_string(good));
     if (!located) return false;
     for (const TrackId track : bad) {
       tracks_.remove(track);
@@ -265,7 +266,7 @@ class ClassName : public evbench::BackEnd {
     return true;
   }
 
-  /// New landmarks, and better places for those whose every observation the views still have.
+  /// Triangulates new landmarks, and refines those whose observations are all in the views.
   void update_map() {
     for (const auto& [track, pixel] : views_.back().pixels) {
       if (views_.front().pixels.contains(track) && points_.contains(track)) continue;
@@ -274,6 +275,6 @@ class ClassName : public evbench::BackEnd {
   }
 };
 
-const Registration<evbench::BackEnd, ClassName> registration("NAME", "poses and landmarks in turn, a start");
+const Registration<evbench::BackEnd, ClassName> registration("NAME", "template: poses and landmarks in turn");
 
 }  // namespace

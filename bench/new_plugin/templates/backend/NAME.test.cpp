@@ -4,7 +4,7 @@
 
 using namespace evbench;
 
-TEST_CASE("NAME does what every back-end must do") {
+TEST_CASE("NAME passes the conformance battery") {
   const Plugins plugins = registered_plugins();
   for (const battery::Check& check : battery::backend_checks(plugins, "NAME")) {
     INFO(check.name);
@@ -12,7 +12,7 @@ TEST_CASE("NAME does what every back-end must do") {
   }
 }
 
-TEST_CASE("NAME tells what is wrong with its options") {
+TEST_CASE("NAME reports a wrong option") {
   const Plugins plugins = registered_plugins();
   const auto& entry = plugins.of<BackEnd>().find("NAME", "test");
   CHECK_THROWS_WITH(entry.resolve({{"period", 0}}, "test", ""),

@@ -1,4 +1,4 @@
-// The back-end NAME for evbench, in the fewest lines that run: the camera moves as what it sees does, the other way.
+// The back-end NAME for evbench, in the fewest lines that run: the camera moves opposite to the mean observed pixel.
 #include "core/plugin/registration.hpp"
 
 namespace {
@@ -22,7 +22,7 @@ class ClassName : public evbench::BackEnd {
     const StampedPose pose{batch.observations.back().t, T};
     if (!poses_.empty() && pose.t <= poses_.back().t) return;
     poses_.push_back(pose);
-    context_.online({pose});
+    context_.publish({pose});
   }
 
   Feedback feedback(const FeedbackNeeds&) override { return {}; }
@@ -36,6 +36,6 @@ class ClassName : public evbench::BackEnd {
   std::vector<StampedPose> poses_;
 };
 
-const Registration<evbench::BackEnd, ClassName> registration("NAME", "the fewest lines that run, a start");
+const Registration<evbench::BackEnd, ClassName> registration("NAME", "template: the fewest lines that run");
 
 }  // namespace

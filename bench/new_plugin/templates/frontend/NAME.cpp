@@ -1,5 +1,5 @@
-// The front-end NAME for evbench, all of it: a small one to start from. It takes the tracks that a simulated source
-// knows, hands on every n-th observation of each, and adds noise. A tracker would read context.source.events() instead.
+// The front-end NAME for evbench: a small one to start from. It takes the true tracks of a simulated source, keeps
+// every n-th observation of each, and adds noise. A tracker would read context.source.events() instead.
 #include <cmath>
 #include <map>
 
@@ -14,22 +14,22 @@ using namespace evbench;
 
 class ClassName : public evbench::FrontEnd {
  public:
-  static constexpr bool reads_events = false;  // a tracker's is true, or left out
+  static constexpr bool reads_events = false;  // true, the default, for a tracker
 
   struct Options {
     int every = 2;
     double noise = 0.5;
 
     void declare(OptionSet& set) {
-      set.add("every", every, "of a track's observations the first of every so many is handed on").range(1);
-      set.add("noise", noise, "standard deviation of what is added to each coordinate [px]").range(0.0);
+      set.add("every", every, "keep every n-th observation of a track").range(1);
+      set.add("noise", noise, "standard deviation of the noise added to each coordinate [px]").range(0.0);
     }
   };
 
   ClassName(const Options& options, const FrontEndContext& context) {
     const auto tracks = context.source.true_tracks();
     if (!tracks) {
-      throw InputError(context.place + ": NAME needs a source that knows its true tracks, such as simulation");
+      throw InputError(context.place + ": NAME needs a source with true tracks, such as simulation");
     }
     Random random(context.seed);
     std::map<TrackId, int> seen;
@@ -41,10 +41,10 @@ class ClassName : public evbench::FrontEnd {
     }
     player_ = TrackPlayer(observations_);
     remark_ =
-        std::to_string(observations_.size()) + " of " + std::to_string(tracks->size()) + " observations handed on";
+        std::to_string(observations_.size()) + " of " + std::to_string(tracks->size()) + " observations kept";
   }
 
-  // Observations up to the horizon and the tracks that end there: the player knows how for tracks known beforehand.
+  // The player gives the observations and ends of known tracks up to the horizon.
   bool advance(const Horizon& horizon, TrackBatch& batch) override { return player_.advance(horizon, batch); }
 
   std::vector<std::string> remarks() const override { return {remark_}; }
@@ -55,6 +55,6 @@ class ClassName : public evbench::FrontEnd {
   std::string remark_;
 };
 
-const Registration<evbench::FrontEnd, ClassName> registration("NAME", "true tracks, thinned and made noisy, a start");
+const Registration<evbench::FrontEnd, ClassName> registration("NAME", "template: true tracks, thinned and with noise");
 
 }  // namespace

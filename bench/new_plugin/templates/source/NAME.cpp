@@ -1,5 +1,5 @@
-// The source NAME for evbench, all of it: a small one to start from. A camera goes round a circle before random points;
-// ground truth and the points' true tracks are known. A recording would give all_events() and files() besides.
+// The source NAME for evbench: a small one to start from. A camera moves on a circle in front of random points; it has
+// ground truth and true tracks. A source that reads a recording would also implement all_events() and files().
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,7 @@ class ClassName : public evbench::Source {
 
     void declare(OptionSet& set) {
       set.add("duration", duration, "length of the sequence [s]").range(0.1, 1000.0);
-      set.add("radius", radius, "of the circle [m]").above(0.0);
+      set.add("radius", radius, "radius of the circle [m]").above(0.0);
       set.add("period", period, "time of one round [s]").above(0.0);
       set.add("rate", rate, "observations of a point per second [Hz]").range(1.0, 1000.0);
       set.add("noise", noise, "standard deviation of each coordinate of an observation [px]").range(0.0);
@@ -50,7 +50,7 @@ class ClassName : public evbench::Source {
   PoseTrajectory ground_truth_;
   std::vector<TrackObservation> tracks_;
 
-  /// T_world_camera: on the circle, rolling a little.
+  /// T_world_camera: on the circle, with a small rotation about the optical axis.
   SE3 pose(double t) const {
     const double angle = 2.0 * M_PI * t / options_.period;
     Vector6 roll = Vector6::Zero();
@@ -61,10 +61,10 @@ class ClassName : public evbench::Source {
 
   void observe_points(std::uint64_t seed) {
     Random random(seed);
-    TrackId track = 0;  // a point that comes back into view is a new track
+    TrackId track = 0;  // a point that returns into view is a new track
     for (int i = 0; i < options_.points; ++i, ++track) {
       const Vector3 point = random.uniform3({-1.0, -0.8, 1.5}, {1.0, 0.8, 2.5});
-      const double first = random.uniform() / options_.rate;  // each at times of its own
+      const double first = random.uniform() / options_.rate;  // each point has its own observation times
       bool seen = false;
       for (double t = first; t <= options_.duration; t += 1.0 / options_.rate) {
         const Vector2 noise = options_.noise * random.normal2();
@@ -81,6 +81,6 @@ class ClassName : public evbench::Source {
   }
 };
 
-const Registration<evbench::Source, ClassName> registration("NAME", "a camera on a circle before points, a start");
+const Registration<evbench::Source, ClassName> registration("NAME", "template: a camera moves on a circle");
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 using namespace evbench;
 
-TEST_CASE("NAME does what every source must do") {
+TEST_CASE("NAME passes the conformance battery") {
   const Plugins plugins = registered_plugins();
   for (const battery::Check& check : battery::source_checks(plugins, "NAME", Json::object())) {
     INFO(check.name);

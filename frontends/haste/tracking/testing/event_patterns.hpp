@@ -11,14 +11,14 @@
 
 namespace evbench::haste::testing {
 
-/// How a pattern moves: its middle and its angle at a time [s].
+/// The pose of a pattern: its middle and its angle.
 struct PatternPose {
   Vector2 position = Vector2::Zero();  ///< [px]
   double angle = 0.0;                  ///< [rad]
 };
 
-/// Events at random points of lines that move: each event is a point, drawn from a random line, at its place then,
-/// scattered by a normal error and rounded to a pixel; `noise` of them are anywhere on the sensor instead. Evenly
+/// Events at random points of lines that move. Each event is a random point of a random line at its time, with a normal
+/// error, rounded to a pixel. The share `noise` of the events is anywhere on the sensor instead. Events are evenly
 /// spaced in time, `rate` a second. Those outside the sensor are left out.
 struct EventPattern {
   std::vector<std::pair<Vector2, Vector2>> lines;  ///< ends, in the pattern's frame [px]
@@ -47,7 +47,7 @@ struct EventPattern {
   }
 };
 
-/// A corner and a little more, so that all directions and the angle can be told.
+/// A corner and two short lines, which determine the position in all directions and the angle.
 inline std::vector<std::pair<Vector2, Vector2>> corner_lines() {
   return {{{-1, -1}, {11, -1}}, {{-1, -1}, {-1, 12}}, {{-9, -7}, {-4, -10}}, {{5, 6}, {9, 4}}};
 }

@@ -9,9 +9,9 @@
 
 namespace evbench::haste::testing {
 
-/// The published rules as they are written down, one hypothesis, one event and one cell at a time: what Tracker is
-/// compared with. It rounds where Tracker's header says and shares with it the hypotheses, the place of an event in a
-/// patch (footprint()) and the events' weights; all else is done the plain way.
+/// A direct transcription of the published rules, one hypothesis, one event and one cell at a time: the reference that
+/// Tracker is tested against. It rounds where Tracker's header says. It shares with Tracker the hypotheses, the
+/// position of an event in a patch (footprint()) and the events' weights.
 class PlainTracker {
  public:
   PlainTracker(const TrackerOptions& options, const GridState& seed) : options_(options), grid_(seed) {}
