@@ -363,7 +363,8 @@ TEST_CASE("An empty scene ends with a reason, and once there is texture, there i
   check_recovered(later, run(later), 2.5);
 }
 
-TEST_CASE("A single straight edge ends with a reason, and once there is more texture, there is a trajectory", "[slow]") {
+TEST_CASE("A single straight edge ends with a reason, and once there is more texture, there is a trajectory",
+          "[slow]") {
   const std::vector<EventScene::Outline> line{{{-4.0, -0.2}, {4.0, 0.3}}};
   const EventScene edge(swing, 3.0, line);
   const Execution nothing = run(edge);

@@ -10,11 +10,11 @@
 
 #include "core/io/atomic_file.hpp"
 #include "core/support/error.hpp"
+#include "core/support/json.hpp"
 #include "eval/comparison_table.hpp"
 #include "eval/find_runs.hpp"
 #include "eval/json_file.hpp"
 #include "eval/table.hpp"
-#include "core/support/json.hpp"
 
 namespace {
 

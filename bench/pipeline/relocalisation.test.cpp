@@ -90,7 +90,7 @@ class Surveyor : public BackEnd {
   Feedback feedback(const FeedbackNeeds&) override {
     Feedback result{until_, monitor_.state(), {}, {}, {}, {}};
     if (poses_.empty()) return result;
-    result.newest = ControlState{newest_, poses_.back().T, velocity()};
+    result.newest = ControlState{newest_, poses_.back().T, body_velocity()};
     result.covariance = Matrix12::Identity();
     for (const Landmark& landmark : map()) {
       const Vector3 seen = poses_.back().T.inverse() * landmark.position;

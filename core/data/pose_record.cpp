@@ -5,8 +5,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "core/geometry/types.hpp"
 #include "core/geometry/nearest_rotation.hpp"
+#include "core/geometry/types.hpp"
 
 namespace evbench {
 namespace {

@@ -10,8 +10,8 @@
 #include <set>
 
 #include "core/support/error.hpp"
-#include "core/support/nearest.hpp"
 #include "core/support/json.hpp"
+#include "core/support/nearest.hpp"
 
 namespace evbench {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/data/landmark.hpp"
 #include "core/data/causal_poses.hpp"
+#include "core/data/landmark.hpp"
 #include "core/data/problem.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/pose_trajectory.hpp"

@@ -12,8 +12,8 @@
 #include "core/io/path.hpp"
 #include "core/support/error.hpp"
 #include "core/support/index.hpp"
-#include "core/support/nearest.hpp"
 #include "core/support/json.hpp"
+#include "core/support/nearest.hpp"
 
 namespace evbench {
 namespace {

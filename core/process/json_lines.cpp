@@ -7,9 +7,9 @@
 
 #include "core/process/line_tail.hpp"
 #include "core/support/index.hpp"
+#include "core/support/json.hpp"
 #include "core/support/json_reason.hpp"
 #include "core/support/nearest.hpp"
-#include "core/support/json.hpp"
 
 namespace evbench::process {
 namespace {

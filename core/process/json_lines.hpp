@@ -16,8 +16,8 @@
 #include "core/motion/pose_trajectory.hpp"
 #include "core/plugin/exchange.hpp"
 #include "core/plugin/options.hpp"
-#include "core/support/json.hpp"
 #include "core/plugin/status.hpp"
+#include "core/support/json.hpp"
 
 // Writes and reads the messages of docs/reference/process_protocol.md, one JSON object a line. Numbers are written in
 // the shortest form that reads back as the same number.

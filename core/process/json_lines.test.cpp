@@ -3,8 +3,8 @@
 #include <cmath>
 #include <random>
 
-#include "core/testing/catch2.hpp"
 #include "core/support/json.hpp"
+#include "core/testing/catch2.hpp"
 
 using namespace evbench;
 using namespace evbench::process;

@@ -82,7 +82,9 @@ TEST_CASE("A recording's text is read by named columns, and with however many fa
   folder.write("groundtruth.txt", kGroundTruth);
   folder.write("events.txt", "5 1.5 7 1\n6 1.6 8 0\n999 1.7 8 0\n");  // the last one is outside the sensor
   const auto read_all = [&](const char* more) {
-    const Recording source = open(std::string(R"({"folder": ".", "width": 240, "height": 180, "columns": "x,t_s,y,p")") + more + "}", folder.path());
+    const Recording source =
+        open(std::string(R"({"folder": ".", "width": 240, "height": 180, "columns": "x,t_s,y,p")") + more + "}",
+             folder.path());
     const auto stream = source.events();
     std::vector<Event> all, events;
     while (stream->read(events)) all.insert(all.end(), events.begin(), events.end());

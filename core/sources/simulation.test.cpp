@@ -6,9 +6,9 @@
 #include "core/data/tum.hpp"
 #include "core/io/atomic_file.hpp"
 #include "core/plugin/registration.hpp"
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
-#include "core/support/json.hpp"
 
 using namespace evbench;
 using Catch::Matchers::ContainsSubstring;

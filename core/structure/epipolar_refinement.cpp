@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/geometry/so3.hpp"
-#include "core/geometry/tangent_plane.hpp"
 #include "core/geometry/solve_symmetric.hpp"
+#include "core/geometry/tangent_plane.hpp"
 
 namespace evbench {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "core/geometry/in_view.hpp"
 #include "core/geometry/so3.hpp"
-#include "core/support/index.hpp"
 #include "core/geometry/solve_symmetric.hpp"
+#include "core/support/index.hpp"
 
 namespace evbench {
 namespace {

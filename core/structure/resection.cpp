@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/support/median.hpp"
 #include "core/geometry/solve_symmetric.hpp"
+#include "core/support/median.hpp"
 
 namespace evbench {
 

@@ -1,12 +1,12 @@
 #include "core/structure/triangulation.hpp"
 
-#include "core/geometry/solve_symmetric.hpp"
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench {
 namespace {

@@ -9,11 +9,11 @@
 #include <numeric>
 #include <opencv2/calib3d.hpp>
 
+#include "core/geometry/nearest_rotation.hpp"
 #include "core/geometry/so3.hpp"
 #include "core/structure/epipolar_refinement.hpp"
 #include "core/structure/triangulation.hpp"
 #include "core/support/median.hpp"
-#include "core/geometry/nearest_rotation.hpp"
 
 namespace evbench {
 namespace {

@@ -1,8 +1,8 @@
 #include "frontends/recorded/recorded.hpp"
 
+#include "core/support/json.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
-#include "core/support/json.hpp"
 
 using namespace evbench;
 using Catch::Matchers::ContainsSubstring;

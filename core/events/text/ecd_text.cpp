@@ -27,8 +27,7 @@ std::string_view text_of(std::span<const std::byte> bytes) {
 bool is_text(std::span<const std::byte> head) {
   // "#!": of other formats, e.g. AEDAT; "{": JSON, e.g. a config; "<": XML.
   return !head.empty() && !text_of(head).starts_with("#!") && !text_of(head).starts_with("{") &&
-         !text_of(head).starts_with("<") &&
-         std::none_of(head.begin(), head.end(), [](std::byte byte) {
+         !text_of(head).starts_with("<") && std::none_of(head.begin(), head.end(), [](std::byte byte) {
            return byte < std::byte{0x20} && byte != std::byte{'\n'} && byte != std::byte{'\r'} &&
                   byte != std::byte{'\t'};
          });

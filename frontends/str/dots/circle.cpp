@@ -1,10 +1,10 @@
 #include "frontends/str/dots/circle.hpp"
 
-#include "core/geometry/solve_symmetric.hpp"
-
 #include <Eigen/QR>
 #include <array>
 #include <cmath>
+
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace evbench::str {
 

@@ -40,8 +40,7 @@ class ClassName : public evbench::FrontEnd {
       observations_.push_back(z);
     }
     player_ = TrackPlayer(observations_);
-    remark_ =
-        std::to_string(observations_.size()) + " of " + std::to_string(tracks->size()) + " observations kept";
+    remark_ = std::to_string(observations_.size()) + " of " + std::to_string(tracks->size()) + " observations kept";
   }
 
   // The player gives the observations and ends of known tracks up to the horizon.
