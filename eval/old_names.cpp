@@ -29,7 +29,6 @@ constexpr OldName kKeys[] = {
 constexpr std::pair<const char*, const char*> kFiles[] = {
     {"causal.tum", "online.tum"},
     {"causal_poses.txt", "told.txt"},
-    {"estimated_parameters.csv", "learnt.csv"},
 };
 
 bool rename(Json& object, const char* before, const char* now) {

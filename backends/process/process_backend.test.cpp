@@ -171,6 +171,7 @@ TEST_CASE("The status of a run follows from the states that a process answers") 
     return Session(script(states, final)).go().backend->status();
   };
   CHECK(status("['no_map', 'tracking', 'stationary']", one_pose).state == RunState::ok);
+  CHECK(status("['no_map', 'tracking', 'standing_still']", one_pose).state == RunState::ok);  // before version 1.0
   const Status degraded = status("['tracking', 'degraded', 'tracking']", one_pose);
   CHECK(degraded.state == RunState::degraded);
   REQUIRE(degraded.degraded.size() == 1);
@@ -207,6 +208,7 @@ TEST_CASE("A back-end process that is lost reports it before the end") {
 
 TEST_CASE("Each wrong answer of a back-end process gives an error that explains it") {
   CHECK(failure("{'state': 'tracking', 'causal_poses': [pose(t, 0)]}").empty());
+  CHECK(failure("{'state': 'tracking', 'online': [pose(t, 0)]}").empty());  // before version 1.0
   CHECK_THAT(failure("{'state': 'tracking', 'causal_poses': [pose(float('nan'), 0)]}"),
              ContainsSubstring(
                  "config.json: backend: the process \"/usr/bin/python3 backend.py\" answered wrongly: expected one "
