@@ -298,10 +298,9 @@ void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
       "config names, and lists what is therefore not checked");
   command->footer(
       "Each run writes OUT/EXPERIMENT/KEY: config.json, job.json, manifest.json, final.tum, causal.tum,\n"
-      "causal_poses.txt, groundtruth.tum, map.ply, metrics.json, timing.csv, log.txt, status.json. KEY is a hash of "
-      "all that determines\n"
-      "the trajectory (job.json). A run that is complete below OUT is not repeated, but labelled and scored as the\n"
-      "config says; a run that ended with an error is repeated.\n"
+      "causal_poses.txt, groundtruth.tum, map.ply, metrics.json, timing.csv, log.txt, status.json. KEY is a hash\n"
+      "of all that determines the trajectory (job.json). A run that is complete below OUT is not repeated, but\n"
+      "labelled and scored as the config says; a run that ended with an error is repeated.\n"
       "Exit codes: 0 done (also when a run is degraded or lost: see its status), 2 bad input, 3 a run failed,\n"
       "4 results can't be written (disk full), 130 interrupted (Ctrl-C).");
   command->callback([arguments, &plugins, &exit_code] { exit_code = run_config(*arguments, plugins); });
