@@ -24,9 +24,9 @@ struct InitialMap {
 /// farther, and use few points of a track. From the first view's landmarks the trajectory is extended back as far as
 /// there are tracks.
 ///
-/// World frame: the camera at the first view. Unit of length: the landmarks' median distance from there. Gauge and
-/// scale are anchored by a tight prior on the first pose, and by the mean nearness to it of that half of the landmarks
-/// whose distance is known best.
+/// World frame: the camera at the first view. Unit of length: the median distance of its landmarks from there. Gauge
+/// and scale are anchored by a tight prior on the first pose, and by the mean nearness to it of that half of the
+/// landmarks whose distance is known best.
 class InitialMapFinder {
  public:
   InitialMapFinder(const Options& options, const PinholeCamera& camera);

@@ -73,7 +73,7 @@ void Options::declare(OptionSet& set) {
   set.group("placement", placement, "control states");
   set.add("qc", qc,
           "diagonal of the WNOA prior's power spectral density: rotation x y z [rad^2/s^3], translation x y z "
-          "[units^2/s^3]; a unit is the median depth of the initial map")
+          "[units^2/s^3]; a unit is the median distance of the initial map's landmarks from its first view")
       .size(6)
       .above(0.0);
   set.add("qc_scale", qc_scale, "multiplies qc: above 1 is a weaker prior").range(1e-12, 1e12);
