@@ -87,15 +87,15 @@ void check_recovered(const Source& source, const Execution& execution, double fr
 #endif
 }
 
-/// Number of re-associated landmarks whose tracks were continued, from the front-end's remark.
+/// Number of re-acquired landmarks whose tracks were continued, from the front-end's remark.
 int continued_tracks(const Execution& execution) {
   int found = 0, count = 0;
   for (const std::string& line : execution.result.log) {
-    if (std::sscanf(line.c_str(), "frontend: %d landmarks found again, of which %d went on", &found, &count) == 2) {
-      return count;
-    }
+    const int read = std::sscanf(line.c_str(), "frontend: %d landmarks re-acquired by template, of which %d were",
+                                 &found, &count);
+    if (read == 2) return count;
   }
-  FAIL("the front-end does not say how many landmarks went on");
+  FAIL("the front-end does not say how many landmarks were confirmed");
   return 0;
 }
 

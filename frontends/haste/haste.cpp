@@ -14,7 +14,7 @@ namespace {
 
 const Registration<FrontEnd, Haste> registration(
     "haste",
-    "tracks features in events asynchronously by hypotheses (Alzugaray and Chli 2020), finds lost landmarks again", 8);
+    "tracks features in events asynchronously by hypotheses (Alzugaray and Chli 2020), re-acquires lost landmarks", 8);
 
 constexpr double kLeastStep = 1e-6;  ///< [s] between two observations of a track, at least
 
@@ -174,15 +174,15 @@ std::vector<std::string> Haste::counts() const {
   const auto ended = [&](End why) { return ended_[index(static_cast<int>(why))]; };
   return {
       fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
-      fmt::format("trackers that ended: {} at the border, {} as their hypotheses were alike, {} before an edge, "
-                  "{} starved, {} crowded, {} far from where they were expected, {} as outliers, {} wandering in "
-                  "noise, {} before something else after a silence",
+      fmt::format("trackers that ended: {} at the border, {} as their hypotheses were alike, {} along an edge, "
+                  "{} starved, {} crowded, {} far from where they were expected, {} as outliers, {} erratic, "
+                  "{} mismatched after a silence",
                   ended(End::border), ended(End::spread), ended(End::edge), ended(End::starvation),
                   ended(End::crowding), ended(End::veto), ended(End::outlier), ended(End::wandering),
                   ended(End::silence)),
       fmt::format(
-          "{} landmarks found again, of which {} went on; {} at corners, of which {} went on; {} displaced together; "
-          "{} recognised after a loss",
+          "{} landmarks re-acquired by template, of which {} were confirmed; {} at corners, of which {} were "
+          "confirmed; {} displaced together; {} recognised after tracking was lost",
           by_template_.found, by_template_.went_on, at_corners_.found, at_corners_.went_on, begun_displaced_,
           ended(End::recognised)),
       fmt::format("{} observations came later than the delay", late_)};

@@ -22,7 +22,7 @@ void LifeOptions::declare(OptionSet& set) {
 }
 
 void GuidanceOptions::declare(OptionSet& set) {
-  set.add("outliers", outliers, "tracks that the back-end holds for outliers end");
+  set.add("outliers", outliers, "tracks end that the back-end rejects as outliers");
   set.add("veto", veto, "tracks end that are far from where the back-end expects their landmarks");
   set.add("reacquire", reacquire,
           "landmarks that come back into view are searched for at their expected positions; their tracks go on");
@@ -79,7 +79,7 @@ void Options::declare(OptionSet& set) {
           "one that comes later still gets a time that is not published yet [s]")
       .range(0.0, 1.0);
   set.group("detection", detection, "new features");
-  set.group("life", life, "when trackers are given up");
+  set.group("life", life, "when trackers end");
   set.group("guidance", guidance, "how the back-end's feedback is used");
 }
 

@@ -6,7 +6,7 @@
 
 namespace evbench::haste {
 
-/// When a tracker is given up.
+/// When a tracker ends.
 struct LifeOptions {
   double spread = 0.2;
   double curvature = 0.02;

@@ -92,7 +92,7 @@ Told track(const Options& options, const Landmarks& landmarks, TrackingState sta
   const std::vector<std::string> remarks = haste.remarks();
   for (const std::string& remark : remarks) {
     if (remark.starts_with("trackers that ended")) told.trackers = remark;
-    if (remark.find("found again") != std::string::npos) told.finds = remark;
+    if (remark.find("landmarks re-acquired") != std::string::npos) told.finds = remark;
   }
   return told;
 }
@@ -161,8 +161,8 @@ TEST_CASE("A landmark of a map that is replaced is not searched for in the next 
   const auto finds = [&](TrackingState before) {
     return track(options, beginnings(), TrackingState::tracking, 0.5, kStep, before).finds;
   };
-  CHECK_THAT(finds(TrackingState::degraded), !Catch::Matchers::StartsWith("0 landmarks found again"));
-  CHECK_THAT(finds(TrackingState::no_map), Catch::Matchers::StartsWith("0 landmarks found again"));
+  CHECK_THAT(finds(TrackingState::degraded), !Catch::Matchers::StartsWith("0 landmarks re-acquired"));
+  CHECK_THAT(finds(TrackingState::no_map), Catch::Matchers::StartsWith("0 landmarks re-acquired"));
 }
 
 TEST_CASE("Trackers far from where landmarks are expected end, but not while a motion model alone expects them there") {

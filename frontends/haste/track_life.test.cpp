@@ -182,7 +182,7 @@ TEST_CASE("Few trackers that step to and fro under noise and fast motion are tak
   told.go_on_to(0.6);
   CHECK(told.alive.size() > 40);
   CHECK(told.ended.size() > 100);
-  CHECK(10 * told.ended_as("wandering in noise") < std::ssize(told.ended));
+  CHECK(10 * told.ended_as("erratic") < std::ssize(told.ended));
 }
 
 TEST_CASE("Trackers that a burst of noise displaces end, without observations at the displaced positions") {
@@ -199,7 +199,7 @@ TEST_CASE("Trackers that a burst of noise displaces end, without observations at
   const std::map<TrackId, TrackObservation> before = told.alive;
   REQUIRE(before.size() > 40);
   told.go_on_to(0.55);
-  CHECK(told.ended_as("wandering in noise") > 40);
+  CHECK(told.ended_as("erratic") > 40);
   for (const auto& [track, last] : told.ended) {
     if (!before.contains(track)) continue;
     CAPTURE(track, last.t);
@@ -232,7 +232,7 @@ TEST_CASE("After a silence trackers go on where they see the same pattern, and e
     const auto alive =
         std::ranges::count_if(before, [&](const auto& track) { return told.alive.contains(track.first); });
     return After{static_cast<double>(alive) / static_cast<double>(before.size()),
-                 told.ended_as("before something else after a silence")};
+                 told.ended_as("mismatched after a silence")};
   };
   const After same = after(still, 0.9, 1.1), different = after(moved, 1.4, 2.0);
   CHECK(same.alive > 0.5);

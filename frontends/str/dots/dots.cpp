@@ -192,7 +192,7 @@ std::optional<TrackId> Dots::known_at(const Vector2& pixel) const {
 std::vector<std::string> Dots::counts() const {
   return {fmt::format("batches: {} registered, {} not", registered_, unregistered_),
           fmt::format("{} dots found, {} in view at the end; lost: {} at the border, {} that were no longer round, {} "
-                      "without events; {} found again",
+                      "without events; {} re-acquired",
                       next_id_, tracks_.size(), left_, misfits_, starved_, found_again_),
           fmt::format("{} observations came later than the delay", late_)};
 }

@@ -99,7 +99,7 @@ TEST_CASE("The centres of identical dots are observed, and a dot that comes back
   CHECK(errors[errors.size() / 2] < 0.3);
   CHECK(errors[errors.size() * 95 / 100] < 0.8);
   CHECK(strays == 0);
-  CHECK(told.remarks.at(1).find(" 0 found again") == std::string::npos);
+  CHECK(told.remarks.at(1).find(" 0 re-acquired") == std::string::npos);
   CHECK(disc_of.size() < track_of.size() + track_of.size() / 5);  // few dots have a second track
 }
 

@@ -21,7 +21,7 @@ void DotsOptions::declare(OptionSet& set) {
   set.group("registration", registration, "how the motion of a batch is found");
   set.group("segmentation", segmentation, "what is taken for a new dot");
   set.group("dot", dot, "how a dot is followed");
-  set.group("life", life, "when dots are given up, and known again");
+  set.group("life", life, "when a dot's track ends, and when it goes on");
 }
 
 }  // namespace evbench::str

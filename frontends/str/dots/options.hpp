@@ -8,7 +8,7 @@
 
 namespace evbench::str {
 
-/// When a dot is given up, and whether it is recognised when it comes back.
+/// When a dot's track ends, and whether the dot is re-acquired when it comes back.
 struct DotLifeOptions {
   double residual = 1.2;
   double radius = 0.3;
