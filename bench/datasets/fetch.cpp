@@ -98,7 +98,7 @@ std::vector<std::string> verify_dataset(const std::string& folder) {
 }
 
 void fetch_dataset(const Dataset& dataset, const std::string& folder, const DownloadOptions& download_options,
-                   const std::function<void(const std::string&)>& told) {
+                   const std::function<void(const std::string&)>& report) {
   AtomicFolder atomic(folder);  // locks, too
   const fs::path downloads = folder + ".download";
   fs::create_directories(downloads);
@@ -118,9 +118,9 @@ void fetch_dataset(const Dataset& dataset, const std::string& folder, const Down
       throw;
     }
     record["downloads"].push_back(record_of_file("url", file.url, path));
-    told(fmt::format("{}: {} bytes, SHA-256 {} ({})", file.url, fs::file_size(path),
-                     record["downloads"].back()["sha256"].get<std::string>(),
-                     file.sha256.empty() ? "not compared: the catalogue has none" : "as the catalogue has it"));
+    report(fmt::format("{}: {} bytes, SHA-256 {} ({})", file.url, fs::file_size(path),
+                       record["downloads"].back()["sha256"].get<std::string>(),
+                       file.sha256.empty() ? "not compared: the catalogue has none" : "as the catalogue has it"));
   }
   // No download is used before all of them are checked.
   for (const Dataset::File& file : dataset.files) {

@@ -40,10 +40,10 @@ Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options)
   }
   bool some_failed = false;
   std::vector<std::vector<double>> drawn;  // in each panel
-  std::vector<std::string> told;           // failures that the first panel of a row shows with its names
+  std::vector<std::string> shown;          // failures that the first panel of a row shows with its names
   for (const Metric& metric : metrics) {
     const bool begins_row = figure.panels.size() % figure.columns == 0;
-    if (begins_row) told.clear();
+    if (begins_row) shown.clear();
     Panel panel{{metric.header}, {}, {}};
     drawn.emplace_back();
     for (std::size_t m = 0; m < all.methods.size(); ++m) {
@@ -51,9 +51,9 @@ Figure box_figure(std::span<const RunRecord> runs, const FigureOptions& options)
       some_failed = some_failed || !row.failures.empty();
       if (begins_row) {
         panel.names.push_back(all.methods[m].name + (row.failures.empty() ? "" : " " + row.failures));
-        told.push_back(row.failures);
+        shown.push_back(row.failures);
       } else {
-        panel.names.push_back(row.failures == told[m] ? "" : row.failures);
+        panel.names.push_back(row.failures == shown[m] ? "" : row.failures);
       }
       drawn.back().insert(drawn.back().end(), row.values.begin(), row.values.end());
       if (!row.values.empty()) {

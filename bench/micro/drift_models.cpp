@@ -265,7 +265,7 @@ void compare(const Arguments& arguments) {
     const auto source = make_source(run.job, plugins);
     std::vector<TrackObservation> observations = tracks_of(run.job, *source, plugins);
     if (observations.empty()) {
-      throw InputError(fmt::format("{}: its front-end tells no tracks; expected some", arguments.config));
+      throw InputError(fmt::format("{}: its front-end makes no tracks; expected some", arguments.config));
     }
     const double stated = observations.front().sigma;
     if (arguments.drift > 0.0) add_wander(observations, arguments.drift, arguments.time, Random(run.job.seed, 5));

@@ -133,9 +133,9 @@ bool is_right(const gp_map::GpMap& backend, const Beginning& beginning) {
 }
 
 struct Start {
-  bool right = false, right_told = false, right_later = false, right_final = false;
+  bool right = false, right_published = false, right_later = false, right_final = false;
   double seconds = kDuration;    ///< until the initial map
-  double told = kDuration;       ///< [s] until the first pose is published
+  double published = kDuration;  ///< [s] until the first pose is published
   double reach = 0.0;            ///< share of that time that the trajectory covers
   std::vector<double> attempts;  ///< [ms]
   double first = 0.0;            ///< [ms]
@@ -145,8 +145,8 @@ Start start(const Beginning& beginning, std::uint64_t seed) {
   BackEndContext context;
   context.camera = beginning.camera.pinhole;
   context.seed = seed;
-  bool telling = false;
-  context.publish = [&](const CausalPose&) { telling = true; };
+  bool publishing = false;
+  context.publish = [&](const CausalPose&) { publishing = true; };
   gp_map::GpMap backend({}, context);
   TrackPlayer player(beginning.tracks.observations);
   TrackBatch batch;
@@ -162,9 +162,9 @@ Start start(const Beginning& beginning, std::uint64_t seed) {
       result.reach = (backend.trajectory().end() - backend.trajectory().start()) / result.seconds;
       result.right = is_right(backend, beginning);
     }
-    if (telling && result.told == kDuration) {
-      result.told = t - begin;
-      result.right_told = is_right(backend, beginning);
+    if (publishing && result.published == kDuration) {
+      result.published = t - begin;
+      result.right_published = is_right(backend, beginning);
     }
     if (found && t > begin + result.seconds + kAfterwards) break;
   }
@@ -198,9 +198,9 @@ void report(std::string_view name, const std::vector<Start>& starts) {
   fmt::print(
       "| {:<16} | {:5.1f} | {:5.1f} | {:5.1f} | {:5.1f} | {:5.2f} | {:5.2f} | {:5.2f} | {:5.2f} | {:5.1f} | {:6.2f} | "
       "{:6.1f} | {:6.1f} | {:6.1f} |\n",
-      name, share(&Start::right), share(&Start::right_told), share(&Start::right_later), share(&Start::right_final),
-      quantile_of(all(&Start::seconds), 0.5), quantile_of(all(&Start::seconds), 0.9),
-      quantile_of(all(&Start::told), 0.5), quantile_of(all(&Start::told), 0.9),
+      name, share(&Start::right), share(&Start::right_published), share(&Start::right_later),
+      share(&Start::right_final), quantile_of(all(&Start::seconds), 0.5), quantile_of(all(&Start::seconds), 0.9),
+      quantile_of(all(&Start::published), 0.5), quantile_of(all(&Start::published), 0.9),
       100.0 * quantile_of(all(&Start::reach), 0.5), quantile_of(attempts, 0.5), quantile_of(attempts, 1.0),
       quantile_of(all(&Start::first), 0.5), quantile_of(all(&Start::first), 1.0));
   std::fflush(stdout);
@@ -233,9 +233,8 @@ int main(int argc, char** argv) {
     if (std::ranges::find(kinds, name, &Kind::name) == kinds.end()) return usage();
   }
   fmt::print(
-      "| kind | right [%] | told [%] | later [%] | final [%] | initial map [s] | 90 % [s] | first pose [s] | 90 % [s] "
-      "| "
-      "reaches back [%] | attempt, median [ms] | max | first, median [ms] | max |\n"
+      "| kind | right [%] | published [%] | later [%] | final [%] | initial map [s] | 90 % [s] | first pose [s] | "
+      "90 % [s] | reaches back [%] | attempt, median [ms] | max | first, median [ms] | max |\n"
       "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   std::vector<Start> all;
   for (const Kind& kind : kinds) {

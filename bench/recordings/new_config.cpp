@@ -58,9 +58,9 @@ std::string found_text(const RecordingSummary& s) {
   std::string text =
       s.info.width > 0 ? fmt::format("Sensor {}x{} pixels", s.info.width, s.info.height) : "Sensor of unknown size";
   for (const auto& [key, value] : s.info.metadata) {
-    const bool told = key == "calibration" || key == "ground truth" || key == kCameraInfoIn || key == kGroundTruthIn ||
-                      key == kTopicChoice || key == "sensor size";
-    if (told) text += fmt::format("; {}: {}", key, printable(value, 200));
+    const bool reported = key == "calibration" || key == "ground truth" || key == kCameraInfoIn ||
+                          key == kGroundTruthIn || key == kTopicChoice || key == "sensor size";
+    if (reported) text += fmt::format("; {}: {}", key, printable(value, 200));
   }
   return text + ".";
 }

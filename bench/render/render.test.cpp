@@ -216,12 +216,12 @@ TEST_CASE("A video can be read, with the number of pictures and the colours that
   options.speed = 0.1;  // a picture each 4 ms
   options.duration = 0.02;
   options.scale = 16;
-  std::vector<std::int64_t> told;
+  std::vector<std::int64_t> reported;
   const RenderReport report =
-      render(in, out, options, [&](std::int64_t pictures, std::int64_t) { told.push_back(pictures); });
+      render(in, out, options, [&](std::int64_t pictures, std::int64_t) { reported.push_back(pictures); });
   CHECK(report.pictures == 21);  // from 20 ms on
-  CHECK(told.size() == 21);
-  CHECK(told.back() == 21);
+  CHECK(reported.size() == 21);
+  CHECK(reported.back() == 21);
   CHECK(names(folder.path()) == std::set<std::string>{"a.evb", "a.mp4"});
   const std::vector<cv::Mat> video = read_video(out);
   REQUIRE(video.size() == 21);

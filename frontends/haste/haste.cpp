@@ -65,9 +65,9 @@ void Haste::observe(const Change& change) {
   track.pixel = change.after.position;
   const double sigma = options_.score_sigma ? sigma_.next(change.scores) : options_.sigma;
   TrackObservation z{track.id, seconds(change.after.t), place_of(change, options_.place), sigma};
-  const double told = std::max(seconds(change.t_event), clock_) - options_.delay;  // published up to here
-  if (z.t <= told) ++late_;
-  z.t = std::max({z.t, told, track.told + kLeastStep});
+  const double published = std::max(seconds(change.t_event), clock_) - options_.delay;  // published up to here
+  if (z.t <= published) ++late_;
+  z.t = std::max({z.t, published, track.reported + kLeastStep});
   if (track.probation > 0) {
     if (!is_as_expected(track.id, z.pixel, z.t)) {
       lost_.disappoint(track.id, clock_);
@@ -89,7 +89,7 @@ void Haste::observe(const Change& change) {
     track.displaced = false;
     lost_.forget(track.id);
   }
-  track.told = z.t;
+  track.reported = z.t;
   delayed_.add(z);
 }
 
@@ -180,11 +180,10 @@ std::vector<std::string> Haste::counts() const {
                   ended(End::border), ended(End::spread), ended(End::edge), ended(End::starvation),
                   ended(End::crowding), ended(End::veto), ended(End::outlier), ended(End::wandering),
                   ended(End::silence)),
-      fmt::format(
-          "{} landmarks re-acquired by template, of which {} were confirmed; {} at corners, of which {} were "
-          "confirmed; {} displaced together; {} recognised after tracking was lost",
-          by_template_.found, by_template_.went_on, at_corners_.found, at_corners_.went_on, begun_displaced_,
-          ended(End::recognised)),
+      fmt::format("{} landmarks re-acquired by template, of which {} were confirmed; {} at corners, of which {} were "
+                  "confirmed; {} displaced together; {} recognised after tracking was lost",
+                  by_template_.found, by_template_.went_on, at_corners_.found, at_corners_.went_on, begun_displaced_,
+                  ended(End::recognised)),
       fmt::format("{} observations came later than the delay", late_)};
 }
 

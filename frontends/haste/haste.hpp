@@ -43,7 +43,7 @@ class Haste : public EventFrontEnd {
     int probation = 0;                   ///< changes of state until a re-acquired landmark's track goes on
     bool at_corner = false;              ///< it was re-acquired as a corner, not by its template
     bool displaced = false;              ///< re-acquired off its expected position; not back there yet
-    double told = -kInfinity;            ///< [s] time of its last observation
+    double reported = -kInfinity;        ///< [s] time of its last observation
     double found = -kInfinity;           ///< [s] when the tracker was last confirmed to follow something
     Vector2 from = pixel;                ///< its position then [px]
     double way = 0.0;                    ///< path length since then [px]

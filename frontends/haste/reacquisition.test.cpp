@@ -66,7 +66,7 @@ Feedback feedback(double t, TrackingState state, const Landmarks& landmarks, dou
   return result;
 }
 
-struct Told {
+struct Reported {
   std::vector<TrackObservation> observations;
   std::string trackers, finds;  ///< remarks
 
@@ -78,23 +78,23 @@ struct Told {
 
 /// All observations that it publishes with feedback from `from` [s] on. `sigma` [px]: the positions' uncertainty in the
 /// feedback. One feedback of `state`, if there is one, comes first.
-Told track(const Options& options, const Landmarks& landmarks, TrackingState state = TrackingState::tracking,
-           double sigma = 0.5, double from = kStep, std::optional<TrackingState> before = std::nullopt) {
+Reported track(const Options& options, const Landmarks& landmarks, TrackingState state = TrackingState::tracking,
+               double sigma = 0.5, double from = kStep, std::optional<TrackingState> before = std::nullopt) {
   Haste haste(options, {lost_scene(), 0, ""});
-  Told told;
+  Reported reported;
   TrackBatch batch;
   for (double t = kStep; t < 1.0; t += kStep) {
     if (t >= from && before) haste.receive(feedback(t, *before, {}, sigma));
     if (t >= from) haste.receive(feedback(t, state, landmarks, sigma));
     haste.advance({t}, batch);
-    told.observations.insert(told.observations.end(), batch.observations.begin(), batch.observations.end());
+    reported.observations.insert(reported.observations.end(), batch.observations.begin(), batch.observations.end());
   }
   const std::vector<std::string> remarks = haste.remarks();
   for (const std::string& remark : remarks) {
-    if (remark.starts_with("trackers that ended")) told.trackers = remark;
-    if (remark.find("landmarks re-acquired") != std::string::npos) told.finds = remark;
+    if (remark.starts_with("trackers that ended")) reported.trackers = remark;
+    if (remark.find("landmarks re-acquired") != std::string::npos) reported.finds = remark;
   }
-  return told;
+  return reported;
 }
 
 /// Distance of an observation from its landmark [px].
@@ -114,10 +114,10 @@ TEST_CASE("A corner that is detected where a landmark without a template is expe
   const Landmarks landmarks = known();
   Options options;
   options.guidance.corners = true;
-  const Told told = track(options, landmarks);
-  CHECK(told.of_known() > 500);
+  const Reported reported = track(options, landmarks);
+  CHECK(reported.of_known() > 500);
   std::vector<double> errors;
-  for (const TrackObservation& z : told.observations) {
+  for (const TrackObservation& z : reported.observations) {
     if (z.track >= kKnown) errors.push_back(error(landmarks, z));
   }
   REQUIRE_FALSE(errors.empty());
@@ -129,10 +129,10 @@ TEST_CASE("A corner that turns out not to be at its landmark's expected position
   Options options;
   options.guidance.corners = true;
   options.guidance.tolerance = 2.0;
-  const Told told = track(options, known(3.0), TrackingState::tracking, 3.0);
-  CHECK(told.of_known() == 0);
-  CHECK_THAT(told.finds, !Catch::Matchers::ContainsSubstring(" 0 at corners"));
-  CHECK_FALSE(told.observations.empty());
+  const Reported reported = track(options, known(3.0), TrackingState::tracking, 3.0);
+  CHECK(reported.of_known() == 0);
+  CHECK_THAT(reported.finds, !Catch::Matchers::ContainsSubstring(" 0 at corners"));
+  CHECK_FALSE(reported.observations.empty());
 }
 
 TEST_CASE("A corner is not associated where two landmarks are expected") {
@@ -140,8 +140,8 @@ TEST_CASE("A corner is not associated where two landmarks are expected") {
   landmarks.merge(known(1.0, 2 * kKnown));
   Options options;
   options.guidance.corners = true;
-  const Told told = track(options, landmarks);
-  CHECK(told.of_known() == 0);
+  const Reported reported = track(options, landmarks);
+  CHECK(reported.of_known() == 0);
 }
 
 TEST_CASE("Landmarks are re-acquired while the back-end is degraded, unless that is switched off or tracking is lost") {

@@ -93,7 +93,7 @@ void Haste::end_trackers() {
     } else if (crowded(id, track.pixel)) {
       end(id, End::crowding);
     } else {
-      if (track.doubted < 0) track.found = track.told;
+      if (track.doubted < 0) track.found = track.reported;
       track.from = track.pixel;
       track.way = 0.0;
       track.visited = Eigen::AlignedBox2d(track.pixel);

@@ -79,13 +79,13 @@ Feedback truth(double t, const std::vector<TrackObservation>& observed) {
 
 /// Eight tracks at 0.5 s, which without feedback go on after it.
 std::vector<TrackObservation> eight() {
-  Followed told({}, life_scene());
-  told.go_on_to(0.5);
-  std::map<TrackId, TrackObservation> alive = told.alive;
-  told.go_on_to(0.65);
+  Followed reported({}, life_scene());
+  reported.go_on_to(0.5);
+  std::map<TrackId, TrackObservation> alive = reported.alive;
+  reported.go_on_to(0.65);
   std::vector<TrackObservation> result;
   for (const auto& [id, z] : alive) {
-    if (result.size() < 8 && told.alive.contains(id)) result.push_back(z);
+    if (result.size() < 8 && reported.alive.contains(id)) result.push_back(z);
   }
   REQUIRE(result.size() == 8);
   return result;
@@ -111,18 +111,18 @@ std::vector<Event> square(const std::function<Vector2(double)>& place, std::uint
 }  // namespace
 
 TEST_CASE("A track that the back-end rejects as an outlier ends and is not observed any more") {
-  Followed told({}, life_scene());
-  told.go_on_to(0.5);
+  Followed reported({}, life_scene());
+  reported.go_on_to(0.5);
   const TrackId outlier = eight()[3].track;
   Feedback feedback = truth(0.5, {});
   feedback.outliers = {outlier, 4711};
-  told.haste.receive(feedback);
-  told.go_on_to(0.6);
-  REQUIRE(told.ended_at.contains(outlier));
-  CHECK(told.ended_at.at(outlier) == Approx(0.5).margin(1e-6));
-  told.go_on_to(1.0);
-  CHECK_FALSE(told.alive.contains(outlier));
-  CHECK(told.ended_as("as outliers") == 1);
+  reported.haste.receive(feedback);
+  reported.go_on_to(0.6);
+  REQUIRE(reported.ended_at.contains(outlier));
+  CHECK(reported.ended_at.at(outlier) == Approx(0.5).margin(1e-6));
+  reported.go_on_to(1.0);
+  CHECK_FALSE(reported.alive.contains(outlier));
+  CHECK(reported.ended_as("as outliers") == 1);
 
   Options deaf;
   deaf.guidance.outliers = false;
@@ -136,18 +136,18 @@ TEST_CASE("A track that the back-end rejects as an outlier ends and is not obser
 TEST_CASE("A tracker far from its landmark's expected position is vetoed, unless most are and the expectation is wrong",
           "[slow]") {
   for (const int far : {0, 1, 8}) {
-    Followed told({}, life_scene());
-    told.go_on_to(0.5);
+    Followed reported({}, life_scene());
+    reported.go_on_to(0.5);
     const std::vector<TrackObservation> observed = eight();
     Feedback feedback = truth(0.5, observed);
     for (int i = 0; i < far; ++i) {  // in directions that no camera motion explains
       shift(feedback.expected[static_cast<std::size_t>(i)], {i % 2 == 0 ? 20.0 : -20.0, i % 4 < 2 ? 20.0 : -20.0});
     }
-    told.haste.receive(feedback);
-    told.go_on_to(0.55);
+    reported.haste.receive(feedback);
+    reported.go_on_to(0.55);
     CAPTURE(far);
-    CHECK(told.ended_as(kVetoed) == (far == 1 ? 1 : 0));
-    CHECK(told.ended_at.contains(observed.front().track) == (far == 1));
+    CHECK(reported.ended_as(kVetoed) == (far == 1 ? 1 : 0));
+    CHECK(reported.ended_at.contains(observed.front().track) == (far == 1));
   }
 }
 
@@ -155,14 +155,14 @@ TEST_CASE("Nothing is vetoed where that is switched off or the back-end has lost
   for (const bool lost : {false, true}) {
     Options options;
     options.guidance.veto = lost;
-    Followed told(options, life_scene());
-    told.go_on_to(0.5);
+    Followed reported(options, life_scene());
+    reported.go_on_to(0.5);
     Feedback feedback = truth(0.5, eight());
     shift(feedback.expected.front(), {20.0, 20.0});
     if (lost) feedback.state = TrackingState::lost;
-    told.haste.receive(feedback);
-    told.go_on_to(0.55);
-    CHECK(told.ended_as(kVetoed) == 0);
+    reported.haste.receive(feedback);
+    reported.go_on_to(0.55);
+    CHECK(reported.ended_as(kVetoed) == 0);
   }
 }
 
@@ -178,11 +178,11 @@ TEST_CASE("Few trackers that step to and fro under noise and fast motion are tak
                 i % 2 == 0};
   }
   source.add(noise);
-  Followed told({}, source);
-  told.go_on_to(0.6);
-  CHECK(told.alive.size() > 40);
-  CHECK(told.ended.size() > 100);
-  CHECK(10 * told.ended_as("erratic") < std::ssize(told.ended));
+  Followed reported({}, source);
+  reported.go_on_to(0.6);
+  CHECK(reported.alive.size() > 40);
+  CHECK(reported.ended.size() > 100);
+  CHECK(10 * reported.ended_as("erratic") < std::ssize(reported.ended));
 }
 
 TEST_CASE("Trackers that a burst of noise displaces end, without observations at the displaced positions") {
@@ -194,19 +194,19 @@ TEST_CASE("Trackers that a burst of noise displaces end, without observations at
                 static_cast<std::uint16_t>(random.index(180)), i % 2 == 0};
   }
   source.add(burst);
-  Followed told({}, source);
-  told.go_on_to(0.5);
-  const std::map<TrackId, TrackObservation> before = told.alive;
+  Followed reported({}, source);
+  reported.go_on_to(0.5);
+  const std::map<TrackId, TrackObservation> before = reported.alive;
   REQUIRE(before.size() > 40);
-  told.go_on_to(0.55);
-  CHECK(told.ended_as("erratic") > 40);
-  for (const auto& [track, last] : told.ended) {
+  reported.go_on_to(0.55);
+  CHECK(reported.ended_as("erratic") > 40);
+  for (const auto& [track, last] : reported.ended) {
     if (!before.contains(track)) continue;
     CAPTURE(track, last.t);
     CHECK((last.pixel - before.at(track).pixel).norm() < 15.0);
   }
-  told.go_on_to(1.0);
-  CHECK(told.alive.size() > 40);
+  reported.go_on_to(1.0);
+  CHECK(reported.alive.size() > 40);
 }
 
 TEST_CASE("After a silence trackers go on where they see the same pattern, and end where they see another", "[slow]") {
@@ -224,15 +224,15 @@ TEST_CASE("After a silence trackers go on where they see the same pattern, and e
     int ended;
   };
   const auto after = [](const Source& source, double resting, double later) {
-    Followed told({}, source);
-    told.go_on_to(resting);
-    const std::map<TrackId, TrackObservation> before = told.alive;
+    Followed reported({}, source);
+    reported.go_on_to(resting);
+    const std::map<TrackId, TrackObservation> before = reported.alive;
     REQUIRE(before.size() > 40);
-    told.go_on_to(later);
+    reported.go_on_to(later);
     const auto alive =
-        std::ranges::count_if(before, [&](const auto& track) { return told.alive.contains(track.first); });
+        std::ranges::count_if(before, [&](const auto& track) { return reported.alive.contains(track.first); });
     return After{static_cast<double>(alive) / static_cast<double>(before.size()),
-                 told.ended_as("mismatched after a silence")};
+                 reported.ended_as("mismatched after a silence")};
   };
   const After same = after(still, 0.9, 1.1), different = after(moved, 1.4, 2.0);
   CHECK(same.alive > 0.5);
@@ -246,13 +246,13 @@ TEST_CASE("Without events no new feature is found", "[slow]") {
   quiet.silence(1.0, 2.0);
   Options options;
   options.life.curvature = 0.9;  // trackers end as soon as they run, so that features are always needed
-  Followed told(options, quiet);
-  const auto detected = [&] { return std::stoi(told.haste.remarks().at(0)); };
-  told.go_on_to(1.05);
+  Followed reported(options, quiet);
+  const auto detected = [&] { return std::stoi(reported.haste.remarks().at(0)); };
+  reported.go_on_to(1.05);
   const int before = detected();
-  told.go_on_to(1.95);
+  reported.go_on_to(1.95);
   CHECK(detected() == before);
-  told.go_on_to(2.2);
+  reported.go_on_to(2.2);
   CHECK(detected() > before);
 }
 
@@ -262,9 +262,9 @@ TEST_CASE("A tracker on a hot pixel ends, as it does not move with the image") {
   std::vector<Event> hot;
   for (std::int64_t t = 0; t < 1'000'000; t += 500) hot.push_back({t, 40, 90, true});
   source.add(hot);
-  Followed told({}, source);
-  told.go_on_to(1.0);
-  CHECK(told.ended_as("starved") > 0);
+  Followed reported({}, source);
+  reported.go_on_to(1.0);
+  CHECK(reported.ended_as("starved") > 0);
 }
 
 TEST_CASE("Of two trackers that meet the newer one ends") {
@@ -274,15 +274,15 @@ TEST_CASE("Of two trackers that meet the newer one ends") {
   source.add(square([&](double t) { return from(25.0, t); }, 2));
   Options options;
   options.tracks = 2;
-  Followed told(options, source);
-  told.go_on_to(0.4);
-  REQUIRE(told.alive.size() == 2);
-  const TrackId older = told.alive.begin()->first, younger = told.alive.rbegin()->first;
-  CHECK((told.alive.at(older).pixel - told.alive.at(younger).pixel).norm() > 15.0);
-  told.go_on_to(1.2);
-  CHECK(told.ended_as("crowded") >= 1);
-  CHECK(told.ended_at.contains(younger));
-  CHECK_FALSE(told.ended_at.contains(older));
+  Followed reported(options, source);
+  reported.go_on_to(0.4);
+  REQUIRE(reported.alive.size() == 2);
+  const TrackId older = reported.alive.begin()->first, younger = reported.alive.rbegin()->first;
+  CHECK((reported.alive.at(older).pixel - reported.alive.at(younger).pixel).norm() > 15.0);
+  reported.go_on_to(1.2);
+  CHECK(reported.ended_as("crowded") >= 1);
+  CHECK(reported.ended_at.contains(younger));
+  CHECK_FALSE(reported.ended_at.contains(older));
 }
 
 TEST_CASE("A tracker near the image's border ends") {
@@ -290,13 +290,13 @@ TEST_CASE("A tracker near the image's border ends") {
   source.add(square([](double t) { return Vector2(120.0 + 110.0 * t, 90.0); }, 1));
   Options options;
   options.tracks = 1;
-  Followed told(options, source);
-  told.go_on_to(0.5);
-  REQUIRE(told.alive.size() == 1);
-  const TrackId track = told.alive.begin()->first;
-  told.go_on_to(1.3);
-  REQUIRE(told.ended.contains(track));
-  CHECK(told.ended_as("at the border") >= 1);
-  CHECK(told.ended.at(track).pixel.x() > 239.0 - options.life.border - 6.0);
-  CHECK(told.ended.at(track).pixel.x() < 239.0);
+  Followed reported(options, source);
+  reported.go_on_to(0.5);
+  REQUIRE(reported.alive.size() == 1);
+  const TrackId track = reported.alive.begin()->first;
+  reported.go_on_to(1.3);
+  REQUIRE(reported.ended.contains(track));
+  CHECK(reported.ended_as("at the border") >= 1);
+  CHECK(reported.ended.at(track).pixel.x() > 239.0 - options.life.border - 6.0);
+  CHECK(reported.ended.at(track).pixel.x() < 239.0);
 }

@@ -170,17 +170,17 @@ void Str::observe_between(const Track& track, const Batch& batch, const Eigen::V
                           std::int64_t reference, std::int64_t until) {
   constexpr std::ptrdiff_t kTried = 2000;  // events
   const auto interval = std::llround(1e6 * options_.interval);
-  std::int64_t told = microseconds(complete_);
-  for (std::int64_t wanted = told + interval; wanted + interval / 2 < until; wanted += interval) {
+  std::int64_t reported = microseconds(complete_);
+  for (std::int64_t wanted = reported + interval; wanted + interval / 2 < until; wanted += interval) {
     auto event = std::ranges::lower_bound(batch.events, wanted, {}, &Event::t);
     const auto last = event + std::min(kTried, batch.events.end() - event);
     const Vector2 there = pixel_of(moved(place, A, 1e-6 * static_cast<double>(wanted - reference)));
     event = std::find_if(event, last,
                          [&](const Event& e) { return (Vector2(e.x, e.y) - there).norm() < options_.patch.radius; });
-    if (event == last || event->t <= told || event->t >= until) continue;
-    told = event->t;
-    delayed_.add({track.id, seconds(told), pixel_of(moved(place, A, 1e-6 * static_cast<double>(told - reference))),
-                  options_.sigma});
+    if (event == last || event->t <= reported || event->t >= until) continue;
+    reported = event->t;
+    delayed_.add({track.id, seconds(reported),
+                  pixel_of(moved(place, A, 1e-6 * static_cast<double>(reported - reference))), options_.sigma});
   }
 }
 

@@ -151,12 +151,12 @@ TEST_CASE("Under fast motion that reverses, with few or many edges, tracks are r
   const int edges = GENERATE(30, 150);
   CAPTURE(edges);
   const EventScene source(motion, 0.6, EventScene::quadrangles(edges, 1));  // reverses at 0.26 s
-  const Tracked told = track(source);
-  INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
-  CHECK(track_count(told.all) > 40);
-  CHECK(median_error(source, motion, told.all.observations) < 1.0);
-  CHECK(share_off(source, motion, told.all.observations, 3.0) < 0.05);
-  CHECK(told.remarks.at(0).find(" 0 poor") == std::string::npos);  // the first batch: 60 px of motion that changes
+  const Tracked reported = track(source);
+  INFO(reported.remarks.at(0) << "; " << reported.remarks.at(1));
+  CHECK(track_count(reported.all) > 40);
+  CHECK(median_error(source, motion, reported.all.observations) < 1.0);
+  CHECK(share_off(source, motion, reported.all.observations, 3.0) < 0.05);
+  CHECK(reported.remarks.at(0).find(" 0 poor") == std::string::npos);  // the first batch: 60 px of motion that changes
 }
 
 TEST_CASE("A structure that moves on its own does not disturb the other tracks", "[slow]") {

@@ -84,10 +84,10 @@ void Dots::observe(Track& track) {
     return;
   }
   TrackObservation z{track.id, sighting->t, sighting->centre, options_.sigma};
-  const double told = std::max(track.dot.newest(), clock_) - options_.delay;  // published up to here
-  if (z.t <= told) ++late_;
-  z.t = std::max({z.t, told, track.told + kApart});
-  track.told = z.t;
+  const double published = std::max(track.dot.newest(), clock_) - options_.delay;  // published up to here
+  if (z.t <= published) ++late_;
+  z.t = std::max({z.t, published, track.reported + kApart});
+  track.reported = z.t;
   delayed_.add(z);
 }
 

@@ -27,7 +27,7 @@ class Dots : public EventFrontEnd {
     TrackId id;
     Dot dot;
     double radius;      ///< [px] when it was found
-    double told;        ///< [s] time of its last observation
+    double reported;    ///< [s] time of its last observation
     double way = 0.0;   ///< [px] path length of the image since its last event
     double seen = 0.0;  ///< [s] time of its newest event at the last batch
     bool lost = false;

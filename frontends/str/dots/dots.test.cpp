@@ -52,13 +52,13 @@ const EventScene& dots_scene() {
   return result;
 }
 
-struct ToldDots {
+struct ReportedDots {
   TrackBatch all;
   std::vector<std::string> remarks;
 };
 
-ToldDots follow_dots(const Source& source, const DotsOptions& options = {}, double interval = 0.01,
-                     std::size_t most = 0) {
+ReportedDots follow_dots(const Source& source, const DotsOptions& options = {}, double interval = 0.01,
+                         std::size_t most = 0) {
   Dots dots(options, {source, 0, ""});
   return {collect_tracks(dots, source, interval, most), dots.remarks()};
 }
@@ -81,15 +81,15 @@ std::pair<std::size_t, double> nearest_disc(const TrackObservation& z, const std
 TEST_CASE("The centres of identical dots are observed, and a dot that comes back is recognised", "[slow]") {
   DotsOptions options;
   options.life.find_again = true;
-  const ToldDots told = follow_dots(dots_scene(), options);
-  INFO(told.remarks.at(0) << "; " << told.remarks.at(1) << "; " << told.remarks.at(2));
-  REQUIRE(told.all.observations.size() > 1500);
-  CHECK(std::ranges::is_sorted(told.all.observations, {}, &TrackObservation::t));
+  const ReportedDots reported = follow_dots(dots_scene(), options);
+  INFO(reported.remarks.at(0) << "; " << reported.remarks.at(1) << "; " << reported.remarks.at(2));
+  REQUIRE(reported.all.observations.size() > 1500);
+  CHECK(std::ranges::is_sorted(reported.all.observations, {}, &TrackObservation::t));
   std::vector<double> errors;
   std::map<TrackId, std::size_t> disc_of;
   std::map<std::size_t, TrackId> track_of;
   std::size_t strays = 0;
-  for (const TrackObservation& z : told.all.observations) {
+  for (const TrackObservation& z : reported.all.observations) {
     const auto [i, error] = nearest_disc(z, sweep);
     errors.push_back(error);
     if (disc_of.try_emplace(z.track, i).first->second != i) ++strays;
@@ -99,7 +99,7 @@ TEST_CASE("The centres of identical dots are observed, and a dot that comes back
   CHECK(errors[errors.size() / 2] < 0.3);
   CHECK(errors[errors.size() * 95 / 100] < 0.8);
   CHECK(strays == 0);
-  CHECK(told.remarks.at(1).find(" 0 re-acquired") == std::string::npos);
+  CHECK(reported.remarks.at(1).find(" 0 re-acquired") == std::string::npos);
   CHECK(disc_of.size() < track_of.size() + track_of.size() / 5);  // few dots have a second track
 }
 

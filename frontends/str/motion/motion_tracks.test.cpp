@@ -23,22 +23,22 @@ const EventScene& motion_scene() {
   return result;
 }
 
-struct ToldMotion {
+struct ReportedMotion {
   TrackBatch all;
   std::vector<std::string> remarks;
 };
 
-ToldMotion follow_motion(const Source& source, const MotionTracksOptions& options = {}, double interval = 0.01,
-                         std::size_t most = 0) {
+ReportedMotion follow_motion(const Source& source, const MotionTracksOptions& options = {}, double interval = 0.01,
+                             std::size_t most = 0) {
   MotionTracks motion(options, {source, 0, ""});
   return {collect_tracks(motion, source, interval, most), motion.remarks()};
 }
 
 /// Distance of each observation from its first one, moved by the true rotation since then [px].
-std::vector<double> errors(const Source& source, const std::function<SE3(double)>& motion, const TrackBatch& told) {
+std::vector<double> errors(const Source& source, const std::function<SE3(double)>& motion, const TrackBatch& reported) {
   std::map<TrackId, Vector3> directions;
   std::vector<double> result;
-  for (const TrackObservation& z : told.observations) {
+  for (const TrackObservation& z : reported.observations) {
     const Eigen::Quaterniond R = motion(z.t).q;
     const auto [found, fresh] = directions.try_emplace(z.track, R * source.camera().pinhole.ray(z.pixel));
     if (!fresh) result.push_back((source.camera().project(R.conjugate() * found->second) - z.pixel).norm());
@@ -50,25 +50,25 @@ std::vector<double> errors(const Source& source, const std::function<SE3(double)
 }  // namespace
 
 TEST_CASE("Points move with the rotation that is registered, also where it reverses", "[slow]") {
-  const ToldMotion told = follow_motion(motion_scene());
-  INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
-  const std::vector<double> all = errors(motion_scene(), to_and_fro, told.all);
+  const ReportedMotion reported = follow_motion(motion_scene());
+  INFO(reported.remarks.at(0) << "; " << reported.remarks.at(1));
+  const std::vector<double> all = errors(motion_scene(), to_and_fro, reported.all);
   REQUIRE(all.size() > 500);
   CHECK(all[all.size() / 2] < 1.0);
   CHECK(all[all.size() * 95 / 100] < 4.0);  // of 400 px of motion, of which a track sees a part
-  CHECK(told.remarks.at(1).find(" 0 times all ended") != std::string::npos);
+  CHECK(reported.remarks.at(1).find(" 0 times all ended") != std::string::npos);
 }
 
 TEST_CASE("A batch within which the motion reverses is divided, and is as accurate as its parts", "[slow]") {
   MotionTracksOptions options;
   options.batch.duration = 0.06;
-  const ToldMotion told = follow_motion(motion_scene(), options);
-  INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
-  CHECK(told.remarks.at(0).find(" 0 divided") == std::string::npos);
-  const std::vector<double> all = errors(motion_scene(), to_and_fro, told.all);
+  const ReportedMotion reported = follow_motion(motion_scene(), options);
+  INFO(reported.remarks.at(0) << "; " << reported.remarks.at(1));
+  CHECK(reported.remarks.at(0).find(" 0 divided") == std::string::npos);
+  const std::vector<double> all = errors(motion_scene(), to_and_fro, reported.all);
   REQUIRE(all.size() > 500);
   CHECK(all[all.size() / 2] < 1.0);
-  CHECK(told.remarks.at(1).find(" 0 times all ended") != std::string::npos);
+  CHECK(reported.remarks.at(1).find(" 0 times all ended") != std::string::npos);
 }
 
 TEST_CASE("Points do not depend on how often they are polled", "[slow]") {
@@ -113,11 +113,11 @@ TEST_CASE("Where no motion is registered for too long, all points end, and other
   flickering.add(noise);
   MotionTracksOptions strict;
   strict.patience = 0.1;
-  const ToldMotion told = follow_motion(flickering, strict);
-  INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
-  CHECK(told.remarks.at(1).find("1 times all ended") != std::string::npos);
+  const ReportedMotion reported = follow_motion(flickering, strict);
+  INFO(reported.remarks.at(0) << "; " << reported.remarks.at(1));
+  CHECK(reported.remarks.at(1).find("1 times all ended") != std::string::npos);
   std::map<TrackId, std::pair<double, double>> lives;
-  for (const TrackObservation& z : told.all.observations) {
+  for (const TrackObservation& z : reported.all.observations) {
     lives.try_emplace(z.track, z.t, z.t).first->second.second = z.t;
   }
   CHECK(std::ranges::none_of(lives,
@@ -134,16 +134,16 @@ TEST_CASE("A structure that moves on its own does not disturb the points of str_
       1.0, EventScene::quadrangles(24, 2, 0.15));
   source.add(other.list);
   CHECK(other.list.size() > source.list.size() / 20);
-  const ToldMotion told = follow_motion(source);
-  INFO(told.remarks.at(0) << "; " << told.remarks.at(1));
-  const std::vector<double> all = errors(source, to_and_fro, told.all);
+  const ReportedMotion reported = follow_motion(source);
+  INFO(reported.remarks.at(0) << "; " << reported.remarks.at(1));
+  const std::vector<double> all = errors(source, to_and_fro, reported.all);
   REQUIRE(all.size() > 500);
   CHECK(all[all.size() / 2] < 2.0);  // of 400 px of motion, with one event in twenty of something else
   CHECK(all[all.size() * 95 / 100] < 6.0);
 }
 
 TEST_CASE("Without events str_motion publishes nothing, and a source that has none is refused with a sentence") {
-  const ToldMotion none = follow_motion(EventScene(to_and_fro, 0.3, {}));
+  const ReportedMotion none = follow_motion(EventScene(to_and_fro, 0.3, {}));
   CHECK(none.all.until == 0.3);
   class Nothing : public EventScene {
    public:
