@@ -79,7 +79,7 @@ std::string timing_csv(const std::vector<UpdateRecord>& updates) {
 std::string parameters_csv(const RunResult& result) {
   std::string text = fmt::format("t_s,{}\n", fmt::join(result.estimated_parameters, ","));
   for (const UpdateRecord& u : result.updates) {
-    if (!u.learnt.empty()) text += fmt::format("{:.6f},{:.6g}\n", u.t, fmt::join(u.learnt, ","));
+    if (!u.estimated.empty()) text += fmt::format("{:.6f},{:.6g}\n", u.t, fmt::join(u.estimated, ","));
   }
   return text;
 }

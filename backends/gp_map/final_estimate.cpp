@@ -53,7 +53,7 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
   const bool learns = learns_prior || options_.learn.noise;
   const int rounds = learns ? options_.learn.rounds : 1;
   constexpr int kIterationsARound = 3;
-  constexpr double kRoughly = 1e-4, kLearnt = 1e-6, kFixed = 1e-9;  // estimated parameters are not more accurate
+  constexpr double kRoughly = 1e-4, kEstimated = 1e-6, kFixed = 1e-9;  // estimated parameters are not more accurate
   map_->engine.optimise(kIterationsARound, kRoughly);
   if (is_tentative()) test_depth_reversal();
   if (auto other = try_earlier_hypotheses(map_->engine, options_.health.min_landmarks)) {
@@ -71,7 +71,7 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
     const bool settled = map_->engine.optimise(kIterationsARound, kRoughly).iterations == 1;
     if (settled && round > 0) break;  // the estimated parameters no longer change the estimate
   }
-  return map_->engine.optimise(options_.final_iterations, learns ? kLearnt : kFixed);
+  return map_->engine.optimise(options_.final_iterations, learns ? kEstimated : kFixed);
 }
 
 /// Tests whether near and far are swapped in the initial map, which little motion does not show; an older map has seen
@@ -88,7 +88,7 @@ void GpMap::test_depth_reversal() {
 void GpMap::record_final_prior() {
   for (UpdateRecord& record : updates_) {
     const int k = graph().interval_of(record.t);
-    if (k > 0 && !record.learnt.empty()) std::ranges::copy(graph().qcs[index(k)], record.learnt.end() - 6);
+    if (k > 0 && !record.estimated.empty()) std::ranges::copy(graph().qcs[index(k)], record.estimated.end() - 6);
   }
 }
 

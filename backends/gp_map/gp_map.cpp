@@ -291,8 +291,8 @@ void GpMap::add_record(double t, double seconds, int iterations, std::optional<d
     record.observations = graph().observation_count();
     const Vector6& qc =
         map_->smoothed_qc && options_.learn.prior == LearnPrior::smoothed ? *map_->smoothed_qc : graph().qc;
-    record.learnt = {map_->noise.scale(), map_->noise.share()};
-    for (int column = 0; column < 2; ++column) record.learnt.insert(record.learnt.end(), qc.begin(), qc.end());
+    record.estimated = {map_->noise.scale(), map_->noise.share()};
+    for (int column = 0; column < 2; ++column) record.estimated.insert(record.estimated.end(), qc.begin(), qc.end());
   }
   updates_.push_back(record);
 }

@@ -274,8 +274,8 @@ TEST_CASE("The parameters estimated by each update are reported, together with t
       const auto updates = result.backend->updates();
       const auto update = std::ranges::find_if(updates, [&](const UpdateRecord& u) { return u.t >= t; });
       REQUIRE(update != updates.end());
-      REQUIRE(update->learnt.size() == names.size());
-      return update->learnt[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
+      REQUIRE(update->estimated.size() == names.size());
+      return update->estimated[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
     };
     const bool learns = options.find("never") == std::string::npos;
     for (const double t : {2.0, 5.0, 7.5}) {

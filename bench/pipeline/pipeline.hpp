@@ -36,7 +36,7 @@ struct RunResult {
   std::size_t longest = 0;                  ///< index of the segment that covers the longest time: the scored one
   std::vector<StationaryPeriod> stationary;
   std::vector<UpdateRecord> updates;
-  std::vector<std::string> estimated_parameters;  ///< names of the values UpdateRecord::learnt
+  std::vector<std::string> estimated_parameters;  ///< names of the values UpdateRecord::estimated
   RunTimes times;
   double data_s = 0.0;        ///< [s] from the first to the last observation of the front-end
   double peak_rss_mib = 0.0;  ///< of the process during the run, source and tracks included

@@ -43,8 +43,8 @@ struct UpdateRecord {
   int landmarks = 0;
   int observations = 0;  ///< in the problem
   int iterations = 0;
-  std::optional<double> cost;       ///< ½ Σ ρ(‖whitened residual‖²) of the whole problem, if computed
-  std::vector<double> learnt = {};  ///< values of BackEnd::estimated_parameters(); empty: none yet
+  std::optional<double> cost;          ///< ½ Σ ρ(‖whitened residual‖²) of the whole problem, if computed
+  std::vector<double> estimated = {};  ///< values of BackEnd::estimated_parameters(); empty: none yet
 };
 
 /// A back-end of visual odometry: track observations in, trajectory and map out.
