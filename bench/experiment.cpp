@@ -46,7 +46,8 @@ struct ExperimentOptions {
     set.add("source", source, "the sequence: {\"type\": NAME, options}; see evbench list").required();
     set.add("frontend", frontend, "the front-end: {\"type\": NAME, options}").required();
     set.add("backend", backend, "one run: {\"type\": NAME, \"label\": TEXT, options}");
-    set.add("backends", backends, "a comparison on identical observations: a list of back-ends");
+    set.add("backends", backends,
+            "a comparison: a list of back-ends; they get identical tracks unless the front-end uses their feedback");
     set.group("pipeline", pipeline, "how front-end and back-end are coupled");
     set.group("evaluation", evaluation, "evaluation protocol: how trajectories are scored");
     set.add("$schema", schema, "path of the JSON Schema for editors (evbench describe config --schema)");

@@ -27,7 +27,8 @@ struct RunConfig {
   Json resolved() const;
 };
 
-/// A config file: one run ("backend") or a comparison of several back-ends on the identical observations ("backends").
+/// A config file: one run ("backend") or a comparison of several back-ends ("backends"), which get identical tracks
+/// unless the front-end uses their feedback.
 struct Experiment {
   std::string name;
   std::string description;

@@ -238,7 +238,8 @@ any value: `--set backend.placement.rate=50`, `--set backends.0.label=mine`.
     rows = option_rows({"properties": single, "required": required})
     for name in kinds:
         rows.append([code(name), "object", "required" if name in required else "", code('{"type": NAME, options}')])
-    rows.append([code("backends"), "list", "", "a comparison: a list of back-ends; in place of `backend`"])
+    rows.append([code("backends"), "list", "", "a comparison: a list of back-ends, in place of `backend`; they get "
+                 "identical tracks unless the front-end uses their feedback"])
     page += "\n## Top level\n\n" + table(heads, rows)
     for name, group in groups.items():
         page += f"\n## {name}\n\n{sentence(group['description'])}\n\n" + table(heads, option_rows(group, f"{name}."))

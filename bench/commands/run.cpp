@@ -270,7 +270,7 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const
 
 void add_run(CLI::App& app, Plugins& plugins, int& exit_code) {
   auto arguments = std::make_shared<RunArguments>();
-  CLI::App* command = app.add_subcommand("run", "Run a config: one back-end, or a comparison on identical tracks");
+  CLI::App* command = app.add_subcommand("run", "Run a config: one back-end, or a comparison of several");
   command->add_option("config", arguments->config, "JSON config")->required();
   add_overrides(*command, arguments->overrides, "Override a value: KEY=VALUE, e.g. backend.placement.rate=50");
   command->add_option("--out", arguments->out, "Folder for results")->capture_default_str();
