@@ -13,9 +13,9 @@ namespace evbench {
 
 /// Rotation-only odometry from any front-end's tracks, for a camera that only rotates. At evenly spaced times, the
 /// samples, each track's direction is interpolated between its observations. For pairs of samples the relative rotation
-/// aligns the directions of the tracks that both see. The trajectory is the average over all pairs (Liu, Parra and
-/// Chin, CVPR 2021, do so with the rotations that they register). Positions are zero, and there is no map: a
-/// translation is not modelled, and would be taken for rotation.
+/// aligns the directions of the tracks that both see. The trajectory is the average over all pairs (rotation averaging,
+/// Hartley et al. 2013). Positions are zero, and there is no map: a translation is not modelled, and would be taken for
+/// rotation.
 class RotationAveraging : public BackEnd {
  public:
   struct Options {
