@@ -91,8 +91,8 @@ void check_recovered(const Source& source, const Execution& execution, double fr
 int continued_tracks(const Execution& execution) {
   int found = 0, count = 0;
   for (const std::string& line : execution.result.log) {
-    const int read = std::sscanf(line.c_str(), "frontend: %d landmarks re-acquired by template, of which %d were",
-                                 &found, &count);
+    const int read =
+        std::sscanf(line.c_str(), "frontend: %d landmarks re-acquired by template, of which %d were", &found, &count);
     if (read == 2) return count;
   }
   FAIL("the front-end does not say how many landmarks were confirmed");

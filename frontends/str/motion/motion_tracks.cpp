@@ -124,8 +124,8 @@ void MotionTracks::observe(const Point& point, double t) {
 }
 
 std::vector<std::string> MotionTracks::counts() const {
-  return {fmt::format("batches: {} registered, {} stationary, {} without a motion; {} divided into halves",
-                      registered_, still_, unregistered_, divided_),
+  return {fmt::format("batches: {} registered, {} stationary, {} without a motion; {} divided into halves", registered_,
+                      still_, unregistered_, divided_),
           fmt::format("{} points begun, {} in view at the end; {} times all ended, as there was no motion", next_id_,
                       points_.size(), interrupted_)};
 }
