@@ -153,9 +153,11 @@ TEST_CASE("A sweep does missing runs: those of a new value, damaged ones on requ
                  ContainsSubstring("results/tiny: 2 of 2 done, 0 failed") &&
                  ContainsSubstring("that the sweep does not plan, and tables pass over: 1\n"));
 
-  // The file of a config and evbench run give the same.
+  // The file of a config and evbench run give the same; the index lists the runs of a folder, here fewer.
   REQUIRE(testing::evbench(folder, "run c.json --quiet --out alone").exit_code == 0);
-  for (const auto& [path, content] : results_of(folder.file("alone/tiny"))) CHECK(before.at(path) == content);
+  for (const auto& [path, content] : results_of(folder.file("alone/tiny"))) {
+    if (path != "index.csv") CHECK(before.at(path) == content);
+  }
 
   // Both report the same damage.
   REQUIRE(testing::shell(folder, "rm -r results/other; rm results/tiny/*/final.tum").exit_code == 0);
@@ -178,6 +180,7 @@ TEST_CASE("A sweep does missing runs: those of a new value, damaged ones on requ
   auto after = results_of(folder.file("results/tiny"));
   for (const auto& [path, content] : before) {
     INFO(path);
+    if (path == "index.csv") continue;               // a run of seed 3 is there now
     CHECK(after.at(path).size() == content.size());  // the log notes a change of protocol or name
   }
 }
