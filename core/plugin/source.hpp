@@ -12,6 +12,7 @@
 #include "core/events/event_stream.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/pose_trajectory.hpp"
+#include "core/plugin/point_truth.hpp"
 
 namespace evbench {
 
@@ -57,6 +58,10 @@ class Source {
 
   /// Track observations with true association (raw pixels, time order), for simulators. None if it is unknown.
   virtual std::optional<std::span<const TrackObservation>> true_tracks() const { return std::nullopt; }
+
+  /// Ground truth of tracks of any point, for simulators of events: front-ends' tracks are scored with it. nullptr if
+  /// it is unknown.
+  virtual std::shared_ptr<const PointTruth> point_truth() const { return nullptr; }
 
   /// Files of the sequence without those of the events: their content is part of a run's identity.
   virtual std::vector<std::string> files() const { return {}; }

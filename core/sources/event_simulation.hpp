@@ -19,6 +19,7 @@ class EventSimulation : public SimulatedSequence {
     RenderedSceneOptions scene;
     RenderingOptions rendering;
     SimulatorOptions simulator;
+    std::string cache = {};
 
     Options() { duration = 10.0; }
     void declare(OptionSet& set);
@@ -29,6 +30,7 @@ class EventSimulation : public SimulatedSequence {
   std::unique_ptr<EventReader> all_events() const override;
   bool silence_is_known() const override { return true; }
   std::vector<std::string> remarks() const override;
+  std::shared_ptr<const PointTruth> point_truth() const override { return std::make_shared<SceneTruth>(truth()); }
 
   /// Depth at any pixel and time, and the true track of any point.
   SceneTruth truth() const { return {camera(), drawn_scene(), motion()}; }
@@ -37,9 +39,12 @@ class EventSimulation : public SimulatedSequence {
  private:
   /// Made on first use: it takes time, and neither planning a sweep nor reading recorded events needs it.
   std::shared_ptr<const RenderedScene> drawn_scene() const;
+  std::unique_ptr<EventReader> simulated_events() const;
+  std::string cache_file(const Options& options) const;
 
   RenderedSceneOptions scene_options_;
   std::string folder_, place_;  ///< folder of the picture; place in messages
+  std::string cache_;           ///< file that keeps the events; empty: none does
   RenderingOptions rendering_;
   SimulatorOptions simulator_;
   mutable std::once_flag drawn_;

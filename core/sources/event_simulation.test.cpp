@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/plugin/registration.hpp"
@@ -137,4 +138,35 @@ TEST_CASE("A motion that leads through the plane is refused, with the time at wh
   CHECK_THROWS_WITH(simulation(R"({"duration": 3, "motion": {"kind": "smooth_random", "amplitude": 3},
                                    "scene": {"near": 0.2, "far": 0.4}})"),
                     ContainsSubstring("s the camera is") && ContainsSubstring("before the plane"));
+}
+
+TEST_CASE("Simulated events are kept in a folder, in a file for each simulation, and read from there") {
+  const testing::TemporaryFolder folder;
+  const auto with_cache = "{" + kSmall + R"(, "cache": "kept"})";
+  const auto files = [&] {
+    return std::distance(std::filesystem::directory_iterator(folder.file("kept")),
+                         std::filesystem::directory_iterator());
+  };
+  const auto expected = events_of(simulation("{" + kSmall + "}"));
+  CHECK(events_of(simulation(with_cache, 1, folder.path())) == expected);
+  CHECK(files() == 1);
+  CHECK(events_of(simulation(with_cache, 1, folder.path())) == expected);
+  CHECK(files() == 1);
+  CHECK(events_of(simulation(with_cache, 2, folder.path())) != expected);
+  const auto other = "{" + kSmall + R"(, "cache": "kept", "scene": {"texture": "stripes"}})";
+  CHECK(events_of(simulation(other, 1, folder.path())) != expected);
+  CHECK(files() == 3);
+}
+
+TEST_CASE("Every texture and light gives events, and other ones") {
+  std::vector<std::vector<Event>> all;
+  for (const std::string options :
+       {R"("scene": {"texture": "leaves"})", R"("scene": {"texture": "stripes"})", R"("scene": {"texture": "bare"})",
+        R"("scene": {"texture": "repeated"})", R"("scene": {"light": 5})", R"("rendering": {"vignetting": 0.7})",
+        R"("simulator": {"sensor": {"bandwidth": 200}})"}) {
+    INFO(options);
+    all.push_back(events_of(simulation("{" + kSmall + ", " + options + "}")));
+    CHECK(all.back().size() > 300);
+    CHECK(std::ranges::count(all, all.back()) == 1);
+  }
 }

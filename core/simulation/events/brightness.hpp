@@ -22,6 +22,9 @@ class Brightness {
   /// Advances to the next interval, which begins where the last one ended; returns its end [s], at most `limit`.
   virtual double advance(double limit) = 0;
 
+  /// The farthest that anything moved over the image in the interval [px]; 0: not known.
+  virtual double displacement() const { return 0.0; }
+
   /// Log intensity of all pixels at the interval's end, by rows.
   virtual std::span<const float> image() const = 0;
 

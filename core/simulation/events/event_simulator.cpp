@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "core/events/event_time.hpp"
+#include "core/simulation/events/photoreceptor.hpp"
 #include "core/support/index.hpp"
 #include "core/support/parallel.hpp"
 
@@ -24,6 +25,10 @@ class PixelPath {
   PixelPath(const Brightness& brightness, const SimulatorOptions& options, double from, double to, int x, int y)
       : brightness_(brightness), options_(options), from_(from), length_(to - from), x_(x), y_(y) {
     negligible_ = kNegligible * std::min(options.sensor.threshold_on, options.sensor.threshold_off);
+    accuracy_ = options.time_accuracy;
+    if (brightness.displacement() > 0.0) {
+      accuracy_ = std::max(accuracy_, options.place_accuracy / brightness.displacement() * length_);
+    }
   }
 
   /// Advances the pixel from part `first`, where it is, to part `last` with log intensity L.
@@ -36,7 +41,7 @@ class PixelPath {
     const double L_first = pixel.log_intensity(), L_middle = brightness_.within(x_, y_, middle);
     const double error = std::abs(L_middle - 0.5 * (L_first + L));
     const double slope = std::abs(L - L_first) / (time(last) - time(first));
-    if (error <= std::max(negligible_, slope * options_.time_accuracy)) {
+    if (error <= std::max(negligible_, slope * accuracy_)) {
       pixel.advance(options_.sensor, time(middle), L_middle, events);
       pixel.advance(options_.sensor, time(last), L, events);
       return;
@@ -50,7 +55,7 @@ class PixelPath {
 
   const Brightness& brightness_;
   const SimulatorOptions& options_;
-  double from_, length_, negligible_;
+  double from_, length_, negligible_, accuracy_;
   int x_, y_;
 };
 
@@ -60,6 +65,8 @@ void SimulatorOptions::declare(OptionSet& set) {
   set.group("sensor", sensor, "the pixels");
   set.add("time_accuracy", time_accuracy, "error of event times from straight lines in log intensity [s]")
       .range(1e-7, 1.0);
+  set.add("place_accuracy", place_accuracy, "the same where the image moves fast: so far it may move in that time [px]")
+      .range(0.0, 1.0);
   set.add("threads", threads, "threads; 0: one a processor; they do not change the events").range(0, 1024);
   set.add("outages", outages, "spans without read-out, during which pixels go on [from, to, from, to, ...] [s]");
 }
@@ -72,6 +79,9 @@ EventSimulator::EventSimulator(std::unique_ptr<Brightness> brightness, const Sim
       duration_(duration),
       seed_(seed),
       faults_("simulated events", false) {
+  if (options.sensor.bandwidth > 0.0) {
+    brightness_ = std::make_unique<Photoreceptor>(std::move(brightness_), options.sensor.bandwidth);
+  }
   info_.format = "simulated events";
   info_.width = brightness_->width();
   info_.height = brightness_->height();

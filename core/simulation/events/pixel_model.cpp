@@ -33,6 +33,9 @@ void SensorOptions::declare(OptionSet& set) {
   set.add("leak_rate", leak_rate, "ON events a pixel when nothing changes [Hz]").range(0.0, 1e4);
   set.add("hot_share", hot_share, "share of hot pixels").range(0.0, 1.0);
   set.add("hot_rate", hot_rate, "noise events of a hot pixel [Hz]").range(0.0, 1e5);
+  set.add("bandwidth", bandwidth,
+          "of the low pass before the pixels, in proportion to the light, for white [Hz]; 0: none")
+      .range(0.0, 1e6);
 }
 
 Pixel::Pixel(const SensorOptions& options, std::uint64_t seed, std::uint64_t index, double t, double L)
@@ -64,7 +67,7 @@ bool Pixel::fires(double t, double L) const {
 }
 
 Pixel::Quiet Pixel::quiet() const {
-  constexpr double kLongest = 0.05;  // [s] that the leak is predicted, and the share of the threshold that it may take
+  constexpr double kLongest = 0.5;  // [s] that the leak is predicted, and the share of the threshold that it may take
   constexpr double kShare = 0.1, kMargin = 1e-5;  // margin: more than is lost by rounding
   constexpr float kFar = std::numeric_limits<float>::infinity();
   if (blind_) return {-kFar, kFar, std::nextafter(blind_until_, t_)};

@@ -17,6 +17,7 @@ struct SensorOptions {
   double noise_rate = 0.05;
   double leak_rate = 0.1;
   double hot_share = 0.0, hot_rate = 100.0;
+  double bandwidth = 0.0;
 
   void declare(OptionSet& set);
 };

@@ -9,14 +9,16 @@ namespace evbench {
 namespace {
 
 constexpr double kLongest = 0.01, kShortest = 1e-6;  // [s] of an interval
-constexpr int kStride = 4;                           // [px] between probes
+constexpr int kStride = 8;                           // [px] between probes
 
 }  // namespace
 
 void RenderingOptions::declare(OptionSet& set) {
   set.add("max_displacement", max_displacement, "largest motion of a point over the image between renderings [px]")
       .range(0.01, 10.0);
-  set.add("blur", blur, "standard deviation of a pixel's average over its area and the optics [px]").range(0.2, 20.0);
+  set.add("blur", optics.blur, "standard deviation of a pixel's average over its area and the optics [px]")
+      .range(0.2, 20.0);
+  set.add("vignetting", optics.vignetting, "share of the light that is lost at the image's corners").range(0.0, 0.95);
 }
 
 SceneBrightness::SceneBrightness(const Camera& camera, std::shared_ptr<const RenderedScene> scene, Motion motion,
@@ -25,7 +27,7 @@ SceneBrightness::SceneBrightness(const Camera& camera, std::shared_ptr<const Ren
       motion_(std::move(motion)),
       options_(options),
       threads_(threads),
-      renderer_(camera, scene_->surfaces, scene_->texture, options.blur) {}
+      renderer_(camera, scene_->surfaces, scene_->texture, options.optics, scene_->light) {}
 
 void SceneBrightness::start(double t) {
   from_ = to_ = t;
@@ -35,13 +37,16 @@ void SceneBrightness::start(double t) {
 
 double SceneBrightness::advance(double limit) {
   const SE3 T = motion_(to_);
+  const View view = renderer_.view(T);
   probes_.clear();
   for (int y = kStride / 2; y < height(); y += kStride) {
     for (int x = kStride / 2; x < width(); x += kStride) {
       const std::size_t i =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(x);
       if (frame_.hits[i].surface < 0) continue;
-      const Vector3 local = frame_.hits[i].depth * renderer_.ray(i).homogeneous();
+      const Vector3 ray = renderer_.ray(i).homogeneous();
+      const View::Face face = view.face(frame_.hits[i]);
+      const Vector3 local = face.distance / face.normal.dot(ray) * ray;
       probes_.push_back({renderer_.camera().pinhole.project(local), T * local});
     }
   }
@@ -53,12 +58,12 @@ double SceneBrightness::advance(double limit) {
   for (int part = 1; part < kParts; ++part) {
     views_.push_back(renderer_.view(motion_(from_ + (to_ - from_) * part / kParts)));
   }
-  renderer_.render(motion_(to_), threads_, frame_);
+  renderer_.render_next(motion_(to_), threads_, last_, frame_);
   return to_;
 }
 
 /// The largest displacement of a probe over the image [px], once the camera has moved to the pose.
-double SceneBrightness::displacement(const SE3& T_world_camera) const {
+double SceneBrightness::displacement_at(const SE3& T_world_camera) const {
   const SE3 T_camera_world = T_world_camera.inverse();
   double largest = 0.0;
   for (const Probe& probe : probes_) {
@@ -70,14 +75,14 @@ double SceneBrightness::displacement(const SE3& T_world_camera) const {
 }
 
 /// Starts from the last interval's length and scales it by the ratio of displacements.
-double SceneBrightness::choose_end(double limit) const {
+double SceneBrightness::choose_end(double limit) {
   constexpr int kAttempts = 8;
   double length = last_length_;
   for (int i = 0; i < kAttempts; ++i) {
-    const double moved = displacement(motion_(std::min(from_ + length, limit)));
-    const bool small = moved < 0.7 * options_.max_displacement && length < kLongest;
-    if (moved <= options_.max_displacement && !small) break;
-    const double ratio = 0.9 * options_.max_displacement / std::max(moved, 1e-9);
+    moved_ = displacement_at(motion_(std::min(from_ + length, limit)));
+    const bool small = moved_ < 0.7 * options_.max_displacement && length < kLongest;
+    if (moved_ <= options_.max_displacement && !small) break;
+    const double ratio = 0.9 * options_.max_displacement / std::max(moved_, 1e-9);
     length = std::clamp(length * std::clamp(ratio, 0.1, 10.0), kShortest, kLongest);
   }
   return std::min(from_ + length, limit);
@@ -85,7 +90,7 @@ double SceneBrightness::choose_end(double limit) const {
 
 float SceneBrightness::within(int x, int y, int part) const {
   const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(x);
-  return renderer_.pixel(views_[index(part - 1)], i, frame_.edge[i] != 0 || last_.edge[i] != 0);
+  return renderer_.pixel(views_[index(part - 1)], i, last_, frame_);
 }
 
 }  // namespace evbench

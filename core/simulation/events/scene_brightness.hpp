@@ -12,13 +12,13 @@ namespace evbench {
 
 struct RenderingOptions {
   double max_displacement = 0.5;
-  double blur = 0.45;
+  Optics optics;
 
   void declare(OptionSet& set);
 };
 
 /// The scene that a camera sees along a motion. An interval is as long as no point of the scene moves by more than
-/// max_displacement over the image (tested at every fourth pixel of every fourth row), at most 10 ms.
+/// max_displacement over the image (tested at every eighth pixel of every eighth row), at most 10 ms.
 class SceneBrightness : public Brightness {
  public:
   /// `threads`: 0: one per processor.
@@ -29,12 +29,13 @@ class SceneBrightness : public Brightness {
   int height() const override { return renderer_.camera().height; }
   void start(double t) override;
   double advance(double limit) override;
+  double displacement() const override { return moved_; }
   std::span<const float> image() const override { return frame_.log_intensity; }
   float within(int x, int y, int part) const override;
 
  private:
-  double displacement(const SE3& T_world_camera) const;
-  double choose_end(double limit) const;
+  double displacement_at(const SE3& T_world_camera) const;
+  double choose_end(double limit);
 
   std::shared_ptr<const RenderedScene> scene_;
   Motion motion_;
@@ -50,6 +51,7 @@ class SceneBrightness : public Brightness {
   };
   std::vector<Probe> probes_;  ///< at its end
   double last_length_ = 1e-3;  ///< [s]
+  double moved_ = 0.0;         ///< displacement in the interval [px]
 };
 
 }  // namespace evbench

@@ -20,9 +20,9 @@ std::optional<Vector3> SceneTruth::point(const Vector2& pixel, double t) const {
   return motion_(t) * (*z * camera_.pinhole.ray(*camera_.undistort(pixel)));
 }
 
-std::optional<Vector2> SceneTruth::pixel(const Vector3& point, double t, double border) const {
+std::optional<Vector2> SceneTruth::pixel(const Vector3& point, double t) const {
   const SE3 T = motion_(t);
-  const std::optional<Vector2> raw = visible_pixel(camera_, T, point, border);
+  const std::optional<Vector2> raw = visible_pixel(camera_, T, point, 0.0);
   return raw && unoccluded(T, point) ? raw : std::nullopt;
 }
 

@@ -4,13 +4,14 @@
 #include <optional>
 
 #include "core/geometry/camera.hpp"
+#include "core/plugin/point_truth.hpp"
 #include "core/simulation/motion.hpp"
 #include "core/simulation/rendering/rendered_scene.hpp"
 
 namespace evbench {
 
 /// The truth about a simulated recording at any time t [s]: pose, depth, tracks.
-class SceneTruth {
+class SceneTruth : public PointTruth {
  public:
   SceneTruth(const Camera& camera, std::shared_ptr<const RenderedScene> scene, Motion motion);
 
@@ -19,12 +20,8 @@ class SceneTruth {
   /// Depth along the camera's z [m] at a raw pixel; none if the lens model has no inverse there or nothing is seen.
   std::optional<double> depth(const Vector2& pixel, double t) const;
 
-  /// The point of the scene at a raw pixel, world frame; none as above.
-  std::optional<Vector3> point(const Vector2& pixel, double t) const;
-
-  /// The raw pixel at which a point of the scene (world frame) is seen: its true track. None outside the image or less
-  /// than `border` [px] inside it, and if the point is occluded.
-  std::optional<Vector2> pixel(const Vector3& point, double t, double border = 0.0) const;
+  std::optional<Vector3> point(const Vector2& pixel, double t) const override;
+  std::optional<Vector2> pixel(const Vector3& point, double t) const override;
 
   /// Is nothing in front of the point?
   bool unoccluded(const SE3& T_world_camera, const Vector3& point) const;

@@ -97,21 +97,93 @@ Pattern draw_shapes(int side, double size, Random& random) {
   return pattern;
 }
 
+namespace {
+
+constexpr double kLargestLeaf = 16.0;  // times the smallest
+
+/// A leaf's diameter, times the smallest one's: density ~ diameter⁻³.
+double leaf_diameter(Random& random) {
+  return 1.0 / std::sqrt(1.0 - random.uniform() * (1.0 - 1.0 / (kLargestLeaf * kLargestLeaf)));
+}
+
+void add_leaf(cv::Mat& picture, const Vector2& centre, double diameter, Random& random) {
+  const int vertices = 3 + static_cast<int>(random.index(3));
+  const double radius = 0.5 * diameter, angle = random.uniform(0.0, 2.0 * M_PI);
+  const std::vector<double> radii{radius, radius * random.uniform(0.6, 1.0), radius * random.uniform(0.8, 1.0)};
+  fill(picture, star(centre, vertices, radii, angle), random.uniform(20.0, kWhite));
+}
+
+/// Leaves that cover `area` [px²] so many times on average. Mean area of a leaf by that density: ∫ d² d⁻³ / ∫ d⁻³
+/// = 2 ln(largest) / (1 − largest⁻²) of the smallest one's.
+int leaf_count(double area, double smallest, double times) {
+  return static_cast<int>(times * area / (0.5 * smallest * smallest * 2.0 * std::log(kLargestLeaf)));
+}
+
+}  // namespace
+
 Pattern draw_leaves(int side, double smallest, Random& random) {
   Pattern pattern{blank(side), {}};
-  constexpr double kLargest = 16.0;  // times the smallest
-  // Mean area of a leaf by that density: ∫ d² d⁻³ / ∫ d⁻³ = 2 ln(largest) / (1 − largest⁻²) of the smallest one's. So
-  // many leaves fall that each place is covered three times on average.
-  const double area = 0.5 * smallest * smallest * 2.0 * std::log(kLargest);
-  const int count = static_cast<int>(3.0 * side * side / area);
+  const int count = leaf_count(static_cast<double>(side) * side, smallest, 3.0);
   for (int i = 0; i < count; ++i) {
-    const double diameter = smallest / std::sqrt(1.0 - random.uniform() * (1.0 - 1.0 / (kLargest * kLargest)));
-    const Vector2 centre = random.uniform2({0.0, 0.0}, {side, side});
-    const int vertices = 3 + static_cast<int>(random.index(3));
-    const double radius = 0.5 * diameter, angle = random.uniform(0.0, 2.0 * M_PI);
-    const std::vector<double> radii{radius, radius * random.uniform(0.6, 1.0), radius * random.uniform(0.8, 1.0)};
-    fill(pattern.picture, star(centre, vertices, radii, angle), random.uniform(20.0, kWhite));
+    const double diameter = smallest * leaf_diameter(random);
+    add_leaf(pattern.picture, random.uniform2({0.0, 0.0}, {side, side}), diameter, random);
   }
+  find_corners(pattern, smallest);
+  return pattern;
+}
+
+Pattern draw_stripes(int side, double smallest, Random& random) {
+  Pattern pattern{blank(side), {}};
+  const double patch = 30.0 * smallest;
+  const int count = std::max(4, static_cast<int>(4.0 * side * side / (patch * patch)));
+  for (int i = 0; i < count; ++i) {
+    const Vector2 centre = random.uniform2({0.0, 0.0}, {side, side});
+    const double radius = patch * random.uniform(0.5, 1.0), angle = random.uniform(0.0, 2.0 * M_PI);
+    const int left = std::max(0, static_cast<int>(centre.x() - radius)),
+              top = std::max(0, static_cast<int>(centre.y() - radius));
+    const cv::Rect part = cv::Rect(left, top, static_cast<int>(2.0 * radius) + 2, static_cast<int>(2.0 * radius) + 2) &
+                          cv::Rect(0, 0, side, side);
+    const Vector2 middle = centre - Vector2(left, top);  // in the part
+    cv::Mat mask(part.size(), CV_8U, cv::Scalar(0)), stripes(part.size(), CV_8U, cv::Scalar(kWhite));
+    const double turn = random.uniform(0.0, 2.0 * M_PI), inner = radius * random.uniform(0.7, 1.0);
+    fill(mask, star(middle, 5, {radius, inner}, turn), 255.0);
+    const Vector2 across(std::cos(angle), std::sin(angle)), along(-across.y(), across.x());
+    for (double at = -radius; at < radius;) {
+      const double width = smallest * random.uniform(1.0, 4.0);
+      const Vector2 from = middle + at * across, to = from + width * across;
+      const Vector2 half = radius * along;
+      fill(stripes, {from - half, to - half, to + half, from + half}, random.uniform(20.0, kWhite));
+      at += width;
+    }
+    stripes.copyTo(pattern.picture(part), mask);
+  }
+  find_corners(pattern, smallest);
+  return pattern;
+}
+
+Pattern draw_bare(int side, double smallest, Random& random) {
+  Pattern pattern{cv::Mat(side, side, CV_8U, cv::Scalar(random.uniform(90.0, 200.0))), {}};
+  const double heap = 40.0 * smallest;  // diameter
+  for (const Vector2& centre : places(side, 1.8 * heap, 0.5 * heap, random)) {
+    const int count = leaf_count(0.25 * M_PI * heap * heap, smallest, 1.5);
+    for (int i = 0; i < count; ++i) {
+      const double radius = 0.5 * heap * std::sqrt(random.uniform()), angle = random.uniform(0.0, 2.0 * M_PI);
+      const double diameter = smallest * leaf_diameter(random);
+      add_leaf(pattern.picture, centre + radius * Vector2(std::cos(angle), std::sin(angle)), diameter, random);
+    }
+  }
+  find_corners(pattern, smallest);
+  return pattern;
+}
+
+Pattern draw_repeated(int side, double smallest, Random& random) {
+  const int tile = std::clamp(static_cast<int>(25.0 * smallest), 8, side);
+  const cv::Mat one = draw_leaves(tile, smallest, random).picture;
+  Pattern pattern{{}, {}};
+  const int times = (side + tile - 1) / tile;
+  cv::Mat all;
+  cv::repeat(one, times, times, all);
+  pattern.picture = all(cv::Rect(0, 0, side, side)).clone();
   find_corners(pattern, smallest);
   return pattern;
 }

@@ -27,6 +27,16 @@ Pattern draw_shapes(int side, double size, Random& random);
 /// as many of a size as statistics of natural images ask for (Lee et al. 2001: density ~ diameter⁻³). Rich in corners.
 Pattern draw_leaves(int side, double smallest, Random& random);
 
+/// Stripes of random greys, widths from `smallest` to four times that: straight edges, and few corners. They change
+/// their direction from one polygon of some 30 `smallest` to the next.
+Pattern draw_stripes(int side, double smallest, Random& random);
+
+/// Bare ground of one grey, on which heaps of leaves lie: a fifth of the ground is covered.
+Pattern draw_bare(int side, double smallest, Random& random);
+
+/// One small picture of leaves, 25 times `smallest` wide, again and again.
+Pattern draw_repeated(int side, double smallest, Random& random);
+
 /// An image file of any format that OpenCV reads. Throws InputError when it can't be read.
 Pattern read_picture(const std::string& path);
 

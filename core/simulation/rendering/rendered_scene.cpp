@@ -28,10 +28,22 @@ struct Print {
   }
 };
 
-/// Size in the image [px] of the smallest detail of a kind at mean depth, unless the options state it.
-double detail_pixels(const std::string& kind) {
-  if (kind == "dots") return 7.0;
-  return kind == "shapes" ? 40.0 : 5.0;
+struct DrawnTexture {
+  const char* name;
+  Pattern (*draw)(int side, double detail, Random& random);
+  double detail;  ///< size in the image [px] of the smallest detail at mean depth, unless the options state it
+};
+constexpr DrawnTexture kTextures[] = {
+    {"leaves", draw_leaves, 5.0},     {"stripes", draw_stripes, 5.0}, {"bare", draw_bare, 5.0},
+    {"repeated", draw_repeated, 5.0}, {"dots", draw_dots, 7.0},       {"shapes", draw_shapes, 40.0},
+};
+
+const DrawnTexture& texture_of(const RenderedSceneOptions& options) {
+  const auto named = [](const std::string& name) {
+    return std::ranges::find(kTextures, name, [](const DrawnTexture& texture) { return std::string(texture.name); });
+  };
+  const auto found = named(options.texture.empty() ? options.kind : options.texture);
+  return found != std::end(kTextures) ? *found : kTextures[0];
 }
 
 /// A print `width` [m] wide, as far as its texels allow: half a pixel each where the camera is nearest.
@@ -44,14 +56,12 @@ Print make_print(const RenderedSceneOptions& options, const Camera& camera, doub
     return print;
   }
   const double depth = 0.5 * (options.near + options.far), pixel = 1.0 / camera.pinhole.fx;
-  const double detail = options.detail > 0.0 ? options.detail : detail_pixels(options.kind) * depth * pixel;
+  const DrawnTexture& texture = texture_of(options);
+  const double detail = options.detail > 0.0 ? options.detail : texture.detail * depth * pixel;
   const double texel = std::min(0.5 * (options.kind == "boxes" ? options.near : depth) * pixel, detail / 4.0);
   const auto texels = static_cast<unsigned>(std::clamp(width / texel, 512.0, 4096.0));
   const int side = static_cast<int>(std::bit_ceil(texels));
-  const double size = detail / texel;
-  Pattern pattern = options.kind == "dots"     ? draw_dots(side, size, random)
-                    : options.kind == "shapes" ? draw_shapes(side, size, random)
-                                               : draw_leaves(side, size, random);
+  Pattern pattern = texture.draw(side, detail / texel, random);
   return {std::move(pattern), Vector2::Constant(side * texel)};
 }
 
@@ -137,6 +147,9 @@ void RenderedSceneOptions::declare(OptionSet& set) {
   set.add("boxes", boxes, "number of boxes").range(0, 1e4);
   set.add("detail", detail, "size of dots, of shapes, of the finest texture [m]; 0: from the camera").range(0.0);
   set.add("black", black, "intensity of black on the surfaces, that of white being 1: the contrast").range(1e-3, 0.99);
+  set.add("texture", texture, "what is drawn on the surfaces; empty: leaves, or what the kind says")
+      .choices({"", "leaves", "stripes", "bare", "repeated", "dots", "shapes"});
+  set.add("light", light, "light on one side of the scene, that on the other being 1").range(1e-3, 1e3);
   set.add("picture", picture, "path of a picture to put on the surfaces instead; empty: none").path();
   set.add("picture_width", picture_width, "its width on a surface, after which it is mirrored [m]").above(0.0);
 }
@@ -154,7 +167,14 @@ RenderedScene make_rendered_scene(const RenderedSceneOptions& options, const Cam
       surface.offsets[index(face)] = offset_on_print(surface, face, print, random);
     }
   }
-  RenderedScene scene{std::move(surfaces), Texture(print.pattern.picture, print.size, options.black), {}};
+  RenderedScene scene{std::move(surfaces), Texture(print.pattern.picture, print.size, options.black), {}, {}};
+  if (options.light != 1.0) {
+    const double angle = random.uniform(0.0, 2.0 * M_PI);
+    const Vector3 across = layout.frame.q * Vector3(std::cos(angle), std::sin(angle), 0.0);
+    const Surface& extent = scene.surfaces.back();
+    scene.light.gradient = std::log(options.light) / (2.0 * extent.half.head<2>().maxCoeff()) * across;
+    scene.light.origin = extent.T_world_surface.p;
+  }
   for (const Surface& surface : scene.surfaces) {
     for (int face = 0; face < 6; ++face) {
       if (boxes || face == 4) add_features(surface, face, print, scene.features);

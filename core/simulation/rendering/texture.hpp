@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <opencv2/core/mat.hpp>
+#include <span>
 #include <vector>
 
 #include "core/geometry/types.hpp"
@@ -18,27 +18,34 @@ class Texture {
   /// current.
   Texture(const cv::Mat& picture, const Vector2& size, double black);
 
-  /// Intensity in (0, 1] at a place [m], averaged with a Gaussian of this variance [m²], at least with the smallest
-  /// that a texel can show.
-  float sample(const Vector2& place, double variance) const;
+  /// Intensities in (0, 1] at places [m], averaged with Gaussians of these variances [m²], at least with the smallest
+  /// that a texel can show. All spans have the same length.
+  void sample(std::span<const double> x, std::span<const double> y, std::span<const float> variances,
+              std::span<float> values) const;
+  float sample(double x, double y, float variance) const;
 
   /// Mean intensity of the whole picture.
   float mean() const { return mean_; }
 
  private:
   struct Level {
-    int width = 0, height = 0;  ///< [texels]
-    Vector2 texels_per_metre;
-    std::vector<float> values;
+    int width = 0, height = 0;        ///< [texels]; powers of two
+    double per_metre_x, per_metre_y;  ///< [texels/m]
+    std::vector<float> texels;  ///< by rows
 
-    float at(const Vector2& place) const;  ///< bilinear
+    /// Bilinear. At most kTogether places.
+    void at(std::span<const double> x, std::span<const double> y, std::span<float> values) const;
   };
+  static constexpr std::size_t kTogether = 64;
+  void sample_level(int level, std::span<const double> x, std::span<const double> y, std::span<const float> variances,
+                    std::span<float> values) const;
+  int level_of(float variance) const;
 
   /// The first level has the picture's texels and a variance of 1/4 texel², the blur of texels and bilinear
   /// interpolation themselves. The second has the same texels and a variance of 1 texel². From then on both double in
   /// width.
   std::vector<Level> pyramid_;
-  double per_texel_square_ = 0.0;  ///< one over the square of a texel's larger side [1/m²]
+  float per_texel_square_ = 0.0F;  ///< one over the square of a texel's larger side [1/m²]
   float mean_ = 0.0F;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "core/support/index.hpp"
 
@@ -19,7 +20,7 @@ inline double along(const Matrix3& R, Eigen::Index axis, double x, double y) {
 
 }  // namespace
 
-View::View(const std::vector<Surface>& surfaces, const SE3& T_world_camera) {
+View::View(const std::vector<Surface>& surfaces, const SE3& T_world_camera) : T_world_camera_(T_world_camera) {
   const SE3 T_camera_world = T_world_camera.inverse();
   for (const Surface& surface : surfaces) {
     const SE3 T_camera_surface = T_camera_world * surface.T_world_surface;
@@ -59,25 +60,24 @@ void View::hit_together(std::span<const Vector2> rays, std::span<Hit> hits) cons
   Beam beam{Vector2(0.5 * (least + most)).homogeneous(), 0.5 * (most - least).norm(), 0.0, 0.0};
   beam.length = beam.middle.norm();
   beam.cosine = std::sqrt(1.0 - beam.radius * beam.radius);
-  std::array<double, kTogether> nearest;
-  nearest.fill(kInfinity);
   std::ranges::fill(hits, Hit{});
-  Meeting meeting;
   for (std::size_t s = 0; s < seen_.size(); ++s) {
-    const Seen& seen = seen_[s];
-    switch (seen.surface->kind) {
-      case Surface::Kind::plane: meet_plane(seen, bundle, rays.size(), meeting); break;
-      case Surface::Kind::room: meet_box<true>(seen, bundle, rays.size(), meeting); break;
-      case Surface::Kind::box:
-        if (!may_reach(seen, beam)) continue;
-        meet_box<false>(seen, bundle, rays.size(), meeting);
-        break;
-    }
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (!(meeting.depth[i] < nearest[i])) continue;
-      nearest[i] = meeting.depth[i];
-      hits[i] = {static_cast<int>(s), static_cast<int>(meeting.face[i]), meeting.depth[i]};
-    }
+    if (seen_[s].surface->kind != Surface::Kind::box || may_reach(seen_[s], beam)) hit_surface(s, bundle, hits);
+  }
+}
+
+/// Where the surface is nearer than what the rays hit so far.
+void View::hit_surface(std::size_t surface, const Bundle& bundle, std::span<Hit> hits) const {
+  Meeting meeting;
+  const Seen& seen = seen_[surface];
+  switch (seen.surface->kind) {
+    case Surface::Kind::plane: meet_plane(seen, bundle, hits.size(), meeting); break;
+    case Surface::Kind::room: meet_box<true>(seen, bundle, hits.size(), meeting); break;
+    case Surface::Kind::box: meet_box<false>(seen, bundle, hits.size(), meeting); break;
+  }
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (!(meeting.depth[i] < (hits[i].surface < 0 ? kInfinity : hits[i].depth))) continue;
+    hits[i] = {static_cast<int>(surface), static_cast<int>(meeting.face[i]), meeting.depth[i]};
   }
 }
 
@@ -134,21 +134,60 @@ void View::meet_box(const Seen& seen, const Bundle& rays, std::size_t count, Mee
   }
 }
 
-View::Place View::place(const Hit& hit, const Vector2& ray) const {
+View::Face View::face(const Hit& hit) const {
   const Seen& seen = seen_[index(hit.surface)];
-  const Eigen::Index axis = hit.face / 2;
-  const Vector3 d = seen.R * ray.homogeneous();
-  Place place{seen.surface->offsets[index(hit.face)], {}};
+  const Eigen::Index axis = hit.face / 2, right = (axis + 1) % 3, down = (axis + 2) % 3;
+  return {seen.R.row(axis),
+          (hit.face % 2 == 1 ? seen.high : seen.low)[axis],
+          {seen.R.row(right), seen.R.row(down)},
+          seen.surface->offsets[index(hit.face)] + Vector2(seen.eye[right], seen.eye[down])};
+}
+
+View::Place View::place(const Hit& hit, const Vector2& ray) const {
+  const Face f = face(hit);
+  const double inverse = 1.0 / f.normal.dot(ray.homogeneous());
+  Place place{f.origin, {}};
   for (Eigen::Index i = 0; i < 2; ++i) {
-    const Eigen::Index along = (axis + 1 + i) % 3;
-    place.texture[i] += seen.eye[along] + hit.depth * d[along];
-    // From eye + depth d being on the face: ∂depth = −depth ∂d[axis] / d[axis].
-    const double slant = d[along] / d[axis];
-    for (Eigen::Index j = 0; j < 2; ++j) {
-      place.jacobian(i, j) = hit.depth * (seen.R(along, j) - slant * seen.R(axis, j));
-    }
+    const Vector3& axis = f.axes[index(static_cast<int>(i))];
+    // From X = depth (x, y, 1) being on the face: ∂depth = −depth ∂(normal · ray) / (normal · ray).
+    const double along = axis.dot(ray.homogeneous()) * inverse;
+    place.texture[i] += f.distance * along;
+    place.jacobian.row(i) = f.distance * inverse * (axis - along * f.normal).head<2>().transpose();
   }
   return place;
+}
+
+std::optional<Vector3> View::border(const Hit& a, const Hit& b, std::span<const Vector2> rays,
+                                    std::span<const Hit> hits) const {
+  // Two planes meet in the image where their depths, distance / (normal · ray), are equal.
+  const auto meet = [](const Face& p, const Face& q) -> Vector3 {
+    return p.distance * q.normal - q.distance * p.normal;
+  };
+  // The line itself where it separates the rays.
+  const auto separates = [&](const Vector3& line) -> std::optional<Vector3> {
+    int sign = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const double side = line.dot(rays[i].homogeneous());
+      const int wanted = (side > 0.0) == hits[i].same_face(a) ? 1 : -1;
+      if (sign == 0) sign = wanted;
+      if (sign != wanted) return std::nullopt;
+    }
+    return sign * line;
+  };
+  const auto crossing = [&] { return separates(meet(face(a), face(b))); };
+  const auto outline = [&](const Hit& hit) -> std::optional<Vector3> {
+    if (seen_[index(hit.surface)].surface->kind == Surface::Kind::plane) return std::nullopt;  // without end
+    for (int other = 0; other < 6; ++other) {
+      if (other / 2 == hit.face / 2) continue;
+      if (const auto line = separates(meet(face(hit), face({hit.surface, other, 0.0})))) return line;
+    }
+    return std::nullopt;
+  };
+  if (a.surface == b.surface) return crossing();
+  const auto& [near, far] = a.depth < b.depth ? std::tie(a, b) : std::tie(b, a);
+  if (const auto line = outline(near)) return line;
+  if (const auto line = crossing()) return line;
+  return outline(far);
 }
 
 }  // namespace evbench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,8 @@ class View {
  public:
   View(const std::vector<Surface>& surfaces, const SE3& T_world_camera);
 
+  const SE3& T_world_camera() const { return T_world_camera_; }
+
   /// The nearest surface on each ray, given by its x and y; surface −1 where it leaves the scene, or is NaN.
   /// Consecutive rays share the search for surfaces near them, so keep them close together.
   void hit(std::span<const Vector2> rays, std::span<Hit> hits) const;
@@ -51,6 +54,24 @@ class View {
   };
   Place place(const Hit& hit, const Vector2& ray) const;
 
+  /// The plane normal · X = distance in which a face lies, X in the camera's frame, and the texture on it: the place of
+  /// X is origin + (axes[0] · X, axes[1] · X) [m].
+  struct Face {
+    Vector3 normal;
+    double distance;
+    std::array<Vector3, 2> axes;
+    Vector2 origin;
+  };
+  Face face(const Hit& hit) const;
+
+  /// The line l · (x, y, 1) = 0 between two faces that are neighbours in the image, as their edges have it: one of an
+  /// outline, or that in which the faces' planes meet. None if no such line has all rays that hit `a` on one side and
+  /// all others on the other. l is positive at `a`.
+  std::optional<Vector3> border(const Hit& a, const Hit& b, std::span<const Vector2> rays,
+                                std::span<const Hit> hits) const;
+
+  static constexpr std::size_t kTogether = 32;  ///< so many rays share a search
+
  private:
   struct Seen {
     const Surface* surface;
@@ -61,8 +82,6 @@ class View {
     double radius;      ///< of the sphere around a box
     double tangent;     ///< length from the camera to its tangent point on the sphere; 0 inside
   };
-  static constexpr std::size_t kTogether = 32;  ///< as many as an edge needs
-
   /// Rays whose x and y are no farther from those of the middle one than the radius.
   struct Beam {
     Vector3 middle;
@@ -77,11 +96,13 @@ class View {
     std::array<double, kTogether> depth, face;  ///< depth: infinite where a ray does not meet it
   };
   void hit_together(std::span<const Vector2> rays, std::span<Hit> hits) const;
+  void hit_surface(std::size_t surface, const Bundle& bundle, std::span<Hit> hits) const;
   static bool may_reach(const Seen& seen, const Beam& beam);
   static void meet_plane(const Seen& seen, const Bundle& rays, std::size_t count, Meeting& meeting);
   template <bool kInside>
   static void meet_box(const Seen& seen, const Bundle& rays, std::size_t count, Meeting& meeting);
 
+  SE3 T_world_camera_;
   std::vector<Seen> seen_;
 };
 
