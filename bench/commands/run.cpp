@@ -26,6 +26,7 @@
 #include "bench/runner.hpp"
 #include "bench/sweep/local_executor.hpp"
 #include "bench/sweep/process_pool.hpp"
+#include "bench/sweep/shared_events.hpp"
 #include "core/support/interruption.hpp"
 #include "eval/table.hpp"
 
@@ -159,6 +160,29 @@ class Runs {
   RunIndex index_;
 };
 
+/// Events that several runs need and that are in no file: they are simulated once.
+class KeptEvents {
+ public:
+  explicit KeptEvents(const std::string& folder) : path_(fmt::format("{}/.events-{}.evb", folder, ::getpid())) {}
+  ~KeptEvents() {
+    std::error_code error;
+    std::filesystem::remove(path_, error);
+  }
+  KeptEvents(const KeptEvents&) = delete;
+  KeptEvents& operator=(const KeptEvents&) = delete;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+bool makes_events_repeatedly(const Experiment& experiment, const Source& source, const Plugins& plugins) {
+  const PluginConfig& frontend = experiment.runs.front().job.frontend;
+  return experiment.runs.size() > 1 && source.event_files().empty() &&
+         plugins.of<FrontEnd>().find(frontend.type, frontend.place + ".type").reads_events;
+}
+
 void print_table(const Runs& runs, const RunArguments& arguments, const std::string& experiment) {
   if (arguments.quiet || runs.records().empty()) return;
   std::vector<RunRecord> records = runs.records();
@@ -232,7 +256,11 @@ int run_config(const RunArguments& arguments, Plugins& plugins, std::vector<RunR
   std::vector<const Job*> jobs;
   for (const RunConfig& run : experiment.runs) jobs.push_back(&run.job);
   announce_commands(jobs, plugins, announce);
-  const std::unique_ptr<Source> source = make_source(experiment.runs.front().job, plugins);
+  std::unique_ptr<Source> source = make_source(experiment.runs.front().job, plugins);
+  const KeptEvents kept(arguments.out);
+  if (makes_events_repeatedly(experiment, *source, plugins) && arguments.jobs == 1) {
+    source = with_kept_events(std::move(source), kept.path());
+  }
   Runs runs(arguments, plugins, experiment, *source);
   runs.print_complete();
   try {

@@ -15,4 +15,7 @@ bool record_events(const Source& source, const std::string& path);
 /// damaged, the source itself: its events are then made again.
 std::unique_ptr<Source> with_recorded_events(std::unique_ptr<Source> source, const std::string& path);
 
+/// The source with its events kept in a file while they are first read to the end, and read from there from then on.
+std::unique_ptr<Source> with_kept_events(std::unique_ptr<Source> source, const std::string& path);
+
 }  // namespace evbench

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/events/formats.hpp"
+#include "core/events/native/keeping_reader.hpp"
 #include "core/support/error.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/data.hpp"
@@ -226,4 +227,42 @@ TEST_CASE("A native file that its writer did not finish is refused") {
     writer.write(random_events(50000, 240, 180, 10.0));
   }
   CHECK_THROWS_AS(NativeReader(folder.file("events.evb")), InputError);
+}
+
+TEST_CASE("A keeping reader's file has all events once they were read to the end, and is not there before") {
+  const testing::TemporaryFolder folder;
+  const auto events = random_events(70'000, 240, 180, 3.0);
+  const std::string from = write_native(folder.file("from.evb"), events, davis_header()), to = folder.file("to.evb");
+  int made = 0;
+  const auto make = [&]() -> std::unique_ptr<EventReader> {
+    ++made;
+    return std::make_unique<NativeReader>(from);
+  };
+  {
+    const auto partly = read_or_keep(to, make);
+    std::vector<Event> first;
+    CHECK(partly->read(first));
+  }
+  CHECK_FALSE(std::filesystem::exists(to));
+  CHECK(read_all(*read_or_keep(to, make)) == events);
+  CHECK(std::filesystem::exists(to));
+  CHECK(made == 2);
+  CHECK(read_all(*read_or_keep(to, make)) == events);
+  CHECK(made == 2);  // from the file
+}
+
+TEST_CASE("What a keeping reader skips or repeats does not spoil its file") {
+  const testing::TemporaryFolder folder;
+  const auto events = random_events(70'000, 240, 180, 3.0);
+  const std::string from = write_native(folder.file("from.evb"), events, davis_header());
+  KeepingReader skipping(std::make_unique<NativeReader>(from), folder.file("skipping.evb"));
+  skipping.seek(events[50'000].t);
+  read_all(skipping);
+  CHECK_FALSE(std::filesystem::exists(folder.file("skipping.evb")));
+  KeepingReader again(std::make_unique<NativeReader>(from), folder.file("again.evb"));
+  std::vector<Event> first;
+  again.read(first);
+  again.seek(-1'000'000);
+  CHECK(read_all(again) == events);
+  CHECK(read_all(*std::make_unique<NativeReader>(folder.file("again.evb"))) == events);
 }
