@@ -49,7 +49,7 @@ struct AxisOptions {
 /// As on a command line: text as it is, other values as JSON.
 std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : dump_json(value); }
 
-AxisValue value_of(const std::string& key, const std::string& text) { return {text, {key + "=" + text}}; }
+AxisValue value_of(const std::string& key, const std::string& text) { return {text, {key + "=" + text}, {}}; }
 
 std::string rounded(double value, int digits) {
   double result = 0.0;
@@ -101,8 +101,14 @@ std::vector<AxisValue> read_overlays(const Json& overlays, const std::string& pl
   std::vector<AxisValue> values;
   for (const auto& [name, set] : overlays.items()) {
     if (!set.is_object()) throw InputError(fmt::format("{}.{}: expected an object {{KEY: VALUE}}", place, name));
-    AxisValue value{name, {}};
-    for (const auto& [key, item] : set.items()) value.overrides.push_back(key + "=" + text_of(item));
+    AxisValue value{name, {}, {}};
+    for (const auto& [key, item] : set.items()) {
+      if (key == "draw") {
+        value.draw = item;
+      } else {
+        value.overrides.push_back(key + "=" + text_of(item));
+      }
+    }
     values.push_back(std::move(value));
   }
   return values;

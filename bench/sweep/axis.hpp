@@ -4,13 +4,16 @@
 #include <vector>
 
 #include "core/plugin/options.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 
-/// A value of an axis: its name, and the overrides "KEY=VALUE" that it makes in a config.
+/// A value of an axis: its name, the overrides "KEY=VALUE" that it makes in a config, and what is drawn at random for
+/// it (draw.hpp; null: nothing).
 struct AxisValue {
   std::string text;
   std::vector<std::string> overrides;
+  Json draw = {};
 
   /// The paths in the config that it sets.
   std::vector<std::string> keys() const;
@@ -32,6 +35,8 @@ using ZippedAxes = std::vector<Axis>;
 ///   D}}
 ///   {"name": NAME, "overlays": {TEXT: {KEY: VALUE, ...}, ...}}
 ///   {"zip": [AXIS, ...]}
+///
+/// In an overlay the KEY "draw" has what is drawn at random for it (draw.hpp).
 ///
 /// KEY is a path in the config, as for --set. A "name" takes the place of the key in tables. Values of a range are
 /// rounded to D significant digits (6), whole numbers or not. `place` begins messages. Throws

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <set>
 
+#include "bench/sweep/draw.hpp"
 #include "bench/sweep/process_pool.hpp"
 #include "core/io/sha256.hpp"
 #include "core/plugin/write_options.hpp"
@@ -18,10 +20,11 @@
 namespace evbench {
 namespace {
 
-/// A point of a grid: its overrides of the config, and its values on the axes.
+/// A point of a grid: its overrides of the config, its values on the axes, and what is drawn for it.
 struct Point {
   std::vector<std::string> overrides;
   RunAxes axes;
+  std::vector<std::pair<std::string, Json>> draws;  ///< with their places in the file
 };
 
 std::vector<Point> points_of(const Grid& grid) {
@@ -35,6 +38,9 @@ std::vector<Point> points_of(const Grid& grid) {
           const AxisValue& value = axis.values[i];
           next.overrides.insert(next.overrides.end(), value.overrides.begin(), value.overrides.end());
           next.axes.emplace_back(axis.name, value.text);
+          if (!value.draw.is_null()) {
+            next.draws.emplace_back(fmt::format("{}.{}.draw", axis.name, value.text), value.draw);
+          }
         }
       }
     }
@@ -81,13 +87,37 @@ class Planner {
     std::vector<std::string> overrides = sweep_.overrides;
     overrides.insert(overrides.end(), point.overrides.begin(), point.overrides.end());
     if (!sweep_.name.empty()) overrides.push_back("name=" + sweep_.name);
+    RunAxes axes = point.axes;
     with_place([&] {
+      draw_into(overrides, axes, point);
       const Experiment experiment = config_.experiment(overrides, "the sweep's");
       plan_.name = experiment.name;
       if (plan_.remarks.empty()) plan_.remarks = experiment.remarks;
-      for (const RunConfig& config : experiment.runs) gathered_.emplace_back(config, point.axes);
+      for (const RunConfig& config : experiment.runs) gathered_.emplace_back(config, axes);
     });
-    for (const auto& [axis, value] : point.axes) note(axis, value);
+    for (const auto& [axis, value] : axes) note(axis, value);
+  }
+
+  /// Adds what is drawn at random for a point, by its seed, to its overrides and axes. What the point and the command
+  /// line set themselves stays.
+  void draw_into(std::vector<std::string>& overrides, RunAxes& axes, const Point& point) {
+    std::vector<std::pair<std::string, Json>> draws = point.draws;
+    if (!sweep_.draw.is_null()) draws.emplace(draws.begin(), "draw", sweep_.draw);
+    if (draws.empty()) return;
+    const std::uint64_t seed = config_.experiment(overrides, "the sweep's").runs.front().job.seed;
+    std::vector<std::string> all;
+    for (const auto& [place, items] : draws) {
+      Drawn drawn = draw(items, seed, place);
+      std::ranges::move(drawn.overrides, std::back_inserter(all));
+      for (auto& [name, text] : drawn.properties) {
+        if (std::ranges::find(axes, name, &RunAxes::value_type::first) != axes.end()) {
+          throw InputError(
+              fmt::format("{}.{}: an axis or another property is called so; expected another name", place, name));
+        }
+        axes.emplace_back(std::move(name), std::move(text));
+      }
+    }
+    overrides.insert(overrides.begin(), all.begin(), all.end());
   }
 
   void add(RunConfig config, RunAxes axes) {

@@ -127,6 +127,43 @@ TEST_CASE("An invalid sweep is refused before anything is written, with place an
   }
 }
 
+TEST_CASE("What is drawn for a run depends on its seed alone, is a column, and gives way to what is set") {
+  const TemporaryFolder folder;
+  folder.write("c.json", dump_json(tiny_config()));
+  folder.write("drawn.json", R"({
+    "config": "c.json",
+    "draw": {"pace": {"slow": {"source.motion.period": {"uniform": [6, 9]}}, "fast": {"source.motion.period": 2}},
+             "source.tracks.noise": {"log_uniform": [0.1, 1]}},
+    "axes": [{"name": "kind", "overlays": {"a": {}, "b": {"draw": {"source.tracks.alive": {"whole": [20, 40]}}}}},
+             {"key": "seed", "range": {"from": 0, "to": 3}}]})");
+  const SweepPlan made = plan(folder, "drawn.json");
+  REQUIRE(made.runs.size() == 8);
+  std::map<std::string, int> paces;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Json &a = made.runs[i].config.job.source.options, &b = made.runs[i + 4].config.job.source.options;
+    CHECK(a.at("motion") == b.at("motion"));
+    CHECK(a.at("tracks").at("noise") == b.at("tracks").at("noise"));
+    CHECK(a.at("tracks").at("alive") == tiny_config().at("source").at("tracks").value("alive", 100));
+    CHECK(b.at("tracks").at("alive") <= 40);
+    const auto pace = std::ranges::find(made.runs[i].axes, "pace", &RunAxes::value_type::first);
+    REQUIRE(pace != made.runs[i].axes.end());
+    CHECK((pace->second == "fast") == (a.at("motion").at("period") == 2.0));
+    ++paces[pace->second];
+  }
+  CHECK(paces == std::map<std::string, int>{{"fast", 2}, {"slow", 2}});
+  CHECK(select_runs(made, {"pace=fast"}).size() == 4);
+  folder.write("extended.json", R"({"base": "drawn.json", "set": {"source.tracks.noise": 0.5},
+    "axes": [{"key": "backend.batch_duration", "values": [0.1, 0.2]}]})");
+  const SweepPlan extended = plan(folder, "extended.json");
+  CHECK(extended.runs.size() == 16);
+  for (const PlannedRun& run : extended.runs) CHECK(run.config.job.source.options.at("tracks").at("noise") == 0.5);
+  CHECK(extended.runs[0].config.job.source.options.at("motion") == made.runs[0].config.job.source.options.at("motion"));
+  folder.write("wrong.json", R"({"config": "c.json", "draw": {"seed": {"uniform": [2, 1]}}})");
+  CHECK_THROWS_WITH(plan(folder, "wrong.json"), ContainsSubstring("wrong.json: draw.seed"));
+  folder.write("loop.json", R"({"base": "extended.json"})");
+  CHECK_THROWS_WITH(plan(folder, "loop.json"), ContainsSubstring("without a base of its own"));
+}
+
 TEST_CASE("A sweep does missing runs: those of a new value, damaged ones on request, and none for a new name",
           "[long]") {
   const TemporaryFolder folder;

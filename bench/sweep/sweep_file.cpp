@@ -19,16 +19,20 @@ namespace fs = std::filesystem;
 namespace {
 
 struct SweepOptions {
-  std::string name, description, config;
-  Json plugins = Json::array(), set = Json::object(), axes = Json::array(), grids;
+  std::string base, name, description, config;
+  Json plugins = Json::array(), set = Json::object(), draw, axes = Json::array(), grids;
   RunLimits limits;
 
   void declare(OptionSet& options) {
+    options.add("base", base, "another sweep's file that this one extends: its path from this file's folder").path();
     options.add("name", name, "its folder below --out; by default the file's name");
     options.add("description", description, "what it is for");
     options.add("config", config, "base config: its path from this file's folder").required().path();
     options.add("plugins", plugins, "libraries that plugins come from: a list of paths");
     options.add("set", set, "values that differ from the base config's: {KEY: VALUE}");
+    options.add("draw", draw,
+                "what is drawn at random for each run, by its seed: {NAME: {TEXT: {KEY: VALUE}}}, {KEY: "
+                "{\"uniform\": [A, B]}}, ...");
     options.add("axes", axes, "what is varied: a list of axes");
     options.add("grids", grids, "several sets of axes, one after the other: a list of {\"axes\": [...]}");
     limits.declare(options);
@@ -84,13 +88,43 @@ void load_libraries(const Json& list, const std::string& place, const std::strin
   load_named_plugins(plugins, paths, place + ": plugins", policy);
 }
 
-Sweep read_file(const Json& json, const std::string& path, Plugins& plugins, const LibraryPolicy& policy) {
-  const auto options = read_options<SweepOptions>(json, path);
+/// The sweep with all that its base has: what both have in "set" and "axes" is joined, the base's first; other keys are
+/// replaced.
+Json extended(const Json& json, const std::string& path) {
+  if (!json.contains("base")) return json;
+  if (!json["base"].is_string()) throw InputError(fmt::format("{}: base: expected the path of a sweep's file", path));
+  const std::string base_path =
+      resolve_path(json["base"].get<std::string>(), fs::absolute(path).parent_path().string());
+  Json result = read_json(base_path);
+  if (!result.is_object() || result.contains("base")) {
+    throw InputError(
+        fmt::format("{}: base: {}: expected the file of a sweep, without a base of its own", path, base_path));
+  }
+  if (result.contains("config") && result["config"].is_string()) {
+    const std::string folder = fs::absolute(base_path).parent_path().string();
+    result["config"] = resolve_path(result["config"].get<std::string>(), folder);
+  }
+  result.erase("name");
+  for (const auto& [key, value] : json.items()) {
+    if (key == "set" && result.contains(key) && result[key].is_object() && value.is_object()) {
+      for (const auto& [path_in_config, setting] : value.items()) result[key][path_in_config] = setting;
+    } else if (key == "axes" && result.contains(key) && result[key].is_array() && value.is_array()) {
+      for (const Json& axis : value) result[key].push_back(axis);
+    } else {
+      result[key] = value;
+    }
+  }
+  return result;
+}
+
+Sweep read_file(const Json& own, const std::string& path, Plugins& plugins, const LibraryPolicy& policy) {
+  const auto options = read_options<SweepOptions>(extended(own, path), path);
   const std::string folder = fs::absolute(path).parent_path().string();
   Sweep sweep;
   sweep.place = path;
   sweep.name = options.name.empty() ? fs::path(path).stem().string() : options.name;
   sweep.config = resolve_path(options.config, folder);
+  sweep.draw = options.draw;
   sweep.limits = options.limits;
   load_libraries(options.plugins, path, folder, plugins, policy);
   if (!options.set.is_object()) throw InputError(fmt::format("{}: set: expected an object {{KEY: VALUE}}", path));
@@ -121,8 +155,8 @@ Sweep read_sweep(const std::string& path, const std::vector<std::string>& overri
                  const std::vector<std::string>& over, Plugins& plugins, const LibraryPolicy& policy) {
   const Json json = read_json(path);
   Sweep sweep;
-  const bool is_sweep =
-      json.is_object() && (json.contains("config") || json.contains("axes") || json.contains("grids"));
+  const bool is_sweep = json.is_object() && (json.contains("config") || json.contains("axes") ||
+                                             json.contains("grids") || json.contains("base"));
   if (is_sweep) {
     sweep = read_file(json, path, plugins, policy);
   } else {
