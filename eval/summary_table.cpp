@@ -13,6 +13,7 @@
 #include "eval/paired_comparison.hpp"
 #include "eval/quantile.hpp"
 #include "eval/table_parts.hpp"
+#include "eval/wilson.hpp"
 
 namespace evbench {
 namespace {
@@ -158,6 +159,73 @@ void add_success(TextTable& table, const std::vector<Group>& rows, const TableRu
   add_column(table, "succeeded", true, csv ? std::move(succeeded) : std::move(both));
 }
 
+constexpr const char* kPercent = "ate.trans_percent";
+constexpr double kLeastCovered = 0.9;  // least share of the time for a success
+
+bool follows_truth(const RunNumbers& run, double percent) {
+  const std::optional<double> ate = run.at(kPercent);
+  return run.succeeded() && ate && *ate <= percent && run.at("coverage").value_or(0.0) >= kLeastCovered;
+}
+
+bool is_false_ok(const RunNumbers& run, double percent) {
+  const std::optional<double> ate = run.at(kPercent);
+  return run.run().done && run.run().status && run.run().status->status.state == RunState::ok && ate &&
+         *ate > 2.0 * percent;
+}
+
+/// What TableOptions::success asks for.
+void add_follows_truth(TextTable& table, const std::vector<Group>& rows, const TableRuns& runs,
+                       const TableOptions& options, bool csv) {
+  const Metric metric = metric_of(kPercent);
+  std::vector<Cell> within, low, high, wrong;
+  std::vector<Cell> quantiles[3];
+  constexpr double kQuantiles[] = {0.5, 0.9, 1.0};
+  for (const Group& row : rows) {
+    const auto runs_done =
+        static_cast<std::size_t>(std::ranges::count_if(row, [&](std::size_t i) { return runs.runs[i].run().done; }));
+    const auto good = static_cast<std::size_t>(
+        std::ranges::count_if(row, [&](std::size_t i) { return follows_truth(runs.runs[i], options.success); }));
+    const auto off =
+        std::ranges::count_if(row, [&](std::size_t i) { return is_false_ok(runs.runs[i], options.success); });
+    if (runs_done == 0) {
+      within.push_back({csv ? "" : "-"});
+      low.push_back({""});
+      high.push_back({""});
+    } else {
+      const Share share = wilson(good, runs_done);
+      within.push_back({csv ? fmt::format("{}", good) : fmt::format("{:.0f} %", 100.0 * share.value), false,
+                        csv ? "" : fmt::format("[{:.0f}, {:.0f}]", 100.0 * share.low, 100.0 * share.high)});
+      low.push_back({fmt::format("{}", share.low)});
+      high.push_back({fmt::format("{}", share.high)});
+    }
+    wrong.push_back({fmt::format("{}", off)});
+    const std::vector<double> values = values_of(row, runs.runs, metric);
+    for (int k = 0; k < 3; ++k) {
+      const double value = values.empty() ? 0.0 : quantile_of(values, kQuantiles[k]);
+      quantiles[k].push_back({values.empty() ? (csv ? "" : "-")
+                              : csv          ? fmt::format("{}", value)
+                                             : number_text(value, 2)});
+    }
+  }
+  add_column(table, csv ? "within" : fmt::format("within {} %", options.success), true, std::move(within));
+  if (csv) add_column(table, "within.low", true, std::move(low));
+  if (csv) add_column(table, "within.high", true, std::move(high));
+  const char* names[] = {"median", "9 of 10", "worst"};
+  const char* keys[] = {"median", "p90", "max"};
+  for (int k = 0; k < 3; ++k) {
+    add_column(table, csv ? fmt::format("success.{}.{}", kPercent, keys[k]) : fmt::format("ATE [%], {}", names[k]),
+               true, std::move(quantiles[k]));
+  }
+  add_column(table, csv ? "false_ok" : "false ok", true, std::move(wrong));
+}
+
+std::string success_note(const TableOptions& options) {
+  return fmt::format(
+      "Within {} %: runs with an ATE of at most {} % of the path that cover 90 % of the time and are neither lost nor "
+      "failed, with Wilson's 95 % interval. False ok: runs whose status is ok with an ATE of more than {} %.",
+      options.success, options.success, 2.0 * options.success);
+}
+
 /// A column and its number of values: "seed (10 values)".
 std::string extent(const RunColumn& column) {
   const std::set<std::string> values(column.values.begin(), column.values.end());
@@ -211,6 +279,7 @@ TextTable summary_table(const TableRuns& runs, const TableOptions& options) {
   table.rows.resize(rows.size());
   add_names(table, rows, columns, csv);
   add_success(table, rows, runs, csv);
+  if (options.success > 0.0) add_follows_truth(table, rows, runs, options, csv);
   for (const Metric& metric : runs.metrics) {
     if (csv) add_metric_csv(table, rows, runs, metric);
     if (!csv) add_metric(table, rows, runs, metric, data, options);
@@ -218,6 +287,7 @@ TextTable summary_table(const TableRuns& runs, const TableOptions& options) {
   if (csv)
     add_column(table, "trajectory", false, std::vector<Cell>(rows.size(), {options.causal ? "causal" : "final"}));
   table.notes = summary_notes(rows, runs, columns, data, options.format);
+  if (options.success > 0.0) table.notes.push_back(success_note(options));
   std::ranges::move(table_notes(runs.runs, run_names(runs.columns), runs.metrics, runs.protocols, options),
                     std::back_inserter(table.notes));
   return table;

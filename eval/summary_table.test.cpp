@@ -36,6 +36,49 @@ TEST_CASE("Over seeds a row has median and quartiles, and the number of successf
   CHECK_THAT(text, ContainsSubstring("over seed (5 values)") && ContainsSubstring("Protocol: Sim(3)"));
 }
 
+TEST_CASE("By a column, rows count the runs that follow the ground truth, and those that are off with status ok") {
+  Results results;
+  const auto add = [&](int seed, const std::string& motion, double percent, double coverage, const std::string& state) {
+    Json json = run("arm", "mine", scores_with(0.01), state);
+    json["final"]["ate"]["trans_percent"] = percent;
+    json["final"]["coverage"] = coverage;
+    json["seed"] = seed;
+    json["key"] = "mine" + std::to_string(seed);
+    results.add(json["key"].get<std::string>(), json,
+                {{"seed", seed},
+                 {"source", {{"type", "simulation"}, {"motion", motion}}},
+                 {"frontend", {{"type", "oracle"}}},
+                 {"backend", {{"type", "mine"}}}});
+  };
+  add(1, "arm", 0.5, 1.0, "ok");
+  add(2, "arm", 0.9, 0.95, "degraded");
+  add(3, "arm", 0.4, 0.8, "ok");  // covers too little
+  add(4, "arm", 3.0, 1.0, "ok");  // a false ok
+  add(5, "hand", 3.0, 1.0, "degraded");
+  add(6, "hand", 0.3, 1.0, "lost");
+  TableOptions options;
+  options.metrics = {"ate.trans_m.rmse"};
+  options.by = {"source.motion"};
+  const std::string text = make_table(results.find(), options);
+  CHECK_THAT(line_with(text, "arm "),
+             ContainsSubstring("50 % [15, 85]") && ContainsSubstring("0.70") && ContainsSubstring("3.00"));
+  CHECK_THAT(line_with(text, "hand "), ContainsSubstring("0 % [0, 66]") && ContainsSubstring("fails"));
+  CHECK_THAT(text, ContainsSubstring("within 1 %") && ContainsSubstring("false ok") && ContainsSubstring("over seed"));
+  options.format = TableFormat::csv;
+  const std::string csv = make_table(results.find(), options);
+  CHECK_THAT(csv, ContainsSubstring("within,within.low,within.high,success.ate.trans_percent.median"));
+  options.success = 4.0;
+  options.format = TableFormat::text;
+  CHECK_THAT(line_with(make_table(results.find(), options), "arm "), ContainsSubstring("75 %"));
+  options.over = {"seed"};
+  CHECK_THROWS_WITH(make_table(results.find(), options), ContainsSubstring("expected one of them"));
+  options.by.clear();
+  options.over.clear();
+  CHECK_THROWS_WITH(make_table(results.find(), options), ContainsSubstring("expected --by or --over"));
+  options.by = {"sede"};
+  CHECK_THROWS_WITH(make_table(results.find(), options), ContainsSubstring("runs do not differ in \"sede\""));
+}
+
 TEST_CASE("Failed runs count as worse than all others, and are shown") {
   Results results;
   add_seeds(results, 3);

@@ -1,6 +1,7 @@
 #include "eval/table.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -161,10 +162,32 @@ std::vector<RunRecord> without_folders(std::span<const RunRecord> runs) {
   return result;
 }
 
+/// Options with `over` in place of `by`.
+TableOptions over_what_varies(TableOptions options, const std::vector<RunColumn>& columns) {
+  if (options.by.empty()) {
+    if (options.success == 0.0 || !options.over.empty()) return options;
+    throw InputError("--success is of several runs in a row; expected --by or --over");
+  }
+  if (!options.over.empty()) throw InputError("--by and --over say the same in two ways; expected one of them");
+  for (const std::string& name : options.by) find_column(columns, name);
+  for (const RunColumn& column : columns) {
+    const bool named = column.name == "label" || std::ranges::find(options.by, column.name) != options.by.end();
+    if (!named && column.varies()) options.over.push_back(column.name);
+  }
+  if (options.over.empty()) {
+    throw InputError(
+        fmt::format("runs differ in nothing but {}; expected fewer columns for --by, or none: a row per run",
+                    fmt::join(options.by, ", ")));
+  }
+  if (options.success == 0.0) options.success = 1.0;
+  return options;
+}
+
 }  // namespace
 
-std::string make_table(std::span<const RunRecord> found, const TableOptions& options) {
+std::string make_table(std::span<const RunRecord> found, const TableOptions& requested) {
   if (found.empty()) throw InputError("there is no run to make a table of");
+  const TableOptions options = over_what_varies(requested, run_columns(found));
   const bool print = options.format == TableFormat::latex;
   const std::vector<RunRecord> shortened = print ? without_folders(found) : std::vector<RunRecord>();
   const std::span<const RunRecord> runs = print ? shortened : found;

@@ -28,6 +28,11 @@ struct TableOptions {
   std::vector<std::string> metrics = {};
   /// Columns over which rows are summarised, e.g. {"seed"}: names of run_columns(). Empty: a row per run.
   std::vector<std::string> over = {};
+  /// The other way round: rows are summarised over all columns that vary, but the label and these.
+  std::vector<std::string> by = {};
+  /// Summaries also count the runs that follow the ground truth: those with an ATE of at most so many percent of the
+  /// path, that cover at least 90 % of the time, and are neither lost nor failed; 0: they do not. Implied by `by`.
+  double success = 0.0;
   TableLayout layout = {};
   bool folders = false;  ///< a column with the folder of each run, in a table with a row per run
 };
@@ -56,12 +61,16 @@ struct TableOptions {
 /// rows, p < 0.05 (paired_comparison.hpp). CSV has columns KEY.lower, KEY.median and KEY.upper, which are infinite for
 /// a run that did not succeed.
 ///
+/// With `success`, a summary has the share of runs that follow the ground truth, with Wilson's interval; median, nine
+/// of ten and worst of the ATE in percent of the path; and the number of runs whose status is ok although their ATE is
+/// more than twice as large as that bound.
+///
 /// The format "long" is a CSV with a line per run and metric (by default all known ones), and with the columns that
 /// distinguish the runs: pandas and R can read it directly.
 ///
 /// Throws InputError if there is no run, if no run has a value of a column, with the nearest known name, if causal
-/// scores are requested and no run has them, and with `over` if runs do not differ in its columns, or if two runs of a
-/// row have the same seed (or other value of `over`) but are not the same job.
+/// scores are requested and no run has them, for `over` and `by` together or columns of them in which runs do not
+/// differ, or if two runs of a row have the same seed (or other value of `over`) but are not the same job.
 std::string make_table(std::span<const RunRecord> runs, const TableOptions& options);
 
 /// A line for each number that any of the runs has: its key for TableOptions::metrics, and its header.

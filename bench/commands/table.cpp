@@ -5,6 +5,7 @@
 #include "bench/commands/causal_flag.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/name_check.hpp"
+#include "bench/commands/number_check.hpp"
 #include "bench/commands/run_outputs.hpp"
 #include "bench/commands/run_selection.hpp"
 #include "bench/common_time.hpp"
@@ -56,6 +57,17 @@ void add_table(CLI::App& app) {
                   "Summarise over these columns: one row for all runs that differ only in these, e.g. seed, or "
                   "seed,experiment",
                   "NAME,...");
+  add_list_option(*command, "--by", arguments->options.by,
+                  "Summarise over all columns in which runs differ but these: one row for each label and each of their "
+                  "values, e.g. texture; with --success",
+                  "NAME,...");
+  command
+      ->add_option(
+          "--success", arguments->options.success,
+          "With --over: share of runs with an ATE of at most so many percent of the path, and how many are off "
+          "by twice as much with status ok; with --by: 1")
+      ->type_name("PERCENT")
+      ->check(in_range(0.0, 100.0));
   command->add_flag("--list-metrics", arguments->list_metrics,
                     "List the keys for --metrics: all numbers of these runs, and their names in tables");
   add_causal_flag(*command, arguments->options.causal, "Scores of the causal poses, as first published");
