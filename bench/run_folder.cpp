@@ -129,6 +129,7 @@ RunRecord record_of(const RunConfig& config, const JobIdentity& identity, const 
   record.times->frontend_ms = step_times(times.frontend_batches);
   record.times->backend_ms = step_times(updates);
   record.peak_rss_mib = result.peak_rss_mib;
+  record.track_scores = execution.track_scores;
   return record;
 }
 

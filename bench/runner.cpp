@@ -12,6 +12,7 @@
 #include "core/events/event_front_end.hpp"
 #include "core/support/error.hpp"
 #include "core/support/interruption.hpp"
+#include "eval/track_scores.hpp"
 
 namespace evbench {
 namespace {
@@ -53,6 +54,17 @@ Execution broken_off(double t, const std::string& error) {
   return execution;
 }
 
+/// Whether a run's tracks are scored, and kept until then.
+bool has_truth(const Source& source) { return source.point_truth() != nullptr; }
+
+void score_its_tracks(Execution& execution, const Source& source) {
+  if (!has_truth(source) || !execution.result.tracks) return;
+  TrackBatch& tracks = *execution.result.tracks;
+  std::ranges::stable_sort(tracks.ended, {}, &TrackEnd::t);
+  execution.track_scores =
+      score_tracks(tracks.observations, tracks.ended, *source.point_truth(), source.time_range().to);
+}
+
 /// Calls `run(make, report)`, which makes back-ends by `make` and reports its progress.
 template <class Run>
 Execution run_job(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress, Run run) {
@@ -75,7 +87,9 @@ Execution run_job(const Job& job, const Source& source, const Plugins& plugins, 
     if (progress) progress(now);
   };
   try {
-    return {run(make, report), true};
+    Execution execution{run(make, report), true};
+    score_its_tracks(execution, source);
+    return execution;
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception& error) {
@@ -96,16 +110,21 @@ Execution execute(const Job& job, const Source& source, const Plugins& plugins, 
   } catch (const std::exception& error) {  // e.g. a process that ends at once
     return broken_off(source.time_range().from, error.what());
   }
-  return run_job(job, source, plugins, progress, [&](const MakeBackEnd& make, const Progress& report) {
+  Execution execution = run_job(job, source, plugins, progress, [&](const MakeBackEnd& make, const Progress& report) {
     return run_pipeline(source, *frontend, make, context_of(job), job.pipeline, job.trajectory_rate, report,
-                        keep_tracks);
+                        keep_tracks || has_truth(source));
   });
+  if (!keep_tracks) execution.result.tracks.reset();
+  return execution;
 }
 
 Execution execute(const Job& job, const Source& source, const Plugins& plugins, BatchStream& batches) {
-  return run_job(job, source, plugins, {}, [&](const MakeBackEnd& make, const Progress& report) {
-    return run_pipeline(source, batches, make, context_of(job), job.pipeline, job.trajectory_rate, report);
+  Execution execution = run_job(job, source, plugins, {}, [&](const MakeBackEnd& make, const Progress& report) {
+    return run_pipeline(source, batches, make, context_of(job), job.pipeline, job.trajectory_rate, report,
+                        has_truth(source));
   });
+  execution.result.tracks.reset();
+  return execution;
 }
 
 std::optional<std::string> record_front_end(const Job& job, const Source& source, const Plugins& plugins) {

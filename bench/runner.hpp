@@ -6,6 +6,7 @@
 
 #include "bench/job.hpp"
 #include "bench/pipeline/pipeline.hpp"
+#include "core/support/json.hpp"
 
 namespace evbench {
 
@@ -14,6 +15,7 @@ struct Execution {
   RunResult result;
   /// False: it ended with an error; the result then has only the status `failed` with the reason.
   bool complete = true;
+  Json track_scores = {};  ///< of score_tracks(), where the source knows the truth
 };
 
 /// Executes a job: makes front-end and back-end and runs them (bench/pipeline/pipeline.hpp). `source` is the job's. An

@@ -108,6 +108,7 @@ Json metrics_json(const RunRecord& record, bool scores) {
   json["runtime_s"] = or_null(record.runtime_s);
   json["data_s"] = or_null(record.data_s);
   json["realtime_factor"] = or_null(record.realtime_factor);
+  if (!record.track_scores.is_null()) json["tracks"] = record.track_scores;
   json["times"] = record.times ? to_json(*record.times) : Json();
   json["peak_rss_mib"] = or_null(record.peak_rss_mib);
   json["status"] = record.status ? to_json(*record.status) : Json();
@@ -159,6 +160,7 @@ RunRecord read_record(const Json& written, const std::string& place) {
     *scores = json.at(key);
   }
   record.covariance = json.at("covariance");
+  record.track_scores = json.at("tracks");
   record.experiment = json.text("experiment");
   record.label = json.text("label");
   record.seed = json.count_or_null("seed");

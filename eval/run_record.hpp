@@ -68,6 +68,7 @@ struct RunRecord {
   std::string damage;                     ///< why a sweep's run can't be read (then done is false); not in the file
   Json final_scores, causal_scores;       ///< from to_json(Scores); null: none
   Json covariance;                        ///< {kind: from to_json(CovarianceScores)}; null: none
+  Json track_scores;                      ///< from score_tracks(); null: no truth is known
   Json common_scores;                     ///< over the common time of all runs of a table; not in the file
   std::string final_unscored, causal_unscored;  ///< why there are no scores; kNoGroundTruth: no run can have any
   std::optional<TimeRange> range;               ///< [s] time range of the run: nothing outside is scored

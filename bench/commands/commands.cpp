@@ -9,6 +9,7 @@ void add_commands(CLI::App& app, Plugins& plugins, int& exit_code) {
   add_task(app, plugins, exit_code);
   add_reproduce(app, plugins, exit_code);
   add_eval(app);
+  add_eval_tracks(app);
   add_score(app);
   add_table(app);
   add_compare(app);

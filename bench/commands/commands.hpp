@@ -15,6 +15,7 @@ void add_commands(CLI::App& app, Plugins& plugins, int& exit_code);
 /// Each adds a subcommand of `evbench`; its callback throws InputError, which `main` catches. `plugins` must outlive
 /// the program's parsing.
 void add_eval(CLI::App& app);
+void add_eval_tracks(CLI::App& app);
 void add_table(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_figure(CLI::App& app);

@@ -10,13 +10,12 @@
 namespace evbench {
 
 FrontEndRunner::FrontEndRunner(FrontEnd& frontend, const Source& source, const PipelineOptions& options,
-                               FeedbackLine& feedback, TrackBatch* kept)
+                               FeedbackLine& feedback)
     : frontend_(frontend),
       source_(source),
       range_(source.time_range()),
       options_(options),
       feedback_(feedback),
-      kept_(kept),
       needs_(frontend.needs()),
       clock_(range_.from),
       until_(range_.from) {}
@@ -109,9 +108,6 @@ void FrontEndRunner::count(TrackBatch& batch) {
     for (const TrackId track : live_) batch.ended.push_back({track, batch.until});
     live_.clear();
   }
-  if (!kept_) return;
-  kept_->observations.insert(kept_->observations.end(), batch.observations.begin(), batch.observations.end());
-  kept_->ended.insert(kept_->ended.end(), batch.ended.begin(), batch.ended.end());
 }
 
 }  // namespace evbench

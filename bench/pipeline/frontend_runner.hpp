@@ -19,9 +19,7 @@ namespace evbench {
 /// the front-end's last observation the batches are empty.
 class FrontEndRunner : public BatchStream {
  public:
-  /// `kept`: all observations and ends are appended to it; may be null.
-  FrontEndRunner(FrontEnd& frontend, const Source& source, const PipelineOptions& options, FeedbackLine& feedback,
-                 TrackBatch* kept = nullptr);
+  FrontEndRunner(FrontEnd& frontend, const Source& source, const PipelineOptions& options, FeedbackLine& feedback);
 
   /// Delivers the feedback that is due, then advances the front-end. Throws std::runtime_error for a front-end that
   /// breaks its contract (frontend.hpp).
@@ -47,7 +45,6 @@ class FrontEndRunner : public BatchStream {
   TimeRange range_;
   const PipelineOptions& options_;
   FeedbackLine& feedback_;
-  TrackBatch* kept_;
   FeedbackNeeds needs_;
   bool more_ = true;
   double clock_;  ///< [s] the front-end has processed the data up to here

@@ -62,11 +62,34 @@ double run_concurrent(BatchStream& front, BackEndRunner& back, const FeedbackNee
   return waiting.seconds();
 }
 
+/// A stream whose tracks are kept.
+class KeptTracks : public BatchStream {
+ public:
+  explicit KeptTracks(BatchStream& stream) : stream_(stream) {}
+
+  std::optional<TrackBatch> next() override {
+    std::optional<TrackBatch> batch = stream_.next();
+    if (!batch) return batch;
+    tracks.observations.insert(tracks.observations.end(), batch->observations.begin(), batch->observations.end());
+    tracks.ended.insert(tracks.ended.end(), batch->ended.begin(), batch->ended.end());
+    return batch;
+  }
+  FrontFacts facts() const override { return stream_.facts(); }
+  double spent() const override { return stream_.spent(); }
+
+  TrackBatch tracks;
+
+ private:
+  BatchStream& stream_;
+};
+
 /// `feedback` is used only if the front-end needs any.
-RunResult run(const Source& source, BatchStream& front, const FeedbackNeeds& needs, FeedbackLine& feedback,
+RunResult run(const Source& source, BatchStream& stream, const FeedbackNeeds& needs, FeedbackLine& feedback,
               const MakeBackEnd& make_backend, BackEndContext context, const PipelineOptions& options,
-              double trajectory_rate, const Progress& progress) {
+              double trajectory_rate, const Progress& progress, bool keep_tracks) {
   RunResult result;
+  KeptTracks kept(stream);
+  BatchStream& front = keep_tracks ? kept : stream;
   context.log = [&](const std::string& line) { result.log.push_back(line); };
   BackEndRunner back(make_backend, std::move(context), source.camera(), source.time_range(), options);
   Stopwatch total;
@@ -92,6 +115,7 @@ RunResult run(const Source& source, BatchStream& front, const FeedbackNeeds& nee
   result.data_s = facts.data_s;
   result.peak_rss_mib = peak_memory_mib();
   result.log.insert(result.log.end(), facts.log.begin(), facts.log.end());
+  if (keep_tracks) result.tracks = std::move(kept.tracks);
   if (options.mode == "free") result.log.push_back("pipeline: mode free is not reproducible");
   return result;
 }
@@ -102,25 +126,23 @@ RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackE
                        BackEndContext context, const PipelineOptions& options, double trajectory_rate,
                        const Progress& progress, bool keep_tracks) {
   reset_peak_memory();
-  TrackBatch tracks;
   FeedbackLine feedback(options.latency, options.mode == "free");
-  FrontEndRunner front(frontend, source, options, feedback, keep_tracks ? &tracks : nullptr);
+  FrontEndRunner front(frontend, source, options, feedback);
   const Progress report = [&](RunProgress now) {
     now.realtime_factor = realtime_factor(front.data_s(), front.frontend_s() + now.backend_s);
     progress(now);
   };
-  RunResult result = run(source, front, frontend.needs(), feedback, make_backend, std::move(context), options,
-                         trajectory_rate, progress ? report : Progress());
-  if (keep_tracks) result.tracks = std::move(tracks);
-  return result;
+  return run(source, front, frontend.needs(), feedback, make_backend, std::move(context), options, trajectory_rate,
+             progress ? report : Progress(), keep_tracks);
 }
 
 RunResult run_pipeline(const Source& source, BatchStream& batches, const MakeBackEnd& make_backend,
                        BackEndContext context, const PipelineOptions& options, double trajectory_rate,
-                       const Progress& progress) {
+                       const Progress& progress, bool keep_tracks) {
   reset_peak_memory();
   FeedbackLine unused(options.latency, false);
-  return run(source, batches, {}, unused, make_backend, std::move(context), options, trajectory_rate, progress);
+  return run(source, batches, {}, unused, make_backend, std::move(context), options, trajectory_rate, progress,
+             keep_tracks);
 }
 
 }  // namespace evbench

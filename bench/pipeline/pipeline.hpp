@@ -73,6 +73,6 @@ RunResult run_pipeline(const Source& source, FrontEnd& frontend, const MakeBackE
 /// the front-end, and its recorded times are reported. In mode "sequential" the total includes them.
 RunResult run_pipeline(const Source& source, BatchStream& batches, const MakeBackEnd& make_backend,
                        BackEndContext context, const PipelineOptions& options, double trajectory_rate,
-                       const Progress& progress = {});
+                       const Progress& progress = {}, bool keep_tracks = false);
 
 }  // namespace evbench

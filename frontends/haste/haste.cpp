@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/events/event_time.hpp"
+#include "core/io/path.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/index.hpp"
 
@@ -32,6 +33,7 @@ Vector2 place_of(const Change& change, Options::Place place) {
 Haste::Haste(const Options& options, const FrontEndContext& context)
     : EventFrontEnd(context, "haste"),
       options_(options),
+      seeds_(options.seeds.empty() ? Seeds() : Seeds(resolve_path(options.seeds, context.folder))),
       sigma_(options.sigma),
       recent_(static_cast<std::size_t>(options.detection.events)),
       trackers_(camera_.width, camera_.height, options.threads),
@@ -48,10 +50,34 @@ void Haste::take(std::span<const Event> events) {
   constexpr double kSilence = 0.1;  // [s], longer than a tick, so that a silence can end only at the first event
   if (seconds(events.front().t) - last_event_ > kSilence) doubt_trackers();
   last_event_ = seconds(events.back().t);
+  while (seeds_.next() <= last_event_) {
+    const double t = seeds_.next();
+    const auto rest = std::ranges::upper_bound(events, t, {}, [](const Event& event) { return seconds(event.t); });
+    process({events.begin(), rest});
+    start_seeds(t);
+    events = {rest, events.end()};
+  }
+  process(events);
+}
+
+void Haste::process(std::span<const Event> events) {
+  if (events.empty()) return;
   recent_.add(events);
   changes_.clear();
   trackers_.push(events, changes_);
   for (const Change& change : changes_) observe(change);
+}
+
+/// Tracks begin with their seeds.
+void Haste::start_seeds(double t) {
+  for (const TrackObservation& seed : seeds_.take(t)) {
+    if (!camera_.contains(seed.pixel, options_.life.border)) continue;
+    ++begun_;
+    const double at = std::max(t, clock_ - options_.delay);
+    delayed_.add({seed.track, at, seed.pixel, options_.sigma});
+    begin(Tracker(options_.tracker, {0, seed.pixel, 0.0}),
+          {.id = seed.track, .odometer = odometer_, .pixel = seed.pixel, .reported = at, .from = seed.pixel});
+  }
 }
 
 void Haste::observe(const Change& change) {
@@ -99,7 +125,7 @@ bool Haste::is_as_expected(TrackId track, const Vector2& pixel, double t) const 
 }
 
 void Haste::on_tick() {
-  end_wanderers();
+  if (options_.life.erratic) end_wanderers();
   end_strangers();
   end_trackers();
   correct_guidance();
@@ -111,7 +137,7 @@ void Haste::on_tick() {
     reacquire_displaced();
     recognise();
   }
-  if (clock_ - detected_ >= options_.detection.interval) replenish();
+  if (!seeds_.given() && clock_ - detected_ >= options_.detection.interval) replenish();
 }
 
 void Haste::correct_guidance() {

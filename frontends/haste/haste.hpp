@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/data/seeds.hpp"
 #include "core/events/event_front_end.hpp"
 #include "frontends/haste/guidance.hpp"
 #include "frontends/haste/lost_landmarks.hpp"
@@ -62,6 +63,8 @@ class Haste : public EventFrontEnd {
   bool is_as_expected(TrackId track, const Vector2& pixel, double t) const;
   void correct_guidance();
   void replenish();
+  void process(std::span<const Event> events);
+  void start_seeds(double t);
   void begin(Tracker tracker, const Track& track);
 
   // track_life.cpp
@@ -81,6 +84,7 @@ class Haste : public EventFrontEnd {
   LostLandmarks::Tracked tracked() const;
 
   Options options_;
+  Seeds seeds_;
   ScoreSigma sigma_;
   RecentEvents recent_;
   TrackerSet trackers_;

@@ -1,11 +1,14 @@
 #include "frontends/haste/haste.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
 #include "core/support/error.hpp"
 #include "core/testing/catch2.hpp"
 #include "core/testing/collect_tracks.hpp"
+#include "core/testing/data.hpp"
 #include "core/testing/event_scene.hpp"
 
 using namespace evbench;
@@ -173,4 +176,34 @@ TEST_CASE("A source without events is refused with a sentence") {
     std::unique_ptr<EventReader> all_events() const override { return nullptr; }
   };
   CHECK_THROWS_WITH(Haste({}, {Nothing(), 0, ""}), Catch::Matchers::ContainsSubstring("event_simulation"));
+}
+
+TEST_CASE("With seeds, tracks begin at the given points and times with the given ids, and no others") {
+  const testing::TemporaryFolder folder;
+  Options options;
+  const TrackBatch detected = track(scene());
+  std::map<TrackId, TrackObservation> seeds;  // places that can be tracked
+  for (const TrackObservation& z : detected.observations) {
+    if (z.t < 0.4 && seeds.size() < 12) seeds.emplace(z.track, z);
+  }
+  std::string file;
+  std::map<TrackId, TrackObservation> expected;
+  for (const auto& [id, z] : seeds) {
+    file += fmt::format("{} {} {} {}\n", 100 + 7 * id, z.t, z.pixel.x(), z.pixel.y());
+    file += fmt::format("{} {} 1 1\n", 100 + 7 * id, z.t + 0.1);  // not its first observation
+    expected.emplace(100 + 7 * id, z);
+  }
+  options.seeds = folder.write("seeds.txt", file);
+  const TrackBatch all = track(scene(), options);
+  std::map<TrackId, std::size_t> lengths;
+  for (const TrackObservation& z : all.observations) {
+    REQUIRE(expected.contains(z.track));
+    if (lengths[z.track]++ > 0) continue;
+    CHECK((z.pixel - expected.at(z.track).pixel).norm() < 1e-6);
+    CHECK(z.t >= expected.at(z.track).t - 1e-6);
+    CHECK(z.t < expected.at(z.track).t + 0.06);
+  }
+  CHECK(lengths.size() == expected.size());
+  CHECK(all.observations.size() > 10 * expected.size());
+  CHECK(median_error(scene(), all.observations) < 1.0);
 }

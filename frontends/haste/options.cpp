@@ -19,6 +19,7 @@ void LifeOptions::declare(OptionSet& set) {
           "after the whole sensor had no events for 0.1 s, its events match its template less than this [cosine]: the "
           "camera has moved meanwhile; 0: never")
       .range(0.0, 1.0);
+  set.add("erratic", erratic, "it moves to and fro within 5 ms, or far otherwise than the others: it follows noise");
 }
 
 void GuidanceOptions::declare(OptionSet& set) {
@@ -56,6 +57,9 @@ void GuidanceOptions::declare(OptionSet& set) {
 
 void Options::declare(OptionSet& set) {
   set.add("tracks", tracks, "trackers alive, at most").range(1, 100'000);
+  set.add("seeds", seeds,
+          "path of a file of tracks, whose first observations start all tracks; empty: detected features")
+      .path();
   set.add("threads", threads,
           "threads that trackers are spread over; 0: one a processor; they do not change what is tracked")
       .range(0, 1024);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/features/detection.hpp"
 #include "core/plugin/options.hpp"
 #include "frontends/haste/tracking/tracker_options.hpp"
@@ -14,6 +16,7 @@ struct LifeOptions {
   double starvation = 15.0;
   double crowding = 5.0;
   double recognition = 0.45;
+  bool erratic = true;
 
   void declare(OptionSet& set);
 };
@@ -44,6 +47,7 @@ struct Options {
   LifeOptions life;
   GuidanceOptions guidance;
   int tracks = 60;
+  std::string seeds = {};
   int threads = 1;
   double sigma = 0.5;
   bool score_sigma = false;

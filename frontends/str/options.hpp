@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/features/detection.hpp"
 #include "core/plugin/options.hpp"
 #include "frontends/str/batches.hpp"
@@ -25,6 +27,7 @@ struct Options {
   PatchOptions patch;
   DetectionOptions detection;
   int tracks = 60;
+  std::string seeds = {};
   double sigma = 0.5;
   double interval = 0.01;
   enum class Start { last, backend } start = Start::last;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/events/event_time.hpp"
+#include "core/io/path.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/index.hpp"
 #include "frontends/str/expected_motion.hpp"
@@ -38,6 +39,7 @@ void move(EventCloud& cloud, const Matrix3& A, double dt) {
 Str::Str(const Options& options, const FrontEndContext& context)
     : EventFrontEnd(context, "str"),
       options_(options),
+      seeds_(options.seeds.empty() ? Seeds() : Seeds(resolve_path(options.seeds, context.folder))),
       batches_(options.batch, options.registration.slice, microseconds(range_.from)),
       registrar_(camera_, options.registration),
       complete_(range_.from) {
@@ -64,7 +66,7 @@ void Str::process(const Batch& batch) {
   if (found.good()) {
     expected_ = found.A;
     batches_.expect(1e6 * found.motion / static_cast<double>(batch.to - batch.from));
-    replenish(batch, found);
+    seeds_.given() ? start_seeds(batch, found) : replenish(batch, found);
   }
   complete_ = seconds(batch.to - 1);
 }
@@ -223,6 +225,23 @@ void Str::replenish(const Batch& batch, const Registration& registration) {
     if (!ideal) continue;
     Track track{next_id_++, {}, 0, pixel};
     observe(track, camera_.pinhole.ray(*ideal).head<2>().cast<float>(), middle);
+    tracks_.push_back(track);
+  }
+}
+
+/// Tracks begin with their seeds, and are moved to the middle of the last slice.
+void Str::start_seeds(const Batch& batch, const Registration& registration) {
+  const double length = static_cast<double>(batch.to - batch.from);
+  const std::int64_t middle = batch.to - static_cast<std::int64_t>(0.5 * options_.registration.slice * length);
+  for (const TrackObservation& seed : seeds_.take(seconds(middle))) {
+    const auto ideal = camera_.undistort(seed.pixel);
+    if (!ideal || !camera_.contains(seed.pixel, options_.patch.border)) continue;
+    Track track{seed.track, {}, 0, seed.pixel};
+    const std::int64_t t = std::max(microseconds(seed.t), batch.from);
+    observe(track, camera_.pinhole.ray(*ideal).head<2>().cast<float>(), t);
+    track.ray = moved(track.ray, registration.A, 1e-6 * static_cast<double>(middle - t));
+    track.t = middle;
+    track.pixel = pixel_of(track.ray);
     tracks_.push_back(track);
   }
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/data/seeds.hpp"
 #include "core/events/event_front_end.hpp"
 #include "frontends/str/batches.hpp"
 #include "frontends/str/options.hpp"
@@ -41,6 +42,7 @@ class Str : public EventFrontEnd {
   void go_on(const Batch& batch, const Registration& registration);
   bool go_on(Track& track, const Batch& batch, const Registration& registration);
   void replenish(const Batch& batch, const Registration& registration);
+  void start_seeds(const Batch& batch, const Registration& registration);
   Eigen::Vector2f anchored(Track& track, const Matrix3& A, const Eigen::Vector2f& place, double duration);
   void observe_between(const Track& track, const Batch& batch, const Eigen::Vector2f& place, const Matrix3& A,
                        std::int64_t reference, std::int64_t until);
@@ -48,6 +50,7 @@ class Str : public EventFrontEnd {
   Vector2 pixel_of(const Eigen::Vector2f& ray) const;
 
   Options options_;
+  Seeds seeds_;
   Batches batches_;
   Registrar registrar_;
   std::vector<Track> tracks_;  ///< the older ones first

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/data/track.hpp"
+
+namespace evbench {
+
+/// Points at which a front-end starts its tracks, in place of those that it detects: the first observation of each
+/// track of a file (read_tracks()). So front-ends can be compared on the same features.
+class Seeds {
+ public:
+  /// None.
+  Seeds() = default;
+
+  /// Reads a file; an empty path: none. Throws InputError as read_tracks() does.
+  explicit Seeds(const std::string& path);
+
+  bool given() const { return !seeds_.empty(); }
+
+  /// The next seed's time [s]; infinite when there is none left.
+  double next() const;
+
+  /// The seeds up to time t [s] that were not taken yet, in time order; valid until the object ends.
+  std::span<const TrackObservation> take(double t);
+
+ private:
+  std::vector<TrackObservation> seeds_;  ///< in time order
+  std::size_t taken_ = 0;
+};
+
+}  // namespace evbench
