@@ -234,12 +234,12 @@ std::string extent(const RunColumn& column) {
 
 /// Notes that explain the cells and bold type.
 std::vector<std::string> summary_notes(const std::vector<Group>& rows, const TableRuns& runs, const Columns& columns,
-                                       std::span<const std::size_t> data, TableFormat format) {
+                                       std::span<const std::size_t> data, const TableOptions& options) {
   std::vector<std::string> over;
-  for (const RunColumn* column : columns.over) over.push_back(extent(*column));
+  for (const RunColumn* column : columns.over) over.push_back(options.by.empty() ? extent(*column) : column->name);
   const auto fails = [](const RunNumbers& run) { return run.run().done && !run.succeeded(); };
-  std::vector<std::string> notes = {
-      fmt::format("Median [lower quartile, upper quartile] over {}.", fmt::join(over, " and "))};
+  std::vector<std::string> notes = {fmt::format("Median [lower quartile, upper quartile] over {}.",
+                                                fmt::join(over, options.by.empty() ? " and " : ", "))};
   if (std::ranges::any_of(runs.runs, fails)) {
     notes.back() += " Runs that were lost or failed count as worse than all others: fails.";
   }
@@ -257,7 +257,7 @@ std::vector<std::string> summary_notes(const std::vector<Group>& rows, const Tab
       fmt::format("{}: better than every other row of the same data, p < {} (Wilcoxon signed-rank, paired by data, "
                   "Holm's correction "
                   "for the number of rows).",
-                  mark_name(format), kSignificant));
+                  mark_name(options.format), kSignificant));
   if (!too_few.contains("")) notes.back() += *too_few.begin();
   return notes;
 }
@@ -286,7 +286,7 @@ TextTable summary_table(const TableRuns& runs, const TableOptions& options) {
   }
   if (csv)
     add_column(table, "trajectory", false, std::vector<Cell>(rows.size(), {options.causal ? "causal" : "final"}));
-  table.notes = summary_notes(rows, runs, columns, data, options.format);
+  table.notes = summary_notes(rows, runs, columns, data, options);
   if (options.success > 0.0) table.notes.push_back(success_note(options));
   std::ranges::move(table_notes(runs.runs, run_names(runs.columns), runs.metrics, runs.protocols, options),
                     std::back_inserter(table.notes));

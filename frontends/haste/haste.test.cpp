@@ -179,7 +179,7 @@ TEST_CASE("A source without events is refused with a sentence") {
 }
 
 TEST_CASE("With seeds, tracks begin at the given points and times with the given ids, and no others") {
-  const testing::TemporaryFolder folder;
+  const evbench::testing::TemporaryFolder folder;
   Options options;
   const TrackBatch detected = track(scene());
   std::map<TrackId, TrackObservation> seeds;  // places that can be tracked
