@@ -62,7 +62,23 @@ std::vector<RunRecord> runs_in(const std::string& experiment) {
   return runs;
 }
 
+/// Whether a run's folder is newer than the index.
+bool has_newer_run(const std::string& experiment) {
+  std::error_code error;
+  const fs::file_time_type written = fs::last_write_time(experiment + "/index.csv", error);
+  const bool missing = static_cast<bool>(error);
+  for (fs::directory_iterator entry(experiment, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code gone;
+    if (!entry->is_directory(gone) || !fs::exists(entry->path() / "metrics.json", gone)) continue;
+    if (missing || entry->last_write_time(gone) > written) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+RunIndex::RunIndex(std::string experiment)
+    : experiment_(std::move(experiment)), outdated_(!experiment_.empty() && has_newer_run(experiment_)) {}
 
 void write_run_index(const std::string& experiment) {
   const FolderLock lock(experiment);

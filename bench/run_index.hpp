@@ -16,7 +16,8 @@ void write_run_index(const std::string& experiment);
 /// about a twentieth of the time.
 class RunIndex {
  public:
-  explicit RunIndex(std::string experiment) : experiment_(std::move(experiment)) {}
+  /// It is written again if the process that did the last runs ended before it could do so.
+  explicit RunIndex(std::string experiment);
 
   /// Call after a run was added: writes the index, unless it was written recently.
   void add();
@@ -27,7 +28,7 @@ class RunIndex {
   using Clock = std::chrono::steady_clock;
 
   std::string experiment_;
-  bool outdated_ = false;
+  bool outdated_;
   Clock::time_point due_ = {};
 };
 

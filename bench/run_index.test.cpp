@@ -53,6 +53,10 @@ TEST_CASE("Every command that makes or scores runs updates the index", "[slow]")
   }
   REQUIRE(testing::evbench(folder, "sweep c.json --quiet --out swept").exit_code == 0);
   CHECK(read_file(folder.file("swept/short/index.csv")) == by_run);
+  // Killed between the last run and its index: the next call writes it, though there is nothing to do.
+  std::filesystem::remove(folder.file("swept/short/index.csv"));
+  REQUIRE(testing::evbench(folder, "sweep c.json --quiet --out swept").exit_code == 0);
+  CHECK(read_file(folder.file("swept/short/index.csv")) == by_run);
   REQUIRE(testing::evbench(folder, "score results --quiet --set evaluation.alignment=se3").exit_code == 0);
   CHECK_THAT(read_file(index), ContainsSubstring("SE(3) alignment") && !ContainsSubstring("Sim(3) alignment"));
 }

@@ -39,7 +39,7 @@ TEST_CASE("Bash completes commands, options, and values that are one of a few na
   CHECK(offers("evbench run --fo") == Names{"--force"});
   CHECK(offers("evbench run c.json --out --fo").empty());  // the folder's name
   CHECK(offers("evbench run --out o c.json --fo") == Names{"--force"});
-  CHECK(offers("evbench --plugin run ev") == Names{"eval"});
+  CHECK(offers("evbench --plugin run ev") == Names{"eval", "eval-tracks"});
   CHECK(offers("evbench run --plugin p --fo") == Names{"--force"});
   CHECK(offers("evbench run c.j").empty());  // a file
   const Names formats = offers("evbench table results --format \"\"");

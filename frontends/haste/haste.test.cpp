@@ -204,6 +204,7 @@ TEST_CASE("With seeds, tracks begin at the given points and times with the given
     CHECK(z.t < expected.at(z.track).t + 0.06);
   }
   CHECK(lengths.size() == expected.size());
+  CHECK(std::ranges::is_sorted(all.observations, {}, &TrackObservation::t));
   CHECK(all.observations.size() > 10 * expected.size());
   CHECK(median_error(scene(), all.observations) < 1.0);
 }

@@ -237,7 +237,7 @@ void Str::start_seeds(const Batch& batch, const Registration& registration) {
     const auto ideal = camera_.undistort(seed.pixel);
     if (!ideal || !camera_.contains(seed.pixel, options_.patch.border)) continue;
     Track track{seed.track, {}, 0, seed.pixel};
-    const std::int64_t t = std::max(microseconds(seed.t), batch.from);
+    const std::int64_t t = std::max(microseconds(seed.t), microseconds(complete_) + 1);  // what is earlier is published
     observe(track, camera_.pinhole.ray(*ideal).head<2>().cast<float>(), t);
     track.ray = moved(track.ray, registration.A, 1e-6 * static_cast<double>(middle - t));
     track.t = middle;
