@@ -21,7 +21,9 @@ RunSettings settings_of(const Json& config) {
     const auto found = config.find(key);
     if (found != config.end()) add_values(*found, key, settings);
   }
-  std::erase_if(settings, [](const auto& setting) { return setting.first == "backend.label"; });
+  std::erase_if(settings, [](const auto& setting) {  // neither changes a result
+    return setting.first == "backend.label" || setting.first == "source.cache";
+  });
   return settings;
 }
 

@@ -164,7 +164,7 @@ constexpr double kLeastCovered = 0.9;  // least share of the time for a success
 
 bool follows_truth(const RunNumbers& run, double percent) {
   const std::optional<double> ate = run.at(kPercent);
-  return run.succeeded() && ate && *ate <= percent && run.at("coverage").value_or(0.0) >= kLeastCovered;
+  return run.succeeded() && ate && *ate <= percent && run.at("final.coverage").value_or(0.0) >= kLeastCovered;
 }
 
 bool is_false_ok(const RunNumbers& run, double percent) {
@@ -181,8 +181,8 @@ void add_follows_truth(TextTable& table, const std::vector<Group>& rows, const T
   std::vector<Cell> quantiles[3];
   constexpr double kQuantiles[] = {0.5, 0.9, 1.0};
   for (const Group& row : rows) {
-    const auto runs_done =
-        static_cast<std::size_t>(std::ranges::count_if(row, [&](std::size_t i) { return runs.runs[i].run().done; }));
+    const auto runs_done = static_cast<std::size_t>(std::ranges::count_if(
+        row, [&](std::size_t i) { return runs.runs[i].run().done || !runs.runs[i].run().damage.empty(); }));
     const auto good = static_cast<std::size_t>(
         std::ranges::count_if(row, [&](std::size_t i) { return follows_truth(runs.runs[i], options.success); }));
     const auto off =
@@ -221,7 +221,8 @@ void add_follows_truth(TextTable& table, const std::vector<Group>& rows, const T
 
 std::string success_note(const TableOptions& options) {
   return fmt::format(
-      "Within {} %: runs with an ATE of at most {} % of the path that cover 90 % of the time and are neither lost nor "
+      "Within {} %: runs with an ATE of at most {} % of the path, whose final trajectory covers 90 % of the time, and "
+      "that are neither lost nor "
       "failed, with Wilson's 95 % interval. False ok: runs whose status is ok with an ATE of more than {} %.",
       options.success, options.success, 2.0 * options.success);
 }

@@ -31,7 +31,8 @@ struct TableOptions {
   /// The other way round: rows are summarised over all columns that vary, but the label and these.
   std::vector<std::string> by = {};
   /// Summaries also count the runs that follow the ground truth: those with an ATE of at most so many percent of the
-  /// path, that cover at least 90 % of the time, and are neither lost nor failed; 0: they do not. Implied by `by`.
+  /// path, whose final trajectory covers at least 90 % of the time, and that are neither lost nor failed; 0: they do
+  /// not. Implied by `by`.
   double success = 0.0;
   TableLayout layout = {};
   bool folders = false;  ///< a column with the folder of each run, in a table with a row per run

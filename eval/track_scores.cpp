@@ -18,6 +18,7 @@ struct Age {
 constexpr std::array kAges = {Age{"after_100ms", "at_100ms", 0.1}, Age{"after_500ms", "at_500ms", 0.5},
                               Age{"after_1s", "at_1s", 1.0}};
 constexpr double kDrift = 3.0;      // [px]
+constexpr double kLate = 0.05;      // [s] after an age, that an observation may be of it
 constexpr double kInterval = 0.01;  // [s] at least, between two observations that count
 
 /// A track from its beginning, or its re-association, to its end.
@@ -54,14 +55,14 @@ class Scorer {
     piece.to = z.t;
     const bool of_age = piece.age < kAges.size() && z.t >= piece.from + kAges[piece.age].seconds;
     if (!piece.point || (!of_age && z.t < piece.counted + kInterval)) return;
-    piece.counted = z.t;
     const std::optional<Vector2> pixel = truth_.pixel(*piece.point, z.t);
     if (!pixel) return;
+    piece.counted = z.t;
     piece.error = (z.pixel - *pixel).norm();
     ++counted_;
     far_ += *piece.error > kDrift ? 1 : 0;
     for (; piece.age < kAges.size() && z.t >= piece.from + kAges[piece.age].seconds; ++piece.age) {
-      errors_[piece.age].push_back(*piece.error);
+      if (z.t <= piece.from + kAges[piece.age].seconds + kLate) errors_[piece.age].push_back(*piece.error);
     }
   }
 

@@ -16,7 +16,7 @@ namespace evbench {
 ///   pieces           number
 ///   life_s           {median, p90} of the time from the first to the last observation of a piece
 ///   alive            {after_100ms, after_500ms, after_1s}: share of the pieces that begin early enough
-///   error_px         {at_100ms, at_500ms, at_1s}: {median, p90}, of the next observation after that age
+///   error_px         {at_100ms, at_500ms, at_1s}: {median, p90}, of the first observation within 50 ms after that age
 ///   beyond_3px       share of the observations that are farther off than 3 px
 ///   drifting         share of the pieces whose last observation is
 ///   reassociated     {right, wrong}: number of re-associations within 3 px of the true track of the track's very first

@@ -18,7 +18,8 @@ class Belt : public PointTruth {
   }
   std::optional<Vector2> pixel(const Vector3& point, double t) const override {
     const Vector2 pixel(point.z() + 100.0 * t, point.y());
-    return pixel.x() > 240.0 ? std::nullopt : std::optional(pixel);
+    const bool hidden = point.y() > 90.0 && t > 0.05 && t < 0.8;
+    return pixel.x() > 240.0 || hidden ? std::nullopt : std::optional(pixel);
   }
 };
 
@@ -60,6 +61,18 @@ TEST_CASE("A track that goes on after its end is right within 3 px of its first 
   CHECK(scores.at("reassociated").at("right") == 1);
   CHECK(scores.at("reassociated").at("wrong") == 1);
   CHECK(scores.at("pieces") == 4);
+}
+
+TEST_CASE("Observations of hidden points do not count, and an age has no error from long after it") {
+  std::vector<TrackObservation> all;
+  for (double t = 0.0; t < 1.2; t += 0.02) {
+    all.push_back({1, t, {10.0 + 100.0 * t, 100.0 + (t > 0.05 && t < 0.8 ? 50.0 : 0.0)}});
+  }
+  const Json scores = score_tracks(all, {}, Belt(), 1.5);
+  CHECK(scores.at("beyond_3px") == 0.0);
+  CHECK(scores.at("error_px").at("at_100ms").at("median").is_null());
+  CHECK(scores.at("error_px").at("at_500ms").at("median").is_null());
+  CHECK(scores.at("error_px").at("at_1s").at("median").get<double>() == Approx(0.0).margin(1e-9));
 }
 
 TEST_CASE("Without tracks there are no values") {

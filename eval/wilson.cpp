@@ -11,7 +11,7 @@ Share wilson(std::size_t successes, std::size_t n) {
   const double p = static_cast<double>(successes) / count, spread = z * z / count;
   const double middle = (p + 0.5 * spread) / (1.0 + spread);
   const double half = z / (1.0 + spread) * std::sqrt(p * (1.0 - p) / count + 0.25 * spread / count);
-  return {std::min(p, middle - half), p, std::max(p, middle + half)};  // equal at 0 and 1, but for rounding
+  return {std::clamp(middle - half, 0.0, p), p, std::clamp(middle + half, p, 1.0)};  // of rounding errors
 }
 
 }  // namespace evbench

@@ -67,7 +67,7 @@ void add_table(CLI::App& app) {
           "With --over: share of runs with an ATE of at most so many percent of the path, and how many are off "
           "by twice as much with status ok; with --by: 1")
       ->type_name("PERCENT")
-      ->check(in_range(0.0, 100.0));
+      ->check(above_zero());
   command->add_flag("--list-metrics", arguments->list_metrics,
                     "List the keys for --metrics: all numbers of these runs, and their names in tables");
   add_causal_flag(*command, arguments->options.causal, "Scores of the causal poses, as first published");

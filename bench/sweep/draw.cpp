@@ -83,7 +83,7 @@ Drawn draw(const Json& items, std::uint64_t seed, const std::string& place) {
     }
     auto chosen = item.begin();
     std::advance(chosen, draw_index(item.size(), seed, stream_of(name)));
-    drawn.properties.emplace_back(name, chosen.key());
+    Drawn::Property& property = drawn.properties.emplace_back(Drawn::Property{name, chosen.key(), {}});
     for (const auto& [text, set] : item.items()) {  // errors in all of them, whichever is chosen
       if (!set.is_object()) throw InputError(fmt::format("{}.{}: expected an object {{KEY: VALUE}}", at, text));
       for (const auto& [key, value] : set.items()) {
@@ -92,7 +92,9 @@ Drawn draw(const Json& items, std::uint64_t seed, const std::string& place) {
                                            ? override_text(value)
                                            : draw_number(value, of_number, Random(seed, stream_of(name + "." + key)),
                                                          fmt::format("{}.{}.{}", at, text, key));
-        if (text == chosen.key()) drawn.overrides.push_back(key + "=" + drawn_text);
+        if (text != chosen.key()) continue;
+        drawn.overrides.push_back(key + "=" + drawn_text);
+        property.keys.push_back(key);
       }
     }
   }

@@ -9,10 +9,14 @@
 
 namespace evbench {
 
-/// What was drawn at random for a run: overrides "KEY=VALUE" of its config, and its properties by name, as on axes.
+/// What was drawn at random for a run: overrides "KEY=VALUE" of its config, and its properties.
 struct Drawn {
+  struct Property {
+    std::string name, text;
+    std::vector<std::string> keys;  ///< what it sets
+  };
   std::vector<std::string> overrides;
-  RunAxes properties;
+  std::vector<Property> properties;
 };
 
 /// Draws from an object whose items are

@@ -44,8 +44,8 @@ TEST_CASE("A property is one of its sets, each once in as many seeds as there ar
         R"({"texture": {"fine": {"k": {"uniform": [0, 1]}}, "coarse": {"k": {"uniform": [5, 6]}, "l": "x"}, "none": {}}})",
         seed);
     REQUIRE(drawn.properties.size() == 1);
-    CHECK(drawn.properties[0].first == "texture");
-    const std::string& text = drawn.properties[0].second;
+    CHECK(drawn.properties[0].name == "texture");
+    const std::string& text = drawn.properties[0].text;
     ++counts[text];
     if (text == "none") CHECK(drawn.overrides.empty());
     if (text == "fine") CHECK(number_of(drawn.overrides.at(0)) <= 1.0);

@@ -49,6 +49,16 @@ std::vector<Point> points_of(const Grid& grid) {
   return points;
 }
 
+/// Whether overrides set any of these keys, a part of it, or what it is a part of.
+bool sets_any(const std::vector<std::string>& overrides, const std::vector<std::string>& keys) {
+  return std::ranges::any_of(overrides, [&](const std::string& override) {
+    const std::string set = override.substr(0, override.find('='));
+    return std::ranges::any_of(keys, [&](const std::string& key) {
+      return key == set || key.starts_with(set + ".") || set.starts_with(key + ".");
+    });
+  });
+}
+
 /// Makes the plan, run by run.
 class Planner {
  public:
@@ -109,7 +119,8 @@ class Planner {
     for (const auto& [place, items] : draws) {
       Drawn drawn = draw(items, seed, place);
       std::ranges::move(drawn.overrides, std::back_inserter(all));
-      for (auto& [name, text] : drawn.properties) {
+      for (auto& [name, text, keys] : drawn.properties) {
+        if (sets_any(overrides, keys)) continue;  // it would be shown at a wrong value
         if (std::ranges::find(axes, name, &RunAxes::value_type::first) != axes.end()) {
           throw InputError(
               fmt::format("{}.{}: an axis or another property is called so; expected another name", place, name));

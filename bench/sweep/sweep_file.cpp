@@ -104,10 +104,19 @@ Json extended(const Json& json, const std::string& path) {
     const std::string folder = fs::absolute(base_path).parent_path().string();
     result["config"] = resolve_path(result["config"].get<std::string>(), folder);
   }
+  if (result.contains("plugins") && result["plugins"].is_array()) {
+    const std::string folder = fs::absolute(base_path).parent_path().string();
+    for (Json& library : result["plugins"]) {
+      if (library.is_string()) library = resolve_path(library.get<std::string>(), folder);
+    }
+  }
   result.erase("name");
   for (const auto& [key, value] : json.items()) {
     if (key == "set" && result.contains(key) && result[key].is_object() && value.is_object()) {
-      for (const auto& [path_in_config, setting] : value.items()) result[key][path_in_config] = setting;
+      for (const auto& [path_in_config, setting] : value.items()) {
+        result[key].erase(path_in_config);
+        result[key][path_in_config] = setting;  // behind what the base sets
+      }
     } else if (key == "axes" && result.contains(key) && result[key].is_array() && value.is_array()) {
       for (const Json& axis : value) result[key].push_back(axis);
     } else {

@@ -32,9 +32,9 @@ struct Sweep {
 ///   "name", "description", "timeout", "memory"
 ///   "plugins"  list of libraries, as in a config; paths from the sweep's folder
 ///   "set"      {KEY: VALUE, ...} in the base config
-///   "draw"     what is drawn at random for each run, by its seed (draw.hpp): properties, in tables like axes, and
-///   numbers "axes"     list of axes (axis.hpp) that all runs have "grids"    list of {"axes": [...]}: each is
-///   multiplied by "axes"; without them there is one
+///   "draw"     what is drawn at random for each run, by its seed (draw.hpp)
+///   "axes"     list of axes (axis.hpp) that all runs have
+///   "grids"    list of {"axes": [...]}: each is multiplied by "axes"; without them there is one
 ///
 /// `overrides` and `over` (axis.hpp: parse_axis()) come from the command line and are added to what the file says.
 /// Throws InputError for anything that is not as expected, with the place.

@@ -1,5 +1,6 @@
 #include "core/data/seeds.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <set>
 #include <utility>
@@ -15,6 +16,12 @@ Seeds::Seeds(const std::string& path) {
   for (const TrackObservation& z : read_tracks(path, kAnySize, kAnySize).observations) {
     if (known.insert(z.track).second) seeds_.push_back(z);
   }
+}
+
+TrackId Seeds::next_id() const {
+  TrackId id = 0;
+  for (const TrackObservation& seed : seeds_) id = std::max(id, seed.track + 1);
+  return id;
 }
 
 double Seeds::next() const {

@@ -20,6 +20,9 @@ class Seeds {
 
   bool given() const { return !seeds_.empty(); }
 
+  /// An id above those of all seeds; 0 without seeds.
+  TrackId next_id() const;
+
   /// The next seed's time [s]; infinite when there is none left.
   double next() const;
 

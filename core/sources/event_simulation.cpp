@@ -42,7 +42,7 @@ void EventSimulation::Options::declare(OptionSet& set) {
   set.group("rendering", rendering, "how the scene becomes intensities");
   set.group("simulator", simulator, "how intensities become events");
   set.add("cache", cache, "path of a folder that keeps the events, so that they are simulated once; empty: none")
-      .path();
+      .folder();
 }
 
 EventSimulation::EventSimulation(const Options& options, const SourceContext& context)

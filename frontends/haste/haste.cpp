@@ -42,6 +42,7 @@ Haste::Haste(const Options& options, const FrontEndContext& context)
       looked_(range_.from),
       detected_(range_.from),
       last_event_(range_.from) {
+  next_id_ = seeds_.next_id();
   check_border(options.detection.border, camera_, context.place + ".detection.border");
   check_border(options.life.border, camera_, context.place + ".life.border");
 }

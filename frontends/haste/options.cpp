@@ -58,7 +58,8 @@ void GuidanceOptions::declare(OptionSet& set) {
 void Options::declare(OptionSet& set) {
   set.add("tracks", tracks, "trackers alive, at most").range(1, 100'000);
   set.add("seeds", seeds,
-          "path of a file of tracks, whose first observations start all tracks; empty: detected features")
+          "path of a file of tracks, whose first observations start all tracks, but for those at the border; empty: "
+          "detected features")
       .path();
   set.add("threads", threads,
           "threads that trackers are spread over; 0: one a processor; they do not change what is tracked")

@@ -20,7 +20,8 @@ void PatchOptions::declare(OptionSet& set) {
 void Options::declare(OptionSet& set) {
   set.add("tracks", tracks, "tracks alive, at most").range(1, 100'000);
   set.add("seeds", seeds,
-          "path of a file of tracks, whose first observations start all tracks; empty: detected features")
+          "path of a file of tracks, whose first observations start all tracks, but for those at the border; empty: "
+          "detected features")
       .path();
   set.add("sigma", sigma, "standard deviation of an observation [px]").range(1e-6, 1e6);
   set.add("interval", interval, "a track is observed at events of it that are about this far apart, within a batch [s]")

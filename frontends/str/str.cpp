@@ -237,9 +237,11 @@ void Str::start_seeds(const Batch& batch, const Registration& registration) {
     const auto ideal = camera_.undistort(seed.pixel);
     if (!ideal || !camera_.contains(seed.pixel, options_.patch.border)) continue;
     Track track{seed.track, {}, 0, seed.pixel};
-    const std::int64_t t = std::max(microseconds(seed.t), microseconds(complete_) + 1);  // what is earlier is published
-    observe(track, camera_.pinhole.ray(*ideal).head<2>().cast<float>(), t);
-    track.ray = moved(track.ray, registration.A, 1e-6 * static_cast<double>(middle - t));
+    const std::int64_t begin = microseconds(seed.t), t = std::max(begin, microseconds(complete_) + 1);
+    if (t - begin > batch.to - batch.from) continue;  // there was no motion by which to move it
+    const Eigen::Vector2f ray = camera_.pinhole.ray(*ideal).head<2>().cast<float>();
+    observe(track, moved(ray, registration.A, 1e-6 * static_cast<double>(t - begin)), t);  // the earlier is published
+    track.ray = moved(ray, registration.A, 1e-6 * static_cast<double>(middle - begin));
     track.t = middle;
     track.pixel = pixel_of(track.ray);
     tracks_.push_back(track);

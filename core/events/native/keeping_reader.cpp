@@ -46,7 +46,11 @@ bool KeepingReader::read(std::vector<Event>& events) {
 void KeepingReader::seek(std::int64_t t) {
   reader_->seek(t);
   if (t <= 0 && (!begun_ || writer_)) {
-    if (begun_) begin();
+    try {
+      if (begun_) begin();
+    } catch (const OutputError&) {
+      give_up();
+    }
   } else {
     give_up();
   }

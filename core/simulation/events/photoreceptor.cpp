@@ -14,7 +14,7 @@ namespace {
 /// intensity 1.
 inline float pass(float before, float light_before, float light, float length, float rate) {
   constexpr float kFloor = 0.1F;
-  const float intensity = std::min(1.0F, fast_exp(0.5F * (light_before + light)));
+  const float intensity = fast_exp(std::clamp(0.5F * (light_before + light), -80.0F, 0.0F));
   const float q = std::min(80.0F, rate * (kFloor + (1.0F - kFloor) * intensity) * length);
   const float left = fast_exp(-q), change = light - light_before;
   const float lag = q > 1e-2F ? (1.0F - left) / q : 1.0F - q * (0.5F - q / 6.0F);

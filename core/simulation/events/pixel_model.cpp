@@ -34,7 +34,7 @@ void SensorOptions::declare(OptionSet& set) {
   set.add("hot_share", hot_share, "share of hot pixels").range(0.0, 1.0);
   set.add("hot_rate", hot_rate, "noise events of a hot pixel [Hz]").range(0.0, 1e5);
   set.add("bandwidth", bandwidth,
-          "of the low pass before the pixels, in proportion to the light, for white [Hz]; 0: none")
+          "of the low pass before the pixels, in proportion to the light but at least a tenth, for white [Hz]; 0: none")
       .range(0.0, 1e6);
 }
 

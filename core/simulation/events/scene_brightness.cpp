@@ -15,7 +15,7 @@ constexpr int kStride = 8;                           // [px] between probes
 
 void RenderingOptions::declare(OptionSet& set) {
   set.add("max_displacement", max_displacement, "largest motion of a point over the image between renderings [px]")
-      .range(0.01, 10.0);
+      .range(0.01, 1.0);
   set.add("blur", optics.blur, "standard deviation of a pixel's average over its area and the optics [px]")
       .range(0.2, 20.0);
   set.add("vignetting", optics.vignetting, "share of the light that is lost at the image's corners").range(0.0, 0.95);
@@ -58,7 +58,11 @@ double SceneBrightness::advance(double limit) {
   for (int part = 1; part < kParts; ++part) {
     views_.push_back(renderer_.view(motion_(from_ + (to_ - from_) * part / kParts)));
   }
-  renderer_.render_next(motion_(to_), threads_, last_, frame_);
+  if (moved_ <= 1.0) {
+    renderer_.render_next(motion_(to_), threads_, last_, frame_);
+  } else {  // in an instant that is shorter than the shortest interval
+    renderer_.render(motion_(to_), threads_, frame_);
+  }
   return to_;
 }
 

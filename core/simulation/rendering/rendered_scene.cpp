@@ -149,7 +149,8 @@ void RenderedSceneOptions::declare(OptionSet& set) {
   set.add("black", black, "intensity of black on the surfaces, that of white being 1: the contrast").range(1e-3, 0.99);
   set.add("texture", texture, "what is drawn on the surfaces; empty: leaves, or what the kind says")
       .choices({"", "leaves", "stripes", "bare", "repeated", "dots", "shapes"});
-  set.add("light", light, "light on one side of the scene, that on the other being 1").range(1e-3, 1e3);
+  set.add("light", light, "light on one side of the scene, as a multiple of that on the other; 1: even")
+      .range(1e-3, 1e3);
   set.add("picture", picture, "path of a picture to put on the surfaces instead; empty: none").path();
   set.add("picture_width", picture_width, "its width on a surface, after which it is mirrored [m]").above(0.0);
 }
@@ -174,6 +175,7 @@ RenderedScene make_rendered_scene(const RenderedSceneOptions& options, const Cam
     const Surface& extent = scene.surfaces.back();
     scene.light.gradient = std::log(options.light) / (2.0 * extent.half.head<2>().maxCoeff()) * across;
     scene.light.origin = extent.T_world_surface.p;
+    scene.light.limit = std::abs(0.5 * std::log(options.light));
   }
   for (const Surface& surface : scene.surfaces) {
     for (int face = 0; face < 6; ++face) {

@@ -46,7 +46,7 @@ Renderer::Renderer(const Camera& camera, const std::vector<Surface>& surfaces, c
     spread_[i] = blur_ * Vector2(normal_quantile((static_cast<double>(i) + 0.5) / kEdgeRays),
                                  normal_quantile(van_der_corput(static_cast<int>(i)) + 0.5 / kEdgeRays));
   }
-  if (optics.vignetting == 0.0) return;
+  if (optics.vignetting == 0.0 || camera.width * camera.height == 1) return;
   const Vector2 middle(0.5 * (camera.width - 1), 0.5 * (camera.height - 1));
   for (int y = 0; y < camera.height; ++y) {
     for (int x = 0; x < camera.width; ++x) {
@@ -217,7 +217,8 @@ void Renderer::shade(const View& view, const Hit& hit, std::size_t first, std::s
       const double along_v = (q.x() * x + (q.y() * y + q.z())) * inverse;
       u[i] = face.origin.x() + face.distance * along_u;
       v[i] = face.origin.y() + face.distance * along_v;
-      lit[i] = static_cast<float>(light + depth * (gradient.x() * x + (gradient.y() * y + gradient.z())));
+      lit[i] = static_cast<float>(std::clamp(light + depth * (gradient.x() * x + (gradient.y() * y + gradient.z())),
+                                             -light_.limit, light_.limit));
       const auto ux = static_cast<float>(depth * (p.x() - along_u * n.x()));
       const auto uy = static_cast<float>(depth * (p.y() - along_u * n.y()));
       const auto vx = static_cast<float>(depth * (q.x() - along_v * n.x()));

@@ -177,7 +177,7 @@ TEST_CASE("A picture that follows another one is that which would be without it"
   }
   surfaces.push_back({Surface::Kind::room, {}, {3.0, 3.0, 3.0}});
   const Texture texture = checkers(32);
-  const Renderer renderer(camera(), surfaces, texture, Optics{}, {.gradient = {0.3, 0.1, 0.0}});
+  const Renderer renderer(camera(), surfaces, texture, Optics{}, {.gradient = {0.3, 0.1, 0.0}, .limit = 1.0});
   Frame before, after, alone;
   renderer.render({}, 1, before);
   std::size_t differences = 0;
