@@ -54,20 +54,11 @@ Execution broken_off(double t, const std::string& error) {
   return execution;
 }
 
-/// Whether a run's tracks are scored, and kept until then.
-bool has_truth(const Source& source) { return source.point_truth() != nullptr; }
-
-void score_its_tracks(Execution& execution, const Source& source) {
-  if (!has_truth(source) || !execution.result.tracks) return;
-  TrackBatch& tracks = *execution.result.tracks;
-  std::ranges::stable_sort(tracks.ended, {}, &TrackEnd::t);
-  execution.track_scores =
-      score_tracks(tracks.observations, tracks.ended, *source.point_truth(), source.time_range().to);
-}
-
-/// Calls `run(make, report)`, which makes back-ends by `make` and reports its progress.
+/// Calls `run(make, report, keep)`, which makes back-ends by `make`, reports its progress, and keeps its tracks if it
+/// shall: because they are asked for, or scored by the source's truth.
 template <class Run>
-Execution run_job(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress, Run run) {
+Execution run_job(const Job& job, const Source& source, const Plugins& plugins, const Progress& progress,
+                  bool keep_tracks, Run run) {
   std::exception_ptr bad_input;  // of the first back-end, before any work
   bool made = false;
   const MakeBackEnd make = [&](const BackEndContext& context) {
@@ -87,8 +78,14 @@ Execution run_job(const Job& job, const Source& source, const Plugins& plugins, 
     if (progress) progress(now);
   };
   try {
-    Execution execution{run(make, report), true};
-    score_its_tracks(execution, source);
+    const std::shared_ptr<const PointTruth> truth = source.point_truth();
+    Execution execution{run(make, report, keep_tracks || truth != nullptr), true};
+    if (truth) {
+      TrackBatch& tracks = *execution.result.tracks;
+      std::ranges::stable_sort(tracks.ended, {}, &TrackEnd::t);
+      execution.track_scores = score_tracks(tracks.observations, tracks.ended, *truth, source.time_range().to);
+    }
+    if (!keep_tracks) execution.result.tracks.reset();
     return execution;
   } catch (const Interrupted&) {
     throw;
@@ -110,21 +107,16 @@ Execution execute(const Job& job, const Source& source, const Plugins& plugins, 
   } catch (const std::exception& error) {  // e.g. a process that ends at once
     return broken_off(source.time_range().from, error.what());
   }
-  Execution execution = run_job(job, source, plugins, progress, [&](const MakeBackEnd& make, const Progress& report) {
-    return run_pipeline(source, *frontend, make, context_of(job), job.pipeline, job.trajectory_rate, report,
-                        keep_tracks || has_truth(source));
-  });
-  if (!keep_tracks) execution.result.tracks.reset();
-  return execution;
+  return run_job(
+      job, source, plugins, progress, keep_tracks, [&](const MakeBackEnd& make, const Progress& report, bool keep) {
+        return run_pipeline(source, *frontend, make, context_of(job), job.pipeline, job.trajectory_rate, report, keep);
+      });
 }
 
 Execution execute(const Job& job, const Source& source, const Plugins& plugins, BatchStream& batches) {
-  Execution execution = run_job(job, source, plugins, {}, [&](const MakeBackEnd& make, const Progress& report) {
-    return run_pipeline(source, batches, make, context_of(job), job.pipeline, job.trajectory_rate, report,
-                        has_truth(source));
+  return run_job(job, source, plugins, {}, false, [&](const MakeBackEnd& make, const Progress& report, bool keep) {
+    return run_pipeline(source, batches, make, context_of(job), job.pipeline, job.trajectory_rate, report, keep);
   });
-  execution.result.tracks.reset();
-  return execution;
 }
 
 std::optional<std::string> record_front_end(const Job& job, const Source& source, const Plugins& plugins) {

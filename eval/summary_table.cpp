@@ -145,11 +145,15 @@ void add_names(TextTable& table, const std::vector<Group>& rows, const Columns& 
   }
 }
 
+std::size_t count_done(const Group& row, const TableRuns& runs) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      row, [&](std::size_t i) { return runs.runs[i].run().done || !runs.runs[i].run().damage.empty(); }));
+}
+
 void add_success(TextTable& table, const std::vector<Group>& rows, const TableRuns& runs, bool csv) {
   std::vector<Cell> done, succeeded, both;
   for (const Group& row : rows) {
-    const auto n = std::ranges::count_if(
-        row, [&](std::size_t i) { return runs.runs[i].run().done || !runs.runs[i].run().damage.empty(); });
+    const std::size_t n = count_done(row, runs);
     const auto good = std::ranges::count_if(row, [&](std::size_t i) { return runs.runs[i].succeeded(); });
     done.push_back({fmt::format("{}", n)});
     succeeded.push_back({fmt::format("{}", good)});
@@ -181,8 +185,7 @@ void add_follows_truth(TextTable& table, const std::vector<Group>& rows, const T
   std::vector<Cell> quantiles[3];
   constexpr double kQuantiles[] = {0.5, 0.9, 1.0};
   for (const Group& row : rows) {
-    const auto runs_done = static_cast<std::size_t>(std::ranges::count_if(
-        row, [&](std::size_t i) { return runs.runs[i].run().done || !runs.runs[i].run().damage.empty(); }));
+    const std::size_t runs_done = count_done(row, runs);
     const auto good = static_cast<std::size_t>(
         std::ranges::count_if(row, [&](std::size_t i) { return follows_truth(runs.runs[i], options.success); }));
     const auto off =
@@ -222,8 +225,8 @@ void add_follows_truth(TextTable& table, const std::vector<Group>& rows, const T
 std::string success_note(const TableOptions& options) {
   return fmt::format(
       "Within {} %: runs with an ATE of at most {} % of the path, whose final trajectory covers 90 % of the time, and "
-      "that are neither lost nor "
-      "failed, with Wilson's 95 % interval. False ok: runs whose status is ok with an ATE of more than {} %.",
+      "that are neither lost nor failed, with Wilson's 95 % interval. False ok: runs whose status is ok with an ATE of "
+      "more than {} %.",
       options.success, options.success, 2.0 * options.success);
 }
 

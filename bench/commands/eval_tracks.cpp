@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,7 +26,6 @@ struct EvalTracksArguments {
 };
 
 std::vector<TrackObservation> read(const std::string& path) {
-  constexpr int kAnySize = std::numeric_limits<int>::max();
   TrackFile file = read_tracks(path, kAnySize, kAnySize);
   if (!file.assumption.empty()) fmt::print(stderr, "evbench eval-tracks: {}\n", file.assumption);
   return std::move(file.observations);

@@ -46,9 +46,6 @@ struct AxisOptions {
   }
 };
 
-/// As on a command line: text as it is, other values as JSON.
-std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : dump_json(value); }
-
 AxisValue value_of(const std::string& key, const std::string& text) { return {text, {key + "=" + text}, {}}; }
 
 std::string rounded(double value, int digits) {
@@ -106,7 +103,7 @@ std::vector<AxisValue> read_overlays(const Json& overlays, const std::string& pl
       if (key == "draw") {
         value.draw = item;
       } else {
-        value.overrides.push_back(key + "=" + text_of(item));
+        value.overrides.push_back(key + "=" + override_text(item));
       }
     }
     values.push_back(std::move(value));
@@ -179,6 +176,8 @@ std::optional<RangeOptions> parse_range(const std::string& text, const std::stri
 
 }  // namespace
 
+std::string override_text(const Json& value) { return value.is_string() ? value.get<std::string>() : dump_json(value); }
+
 std::vector<std::string> AxisValue::keys() const {
   std::vector<std::string> result;
   for (const std::string& override : overrides) result.push_back(override.substr(0, override.find('=')));
@@ -205,7 +204,7 @@ ZippedAxes read_axis(const Json& json, const std::string& place) {
   if (has_overlays) axis.values = read_overlays(options.overlays, place + ".overlays");
   if (has_values) {
     if (!options.values.is_array()) throw InputError(fmt::format("{}.values: expected a list of values", place));
-    for (const Json& value : options.values) axis.values.push_back(value_of(options.key, text_of(value)));
+    for (const Json& value : options.values) axis.values.push_back(value_of(options.key, override_text(value)));
   }
   if (has_range) {
     const std::string at = place + ".range";

@@ -8,6 +8,9 @@
 
 namespace evbench {
 
+/// The text of a value in an override "KEY=VALUE", as on a command line: text as it is, other values as JSON.
+std::string override_text(const Json& value);
+
 /// A value of an axis: its name, the overrides "KEY=VALUE" that it makes in a config, and what is drawn at random for
 /// it (draw.hpp; null: nothing).
 struct AxisValue {

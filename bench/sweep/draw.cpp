@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <numeric>
 #include <utility>
 
+#include "bench/sweep/axis.hpp"
 #include "core/simulation/random.hpp"
 #include "core/support/error.hpp"
 
@@ -58,8 +58,6 @@ std::size_t draw_index(std::size_t count, std::uint64_t seed, std::uint64_t stre
   for (std::size_t i = count - 1; i > 0; --i) std::swap(order[i], order[random.index(i + 1)]);
   return order[seed % count];
 }
-
-std::string override_text(const Json& value) { return value.is_string() ? value.get<std::string>() : dump_json(value); }
 
 }  // namespace
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/support/json.hpp"
-#include "eval/run_settings.hpp"
 
 namespace evbench {
 

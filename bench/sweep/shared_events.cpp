@@ -23,9 +23,9 @@ class RecordedEvents : public Source {
   const PoseTrajectory& ground_truth() const override { return source_->ground_truth(); }
   /// Another sweep that no longer needs the events may have removed the recording: they are then made again.
   std::unique_ptr<EventReader> all_events() const override {
-    std::error_code error;
-    if (!keep_ && !std::filesystem::exists(path_, error)) return source_->all_events();
     if (keep_) return kept_events();
+    std::error_code error;
+    if (!std::filesystem::exists(path_, error)) return source_->all_events();
     return std::make_unique<NativeReader>(path_);
   }
   std::string size_assumption() const override { return source_->size_assumption(); }

@@ -95,17 +95,16 @@ Json extended(const Json& json, const std::string& path) {
   if (!json["base"].is_string()) throw InputError(fmt::format("{}: base: expected the path of a sweep's file", path));
   const std::string base_path =
       resolve_path(json["base"].get<std::string>(), fs::absolute(path).parent_path().string());
+  const std::string folder = fs::absolute(base_path).parent_path().string();
   Json result = read_json(base_path);
   if (!result.is_object() || result.contains("base")) {
     throw InputError(
         fmt::format("{}: base: {}: expected the file of a sweep, without a base of its own", path, base_path));
   }
   if (result.contains("config") && result["config"].is_string()) {
-    const std::string folder = fs::absolute(base_path).parent_path().string();
     result["config"] = resolve_path(result["config"].get<std::string>(), folder);
   }
   if (result.contains("plugins") && result["plugins"].is_array()) {
-    const std::string folder = fs::absolute(base_path).parent_path().string();
     for (Json& library : result["plugins"]) {
       if (library.is_string()) library = resolve_path(library.get<std::string>(), folder);
     }
@@ -138,7 +137,7 @@ Sweep read_file(const Json& own, const std::string& path, Plugins& plugins, cons
   load_libraries(options.plugins, path, folder, plugins, policy);
   if (!options.set.is_object()) throw InputError(fmt::format("{}: set: expected an object {{KEY: VALUE}}", path));
   for (const auto& [key, value] : options.set.items()) {
-    sweep.overrides.push_back(key + "=" + (value.is_string() ? value.get<std::string>() : dump_json(value)));
+    sweep.overrides.push_back(key + "=" + override_text(value));
   }
   Grid common;
   add_axes(options.axes, path + ": axes", common);

@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <limits>
 #include <set>
-#include <utility>
 
 #include "core/data/tracks.hpp"
+#include "core/io/path.hpp"
 
 namespace evbench {
 
-Seeds::Seeds(const std::string& path) {
+Seeds::Seeds(const std::string& path, const std::string& folder) {
   if (path.empty()) return;
-  constexpr int kAnySize = std::numeric_limits<int>::max();
   std::set<TrackId> known;
-  for (const TrackObservation& z : read_tracks(path, kAnySize, kAnySize).observations) {
+  for (const TrackObservation& z : read_tracks(resolve_path(path, folder), kAnySize, kAnySize).observations) {
     if (known.insert(z.track).second) seeds_.push_back(z);
   }
 }

@@ -12,11 +12,8 @@ namespace evbench {
 /// track of a file (read_tracks()). So front-ends can be compared on the same features.
 class Seeds {
  public:
-  /// None.
-  Seeds() = default;
-
-  /// Reads a file; an empty path: none. Throws InputError as read_tracks() does.
-  explicit Seeds(const std::string& path);
+  /// Reads a file, its path relative to `folder`; an empty path: none. Throws InputError as read_tracks() does.
+  Seeds(const std::string& path, const std::string& folder);
 
   bool given() const { return !seeds_.empty(); }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,9 @@ struct TrackFile {
   TrackFileReport report;
   std::string assumption;  ///< a sentence if columns or unit of time were assumed; empty: usual layout
 };
+
+/// A sensor's width and height for read_tracks() where no image limits the tracks.
+inline constexpr int kAnySize = std::numeric_limits<int>::max();
 
 /// Reads feature tracks, one observation per line in columns separated by blanks, tabs, commas or semicolons: an
 /// integer id, time, pixel. The columns are those of the options, those named by a line of names or the comment before

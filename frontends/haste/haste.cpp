@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/events/event_time.hpp"
-#include "core/io/path.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/index.hpp"
 
@@ -33,7 +32,7 @@ Vector2 place_of(const Change& change, Options::Place place) {
 Haste::Haste(const Options& options, const FrontEndContext& context)
     : EventFrontEnd(context, "haste"),
       options_(options),
-      seeds_(options.seeds.empty() ? Seeds() : Seeds(resolve_path(options.seeds, context.folder))),
+      seeds_(options.seeds, context.folder),
       sigma_(options.sigma),
       recent_(static_cast<std::size_t>(options.detection.events)),
       trackers_(camera_.width, camera_.height, options.threads),
@@ -126,8 +125,8 @@ bool Haste::is_as_expected(TrackId track, const Vector2& pixel, double t) const 
 }
 
 void Haste::on_tick() {
-  if (options_.life.erratic) end_wanderers();
-  end_strangers();
+  if (options_.life.erratic) end_erratic();
+  end_mismatched();
   end_trackers();
   correct_guidance();
   if (options_.guidance.veto) veto_strays();
@@ -205,7 +204,7 @@ std::vector<std::string> Haste::counts() const {
                   "{} starved, {} crowded, {} far from where they were expected, {} as outliers, {} erratic, "
                   "{} mismatched after a silence",
                   ended(End::border), ended(End::spread), ended(End::edge), ended(End::starvation),
-                  ended(End::crowding), ended(End::veto), ended(End::outlier), ended(End::wandering),
+                  ended(End::crowding), ended(End::veto), ended(End::outlier), ended(End::erratic),
                   ended(End::silence)),
       fmt::format("{} landmarks re-acquired by template, of which {} were confirmed; {} at corners, of which {} were "
                   "confirmed; {} displaced together; {} recognised after tracking was lost",

@@ -54,7 +54,7 @@ class Haste : public EventFrontEnd {
   };
 
   /// Why a track ends.
-  enum class End { border, spread, edge, starvation, crowding, veto, outlier, wandering, silence, recognised };
+  enum class End { border, spread, edge, starvation, crowding, veto, outlier, erratic, silence, recognised };
 
   void take(std::span<const Event> events) override;
   void on_tick() override;
@@ -69,8 +69,8 @@ class Haste : public EventFrontEnd {
 
   // track_life.cpp
   void doubt_trackers();
-  void end_strangers();
-  void end_wanderers();
+  void end_mismatched();
+  void end_erratic();
   void end_trackers();
   void veto_strays();
   void end(std::int64_t tracker, End why);

@@ -24,7 +24,7 @@ void Haste::doubt_trackers() {
 }
 
 /// Ends mismatched tracks after a silence, as soon as their windows hold only new events.
-void Haste::end_strangers() {
+void Haste::end_mismatched() {
   for (const std::int64_t id : trackers_.ids()) {
     const Tracker& tracker = trackers_.tracker(id);
     Track& track = tracks_.at(id);
@@ -45,7 +45,7 @@ void Haste::end_strangers() {
 /// So a tracker stays within the box between its old and its new position, but for small steps to and fro, and moves
 /// with the others. A burst of noise takes each tracker elsewhere. The observations of an erratic tracker since the
 /// last tick are dropped, and its path does not count as motion of the image.
-void Haste::end_wanderers() {
+void Haste::end_erratic() {
   constexpr double kAside = 4.0;        // [px] by which the box of its positions may exceed its displacement
   constexpr double kFromOthers = 0.05;  // of the image's width; a turn at 660 degrees/s makes 0.03 at its border
   constexpr std::size_t kEnough = 5;
@@ -58,18 +58,18 @@ void Haste::end_wanderers() {
   const bool enough = x.size() >= kEnough;
   const Vector2 usual(median(std::move(x)), median(std::move(y)));
   double way = 0.0;
-  std::vector<std::int64_t> wanderers;
+  std::vector<std::int64_t> erratic;
   for (const auto& [tracker, track] : tracks_) {
     const Vector2 moved = track.pixel - track.from;
     const bool aside = track.visited.diagonal().norm() - moved.norm() > kAside;
     if (!aside && !(enough && (moved - usual).norm() > kFromOthers * camera_.width)) continue;
     way += track.way;
-    wanderers.push_back(tracker);
+    erratic.push_back(tracker);
   }
-  if (wanderers.empty()) return;
+  if (erratic.empty()) return;
   odometer_ -= way / static_cast<double>(tracks_.size());
   for (auto& [tracker, track] : tracks_) track.odometer = std::min(track.odometer, odometer_);
-  for (const std::int64_t tracker : wanderers) end(tracker, End::wandering);
+  for (const std::int64_t tracker : erratic) end(tracker, End::erratic);
 }
 
 void Haste::end_trackers() {
@@ -134,7 +134,7 @@ void Haste::end(std::int64_t tracker, End why) {
   } else {
     // Observations newer than the delay are not published yet, whatever the exchange interval.
     const bool doubted = track.doubted >= 0;  // it ends before it could be checked
-    if (why == End::wandering || why == End::silence || doubted) {
+    if (why == End::erratic || why == End::silence || doubted) {
       delayed_.take_back(track.id, std::max(track.found, clock_ - options_.delay));
     }
     delayed_.end({track.id, clock_});

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/events/event_time.hpp"
-#include "core/io/path.hpp"
 #include "core/plugin/registration.hpp"
 #include "core/support/index.hpp"
 #include "frontends/str/expected_motion.hpp"
@@ -39,7 +38,7 @@ void move(EventCloud& cloud, const Matrix3& A, double dt) {
 Str::Str(const Options& options, const FrontEndContext& context)
     : EventFrontEnd(context, "str"),
       options_(options),
-      seeds_(options.seeds.empty() ? Seeds() : Seeds(resolve_path(options.seeds, context.folder))),
+      seeds_(options.seeds, context.folder),
       batches_(options.batch, options.registration.slice, microseconds(range_.from)),
       registrar_(camera_, options.registration),
       complete_(range_.from) {

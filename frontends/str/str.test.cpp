@@ -1,7 +1,5 @@
 #include "frontends/str/str.hpp"
 
-#include <fmt/format.h>
-
 #include <map>
 #include <set>
 
@@ -10,6 +8,7 @@
 #include "core/testing/collect_tracks.hpp"
 #include "core/testing/data.hpp"
 #include "core/testing/event_scene.hpp"
+#include "core/testing/seeds.hpp"
 #include "frontends/str/expected_motion.hpp"
 
 using namespace evbench;
@@ -239,31 +238,10 @@ TEST_CASE("A source without events is refused by str, with a sentence") {
 
 TEST_CASE("With seeds, tracks begin at the given points and times with the given ids, and no others") {
   const evbench::testing::TemporaryFolder folder;
+  const evbench::testing::SeedFile seeds(track(scene()).all);
   Options options;
-  const TrackBatch detected = track(scene()).all;
-  std::map<TrackId, TrackObservation> seeds;  // places that can be tracked
-  for (const TrackObservation& z : detected.observations) {
-    if (z.t < 0.4 && seeds.size() < 12) seeds.emplace(z.track, z);
-  }
-  std::string file;
-  std::map<TrackId, TrackObservation> expected;
-  for (const auto& [id, z] : seeds) {
-    file += fmt::format("{} {} {} {}\n", 100 + 7 * id, z.t, z.pixel.x(), z.pixel.y());
-    file += fmt::format("{} {} 1 1\n", 100 + 7 * id, z.t + 0.1);  // not its first observation
-    expected.emplace(100 + 7 * id, z);
-  }
-  options.seeds = folder.write("seeds.txt", file);
+  options.seeds = folder.write("seeds.txt", seeds.text());
   const TrackBatch all = track(scene(), options).all;
-  std::map<TrackId, std::size_t> lengths;
-  for (const TrackObservation& z : all.observations) {
-    REQUIRE(expected.contains(z.track));
-    if (lengths[z.track]++ > 0) continue;
-    CHECK((z.pixel - expected.at(z.track).pixel).norm() < 1e-6);
-    CHECK(z.t >= expected.at(z.track).t - 1e-6);
-    CHECK(z.t < expected.at(z.track).t + 0.06);
-  }
-  CHECK(lengths.size() == expected.size());
-  CHECK(std::ranges::is_sorted(all.observations, {}, &TrackObservation::t));
-  CHECK(all.observations.size() > 10 * expected.size());
+  seeds.check(all);
   CHECK(median_error(scene(), brisk, all.observations) < 1.0);
 }

@@ -22,8 +22,8 @@ struct SimulatorOptions {
 /// An event camera that sees a brightness: a recording that is simulated while it is read. Within an interval of the
 /// brightness a pixel's log intensity is a straight line; where the pixel emits events and the line is wrong by more
 /// than time_accuracy, and by more than the time in which the image moves by place_accuracy, the interval is halved for
-/// this pixel, down to Brightness::kParts parts. Events are ordered by
-/// (t, y, x). Equal brightness, options and seed give equal bytes, whatever the number of threads.
+/// this pixel, down to Brightness::kParts parts. Events are ordered by (t, y, x). Equal brightness, options and seed
+/// give equal bytes, whatever the number of threads.
 class EventSimulator : public EventReader {
  public:
   /// From 0 to `duration` [s]. Throws InputError for outages that are no time spans.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/simulation/rendering/fast_math.hpp"
+#include "core/simulation/fast_math.hpp"
 #include "core/support/index.hpp"
 
 namespace evbench {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/simulation/rendering/fast_math.hpp"
+#include "core/simulation/fast_math.hpp"
 #include "core/support/index.hpp"
 #include "core/support/parallel.hpp"
 
@@ -201,7 +201,6 @@ void Renderer::shade(const View& view, const Hit& hit, std::size_t first, std::s
   const double light = light_.gradient.dot(T.p - light_.origin);
   constexpr std::size_t kTogether = 64;
   const View::Face face = view.face(hit);
-  const Vector3 n = face.normal, p = face.axes[0], q = face.axes[1];
   const auto blur = static_cast<float>(blur_);
   while (count > 0) {
     const std::size_t now = std::min(count, kTogether);
@@ -211,18 +210,13 @@ void Renderer::shade(const View& view, const Hit& hit, std::size_t first, std::s
     std::array<float, kTogether> lit;              // logarithm of the light
     for (std::size_t i = 0; i < now; ++i) {
       const double x = rays_[first + i].x(), y = rays_[first + i].y();
-      const double inverse = 1.0 / (n.x() * x + (n.y() * y + n.z())), depth = face.distance * inverse;
-      // From X = depth (x, y, 1) being on the face: ∂depth = −depth ∂(normal · ray) / (normal · ray).
-      const double along_u = (p.x() * x + (p.y() * y + p.z())) * inverse;
-      const double along_v = (q.x() * x + (q.y() * y + q.z())) * inverse;
-      u[i] = face.origin.x() + face.distance * along_u;
-      v[i] = face.origin.y() + face.distance * along_v;
-      lit[i] = static_cast<float>(std::clamp(light + depth * (gradient.x() * x + (gradient.y() * y + gradient.z())),
-                                             -light_.limit, light_.limit));
-      const auto ux = static_cast<float>(depth * (p.x() - along_u * n.x()));
-      const auto uy = static_cast<float>(depth * (p.y() - along_u * n.y()));
-      const auto vx = static_cast<float>(depth * (q.x() - along_v * n.x()));
-      const auto vy = static_cast<float>(depth * (q.y() - along_v * n.y()));
+      const View::Face::Place place = face.at(x, y);
+      u[i] = place.u;
+      v[i] = place.v;
+      lit[i] = static_cast<float>(std::clamp(
+          light + place.depth * (gradient.x() * x + (gradient.y() * y + gradient.z())), -light_.limit, light_.limit));
+      const auto ux = static_cast<float>(place.ux), uy = static_cast<float>(place.uy);
+      const auto vx = static_cast<float>(place.vx), vy = static_cast<float>(place.vy);
       const float* const J = jacobians_[first + i].data();  // by columns
       const float a = blur * (ux * J[0] + uy * J[1]), b = blur * (ux * J[2] + uy * J[3]);
       const float c = blur * (vx * J[0] + vy * J[1]), d = blur * (vx * J[2] + vy * J[3]);
@@ -234,11 +228,8 @@ void Renderer::shade(const View& view, const Hit& hit, std::size_t first, std::s
       longer[i] = mean + difference;
       shorter[i] = std::max(mean - difference, 1e-3F * longer[i]);
     }
-    const bool round = [&] {
-      bool all = true;
-      for (std::size_t i = 0; i < now; ++i) all &= longer[i] < kRound * shorter[i];
-      return all;
-    }();
+    bool round = true;
+    for (std::size_t i = 0; i < now; ++i) round &= longer[i] < kRound * shorter[i];
     if (round) {
       for (std::size_t i = 0; i < now; ++i) longer[i] = 0.5F * (xx[i] + yy[i]);
       texture_->sample(std::span(u).first(now), std::span(v).first(now), std::span(longer).first(now),

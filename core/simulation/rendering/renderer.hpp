@@ -27,10 +27,10 @@ struct Optics {
 };
 
 /// Renders log intensity by casting rays through a camera with lens. A pixel's intensity is averaged with a Gaussian of
-/// standard deviation `blur` [px]: by a sample of the blurred texture (several in a
-/// line where it is foreshortened). Where a neighbour sees another face, the two faces' samples are weighted by the
-/// share of the Gaussian on either side of the line between them, or, where that is no line, by a share of 32 rays. The
-/// image therefore changes smoothly as the camera moves.
+/// standard deviation `blur` [px]: by a sample of the blurred texture (several in a line where it is foreshortened).
+/// Where a neighbour sees another face, the two faces' samples are weighted by the share of the Gaussian on either side
+/// of the line between them, or, where that is no line, by a share of 32 rays. The image therefore changes smoothly as
+/// the camera moves.
 class Renderer {
  public:
   /// Keeps pointers to `surfaces` and `texture`. Surfaces without end have the texture everywhere.

@@ -143,20 +143,6 @@ View::Face View::face(const Hit& hit) const {
           seen.surface->offsets[index(hit.face)] + Vector2(seen.eye[right], seen.eye[down])};
 }
 
-View::Place View::place(const Hit& hit, const Vector2& ray) const {
-  const Face f = face(hit);
-  const double inverse = 1.0 / f.normal.dot(ray.homogeneous());
-  Place place{f.origin, {}};
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    const Vector3& axis = f.axes[index(static_cast<int>(i))];
-    // From X = depth (x, y, 1) being on the face: ∂depth = −depth ∂(normal · ray) / (normal · ray).
-    const double along = axis.dot(ray.homogeneous()) * inverse;
-    place.texture[i] += f.distance * along;
-    place.jacobian.row(i) = f.distance * inverse * (axis - along * f.normal).head<2>().transpose();
-  }
-  return place;
-}
-
 std::optional<Vector3> View::border(const Hit& a, const Hit& b, std::span<const Vector2> rays,
                                     std::span<const Hit> hits) const {
   // Two planes meet in the image where their depths, distance / (normal · ray), are equal.

@@ -47,13 +47,6 @@ class View {
   void hit(std::span<const Vector2> rays, std::span<Hit> hits) const;
   Hit hit(const Vector2& ray) const;
 
-  /// Where on the texture a hit is, and how it moves with the ray's x and y.
-  struct Place {
-    Vector2 texture;
-    Matrix2 jacobian;
-  };
-  Place place(const Hit& hit, const Vector2& ray) const;
-
   /// The plane normal · X = distance in which a face lies, X in the camera's frame, and the texture on it: the place of
   /// X is origin + (axes[0] · X, axes[1] · X) [m].
   struct Face {
@@ -61,6 +54,26 @@ class View {
     double distance;
     std::array<Vector3, 2> axes;
     Vector2 origin;
+
+    /// Where a ray (x, y, 1) meets the plane: depth along the camera's z [m], the place (u, v) on the texture [m], and
+    /// the derivatives of u and v by x and y.
+    struct Place {
+      double depth, u, v, ux, uy, vx, vy;
+    };
+    Place at(double x, double y) const {
+      const Vector3 &n = normal, &p = axes[0], &q = axes[1];
+      const double inverse = 1.0 / (n.x() * x + (n.y() * y + n.z())), depth = distance * inverse;
+      // From X = depth (x, y, 1) being in the plane: ∂depth = −depth ∂(normal · ray) / (normal · ray).
+      const double along_u = (p.x() * x + (p.y() * y + p.z())) * inverse;
+      const double along_v = (q.x() * x + (q.y() * y + q.z())) * inverse;
+      return {depth,
+              origin.x() + distance * along_u,
+              origin.y() + distance * along_v,
+              depth * (p.x() - along_u * n.x()),
+              depth * (p.y() - along_u * n.y()),
+              depth * (q.x() - along_v * n.x()),
+              depth * (q.y() - along_v * n.y())};
+    }
   };
   Face face(const Hit& hit) const;
 
