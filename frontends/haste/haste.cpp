@@ -172,7 +172,7 @@ void Haste::replenish() {
 
 /// Fills the tracker's window with the recent events around it, so that it starts at once.
 void Haste::begin(Tracker tracker, const Track& track) {
-  for (const Event& event : recent_.window(track.pixel)) tracker.push(event);
+  for (const Event& event : window_at(track.pixel, recent_)) tracker.push(event);
   const bool runs = tracker.running();
   Change start = tracker.change();
   start.tracker = trackers_.add(std::move(tracker));

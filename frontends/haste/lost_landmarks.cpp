@@ -93,7 +93,7 @@ std::optional<LostLandmarks::Found> LostLandmarks::look_for(TrackId track, const
   constexpr double kBeside = 3.0;      // [px] a second match is farther than this from the best one
   constexpr double kAmbiguous = 0.95;  // and as good if its score is more than this share of the best one
   constexpr double kNearest = 2.0;     // [px] least search radius
-  const double t = middle_of(recent.window(about));
+  const double t = middle_of(window_at(about, recent));
   const auto expected = guidance.predict(track, t);
   if (!expected) return std::nullopt;
   const double sigma = std::sqrt(expected->covariance.diagonal().maxCoeff());
@@ -131,7 +131,7 @@ std::vector<LostLandmarks::Found> LostLandmarks::find_displaced(const Guidance& 
   const std::size_t count = std::min(candidates.size(), kMost);
   for (std::size_t i = 0; i < count; ++i) {
     const auto& [track, about, tried] = candidates[i * candidates.size() / count];  // both recently and long lost ones
-    const double middle = middle_of(recent.window(about));
+    const double middle = middle_of(window_at(about, recent));
     const auto expected = guidance.predict(track, middle);
     if (!expected) continue;
     Found found = as_expected(track, lost_.at(track), guidance, middle);
@@ -164,7 +164,7 @@ std::optional<LostLandmarks::Found> LostLandmarks::recognise(const Vector2& abou
   for (const auto& [track, lost] : lost_) {
     if (lost.world != world && !tracked.has(track)) looks.push_back({track, &lost.look, lost.angle});
   }
-  const auto found = haste::recognise(looks, recent.window(about), about, options_.recognition);
+  const auto found = haste::recognise(looks, window_at(about, recent), about, options_.recognition);
   if (!found) return std::nullopt;
   return Found{found->track, found->pixel, lost_.at(found->track).look.warped(found->angle, 1.0)};
 }

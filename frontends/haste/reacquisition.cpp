@@ -69,7 +69,7 @@ void Haste::recognise() {
 
 /// Landmarks with a template were searched for by it before.
 std::optional<TrackId> Haste::lost_landmark_at(const Vector2& corner) const {
-  const std::span<const Event> window = recent_.window(corner);
+  const std::span<const Event> window = window_at(corner, recent_);
   if (!options_.guidance.reacquire || !options_.guidance.corners || window.empty()) return std::nullopt;
   return lost_.at_corner(corner, guidance_, seconds(window[window.size() / 2].t), tracked());
 }

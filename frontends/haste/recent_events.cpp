@@ -6,8 +6,8 @@
 
 namespace evbench::haste {
 
-std::span<const Event> RecentEvents::window(const Vector2& pixel) const {
-  const std::span<const Event> all = events();
+std::span<const Event> window_at(const Vector2& pixel, const RecentEvents& recent) {
+  const std::span<const Event> all = recent.events();
   const int x = static_cast<int>(std::lround(pixel.x())), y = static_cast<int>(std::lround(pixel.y()));
   std::size_t first = all.size();
   for (int missing = kWindowSize; missing > 0 && first > 0;) {

@@ -1,0 +1,91 @@
+#include "frontends/poisson/patch.hpp"
+
+#include <Eigen/LU>
+#include <array>
+
+namespace evbench::poisson {
+namespace {
+
+constexpr double kSmoothing = 0.8;  // [px] standard deviation of an event's place
+constexpr int kWide = 4;            // cells that an event enters, along each axis
+
+/// Weights of the cells around a place, by its fraction of a cell.
+class Kernel {
+ public:
+  using Weights = std::array<float, kWide>;
+  Kernel() {
+    for (int i = 0; i < kSteps; ++i) {
+      std::array<double, kWide> weights;
+      double sum = 0.0;
+      for (int k = 0; k < kWide; ++k) {
+        const double distance = (k - 1 - (i + 0.5) / kSteps) / kSmoothing;
+        sum += weights[index(k)] = std::exp(-0.5 * distance * distance);
+      }
+      for (int k = 0; k < kWide; ++k) weights_[index(i)][index(k)] = static_cast<float>(weights[index(k)] / sum);
+    }
+  }
+  const Weights& at(double fraction) const { return weights_[index(static_cast<int>(fraction * kSteps))]; }
+
+ private:
+  static constexpr int kSteps = 32;
+  std::array<Weights, kSteps> weights_;
+};
+
+}  // namespace
+
+Patch::Patch(double radius)
+    : reach_(static_cast<int>(std::ceil(radius)) + kWide),
+      side_(2 * reach_ + 1),
+      area_(M_PI * radius * radius),
+      cells_(index(side_ * side_)) {}
+
+void Patch::move(const Vector2& direction, double way, double memory) {
+  constexpr double kHeavy = 1e6;
+  weight_ *= std::exp(way / memory);
+  if (weight_ > kHeavy) {
+    const auto scale = static_cast<float>(1.0 / weight_);
+    for (Cell& cell : cells_) cell = {scale * cell.x, scale * cell.y, scale * cell.count, 0.0F};
+    M_ /= weight_;
+    way_ /= weight_;
+    count_ /= weight_;
+    weight_ = 1.0;
+  }
+  M_ += weight_ * way * direction * direction.transpose();
+  way_ += weight_ * way;
+}
+
+void Patch::add(const Vector2& place, bool on, const Vector2& direction) {
+  static const Kernel kernel;
+  const double x = place.x() + reach_, y = place.y() + reach_;
+  if (!(x >= 1.0 && y >= 1.0 && x < side_ - 3 && y < side_ - 3)) return;
+  const int left = static_cast<int>(x), top = static_cast<int>(y);
+  const Kernel::Weights &across = kernel.at(x - left), &down = kernel.at(y - top);
+  const double sign = on ? -weight_ : weight_;
+  const auto bx = static_cast<float>(sign * direction.x()), by = static_cast<float>(sign * direction.y());
+  const auto one = static_cast<float>(weight_);
+  for (int j = 0; j < kWide; ++j) {
+    Cell* const row = &cells_[index((top + j - 1) * side_ + left - 1)];
+    for (int i = 0; i < kWide; ++i) {
+      const float w = across[index(i)] * down[index(j)];
+      row[i].x += w * bx;
+      row[i].y += w * by;
+      row[i].count += w * one;
+    }
+  }
+  count_ += weight_;
+}
+
+void Patch::look(const Vector2& direction, const Shares& shares) {
+  constexpr double kUnknown = 1.0;  // [px] of way along a direction, before what it shows counts
+  const double way = std::max(way_, 1e-9 * weight_);
+  const double polarities = shares.polarity ? 0.5 : 1.0;
+  const double mean = std::max(polarities * count_ / (way * area_), 1e-9);
+  const Vector2 h = (M_ + weight_ * kUnknown * Matrix2::Identity()).inverse() * direction / mean;
+  hx_ = static_cast<float>(h.x());
+  hy_ = static_cast<float>(h.y());
+  any_ = static_cast<float>(polarities * shares.any_direction / (way * mean));
+  noise_ = static_cast<float>(shares.noise);
+  polarity_ = shares.polarity;
+}
+
+}  // namespace evbench::poisson

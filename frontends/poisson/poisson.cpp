@@ -1,0 +1,176 @@
+#include "frontends/poisson/poisson.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/events/event_time.hpp"
+#include "core/plugin/registration.hpp"
+#include "core/support/index.hpp"
+#include "core/support/median.hpp"
+#include "frontends/poisson/contrast.hpp"
+
+namespace evbench::poisson {
+namespace {
+
+const Registration<FrontEnd, Poisson> registration(
+    "poisson", "tracks features asynchronously by the likelihood of events, a Poisson process", 1);
+
+constexpr double kTick = 0.005;  ///< [s] between two calls of on_tick()
+
+}  // namespace
+
+Poisson::Poisson(const Options& options, const FrontEndContext& context)
+    : EventFrontEnd(context, "poisson"),
+      options_(options),
+      seeds_(options.seeds, context.folder),
+      recent_(static_cast<std::size_t>(std::max(options.recent, options.detection.events))),
+      detected_(range_.from),
+      next_id_(seeds_.next_id()) {
+  check_border(options.detection.border, camera_, context.place + ".detection.border");
+  check_border(options.life.border, camera_, context.place + ".life.border");
+}
+
+void Poisson::take(std::span<const Event> events) {
+  while (seeds_.next() <= seconds(events.back().t)) {
+    const double t = seeds_.next();
+    const auto rest = std::ranges::upper_bound(events, t, {}, [](const Event& event) { return seconds(event.t); });
+    process({events.begin(), rest});
+    for (const TrackObservation& seed : seeds_.take(t)) begin(seed.track, seed.pixel);
+    events = {rest, events.end()};
+    if (events.empty()) return;
+  }
+  process(events);
+}
+
+void Poisson::process(std::span<const Event> events) {
+  recent_.add(events);
+  for (Track& track : tracks_) {
+    observations_.clear();
+    track.tracker.push(events, observations_);
+    for (const Tracker::Observation& z : observations_) report(track, z);
+  }
+}
+
+void Poisson::report(Track& track, const Tracker::Observation& z) {
+  constexpr double kLeastStep = 1e-6;  // [s] between two observations of a track
+  if (track.settling > 0) {
+    --track.settling;
+    return;
+  }
+  track.reported = std::max({z.t, track.reported + kLeastStep, complete() + kLeastStep});
+  delayed_.add({track.id, track.reported, z.position, std::hypot(options_.sigma, track.tracker.observed_deviation())});
+}
+
+void Poisson::on_tick() {
+  std::vector<double> x, y;
+  for (Track& track : tracks_) {
+    if (const auto z = track.tracker.pass(clock_, clock_ + 1.2 * kTick - options_.delay)) report(track, *z);
+    x.push_back(track.tracker.velocity().x());
+    y.push_back(track.tracker.velocity().y());
+  }
+  if (!x.empty()) odometer_ += kTick * std::hypot(median(std::move(x)), median(std::move(y)));
+  end_trackers();
+  if (!seeds_.given() && clock_ - detected_ >= options_.detection.interval) replenish();
+}
+
+void Poisson::end_trackers() {
+  std::vector<Track> kept;
+  for (Track& track : tracks_) {
+    if (track.tracker.newest() > track.corrected) {
+      track.corrected = track.tracker.newest();
+      track.odometer = odometer_;
+    }
+    if (const auto why = reason_to_end(track, kept)) {
+      end(track, *why);
+    } else {
+      kept.push_back(std::move(track));
+    }
+  }
+  tracks_ = std::move(kept);
+}
+
+std::optional<Poisson::End> Poisson::reason_to_end(const Track& track, std::span<const Track> older) const {
+  constexpr double kUnknown = 1.5;  // [px] deviation of the present position
+  const LifeOptions& life = options_.life;
+  const Tracker& tracker = track.tracker;
+  const Vector2 pixel = tracker.position(clock_);
+  if (!pixel.allFinite() || !camera_.contains(pixel, life.border)) return End::border;
+  if (tracker.observed_deviation() > life.deviation || !(tracker.deviation() < kUnknown)) return End::deviation;
+  if (tracker.gain() < life.gain) return End::gain;
+  if (life.starvation > 0.0 && odometer_ - track.odometer > life.starvation) return End::starvation;
+  const auto is_near = [&](const Track& other) {
+    return (other.tracker.position(clock_) - pixel).norm() < life.crowding;
+  };
+  if (std::ranges::any_of(older, is_near)) return End::crowding;
+  return std::nullopt;
+}
+
+void Poisson::end(const Track& track, End why) {
+  ++ended_[index(static_cast<int>(why))];
+  delayed_.end({track.id, clock_});
+}
+
+/// Detects new features where there are too few.
+void Poisson::replenish() {
+  const auto wanted = static_cast<std::size_t>(options_.tracks);
+  const std::span<const Event> newest = recent_.newest(static_cast<std::size_t>(options_.detection.events));
+  if (tracks_.size() >= wanted || 5 * newest.size() < static_cast<std::size_t>(options_.detection.events)) return;
+  detected_ = clock_;
+  std::vector<Vector2> taken;
+  for (const Track& track : tracks_) taken.push_back(track.tracker.position(clock_));
+  for (const Vector2& pixel :
+       detect_features(options_.detection, newest, camera_.width, camera_.height, taken, wanted - tracks_.size())) {
+    if (begin(next_id_, pixel)) ++next_id_;
+  }
+}
+
+/// Returns whether there are events enough around the point.
+bool Poisson::begin(TrackId id, const Vector2& pixel) {
+  constexpr std::size_t kFewest = 20;
+  const std::vector<Event> window = events_around(pixel);
+  if (window.size() < kFewest || !camera_.contains(pixel, options_.life.border)) return false;
+  ++begun_;
+  const Vector2 velocity = sharpest_velocity(window, pixel, options_.tracker.radius);
+  tracks_.push_back({.id = id,
+                     .tracker = Tracker(options_.tracker, pixel, velocity, window),
+                     .settling = options_.settling,
+                     .reported = range_.from,
+                     .odometer = odometer_});
+  return true;
+}
+
+/// The newest ones, in time order.
+std::vector<Event> Poisson::events_around(const Vector2& pixel) const {
+  std::vector<Event> around;
+  const std::span<const Event> all = recent_.events();
+  const double square = options_.tracker.radius * options_.tracker.radius;
+  for (auto event = all.rbegin(); event != all.rend() && std::ssize(around) < options_.window; ++event) {
+    if ((Vector2(event->x, event->y) - pixel).squaredNorm() < square) around.push_back(*event);
+  }
+  std::ranges::reverse(around);
+  return around;
+}
+
+FeedbackNeeds Poisson::needs() const { return {options_.outliers, false, false}; }
+
+void Poisson::receive(const Feedback& feedback) {
+  std::erase_if(tracks_, [&](const Track& track) {
+    const bool is_outlier = std::ranges::find(feedback.outliers, track.id) != feedback.outliers.end();
+    if (is_outlier) end(track, End::outlier);
+    return is_outlier;
+  });
+}
+
+std::vector<std::string> Poisson::counts() const {
+  const auto ended = [&](End why) { return ended_[index(static_cast<int>(why))]; };
+  return {fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
+          fmt::format("trackers that ended: {} at the border, {} as their positions were uncertain, {} as events came "
+                      "elsewhere, {} starved, {} crowded, {} as outliers",
+                      ended(End::border), ended(End::deviation), ended(End::gain), ended(End::starvation),
+                      ended(End::crowding), ended(End::outlier))};
+}
+
+}  // namespace evbench::poisson

@@ -1,0 +1,287 @@
+#include "frontends/poisson/tracker.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/events/event_time.hpp"
+
+namespace evbench::poisson {
+namespace {
+
+constexpr std::array<int, 4> kSeen = {0, 1, 4, 5};  // components of the state that events depend on
+constexpr double kSlow = 30.0;                      // [px/s] that motion may change by, however slow it is
+constexpr double kTurning = 0.01, kGrowth = 0.001;  // [rad], [log scale] for each root of a pixel of way
+
+/// Sum of logarithms, by few of them.
+class LogSum {
+ public:
+  void add(double value) {
+    product_ *= value;
+    if (product_ > 1e100 || product_ < 1e-100) flush();
+  }
+  double value() {
+    flush();
+    return sum_;
+  }
+
+ private:
+  void flush() {
+    sum_ += std::log(product_);
+    product_ = 1.0;
+  }
+  double sum_ = 0.0, product_ = 1.0;
+};
+
+double largest_deviation(const Matrix2& covariance) {
+  const double mean = 0.5 * covariance.trace(), half = 0.5 * (covariance(0, 0) - covariance(1, 1));
+  return std::sqrt(std::max(0.0, mean + std::hypot(half, covariance(0, 1))));
+}
+
+Vector2 direction_of(const Vector2& velocity) {
+  const double speed = velocity.norm();
+  return speed > 0.0 ? Vector2(velocity / speed) : Vector2::UnitX();
+}
+
+}  // namespace
+
+Tracker::Tracker(const TrackerOptions& options, const Vector2& pixel, const Vector2& velocity,
+                 std::span<const Event> window)
+    : options_(options), patch_(options.radius), t_(seconds(window.back().t)), velocity_(velocity) {
+  constexpr double kPlace = 0.22, kAngle = 0.01, kScale = 0.003;  // standard deviations [px], [rad], [log scale]
+  constexpr double kLeastWay = 0.3;                               // [px]
+  const double length = t_ - seconds(window.front().t), middle = t_ - 0.5 * length;
+  const Vector2 d = direction_of(velocity);
+  patch_.move(d, std::max(velocity.norm() * length, kLeastWay), options.memory);
+  for (const Event& event : window) {
+    patch_.add(Vector2(event.x, event.y) - pixel - (seconds(event.t) - middle) * velocity, event.on, d);
+  }
+  position_ = pixel + lag(velocity) + (t_ - middle) * velocity;
+  const double speed_sigma = 0.15 * velocity.norm() + 0.5 / std::max(length, 1e-6);
+  P_.diagonal().head<2>().setConstant(kPlace * kPlace);
+  P_.diagonal().segment<2>(2).setConstant(speed_sigma * speed_sigma);
+  P_(4, 4) = kAngle * kAngle;
+  P_(5, 5) = kScale * kScale;
+  last_ = {t_, position_, P_.topLeftCorner<2, 2>()};
+  has_coming_ = false;
+}
+
+double Tracker::deviation() const { return largest_deviation(P_.topLeftCorner<2, 2>()); }
+
+/// How far edges are before their events. The patch is learnt and placed by both alike; without it a point would jump
+/// when the motion turns back.
+Vector2 Tracker::lag(const Vector2& velocity) const {
+  return velocity.squaredNorm() > 0.0 ? Vector2(options_.lag * velocity.normalized()) : Vector2::Zero();
+}
+
+Vector2 Tracker::to_patch(const Vector2& direction) const {
+  const double c = std::cos(angle_), s = std::sin(angle_);
+  return {c * direction.x() + s * direction.y(), c * direction.y() - s * direction.x()};
+}
+
+void Tracker::push(std::span<const Event> events, std::vector<Observation>& observations) {
+  if (events.empty()) return;
+  // Most events are elsewhere; the point moves little meanwhile.
+  const double t = seconds(events.back().t);
+  const double near = options_.radius + 2.0 + velocity_.norm() * (t - seconds(events.front().t));
+  const Vector2 centre = position(t);
+  const auto x = static_cast<float>(centre.x()), y = static_cast<float>(centre.y());
+  const auto square = static_cast<float>(near * near);
+  for (const Event& event : events) {
+    const float dx = event.x - x, dy = event.y - y;
+    if (dx * dx + dy * dy < square) take(event, observations);
+  }
+}
+
+void Tracker::take(const Event& event, std::vector<Observation>& observations) {
+  const Vector2 pixel(event.x, event.y);
+  const double t = seconds(event.t);
+  if ((pixel - position(t)).squaredNorm() > options_.radius * options_.radius) return;
+  waiting_.push_back({pixel, t, event.on});
+  if (!is_due(t)) return;
+  correct();
+  if (!has_coming_) {
+    remember();
+  } else if (way_ >= options_.interval) {
+    observations.push_back(observe());
+  }
+}
+
+bool Tracker::is_due(double t) const {
+  constexpr std::size_t kEnough = 60, kUsual = 15, kFew = 5;
+  const double way = velocity_.norm() * (t - t_);
+  const std::size_t count = waiting_.size();
+  return count >= kEnough || (count >= kUsual && way > options_.step) ||
+         (count >= kFew && way > 3.0 * options_.step);
+}
+
+std::optional<Tracker::Observation> Tracker::pass(double t, double waits) {
+  constexpr double kEnough = 15.0, kShare = 0.3;  // expected events; share of them
+  std::optional<Observation> result;
+  if (has_coming_ && coming_.t < waits) {
+    const bool is_newest = coming_.t >= t_;
+    result = observe();
+    if (is_newest) has_coming_ = false;
+  }
+  // Fewer events than the motion would make: it has come to rest.
+  const double expected = velocity_.norm() * (t - t_) * patch_.events_per_pixel();
+  if (expected > kEnough && static_cast<double>(waiting_.size()) < kShare * expected) {
+    t_ = t;
+    velocity_.setZero();
+    P_.block<2, 2>(2, 2) += kSlow * kSlow * Matrix2::Identity();
+  }
+  return result;
+}
+
+/// White noise on acceleration. Its density follows from the way, so that slow and fast motion are alike.
+void Tracker::predict(double t) {
+  const double dt = t - t_, speed = velocity_.norm() + kSlow;
+  const double q = options_.acceleration * options_.acceleration * speed * speed * speed;
+  position_ = position(t);
+  t_ = t;
+  Covariance F = Covariance::Identity();
+  F.block<2, 2>(0, 2).diagonal().setConstant(dt);
+  P_ = F * P_ * F.transpose();
+  P_.block<2, 2>(0, 0).diagonal().array() += q * dt * dt * dt / 3.0;
+  P_.block<2, 2>(0, 2).diagonal().array() += q * dt * dt / 2.0;
+  P_.block<2, 2>(2, 0).diagonal().array() += q * dt * dt / 2.0;
+  P_.block<2, 2>(2, 2).diagonal().array() += q * dt;
+  if (options_.rotation) P_(4, 4) += kTurning * kTurning * speed * dt;
+  if (options_.scale) P_(5, 5) += kGrowth * kGrowth * speed * dt;
+}
+
+/// Of the state plus a correction; before lag, as edges are seen.
+Tracker::Place Tracker::place(const Vector4& delta) const {
+  const double scale = std::exp(-log_scale_ - delta[3]), angle = angle_ + delta[2];
+  return {scale * std::cos(angle), scale * std::sin(angle), position_ + delta.head<2>() - lag(velocity_), velocity_, t_};
+}
+
+void Tracker::correct() {
+  constexpr int kIterations = 3;
+  constexpr double kSmall = 0.01;  // [px] of a last step
+  const Vector2 from = position_;
+  predict(waiting_.back().t);
+  patch_.look(to_patch(direction_of(velocity_)), options_.shares);
+
+  Matrix4 P;
+  Eigen::Matrix<double, 8, 4> columns;
+  for (int j = 0; j < 4; ++j) {
+    columns.col(j) = P_.col(kSeen[index(j)]);
+    for (int i = 0; i < 4; ++i) P(i, j) = P_(kSeen[index(i)], kSeen[index(j)]);
+  }
+  P.diagonal().array() += 1e-9;
+  const Matrix4 prior = P.inverse();
+  Vector4 delta = Vector4::Zero();
+  Matrix4 H = Matrix4::Zero();
+  for (int k = 0; k < kIterations; ++k) {
+    const Place place = this->place(delta);
+    Vector4 gradient = Vector4::Zero();
+    H.setZero();
+    for (const Waiting& event : waiting_) {
+      const Vector2 u = place.of(event);
+      const Patch::Rate rate = patch_.rate(u, event.on);
+      const double gx = rate.x / rate.value, gy = rate.y / rate.value;
+      // ∂u/∂position = −R'/scale, ∂u/∂angle = (u_y, −u_x), ∂u/∂log scale = −u
+      const Vector4 J(place.s * gy - place.c * gx, -place.s * gx - place.c * gy, gx * u.y() - gy * u.x(),
+                      -gx * u.x() - gy * u.y());
+      gradient += J;
+      H += J * J.transpose();
+    }
+    const Vector4 step = (H + prior).ldlt().solve(gradient - prior * delta);
+    if (!step.allFinite()) break;
+    delta += step;
+    if (step.head<2>().squaredNorm() < kSmall * kSmall) break;
+  }
+  const double highest = log_likelihood(place(delta));
+  constexpr double kNewest = 0.1;  // weight in running means
+  gain_ += kNewest * (highest / static_cast<double>(waiting_.size()) - gain_);
+
+  // The outer products take the patch's noise for structure; the curvature of the likelihood does not.
+  const Matrix2 outer = H.topLeftCorner<2, 2>() + 1e-9 * Matrix2::Identity();
+  const Matrix2 L = outer.llt().matrixL(), L_seen = information(delta, highest).llt().matrixL();
+  Matrix4 D = Matrix4::Identity();
+  D.topLeftCorner<2, 2>() = L_seen * L.inverse();
+  H = options_.independence * D * H * D.transpose();
+
+  const Eigen::Matrix<double, 8, 1> shift = columns * (prior * delta);
+  const Matrix4 weight = (Matrix4::Identity() + H * P).inverse() * H;
+  P_ -= columns * weight * columns.transpose();
+  P_ = 0.5 * (P_ + P_.transpose()).eval();
+  position_ += shift.head<2>();
+  velocity_ += shift.segment<2>(2);
+  if (options_.rotation) angle_ += shift[4];
+  if (options_.scale) log_scale_ += shift[5];
+  coming_.position += shift.tail<2>();
+  way_ += (position_ - from).norm();
+  after_.insert(after_.end(), waiting_.begin(), waiting_.end());
+  waiting_.clear();
+}
+
+double Tracker::log_likelihood(const Place& place) const {
+  LogSum sum;
+  for (const Waiting& event : waiting_) sum.add(patch_.rate(place.of(event), event.on).value);
+  return sum.value();
+}
+
+/// About the position: minus the second derivatives of the log likelihood, by differences along three directions.
+/// [1/px²]
+Matrix2 Tracker::information(const Vector4& delta, double highest) const {
+  constexpr double kAside = 1.0, kLeast = 1e-3;  // [px], [1/px²]
+  Matrix2 sum = Matrix2::Zero();
+  double trace = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const Vector2 e(std::cos(k * M_PI / 3.0), std::sin(k * M_PI / 3.0));
+    Place forward = place(delta), backward = forward;
+    forward.position += kAside * e;
+    backward.position -= kAside * e;
+    const double along = (2.0 * highest - log_likelihood(forward) - log_likelihood(backward)) / (kAside * kAside);
+    sum += along * e * e.transpose();
+    trace += 2.0 / 3.0 * along;
+  }
+  // Σ e'He ee' = 3/8 (trace I + 2 H), as the directions are spread evenly.
+  Eigen::SelfAdjointEigenSolver<Matrix2> solver;
+  solver.computeDirect(4.0 / 3.0 * sum - 0.5 * trace * Matrix2::Identity());
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(kLeast).asDiagonal() *
+         solver.eigenvectors().transpose();
+}
+
+/// The coming observation is made; the present state becomes the next one.
+Tracker::Observation Tracker::observe() {
+  constexpr double kNewest = 0.3;    // weight in running means
+  constexpr double kLeastWay = 0.1;  // [px] that shows a direction
+  const Observation z = {coming_.t, coming_.position, P_.bottomRightCorner<2, 2>()};
+  deviation_ += kNewest * (largest_deviation(z.covariance) - deviation_);
+  if ((z.position - last_.position).norm() > kLeastWay) {
+    learn(last_, z);
+    last_ = z;
+    before_.clear();
+  }
+  before_.insert(before_.end(), after_.begin(), after_.end());
+  after_.clear();
+  remember();
+  return z;
+}
+
+/// The present state's position is observed next.
+void Tracker::remember() {
+  coming_ = {t_, position_, {}};
+  P_.middleRows<2>(6) = P_.middleRows<2>(0).eval();
+  P_.middleCols<2>(6) = P_.middleCols<2>(0).eval();
+  way_ = 0.0;
+  has_coming_ = true;
+}
+
+/// Adds the events between two observations to the patch.
+void Tracker::learn(const Observation& from, const Observation& to) {
+  const Vector2 moved = to.position - from.position, velocity = moved / (to.t - from.t);
+  const double scale = std::exp(-log_scale_);
+  const Vector2 d = to_patch(direction_of(moved));
+  const Place place{scale * std::cos(angle_), scale * std::sin(angle_), to.position - lag(velocity), velocity, to.t};
+  patch_.move(d, scale * moved.norm(), options_.memory);
+  for (const Waiting& event : before_) patch_.add(place.of(event), event.on, d);
+}
+
+}  // namespace evbench::poisson
