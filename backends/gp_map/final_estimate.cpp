@@ -62,7 +62,7 @@ Engine::OptimiseSummary GpMap::estimate_everything() {
   }
   for (int round = 0; round < rounds; ++round) {
     if (options_.learn.noise) {
-      map_->noise = learn_noise(graph(), options_.learn.least_noise);
+      map_->noise = learn_noise(graph());
       map_->engine.set_loss(map_->noise.loss(options_.loss, options_.loss_width));
     }
     if (learns_prior) learn_prior(map_->engine, {});

@@ -34,7 +34,6 @@ struct MapEstimate {
         returns(options.map.returns),
         aggressive_motion(options.health.min_landmarks, options.learn.window, engine.graph().qc),
         prior(options.learn.window, options.learn.memory),
-        noise(options.learn.least_noise),
         recent(options.learn.prior == LearnPrior::never
                    ? std::nullopt
                    : std::optional<RecentPrior>(std::in_place, options.learn.window, options.learn.memory,

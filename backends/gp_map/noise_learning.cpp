@@ -140,7 +140,7 @@ void NoiseLearner::add(int landmark, double t, const Vector2& residual) {
 
 double NoiseLearner::scale() const {
   const double norm = norms_.value();
-  return norm > 0.0 ? std::max(least_, norm / kMedianNorm) : 1.0;
+  return norm > 0.0 ? norm / kMedianNorm : 1.0;
 }
 
 double NoiseLearner::share() const {
@@ -150,8 +150,8 @@ double NoiseLearner::share() const {
 
 double NoiseLearner::scale_of_means() const { return scale() / std::sqrt(share()); }
 
-NoiseLearner learn_noise(const FactorGraph& graph, double least) {
-  NoiseLearner result(least);
+NoiseLearner learn_noise(const FactorGraph& graph) {
+  NoiseLearner result;
   for (int k = 1; k < static_cast<int>(graph.states.size()); ++k) result.add(graph, k);
   return result;
 }

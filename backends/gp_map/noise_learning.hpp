@@ -17,9 +17,6 @@ namespace evbench::gp_map {
 /// still.
 class NoiseLearner {
  public:
-  /// `least`: of scale().
-  explicit NoiseLearner(double least = 0.0) : least_(least) {}
-
   /// Uses the intervals since the last call that are a few states old. Older data fade over `memory` [s].
   void follow(const FactorGraph& graph, double memory);
 
@@ -54,14 +51,13 @@ class NoiseLearner {
   };
   void add(int landmark, double t, const Vector2& residual);
 
-  double least_;
   Median norms_;               ///< of residuals
   Median means_;               ///< |sum|²/n of blocks
   std::map<int, Block> open_;  ///< by landmark
   int taken_ = 0;              ///< the last interval of follow()
 };
 
-/// The noise of a whole history, estimated from all of it; `least` as above.
-NoiseLearner learn_noise(const FactorGraph& graph, double least = 0.0);
+/// The noise of a whole history, estimated from all of it.
+NoiseLearner learn_noise(const FactorGraph& graph);
 
 }  // namespace evbench::gp_map

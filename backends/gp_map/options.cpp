@@ -51,9 +51,6 @@ void LearningOptions::declare(OptionSet& set) {
   set.add("noise", noise,
           "estimate a scale of the observations' sigmas, one more for each track that is noisier than most, and the "
           "share of their information that counts, because trackers drift");
-  set.add("least_noise", least_noise,
-          "smallest scale of the sigmas: an error that a landmark absorbs, as a slow drift is, does not show in residuals")
-      .range(0.0, 1.0);
   set.add("window", window,
           "while running, the prior follows the data of this time; after aggressive motion a relaxed prior recovers "
           "in a few times this [s]")

@@ -40,7 +40,6 @@ enum class LearnPrior { never, smoothed, always };
 struct LearningOptions {
   LearnPrior prior = LearnPrior::smoothed;
   bool noise = true;
-  double least_noise = 0.0;
   double window = 0.3, memory = 3.0;
   int rounds = 6;
 

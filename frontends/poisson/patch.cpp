@@ -34,7 +34,8 @@ class Kernel {
 }  // namespace
 
 Patch::Patch(double radius)
-    : reach_(static_cast<int>(std::ceil(radius)) + kWide),
+    : radius_(radius),
+      reach_(static_cast<int>(std::ceil(radius)) + kWide),
       side_(2 * reach_ + 1),
       area_(M_PI * radius * radius),
       cells_(index(side_ * side_)) {}
@@ -73,6 +74,29 @@ void Patch::add(const Vector2& place, bool on, const Vector2& direction) {
     }
   }
   count_ += weight_;
+}
+
+Patch::Slope Patch::mean_slope() const {
+  Slope sum;
+  double mass = 0.0;
+  for (int j = -reach_ + 1; j < reach_; ++j) {
+    const double reach = std::sqrt(std::max(0.0, radius_ * radius_ - j * j));
+    const Cell* const row = &cells_[index((j + reach_) * side_ + reach_)];
+    for (int i = -static_cast<int>(reach); i <= static_cast<int>(reach); ++i) {
+      const Cell* const cell = row + i;
+      for (const float sign : {1.0F, -1.0F}) {
+        const auto at = [&](int offset) { return along(cell[offset], sign * hx_, sign * hy_); };
+        const double x = 0.5 * (at(1) - at(-1)), y = 0.5 * (at(side_) - at(-side_));
+        sum.x += x;
+        sum.y += y;
+        sum.turning += x * j - y * i;
+        sum.growing += x * i + y * j;
+        mass += at(0) + noise_;
+      }
+    }
+  }
+  if (!(mass > 0.0)) return {};
+  return {sum.x / mass, sum.y / mass, sum.turning / mass, sum.growing / mass};
 }
 
 void Patch::look(const Vector2& direction, const Shares& shares) {

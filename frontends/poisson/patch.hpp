@@ -44,6 +44,14 @@ class Patch {
   /// Bilinear. Places outside have the rate of noise.
   Rate rate(const Vector2& place, bool on) const;
 
+  /// Means over the events that are expected within the radius of the centre: of the derivatives of the logarithm of the
+  /// rate by the place, of its product with the place, and of the derivative by an angle that turns the place.
+  /// The events of a likelihood come from within the radius: that there are none outside says nothing about a motion.
+  struct Slope {
+    double x = 0.0, y = 0.0, turning = 0.0, growing = 0.0;
+  };
+  Slope mean_slope() const;
+
   double events_per_pixel() const { return way_ > 0.0 ? count_ / way_ : 0.0; }  ///< of way
 
  private:
@@ -51,6 +59,12 @@ class Patch {
     float x = 0.0F, y = 0.0F, count = 0.0F, unused = 0.0F;  // of 16 bytes
   };
 
+  float along(const Cell& cell, float hx, float hy) const {
+    const float along = hx * cell.x + hy * cell.y;
+    return (polarity_ ? std::max(along, 0.0F) : std::abs(along)) + any_ * cell.count;
+  }
+
+  double radius_;
   int reach_, side_;
   double area_;              ///< [px²]
   std::vector<Cell> cells_;  ///< b(u) and the count, by rows
@@ -69,11 +83,8 @@ inline Patch::Rate Patch::rate(const Vector2& place, bool on) const {
   const Cell* const upper = &cells_[index(top * side_ + left)];
   const Cell* const lower = upper + side_;
   const float hx = on ? -hx_ : hx_, hy = on ? -hy_ : hy_;
-  const auto at = [&](const Cell& cell) {
-    const float along = hx * cell.x + hy * cell.y;
-    return (polarity_ ? std::max(along, 0.0F) : std::abs(along)) + any_ * cell.count;
-  };
-  const float a = at(upper[0]), b = at(upper[1]), c = at(lower[0]), d = at(lower[1]);
+  const float a = along(upper[0], hx, hy), b = along(upper[1], hx, hy);
+  const float c = along(lower[0], hx, hy), d = along(lower[1], hx, hy);
   const float up = a + fx * (b - a), down = c + fx * (d - c);
   return {up + fy * (down - up) + noise_, (b - a) + fy * ((d - c) - (b - a)), down - up};
 }

@@ -18,7 +18,8 @@ namespace {
 const Registration<FrontEnd, Poisson> registration(
     "poisson", "tracks features asynchronously by the likelihood of events, a Poisson process", 1);
 
-constexpr double kTick = 0.005;  ///< [s] between two calls of on_tick()
+constexpr double kTick = 0.005;      ///< [s] between two calls of on_tick()
+constexpr double kLeastStep = 1e-6;  ///< [s] between two observations of a track
 
 }  // namespace
 
@@ -38,7 +39,9 @@ void Poisson::take(std::span<const Event> events) {
     const double t = seeds_.next();
     const auto rest = std::ranges::upper_bound(events, t, {}, [](const Event& event) { return seconds(event.t); });
     process({events.begin(), rest});
-    for (const TrackObservation& seed : seeds_.take(t)) begin(seed.track, seed.pixel);
+    for (const TrackObservation& seed : seeds_.take(t)) {
+      if (begin(seed.track, seed.pixel, t)) delayed_.add({seed.track, tracks_.back().reported, seed.pixel, options_.sigma});
+    }
     events = {rest, events.end()};
     if (events.empty()) return;
   }
@@ -55,7 +58,6 @@ void Poisson::process(std::span<const Event> events) {
 }
 
 void Poisson::report(Track& track, const Tracker::Observation& z) {
-  constexpr double kLeastStep = 1e-6;  // [s] between two observations of a track
   if (track.settling > 0) {
     --track.settling;
     return;
@@ -123,21 +125,22 @@ void Poisson::replenish() {
   for (const Track& track : tracks_) taken.push_back(track.tracker.position(clock_));
   for (const Vector2& pixel :
        detect_features(options_.detection, newest, camera_.width, camera_.height, taken, wanted - tracks_.size())) {
-    if (begin(next_id_, pixel)) ++next_id_;
+    if (begin(next_id_, pixel, std::nullopt)) ++next_id_;
   }
 }
 
-/// Returns whether there are events enough around the point.
-bool Poisson::begin(TrackId id, const Vector2& pixel) {
+/// `at`: when the point is there [s]; else at the middle of the events around it. Returns whether there are enough.
+bool Poisson::begin(TrackId id, const Vector2& pixel, std::optional<double> at) {
   constexpr std::size_t kFewest = 20;
   const std::vector<Event> window = events_around(pixel);
   if (window.size() < kFewest || !camera_.contains(pixel, options_.life.border)) return false;
   ++begun_;
   const Vector2 velocity = sharpest_velocity(window, pixel, options_.tracker.radius);
+  const double middle = 0.5 * (seconds(window.front().t) + seconds(window.back().t));
   tracks_.push_back({.id = id,
-                     .tracker = Tracker(options_.tracker, pixel, velocity, window),
+                     .tracker = Tracker(options_.tracker, pixel, at.value_or(middle), velocity, window),
                      .settling = options_.settling,
-                     .reported = range_.from,
+                     .reported = std::max(at.value_or(range_.from), complete() + kLeastStep),
                      .odometer = odometer_});
   return true;
 }

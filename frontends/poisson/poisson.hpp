@@ -48,7 +48,7 @@ class Poisson : public EventFrontEnd {
   std::optional<End> reason_to_end(const Track& track, std::span<const Track> older) const;
   void end(const Track& track, End why);
   void replenish();
-  bool begin(TrackId id, const Vector2& pixel);
+  bool begin(TrackId id, const Vector2& pixel, std::optional<double> at);
   std::vector<Event> events_around(const Vector2& pixel) const;
 
   Options options_;

@@ -48,25 +48,27 @@ Vector2 direction_of(const Vector2& velocity) {
 
 }  // namespace
 
-Tracker::Tracker(const TrackerOptions& options, const Vector2& pixel, const Vector2& velocity,
+Tracker::Tracker(const TrackerOptions& options, const Vector2& pixel, double at, const Vector2& velocity,
                  std::span<const Event> window)
-    : options_(options), patch_(options.radius), t_(seconds(window.back().t)), velocity_(velocity) {
+    : options_(options),
+      patch_(options.radius),
+      t_(seconds(window.back().t)),
+      position_(pixel + (t_ - at) * velocity),
+      velocity_(velocity) {
   constexpr double kPlace = 0.22, kAngle = 0.01, kScale = 0.003;  // standard deviations [px], [rad], [log scale]
   constexpr double kLeastWay = 0.3;                               // [px]
-  const double length = t_ - seconds(window.front().t), middle = t_ - 0.5 * length;
+  const double length = t_ - seconds(window.front().t);
   const Vector2 d = direction_of(velocity);
   patch_.move(d, std::max(velocity.norm() * length, kLeastWay), options.memory);
   for (const Event& event : window) {
-    patch_.add(Vector2(event.x, event.y) - pixel - (seconds(event.t) - middle) * velocity, event.on, d);
+    patch_.add(Vector2(event.x, event.y) + lag(velocity) - position(seconds(event.t)), event.on, d);
   }
-  position_ = pixel + lag(velocity) + (t_ - middle) * velocity;
   const double speed_sigma = 0.15 * velocity.norm() + 0.5 / std::max(length, 1e-6);
   P_.diagonal().head<2>().setConstant(kPlace * kPlace);
   P_.diagonal().segment<2>(2).setConstant(speed_sigma * speed_sigma);
   P_(4, 4) = kAngle * kAngle;
   P_(5, 5) = kScale * kScale;
   last_ = {t_, position_, P_.topLeftCorner<2, 2>()};
-  has_coming_ = false;
 }
 
 double Tracker::deviation() const { return largest_deviation(P_.topLeftCorner<2, 2>()); }
@@ -159,6 +161,12 @@ Tracker::Place Tracker::place(const Vector4& delta) const {
   return {scale * std::cos(angle), scale * std::sin(angle), position_ + delta.head<2>() - lag(velocity_), velocity_, t_};
 }
 
+/// The derivatives by the state of what has these by the place u on the patch: ∂u/∂position = −R'/scale,
+/// ∂u/∂angle = (u_y, −u_x), ∂u/∂log scale = −u.
+Tracker::Vector4 Tracker::by_state(const Place& place, double x, double y, double turning, double growing) {
+  return {place.s * y - place.c * x, -place.s * x - place.c * y, turning, -growing};
+}
+
 void Tracker::correct() {
   constexpr int kIterations = 3;
   constexpr double kSmall = 0.01;  // [px] of a last step
@@ -174,19 +182,20 @@ void Tracker::correct() {
   }
   P.diagonal().array() += 1e-9;
   const Matrix4 prior = P.inverse();
+  if (!has_slope_) slope_ = patch_.mean_slope();
+  has_slope_ = true;
+  const auto count = static_cast<double>(waiting_.size());
   Vector4 delta = Vector4::Zero();
   Matrix4 H = Matrix4::Zero();
   for (int k = 0; k < kIterations; ++k) {
     const Place place = this->place(delta);
-    Vector4 gradient = Vector4::Zero();
+    Vector4 gradient = -count * by_state(place, slope_.x, slope_.y, slope_.turning, slope_.growing);
     H.setZero();
     for (const Waiting& event : waiting_) {
       const Vector2 u = place.of(event);
       const Patch::Rate rate = patch_.rate(u, event.on);
       const double gx = rate.x / rate.value, gy = rate.y / rate.value;
-      // ∂u/∂position = −R'/scale, ∂u/∂angle = (u_y, −u_x), ∂u/∂log scale = −u
-      const Vector4 J(place.s * gy - place.c * gx, -place.s * gx - place.c * gy, gx * u.y() - gy * u.x(),
-                      -gx * u.x() - gy * u.y());
+      const Vector4 J = by_state(place, gx, gy, gx * u.y() - gy * u.x(), gx * u.x() + gy * u.y());
       gradient += J;
       H += J * J.transpose();
     }
@@ -197,7 +206,7 @@ void Tracker::correct() {
   }
   const double highest = log_likelihood(place(delta));
   constexpr double kNewest = 0.1;  // weight in running means
-  gain_ += kNewest * (highest / static_cast<double>(waiting_.size()) - gain_);
+  gain_ += kNewest * (highest / count - gain_);
 
   // The outer products take the patch's noise for structure; the curvature of the likelihood does not.
   const Matrix2 outer = H.topLeftCorner<2, 2>() + 1e-9 * Matrix2::Identity();
@@ -282,6 +291,7 @@ void Tracker::learn(const Observation& from, const Observation& to) {
   const Place place{scale * std::cos(angle_), scale * std::sin(angle_), to.position - lag(velocity), velocity, to.t};
   patch_.move(d, scale * moved.norm(), options_.memory);
   for (const Waiting& event : before_) patch_.add(place.of(event), event.on, d);
+  has_slope_ = false;
 }
 
 }  // namespace evbench::poisson

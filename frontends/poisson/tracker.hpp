@@ -29,9 +29,10 @@ class Tracker {
     Matrix2 covariance = Matrix2::Identity();    ///< [px²]
   };
 
-  /// `window`: events around the point, in time order and at least two, that its patch is made of; `pixel`: where it is
-  /// at the middle of their time; `velocity` [px/s].
-  Tracker(const TrackerOptions& options, const Vector2& pixel, const Vector2& velocity, std::span<const Event> window);
+  /// The point is at `pixel` at time `at` [s] and moves with `velocity` [px/s]. `window`: events around it, in time order
+  /// and at least two, that its patch is made of.
+  Tracker(const TrackerOptions& options, const Vector2& pixel, double at, const Vector2& velocity,
+          std::span<const Event> window);
 
   /// Takes the next events, in time order, those around the point. Appends observations.
   void push(std::span<const Event> events, std::vector<Observation>& observations);
@@ -69,6 +70,7 @@ class Tracker {
     }
   };
   Place place(const Vector4& delta) const;
+  static Vector4 by_state(const Place& place, double x, double y, double turning, double growing);
   Vector2 lag(const Vector2& velocity) const;
   Vector2 to_patch(const Vector2& direction) const;
   bool is_due(double t) const;
@@ -88,7 +90,9 @@ class Tracker {
   double angle_ = 0.0, log_scale_ = 0.0;
   Covariance P_ = Covariance::Zero();
   Observation last_, coming_;  ///< the last one that was made; the earlier position of the state
-  bool has_coming_ = true;
+  bool has_coming_ = false;
+  Patch::Slope slope_;      ///< of the patch, since it learnt last
+  bool has_slope_ = false;
   std::vector<Waiting> waiting_;           ///< events since the state
   std::vector<Waiting> before_, after_;    ///< those from the last observation to the coming one, and since then
   double way_ = 0.0;                       ///< [px] since the coming one
