@@ -138,8 +138,8 @@ TEST_CASE("A corner is followed to a fraction of a pixel, about one observation 
 TEST_CASE("A corner that turns and grows is followed; with neither in the state it is not") {
   const Motion motion = [](double t) {
     Pose pose = straight(t);
-    pose.angle = 1.5 * t;
-    pose.scale = 1.0 + 0.2 * t;
+    pose.angle = 0.5 * t;
+    pose.scale = 1.0 + 0.1 * t;
     return pose;
   };
   TrackerOptions rigid;
