@@ -54,7 +54,7 @@ TEST_CASE("Each built-in front-end and back-end, and each sensible pair of them,
   REQUIRE_FALSE(built_in<FrontEnd>().empty());
   CHECK(frontends == built_in<FrontEnd>());
   CHECK(backends == built_in<BackEnd>());
-  for (const char* frontend : {"haste", "str", "dots", "recorded", "oracle"}) {
+  for (const char* frontend : {"haste", "poisson", "str", "dots", "recorded", "oracle"}) {
     CAPTURE(frontend);
     CHECK(pairs.contains({frontend, "gp_map"}));
     CHECK(pairs.contains({frontend, "bundle_adjustment"}));

@@ -1,11 +1,14 @@
 #include "core/data/seeds.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <set>
 
 #include "core/data/tracks.hpp"
 #include "core/io/path.hpp"
+#include "core/support/error.hpp"
 
 namespace evbench {
 
@@ -14,6 +17,10 @@ Seeds::Seeds(const std::string& path, const std::string& folder) {
   std::set<TrackId> known;
   for (const TrackObservation& z : read_tracks(resolve_path(path, folder), kAnySize, kAnySize).observations) {
     if (known.insert(z.track).second) seeds_.push_back(z);
+  }
+  if (known.contains(std::numeric_limits<TrackId>::max())) {
+    throw InputError(fmt::format("{}: the id {} leaves none above it for other tracks", path,
+                                 std::numeric_limits<TrackId>::max()));
   }
 }
 

@@ -135,7 +135,7 @@ TEST_CASE("A corner is followed to a fraction of a pixel, about one observation 
   }
 }
 
-TEST_CASE("A corner that turns and grows is followed; with neither in the state it is not") {
+TEST_CASE("A corner that turns and grows is followed, and is not with neither in the state") {
   const Motion motion = [](double t) {
     Pose pose = straight(t);
     pose.angle = 0.5 * t;
