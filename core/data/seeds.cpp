@@ -19,8 +19,8 @@ Seeds::Seeds(const std::string& path, const std::string& folder) {
     if (known.insert(z.track).second) seeds_.push_back(z);
   }
   if (known.contains(std::numeric_limits<TrackId>::max())) {
-    throw InputError(fmt::format("{}: the id {} leaves none above it for other tracks", path,
-                                 std::numeric_limits<TrackId>::max()));
+    throw InputError(
+        fmt::format("{}: the id {} leaves none above it for other tracks", path, std::numeric_limits<TrackId>::max()));
   }
 }
 

@@ -28,9 +28,6 @@ void LifeOptions::declare(OptionSet& set) {
   set.add("deviation", deviation,
           "the standard deviation of its observations, along their least known direction, is larger than this [px]")
       .above(0.0);
-  set.add("gain", gain,
-          "the log likelihood of an event is, on average, less than this above that without a patch [nats]")
-      .range(-10.0, 10.0);
   set.add("border", border, "it comes this near to the image's border [px]").range(0.0, 1000.0);
   set.add("starvation", starvation,
           "the others have moved by this much (median) since its events last corrected it [px]; 0: never")

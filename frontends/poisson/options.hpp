@@ -24,7 +24,6 @@ struct TrackerOptions {
 /// When a tracker ends.
 struct LifeOptions {
   double deviation = 0.6;
-  double gain = 0.3;
   double border = 8.0;
   double starvation = 15.0;
   double crowding = 5.0;

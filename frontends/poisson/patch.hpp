@@ -44,9 +44,9 @@ class Patch {
   /// Bilinear. Places outside have the rate of noise.
   Rate rate(const Vector2& place, bool on) const;
 
-  /// Means over the events that are expected within the radius of the centre: of the derivatives of the logarithm of the
-  /// rate by the place, of its product with the place, and of the derivative by an angle that turns the place.
-  /// The events of a likelihood come from within the radius: that there are none outside says nothing about a motion.
+  /// Means over the events that are expected within the radius of the centre: of the derivatives of the logarithm of
+  /// the rate by the place, of its product with the place, and of the derivative by an angle that turns the place. The
+  /// events of a likelihood come from within the radius: that there are none outside says nothing about a motion.
   struct Slope {
     double x = 0.0, y = 0.0, turning = 0.0, growing = 0.0;
   };

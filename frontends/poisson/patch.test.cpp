@@ -51,7 +51,8 @@ TEST_CASE("Without polarity both are expected alike") {
 TEST_CASE("Two motions give the gradient, and so the rates of a third") {
   // An edge from the lower left to the upper right, with the gradient (1, -1): seen along x and along y.
   Patch patch(10.0);
-  for (const auto& [d, on] : {std::pair(Vector2(Vector2::UnitX()), false), std::pair(Vector2(Vector2::UnitY()), true)}) {
+  for (const auto& [d, on] :
+       {std::pair(Vector2(Vector2::UnitX()), false), std::pair(Vector2(Vector2::UnitY()), true)}) {
     patch.move(d, 10.0, 1e9);
     for (int i = -5; i <= 5; ++i) {
       for (int k = 0; k < 10; ++k) patch.add({i, i}, on, d);
@@ -73,15 +74,18 @@ TEST_CASE("The derivatives of the rate are its differences") {
   Patch patch(8.0);
   Random random(1);
   patch.move(Vector2(0.6, 0.8), 5.0, 100.0);
-  for (int i = 0; i < 300; ++i) patch.add(random.uniform2({-7.0, -7.0}, {7.0, 7.0}), random.uniform(0, 1) < 0.5, {0.6, 0.8});
+  for (int i = 0; i < 300; ++i)
+    patch.add(random.uniform2({-7.0, -7.0}, {7.0, 7.0}), random.uniform(0, 1) < 0.5, {0.6, 0.8});
   patch.look(Vector2(0.8, 0.6), {.any_direction = 1.0, .noise = 0.3, .polarity = true});
   for (int i = 0; i < 50; ++i) {
     const Vector2 cell(std::floor(random.uniform(-7.0, 6.0)), std::floor(random.uniform(-7.0, 6.0)));
     const Vector2 u = cell + random.uniform2({0.1, 0.1}, {0.9, 0.9});
     const double h = 0.05;
     const Patch::Rate rate = patch.rate(u, true);
-    const double dx = (patch.rate(u + h * Vector2::UnitX(), true).value - patch.rate(u - h * Vector2::UnitX(), true).value);
-    const double dy = (patch.rate(u + h * Vector2::UnitY(), true).value - patch.rate(u - h * Vector2::UnitY(), true).value);
+    const double dx =
+        (patch.rate(u + h * Vector2::UnitX(), true).value - patch.rate(u - h * Vector2::UnitX(), true).value);
+    const double dy =
+        (patch.rate(u + h * Vector2::UnitY(), true).value - patch.rate(u - h * Vector2::UnitY(), true).value);
     CHECK(rate.x == Approx(dx / (2.0 * h)).margin(2e-4));
     CHECK(rate.y == Approx(dy / (2.0 * h)).margin(2e-4));
   }

@@ -40,7 +40,8 @@ void Poisson::take(std::span<const Event> events) {
     const auto rest = std::ranges::upper_bound(events, t, {}, [](const Event& event) { return seconds(event.t); });
     process({events.begin(), rest});
     for (const TrackObservation& seed : seeds_.take(t)) {
-      if (begin(seed.track, seed.pixel, t)) delayed_.add({seed.track, tracks_.back().reported, seed.pixel, options_.sigma});
+      if (begin(seed.track, seed.pixel, t))
+        delayed_.add({seed.track, tracks_.back().reported, seed.pixel, options_.sigma});
     }
     events = {rest, events.end()};
     if (events.empty()) return;
@@ -101,7 +102,6 @@ std::optional<Poisson::End> Poisson::reason_to_end(const Track& track, std::span
   const Vector2 pixel = tracker.position(clock_);
   if (!pixel.allFinite() || !camera_.contains(pixel, life.border)) return End::border;
   if (tracker.observed_deviation() > life.deviation || !(tracker.deviation() < kUnknown)) return End::deviation;
-  if (tracker.gain() < life.gain) return End::gain;
   if (life.starvation > 0.0 && odometer_ - track.odometer > life.starvation) return End::starvation;
   const auto is_near = [&](const Track& other) {
     return (other.tracker.position(clock_) - pixel).norm() < life.crowding;
@@ -170,10 +170,10 @@ void Poisson::receive(const Feedback& feedback) {
 std::vector<std::string> Poisson::counts() const {
   const auto ended = [&](End why) { return ended_[index(static_cast<int>(why))]; };
   return {fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
-          fmt::format("trackers that ended: {} at the border, {} as their positions were uncertain, {} as events came "
-                      "elsewhere, {} starved, {} crowded, {} as outliers",
-                      ended(End::border), ended(End::deviation), ended(End::gain), ended(End::starvation),
-                      ended(End::crowding), ended(End::outlier))};
+          fmt::format("trackers that ended: {} at the border, {} as their positions were uncertain, {} starved, {} "
+                      "crowded, {} as outliers",
+                      ended(End::border), ended(End::deviation), ended(End::starvation), ended(End::crowding),
+                      ended(End::outlier))};
 }
 
 }  // namespace evbench::poisson

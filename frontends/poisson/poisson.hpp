@@ -29,13 +29,13 @@ class Poisson : public EventFrontEnd {
   struct Track {
     TrackId id;
     Tracker tracker;
-    int settling;           ///< observations that are left out yet
-    double reported;        ///< [s] time of the newest observation
-    double corrected = 0.0; ///< [s] of the newest correction that is known here
-    double odometer = 0.0;  ///< value of odometer_ then [px]
+    int settling;            ///< observations that are left out yet
+    double reported;         ///< [s] time of the newest observation
+    double corrected = 0.0;  ///< [s] of the newest correction that is known here
+    double odometer = 0.0;   ///< value of odometer_ then [px]
   };
   /// Why a track ends.
-  enum class End { border, deviation, gain, starvation, crowding, outlier };
+  enum class End { border, deviation, starvation, crowding, outlier };
 
   std::vector<std::string> counts() const override;
   void take(std::span<const Event> events) override;
@@ -60,7 +60,7 @@ class Poisson : public EventFrontEnd {
   double odometer_ = 0.0;  ///< path length of the image: by the trackers' median velocity [px]
   TrackId next_id_ = 0;
   std::size_t begun_ = 0;
-  std::array<std::size_t, 6> ended_{};  ///< by End
+  std::array<std::size_t, 5> ended_{};  ///< by End
 };
 
 }  // namespace evbench::poisson

@@ -116,8 +116,7 @@ bool Tracker::is_due(double t) const {
   constexpr std::size_t kEnough = 60, kUsual = 15, kFew = 5;
   const double way = velocity_.norm() * (t - t_);
   const std::size_t count = waiting_.size();
-  return count >= kEnough || (count >= kUsual && way > options_.step) ||
-         (count >= kFew && way > 3.0 * options_.step);
+  return count >= kEnough || (count >= kUsual && way > options_.step) || (count >= kFew && way > 3.0 * options_.step);
 }
 
 std::optional<Tracker::Observation> Tracker::pass(double t, double waits) {
@@ -158,7 +157,8 @@ void Tracker::predict(double t) {
 /// Of the state plus a correction; before lag, as edges are seen.
 Tracker::Place Tracker::place(const Vector4& delta) const {
   const double scale = std::exp(-log_scale_ - delta[3]), angle = angle_ + delta[2];
-  return {scale * std::cos(angle), scale * std::sin(angle), position_ + delta.head<2>() - lag(velocity_), velocity_, t_};
+  return {scale * std::cos(angle), scale * std::sin(angle), position_ + delta.head<2>() - lag(velocity_), velocity_,
+          t_};
 }
 
 /// The derivatives by the state of what has these by the place u on the patch: ∂u/∂position = −R'/scale,
@@ -205,8 +205,6 @@ void Tracker::correct() {
     if (step.head<2>().squaredNorm() < kSmall * kSmall) break;
   }
   const double highest = log_likelihood(place(delta));
-  constexpr double kNewest = 0.1;  // weight in running means
-  gain_ += kNewest * (highest / count - gain_);
 
   // The outer products take the patch's noise for structure; the curvature of the likelihood does not.
   const Matrix2 outer = H.topLeftCorner<2, 2>() + 1e-9 * Matrix2::Identity();
@@ -253,8 +251,7 @@ Matrix2 Tracker::information(const Vector4& delta, double highest) const {
   // Σ e'He ee' = 3/8 (trace I + 2 H), as the directions are spread evenly.
   Eigen::SelfAdjointEigenSolver<Matrix2> solver;
   solver.computeDirect(4.0 / 3.0 * sum - 0.5 * trace * Matrix2::Identity());
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(kLeast).asDiagonal() *
-         solver.eigenvectors().transpose();
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(kLeast).asDiagonal() * solver.eigenvectors().transpose();
 }
 
 /// The coming observation is made; the present state becomes the next one.

@@ -24,13 +24,13 @@ namespace evbench::poisson {
 class Tracker {
  public:
   struct Observation {
-    double t = 0.0;                              ///< [s]
-    Vector2 position = Vector2::Zero();          ///< [px]
-    Matrix2 covariance = Matrix2::Identity();    ///< [px²]
+    double t = 0.0;                            ///< [s]
+    Vector2 position = Vector2::Zero();        ///< [px]
+    Matrix2 covariance = Matrix2::Identity();  ///< [px²]
   };
 
-  /// The point is at `pixel` at time `at` [s] and moves with `velocity` [px/s]. `window`: events around it, in time order
-  /// and at least two, that its patch is made of.
+  /// The point is at `pixel` at time `at` [s] and moves with `velocity` [px/s]. `window`: events around it, in time
+  /// order and at least two, that its patch is made of.
   Tracker(const TrackerOptions& options, const Vector2& pixel, double at, const Vector2& velocity,
           std::span<const Event> window);
 
@@ -43,10 +43,9 @@ class Tracker {
 
   Vector2 position(double t) const { return position_ + (t - t_) * velocity_; }
   const Vector2& velocity() const { return velocity_; }
-  double newest() const { return t_; }          ///< [s] time of the newest correction
-  double deviation() const;                     ///< of the position, along its least known direction [px]
+  double newest() const { return t_; }                      ///< [s] time of the newest correction
+  double deviation() const;                                 ///< of the position, along its least known direction [px]
   double observed_deviation() const { return deviation_; }  ///< the same of observations, a running mean
-  double gain() const { return gain_; }  ///< mean log likelihood of an event over that of a patch without structure
 
  private:
   using Covariance = Eigen::Matrix<double, 8, 8>;  // position, velocity, angle, log scale, the earlier position
@@ -91,12 +90,12 @@ class Tracker {
   Covariance P_ = Covariance::Zero();
   Observation last_, coming_;  ///< the last one that was made; the earlier position of the state
   bool has_coming_ = false;
-  Patch::Slope slope_;      ///< of the patch, since it learnt last
+  Patch::Slope slope_;  ///< of the patch, since it learnt last
   bool has_slope_ = false;
-  std::vector<Waiting> waiting_;           ///< events since the state
-  std::vector<Waiting> before_, after_;    ///< those from the last observation to the coming one, and since then
-  double way_ = 0.0;                       ///< [px] since the coming one
-  double gain_ = 1.0, deviation_ = 0.1;
+  std::vector<Waiting> waiting_;         ///< events since the state
+  std::vector<Waiting> before_, after_;  ///< those from the last observation to the coming one, and since then
+  double way_ = 0.0;                     ///< [px] since the coming one
+  double deviation_ = 0.1;               ///< [px]
 };
 
 }  // namespace evbench::poisson
