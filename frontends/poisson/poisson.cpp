@@ -63,6 +63,7 @@ void Poisson::report(Track& track, const Tracker::Observation& z) {
     --track.settling;
     return;
   }
+  if (!z.position.allFinite() || !z.covariance.allFinite()) return;  // it ends at the next tick
   track.reported = std::max({z.t, track.reported + kLeastStep, complete() + kLeastStep});
   delayed_.add({track.id, track.reported, z.position, std::hypot(options_.sigma, track.tracker.observed_deviation())});
 }

@@ -256,8 +256,9 @@ Matrix2 Tracker::information(const Vector4& delta, double highest) const {
 
 /// The coming observation is made; the present state becomes the next one.
 Tracker::Observation Tracker::observe() {
-  constexpr double kNewest = 0.3;    // weight in running means
-  constexpr double kLeastWay = 0.1;  // [px] that shows a direction
+  constexpr double kNewest = 0.3;               // weight in running means
+  constexpr double kLeastWay = 0.1;             // [px] that shows a direction
+  constexpr std::ptrdiff_t kMostEvents = 1000;  // of a point that hardly moves
   const Observation z = {coming_.t, coming_.position, P_.bottomRightCorner<2, 2>()};
   deviation_ += kNewest * (largest_deviation(z.covariance) - deviation_);
   if ((z.position - last_.position).norm() > kLeastWay) {
@@ -266,6 +267,7 @@ Tracker::Observation Tracker::observe() {
     before_.clear();
   }
   before_.insert(before_.end(), after_.begin(), after_.end());
+  if (std::ssize(before_) > kMostEvents) before_.erase(before_.begin(), before_.end() - kMostEvents);
   after_.clear();
   remember();
   return z;
