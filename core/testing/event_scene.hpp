@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -130,6 +131,24 @@ inline SE3 swing(double t) {
   twist << 0.06 * std::sin(1.1 * t), 0.08 * std::sin(0.9 * t + 0.5) - 0.08 * std::sin(0.5), 0.05 * std::sin(1.3 * t),
       0.35 * std::sin(1.6 * t), 0.2 * std::sin(1.2 * t), 0.15 * std::sin(0.8 * t);
   return se3::exp(twist);
+}
+
+/// Distances of the observations from where the wall point of their track's first one is by then [px]; sorted.
+inline std::vector<double> track_errors(const EventScene& source, const EventScene::Motion& motion,
+                                        const std::vector<TrackObservation>& observations) {
+  std::map<TrackId, Vector3> points;
+  std::vector<double> errors;
+  for (const TrackObservation& z : observations) {
+    const SE3 T = motion(z.t);
+    if (const auto point = points.find(z.track); point != points.end()) {
+      errors.push_back((source.camera().project(T.inverse() * point->second) - z.pixel).norm());
+    } else {
+      const Vector3 ray = T.R() * source.camera().pinhole.ray(z.pixel);
+      points.emplace(z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray);
+    }
+  }
+  std::ranges::sort(errors);
+  return errors;
 }
 
 }  // namespace evbench::testing

@@ -16,6 +16,7 @@ using evbench::testing::collect_tracks;
 using evbench::testing::EventScene;
 using evbench::testing::same;
 using evbench::testing::swing;
+using evbench::testing::track_errors;
 
 namespace {
 
@@ -30,20 +31,9 @@ TrackBatch track(const Source& source, const Options& options = {}, double inter
   return collect_tracks(poisson, source, interval, most);
 }
 
-/// Median distance of the observations from where the wall point of the track's first observation is by then [px].
+/// Median distance of the observations from where they should be [px].
 double median_error(const EventScene& source, const std::vector<TrackObservation>& observations) {
-  std::map<TrackId, Vector3> points;
-  std::vector<double> errors;
-  for (const TrackObservation& z : observations) {
-    const SE3 T = swing(z.t);
-    if (const auto point = points.find(z.track); point != points.end()) {
-      errors.push_back((source.camera().project(T.inverse() * point->second) - z.pixel).norm());
-    } else {
-      const Vector3 ray = T.R() * source.camera().pinhole.ray(z.pixel);
-      points.emplace(z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray);
-    }
-  }
-  std::ranges::sort(errors);
+  const std::vector<double> errors = track_errors(source, swing, observations);
   return errors.at(errors.size() / 2);
 }
 

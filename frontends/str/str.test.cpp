@@ -17,6 +17,7 @@ using evbench::testing::collect_tracks;
 using evbench::testing::EventScene;
 using evbench::testing::same;
 using evbench::testing::swing;
+using evbench::testing::track_errors;
 
 namespace {
 
@@ -37,24 +38,6 @@ struct Tracked {
 Tracked track(const Source& source, const Options& options = {}, double interval = 0.01, std::size_t most = 0) {
   Str str(options, {source, 0, ""});
   return {collect_tracks(str, source, interval, most), str.remarks()};
-}
-
-/// Distances of the observations from where the wall point of their track's first one is by then [px]; sorted.
-std::vector<double> track_errors(const EventScene& source, const std::function<SE3(double)>& motion,
-                                 const std::vector<TrackObservation>& observations) {
-  std::map<TrackId, Vector3> points;
-  std::vector<double> errors;
-  for (const TrackObservation& z : observations) {
-    const SE3 T = motion(z.t);
-    if (const auto point = points.find(z.track); point != points.end()) {
-      errors.push_back((source.camera().project(T.inverse() * point->second) - z.pixel).norm());
-    } else {
-      const Vector3 ray = T.R() * source.camera().pinhole.ray(z.pixel);
-      points.emplace(z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray);
-    }
-  }
-  std::ranges::sort(errors);
-  return errors;
 }
 
 /// The median of these errors [px].
