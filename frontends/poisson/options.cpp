@@ -41,6 +41,9 @@ void Options::declare(OptionSet& set) {
           "path of a file of tracks, whose first observations start all tracks, but for those at the border; empty: "
           "detected features")
       .path();
+  set.add("threads", threads,
+          "threads that trackers are spread over; 0: one a processor; they do not change what is tracked")
+      .range(0, 1024);
   set.add("window", window, "newest events around a feature that its first patch is made of").range(20, 10'000);
   set.add("recent", recent, "newest events of the sensor that these are searched in").range(100, 10'000'000);
   set.add("settling", settling, "first observations of a track that are left out: its patch is not known well yet")

@@ -36,6 +36,7 @@ struct Options {
   DetectionOptions detection;
   LifeOptions life;
   int tracks = 60;
+  int threads = 1;
   std::string seeds = {};
   int window = 150, recent = 60000;
   int settling = 4;

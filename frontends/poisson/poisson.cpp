@@ -10,6 +10,7 @@
 #include "core/plugin/registration.hpp"
 #include "core/support/index.hpp"
 #include "core/support/median.hpp"
+#include "core/support/parallel.hpp"
 #include "frontends/poisson/contrast.hpp"
 
 namespace evbench::poisson {
@@ -51,10 +52,13 @@ void Poisson::take(std::span<const Event> events) {
 
 void Poisson::process(std::span<const Event> events) {
   recent_.add(events);
-  for (Track& track : tracks_) {
-    observations_.clear();
-    track.tracker.push(events, observations_);
-    for (const Tracker::Observation& z : observations_) report(track, z);
+  observations_.resize(tracks_.size());
+  parallel_for(options_.threads, static_cast<int>(tracks_.size()), [&](int i) {
+    observations_[index(i)].clear();
+    tracks_[index(i)].tracker.push(events, observations_[index(i)]);
+  });
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    for (const Tracker::Observation& z : observations_[i]) report(tracks_[i], z);
   }
 }
 

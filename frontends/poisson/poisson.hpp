@@ -54,9 +54,9 @@ class Poisson : public EventFrontEnd {
   Options options_;
   Seeds seeds_;
   RecentEvents recent_;
-  std::vector<Track> tracks_;  ///< oldest first
-  std::vector<Tracker::Observation> observations_;
-  double detected_;        ///< [s] when features were last detected
+  std::vector<Track> tracks_;                                    ///< oldest first
+  std::vector<std::vector<Tracker::Observation>> observations_;  ///< by track, of the newest events
+  double detected_;                                              ///< [s] when features were last detected
   double odometer_ = 0.0;  ///< path length of the image: by the trackers' median velocity [px]
   TrackId next_id_ = 0;
   std::size_t begun_ = 0;

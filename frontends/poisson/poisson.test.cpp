@@ -54,8 +54,11 @@ TEST_CASE("Points of a wall are tracked as the camera moves, with a sigma of eac
   CHECK(median_error(scene(), tracks.observations) < 1.0);
 }
 
-TEST_CASE("Tracks do not depend on how often they are polled", "[slow]") {
+TEST_CASE("Tracks do not depend on how often they are polled, nor on threads", "[slow]") {
   const TrackBatch usual = track(scene());
+  Options threaded;
+  threaded.threads = 3;
+  CHECK(same(usual, track(scene(), threaded)));
   CHECK(same(usual, track(scene(), {}, 0.037)));
   CHECK(same(usual, track(scene(), {}, 0.01, 7)));
 }

@@ -256,8 +256,8 @@ Matrix2 Tracker::information(const Vector4& delta, double highest) const {
 
 /// The coming observation is made; the present state becomes the next one.
 Tracker::Observation Tracker::observe() {
-  constexpr double kNewest = 0.3;               // weight in running means
-  constexpr double kLeastWay = 0.1;             // [px] that shows a direction
+  constexpr double kNewest = 0.3;                 // weight in running means
+  constexpr double kLeastWay = 0.1;               // [px] that shows a direction
   constexpr std::ptrdiff_t kMostEvents = 20'000;  // of a point that hardly moves
   const Observation z = {coming_.t, coming_.position, P_.bottomRightCorner<2, 2>()};
   deviation_ += kNewest * (largest_deviation(z.covariance) - deviation_);
