@@ -26,7 +26,9 @@ void TrackerOptions::declare(OptionSet& set) {
 
 void LifeOptions::declare(OptionSet& set) {
   set.add("deviation", deviation,
-          "the standard deviation of its observations, along their least known direction, is larger than this [px]")
+          "the standard deviation of its observations, along their least known direction (a running mean), is larger "
+          "than "
+          "this [px]")
       .above(0.0);
   set.add("border", border, "it comes this near to the image's border [px]").range(0.0, 1000.0);
   set.add("starvation", starvation,

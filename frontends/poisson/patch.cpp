@@ -79,8 +79,9 @@ void Patch::add(const Vector2& place, bool on, const Vector2& direction) {
 Patch::Slope Patch::mean_slope() const {
   Slope sum;
   double mass = 0.0;
-  for (int j = -reach_ + 1; j < reach_; ++j) {
-    const double reach = std::sqrt(std::max(0.0, radius_ * radius_ - j * j));
+  const int farthest = static_cast<int>(radius_);
+  for (int j = -farthest; j <= farthest; ++j) {
+    const double reach = std::sqrt(radius_ * radius_ - j * j);
     const Cell* const row = &cells_[index((j + reach_) * side_ + reach_)];
     for (int i = -static_cast<int>(reach); i <= static_cast<int>(reach); ++i) {
       const Cell* const cell = row + i;

@@ -102,3 +102,33 @@ TEST_CASE("What a patch knew fades with its way, however far") {
   CHECK(patch.rate({4.0, 0.0}, true).value > 10.0);
   CHECK(patch.events_per_pixel() == Approx(0.2).epsilon(0.1));
 }
+
+TEST_CASE("The mean slope is the sum of the rate's differences over the disc") {
+  Patch patch(6.5);
+  Random random(2);
+  patch.move(Vector2(0.6, 0.8), 5.0, 100.0);
+  for (int i = 0; i < 400; ++i) {
+    patch.add(random.uniform2({-9.0, -9.0}, {9.0, 9.0}), random.uniform(0, 1) < 0.5, {0.6, 0.8});
+  }
+  patch.look(Vector2(0.8, 0.6), {.any_direction = 1.0, .noise = 0.3, .polarity = true});
+  double mass = 0.0, x = 0.0, y = 0.0, turning = 0.0, growing = 0.0;
+  for (int j = -9; j <= 9; ++j) {
+    for (int i = -9; i <= 9; ++i) {
+      if (i * i + j * j > 6.5 * 6.5) continue;
+      for (const bool on : {false, true}) {
+        const auto at = [&](int dx, int dy) { return patch.rate({i + dx, j + dy}, on).value; };
+        const double gx = 0.5 * (at(1, 0) - at(-1, 0)), gy = 0.5 * (at(0, 1) - at(0, -1));
+        mass += at(0, 0);
+        x += gx;
+        y += gy;
+        turning += gx * j - gy * i;
+        growing += gx * i + gy * j;
+      }
+    }
+  }
+  const Patch::Slope slope = patch.mean_slope();
+  CHECK(slope.x == Approx(x / mass).margin(1e-5));
+  CHECK(slope.y == Approx(y / mass).margin(1e-5));
+  CHECK(slope.turning == Approx(turning / mass).margin(1e-4));
+  CHECK(slope.growing == Approx(growing / mass).margin(1e-4));
+}

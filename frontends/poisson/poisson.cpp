@@ -29,6 +29,7 @@ Poisson::Poisson(const Options& options, const FrontEndContext& context)
       options_(options),
       seeds_(options.seeds, context.folder),
       recent_(static_cast<std::size_t>(std::max(options.recent, options.detection.events))),
+      latest_(range_.from),
       detected_(range_.from),
       next_id_(seeds_.next_id()) {
   check_border(options.detection.border, camera_, context.place + ".detection.border");
@@ -52,6 +53,7 @@ void Poisson::take(std::span<const Event> events) {
 
 void Poisson::process(std::span<const Event> events) {
   recent_.add(events);
+  latest_ = seconds(events.back().t);
   observations_.resize(tracks_.size());
   parallel_for(options_.threads, static_cast<int>(tracks_.size()), [&](int i) {
     observations_[index(i)].clear();
@@ -67,17 +69,25 @@ void Poisson::report(Track& track, const Tracker::Observation& z) {
     --track.settling;
     return;
   }
-  if (!z.position.allFinite() || !z.covariance.allFinite()) return;  // it ends at the next tick
-  track.reported = std::max({z.t, track.reported + kLeastStep, complete() + kLeastStep});
-  delayed_.add({track.id, track.reported, z.position, std::hypot(options_.sigma, track.tracker.observed_deviation())});
+  const double sigma = std::hypot(options_.sigma, z.deviation);
+  const double t = std::max({z.t, track.reported + kLeastStep, complete() + kLeastStep});
+  // Such a track ends at the next tick. So does one of which too much has happened at one time.
+  if (!std::isfinite(sigma) || !camera_.contains(z.position, 0.0) || t > latest_) return;
+  track.reported = t;
+  delayed_.add({track.id, t, z.position, sigma});
 }
 
 void Poisson::on_tick() {
   std::vector<double> x, y;
+  std::vector<Tracker::Observation> observations;
   for (Track& track : tracks_) {
-    if (const auto z = track.tracker.pass(clock_, clock_ + 1.2 * kTick - options_.delay)) report(track, *z);
-    x.push_back(track.tracker.velocity().x());
-    y.push_back(track.tracker.velocity().y());
+    observations.clear();
+    track.tracker.pass(clock_, clock_ + 1.2 * kTick - options_.delay, observations);
+    for (const Tracker::Observation& z : observations) report(track, z);
+    const Vector2& velocity = track.tracker.velocity();
+    if (!velocity.allFinite()) continue;
+    x.push_back(velocity.x());
+    y.push_back(velocity.y());
   }
   if (!x.empty()) odometer_ += kTick * std::hypot(median(std::move(x)), median(std::move(y)));
   end_trackers();
@@ -106,7 +116,7 @@ std::optional<Poisson::End> Poisson::reason_to_end(const Track& track, std::span
   const Tracker& tracker = track.tracker;
   const Vector2 pixel = tracker.position(clock_);
   if (!pixel.allFinite() || !camera_.contains(pixel, life.border)) return End::border;
-  if (tracker.observed_deviation() > life.deviation || !(tracker.deviation() < kUnknown)) return End::deviation;
+  if (!(tracker.observed_deviation() <= life.deviation && tracker.deviation() < kUnknown)) return End::deviation;
   if (life.starvation > 0.0 && odometer_ - track.odometer > life.starvation) return End::starvation;
   const auto is_near = [&](const Track& other) {
     return (other.tracker.position(clock_) - pixel).norm() < life.crowding;
@@ -128,8 +138,10 @@ void Poisson::replenish() {
   detected_ = clock_;
   std::vector<Vector2> taken;
   for (const Track& track : tracks_) taken.push_back(track.tracker.position(clock_));
+  DetectionOptions detection = options_.detection;
+  detection.border = std::max(detection.border, options_.life.border);
   for (const Vector2& pixel :
-       detect_features(options_.detection, newest, camera_.width, camera_.height, taken, wanted - tracks_.size())) {
+       detect_features(detection, newest, camera_.width, camera_.height, taken, wanted - tracks_.size())) {
     if (begin(next_id_, pixel, std::nullopt)) ++next_id_;
   }
 }
@@ -153,7 +165,7 @@ bool Poisson::begin(TrackId id, const Vector2& pixel, std::optional<double> at) 
 /// The newest ones, in time order.
 std::vector<Event> Poisson::events_around(const Vector2& pixel) const {
   std::vector<Event> around;
-  const std::span<const Event> all = recent_.events();
+  const std::span<const Event> all = recent_.newest(static_cast<std::size_t>(options_.recent));
   const double square = options_.tracker.radius * options_.tracker.radius;
   for (auto event = all.rbegin(); event != all.rend() && std::ssize(around) < options_.window; ++event) {
     if ((Vector2(event->x, event->y) - pixel).squaredNorm() < square) around.push_back(*event);

@@ -56,6 +56,7 @@ class Poisson : public EventFrontEnd {
   RecentEvents recent_;
   std::vector<Track> tracks_;                                    ///< oldest first
   std::vector<std::vector<Tracker::Observation>> observations_;  ///< by track, of the newest events
+  double latest_;                                                ///< [s] time of the newest event
   double detected_;                                              ///< [s] when features were last detected
   double odometer_ = 0.0;  ///< path length of the image: by the trackers' median velocity [px]
   TrackId next_id_ = 0;

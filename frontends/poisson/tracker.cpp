@@ -38,7 +38,7 @@ class LogSum {
 
 double largest_deviation(const Matrix2& covariance) {
   const double mean = 0.5 * covariance.trace(), half = 0.5 * (covariance(0, 0) - covariance(1, 1));
-  return std::sqrt(std::max(0.0, mean + std::hypot(half, covariance(0, 1))));
+  return std::sqrt(std::max(mean + std::hypot(half, covariance(0, 1)), 0.0));  // NaN stays
 }
 
 Vector2 direction_of(const Vector2& velocity) {
@@ -66,8 +66,8 @@ Tracker::Tracker(const TrackerOptions& options, const Vector2& pixel, double at,
   const double speed_sigma = 0.15 * velocity.norm() + 0.5 / std::max(length, 1e-6);
   P_.diagonal().head<2>().setConstant(kPlace * kPlace);
   P_.diagonal().segment<2>(2).setConstant(speed_sigma * speed_sigma);
-  P_(4, 4) = kAngle * kAngle;
-  P_(5, 5) = kScale * kScale;
+  if (options.rotation) P_(4, 4) = kAngle * kAngle;
+  if (options.scale) P_(5, 5) = kScale * kScale;
   last_ = {t_, position_, P_.topLeftCorner<2, 2>()};
 }
 
@@ -119,12 +119,11 @@ bool Tracker::is_due(double t) const {
   return count >= kEnough || (count >= kUsual && way > options_.step) || (count >= kFew && way > 3.0 * options_.step);
 }
 
-std::optional<Tracker::Observation> Tracker::pass(double t, double waits) {
+void Tracker::pass(double t, double waits, std::vector<Observation>& observations) {
   constexpr double kEnough = 15.0, kShare = 0.3;  // expected events; share of them
-  std::optional<Observation> result;
-  if (has_coming_ && coming_.t < waits) {
+  while (has_coming_ && coming_.t < waits) {
     const bool is_newest = coming_.t >= t_;
-    result = observe();
+    observations.push_back(observe());
     if (is_newest) has_coming_ = false;
   }
   // Fewer events than the motion would make: it has come to rest.
@@ -134,7 +133,6 @@ std::optional<Tracker::Observation> Tracker::pass(double t, double waits) {
     velocity_.setZero();
     P_.block<2, 2>(2, 2) += kSlow * kSlow * Matrix2::Identity();
   }
-  return result;
 }
 
 /// White noise on acceleration. Its density follows from the way, so that slow and fast motion are alike.
@@ -219,8 +217,8 @@ void Tracker::correct() {
   P_ = 0.5 * (P_ + P_.transpose()).eval();
   position_ += shift.head<2>();
   velocity_ += shift.segment<2>(2);
-  if (options_.rotation) angle_ += shift[4];
-  if (options_.scale) log_scale_ += shift[5];
+  angle_ += shift[4];
+  log_scale_ += shift[5];
   coming_.position += shift.tail<2>();
   way_ += (position_ - from).norm();
   after_.insert(after_.end(), waiting_.begin(), waiting_.end());
@@ -256,26 +254,27 @@ Matrix2 Tracker::information(const Vector4& delta, double highest) const {
 
 /// The coming observation is made; the present state becomes the next one.
 Tracker::Observation Tracker::observe() {
-  constexpr double kNewest = 0.3;                 // weight in running means
-  constexpr double kLeastWay = 0.1;               // [px] that shows a direction
-  constexpr std::ptrdiff_t kMostEvents = 20'000;  // of a point that hardly moves
-  const Observation z = {coming_.t, coming_.position, P_.bottomRightCorner<2, 2>()};
+  constexpr double kNewest = 0.3;    // weight in running means
+  constexpr double kLeastWay = 0.1;  // [px] that shows a direction
+  Observation z = {coming_.t, coming_.position, P_.bottomRightCorner<2, 2>()};
   deviation_ += kNewest * (largest_deviation(z.covariance) - deviation_);
-  if ((z.position - last_.position).norm() > kLeastWay) {
+  z.deviation = deviation_;
+  if (z.t > last_.t && (z.position - last_.position).norm() > kLeastWay) {
     learn(last_, z);
     last_ = z;
     before_.clear();
   }
-  before_.insert(before_.end(), after_.begin(), after_.end());
-  if (std::ssize(before_) > kMostEvents) before_.erase(before_.begin(), before_.end() - kMostEvents);
-  after_.clear();
   remember();
   return z;
 }
 
 /// The present state's position is observed next.
 void Tracker::remember() {
-  coming_ = {t_, position_, {}};
+  constexpr std::ptrdiff_t kMostEvents = 20'000;  // of a point that hardly moves
+  before_.insert(before_.end(), after_.begin(), after_.end());
+  if (std::ssize(before_) > kMostEvents) before_.erase(before_.begin(), before_.end() - kMostEvents);
+  after_.clear();
+  coming_ = {.t = t_, .position = position_};
   P_.middleRows<2>(6) = P_.middleRows<2>(0).eval();
   P_.middleCols<2>(6) = P_.middleCols<2>(0).eval();
   way_ = 0.0;

@@ -27,6 +27,7 @@ class Tracker {
     double t = 0.0;                            ///< [s]
     Vector2 position = Vector2::Zero();        ///< [px]
     Matrix2 covariance = Matrix2::Identity();  ///< [px²]
+    double deviation = 0.0;                    ///< along its least known direction, a running mean [px]
   };
 
   /// The point is at `pixel` at time `at` [s] and moves with `velocity` [px/s]. `window`: events around it, in time
@@ -38,8 +39,8 @@ class Tracker {
   void push(std::span<const Event> events, std::vector<Observation>& observations);
 
   /// Time has passed until t, and all events up to there have been taken. No observation of a time before `waits` will
-  /// follow; one that waits since before is made now.
-  std::optional<Observation> pass(double t, double waits);
+  /// follow: those that wait since before are appended now.
+  void pass(double t, double waits, std::vector<Observation>& observations);
 
   Vector2 position(double t) const { return position_ + (t - t_) * velocity_; }
   const Vector2& velocity() const { return velocity_; }
