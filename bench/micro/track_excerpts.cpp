@@ -1,7 +1,7 @@
-// Accuracy of tracks of real events where the camera's motion is known: the front-end `haste` without a back-end on
+// Accuracy of tracks of real events where the camera's motion is known: a front-end without a back-end on
 // the Event-Camera Dataset's excerpts in EVBENCH_DATA.
 //
-//   haste_excerpts [--set frontend.KEY=VALUE]...
+//   track_excerpts [--front-end NAME] [--set frontend.KEY=VALUE]...
 //
 // slider_depth: the camera moves along its x axis, so that nothing moves across, along y. A track slips when it is more
 // than 1.2 px across from where it began; at 0.125 s of age, as a share of those still alive, and at any moment up to
@@ -36,6 +36,12 @@ constexpr int kWidth = 240, kHeight = 180;
 constexpr double kSlip = 1.2;   ///< [px]
 constexpr double kAge = 0.125;  ///< [s]
 
+/// What is tried.
+struct Choice {
+  std::string frontend = "haste";
+  std::vector<std::string> overrides = {};
+};
+
 struct Observed {
   double t;       ///< [s]
   Vector2 pixel;  ///< undistorted
@@ -55,7 +61,7 @@ struct Excerpt {
 
 constexpr double seconds(std::int64_t microseconds) { return 1e-6 * static_cast<double>(microseconds); }
 
-Excerpt track(const std::string& folder, const std::string& file, const std::vector<std::string>& overrides) {
+Excerpt track(const std::string& folder, const std::string& file, const Choice& choice) {
   Excerpt result;
   StreamOptions options;
   options.read.width = kWidth;
@@ -73,9 +79,9 @@ Excerpt track(const std::string& folder, const std::string& file, const std::vec
                       {"width", kWidth},
                       {"height", kHeight},
                       {"time_range", {seconds(result.events.front().t), seconds(result.events.back().t + 1)}}}},
-                    {"frontend", {{"type", "haste"}}},
+                    {"frontend", {{"type", choice.frontend}}},
                     {"backend", {{"type", "gp_map"}}}};
-  const Job job = ConfigFile(folder, config, plugins).experiment(overrides).runs.front().job;
+  const Job job = ConfigFile(folder, config, plugins).experiment(choice.overrides).runs.front().job;
   result.source = make_source(job, plugins);
   const auto frontend = plugins.of<FrontEnd>()
                             .find(job.frontend.type, job.frontend.place)
@@ -96,8 +102,8 @@ Excerpt track(const std::string& folder, const std::string& file, const std::vec
   return result;
 }
 
-void slider(const std::string& folder, const std::vector<std::string>& overrides) {
-  const Excerpt excerpt = track(folder + "/slider_depth", "events_chunk.txt", overrides);
+void slider(const std::string& folder, const Choice& choice) {
+  const Excerpt excerpt = track(folder + "/slider_depth", "events_chunk.txt", choice);
   std::size_t begun = 0, strayed = 0, alive = 0, slipped = 0;
   std::vector<double> errors;
   for (const auto& [id, track] : excerpt.tracks) {
@@ -153,8 +159,8 @@ std::vector<double> errors_at_end(const Excerpt& excerpt, const Vector3& rates) 
   return result;
 }
 
-void rotation(const std::string& folder, const std::string& name, const std::vector<std::string>& overrides) {
-  const Excerpt excerpt = track(folder + "/" + name, "events_excerpt.txt", overrides);
+void rotation(const std::string& folder, const std::string& name, const Choice& choice) {
+  const Excerpt excerpt = track(folder + "/" + name, "events_excerpt.txt", choice);
   const Vector3 rates = read_rates(folder + "/" + name + "/motion.txt");
   const auto by_imu = errors_at_end(excerpt, rates);
   if (by_imu.empty()) throw InputError(name + ": no tracks");
@@ -166,19 +172,20 @@ void rotation(const std::string& folder, const std::string& name, const std::vec
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<std::string> overrides;
+  Choice choice;
   CLI::App app{"How good tracks of real events are"};
-  app.add_option("--set", overrides, "frontend.KEY=VALUE")->allow_extra_args(false);
+  app.add_option("--front-end", choice.frontend, "by default haste");
+  app.add_option("--set", choice.overrides, "frontend.KEY=VALUE")->allow_extra_args(false);
   CLI11_PARSE(app, argc, argv);
   try {
     const char* const data = std::getenv("EVBENCH_DATA");
     if (data == nullptr) throw InputError("EVBENCH_DATA: is not set; expected the folder of real data");
-    slider(data, overrides);
-    rotation(data, "shapes_rotation", overrides);
-    overrides.insert(overrides.begin(), "frontend.detection.interval=0.005");  // of 21 ms
-    rotation(data, "dynamic_rotation", overrides);
+    slider(data, choice);
+    rotation(data, "shapes_rotation", choice);
+    choice.overrides.insert(choice.overrides.begin(), "frontend.detection.interval=0.005");  // of 21 ms
+    rotation(data, "dynamic_rotation", choice);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "haste_excerpts: {}\n", error.what());
+    fmt::print(stderr, "track_excerpts: {}\n", error.what());
     return 1;
   }
   return 0;
