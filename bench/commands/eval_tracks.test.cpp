@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 #include <sstream>
 
 #include "bench/testing/program.hpp"

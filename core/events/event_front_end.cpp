@@ -10,8 +10,6 @@
 namespace evbench {
 namespace {
 
-constexpr double kTick = 0.005;  // [s]
-
 std::unique_ptr<EventStream> events_of(const FrontEndContext& context, const std::string& name) {
   auto events = context.source.events();
   if (!events) {

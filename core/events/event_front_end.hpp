@@ -30,6 +30,8 @@ class EventFrontEnd : public FrontEnd {
   /// `name`: the front-end's, for messages. Throws InputError for a source without events.
   EventFrontEnd(const FrontEndContext& context, const std::string& name);
 
+  static constexpr double kTick = 0.005;  ///< [s] of data time between two calls of on_tick()
+
   /// The next events, in time order.
   virtual void take(std::span<const Event> events) = 0;
 

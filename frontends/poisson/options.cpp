@@ -20,7 +20,8 @@ void TrackerOptions::declare(OptionSet& set) {
   set.add("independence", independence,
           "share of the events' information that counts: events of one edge are not independent")
       .range(1e-3, 1.0);
-  set.add("step", step, "way after which events correct the state [px]").range(0.05, 10.0);
+  set.add("step", step, "way after which usually many events correct the state [px]; few do after three times as much")
+      .range(0.05, 10.0);
   set.add("interval", interval, "way between two observations [px]").range(0.05, 100.0);
 }
 
@@ -40,8 +41,8 @@ void LifeOptions::declare(OptionSet& set) {
 void Options::declare(OptionSet& set) {
   set.add("tracks", tracks, "trackers alive, at most").range(1, 100'000);
   set.add("seeds", seeds,
-          "path of a file of tracks, whose first observations start all tracks, but for those at the border; empty: "
-          "detected features")
+          "path of a file of tracks, whose first observations start all tracks, but for those at the border or with "
+          "hardly any event around them; empty: detected features")
       .path();
   set.add("threads", threads,
           "threads that trackers are spread over; 0: one a processor; they do not change what is tracked")

@@ -19,7 +19,6 @@ namespace {
 const Registration<FrontEnd, Poisson> registration(
     "poisson", "tracks features asynchronously by the likelihood of events, a Poisson process", 1);
 
-constexpr double kTick = 0.005;      ///< [s] between two calls of on_tick()
 constexpr double kLeastStep = 1e-6;  ///< [s] between two observations of a track
 
 }  // namespace
@@ -186,7 +185,7 @@ void Poisson::receive(const Feedback& feedback) {
 
 std::vector<std::string> Poisson::counts() const {
   const auto ended = [&](End why) { return ended_[index(static_cast<int>(why))]; };
-  return {fmt::format("{} features detected, {} tracked at the end", begun_, tracks_.size()),
+  return {fmt::format("{} tracks begun, {} tracked at the end", begun_, tracks_.size()),
           fmt::format("trackers that ended: {} at the border, {} as their positions were uncertain, {} starved, {} "
                       "crowded, {} as outliers",
                       ended(End::border), ended(End::deviation), ended(End::starvation), ended(End::crowding),
