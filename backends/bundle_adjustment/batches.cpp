@@ -28,14 +28,15 @@ double BatchBuilder::median_shift() const {
 Batch BatchBuilder::close(double end) {
   struct Sum {
     Vector2 pixel = Vector2::Zero();
-    double variance = 0.0, count = 0.0;
+    Matrix2 covariance = Matrix2::Zero();
+    double count = 0.0;
   };
   std::map<TrackId, Sum> sums;
   double time = 0.0;
   for (const TrackObservation& z : gathered_) {
     Sum& sum = sums[z.track];
     sum.pixel += z.pixel;
-    sum.variance += z.sigma * z.sigma;
+    sum.covariance += z.noise.covariance();
     sum.count += 1.0;
     time += z.t - *start_;
   }
@@ -43,9 +44,11 @@ Batch BatchBuilder::close(double end) {
   batch.t = *start_ + time / static_cast<double>(gathered_.size());
   batch.end = end;
   for (const auto& [track, sum] : sums) {
-    const double variance = sum.variance / sum.count;
-    const double common = std::min(variance, rule_.common_noise_px * rule_.common_noise_px);
-    batch.keypoints.push_back({track, sum.pixel / sum.count, std::sqrt(common + (variance - common) / sum.count)});
+    const PixelNoise single(Matrix2(sum.covariance / sum.count));
+    const double sigma = single.sigma();
+    const double common = std::min(1.0, rule_.common_noise_px * rule_.common_noise_px / (sigma * sigma));
+    const PixelNoise mean = single.scaled(std::sqrt(common + (1.0 - common) / sum.count));
+    batch.keypoints.push_back({track, sum.pixel / sum.count, mean});
   }
   gathered_.clear();
   shifts_.clear();

@@ -13,7 +13,7 @@ namespace evbench::bundle_adjustment {
 struct Keypoint {
   TrackId track = 0;
   Vector2 pixel = Vector2::Zero();
-  double sigma = 1.0;  ///< of the mean [px]
+  PixelNoise noise = 1.0;  ///< of the mean
 };
 
 /// The observations of one pose, as a camera with frames would have seen them. Its time is the mean time of its
@@ -31,7 +31,7 @@ struct BatchRule {
   int observations = 0;            ///< if above zero, it ends with this number instead
   double motion_px = 0.0;          ///< if above zero, it ends with this median motion of its tracks instead
   double shortest_duration = 0.0;  ///< [s] with motion_px; `duration` is then the longest
-  double common_noise_px = 0.0;    ///< σ² of a mean = common² + (σ² − common²)⁺/n
+  double common_noise_px = 0.0;    ///< Σ of a mean = (c + (1 − c)/n) Σ with c = min(1, common²/σ²)
 };
 
 /// Groups observations into batches.

@@ -25,9 +25,9 @@ TEST_CASE("a feature in a batch is the mean of its observations, at their mean t
   CHECK(batches[0].end == Approx(0.1));  // known only then
   REQUIRE(batches[0].keypoints.size() == 2);
   CHECK(batches[0].keypoints[0].track == 1);
-  CHECK(batches[0].keypoints[0].sigma == Approx(1.0));
+  CHECK(batches[0].keypoints[0].noise.sigma() == Approx(1.0));
   CHECK(batches[0].keypoints[1].pixel.isApprox(Vector2(12, 24)));
-  CHECK(batches[0].keypoints[1].sigma == Approx(std::sqrt(0.5)));
+  CHECK(batches[0].keypoints[1].noise.sigma() == Approx(std::sqrt(0.5)));
 }
 
 TEST_CASE("noise that a track's observations share stays in their mean") {
@@ -35,7 +35,7 @@ TEST_CASE("noise that a track's observations share stays in their mean") {
   std::vector<TrackObservation> observations;
   for (int i = 0; i < 50; ++i) observations.push_back(observation(1, 0.001 * i, 10));
   builder.add(observations);
-  CHECK(builder.advance(0.1).at(0).keypoints.at(0).sigma == Approx(std::sqrt(0.36 + 0.64 / 50)));
+  CHECK(builder.advance(0.1).at(0).keypoints.at(0).noise.sigma() == Approx(std::sqrt(0.36 + 0.64 / 50)));
 }
 
 TEST_CASE("batches by duration follow one another, and a gap makes none") {

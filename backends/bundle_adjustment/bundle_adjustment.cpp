@@ -255,7 +255,7 @@ std::string BundleAdjustment::locate(int view) {
 void BundleAdjustment::remember(int view) {
   const View& now = map_.views[at(view)];
   for (const Keypoint& z : now.keypoints) {
-    const TrackObservation mean{z.track, now.t, z.pixel, z.sigma};
+    const TrackObservation mean{z.track, now.t, z.pixel, z.noise};
     means_.add(std::span(&mean, 1));
   }
 }

@@ -65,7 +65,7 @@ SolveReport solve(Reconstruction& map, const PinholeCamera& camera, const SolveS
       const auto view = static_cast<std::size_t>(z.view);
       if (z.view < scope.first_used || !map.views[view].estimated()) continue;
       blocks.used[view] = true;
-      problem.AddResidualBlock(new ReprojectionCost(z.pixel, z.sigma, camera), loss.get(), blocks.poses[view].values,
+      problem.AddResidualBlock(new ReprojectionCost(z.pixel, z.noise, camera), loss.get(), blocks.poses[view].values,
                                position.data());
       ++report.observations;
     }

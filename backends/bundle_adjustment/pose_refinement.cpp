@@ -15,7 +15,7 @@ namespace {
 struct Sighting {
   Vector3 landmark;
   Vector2 pixel;
-  double sigma;
+  Whitening whitening;
 };
 
 struct Linearisation {
@@ -29,8 +29,8 @@ Linearisation linearise(const SE3& T, const std::vector<Sighting>& sightings, co
   Linearisation result;
   for (const Sighting& z : sightings) {
     ReprojectionJacobians J;
-    const Vector2 error = reprojection_error(T, z.landmark, z.pixel, camera, J) / z.sigma;
-    const Matrix26 jacobian = J.pose / z.sigma;
+    const Vector2 error = z.whitening * reprojection_error(T, z.landmark, z.pixel, camera, J);
+    const Matrix26 jacobian = z.whitening * J.pose;
     double rho[3] = {error.squaredNorm(), 1.0, 0.0};
     if (loss != nullptr) loss->Evaluate(error.squaredNorm(), rho);
     result.cost += 0.5 * rho[0];
@@ -99,7 +99,7 @@ std::optional<SE3> pnp(const std::vector<Sighting>& sightings, const PinholeCame
 PoseEstimate estimate_pose(const SE3& prediction, const Reconstruction& map, std::span<const Keypoint> keypoints,
                            const PinholeCamera& camera, const ceres::LossFunction* loss, double limit_px) {
   std::vector<Sighting> sightings;
-  for (const Keypoint& z : keypoints) sightings.push_back({*map.tracks.at(z.track).position, z.pixel, z.sigma});
+  for (const Keypoint& z : keypoints) sightings.push_back({*map.tracks.at(z.track).position, z.pixel, z.noise.whitening()});
   PoseEstimate result{refine(prediction, sightings, camera, loss), 0.0};
   result.median_px = median_error(result.T, sightings, camera);
   if (result.median_px <= limit_px) return result;

@@ -12,7 +12,7 @@ int Reconstruction::add(const Batch& batch) {
   const int index = static_cast<int>(views.size());
   views.push_back({batch.t, SE3{}, View::State::unknown, batch.keypoints});
   for (const Keypoint& keypoint : batch.keypoints) {
-    tracks[keypoint.track].sightings.push_back({index, keypoint.pixel, keypoint.sigma});
+    tracks[keypoint.track].sightings.push_back({index, keypoint.pixel, keypoint.noise});
   }
   return index;
 }
@@ -86,7 +86,8 @@ std::optional<double> Reconstruction::noise_factor(const PinholeCamera& camera, 
     for (const TrackSighting& z : track.sightings) {
       const View& view = views[index(z.view)];
       if (z.view < first || !view.estimated()) continue;
-      errors.push_back(reprojection_error(view.T, *track.position, z.pixel, camera).norm() / z.sigma);
+      const Vector2 error = reprojection_error(view.T, *track.position, z.pixel, camera);
+      errors.push_back((z.noise.whitening() * error).norm());
     }
   }
   if (errors.empty()) return std::nullopt;

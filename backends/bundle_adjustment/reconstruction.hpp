@@ -25,7 +25,7 @@ struct View {
 struct TrackSighting {
   int view = 0;
   Vector2 pixel = Vector2::Zero();
-  double sigma = 1.0;
+  PixelNoise noise = 1.0;
 };
 
 struct Track {

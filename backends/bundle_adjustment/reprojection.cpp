@@ -55,19 +55,19 @@ bool ReprojectionCost::Evaluate(double const* const* parameters, double* residua
   const Vector3 landmark = Eigen::Map<const Vector3>(parameters[1]);
   Eigen::Map<Vector2> residual(residuals);
   if (jacobians == nullptr) {
-    residual = weight_ * reprojection_error(T, landmark, pixel_, camera_);
+    residual = whitening_ * reprojection_error(T, landmark, pixel_, camera_);
     return true;
   }
   ReprojectionJacobians J;
-  residual = weight_ * reprojection_error(T, landmark, pixel_, camera_, J);
+  residual = whitening_ * reprojection_error(T, landmark, pixel_, camera_, J);
   if (jacobians[0] != nullptr) {
     Eigen::Map<RowMajor<2, 7>> pose(jacobians[0]);
-    pose.leftCols<6>() = weight_ * J.pose;
+    pose.leftCols<6>() = whitening_ * J.pose;
     pose.col(6).setZero();
   }
   if (jacobians[1] != nullptr) {
     Eigen::Map<RowMajor<2, 3>> position(jacobians[1]);
-    position = weight_ * J.landmark;
+    position = whitening_ * J.landmark;
   }
   return true;
 }

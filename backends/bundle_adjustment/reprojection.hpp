@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/geometry/camera.hpp"
+#include "core/geometry/pixel_noise.hpp"
 #include "core/geometry/se3.hpp"
 
 namespace evbench::bundle_adjustment {
@@ -35,17 +36,17 @@ struct ReprojectionJacobians {
 Vector2 reprojection_error(const SE3& T, const Vector3& landmark, const Vector2& pixel, const PinholeCamera& camera,
                            ReprojectionJacobians& J);
 
-/// The error divided by sigma. Jacobians with respect to a PoseBlock are those of the right increment in the first six
+/// The whitened error. Jacobians with respect to a PoseBlock are those of the right increment in the first six
 /// columns, which is what the manifolds below expect.
 class ReprojectionCost : public ceres::SizedCostFunction<2, 7, 3> {
  public:
-  ReprojectionCost(const Vector2& pixel, double sigma, const PinholeCamera& camera)
-      : pixel_(pixel), weight_(1.0 / sigma), camera_(camera) {}
+  ReprojectionCost(const Vector2& pixel, const PixelNoise& noise, const PinholeCamera& camera)
+      : pixel_(pixel), whitening_(noise.whitening()), camera_(camera) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
   Vector2 pixel_;
-  double weight_;
+  Whitening whitening_;
   PinholeCamera camera_;
 };
 

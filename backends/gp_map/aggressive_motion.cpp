@@ -107,7 +107,7 @@ double AggressiveMotion::newest_error(const FactorGraph& graph, const NoiseLearn
   for (const auto& group : graph.intervals[k].groups()) {
     const Observation& z = graph.intervals[k].of(group).back();
     const Vector3& position = graph.landmarks[index(group.landmark)].position;
-    errors.push_back(reprojection_error(interval, position, z, graph.camera) * z.inverse_sigma / scale);
+    errors.push_back(reprojection_residual(interval, position, z, graph.camera).norm() / scale);
   }
   return std::ssize(errors) < min_landmarks_ ? 0.0 : median(std::move(errors));
 }

@@ -36,7 +36,7 @@ FactorGraph backwards(const FactorGraph& graph) {
     back.expansions.back() = graph.expansions[k + 1];
     for (const auto& group : graph.intervals[k + 1].groups()) {
       for (const Observation& z : graph.intervals[k + 1].of(group)) {
-        back.add_observation(group.landmark, {-z.t, z.pixel, z.inverse_sigma});
+        back.add_observation(group.landmark, {-z.t, z.pixel, z.whitening});
       }
     }
   }

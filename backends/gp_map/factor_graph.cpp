@@ -44,7 +44,10 @@ int IntervalObservations::remove(int landmark, double from) {
 
 void IntervalObservations::scale_sigmas(int landmark, double factor) {
   const auto group = std::ranges::find(groups_, landmark, &Group::landmark);
-  for (int i = group->begin; i < group->end; ++i) observations_[index(i)].inverse_sigma /= factor;
+  for (int i = group->begin; i < group->end; ++i) {
+    Whitening& whitening = observations_[index(i)].whitening;
+    whitening = whitening.scaled(1.0 / factor);
+  }
 }
 
 std::span<const Observation> IntervalObservations::of(int landmark) const {
@@ -117,7 +120,7 @@ void FactorGraph::scale_sigmas(int landmark, double scale) {
 }
 
 Observation FactorGraph::scaled(int landmark, const Observation& given) const {
-  return {given.t, given.pixel, given.inverse_sigma / landmarks[index(landmark)].sigma_scale};
+  return {given.t, given.pixel, given.whitening.scaled(1.0 / landmarks[index(landmark)].sigma_scale)};
 }
 
 int FactorGraph::interval_of(double t) const {

@@ -6,6 +6,7 @@
 
 #include "backends/gp_map/robust_loss.hpp"
 #include "core/geometry/camera.hpp"
+#include "core/geometry/pixel_noise.hpp"
 #include "core/motion/gp_interval.hpp"
 #include "core/support/index.hpp"
 
@@ -15,7 +16,7 @@ namespace evbench::gp_map {
 struct Observation {
   double t = 0.0;  ///< [s]
   Vector2 pixel = Vector2::Zero();
-  double inverse_sigma = 1.0;  ///< [1/px]
+  Whitening whitening = 1.0;  ///< of its residual
 };
 
 /// The observations in one interval (t_{k−1}, t_k], grouped by landmark and in time order. So terms that a landmark's

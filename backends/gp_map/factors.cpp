@@ -50,8 +50,8 @@ double reprojection_mean(const FactorGraph& graph, int landmark) {
 Vector2 reprojection_residual(const GpInterval& interval, const Vector3& landmark, const Observation& z,
                               const PinholeCamera& camera) {
   const Vector3 q = interval.pose(z.t).inverse() * landmark;
-  if (!(q.z() > 0.0)) return Vector2::Constant(2.0 * camera.fx * z.inverse_sigma);
-  return z.inverse_sigma * (camera.project(q) - z.pixel);
+  if (!(q.z() > 0.0)) return Vector2::Constant(2.0 * camera.fx * z.whitening.inverse_sigma());
+  return z.whitening * Vector2(camera.project(q) - z.pixel);
 }
 
 double motion_prior_cost(const GpInterval& interval, const Vector6& qc) {

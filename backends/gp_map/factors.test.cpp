@@ -38,7 +38,8 @@ FactorGraph random_interval(RandomTangents& random, int i, int landmarks) {
     const int landmark = graph.add_landmark(point);
     for (int n = 0; n < 3; ++n) {
       const double t = n == 2 ? b.t : a.t + random.uniform(0.0, 1.0) * (b.t - a.t);
-      graph.add_observation(landmark, {t, {random.uniform(0, 240), random.uniform(0, 180)}, 1.0 / 0.7});
+      const Whitening whitening(random.uniform(0.5, 2.0), random.uniform(-1.0, 1.0), random.uniform(0.5, 2.0));
+      graph.add_observation(landmark, {t, {random.uniform(0, 240), random.uniform(0, 180)}, whitening});
     }
   }
   return graph;
@@ -192,7 +193,7 @@ TEST_CASE("A landmark's scale of sigmas applies to future observations, and can 
   graph.add_state({0.0, {}, Vector6::Zero()});
   graph.add_state({1.0, {}, Vector6::Zero()});
   const int j = graph.add_landmark({0.0, 0.0, 1.0});
-  const auto inverse_sigma = [&](std::size_t i) { return graph.intervals[1].of(j)[i].inverse_sigma; };
+  const auto inverse_sigma = [&](std::size_t i) { return graph.intervals[1].of(j)[i].whitening.inverse_sigma(); };
   REQUIRE(graph.add_observation(j, {0.3, {1.0, 2.0}, 4.0}));
   graph.scale_sigmas(j, 2.0);
   REQUIRE(graph.add_observation(j, {0.6, {1.0, 2.0}, 4.0}));

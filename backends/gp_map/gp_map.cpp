@@ -215,7 +215,7 @@ void GpMap::predict_tracks() {
     const SE3 T = extrapolate(newest, z.t - newest.t).T;
     const Vector3 point = T.inverse() * graph().landmarks[index(track->second.landmark)].position;
     if (point.z() > 0.0) {
-      deviation = (graph().camera.project(point) - z.pixel).norm() / (noise * z.sigma);
+      deviation = (z.noise.whitening() * Vector2(graph().camera.project(point) - z.pixel)).norm() / noise;
     }
     return deviation;
   });

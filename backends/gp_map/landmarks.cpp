@@ -37,7 +37,7 @@ bool GpMap::is_outlier(int landmark) {
   const FactorGraph::Landmark& l = graph().landmarks[index(landmark)];
   if (l.intervals.empty()) return false;
   const Observation& last = graph().intervals[index(l.intervals.back())].of(landmark).back();
-  const double inverse_sigma = l.sigma_scale * last.inverse_sigma;  // as given
+  const double inverse_sigma = l.sigma_scale * last.whitening.inverse_sigma();  // as given
   const double far = options_.map.outlier_threshold * map_->noise.scale_of_means();
   return inverse_sigma * map_->engine.reprojection_mean(landmark) > far;
 }
@@ -97,7 +97,7 @@ GpMap::Location GpMap::locate(TrackId id) const {
     pixels.push_back(z.pixel);
   }
   const Triangulation result = triangulate(poses, pixels, context_.camera, options_.map.triangulation);
-  const double noise = options_.sigma_scale * usable.back().sigma * map_->noise.scale_of_means();
+  const double noise = options_.sigma_scale * usable.back().noise.sigma() * map_->noise.scale_of_means();
   if (result.ok() && result.rms_px <= kWellSeen * std::numbers::sqrt2 * noise) {
     return {.place = std::pair{result.point, LandmarkPrior{}}};
   }

@@ -55,7 +55,7 @@ std::vector<ErrorSum> reprojection_errors(const FactorGraph& graph, int k) {
   std::vector<ErrorSum> sums(graph.intervals[index(k)].groups().size());
   const GpInterval interval(graph.states[index(k - 1)], graph.states[index(k)]);
   for_each_residual(graph, k, interval, [&](const Residual& r, const Measured& observed, const auto& places) {
-    const Lane error = sqrt(r.square) / observed.inverse_sigma;
+    const Lane error = r.px();
     for (std::size_t i = 0; i < kLanes; ++i) {
       if (!(observed.present[i] > 0.0)) continue;
       ErrorSum& sum = sums[places[i]];

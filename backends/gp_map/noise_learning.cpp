@@ -56,8 +56,8 @@ Residual residual_of(const GpInterval& interval, int landmark, const Vector3& po
     result.value.setConstant(std::numeric_limits<double>::infinity());
     return result;
   }
-  result.value = z.inverse_sigma * (camera.project(q) - z.pixel);
-  const Matrix26 J = z.inverse_sigma * camera.project_jacobian(q) * seen_point_jacobian(q);
+  result.value = z.whitening * Vector2(camera.project(q) - z.pixel);
+  const Matrix26 J = z.whitening * Matrix26(camera.project_jacobian(q) * seen_point_jacobian(q));
   const double s = 2.0 * (z.t - interval.t0()) / interval.dt() - 1.0;
   result.J << J, s * J;
   return result;

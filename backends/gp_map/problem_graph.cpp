@@ -16,7 +16,7 @@ FactorGraph to_graph(const Problem& problem) {
   for (auto& landmark : graph.landmarks) landmark.alive = false;
   for (const auto& z : usable.observations) {
     graph.landmarks[index(z.landmark)].alive = true;
-    graph.add_observation(z.landmark, {z.t, z.pixel, 1.0 / z.sigma});
+    graph.add_observation(z.landmark, {z.t, z.pixel, z.noise.whitening()});
   }
   for (const auto& prior : usable.pose_priors) graph.pose_priors.push_back({prior.state, prior.T, prior.sigma});
   for (const auto& prior : usable.velocity_priors) {
@@ -69,7 +69,7 @@ Problem to_problem(const FactorGraph& graph) {
       for (int i = group.begin; i < group.end; ++i) {
         const Observation& z = interval.all()[index(i)];
         problem.observations.push_back(
-            {z.t, number[index(group.landmark)], z.pixel, 1.0 / (counted * z.inverse_sigma)});
+            {z.t, number[index(group.landmark)], z.pixel, PixelNoise::of(z.whitening.scaled(counted))});
       }
     }
   }

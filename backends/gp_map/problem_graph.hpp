@@ -18,7 +18,7 @@ FactorGraph to_graph(const Problem& problem);
 Problem to_problem(const FactorGraph& graph);
 
 inline Observation to_observation(const TrackObservation& z, double sigma_scale) {
-  return {z.t, z.pixel, 1.0 / (z.sigma * sigma_scale)};
+  return {z.t, z.pixel, z.noise.scaled(sigma_scale).whitening()};
 }
 
 }  // namespace evbench::gp_map

@@ -95,7 +95,7 @@ class IncrementalRun {
   }
 
   void observe(const Problem::Observation& z) {
-    engine_.add_observation(number_[index(z.landmark)], {z.t, z.pixel, 1.0 / z.sigma});
+    engine_.add_observation(number_[index(z.landmark)], {z.t, z.pixel, z.noise.whitening()});
   }
 
   const Problem& problem_;

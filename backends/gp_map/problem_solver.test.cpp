@@ -28,7 +28,7 @@ Problem multiplied(const Problem& problem, int times) {
     for (int i = 0; i < times; ++i) {
       result.observations.push_back(z);
       result.observations.back().landmark += i * landmarks;
-      if (i > 0) result.observations.back().pixel += z.sigma * random.normal2();
+      if (i > 0) result.observations.back().pixel += z.noise.sigma() * random.normal2();
     }
   }
   for (int i = 1; i < times; ++i) {

@@ -52,8 +52,8 @@ void check_batch(const TrackBatch& batch, const Progress& progress, const FrontE
     require(z.t >= t, "its observation at {} s comes after one at {} s", z.t, t);
     require(z.t > before || first, "its observation at {} s belongs to the batch before, up to {} s", z.t, before);
     require(z.t <= batch.until, "its observation at {} s is later than its batch, up to {} s", z.t, batch.until);
-    require(z.pixel.allFinite() && std::isfinite(z.sigma) && z.sigma > 0.0,
-            "its observation of track {} at {} s is not finite, or its sigma is not above 0", z.track, z.t);
+    require(z.pixel.allFinite() && z.noise.is_valid(),
+            "its observation of track {} at {} s is not finite, or its noise is not positive definite", z.track, z.t);
     t = z.t;
   }
   for (const TrackEnd& end : batch.ended) {
@@ -82,7 +82,7 @@ TrackBatch CandidateFrontEnd::all(double interval, std::size_t most) const {
 
 bool same(const TrackBatch& a, const TrackBatch& b) {
   const auto equal = [](const TrackObservation& x, const TrackObservation& y) {
-    return x.track == y.track && x.t == y.t && x.pixel == y.pixel && x.sigma == y.sigma;
+    return x.track == y.track && x.t == y.t && x.pixel == y.pixel && x.noise == y.noise;
   };
   const auto ends = [](const TrackEnd& x, const TrackEnd& y) { return x.track == y.track && x.t == y.t; };
   return std::ranges::equal(a.observations, b.observations, equal) && std::ranges::equal(a.ended, b.ended, ends);

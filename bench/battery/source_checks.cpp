@@ -61,7 +61,7 @@ void has_tracks_in_order(const MakeSource& make) {
   for (const TrackObservation& z : tracks_of(*source)) {
     require(z.t >= before, "its track observation at {} s comes after {} s", z.t, before);
     require(z.t <= to, "its track observation at {} s is after its end at {} s", z.t, to);
-    require(z.pixel.allFinite() && z.sigma > 0.0, "its observation of track {} at {} s is not finite", z.track, z.t);
+    require(z.pixel.allFinite() && z.noise.is_valid(), "its observation of track {} at {} s is not finite", z.track, z.t);
     before = z.t;
   }
 }
@@ -83,7 +83,7 @@ void has_events_in_order(const MakeSource& make) {
 void repeats_itself(const MakeSource& make) {
   const auto a = make(), b = make();
   const auto equal_observations = [](const TrackObservation& x, const TrackObservation& y) {
-    return x.track == y.track && x.t == y.t && x.pixel == y.pixel && x.sigma == y.sigma;
+    return x.track == y.track && x.t == y.t && x.pixel == y.pixel && x.noise == y.noise;
   };
   require(std::ranges::equal(tracks_of(*a), tracks_of(*b), equal_observations), "made twice, its tracks differ");
   require(events_of(*a) == events_of(*b), "made twice, its events differ");

@@ -267,7 +267,7 @@ void compare(const Arguments& arguments) {
     if (observations.empty()) {
       throw InputError(fmt::format("{}: its front-end makes no tracks; expected some", arguments.config));
     }
-    const double stated = observations.front().sigma;
+    const double stated = observations.front().noise.sigma();
     if (arguments.drift > 0.0) add_wander(observations, arguments.drift, arguments.time, Random(run.job.seed, 5));
     const FactorGraph graph = final_graph(run.job, source->camera(), observations, plugins);
     TrackNoise noise = estimate_noise(graph);

@@ -104,7 +104,7 @@ void DriftProblem::add_interval(int k, NormalEquations& equations) const {
         const Vector3 q = query.T.inverse() * position;
         if (!(q.z() > 0.0)) continue;  // a constant
         const double weight = graph_.loss.weight(e.squaredNorm());
-        const Matrix23 J = weight * z.inverse_sigma * graph_.camera.project_jacobian(q);
+        const Matrix23 J = weight * (z.whitening * graph_.camera.project_jacobian(q));
         const Matrix26 J_T = J * seen_point_jacobian(q);
         H_x0 += J_T * query.J0.topRows<6>();
         H_x1 += J_T * query.J1.topRows<6>();
@@ -140,7 +140,7 @@ void DriftProblem::take_offsets_away() {
     for (const auto& group : observed_[k].groups()) {
       for (int i = group.begin; i < group.end; ++i) {
         Observation z = observed_[k].all()[index(i)];
-        z.pixel -= offsets_[index(offset_of_[k][index(i)])] / z.inverse_sigma;
+        z.pixel -= offsets_[index(offset_of_[k][index(i)])] / z.whitening.inverse_sigma();
         rest.add(group.landmark, z);
       }
     }

@@ -179,18 +179,24 @@ Feedback BackEndRunner::feedback(const FeedbackNeeds& needs) {
   if (stationary_.is_stationary() && feedback.state == TrackingState::tracking)
     feedback.state = TrackingState::stationary;
   for (ExpectedFeature& feature : feedback.expected) {
+    if (camera_.distortion == DistortionModel::none) break;
+    const Matrix2 J = camera_.distortion_jacobian(feature.pixel);
+    feature.covariance = J * feature.covariance * J.transpose();
     feature.pixel = camera_.project(camera_.pinhole.ray(feature.pixel));
   }
   std::erase_if(feedback.expected, [&](const ExpectedFeature& feature) { return !camera_.contains(feature.pixel); });
   return feedback;
 }
 
-/// Replaces raw pixels by those of the ideal pinhole. Observations without one are dropped and counted.
+/// Replaces raw pixels and their noise by those of the ideal pinhole. Observations without one are dropped and counted.
 void BackEndRunner::undistort(TrackBatch& batch) {
+  if (camera_.distortion == DistortionModel::none) return;
   left_out_ += std::erase_if(batch.observations, [&](TrackObservation& z) {
     const std::optional<Vector2> pixel = camera_.undistort(z.pixel);
-    if (pixel) z.pixel = *pixel;
-    return !pixel;
+    if (!pixel) return true;
+    z.pixel = *pixel;
+    if (!getenv("EVB_NOMAP")) z.noise = z.noise.mapped(camera_.distortion_jacobian(*pixel).inverse());
+    return false;
   });
 }
 
@@ -198,14 +204,15 @@ void BackEndRunner::undistort(TrackBatch& batch) {
 void BackEndRunner::digest(const TrackBatch& batch) {
   struct Seen {
     TrackId track;
-    double t, u, v, sigma;
+    double t, u, v, xx, xy, yy;
   };
   struct Ended {
     TrackId track;
     double t;
   };
   for (const TrackObservation& z : batch.observations) {
-    append_value(digested_, Seen{z.track, z.t, z.pixel.x(), z.pixel.y(), z.sigma});
+    append_value(digested_,
+                 Seen{z.track, z.t, z.pixel.x(), z.pixel.y(), z.noise.xx(), z.noise.xy(), z.noise.yy()});
   }
   for (const TrackEnd& end : batch.ended) append_value(digested_, Ended{end.track, end.t});
   hash_.add(digested_);

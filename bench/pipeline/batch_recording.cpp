@@ -14,7 +14,7 @@
 namespace evbench {
 namespace {
 
-constexpr std::string_view kBegin = "evbench batches 2\n";
+constexpr std::string_view kBegin = "evbench batches 3\n";
 constexpr std::size_t kDigestLength = 64;
 
 template <class Value>
@@ -32,7 +32,7 @@ void append_batch(std::string& bytes, const TrackBatch& batch) {
     append_number(bytes, z.t);
     append_number(bytes, z.pixel.x());
     append_number(bytes, z.pixel.y());
-    append_number(bytes, z.sigma);
+    for (const double value : {z.noise.xx(), z.noise.xy(), z.noise.yy()}) append_number(bytes, value);
   }
   append_number(bytes, std::uint64_t{batch.ended.size()});
   for (const TrackEnd& end : batch.ended) {
@@ -107,7 +107,8 @@ TrackBatch RecordedBatches::take_batch() {
     z.t = take<double>();
     z.pixel.x() = take<double>();
     z.pixel.y() = take<double>();
-    z.sigma = take<double>();
+    const double xx = take<double>(), xy = take<double>();
+    z.noise = {xx, xy, take<double>()};
   }
   batch.ended.resize(take<std::uint64_t>());
   for (TrackEnd& end : batch.ended) {

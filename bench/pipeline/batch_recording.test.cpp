@@ -42,7 +42,7 @@ TEST_CASE("A recording replays the same batches, bit by bit, and the facts of th
     REQUIRE(batch->observations.size() == expected->observations.size());
     for (std::size_t i = 0; i < batch->observations.size(); ++i) {
       const TrackObservation &a = batch->observations[i], &b = expected->observations[i];
-      CHECK((a.track == b.track && a.t == b.t && a.pixel == b.pixel && a.sigma == b.sigma));
+      CHECK((a.track == b.track && a.t == b.t && a.pixel == b.pixel && a.noise == b.noise));
     }
     REQUIRE(batch->ended.size() == expected->ended.size());
     for (std::size_t i = 0; i < batch->ended.size(); ++i) {

@@ -90,7 +90,7 @@ void StationaryDetector::repeat_tracks(double until, std::vector<TrackObservatio
     if (!is_stationary_) begin_period(t);
     periods_.back().to = t;
     for (const auto& [track, z] : live_) {
-      observations.push_back({track, t, z.pixel, std::max(z.sigma, kSigma)});
+      observations.push_back({track, t, z.pixel, z.noise.sigma() < kSigma ? kSigma : z.noise});
     }
   }
 }

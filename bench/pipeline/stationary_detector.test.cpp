@@ -53,7 +53,7 @@ TEST_CASE("When live tracks are not observed, their last positions are repeated 
       CHECK(z.t > before - 1e-12);
       CHECK(z.t <= batch.until);
       CHECK(z.pixel.x() == Approx(10.0 + 50.0).margin(1.5));
-      CHECK(z.sigma == 0.5);
+      CHECK(z.noise == 0.5);
     }
     if (!batch.observations.empty()) before = batch.observations.back().t;
     repeated += batch.observations.size();

@@ -135,12 +135,20 @@ class ProblemReader {
   }
 
   void observation() {
-    reader_.expect_columns(6, "OBS t j u v sigma");
+    const bool has_covariance = reader_.columns().size() == 8;
+    if (!has_covariance) reader_.expect_columns(6, "OBS t j u v sigma");
     landmark_references_.push_back(reference(2));
     problem_.observations.push_back({reader_.number(1, "the time"),
                                      landmark_references_.back().index,
                                      {reader_.number(3, "u"), reader_.number(4, "v")},
-                                     positive(5, "sigma")});
+                                     has_covariance ? covariance(5) : positive(5, "sigma")});
+  }
+
+  PixelNoise covariance(std::size_t first) const {
+    const PixelNoise noise(reader_.number(first, "xx"), reader_.number(first + 1, "xy"),
+                           reader_.number(first + 2, "yy"));
+    if (!noise.is_valid()) reader_.fail("the covariance xx xy yy is not positive definite");
+    return noise;
   }
 
   void pose_prior() {
@@ -227,7 +235,12 @@ std::string format_problem(const Problem& problem) {
     fmt::format_to(out, "LM {}{}\n", j, columns(problem.landmarks[j]));
   }
   for (const Problem::Observation& o : problem.observations) {
-    fmt::format_to(out, "OBS {} {} {} {} {}\n", o.t, o.landmark, o.pixel.x(), o.pixel.y(), o.sigma);
+    fmt::format_to(out, "OBS {} {} {} {}", o.t, o.landmark, o.pixel.x(), o.pixel.y());
+    if (o.noise.is_isotropic()) {
+      fmt::format_to(out, " {}\n", o.noise.sigma());
+    } else {
+      fmt::format_to(out, " {} {} {}\n", o.noise.xx(), o.noise.xy(), o.noise.yy());
+    }
   }
   for (const Problem::PosePrior& prior : problem.pose_priors) {
     fmt::format_to(out, "PRIORPOSE {}{}{}\n", prior.state, columns(prior.T), columns(prior.sigma));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/geometry/camera.hpp"
+#include "core/geometry/pixel_noise.hpp"
 #include "core/motion/gp_interval.hpp"
 
 namespace evbench {
@@ -16,7 +17,7 @@ struct Problem {
     double t = 0.0;
     int landmark = 0;
     Vector2 pixel = Vector2::Zero();  ///< undistorted
-    double sigma = 1.0;               ///< isotropic [px]
+    PixelNoise noise = 1.0;
   };
   struct PosePrior {
     int state = 0;
@@ -51,7 +52,7 @@ struct Problem {
 ///   QC q1..q6                                        once, > 0
 ///   STATE i t qx qy qz qw px py pz wx wy wz vx vy vz T_world_camera and body velocity; i = 0, 1, 2, ... in time order
 ///   LM j x y z                                       j = 0, 1, 2, ...
-///   OBS t j u v sigma
+///   OBS t j u v sigma                                or `OBS t j u v xx xy yy` with the covariance [px²]
 ///   PRIORPOSE i qx qy qz qw px py pz s1..s6
 ///   PRIORVEL i wx wy wz vx vy vz s1..s6
 ///   LMPRIOR j x y z sigma

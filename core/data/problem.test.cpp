@@ -77,6 +77,14 @@ TEST_CASE("A problem reads back exactly as written") {
   CHECK(format_problem(read_problem(folder.file("p.txt"))) == format_problem(p));
 }
 
+TEST_CASE("An observation of a problem may have a covariance") {
+  const Problem p = problem(kProblem + "OBS 0.5 1 3 4 0.5 -0.2 0.3\n");
+  CHECK(p.observations.back().noise == PixelNoise(0.5, -0.2, 0.3));
+  CHECK(format_problem(p).find("OBS 0.5 1 3 4 0.5 -0.2 0.3\n") != std::string::npos);
+  CHECK_THROWS_WITH(problem(kProblem + "OBS 0.5 1 3 4 0.5 0.6 0.3\n"),
+                    ContainsSubstring("problem.txt:16: the covariance xx xy yy is not positive definite"));
+}
+
 TEST_CASE("A damaged problem is refused with its line and fault") {
   CHECK_THROWS_AS(problem(""), InputError);
   CHECK_THROWS_WITH(problem(without("CAM")), ContainsSubstring("has no CAM record"));

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/geometry/types.hpp"
+#include "core/geometry/pixel_noise.hpp"
 
 namespace evbench {
 
@@ -14,7 +14,7 @@ struct TrackObservation {
   TrackId track = 0;
   double t = 0.0;                   ///< [s], sequence time
   Vector2 pixel = Vector2::Zero();  ///< [px]; raw from a front-end, undistorted for a back-end
-  double sigma = 1.0;               ///< isotropic standard deviation [px]
+  PixelNoise noise = 1.0;           ///< of `pixel`
 };
 
 /// End of a track: no observation of it follows, unless a front-end re-associates its landmark with the help of the

@@ -24,7 +24,7 @@ TEST_CASE("Tracks are sorted by time, then by id, and anomalies are counted") {
   CHECK(file.observations[1].track == 7);
   CHECK(file.observations[2].track == 3);
   CHECK(file.observations[3].pixel == Vector2(1, 1));
-  CHECK(file.observations[3].sigma == 0.5);
+  CHECK(file.observations[3].noise == 0.5);
   CHECK(file.report.records == 6);
   CHECK(file.report.tracks == 3);
   CHECK(file.report.unordered == 1);

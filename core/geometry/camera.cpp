@@ -109,6 +109,12 @@ std::optional<Vector2> Camera::undistort(const Vector2& raw) const {
   return std::nullopt;
 }
 
+Matrix2 Camera::distortion_jacobian(const Vector2& ideal) const {
+  const Vector2 focal(pinhole.fx, pinhole.fy);
+  const Vector2 n = pinhole.ray(ideal).head<2>();
+  return focal.asDiagonal() * bend(distortion, n, coefficients).jacobian * focal.cwiseInverse().asDiagonal();
+}
+
 void check_border(double border, const Camera& camera, const std::string& place) {
   if (2.0 * border < std::min(camera.width, camera.height) - 1) return;
   throw InputError(

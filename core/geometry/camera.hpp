@@ -44,6 +44,9 @@ struct Camera {
   /// model cannot be inverted (far outside its valid range).
   std::optional<Vector2> undistort(const Vector2& raw) const;
 
+  /// ∂raw/∂ideal at an ideal pinhole's pixel.
+  Matrix2 distortion_jacobian(const Vector2& ideal) const;
+
   /// Is the pixel on the sensor, at least `margin` pixels from its border?
   bool contains(const Vector2& pixel, double margin = 0.0) const {
     return pixel.x() >= margin && pixel.y() >= margin && pixel.x() <= width - 1 - margin &&

@@ -208,19 +208,32 @@ std::vector<ExpectedFeature> expected_features(const Json& value) {
   });
 }
 
-std::vector<TrackObservation> observations(const Json& value) {
+std::vector<TrackObservation> observations(const Json& value, const Json* covariances) {
   double before = -INFINITY;
-  return each(value, "observations", [&](const Json& item, const Place& place) {
+  std::vector<TrackObservation> result = each(value, "observations", [&](const Json& item, const Place& place) {
     TrackObservation z;
     const std::vector<double> v = track_row(item, "track t x y sigma", z.track, place);
     z.t = v[1];
     z.pixel = {v[2], v[3]};
-    z.sigma = v[4];
-    if (!(z.sigma > 0.0)) unexpected(item, "a sigma above 0", place);
+    z.noise = v[4];
+    if (!z.noise.is_valid()) unexpected(item, "a sigma above 0", place);
     check_order(before, z.t, place);
     before = z.t;
     return z;
   });
+  if (covariances == nullptr) return result;
+  const std::vector<PixelNoise> noise = each(*covariances, "covariances", [](const Json& item, const Place& place) {
+    const std::vector<double> v = numbers(item, "xx xy yy", place);
+    const PixelNoise one(v[0], v[1], v[2]);
+    if (!one.is_valid()) unexpected(item, "a positive definite covariance xx xy yy", place);
+    return one;
+  });
+  if (noise.size() != result.size()) {
+    throw MessageError(fmt::format("covariances: {} of them for {} observations; expected one for each, or none",
+                                   noise.size(), result.size()));
+  }
+  for (std::size_t i = 0; i < result.size(); ++i) result[i].noise = noise[i];
+  return result;
 }
 
 std::vector<TrackEnd> track_ends(const Json& value) {

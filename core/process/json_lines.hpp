@@ -89,7 +89,8 @@ RunState run_state(const Json& value);
 std::string name_of(TrackingState state);
 Matrix12 covariance(const Json& value);                             ///< 144 numbers, symmetric
 std::vector<ExpectedFeature> expected_features(const Json& value);  ///< [[track, x, y, z, u, v, Σuu, Σuv, Σvv]]
-std::vector<TrackObservation> observations(const Json& value);      ///< [[track, t, u, v, sigma]], time order
+/// [[track, t, u, v, sigma]] in time order. `covariances`: [[xx, xy, yy]] of each, instead of sigma, or null.
+std::vector<TrackObservation> observations(const Json& value, const Json* covariances = nullptr);
 std::vector<TrackEnd> track_ends(const Json& value);                ///< [[track, t]], time order
 std::vector<Landmark> landmarks(const Json& value);                 ///< [[track, x, y, z]]
 std::vector<DegradedSpan> degraded_spans(const Json& value);        ///< [[from, to, reason]]

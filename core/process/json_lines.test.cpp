@@ -24,6 +24,8 @@ std::string refusal(const std::string& json, Read read) {
   return "";
 }
 
+std::vector<TrackObservation> rows(const Json& json) { return observations(json); }
+
 }  // namespace
 
 TEST_CASE("Observations are read back as the numbers that were written") {
@@ -52,11 +54,34 @@ TEST_CASE("Observations are read back as the numbers that were written") {
     REQUIRE(read[i].track == batch.observations[i].track);
     REQUIRE(read[i].t == batch.observations[i].t);
     REQUIRE(read[i].pixel == batch.observations[i].pixel);
-    REQUIRE(read[i].sigma == batch.observations[i].sigma);
+    REQUIRE(read[i].noise == batch.observations[i].noise);
   }
   const std::vector<TrackEnd> ended = track_ends(message.at("ended"));
   CHECK(ended.size() == 1000);
   CHECK(ended.back().t == t);
+}
+
+TEST_CASE("Covariances are written beside the observations where any has one, and read back exactly") {
+  TrackBatch batch;
+  batch.until = 0.5;
+  batch.observations = {{1, 0.1, {1.0, 2.0}, PixelNoise(0.5, -0.2, 0.3)}, {2, 0.2, {3.0, 4.0}, 0.7}};
+  Line line;
+  line.push_back('{');
+  CHECK(write_batch(line, batch) == 0);
+  line.push_back('}');
+  const Json message = parse_object(text_of(line));
+  const std::vector<TrackObservation> read = observations(message.at("observations"), &message.at("covariances"));
+  REQUIRE(read.size() == 2);
+  CHECK(read[0].noise == batch.observations[0].noise);
+  CHECK(read[1].noise == batch.observations[1].noise);
+
+  const auto with = [&](const std::string& covariances) {
+    return refusal(covariances, [&](const Json& json) { observations(message.at("observations"), &json); });
+  };
+  CHECK_THAT(with("[[1,0,1]]"), ContainsSubstring("covariances: 1 of them for 2 observations"));
+  CHECK_THAT(with("[[1,0,1],[1,2,1]]"),
+             ContainsSubstring("covariances[1]: expected a positive definite covariance xx xy yy, found [1,2,1]"));
+  CHECK_THAT(with("[[1,0,1],[1,0]]"), ContainsSubstring("covariances[1]: expected 3 numbers"));
 }
 
 TEST_CASE("Observations that are not finite are left out of a line and counted") {
@@ -122,16 +147,16 @@ TEST_CASE("An invalid message is refused by a sentence that names the place") {
   CHECK_THROWS_WITH(check_keys(parse_json(R"({"outlier": 1})"), {"state", "outliers"}),
                     "unknown key \"outlier\"; did you mean \"outliers\"?");
   CHECK_THROWS_WITH(require(Json::object(), "state"), "\"state\" is missing in {}");
-  CHECK(refusal("[[1,0.1,5,5]]", observations) ==
+  CHECK(refusal("[[1,0.1,5,5]]", rows) ==
         "observations[0]: expected 5 numbers (track t x y sigma), found [1,0.1,5,5]");
-  CHECK_THAT(refusal("[[1,0.1,5,5,0]]", observations), ContainsSubstring("a sigma above 0"));
-  CHECK_THAT(refusal("[[1.5,0.1,5,5,1]]", observations), ContainsSubstring("an integer"));
-  CHECK_THAT(refusal("[[18446744073709551615,0.1,5,5,1]]", observations), ContainsSubstring("an integer of 64 bits"));
-  CHECK_THAT(refusal("[[1,\"0.1\",5,5,1]]", observations), ContainsSubstring("found [1,\"0.1\",5,5,1]"));
-  CHECK_THAT(refusal("[[1,null,5,5,1]]", observations), ContainsSubstring("found [1,null,5,5,1]"));
-  CHECK_THAT(refusal("[[1,0.2,5,5,1],[2,0.1,5,5,1]]", observations),
+  CHECK_THAT(refusal("[[1,0.1,5,5,0]]", rows), ContainsSubstring("a sigma above 0"));
+  CHECK_THAT(refusal("[[1.5,0.1,5,5,1]]", rows), ContainsSubstring("an integer"));
+  CHECK_THAT(refusal("[[18446744073709551615,0.1,5,5,1]]", rows), ContainsSubstring("an integer of 64 bits"));
+  CHECK_THAT(refusal("[[1,\"0.1\",5,5,1]]", rows), ContainsSubstring("found [1,\"0.1\",5,5,1]"));
+  CHECK_THAT(refusal("[[1,null,5,5,1]]", rows), ContainsSubstring("found [1,null,5,5,1]"));
+  CHECK_THAT(refusal("[[1,0.2,5,5,1],[2,0.1,5,5,1]]", rows),
              ContainsSubstring("observations[1]: time 0.1 s is before"));
-  CHECK_THAT(refusal("{}", observations), ContainsSubstring("expected a list, found {}"));
+  CHECK_THAT(refusal("{}", rows), ContainsSubstring("expected a list, found {}"));
   CHECK_THAT(refusal("[[1]]", track_ends), ContainsSubstring("ended[0]: expected 2 numbers (track t)"));
   CHECK_THAT(refusal("\"lots\"", tracking_state), ContainsSubstring("unknown state \"lots\"; did you mean \"lost\"?"));
   CHECK_THAT(refusal("[1,2]", covariance), ContainsSubstring("144 numbers"));

@@ -29,7 +29,7 @@ void put_numbers(Line& line, const double* values, Eigen::Index count) {
 }
 
 bool is_finite(const TrackObservation& z) {
-  return std::isfinite(z.t) && z.pixel.allFinite() && std::isfinite(z.sigma) && z.sigma > 0.0;
+  return std::isfinite(z.t) && z.pixel.allFinite() && z.noise.is_valid();
 }
 
 void put_newest(Line& line, const ControlState& state) {
@@ -55,8 +55,14 @@ int write_batch(Line& line, const TrackBatch& batch) {
   std::ranges::copy_if(batch.observations, std::back_inserter(finite), is_finite);
   put(line, "\"until\":{},\"observations\":", batch.until);
   put_list(line, finite, [&](const TrackObservation& z) {
-    put(line, "[{},{},{},{},{}]", z.track, z.t, z.pixel.x(), z.pixel.y(), z.sigma);
+    put(line, "[{},{},{},{},{}]", z.track, z.t, z.pixel.x(), z.pixel.y(), z.noise.sigma());
   });
+  if (!std::ranges::all_of(finite, [](const TrackObservation& z) { return z.noise.is_isotropic(); })) {
+    put(line, ",\"covariances\":");
+    put_list(line, finite, [&](const TrackObservation& z) {
+      put(line, "[{},{},{}]", z.noise.xx(), z.noise.xy(), z.noise.yy());
+    });
+  }
   put(line, ",\"ended\":");
   put_list(line, batch.ended, [&](const TrackEnd& end) { put(line, "[{},{}]", end.track, end.t); });
   return static_cast<int>(batch.observations.size() - finite.size());

@@ -80,7 +80,7 @@ TEST_CASE("Observations are in time order, inside the sequence and near the imag
     REQUIRE(o.t >= before);
     REQUIRE(o.t <= s.duration);
     REQUIRE(s.camera.contains(o.pixel));
-    REQUIRE(o.sigma == Approx(0.7));
+    REQUIRE(o.noise.sigma() == Approx(0.7));
     before = o.t;
   }
   CHECK(s.by_track().size() == s.result.tracks.size());
@@ -132,7 +132,7 @@ TEST_CASE("Quantised pixels are multiples of the step, and sigma says so") {
   s.run();
   for (const TrackObservation& o : s.result.observations) {
     REQUIRE(o.pixel == Vector2(o.pixel.array().round()));
-    REQUIRE(o.sigma == Approx(std::sqrt(1.0 / 12.0)));
+    REQUIRE(o.noise.sigma() == Approx(std::sqrt(1.0 / 12.0)));
   }
   CHECK(rms(s, TrackKind::inlier) == Approx(std::sqrt(1.0 / 12.0)).epsilon(0.02));
 }
@@ -183,7 +183,7 @@ TEST_CASE("Tracks with a slow error deviate as much as their sigma states, with 
   double square = 0.0, product = 0.0, expected = 0.0;
   int count = 0;
   for (std::size_t i = 0; i < plain.result.observations.size(); ++i) {
-    CHECK(wandering.result.observations[i].sigma == Approx(std::hypot(0.3, 0.8)));
+    CHECK(wandering.result.observations[i].noise.sigma() == Approx(std::hypot(0.3, 0.8)));
     square += (wandering.result.observations[i].pixel - plain.result.observations[i].pixel).squaredNorm();
     count += 2;
   }

@@ -87,7 +87,7 @@ TEST_CASE("the first view moves on when its tracks have ended") {
   TrackBuffer tracks = tracks_of(PointScene::volume, moving, 0.1, 0.0, 7);
   std::vector<TrackObservation> later;
   for (TrackId id : tracks.ids()) {
-    for (TrackObservation z : tracks.observations(id)) later.push_back({id + 100, z.t + 0.5, z.pixel, z.sigma});
+    for (TrackObservation z : tracks.observations(id)) later.push_back({id + 100, z.t + 0.5, z.pixel, z.noise});
   }
   tracks.add(later);
   Initialiser initialiser({}, davis());

@@ -64,7 +64,7 @@ TrackViews TrackViews::of(const TrackBuffer& tracks, std::vector<double> times, 
   result.times = std::move(times);
   std::vector<double> sigmas;
   for (Candidate& candidate : candidates) {
-    sigmas.push_back(tracks.observations(candidate.track).front().sigma);
+    sigmas.push_back(tracks.observations(candidate.track).front().noise.sigma());
     result.tracks.push_back(candidate.track);
     result.places.push_back(std::move(candidate.places));
   }

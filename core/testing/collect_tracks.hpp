@@ -33,7 +33,7 @@ inline TrackBatch collect_tracks(FrontEnd& frontend, const Source& source, doubl
 /// Are the observations the same, bit by bit?
 inline bool same(const TrackBatch& a, const TrackBatch& b) {
   return std::ranges::equal(a.observations, b.observations, [](const TrackObservation& x, const TrackObservation& y) {
-    return x.track == y.track && x.t == y.t && x.pixel == y.pixel && x.sigma == y.sigma;
+    return x.track == y.track && x.t == y.t && x.pixel == y.pixel && x.noise == y.noise;
   });
 }
 

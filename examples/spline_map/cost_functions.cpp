@@ -64,7 +64,7 @@ bool ReprojectionCost::Evaluate(double const* const* parameters, double* residua
   const Vector3 landmark = Eigen::Map<const Vector3>(parameters[4]);
   Eigen::Map<Vector2> residual(residuals);
   if (jacobians == nullptr) {
-    residual = weight_ * reprojection_error(segment_.pose(u_), landmark, pixel_, camera_);
+    residual = whitening_ * reprojection_error(segment_.pose(u_), landmark, pixel_, camera_);
     return true;
   }
   SplineSegment::Jacobians J;
@@ -73,8 +73,9 @@ bool ReprojectionCost::Evaluate(double const* const* parameters, double* residua
   const Vector3 local = Rt * (landmark - T.p);
   const bool visible = local.z() > kNearestDepth;
   residual =
-      visible ? Vector2(weight_ * (camera_.project(local) - pixel_)) : Vector2::Constant(2.0 * weight_ * camera_.fx);
-  const Matrix23 projection = visible ? Matrix23(weight_ * camera_.project_jacobian(local)) : Matrix23::Zero();
+      visible ? Vector2(whitening_ * Vector2(camera_.project(local) - pixel_))
+              : Vector2::Constant(2.0 * whitening_.inverse_sigma() * camera_.fx);
+  const Matrix23 projection = visible ? Matrix23(whitening_ * camera_.project_jacobian(local)) : Matrix23::Zero();
   const Matrix23 by_rotation = projection * so3::hat(local), by_landmark = projection * Rt;
   for (std::size_t j = 0; j < 4; ++j) {
     if (jacobians[j] == nullptr) continue;
@@ -89,13 +90,13 @@ bool ReprojectionCost::Evaluate(double const* const* parameters, double* residua
 
 bool HeldReprojectionCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
   const Vector3 landmark = Eigen::Map<const Vector3>(parameters[0]);
-  Eigen::Map<Vector2>{residuals} = weight_ * reprojection_error(T_, landmark, pixel_, camera_);
+  Eigen::Map<Vector2>{residuals} = whitening_ * reprojection_error(T_, landmark, pixel_, camera_);
   if (jacobians == nullptr || jacobians[0] == nullptr) return true;
   Eigen::Map<RowMajor<2, 3>> J(jacobians[0]);
   const Matrix3 Rt = T_.R().transpose();
   const Vector3 local = Rt * (landmark - T_.p);
   J.setZero();
-  if (local.z() > kNearestDepth) J = weight_ * camera_.project_jacobian(local) * Rt;
+  if (local.z() > kNearestDepth) J = whitening_ * Matrix23(camera_.project_jacobian(local) * Rt);
   return true;
 }
 

@@ -42,20 +42,20 @@ class KnotManifold : public ceres::Manifold {
 Vector2 reprojection_error(const SE3& T, const Vector3& landmark, const Vector2& pixel,
                            const evbench::PinholeCamera& camera);
 
-/// Reprojection error over sigma of a landmark (last block) from a position in a segment of four knots.
+/// Whitened reprojection error of a landmark (last block) from a position in a segment of four knots.
 class ReprojectionCost : public ceres::SizedCostFunction<2, 7, 7, 7, 7, 3> {
  public:
   /// `segment` is prepared from the knots that are the parameters.
   ReprojectionCost(const SplineSegment& segment, double u, const evbench::TrackObservation& z,
                    const evbench::PinholeCamera& camera)
-      : segment_(segment), u_(u), pixel_(z.pixel), weight_(1.0 / z.sigma), camera_(camera) {}
+      : segment_(segment), u_(u), pixel_(z.pixel), whitening_(z.noise.whitening()), camera_(camera) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
   const SplineSegment& segment_;
   double u_;
   Vector2 pixel_;
-  double weight_;
+  evbench::Whitening whitening_;
   const evbench::PinholeCamera& camera_;
 };
 
@@ -63,13 +63,13 @@ class ReprojectionCost : public ceres::SizedCostFunction<2, 7, 7, 7, 7, 3> {
 class HeldReprojectionCost : public ceres::SizedCostFunction<2, 3> {
  public:
   HeldReprojectionCost(const SE3& T, const evbench::TrackObservation& z, const evbench::PinholeCamera& camera)
-      : T_(T), pixel_(z.pixel), weight_(1.0 / z.sigma), camera_(camera) {}
+      : T_(T), pixel_(z.pixel), whitening_(z.noise.whitening()), camera_(camera) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
   SE3 T_;
   Vector2 pixel_;
-  double weight_;
+  evbench::Whitening whitening_;
   const evbench::PinholeCamera& camera_;
 };
 

@@ -74,12 +74,12 @@ TEST_CASE("Jacobians of the reprojection cost agree with central differences") {
     auto blocks = blocks_of(knots);
     blocks.push_back(landmark.data());
     check_knots<2>(cost, knots, blocks, [&](const std::array<Knot, 4>& moved) {
-      return Vector2(reprojection_error(testing::segment(moved).pose(u), landmark, z.pixel, camera) / z.sigma);
+      return Vector2(reprojection_error(testing::segment(moved).pose(u), landmark, z.pixel, camera) / z.noise.sigma());
     });
     const HeldReprojectionCost held(segment.pose(u), z, camera);
     const Evaluated of_held = evaluate(held, {landmark.data()}, 0), of_cost = evaluate(cost, blocks, 4);
     const auto numeric = testing::differences<2, 3>([&](const Vector3& delta) {
-      return Vector2(reprojection_error(segment.pose(u), landmark + delta, z.pixel, camera) / z.sigma);
+      return Vector2(reprojection_error(segment.pose(u), landmark + delta, z.pixel, camera) / z.noise.sigma());
     });
     CHECK((of_held.jacobian - numeric).norm() < 1e-6 * std::max(1.0, numeric.norm()));
     CHECK((of_cost.jacobian - numeric).norm() < 1e-6 * std::max(1.0, numeric.norm()));

@@ -34,13 +34,13 @@ TEST_CASE("Observations with a larger sigma have larger errors") {
   std::vector<double> usual, sharp, vague;
   std::vector<double> sigmas;
   for (const TrackObservation& z : observations(options)) {
-    CHECK(z.sigma >= 0.5 * options.sigma);
-    CHECK(z.sigma <= 3.0 * options.sigma);
-    sigmas.push_back(z.sigma);
+    CHECK(z.noise.sigma() >= 0.5 * options.sigma);
+    CHECK(z.noise.sigma() <= 3.0 * options.sigma);
+    sigmas.push_back(z.noise.sigma());
     const SE3 T = swing(z.t);
     if (const auto point = points.find(z.track); point != points.end()) {
       const double error = (sigma_scene().camera().project(T.inverse() * point->second) - z.pixel).norm();
-      (z.sigma < 0.8 * options.sigma ? sharp : z.sigma > 1.25 * options.sigma ? vague : usual).push_back(error);
+      (z.noise.sigma() < 0.8 * options.sigma ? sharp : z.noise.sigma() > 1.25 * options.sigma ? vague : usual).push_back(error);
     } else {
       const Vector3 ray = T.R() * sigma_scene().camera().pinhole.ray(z.pixel);
       points.emplace(z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray);
@@ -58,5 +58,5 @@ TEST_CASE("All observations have the same sigma where scores are not used") {
   options.score_sigma = false;
   const auto all = observations(options);
   CHECK_FALSE(all.empty());
-  CHECK(std::ranges::all_of(all, [&](const TrackObservation& z) { return z.sigma == options.sigma; }));
+  CHECK(std::ranges::all_of(all, [&](const TrackObservation& z) { return z.noise.sigma() == options.sigma; }));
 }

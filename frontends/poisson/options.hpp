@@ -41,6 +41,8 @@ struct Options {
   int window = 150, recent = 60000;
   int settling = 4;
   double sigma = 0.3;
+  bool covariance = true;
+  double neighbours = 0.05;
   double delay = 0.03;
   bool outliers = true;
 

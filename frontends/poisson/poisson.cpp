@@ -68,12 +68,13 @@ void Poisson::report(Track& track, const Tracker::Observation& z) {
     --track.settling;
     return;
   }
-  const double sigma = std::hypot(options_.sigma, z.deviation);
+  const PixelNoise left = options_.covariance ? PixelNoise(z.covariance) : PixelNoise(z.deviation);
+  const PixelNoise noise = left + options_.sigma;
   const double t = std::max({z.t, track.reported + kLeastStep, complete() + kLeastStep});
   // Such a track ends at the next tick. So does one of which too much has happened at one time.
-  if (!std::isfinite(sigma) || !camera_.contains(z.position, 0.0) || t > latest_) return;
+  if (!noise.is_valid() || !camera_.contains(z.position, 0.0) || t > latest_) return;
   track.reported = t;
-  delayed_.add({track.id, t, z.position, sigma});
+  delayed_.add({track.id, t, z.position, noise});
 }
 
 void Poisson::on_tick() {
@@ -89,8 +90,44 @@ void Poisson::on_tick() {
     y.push_back(velocity.y());
   }
   if (!x.empty()) odometer_ += kTick * std::hypot(median(std::move(x)), median(std::move(y)));
+  if (options_.neighbours > 0.0) expect_neighbours();
   end_trackers();
   if (!seeds_.given() && clock_ - detected_ >= options_.detection.interval) replenish();
+}
+
+/// The motion that each track's neighbours have, each as far as it knows its own: those before edges know it across
+/// them, and together they know all of it. Neighbours at other depths move differently.
+void Poisson::expect_neighbours() {
+  static const double kDepth = getenv("KDEPTH") ? atof(getenv("KDEPTH")) : 0.2;        // share of a neighbour's velocity that may be due to its depth
+  constexpr double kSlowest = 5.0;      // [px/s]
+  static const double kReach = getenv("KREACH") ? atof(getenv("KREACH")) : 0.15;       // standard deviation of the distance to neighbours, as a share of the width
+  struct Motion {
+    Vector2 pixel, velocity;
+    Matrix2 information;
+  };
+  std::vector<Motion> motions;
+  for (const Track& track : tracks_) {
+    const Vector2 velocity = track.tracker.velocity();
+    const double other = kDepth * velocity.norm() + kSlowest;
+    const Matrix2 covariance = track.tracker.velocity_covariance() + other * other * Matrix2::Identity();
+    motions.push_back({track.tracker.position(clock_), velocity, covariance.inverse()});
+  }
+  const double reach = kReach * camera_.width;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    Matrix2 information = Matrix2::Zero();
+    Vector2 sum = Vector2::Zero();
+    for (std::size_t j = 0; j < motions.size(); ++j) {
+      if (i == j) continue;
+      const double near = std::exp(-0.5 * (motions[j].pixel - motions[i].pixel).squaredNorm() / (reach * reach));
+      information += near * motions[j].information;
+      sum += near * motions[j].information * motions[j].velocity;
+    }
+    const Matrix2 covariance = information.inverse();
+    const Vector2 velocity = covariance * sum;
+    if (!velocity.allFinite()) continue;
+    const double other = kDepth * velocity.norm() + kSlowest;
+    tracks_[i].tracker.expect(velocity, options_.neighbours / kTick * (covariance + other * other * Matrix2::Identity()));
+  }
 }
 
 void Poisson::end_trackers() {

@@ -44,6 +44,7 @@ class Poisson : public EventFrontEnd {
 
   void process(std::span<const Event> events);
   void report(Track& track, const Tracker::Observation& observation);
+  void expect_neighbours();
   void end_trackers();
   std::optional<End> reason_to_end(const Track& track, std::span<const Track> older) const;
   void end(const Track& track, End why);

@@ -45,7 +45,7 @@ TEST_CASE("Points of a wall are tracked as the camera moves, with a sigma of eac
   std::set<double> sigmas;
   for (const TrackObservation& z : tracks.observations) {
     ++lengths[z.track];
-    sigmas.insert(z.sigma);
+    sigmas.insert(z.noise.sigma());
   }
   CHECK(lengths.size() > 40);
   CHECK(tracks.observations.size() > 1000);

@@ -135,6 +135,23 @@ void Tracker::pass(double t, double waits, std::vector<Observation>& observation
   }
 }
 
+void Tracker::expect(const Vector2& velocity, const Matrix2& covariance) {
+  const Eigen::Matrix<double, 8, 2> columns = P_.middleCols<2>(2);
+  const Eigen::Matrix<double, 8, 2> gain = columns * (P_.block<2, 2>(2, 2) + covariance).inverse();
+  if (!gain.allFinite()) return;
+  shift(gain * (velocity - velocity_));
+  P_ -= gain * columns.transpose();
+  P_ = 0.5 * (P_ + P_.transpose()).eval();
+}
+
+void Tracker::shift(const Eigen::Matrix<double, 8, 1>& by) {
+  position_ += by.head<2>();
+  velocity_ += by.segment<2>(2);
+  angle_ += by[4];
+  log_scale_ += by[5];
+  coming_.position += by.tail<2>();
+}
+
 /// White noise on acceleration. Its density follows from the way, so that slow and fast motion are alike.
 void Tracker::predict(double t) {
   const double dt = t - t_, speed = velocity_.norm() + kSlow;
@@ -211,15 +228,11 @@ void Tracker::correct() {
   D.topLeftCorner<2, 2>() = L_seen * L.inverse();
   H = options_.independence * D * H * D.transpose();
 
-  const Eigen::Matrix<double, 8, 1> shift = columns * (prior * delta);
+  const Eigen::Matrix<double, 8, 1> by_all = columns * (prior * delta);
   const Matrix4 weight = (Matrix4::Identity() + H * P).inverse() * H;
   P_ -= columns * weight * columns.transpose();
   P_ = 0.5 * (P_ + P_.transpose()).eval();
-  position_ += shift.head<2>();
-  velocity_ += shift.segment<2>(2);
-  angle_ += shift[4];
-  log_scale_ += shift[5];
-  coming_.position += shift.tail<2>();
+  shift(by_all);
   way_ += (position_ - from).norm();
   after_.insert(after_.end(), waiting_.begin(), waiting_.end());
   waiting_.clear();

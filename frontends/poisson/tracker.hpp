@@ -42,8 +42,12 @@ class Tracker {
   /// follow: those that wait since before are appended now.
   void pass(double t, double waits, std::vector<Observation>& observations);
 
+  /// Takes a velocity [px/s] that is expected here, with its covariance, as a measurement.
+  void expect(const Vector2& velocity, const Matrix2& covariance);
+
   Vector2 position(double t) const { return position_ + (t - t_) * velocity_; }
   const Vector2& velocity() const { return velocity_; }
+  Matrix2 velocity_covariance() const { return P_.block<2, 2>(2, 2); }
   double newest() const { return t_; }                      ///< [s] time of the newest correction
   double deviation() const;                                 ///< of the position, along its least known direction [px]
   double observed_deviation() const { return deviation_; }  ///< the same of observations, a running mean
@@ -75,6 +79,7 @@ class Tracker {
   Vector2 to_patch(const Vector2& direction) const;
   bool is_due(double t) const;
   void take(const Event& event, std::vector<Observation>& observations);
+  void shift(const Eigen::Matrix<double, 8, 1>& by);
   void predict(double t);
   void correct();
   double log_likelihood(const Place& place) const;

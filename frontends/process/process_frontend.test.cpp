@@ -132,7 +132,7 @@ TEST_CASE("A front-end process gets every event once, however they are cut, and 
   for (std::size_t i = 0; i < 100; ++i) {
     REQUIRE(result.observations[i].track == static_cast<TrackId>(i));
     REQUIRE(result.observations[i].t == static_cast<double>(some_events()[i].t) / 1e6);
-    REQUIRE(result.observations[i].sigma == 0.5);
+    REQUIRE(result.observations[i].noise == 0.5);
     REQUIRE(result.ended[i].t == result.observations[i].t);
   }
   CHECK(result.until.back() == 1.0);

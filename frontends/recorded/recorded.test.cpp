@@ -52,7 +52,7 @@ TEST_CASE("Recorded tracks come in time order within the source's time range, an
   CHECK(observations[0].t == 0.1);
   CHECK(observations[2].pixel == Vector2(10, 10));
   CHECK(observations[4].t == 0.6);
-  CHECK(observations[0].sigma == 0.7);
+  CHECK(observations[0].noise == 0.7);
   std::string remarks;
   for (const std::string& remark : frontend.remarks()) remarks += remark + "\n";
   CHECK_THAT(remarks, ContainsSubstring("8 observations of 3 tracks") &&

@@ -126,6 +126,10 @@ TEST_CASE("Errors of control states match their covariances, in the gauge of the
   check_consistency({.gauge = Gauge::scale_anchor}, control_states());
 }
 
+TEST_CASE("Errors of control states match their covariances where each landmark is seen along an edge", "[slow]") {
+  check_consistency({.gauge = Gauge::landmark_priors, .edge = 4.0}, control_states());
+}
+
 TEST_CASE("Errors between control states match their covariances", "[slow]") {
   for (const Gauge gauge : {Gauge::landmark_priors, Gauge::scale_anchor}) {
     check_consistency({.gauge = gauge, .observed = DrawnOptions::Observed::at_states}, between_states());

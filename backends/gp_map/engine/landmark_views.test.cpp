@@ -51,7 +51,7 @@ TEST_CASE("A landmark's own normal equations are the sums over its observations 
       Vector3 g = H * (position - landmark.prior.position);
       for_each_observation(graph, j, {}, [&](const GpInterval& interval, const Observation& z) {
         const SE3 T = interval.pose(z.t).inverse();
-        const Matrix23 J = z.inverse_sigma * graph.camera.project_jacobian(T * position) * T.R();
+        const Matrix23 J = z.whitening * Matrix23(graph.camera.project_jacobian(T * position) * T.R());
         const Vector2 e = reprojection_residual(interval, position, z, graph.camera);
         H += loss.weight(e.squaredNorm()) * J.transpose() * J;
         g += loss.weight(e.squaredNorm()) * J.transpose() * e;

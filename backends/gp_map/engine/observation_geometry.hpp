@@ -95,7 +95,8 @@ void with_range_of(const GpInterval& interval, Call call) {
 
 /// One observation per lane; `present` is 0 in a lane without one.
 struct Measured {
-  Lane t{}, u{}, v{}, inverse_sigma{}, present{};
+  Lane t{}, u{}, v{}, present{};
+  Lane xx{}, yx{}, yy{};  ///< of the whitening
 
   /// Sets t of all lanes: it must be in the interval even in a lane without observation.
   explicit Measured(double t0) : t(broadcast(t0)) {}
@@ -104,7 +105,9 @@ struct Measured {
     t[lane] = z.t;
     u[lane] = z.pixel.x();
     v[lane] = z.pixel.y();
-    inverse_sigma[lane] = z.inverse_sigma;
+    xx[lane] = z.whitening.xx;
+    yx[lane] = z.whitening.yx;
+    yy[lane] = z.whitening.yy;
     present[lane] = 1.0;
   }
 };
@@ -157,11 +160,15 @@ struct Motion {
 
 inline Motion motion(const Tangent& g) { return {g.phi, g.rho + g.k.b * g.u1 + g.k.c * g.u2, g.s1, g.k.b}; }
 
-/// The whitened residual of the point q in the camera; behind it both components are 2 fx/σ, constant.
+/// The whitened residual of the point q in the camera; behind it both components are 2 fx/σ, constant, where σ is the
+/// geometric mean over all directions.
 struct Residual {
   LaneBits in_front;
   Lane x, y, inverse_z;  ///< in front: the projection of q in normalised coordinates
+  Lane dx, dy;           ///< in front: the residual [px]
   Lane e0, e1, square;
+
+  Lane px() const { return sqrt(dx * dx + dy * dy); }
 };
 
 inline Residual residual_of(const PinholeCamera& camera, const Lane3& q, const Measured& z) {
@@ -170,9 +177,11 @@ inline Residual residual_of(const PinholeCamera& camera, const Lane3& q, const M
   r.inverse_z = 1.0 / (r.in_front ? q.z : broadcast(1.0));
   r.x = q.x * r.inverse_z;
   r.y = q.y * r.inverse_z;
-  const Lane behind = 2.0 * camera.fx * z.inverse_sigma;
-  r.e0 = r.in_front ? z.inverse_sigma * (camera.fx * r.x + camera.cx - z.u) : behind;
-  r.e1 = r.in_front ? z.inverse_sigma * (camera.fy * r.y + camera.cy - z.v) : behind;
+  r.dx = camera.fx * r.x + camera.cx - z.u;
+  r.dy = camera.fy * r.y + camera.cy - z.v;
+  const Lane behind = 2.0 * camera.fx * sqrt(z.xx * z.yy);
+  r.e0 = r.in_front ? z.xx * r.dx : behind;
+  r.e1 = r.in_front ? z.yx * r.dx + z.yy * r.dy : behind;
   r.square = r.e0 * r.e0 + r.e1 * r.e1;
   return r;
 }
@@ -183,9 +192,9 @@ struct ImageRows {
 };
 
 inline ImageRows image_rows(const PinholeCamera& camera, const Residual& r, const Measured& z) {
-  const Lane ax = camera.fx * z.inverse_sigma * r.inverse_z;
-  const Lane ay = camera.fy * z.inverse_sigma * r.inverse_z;
-  return {{ax, Lane{}, -ax * r.x}, {Lane{}, ay, -ay * r.y}};
+  const Lane ax = camera.fx * r.inverse_z, ay = camera.fy * r.inverse_z;
+  const Lane yx = z.yx * ax, yy = z.yy * ay;
+  return {{z.xx * ax, Lane{}, -z.xx * ax * r.x}, {yx, yy, -yx * r.x - yy * r.y}};
 }
 
 }  // namespace evbench::gp_map::lanes

@@ -99,7 +99,7 @@ void add_observation(const Shared& shared, const Lane3& m, const Measured& z, La
   const Lane3 q = motion(g).into_camera(m);
   const Residual residual = residual_of(shared.camera, q, z);
   const LaneLoss loss = loss_of(shared.loss, residual.square);
-  landmark.error += (z.present > 0.0) & residual.in_front ? sqrt(residual.square) / z.inverse_sigma : Lane{};
+  landmark.error += (z.present > 0.0) & residual.in_front ? residual.px() : Lane{};
   landmark.behind += residual.in_front ? Lane{} : z.present;
   sums.cost += 0.5 * z.present * loss.value;
   const Lane weight = residual.in_front ? z.present * loss.weight : Lane{};

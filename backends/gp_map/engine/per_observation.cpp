@@ -11,8 +11,8 @@ ObservationRows linearise(const GpInterval& interval, const GpInterval::Derivati
   const GpInterval::Query at_z = interval.query(z.t, derivatives);
   const Vector3 q = at_z.T.inverse() * landmark;
   if (!(q.z() > 0.0)) return rows;  // its cost is constant there
-  const Matrix23 D = z.inverse_sigma * camera.project_jacobian(q);
-  rows.e = z.inverse_sigma * (camera.project(q) - z.pixel);
+  const Matrix23 D = z.whitening * camera.project_jacobian(q);
+  rows.e = z.whitening * Vector2(camera.project(q) - z.pixel);
   rows.landmark = D * at_z.T.R().transpose();
   const Matrix26 pose = D * seen_point_jacobian(q);
   rows.states << pose * at_z.J0.topRows<6>(), pose * at_z.J1.topRows<6>();

@@ -91,8 +91,15 @@ void DrawnProblem::draw_landmark(int first, int last) {
     const Vector2 seen = camera().project(T.inverse() * landmark.position);
     if (seen.x() < 0.0 || seen.y() < 0.0 || seen.x() > kWidth || seen.y() > kHeight) break;
     const double sigma = options_.noise_scale * options_.pixel_sigma;
-    const Vector2 noise = sigma * random_.normal2();
-    landmark.observations.push_back({t, seen + noise, 1.0 / options_.pixel_sigma});
+    Vector2 noise = sigma * random_.normal2();
+    Whitening whitening = 1.0 / options_.pixel_sigma;
+    if (options_.edge != 1.0) {
+      const Eigen::Rotation2Dd R(static_cast<double>(landmarks_.size()));  // [rad]
+      const Matrix2 stretched = R * Vector2(options_.edge, 1.0).asDiagonal() * R.inverse();
+      noise = stretched * noise;
+      whitening = PixelNoise(options_.pixel_sigma).mapped(stretched).whitening();
+    }
+    landmark.observations.push_back({t, seen + noise, whitening});
   }
   if (landmark.observations.size() >= kEnters) landmarks_.push_back(landmark);
 }

@@ -23,6 +23,7 @@ struct DrawnOptions {
   double qc = 0.01;          ///< [rad²/s³, m²/s³]
   double pixel_sigma = 0.1;  ///< stated [px]
   double noise_scale = 1.0;  ///< true pixel noise over the stated one
+  double edge = 1.0;         ///< a landmark's noise along a direction of its own over that across it
 };
 
 /// A problem whose unknowns and measurements are drawn from exactly the densities of the factors, so that the errors of

@@ -182,7 +182,8 @@ std::optional<Observation> RandomSession::measure(int landmark, double t) {
   const Vector3 q = true_pose(t).inverse() * truth_[index(landmark)];
   if (q.z() < 0.1) return std::nullopt;
   const Vector2 noise = random_.uniform2({-1.0, -1.0}, {1.0, 1.0});
-  return Observation{t, kCamera.project(q) + noise, 1.0};
+  const Vector3 whitening = random_.uniform3({0.5, -0.5, 0.5}, {1.5, 0.5, 1.5});
+  return Observation{t, kCamera.project(q) + noise, {whitening.x(), whitening.y(), whitening.z()}};
 }
 
 std::optional<RandomSession::Seen> RandomSession::draw_observation() {

@@ -36,7 +36,7 @@ class ClassName : public evbench::FrontEnd {
     for (TrackObservation z : *tracks) {
       if (seen[z.track]++ % options.every != 0) continue;
       z.pixel += options.noise * random.normal2();
-      z.sigma = std::hypot(z.sigma, options.noise);
+      z.noise = z.noise + options.noise;
       observations_.push_back(z);
     }
     player_ = TrackPlayer(observations_);
