@@ -17,7 +17,7 @@ namespace evbench::bundle_adjustment {
 namespace {
 
 const Registration<BackEnd, BundleAdjustment> registration(
-    "bundle_adjustment", "bundle adjustment of batches of observations (the baseline of Liu et al. 2022)", 2);
+    "bundle_adjustment", "bundle adjustment of batches of observations (the baseline of Liu et al. 2022)", 3);
 
 constexpr double kLongestPrediction = 0.5;  // [s] beyond it, constant velocity predicts nothing
 constexpr double kClearlyCheaper = 1.1;  // ratio of two initial guesses' errors from which on the smaller one is taken

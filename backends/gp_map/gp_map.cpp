@@ -16,7 +16,7 @@ namespace evbench::gp_map {
 namespace {
 
 const Registration<BackEnd, GpMap> registration("gp_map",
-                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 27);
+                                                "asynchronous MAP estimation under a GP prior (Liu et al. 2022)", 28);
 
 constexpr double kEvery = 0.3;     ///< [s] between smoothed re-estimations of prior and noise while running
 constexpr double kOneSided = 0.1;  ///< [s] newer motion is observed from one side only

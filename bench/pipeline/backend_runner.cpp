@@ -195,7 +195,7 @@ void BackEndRunner::undistort(TrackBatch& batch) {
     const std::optional<Vector2> pixel = camera_.undistort(z.pixel);
     if (!pixel) return true;
     z.pixel = *pixel;
-    if (!getenv("EVB_NOMAP")) z.noise = z.noise.mapped(camera_.distortion_jacobian(*pixel).inverse());
+    z.noise = z.noise.mapped(camera_.distortion_jacobian(*pixel).inverse());
     return false;
   });
 }

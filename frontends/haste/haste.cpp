@@ -33,7 +33,7 @@ Haste::Haste(const Options& options, const FrontEndContext& context)
     : EventFrontEnd(context, "haste"),
       options_(options),
       seeds_(options.seeds, context.folder),
-      sigma_(options.sigma),
+      noise_(options.sigma),
       recent_(static_cast<std::size_t>(options.detection.events)),
       trackers_(camera_.width, camera_.height, options.threads),
       guidance_(camera_, options.guidance.degraded),
@@ -89,8 +89,8 @@ void Haste::observe(const Change& change) {
   track.visited.extend(change.after.position);
   track.odometer = odometer_;
   track.pixel = change.after.position;
-  const double sigma = options_.score_sigma ? sigma_.next(change.scores) : options_.sigma;
-  TrackObservation z{track.id, seconds(change.after.t), place_of(change, options_.place), sigma};
+  const PixelNoise noise = options_.score_covariance ? noise_.next(change.scores) : options_.sigma;
+  TrackObservation z{track.id, seconds(change.after.t), place_of(change, options_.place), noise};
   const double published = std::max(seconds(change.t_event), clock_) - options_.delay;  // published up to here
   if (z.t <= published) ++late_;
   z.t = std::max({z.t, published, track.reported + kLeastStep});

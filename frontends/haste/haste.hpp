@@ -13,7 +13,7 @@
 #include "frontends/haste/lost_landmarks.hpp"
 #include "frontends/haste/options.hpp"
 #include "frontends/haste/recent_events.hpp"
-#include "frontends/haste/tracking/score_sigma.hpp"
+#include "frontends/haste/tracking/score_noise.hpp"
 #include "frontends/haste/tracking/tracker_set.hpp"
 
 namespace evbench::haste {
@@ -85,7 +85,7 @@ class Haste : public EventFrontEnd {
 
   Options options_;
   Seeds seeds_;
-  ScoreSigma sigma_;
+  ScoreNoise noise_;
   RecentEvents recent_;
   TrackerSet trackers_;
   std::map<std::int64_t, Track> tracks_;  ///< by tracker

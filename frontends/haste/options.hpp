@@ -50,7 +50,7 @@ struct Options {
   std::string seeds = {};
   int threads = 1;
   double sigma = 0.5;
-  bool score_sigma = false;
+  bool score_covariance = false;
   enum class Place { new_state, midpoint, refined } place = Place::refined;
   double delay = 0.03;
 

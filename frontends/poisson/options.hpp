@@ -42,7 +42,7 @@ struct Options {
   int settling = 4;
   double sigma = 0.3;
   bool covariance = true;
-  double neighbours = 0.05;
+  bool neighbours = true;
   double delay = 0.03;
   bool outliers = true;
 

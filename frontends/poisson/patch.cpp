@@ -1,7 +1,9 @@
 #include "frontends/poisson/patch.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace evbench::poisson {
 namespace {
@@ -38,7 +40,9 @@ Patch::Patch(double radius)
       reach_(static_cast<int>(std::ceil(radius)) + kWide),
       side_(2 * reach_ + 1),
       area_(M_PI * radius * radius),
-      cells_(index(side_ * side_)) {}
+      cells_(index(side_ * side_)),
+      on_(cells_.size()),
+      off_(cells_.size()) {}
 
 void Patch::move(const Vector2& direction, double way, double memory) {
   constexpr double kHeavy = 1e6;
@@ -82,17 +86,15 @@ Patch::Slope Patch::mean_slope() const {
   const int farthest = static_cast<int>(radius_);
   for (int j = -farthest; j <= farthest; ++j) {
     const double reach = std::sqrt(radius_ * radius_ - j * j);
-    const Cell* const row = &cells_[index((j + reach_) * side_ + reach_)];
-    for (int i = -static_cast<int>(reach); i <= static_cast<int>(reach); ++i) {
-      const Cell* const cell = row + i;
-      for (const float sign : {1.0F, -1.0F}) {
-        const auto at = [&](int offset) { return along(cell[offset], sign * hx_, sign * hy_); };
-        const double x = 0.5 * (at(1) - at(-1)), y = 0.5 * (at(side_) - at(-side_));
+    for (const std::vector<float>* rates : {&on_, &off_}) {
+      const float* const row = &(*rates)[index((j + reach_) * side_ + reach_)];
+      for (int i = -static_cast<int>(reach); i <= static_cast<int>(reach); ++i) {
+        const double x = 0.5F * (row[i + 1] - row[i - 1]), y = 0.5F * (row[i + side_] - row[i - side_]);
         sum.x += x;
         sum.y += y;
         sum.turning += x * j - y * i;
         sum.growing += x * i + y * j;
-        mass += at(0) + noise_;
+        mass += row[i] + noise_;
       }
     }
   }
@@ -106,11 +108,14 @@ void Patch::look(const Vector2& direction, const Shares& shares) {
   const double polarities = shares.polarity ? 0.5 : 1.0;
   const double mean = std::max(polarities * count_ / (way * area_), 1e-9);
   const Vector2 h = (M_ + weight_ * kUnknown * Matrix2::Identity()).inverse() * direction / mean;
-  hx_ = static_cast<float>(h.x());
-  hy_ = static_cast<float>(h.y());
-  any_ = static_cast<float>(polarities * shares.any_direction / (way * mean));
+  const auto hx = static_cast<float>(h.x()), hy = static_cast<float>(h.y());
+  const auto any = static_cast<float>(polarities * shares.any_direction / (way * mean));
   noise_ = static_cast<float>(shares.noise);
-  polarity_ = shares.polarity;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const float along = hx * cells_[i].x + hy * cells_[i].y, rest = any * cells_[i].count;
+    on_[i] = std::max(shares.polarity ? -along : std::abs(along), 0.0F) + rest;
+    off_[i] = std::max(shares.polarity ? along : std::abs(along), 0.0F) + rest;
+  }
 }
 
 }  // namespace evbench::poisson

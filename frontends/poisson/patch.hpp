@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "core/geometry/types.hpp"
@@ -59,11 +57,6 @@ class Patch {
     float x = 0.0F, y = 0.0F, count = 0.0F, unused = 0.0F;  // of 16 bytes
   };
 
-  float along(const Cell& cell, float hx, float hy) const {
-    const float along = hx * cell.x + hy * cell.y;
-    return (polarity_ ? std::max(along, 0.0F) : std::abs(along)) + any_ * cell.count;
-  }
-
   double radius_;
   int reach_, side_;
   double area_;              ///< [px²]
@@ -71,8 +64,8 @@ class Patch {
   double weight_ = 1.0;      ///< of what is added now; older sums are not faded one by one
   Matrix2 M_ = Matrix2::Zero();
   double way_ = 0.0, count_ = 0.0;
-  float hx_ = 0.0F, hy_ = 0.0F, any_ = 0.0F, noise_ = 0.0F;  ///< of the present look, over the mean rate
-  bool polarity_ = true;
+  std::vector<float> on_, off_;  ///< for the present look, by rows: rates over the mean, without noise_
+  float noise_ = 0.0F;
 };
 
 inline Patch::Rate Patch::rate(const Vector2& place, bool on) const {
@@ -80,11 +73,9 @@ inline Patch::Rate Patch::rate(const Vector2& place, bool on) const {
   if (!(x >= 0.0 && y >= 0.0 && x < side_ - 1 && y < side_ - 1)) return {noise_, 0.0, 0.0};
   const int left = static_cast<int>(x), top = static_cast<int>(y);
   const auto fx = static_cast<float>(x - left), fy = static_cast<float>(y - top);
-  const Cell* const upper = &cells_[index(top * side_ + left)];
-  const Cell* const lower = upper + side_;
-  const float hx = on ? -hx_ : hx_, hy = on ? -hy_ : hy_;
-  const float a = along(upper[0], hx, hy), b = along(upper[1], hx, hy);
-  const float c = along(lower[0], hx, hy), d = along(lower[1], hx, hy);
+  const float* const upper = &(on ? on_ : off_)[index(top * side_ + left)];
+  const float* const lower = upper + side_;
+  const float a = upper[0], b = upper[1], c = lower[0], d = lower[1];
   const float up = a + fx * (b - a), down = c + fx * (d - c);
   return {up + fy * (down - up) + noise_, (b - a) + fy * ((d - c) - (b - a)), down - up};
 }

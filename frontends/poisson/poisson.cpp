@@ -17,7 +17,7 @@ namespace evbench::poisson {
 namespace {
 
 const Registration<FrontEnd, Poisson> registration(
-    "poisson", "tracks features asynchronously by the likelihood of events, a Poisson process", 1);
+    "poisson", "tracks features asynchronously by the likelihood of events, a Poisson process", 2);
 
 constexpr double kLeastStep = 1e-6;  ///< [s] between two observations of a track
 
@@ -90,7 +90,7 @@ void Poisson::on_tick() {
     y.push_back(velocity.y());
   }
   if (!x.empty()) odometer_ += kTick * std::hypot(median(std::move(x)), median(std::move(y)));
-  if (options_.neighbours > 0.0) expect_neighbours();
+  if (options_.neighbours) expect_neighbours();
   end_trackers();
   if (!seeds_.given() && clock_ - detected_ >= options_.detection.interval) replenish();
 }
@@ -98,18 +98,21 @@ void Poisson::on_tick() {
 /// The motion that each track's neighbours have, each as far as it knows its own: those before edges know it across
 /// them, and together they know all of it. Neighbours at other depths move differently.
 void Poisson::expect_neighbours() {
-  static const double kDepth = getenv("KDEPTH") ? atof(getenv("KDEPTH")) : 0.2;        // share of a neighbour's velocity that may be due to its depth
-  constexpr double kSlowest = 5.0;      // [px/s]
-  static const double kReach = getenv("KREACH") ? atof(getenv("KREACH")) : 0.15;       // standard deviation of the distance to neighbours, as a share of the width
+  constexpr double kDepth = 0.2;   // share of a neighbour's velocity that may be due to its depth
+  constexpr double kSlow = 5.0;    // [px/s] by which it may differ, however slow it is
+  constexpr double kReach = 0.15;  // standard deviation of the distance to neighbours, as a share of the width
+  const auto differing = [](const Vector2& velocity) -> Matrix2 {
+    const double other = kDepth * velocity.norm() + kSlow;
+    return other * other * Matrix2::Identity();
+  };
   struct Motion {
     Vector2 pixel, velocity;
     Matrix2 information;
   };
   std::vector<Motion> motions;
   for (const Track& track : tracks_) {
-    const Vector2 velocity = track.tracker.velocity();
-    const double other = kDepth * velocity.norm() + kSlowest;
-    const Matrix2 covariance = track.tracker.velocity_covariance() + other * other * Matrix2::Identity();
+    const Vector2& velocity = track.tracker.velocity();
+    const Matrix2 covariance = track.tracker.velocity_covariance() + differing(velocity);
     motions.push_back({track.tracker.position(clock_), velocity, covariance.inverse()});
   }
   const double reach = kReach * camera_.width;
@@ -124,9 +127,7 @@ void Poisson::expect_neighbours() {
     }
     const Matrix2 covariance = information.inverse();
     const Vector2 velocity = covariance * sum;
-    if (!velocity.allFinite()) continue;
-    const double other = kDepth * velocity.norm() + kSlowest;
-    tracks_[i].tracker.expect(velocity, options_.neighbours / kTick * (covariance + other * other * Matrix2::Identity()));
+    tracks_[i].tracker.expect(velocity, covariance + differing(velocity));
   }
 }
 

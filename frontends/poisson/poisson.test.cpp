@@ -53,6 +53,17 @@ TEST_CASE("Points of a wall are tracked as the camera moves, with a sigma of eac
   CHECK(median_error(scene(), tracks.observations) < 1.0);
 }
 
+TEST_CASE("Observations have covariances, unless that is switched off") {
+  const auto directed = [](const TrackBatch& tracks) {
+    return std::ranges::count_if(tracks.observations,
+                                 [](const TrackObservation& z) { return !z.noise.is_isotropic(); });
+  };
+  Options isotropic;
+  isotropic.covariance = false;
+  CHECK(directed(track(scene())) > 1000);
+  CHECK(directed(track(scene(), isotropic)) == 0);
+}
+
 TEST_CASE("Tracks do not depend on how often they are polled, nor on threads", "[slow]") {
   const TrackBatch usual = track(scene());
   Options threaded;

@@ -136,11 +136,17 @@ void Tracker::pass(double t, double waits, std::vector<Observation>& observation
 }
 
 void Tracker::expect(const Vector2& velocity, const Matrix2& covariance) {
-  const Eigen::Matrix<double, 8, 2> columns = P_.middleCols<2>(2);
-  const Eigen::Matrix<double, 8, 2> gain = columns * (P_.block<2, 2>(2, 2) + covariance).inverse();
-  if (!gain.allFinite()) return;
-  shift(gain * (velocity - velocity_));
-  P_ -= gain * columns.transpose();
+  Eigen::SelfAdjointEigenSolver<Matrix2> solver;
+  solver.computeDirect(P_.topLeftCorner<2, 2>());
+  const double share = 1.0 - solver.eigenvalues()[0] / solver.eigenvalues()[1];  // 0 for a corner, 1 for an edge
+  const Vector2 along = solver.eigenvectors().col(1);
+  const Eigen::Matrix<double, 8, 1> column = P_.middleCols<2>(2) * along;
+  const double variance = along.dot(covariance * along) / share;
+  const Eigen::Matrix<double, 8, 1> gain = column / (along.dot(column.segment<2>(2)) + variance);
+  const Eigen::Matrix<double, 8, 1> by = gain * along.dot(velocity - velocity_);
+  if (!by.allFinite()) return;  // none are near
+  shift(by);
+  P_ -= gain * column.transpose();
   P_ = 0.5 * (P_ + P_.transpose()).eval();
 }
 

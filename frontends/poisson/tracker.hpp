@@ -42,7 +42,8 @@ class Tracker {
   /// follow: those that wait since before are appended now.
   void pass(double t, double waits, std::vector<Observation>& observations);
 
-  /// Takes a velocity [px/s] that is expected here, with its covariance, as a measurement.
+  /// Takes a velocity [px/s] that is expected here, with its covariance, as a measurement, along the direction in which
+  /// the position is least known. Its variance grows to infinity as all directions are known alike.
   void expect(const Vector2& velocity, const Matrix2& covariance);
 
   Vector2 position(double t) const { return position_ + (t - t_) * velocity_; }

@@ -161,6 +161,21 @@ TEST_CASE("A position is less certain along an edge than across it, and than a c
   CHECK(followed.tracker.observed_deviation() > 2.0 * follow(corner(), across, 0.6).tracker.observed_deviation());
 }
 
+TEST_CASE("A velocity that is expected decides along an edge, and says little across it") {
+  const Motion across = [](double t) { return Pose{Vector2(60.0 + 5.0 * t, 80.0 - 60.0 * t)}; };
+  const Vector2 along = Vector2(4.0, 1.0).normalized(), normal(-along.y(), along.x());
+  const auto moved = [](Tracker tracker, const Vector2& by, double sigma) {
+    const Vector2 before = tracker.velocity();
+    tracker.expect(before + by, sigma * sigma * Matrix2::Identity());
+    return Vector2(tracker.velocity() - before);
+  };
+  const Followed of_edge = follow(edge(), across, 0.6);
+  CHECK(moved(of_edge.tracker, 20.0 * along, 1.0).dot(along) > 15.0);
+  CHECK(std::abs(moved(of_edge.tracker, 20.0 * normal, 1.0).dot(normal)) < 5.0);
+  CHECK(moved(of_edge.tracker, 20.0 * along, 1000.0).norm() < 0.1);  // it is not certain enough
+  CHECK(moved(of_edge.tracker, {NAN, 0.0}, 1.0).norm() == 0.0);
+}
+
 TEST_CASE("A tracker rests when its events cease, and goes on") {
   const Motion halting = [](double t) { return straight(t < 0.4 ? t : std::max(0.4, t - 0.5)); };
   const Followed still = follow(corner(), halting, 0.8);

@@ -1,7 +1,5 @@
 #include "frontends/haste/tracking/change.hpp"
 
-#include <limits>
-
 namespace evbench::haste {
 
 namespace {
@@ -36,11 +34,11 @@ double Scores::weakest_curvature() const {
   return largest > 0.0 ? -(0.5 * (f.c + f.e) + std::hypot(0.5 * (f.c - f.e), f.d)) / largest : 0.0;
 }
 
-double Scores::flatness() const {
+std::optional<Matrix2> Scores::flatness() const {
   const Paraboloid f(*this);
   const double determinant = f.c * f.e - f.d * f.d, largest = std::max(std::abs(best()), std::abs(worst()));
-  const bool peaks = f.c < 0.0 && determinant > 0.0;
-  return peaks ? -(f.c + f.e) / determinant * largest : std::numeric_limits<double>::infinity();
+  if (!(f.c < 0.0 && determinant > 0.0)) return std::nullopt;
+  return Matrix2({{-f.e, f.d}, {f.d, -f.c}}) * (largest / determinant);
 }
 
 Vector2 refined_position(const Change& change) {

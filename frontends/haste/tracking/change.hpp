@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "frontends/haste/tracking/hypotheses.hpp"
 
@@ -27,10 +28,10 @@ struct Scores {
   /// fall, as a share of the largest magnitude. Small at an edge, along which nothing holds a tracker. Negative where
   /// the paraboloid rises.
   double weakest_curvature() const;
-  /// How uncertain the paraboloid's maximum is: the trace of the inverse of its curvature matrix, in shares of the
-  /// largest magnitude [px²]. A disturbance of the scores' slope moves the maximum by the inverse times the
-  /// disturbance. Infinite where there is no maximum.
-  double flatness() const;
+  /// How uncertain the paraboloid's maximum is: minus the inverse of its curvature matrix, in shares of the largest
+  /// magnitude [px²]. A disturbance of the scores' slope moves the maximum by this times the disturbance. None where
+  /// there is no maximum.
+  std::optional<Matrix2> flatness() const;
 };
 
 /// A tracker's change of state. The first change of a tracker marks that its window is full: tracking begins, and

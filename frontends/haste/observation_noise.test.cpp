@@ -27,20 +27,21 @@ std::vector<TrackObservation> observations(const Options& options) {
 
 }  // namespace
 
-TEST_CASE("Observations with a larger sigma have larger errors") {
+TEST_CASE("Observations with larger noise have larger errors") {
   Options options;
-  options.score_sigma = true;
+  options.score_covariance = true;
   std::map<TrackId, Vector3> points;
   std::vector<double> usual, sharp, vague;
   std::vector<double> sigmas;
   for (const TrackObservation& z : observations(options)) {
-    CHECK(z.noise.sigma() >= 0.5 * options.sigma);
-    CHECK(z.noise.sigma() <= 3.0 * options.sigma);
+    CHECK(z.noise.sigma() >= 0.499 * options.sigma);
+    CHECK(z.noise.sigma() <= 3.001 * options.sigma);
     sigmas.push_back(z.noise.sigma());
     const SE3 T = swing(z.t);
     if (const auto point = points.find(z.track); point != points.end()) {
       const double error = (sigma_scene().camera().project(T.inverse() * point->second) - z.pixel).norm();
-      (z.noise.sigma() < 0.8 * options.sigma ? sharp : z.noise.sigma() > 1.25 * options.sigma ? vague : usual).push_back(error);
+      const double share = z.noise.sigma() / options.sigma;
+      (share < 0.8 ? sharp : share > 1.25 ? vague : usual).push_back(error);
     } else {
       const Vector3 ray = T.R() * sigma_scene().camera().pinhole.ray(z.pixel);
       points.emplace(z.track, T.p + (EventScene::kDistance - T.p.z()) / ray.z() * ray);
@@ -53,10 +54,10 @@ TEST_CASE("Observations with a larger sigma have larger errors") {
   CHECK(median(vague) > 1.4 * median(sharp));
 }
 
-TEST_CASE("All observations have the same sigma where scores are not used") {
+TEST_CASE("All observations have the same noise where scores are not used") {
   Options options;
-  options.score_sigma = false;
+  options.score_covariance = false;
   const auto all = observations(options);
   CHECK_FALSE(all.empty());
-  CHECK(std::ranges::all_of(all, [&](const TrackObservation& z) { return z.noise.sigma() == options.sigma; }));
+  CHECK(std::ranges::all_of(all, [&](const TrackObservation& z) { return z.noise == options.sigma; }));
 }
